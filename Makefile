@@ -1,0 +1,44 @@
+# lensprof: the front door. `make help` lists the targets.
+SHELL := /bin/bash
+.DEFAULT_GOAL := build
+.PHONY: help deps test-deps build demo check test sanitize bench install clean
+
+JOBS ?= $(shell nproc)
+PREFIX ?= /usr/local
+
+help: ## list the targets
+	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
+
+deps: ## install the packages of packages.txt that are missing
+	@cmake/install-packages.sh packages.txt
+
+test-deps: deps ## install what only tests and benchmarks need (packages-test.txt)
+	@cmake/install-packages.sh packages-test.txt
+
+build: ## build the library and the program build/lensprof
+	cmake --preset release
+	cmake --build --preset release -j $(JOBS)
+
+demo: deps build ## calibrate and correct a rendered sequence, or yours: make demo PHOTOS=dir/pano.pto
+	examples/demo.sh "$(PHOTOS)"
+
+check: build ## the quick tests, under a minute
+	ctest --preset check -j $(JOBS)
+
+test: test-deps build ## every test, and the same under sanitizers
+	ctest --preset all -j $(JOBS)
+	$(MAKE) sanitize
+
+sanitize: ## build and run the C and C++ tests under address and undefined behaviour sanitizers
+	cmake --preset sanitize
+	cmake --build --preset sanitize -j $(JOBS)
+	ctest --test-dir build/sanitize --output-on-failure -j $(JOBS) -LE release-only
+
+bench: test-deps build ## measure accuracy and speed beside the peers
+	tests/bench/run.sh
+
+install: build ## install under PREFIX (default /usr/local)
+	cmake --install build --prefix $(PREFIX)
+
+clean: ## remove build/
+	rm -rf build

@@ -1,0 +1,22 @@
+# How every layer of lensprof is compiled.
+
+add_library(lensprof_settings INTERFACE)
+target_include_directories(lensprof_settings INTERFACE ${PROJECT_SOURCE_DIR}/include)
+# Contraction is off so that results do not depend on the instruction set.
+target_compile_options(lensprof_settings INTERFACE -Wall -Wextra -Wshadow -Wpointer-arith -ffp-contract=off)
+if(LENSPROF_SANITIZE)
+  target_compile_options(lensprof_settings INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -g)
+  target_link_options(lensprof_settings INTERFACE -fsanitize=address,undefined)
+endif()
+
+# lensprof_layer(name SOURCES... LINK...): an object library lensprof_<name> with hidden symbols.
+function(lensprof_layer name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_library(lensprof_${name} OBJECT ${ARG_SOURCES})
+  target_link_libraries(lensprof_${name} PUBLIC lensprof_settings PRIVATE ${ARG_LINK})
+  set_target_properties(lensprof_${name} PROPERTIES
+    C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
+    CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF
+    C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden
+    POSITION_INDEPENDENT_CODE ON)
+endfunction()

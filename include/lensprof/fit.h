@@ -1,0 +1,115 @@
+/* lensprof/fit.h - recover response, vignetting, exposure and white balance from correspondences.
+ *
+ * Method `transfer` (d'Angelo 2007): minimise the symmetric grey value transfer error
+ *     B1 - f( g(B2) s1/s2 )   and   B2 - f( g(B1) s2/s1 ),      s = M e w            (equations 5, 8, 10)
+ * over one response f (EMoR), one vignetting M and the exposure and white balance of every image.
+ *
+ * Threads: calls are independent; one call uses one thread. The result does not depend on the order of time:
+ * same input, same bytes.
+ */
+#ifndef LENSPROF_FIT_H
+#define LENSPROF_FIT_H
+
+#include "model.h"
+#include "profile.h"
+#include "sample.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What is unknown. Response to centre: lensprof_fit_options.free. EV, RED, BLUE: lensprof_fit_image.free. */
+#define LENSPROF_FREE_RESPONSE 0x01u
+#define LENSPROF_FREE_K1 0x02u
+#define LENSPROF_FREE_K2 0x04u
+#define LENSPROF_FREE_K3 0x08u
+#define LENSPROF_FREE_CENTER 0x10u
+#define LENSPROF_FREE_EV 0x20u
+#define LENSPROF_FREE_RED 0x40u
+#define LENSPROF_FREE_BLUE 0x80u
+
+typedef enum lensprof_loss {
+    LENSPROF_LOSS_ROBUST = 0, /* default: noise-weighted, redescending, a pair is trusted as a whole */
+    LENSPROF_LOSS_HUBER = 1,  /* the paper's, equation 11 */
+    LENSPROF_LOSS_SQUARED = 2
+} lensprof_loss;
+
+#define LENSPROF_MODES_AUTO 0xFFFFFFFFu /* number of EMoR modes chosen by held-out error */
+
+/* One image of the fit. Frozen value struct. */
+typedef struct lensprof_fit_image {
+    uint32_t width, height;     /* full frame, px */
+    lensprof_exposure exposure; /* the value where fixed, else unused */
+    uint32_t free;              /* LENSPROF_FREE_EV | _RED | _BLUE */
+    uint32_t ev_of;             /* index of the image whose ev this one shares (links); own index = its own */
+    uint32_t red_of, blue_of;   /* the same for the white balance factors */
+} lensprof_fit_image;
+
+/* Called now and then with a fraction 0..1; a non-zero return cancels the fit. */
+typedef int (*lensprof_progress)(double done, void *user);
+
+typedef struct lensprof_fit_options {
+    uint32_t struct_size;
+    uint32_t channels;      /* 1 or 3 */
+    uint32_t reference;     /* image whose exposure is the gauge: its ev and white balance stay as given */
+    uint32_t free;          /* LENSPROF_FREE_RESPONSE .. _CENTER */
+    uint32_t modes;         /* EMoR modes, 0..25, or LENSPROF_MODES_AUTO */
+    uint32_t loss;          /* lensprof_loss */
+    double huber_levels;    /* HUBER: sigma in levels of 255 (paper: 5) */
+    double prior_weight;    /* weight of the priors on response, vignetting and centre; 0 = none (paper), 1 = default */
+    uint32_t max_iterations;
+    uint32_t reserved;                /* 0 */
+    const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
+    lensprof_vignetting vignetting;   /* the value where fixed */
+    lensprof_progress progress;       /* or NULL */
+    void *progress_user;
+} lensprof_fit_options;
+
+/* 3 channels, reference 0, everything free, modes AUTO, loss ROBUST, Huber 5 levels, prior weight 1,
+ * 200 iterations. */
+LENSPROF_API void lensprof_fit_options_init(lensprof_fit_options *options);
+
+typedef struct lensprof_fit_result {
+    uint32_t struct_size;
+    uint32_t usable;         /* 1, or 0 with the reason in words */
+    char reason[256];        /* empty when usable */
+    lensprof_response response;
+    lensprof_vignetting vignetting;
+    uint32_t pairs;          /* pairs used */
+    uint32_t components;     /* connected groups of images; 1 when all are tied together */
+    uint32_t iterations;
+    uint32_t converged;
+    double before_rms;       /* |B1 - B2| of the held-out pairs, levels of 255 */
+    double heldout_rms;      /* transfer residual of pairs left out of the fit, levels of 255 */
+    double heldout_median;   /* median absolute value of the same */
+    double noise_levels;     /* estimated noise of a sample, levels of 255 */
+    double inlier_share;     /* pairs within 3 sigma of the noise */
+    double seconds;          /* time taken by the solver */
+    uint32_t covariance_size; /* order as in profile.h; parameters held fixed have zero rows */
+    uint32_t reserved;
+    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
+} lensprof_fit_result;
+
+LENSPROF_API void lensprof_fit_result_init(lensprof_fit_result *result);
+
+/* Fits `pair_count` pairs over `image_count` images. exposures[image_count] receives what every image got,
+ * relative to the reference. A fit that ran returns OK even when the result is poor: see `usable`.
+ * Errors: indices, values outside 0..1, unusable options ARGUMENT; NaN NOT_FINITE; no pairs NO_SAMPLES;
+ * nothing free NO_UNKNOWNS; CANCELLED; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status
+lensprof_fit_overlap(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
+                     const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
+                     lensprof_fit_result *result, lensprof_error *error);
+
+/* Root mean square of the symmetric transfer residual (levels of 255) and, when not NULL, its median absolute
+ * value, of pairs under a given model: the figure that lensprof_fit_result.heldout_rms states. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status
+lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting *vignetting,
+                      const lensprof_fit_image *images, const lensprof_exposure *exposures, uint32_t image_count,
+                      const lensprof_pair *pairs, uint32_t pair_count, uint32_t channels, double *rms,
+                      double *median);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,80 @@
+/* lensprof/profile.h - what is known about one camera, lens and setting.
+ *
+ * A profile is a value: it can be copied, stored (store.h) and applied (apply.h). No heap, no I/O.
+ * Threads: all functions are pure.
+ */
+#ifndef LENSPROF_PROFILE_H
+#define LENSPROF_PROFILE_H
+
+#include "model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A number that is not known; a value of its own in keys: unknown equals unknown and nothing else. */
+#define LENSPROF_UNKNOWN (-1.0)
+
+typedef enum lensprof_processing {
+    LENSPROF_PROCESSING_RAW = 0,      /* linear sensor data */
+    LENSPROF_PROCESSING_JPEG = 1,     /* the camera's own rendering */
+    LENSPROF_PROCESSING_CORRECTED = 2 /* rendered, with the falloff corrected in camera */
+} lensprof_processing;
+
+/* What a profile is for. Texts are UTF-8, terminated; empty = unknown. Frozen value struct. */
+typedef struct lensprof_profile_key {
+    char camera_maker[64];
+    char camera_model[64];
+    char lens[128];
+    double focal_mm;    /* focal length, > 0 or LENSPROF_UNKNOWN */
+    double aperture;    /* f-number, > 0 or LENSPROF_UNKNOWN */
+    double distance_m;  /* focus distance, > 0 (INFINITY allowed) or LENSPROF_UNKNOWN */
+    uint32_t processing; /* lensprof_processing */
+    uint32_t reserved;   /* 0 */
+} lensprof_profile_key;
+
+/* Empty texts, unknown numbers, processing JPEG. */
+LENSPROF_API void lensprof_profile_key_init(lensprof_profile_key *key);
+
+/* LENSPROF_OK when the texts are terminated and free of control characters and the numbers in range. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key);
+
+/* Estimated parameters, in the order of the covariance: EMoR coefficients (`response.modes` of them), then
+ * k1, k2, k3 of each vignetting curve, then centre x and y. */
+#define LENSPROF_COVARIANCE_MAX 36
+
+/* Where a profile comes from. Frozen value struct. */
+typedef struct lensprof_provenance {
+    char method[32];        /* "transfer", "import", ... */
+    char software[32];      /* "lensprof 0.1.0" */
+    char source[256];       /* file or database it was made from */
+    int64_t created_unix_s; /* seconds since 1970-01-01 UTC; 0 = unknown */
+    uint32_t images;        /* pictures used */
+    uint32_t pairs;         /* correspondences used */
+    double heldout_rms;     /* transfer residual on held-out pairs, levels of 255; LENSPROF_UNKNOWN */
+    double inlier_share;    /* 0..1; LENSPROF_UNKNOWN */
+} lensprof_provenance;
+
+/* Frozen value struct (about 40 kB: keep it off small stacks). */
+typedef struct lensprof_profile {
+    lensprof_profile_key key;
+    lensprof_provenance provenance;
+    uint32_t responses;   /* 1 for all channels, or 3 */
+    uint32_t vignettings; /* 1 for all channels, or 3 */
+    lensprof_response response[3];
+    lensprof_vignetting vignetting[3];
+    uint32_t covariance_size; /* n, 0 = not known */
+    uint32_t reserved;        /* 0 */
+    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* n x n, row major, in its first n*n */
+} lensprof_profile;
+
+/* Empty key, linear response, no falloff, no covariance, provenance unknown. */
+LENSPROF_API void lensprof_profile_init(lensprof_profile *profile);
+
+/* LENSPROF_OK when key, responses, vignettings and covariance (finite, symmetric, non-negative diagonal) are valid. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,60 @@
+/* lensprof/sample.h - correspondences: the same scene point seen in two pictures.
+ *
+ * Threads: functions are independent of each other; the pictures are only read.
+ */
+#ifndef LENSPROF_SAMPLE_H
+#define LENSPROF_SAMPLE_H
+
+#include "apply.h"
+#include "geometry.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One correspondence. Frozen value struct. */
+typedef struct lensprof_pair {
+    uint32_t image[2];  /* indices of two different images */
+    double xy[2][2];    /* position in each, px of the full frame */
+    double value[2][3]; /* grey values 0..1: red, green, blue; grey pictures use [0] and repeat it */
+} lensprof_pair;
+
+/* A picture to sample. The view may be a reduced picture: pixel (u, v) is then the mean of the square of frame
+ * pixels from (u, v) * reduction on. Frozen value struct. */
+typedef struct lensprof_sample_image {
+    lensprof_image view;    /* the frame, reduced or not; layouts with alpha: alpha below half = excluded */
+    lensprof_camera camera; /* full frame */
+    uint32_t reduction;     /* side of that square, px; 1 = full size. view.width * reduction <= camera.width */
+    uint32_t reserved;      /* 0 */
+    const uint8_t *mask;    /* one byte a view pixel, 0 = excluded; NULL = all included */
+    ptrdiff_t mask_row_bytes;
+    double black, white;    /* samples outside [black, white] in any channel are not used; 0..1 */
+} lensprof_sample_image;
+
+typedef enum lensprof_sampling {
+    LENSPROF_SAMPLING_BALANCED = 0, /* balanced over image pairs, radius and grey level; quiet patches preferred */
+    LENSPROF_SAMPLING_PAPER = 1     /* d'Angelo 2007 section 5.1: 5n random points, 10 radius bins, n/10 lowest gradient */
+} lensprof_sampling;
+
+typedef struct lensprof_sample_options {
+    uint32_t struct_size;
+    uint32_t sampling; /* lensprof_sampling */
+    uint32_t pairs;    /* wanted number; fewer come when the overlaps do not hold as many */
+    uint32_t seed;     /* same seed, same pairs */
+} lensprof_sample_options;
+
+/* Balanced, 0 pairs (= 300 per image, at least 2000), seed 1. */
+LENSPROF_API void lensprof_sample_options_init(lensprof_sample_options *options);
+
+/* Finds correspondences between `count` pictures. pairs[capacity] is the caller's; *found receives the number
+ * written. With capacity 0, *found receives the capacity that surely suffices and nothing is sampled.
+ * Errors: fewer than two images ARGUMENT; NaN in a float view NOT_FINITE (the text names image and pixel);
+ * NO_OVERLAP; NO_SAMPLES when overlaps exist but every sample is masked, black or saturated. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status
+lensprof_sample_overlap(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
+                        lensprof_pair *pairs, uint32_t capacity, uint32_t *found, lensprof_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

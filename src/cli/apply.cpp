@@ -1,0 +1,217 @@
+/* `lensprof apply`: corrected pictures (Goldman & Chen 2005, equation 16). */
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "contact_sheet.hpp"
+#include "interrupt.hpp"
+#include "picture.hpp"
+#include "progress.hpp"
+#include "project.hpp"
+#include "report.hpp"
+#include "run.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Options {
+    std::string db, pto, output, exposure, sheet;
+    int64_t profile = 0;
+    bool from_db = false, linear = false, simulate = false, json = false, progress = false;
+    std::vector<std::string> files;
+};
+
+void declare(CLI::App &app, Options &o) {
+    app.add_option("--profile", o.profile, "id of the profile to use")->check(CLI::PositiveNumber);
+    app.add_flag("--from-db", o.from_db, "look each picture's profile up by its EXIF");
+    app.add_option("--pto", o.pto, "take exposures (and, without --profile or --from-db, the curves) from this project");
+    app.add_option("--db", o.db, "profile database; default the user's own");
+    app.add_option("--output-exposure", o.exposure,
+                   "mean: all like their geometric mean; reference: like 0 EV; keep: each its own (default without --pto)")
+        ->check(CLI::IsMember({"mean", "reference", "keep"}));
+    app.add_flag("--linear", o.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
+    app.add_flag("--simulate", o.simulate, "put the falloff in instead of taking it out");
+    app.add_option("-o,--output", o.output, "folder for the pictures")->required();
+    app.add_option("--contact-sheet", o.sheet, "write an overview, before above after (PNG)");
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
+    app.add_option("FILES", o.files, "pictures; with --pto default all of the project");
+}
+
+/* What is done to one picture. */
+struct Job {
+    std::string source, target;
+    std::shared_ptr<const lensprof_profile> model;
+    lensprof_exposure exposure;
+    int64_t profile_id = 0;
+};
+
+std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
+    auto profile = std::make_shared<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    check(lensprof_pto_get_response(project.pto.get(), project.reference, &profile->response[0]), project.path);
+    profile->vignetting[0] = project.images[project.reference].vignetting;
+    return profile;
+}
+
+/* The image of the project that a picture is: the same file. */
+uint32_t image_of_file(const Project &project, const std::string &file) {
+    for (uint32_t i = 0; i < project.files.size(); i++) {
+        std::error_code ignored;
+        if (project.files[i] == file || std::filesystem::equivalent(project.files[i], file, ignored)) return i;
+    }
+    throw Failure(ExitCode::usage, file + ": is not a picture of " + project.path + "; leave it out or leave --pto out");
+}
+
+void look_up(lensprof_store *store, const Options &o, Job &job) {
+    auto profile = std::make_shared<lensprof_profile>();
+    lensprof_error error{};
+    job.profile_id = o.profile;
+    if (o.profile) {
+        check(lensprof_store_get(store, o.profile, profile.get(), &error), store_path(o.db), &error);
+    } else {
+        lensprof_profile_key key = read_metadata(job.source).key;
+        lensprof_status status = lensprof_store_find(store, &key, profile.get(), &job.profile_id, &error);
+        if (status == LENSPROF_ERROR_NOT_FOUND)
+            throw Failure(ExitCode::not_found, job.source + ": no profile for " + describe_key(key) + " in " + store_path(o.db)
+                          + "; make one with `lensprof build` or name one with --profile");
+        check(status, store_path(o.db), &error);
+    }
+    job.model = profile;
+}
+
+std::string target_name(const Options &o, const std::string &source) {
+    std::filesystem::path name = std::filesystem::path(source).filename();
+    if (o.linear) name.replace_extension(".tif");
+    return (std::filesystem::path(o.output) / name).string();
+}
+
+void check_targets(const std::vector<Job> &jobs) {
+    std::set<std::string> seen;
+    for (const Job &job : jobs) {
+        std::error_code ignored;
+        if (std::filesystem::equivalent(job.source, job.target, ignored))
+            throw Failure(ExitCode::usage, job.source + ": would be overwritten by its correction; give another folder with -o");
+        if (!seen.insert(job.target).second)
+            throw Failure(ExitCode::usage, job.target + ": two pictures would get this name; correct them one folder at a time");
+    }
+}
+
+std::vector<Job> make_jobs(const Options &o) {
+    if (o.profile && o.from_db) throw Failure(ExitCode::usage, "--profile and --from-db contradict each other");
+    bool from_store = o.profile || o.from_db;
+    if (!from_store && o.pto.empty()) throw Failure(ExitCode::usage, "say what to correct with: --profile ID, --from-db or --pto FILE");
+    std::unique_ptr<Project> project;
+    std::shared_ptr<const lensprof_profile> model;
+    if (!o.pto.empty()) {
+        project = std::make_unique<Project>(read_project(o.pto, "", true));
+        if (!from_store) model = model_of_project(*project);
+    }
+    std::vector<std::string> files = o.files.empty() && project ? project->files : o.files;
+    if (files.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
+    Store store = from_store ? open_store(o.db, LENSPROF_STORE_READ) : Store();
+    std::vector<Job> jobs;
+    for (const std::string &file : files) {
+        Job job{file, target_name(o, file), model, {}, 0};
+        lensprof_exposure_init(&job.exposure);
+        if (project) {
+            const auto &reference = project->images[project->reference].exposure;
+            job.exposure = project->images[image_of_file(*project, file)].exposure;
+            job.exposure.ev -= reference.ev;
+            for (int c = 0; c < 3; c++) job.exposure.white_balance[c] /= reference.white_balance[c];
+        }
+        if (from_store) look_up(store.get(), o, job);
+        jobs.push_back(job);
+    }
+    check_targets(jobs);
+    return jobs;
+}
+
+/* Geometric mean of the exposures and white balances: Goldman & Chen, equation 15. */
+lensprof_exposure mean_exposure(const std::vector<Job> &jobs) {
+    lensprof_exposure mean{};
+    double logs[3] = {0, 0, 0};
+    for (const Job &job : jobs) {
+        mean.ev += job.exposure.ev / static_cast<double>(jobs.size());
+        for (int c = 0; c < 3; c++) logs[c] += std::log(job.exposure.white_balance[c]) / static_cast<double>(jobs.size());
+    }
+    for (int c = 0; c < 3; c++) mean.white_balance[c] = std::exp(logs[c]);
+    return mean;
+}
+
+Picture correct(Picture &source, const Job &job, const lensprof_exposure &target, const Options &o) {
+    lensprof_apply_options options;
+    lensprof_apply_options_init(&options);
+    options.direction = o.simulate ? LENSPROF_DIRECTION_SIMULATE : LENSPROF_DIRECTION_CORRECT;
+    options.output = o.linear ? LENSPROF_ENCODING_LINEAR : LENSPROF_ENCODING_RESPONSE;
+    options.frame_width = source.frame_width;
+    options.frame_height = source.frame_height;
+    options.source_sample = source.sample;
+    options.source_layout = source.layout;
+    options.target_sample = o.linear ? static_cast<uint32_t>(LENSPROF_SAMPLE_F32) : source.sample;
+    options.responses = job.model->responses;
+    options.vignettings = job.model->vignettings;
+    options.response = job.model->response;
+    options.vignetting = job.model->vignetting;
+    options.source = job.exposure;
+    options.target = target;
+    std::vector<uint64_t> memory(lensprof_plan_bytes(&options) / 8 + 1);
+    const lensprof_plan *plan = nullptr;
+    check(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan), job.source);
+
+    Picture result = source;
+    result.sample = options.target_sample;
+    result.row_bytes = static_cast<size_t>(result.width) * lensprof_layout_samples(result.layout)
+        * lensprof_sample_bytes(result.sample);
+    result.pixels.assign(result.row_bytes * result.height, 0);
+    lensprof_image from = source.view(), to = result.view();
+    check(lensprof_apply(plan, &from, &to, 0, 0), job.source);
+    return result;
+}
+
+}  // namespace
+
+int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app("Corrects pictures: undoes falloff, exposure and white balance, and encodes again.", "lensprof apply");
+    declare(app, o);
+    if (!parse(app, arguments, streams)) return 0;
+    std::vector<Job> jobs = make_jobs(o);
+    if (o.exposure.empty()) o.exposure = o.pto.empty() ? "keep" : "mean";
+    std::error_code error;
+    std::filesystem::create_directories(o.output, error);
+    if (error) throw Failure(ExitCode::failed, o.output + ": cannot be made: " + error.message());
+
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    lensprof_exposure mean = mean_exposure(jobs), reference;
+    lensprof_exposure_init(&reference);
+    ContactSheet sheet;
+    Json written = Json::array();
+    for (size_t i = 0; i < jobs.size(); i++) {
+        stop_if_interrupted();
+        progress.update("correcting", static_cast<double>(i) / static_cast<double>(jobs.size()));
+        const Job &job = jobs[i];
+        Picture before = read_picture(job.source);
+        const auto &target = o.exposure == "keep" ? job.exposure : o.exposure == "mean" ? mean : reference;
+        Picture after = correct(before, job, target, o);
+        WriteOptions write;
+        write.metadata_from = job.source;
+        write_picture(job.target, after, write);
+        if (!o.sheet.empty()) sheet.add(before, after);
+        Json entry = {{"file", job.source}, {"output", job.target}};
+        if (job.profile_id) entry["profile"] = job.profile_id;
+        written.push_back(entry);
+    }
+    progress.clear();
+    if (!o.sheet.empty()) sheet.write(o.sheet);
+    if (o.json) {
+        streams.out << Json{{"schema", 1}, {"pictures", written}}.dump() << "\n";
+    } else {
+        for (const auto &entry : written) streams.out << entry["output"].get<std::string>() << "\n";
+        if (!o.sheet.empty()) streams.out << o.sheet << "\n";
+    }
+    return 0;
+}
+
+}  // namespace lensprof

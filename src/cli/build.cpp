@@ -1,0 +1,272 @@
+/* `lensprof build`: pictures of a project -> response, falloff, exposures -> a profile in the database. */
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+
+#include "interrupt.hpp"
+#include "output_file.hpp"
+#include "project.hpp"
+#include "report.hpp"
+#include "run.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Options {
+    std::string pto, points, points_out, pto_out, db, method = "transfer", modes = "auto", loss = "robust",
+                sampling = "balanced", reference, free, compare, maker, camera, lens, processing;
+    bool no_store = false, json = false, force = false, one_lens = false, progress = false;
+    double huber = 5.0, prior = 1.0, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN, distance = LENSPROF_UNKNOWN;
+    uint32_t seed = 1, pairs = 0, max_side = 1600;
+};
+
+void declare(CLI::App &app, Options &o) {
+    app.add_option("PROJECT", o.pto, "Hugin project; its v lines choose what is estimated")->required();
+    app.add_option("--points", o.points, "use the pairs of this point file; the pictures need not exist");
+    app.add_option("--points-out", o.points_out, "write the pairs used (Hugin's 16 columns)");
+    app.add_option("--pto-out", o.pto_out, "write the project with the result in it, for Hugin and nona");
+    app.add_option("--db", o.db, "profile database; default the user's own");
+    app.add_flag("--no-store", o.no_store, "do not store the profile");
+    app.add_flag("--force", o.force, "store a result that is not usable");
+    app.add_option("--method", o.method, "transfer (d'Angelo 2007)")->check(CLI::IsMember({"transfer"}));
+    app.add_option("--modes", o.modes, "EMoR modes of the response: 0..25 or auto (held-out error decides)");
+    app.add_option("--loss", o.loss, "robust, huber (the paper's) or squared")->check(CLI::IsMember({"robust", "huber", "squared"}));
+    app.add_option("--huber", o.huber, "sigma of the Huber loss, levels of 255")->check(CLI::Range(0.01, 255.0));
+    app.add_option("--prior", o.prior, "weight of the priors; 0 = none, as in the paper")->check(CLI::Range(0.0, 1e6));
+    app.add_option("--free", o.free, "what is estimated instead of the v lines: response,falloff,center,ev,wb or all");
+    app.add_option("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
+    app.add_flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
+    app.add_option("--sampling", o.sampling, "balanced or paper (d'Angelo 5.1)")->check(CLI::IsMember({"balanced", "paper"}));
+    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000")->check(CLI::Range(0u, 1u << 24));
+    app.add_option("--seed", o.seed, "of the sampling");
+    app.add_option("--max-side", o.max_side, "sample pictures reduced to about this many pixels; 0 = full size");
+    app.add_option("--maker", o.maker, "camera maker, instead of EXIF's");
+    app.add_option("--camera", o.camera, "camera model");
+    app.add_option("--lens", o.lens, "lens");
+    app.add_option("--focal", o.focal, "focal length, mm")->check(CLI::PositiveNumber);
+    app.add_option("--aperture", o.aperture, "f-number")->check(CLI::PositiveNumber);
+    app.add_option("--distance", o.distance, "focus distance, m")->check(CLI::PositiveNumber);
+    app.add_option("--processing", o.processing, "raw, jpeg or corrected (falloff corrected in camera)");
+    app.add_option("--compare", o.compare, "truth.json of `simulate`: print recovered beside true values");
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
+}
+
+uint32_t modes_of(const std::string &text) {
+    if (text == "auto") return LENSPROF_MODES_AUTO;
+    size_t used = 0;
+    int value = -1;
+    try {
+        value = std::stoi(text, &used);
+    } catch (const std::exception &) {
+    }
+    if (used != text.size() || value < 0 || value > LENSPROF_EMOR_MODES)
+        throw Failure(ExitCode::usage, "--modes " + text + ": give 0..25 or auto");
+    return static_cast<uint32_t>(value);
+}
+
+/* --free: the same unknowns for every image. */
+uint32_t free_of(const std::string &list) {
+    uint32_t flags = 0;
+    std::string word;
+    for (char c : list + ",") {
+        if (c != ',') {
+            word += c;
+            continue;
+        }
+        if (word == "response") flags |= LENSPROF_FREE_RESPONSE;
+        else if (word == "falloff") flags |= LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+        else if (word == "center") flags |= LENSPROF_FREE_CENTER;
+        else if (word == "ev") flags |= LENSPROF_FREE_EV;
+        else if (word == "wb") flags |= LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
+        else if (word == "all") flags |= 0xFF;
+        else throw Failure(ExitCode::usage, "--free " + word + ": use response, falloff, center, ev, wb, all");
+        word.clear();
+    }
+    return flags;
+}
+
+lensprof_fit_options fit_options(const Options &o, const Project &project, lensprof_response &fixed) {
+    lensprof_fit_options options;
+    lensprof_fit_options_init(&options);
+    const auto &lens = project.images[project.reference];
+    options.free = 0;
+    for (const auto &image : project.images) options.free |= image.free & 0x1F;
+    options.reference = project.reference;
+    options.modes = modes_of(o.modes);
+    options.loss = o.loss == "huber" ? LENSPROF_LOSS_HUBER : o.loss == "squared" ? LENSPROF_LOSS_SQUARED : LENSPROF_LOSS_ROBUST;
+    options.huber_levels = o.huber;
+    options.prior_weight = o.prior;
+    options.vignetting = lens.vignetting;
+    check(lensprof_pto_get_response(project.pto.get(), project.reference, &fixed), project.path);
+    options.response = &fixed;
+    if (options.free & (LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3))
+        if (lensprof_vignetting_validate(&options.vignetting) != LENSPROF_OK)
+            options.vignetting = lensprof_vignetting{};
+    return options;
+}
+
+struct Watch {
+    Progress *progress;
+};
+
+int on_progress(double done, void *user) {
+    static_cast<Watch *>(user)->progress->update("fitting", done);
+    return interrupted();
+}
+
+/* Seconds since the last call. */
+double lap(std::chrono::steady_clock::time_point &since) {
+    auto now = std::chrono::steady_clock::now();
+    double seconds = std::chrono::duration<double>(now - since).count();
+    since = now;
+    return seconds;
+}
+
+bool is_grey(const std::vector<lensprof_pair> &pairs) {
+    for (const auto &p : pairs)
+        for (const auto &v : p.value)
+            if (v[0] != v[1] || v[1] != v[2]) return false;
+    return true;
+}
+
+/* The key of the profile: EXIF of the reference picture, then what the command line says. */
+lensprof_profile_key profile_key(const Options &o, const Project &project, Streams &streams) {
+    PictureMetadata metadata = unknown_metadata();
+    const std::string &file = project.files[project.reference];
+    if (std::filesystem::exists(file)) metadata = read_metadata(file);
+    lensprof_profile_key key = metadata.key;
+    if (!o.maker.empty()) set_text(key.camera_maker, sizeof key.camera_maker, o.maker);
+    if (!o.camera.empty()) set_text(key.camera_model, sizeof key.camera_model, o.camera);
+    if (!o.lens.empty()) set_text(key.lens, sizeof key.lens, o.lens);
+    if (o.focal != LENSPROF_UNKNOWN) key.focal_mm = o.focal;
+    if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;
+    if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;
+    if (!o.processing.empty()) key.processing = processing_of_name(o.processing);
+    if (!*key.camera_model && !*key.lens && !o.no_store)
+        throw Failure(ExitCode::usage, file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");
+    for (size_t i = 0; i < project.files.size() && o.aperture == LENSPROF_UNKNOWN; i++) {
+        if (!std::filesystem::exists(project.files[i])) continue;
+        lensprof_profile_key other = read_metadata(project.files[i]).key;
+        if (other.aperture != key.aperture || other.focal_mm != key.focal_mm)
+            streams.err << "lensprof: warning: " << project.files[i] << ": aperture or focal length differ from "
+                        << file << "; one falloff is estimated for both\n";
+    }
+    return key;
+}
+
+int64_t store_profile(const Options &o, const Project &project, const lensprof_profile_key &key,
+                      const lensprof_fit_result &fit) {
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    profile->key = key;
+    profile->response[0] = fit.response;
+    profile->vignetting[0] = fit.vignetting;
+    profile->covariance_size = fit.covariance_size;
+    std::copy(fit.covariance, fit.covariance + fit.covariance_size * fit.covariance_size, profile->covariance);
+    auto &p = profile->provenance;
+    set_text(p.method, sizeof p.method, o.method);
+    set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
+    set_text(p.source, sizeof p.source, std::filesystem::absolute(o.pto).string());
+    p.created_unix_s = static_cast<int64_t>(std::time(nullptr));
+    p.images = static_cast<uint32_t>(project.images.size());
+    p.pairs = fit.pairs;
+    p.heldout_rms = fit.heldout_rms;
+    p.inlier_share = fit.inlier_share;
+    Store store = open_store(o.db, LENSPROF_STORE_CREATE);
+    int64_t id = 0;
+    lensprof_error error{};
+    check(lensprof_store_put(store.get(), profile.get(), &id, &error), store_path(o.db), &error);
+    return id;
+}
+
+void write_project(const Options &o, Project &project, const BuildReport &report) {
+    check(lensprof_pto_set_result(project.pto.get(), &report.fit.response, &report.fit.vignetting, report.exposures.data(),
+                                  static_cast<uint32_t>(report.exposures.size()), project.reference), o.pto);
+    std::string text = pto_text(*project.pto);
+    write_file(o.pto_out, text.data(), text.size());
+}
+
+std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, Progress &progress, BuildReport &report,
+                                     uint32_t &channels) {
+    auto clock = std::chrono::steady_clock::now();
+    std::vector<lensprof_pair> pairs;
+    if (!o.points.empty()) {
+        pairs = read_points(o.points);
+        channels = is_grey(pairs) ? 1 : 3;
+        report.load_s = lap(clock);
+        return pairs;
+    }
+    auto pictures = read_pictures(project, o.max_side, progress);
+    channels = channel_count(pictures);
+    report.load_s = lap(clock);
+    progress.update("sampling", 0.0);
+    lensprof_sample_options options;
+    lensprof_sample_options_init(&options);
+    options.sampling = o.sampling == "paper" ? LENSPROF_SAMPLING_PAPER : LENSPROF_SAMPLING_BALANCED;
+    options.pairs = o.pairs;
+    options.seed = o.seed;
+    pairs = sample_pairs(project, pictures, options);
+    report.sample_s = lap(clock);
+    return pairs;
+}
+
+BuildReport build(const Options &o, Project &project, Streams &streams) {
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    BuildReport report;
+    report.names = project.names;
+    report.reference = project.reference;
+    lensprof_response fixed;
+    lensprof_fit_options options = fit_options(o, project, fixed);
+    std::vector<lensprof_pair> pairs = get_pairs(o, project, progress, report, options.channels);
+    stop_if_interrupted();
+    Watch watch{&progress};
+    options.progress = on_progress;
+    options.progress_user = &watch;
+    auto images = fit_images(project);
+    report.exposures.resize(images.size());
+    lensprof_fit_result_init(&report.fit);
+    lensprof_error error{};
+    check(lensprof_fit_overlap(&options, images.data(), static_cast<uint32_t>(images.size()), pairs.data(),
+                               static_cast<uint32_t>(pairs.size()), report.exposures.data(), &report.fit, &error),
+          o.points.empty() ? o.pto : o.points, &error);
+    if (!o.points_out.empty()) write_points(o.points_out, pairs, project);
+    return report;
+}
+
+}  // namespace
+
+int run_build(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app("Recovers response, falloff, exposure and white balance from overlapping pictures.", "lensprof build");
+    declare(app, o);
+    if (!parse(app, arguments, streams)) return 0;
+    if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
+
+    Project project = read_project(o.pto, o.reference, o.one_lens);
+    if (!o.free.empty())
+        for (auto &image : project.images) image.free = free_of(o.free);
+    lensprof_profile_key key = profile_key(o, project, streams);
+    Json truth;
+    if (!o.compare.empty()) {
+        truth = Json::parse(read_text(o.compare), nullptr, false);
+        if (truth.is_discarded()) throw Failure(ExitCode::unreadable, o.compare + ": is not JSON; give simulate's truth.json");
+    }
+    BuildReport report = build(o, project, streams);
+    stop_if_interrupted();
+    bool good = report.fit.usable || o.force;
+    if (good && !o.pto_out.empty()) write_project(o, project, report);
+    if (good && !o.no_store) report.profile_id = store_profile(o, project, key, report.fit);
+    if (o.json) streams.out << build_json(report).dump() << "\n";
+    else print_build(report, streams.out);
+    if (report.profile_id && !o.json)
+        streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.db) << ": " << describe_key(key) << "\n";
+    if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
+    if (!report.fit.usable)
+        streams.err << "lensprof: " << o.pto << ": not usable: " << report.fit.reason
+                    << (good ? "" : "; nothing was stored (--force stores it all the same)") << "\n";
+    return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,17 @@
+/* interrupt.hpp - Ctrl-C: work in progress stops at the next safe point and cleans up after itself. */
+#ifndef LENSPROF_CLI_INTERRUPT_HPP
+#define LENSPROF_CLI_INTERRUPT_HPP
+
+namespace lensprof {
+
+/* From now on SIGINT and SIGTERM only set a flag (a second one ends the process at once). Call once, from main. */
+void catch_interrupts();
+
+bool interrupted();
+
+/* Throws Failure (interrupted) when the flag is set. */
+void stop_if_interrupted();
+
+}  // namespace lensprof
+
+#endif

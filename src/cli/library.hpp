@@ -1,0 +1,46 @@
+/* library.hpp - from the library's status codes to the program's failures, and its handles with an owner. */
+#ifndef LENSPROF_CLI_LIBRARY_HPP
+#define LENSPROF_CLI_LIBRARY_HPP
+
+#include <memory>
+#include <string>
+
+#include <lensprof/lensprof.h>
+
+#include "error.hpp"
+
+namespace lensprof {
+
+/* Throws Failure with the exit code that belongs to the status, unless it is OK. The text is `item`: error text (or the
+ * status's name where there is none). */
+void check(lensprof_status status, const std::string &item, const lensprof_error *error = nullptr);
+
+struct StoreClose {
+    void operator()(lensprof_store *store) const { lensprof_store_close(store); }
+};
+using Store = std::unique_ptr<lensprof_store, StoreClose>;
+
+/* The database to use: `path`, or where that is empty the user's own, $XDG_DATA_HOME/lensprof/profiles.db (else under
+ * ~/.local/share), whose folder is made when `mode` may create it. */
+Store open_store(const std::string &path, lensprof_store_mode mode);
+std::string store_path(const std::string &path);
+
+struct PtoDestroy {
+    void operator()(lensprof_pto *pto) const { lensprof_pto_destroy(pto); }
+};
+using Pto = std::unique_ptr<lensprof_pto, PtoDestroy>;
+
+Pto read_pto(const std::string &path);
+std::string pto_name(const lensprof_pto &pto, uint32_t index);
+std::string pto_text(const lensprof_pto &pto);
+
+/* The whole file; Failure (unreadable) names it. */
+std::string read_text(const std::string &path);
+
+/* Copies a text into a fixed field of a key or provenance, cut at its size between UTF-8 characters; control
+ * characters become blanks. */
+void set_text(char *field, size_t size, const std::string &text);
+
+}  // namespace lensprof
+
+#endif

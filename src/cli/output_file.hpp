@@ -1,0 +1,42 @@
+/* output_file.hpp - files that appear complete or not at all. */
+#ifndef LENSPROF_CLI_OUTPUT_FILE_HPP
+#define LENSPROF_CLI_OUTPUT_FILE_HPP
+
+#include <cstddef>
+#include <string>
+
+namespace lensprof {
+
+/* A file that is being written. The bytes go to a temporary file in the same folder (a rename is atomic only within
+ * one file system), which commit() makes durable and renames to the wanted path. Without commit() nothing is left
+ * and an older file of that name is as it was. A symbolic link is followed; the permissions of an older file are
+ * kept. Everything here throws Failure (ExitCode::failed) with the path in its text.
+ * Threads: different objects may be used by different threads. */
+class OutputFile {
+public:
+    explicit OutputFile(const std::string &path);
+    ~OutputFile();
+    OutputFile(const OutputFile &) = delete;
+    OutputFile &operator=(const OutputFile &) = delete;
+
+    /* Path of the temporary file: exists, empty, has the extension of the wanted path. May be opened by that name
+     * and rewritten as often as needed. */
+    const std::string &temporary() const { return temporary_; }
+
+    void commit();
+
+private:
+    std::string path_;    /* as given, for texts */
+    std::string target_;  /* with symbolic links followed */
+    std::string temporary_;
+};
+
+/* Writes the file `path` with these bytes, complete or not at all. */
+void write_file(const std::string &path, const void *data, size_t bytes);
+
+/* "No space left on device" for ENOSPC, and so on; the same text in every locale of the C++ library. */
+std::string system_text(int error_number);
+
+}  // namespace lensprof
+
+#endif

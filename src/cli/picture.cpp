@@ -1,0 +1,299 @@
+#include "picture.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+#include <sys/stat.h>
+
+#include "error.hpp"
+#include "output_file.hpp"
+
+namespace lensprof {
+
+namespace codec {
+
+namespace {
+
+/* Adds `step` neighbouring pixels at a time. */
+template <class Sample, class Sum>
+void add_samples(const uint8_t *row, uint32_t width, uint32_t step, size_t samples, std::vector<Sum> &sums) {
+    const Sample *from = reinterpret_cast<const Sample *>(row);
+    Sum *to = sums.data();
+    for (uint32_t x = 0; x < width; ++x, to += samples) {
+        for (uint32_t i = 0; i < step; ++i, from += samples) {
+            for (size_t c = 0; c < samples; ++c)
+                to[c] += from[c];
+        }
+    }
+}
+
+template <class Sample> void write_means(const std::vector<uint64_t> &sums, uint64_t area, uint8_t *row) {
+    Sample *to = reinterpret_cast<Sample *>(row);
+    for (size_t i = 0; i < sums.size(); ++i)
+        to[i] = static_cast<Sample>((sums[i] + area / 2) / area);
+}
+
+}  // namespace
+
+RowSink::RowSink(Picture &picture, uint32_t source_width, uint32_t step)
+    : picture_(picture), step_(step), samples_(lensprof_layout_samples(picture.layout)),
+      direct_(step == 1 && source_width == picture.width) {
+    picture_.pixels.clear();
+    picture_.pixels.reserve(picture_.row_bytes * picture_.height);
+    if (!direct_)
+        scratch_.resize(source_width * samples_ * lensprof_sample_bytes(picture_.sample));
+    if (step_ > 1 && picture_.sample == LENSPROF_SAMPLE_F32)
+        float_sums_.assign(picture_.width * samples_, 0);
+    else if (step_ > 1)
+        sums_.assign(picture_.width * samples_, 0);
+}
+
+uint8_t *RowSink::row() {
+    if (!direct_)
+        return scratch_.data();
+    picture_.pixels.resize((emitted_ + size_t(1)) * picture_.row_bytes);
+    return picture_.pixels.data() + emitted_ * picture_.row_bytes;
+}
+
+void RowSink::accept() {
+    if (emitted_ == picture_.height)
+        return;
+    if (direct_) {
+        ++emitted_;
+        return;
+    }
+    if (step_ > 1)
+        add_row();
+    if (++rows_ == step_)
+        emit_row();
+}
+
+void RowSink::add_row() {
+    if (picture_.sample == LENSPROF_SAMPLE_U8)
+        add_samples<uint8_t>(scratch_.data(), picture_.width, step_, samples_, sums_);
+    else if (picture_.sample == LENSPROF_SAMPLE_U16)
+        add_samples<uint16_t>(scratch_.data(), picture_.width, step_, samples_, sums_);
+    else
+        add_samples<float>(scratch_.data(), picture_.width, step_, samples_, float_sums_);
+}
+
+void RowSink::emit_row() {
+    picture_.pixels.resize((emitted_ + size_t(1)) * picture_.row_bytes);
+    uint8_t *to = picture_.pixels.data() + emitted_ * picture_.row_bytes;
+    const uint64_t area = uint64_t(step_) * step_;
+    if (step_ == 1) {
+        std::memcpy(to, scratch_.data(), picture_.row_bytes);
+    } else if (picture_.sample == LENSPROF_SAMPLE_U8) {
+        write_means<uint8_t>(sums_, area, to);
+    } else if (picture_.sample == LENSPROF_SAMPLE_U16) {
+        write_means<uint16_t>(sums_, area, to);
+    } else {
+        for (size_t i = 0; i < float_sums_.size(); ++i)
+            reinterpret_cast<float *>(to)[i] = static_cast<float>(float_sums_[i] / static_cast<double>(area));
+    }
+    std::fill(sums_.begin(), sums_.end(), 0);
+    std::fill(float_sums_.begin(), float_sums_.end(), 0.0);
+    rows_ = 0;
+    ++emitted_;
+}
+
+uint64_t pixel_bytes(const Picture &picture) {
+    return lensprof_layout_samples(picture.layout) * uint64_t(lensprof_sample_bytes(picture.sample));
+}
+
+void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, const ReadRequest &request) {
+    const std::string size = std::to_string(frame_width) + " x " + std::to_string(frame_height) + " pixels";
+    if (frame_width == 0 || frame_height == 0)
+        fail_damaged(request.path, size);
+    if (frame_width > picture_max_side || frame_height > picture_max_side ||
+        pixel_bytes(picture) * frame_width * frame_height > picture_max_bytes)
+        fail_unsupported(request.path, size + " are too many; cut it into smaller pictures");
+    picture.frame_width = frame_width;
+    picture.frame_height = frame_height;
+    picture.reduction = 1;
+    if (request.max_side > 0) {
+        const uint32_t wanted = std::max(frame_width, frame_height) / request.max_side;
+        picture.reduction = std::max(1u, std::min({wanted, frame_width, frame_height}));
+    }
+    picture.width = frame_width / picture.reduction;
+    picture.height = frame_height / picture.reduction;
+    picture.row_bytes = static_cast<size_t>(pixel_bytes(picture) * picture.width);
+}
+
+double convert_resolution(double value, PictureTraits::Unit from, PictureTraits::Unit to) {
+    const auto metres = [](PictureTraits::Unit unit) {
+        return unit == PictureTraits::Unit::inch ? 0.0254 : unit == PictureTraits::Unit::centimetre ? 0.01 : 1.0;
+    };
+    if (from == to || from == PictureTraits::Unit::none || to == PictureTraits::Unit::none)
+        return value;
+    return value * metres(to) / metres(from);
+}
+
+File open_for_reading(const std::string &path) {
+    File file(std::fopen(path.c_str(), "rb"), std::fclose);
+    if (!file)
+        throw Failure(ExitCode::unreadable,
+                      path + ": cannot read: " + system_text(errno) + "; check the name and its permissions");
+    struct stat status = {};
+    if (fstat(fileno(file.get()), &status) != 0 || S_ISDIR(status.st_mode))
+        throw Failure(ExitCode::unreadable, path + ": cannot read: is a folder; give the name of a picture");
+    return file;
+}
+
+File open_for_writing(const std::string &path) {
+    File file(std::fopen(path.c_str(), "wb"), std::fclose);
+    if (!file)
+        fail_to_write(path, system_text(errno), errno);
+    return file;
+}
+
+void close_written(File &file, const std::string &path) {
+    if (std::fclose(file.release()) != 0)
+        fail_to_write(path, system_text(errno), errno);
+}
+
+void fail_damaged(const std::string &path, const std::string &detail) {
+    throw Failure(ExitCode::unreadable,
+                  path + ": cannot read: file is truncated or damaged (" + detail + "); copy it again");
+}
+
+void fail_unsupported(const std::string &path, const std::string &kind_and_next_step) {
+    throw Failure(ExitCode::unreadable, path + ": cannot read: " + kind_and_next_step);
+}
+
+void fail_to_write(const std::string &path, const std::string &detail, int error_number) {
+    throw Failure(ExitCode::failed,
+                  path + ": cannot write: " +
+                      (error_number != 0 ? system_text(error_number) + "; check the disk's space and the permissions"
+                                         : detail + "; write another format"));
+}
+
+void fail_to_hold(const std::string &path, const std::string &kind_and_next_step) {
+    throw Failure(ExitCode::usage, path + ": cannot write: " + kind_and_next_step);
+}
+
+}  // namespace codec
+
+namespace {
+
+FileFormat format_of_content(const std::string &path) {
+    const codec::File file = codec::open_for_reading(path);
+    unsigned char start[12] = {};
+    const size_t count = std::fread(start, 1, sizeof start, file.get());
+    const auto begins = [&](const char *bytes, size_t length) {
+        return count >= length && std::memcmp(start, bytes, length) == 0;
+    };
+    if (begins("\x89PNG\r\n\x1a\n", 8))
+        return FileFormat::png;
+    if (begins("\xff\xd8\xff", 3))
+        return FileFormat::jpeg;
+    if (count >= 10 && (start[8] == 'C' && start[9] == 'R') && begins("II*", 3))
+        codec::fail_unsupported(path, "camera raw file; develop it to TIFF first");
+    if (begins("II*\0", 4) || begins("MM\0*", 4) || begins("II+\0", 4) || begins("MM\0+", 4))
+        return FileFormat::tiff;
+    if (count < 8)
+        codec::fail_damaged(path, count == 0 ? "it is empty" : "it has " + std::to_string(count) + " bytes");
+    codec::fail_unsupported(path, "is not a PNG, TIFF or JPEG picture; convert it first");
+}
+
+Picture read(const codec::ReadRequest &request) {
+    try {
+        switch (format_of_content(request.path)) {
+        case FileFormat::png:
+            return codec::read_png(request);
+        case FileFormat::tiff:
+            return codec::read_tiff(request);
+        default:
+            return codec::read_jpeg(request);
+        }
+    } catch (const std::bad_alloc &) {
+        codec::fail_unsupported(request.path, "not enough memory; close other programs or use a smaller picture");
+    }
+}
+
+void check_held(const std::string &path, const Picture &picture) {
+    const bool sized = picture.width > 0 && picture.height > 0 && picture.width <= picture_max_side &&
+                       picture.height <= picture_max_side;
+    const bool known = picture.layout <= LENSPROF_LAYOUT_RGBA && lensprof_sample_bytes(picture.sample) > 0;
+    if (!sized || !known || picture.row_bytes < codec::pixel_bytes(picture) * picture.width ||
+        picture.pixels.size() / picture.height < picture.row_bytes)
+        throw Failure(ExitCode::failed, path + ": cannot write: no valid picture in memory; please report this");
+}
+
+/* False when the metadata could not be written. */
+bool write_complete(const std::string &file, FileFormat format, const Picture &picture, const WriteOptions &options) {
+    switch (format) {
+    case FileFormat::png:
+        codec::write_png(file, picture);
+        break;
+    case FileFormat::tiff:
+        codec::write_tiff(file, picture);
+        break;
+    case FileFormat::jpeg:
+        codec::write_jpeg(file, picture, options.jpeg_quality);
+        break;
+    }
+    const bool copied = options.metadata_from.empty() || copy_metadata(options.metadata_from, file);
+    const bool written = !options.metadata || write_metadata(file, *options.metadata);
+    return copied && written;
+}
+
+}  // namespace
+
+lensprof_image Picture::view() {
+    return {pixels.data(), static_cast<ptrdiff_t>(row_bytes), width, height, sample, layout};
+}
+
+Picture read_picture(const std::string &path, const ReadOptions &options) {
+    return read({path, options.max_side, false});
+}
+
+Picture read_header(const std::string &path, const ReadOptions &options) {
+    return read({path, options.max_side, true});
+}
+
+PictureSize read_size(const std::string &path) {
+    const Picture picture = read_header(path);
+    return {picture.frame_width, picture.frame_height};
+}
+
+FileFormat format_of_name(const std::string &path) {
+    const size_t slash = path.rfind('/');
+    const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
+    const size_t dot = name.rfind('.');
+    std::string extension = dot == std::string::npos ? std::string() : name.substr(dot + 1);
+    for (char &c : extension)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (extension == "png")
+        return FileFormat::png;
+    if (extension == "tif" || extension == "tiff")
+        return FileFormat::tiff;
+    if (extension == "jpg" || extension == "jpeg")
+        return FileFormat::jpeg;
+    throw Failure(ExitCode::usage, path + ": unknown kind of picture; the name must end in .png, .tif or .jpg");
+}
+
+bool write_picture(const std::string &path, const Picture &picture, const WriteOptions &options) {
+    const FileFormat format = format_of_name(path);
+    check_held(path, picture);
+    OutputFile output(path);
+    bool with_metadata = false;
+    try {
+        with_metadata = write_complete(output.temporary(), format, picture, options);
+    } catch (const Failure &failure) {
+        /* The user knows the wanted name, not the temporary one. */
+        std::string text = failure.what();
+        const size_t at = text.find(output.temporary());
+        if (at != std::string::npos)
+            text.replace(at, output.temporary().size(), path);
+        throw Failure(failure.code, text);
+    }
+    output.commit();
+    return with_metadata;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,194 @@
+#include "project.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+
+#include "interrupt.hpp"
+#include "output_file.hpp"
+
+namespace lensprof {
+namespace {
+
+uint32_t find_reference(const Project &project, const std::string &wanted) {
+    if (!wanted.empty()) {
+        for (uint32_t i = 0; i < project.names.size(); i++)
+            if (wanted == project.names[i] || wanted == std::to_string(i)) return i;
+        throw Failure(ExitCode::usage, wanted + ": no such image in " + project.path + "; --reference takes its number or name");
+    }
+    for (uint32_t i = 0; i < project.images.size(); i++)
+        if (!(project.images[i].free & LENSPROF_FREE_EV)) return i;
+    return 0;
+}
+
+/* The fit knows one lens. */
+void check_one_lens(const Project &project) {
+    for (uint32_t i = 1; i < project.images.size(); i++) {
+        const auto &image = project.images[i];
+        if (image.response_of != project.images[0].response_of || image.vignetting_of != project.images[0].vignetting_of)
+            throw Failure(ExitCode::usage, project.path + ": image " + std::to_string(i) + " (" + project.names[i]
+                          + ") is not linked to image 0 in Ra..Re and Va..Vd, which makes it another lens; link them in "
+                            "Hugin or give --one-lens");
+    }
+}
+
+void check_finite(const Picture &picture, const std::string &file) {
+    if (picture.sample != LENSPROF_SAMPLE_F32) return;
+    uint32_t samples = lensprof_layout_samples(picture.layout);
+    for (uint32_t y = 0; y < picture.height; y++)
+        for (uint32_t s = 0; s < picture.width * samples; s++) {
+            float value;
+            std::memcpy(&value, &picture.pixels[y * picture.row_bytes + s * sizeof value], sizeof value);
+            if (!std::isfinite(value))
+                throw Failure(ExitCode::unreadable, file + ": pixel " + std::to_string(s / samples * picture.reduction) + ", "
+                              + std::to_string(y * picture.reduction) + " is not a finite number; repair the picture");
+        }
+}
+
+SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
+    const auto &camera = project.images[i].camera;
+    const std::string &file = project.files[i];
+    SamplePicture result;
+    ReadOptions options;
+    options.max_side = max_side;
+    result.picture = read_picture(file, options);
+    const Picture &p = result.picture;
+    if (p.frame_width != camera.width || p.frame_height != camera.height)
+        throw Failure(ExitCode::unreadable, file + ": is " + std::to_string(p.frame_width) + " x "
+                      + std::to_string(p.frame_height) + " pixels, but " + project.path + " says "
+                      + std::to_string(camera.width) + " x " + std::to_string(camera.height)
+                      + "; use the pictures that the project was made with");
+    check_finite(p, file);
+    result.mask.resize(static_cast<size_t>(p.width) * p.height);
+    check(lensprof_pto_draw_mask(project.pto.get(), i, result.mask.data(), p.width, p.height,
+                                 static_cast<ptrdiff_t>(p.width)), file);
+    return result;
+}
+
+}  // namespace
+
+Project read_project(const std::string &path, const std::string &wanted, bool one_lens) {
+    Project project;
+    project.path = path;
+    project.pto = read_pto(path);
+    std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    for (uint32_t i = 0; i < lensprof_pto_image_count(project.pto.get()); i++) {
+        lensprof_pto_image image;
+        check(lensprof_pto_get_image(project.pto.get(), i, &image), path);
+        project.images.push_back(image);
+        project.names.push_back(pto_name(*project.pto, i));
+        project.files.push_back((folder / project.names[i]).string());
+    }
+    if (project.images.size() < 2)
+        throw Failure(ExitCode::not_usable, path + ": has one image; at least two overlapping ones are needed");
+    if (!one_lens) check_one_lens(project);
+    project.reference = find_reference(project, wanted);
+    return project;
+}
+
+std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress) {
+    auto count = static_cast<uint32_t>(project.files.size());
+    std::vector<SamplePicture> pictures(count);
+    std::vector<std::exception_ptr> failures(count);
+    std::atomic<uint32_t> next{0}, done{0};
+    auto work = [&] {
+        for (uint32_t i = next++; i < count; i = next++) {
+            try {
+                stop_if_interrupted();
+                pictures[i] = read_one(project, i, max_side);
+            } catch (...) {
+                failures[i] = std::current_exception();
+                next = count;
+            }
+            progress.update("reading pictures", static_cast<double>(++done) / count);
+        }
+    };
+    std::vector<std::thread> threads;
+    for (uint32_t t = 1; t < std::min(std::max(std::thread::hardware_concurrency(), 1u), count); t++)
+        threads.emplace_back(work);
+    work();
+    for (auto &thread : threads) thread.join();
+    for (const auto &failure : failures)
+        if (failure) std::rethrow_exception(failure);
+    return pictures;
+}
+
+uint32_t channel_count(const std::vector<SamplePicture> &pictures) {
+    for (const auto &p : pictures)
+        if (lensprof_layout_channels(p.picture.layout) == 3) return 3;
+    return 1;
+}
+
+std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
+                                        const lensprof_sample_options &options) {
+    std::vector<lensprof_sample_image> images;
+    for (size_t i = 0; i < pictures.size(); i++) {
+        lensprof_sample_image image{};
+        image.view = pictures[i].picture.view();
+        image.camera = project.images[i].camera;
+        image.reduction = pictures[i].picture.reduction;
+        image.mask = pictures[i].mask.data();
+        image.mask_row_bytes = static_cast<ptrdiff_t>(pictures[i].picture.width);
+        image.black = darkest_value;
+        image.white = brightest_value;
+        images.push_back(image);
+    }
+    lensprof_error error{};
+    uint32_t found = 0;
+    auto count = static_cast<uint32_t>(images.size());
+    check(lensprof_sample_overlap(&options, images.data(), count, nullptr, 0, &found, &error), project.path, &error);
+    std::vector<lensprof_pair> pairs(found);
+    check(lensprof_sample_overlap(&options, images.data(), count, pairs.data(), found, &found, &error), project.path, &error);
+    pairs.resize(found);
+    return pairs;
+}
+
+std::vector<lensprof_pair> read_points(const std::string &path) {
+    std::string text = read_text(path);
+    lensprof_error error{};
+    uint32_t found = 0;
+    check(lensprof_points_read(text.data(), text.size(), nullptr, 0, &found, &error), path, &error);
+    std::vector<lensprof_pair> pairs(found);
+    if (found == 0) throw Failure(ExitCode::unreadable, path + ": holds no points");
+    check(lensprof_points_read(text.data(), text.size(), pairs.data(), found, &found, &error), path, &error);
+    return pairs;
+}
+
+void write_points(const std::string &path, const std::vector<lensprof_pair> &pairs, const Project &project) {
+    std::vector<lensprof_camera> cameras;
+    for (const auto &image : project.images) cameras.push_back(image.camera);
+    auto write = [&](char *text, size_t capacity, size_t *needed) {
+        return lensprof_points_write(pairs.data(), static_cast<uint32_t>(pairs.size()), cameras.data(),
+                                     static_cast<uint32_t>(cameras.size()), text, capacity, needed);
+    };
+    size_t needed = 0;
+    if (write(nullptr, 0, &needed) != LENSPROF_ERROR_CAPACITY) return;
+    std::string text(needed, 0);
+    check(write(text.data(), needed, &needed), path);
+    write_file(path, text.data(), needed);
+}
+
+std::vector<lensprof_fit_image> fit_images(const Project &project) {
+    std::vector<lensprof_fit_image> images;
+    const auto &reference = project.images[project.reference].exposure;
+    for (const auto &from : project.images) {
+        lensprof_fit_image image{};
+        image.width = from.camera.width;
+        image.height = from.camera.height;
+        image.exposure.ev = from.exposure.ev - reference.ev;
+        for (int c = 0; c < 3; c++)
+            image.exposure.white_balance[c] = from.exposure.white_balance[c] / reference.white_balance[c];
+        image.free = from.free & (LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE);
+        image.ev_of = from.ev_of;
+        image.red_of = from.red_of;
+        image.blue_of = from.blue_of;
+        images.push_back(image);
+    }
+    return images;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,56 @@
+/* project.hpp - a Hugin project and its pictures, as the fit wants them. */
+#ifndef LENSPROF_CLI_PROJECT_HPP
+#define LENSPROF_CLI_PROJECT_HPP
+
+#include <string>
+#include <vector>
+
+#include "library.hpp"
+#include "metadata.hpp"
+#include "picture.hpp"
+#include "progress.hpp"
+
+namespace lensprof {
+
+struct Project {
+    std::string path;                       /* of the .pto */
+    Pto pto;
+    std::vector<lensprof_pto_image> images;
+    std::vector<std::string> names;         /* as written in the project */
+    std::vector<std::string> files;         /* path of each picture */
+    uint32_t reference = 0;                 /* image whose exposure stays */
+};
+
+/* Reads a project. The reference is `wanted` (a number or a file name of the project), else the first image whose Eev is
+ * not asked for, else image 0. With `one_lens`, images that are not linked are taken as one lens; otherwise that is a
+ * Failure. Fewer than two images are a Failure (not usable). */
+Project read_project(const std::string &path, const std::string &wanted, bool one_lens);
+
+/* A picture reduced for sampling, with the mask of the project. */
+struct SamplePicture {
+    Picture picture;
+    std::vector<uint8_t> mask;
+};
+
+/* Reads all pictures, several at once, each reduced to a longer side of at least `max_side` pixels. Sizes that contradict the
+ * project, unreadable files and float samples that are not finite are a Failure that names the file. */
+std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress);
+
+/* 3, or 1 when every picture is grey. */
+uint32_t channel_count(const std::vector<SamplePicture> &pictures);
+
+/* Grey values outside these are black or saturated: 2 and 250 of 255. */
+constexpr double darkest_value = 2.0 / 255.0, brightest_value = 250.0 / 255.0;
+
+std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
+                                        const lensprof_sample_options &options);
+
+std::vector<lensprof_pair> read_points(const std::string &path);
+void write_points(const std::string &path, const std::vector<lensprof_pair> &pairs, const Project &project);
+
+/* The images of the fit: sizes, links, unknowns, and exposures relative to the reference. */
+std::vector<lensprof_fit_image> fit_images(const Project &project);
+
+}  // namespace lensprof
+
+#endif

@@ -1,0 +1,234 @@
+#include "report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+
+#include "error.hpp"
+
+namespace lensprof {
+namespace {
+
+Json number_or_null(double value) { return value == LENSPROF_UNKNOWN || !std::isfinite(value) ? Json() : Json(value); }
+
+/* Distances can be infinite, which JSON has no number for. */
+Json distance_json(double distance_m) {
+    return std::isinf(distance_m) ? Json("infinity") : number_or_null(distance_m);
+}
+
+Json covariance_json(const double *values, uint32_t n) {
+    Json rows = Json::array();
+    for (uint32_t i = 0; i < n; i++) rows.push_back(std::vector<double>(values + i * n, values + (i + 1) * n));
+    return rows;
+}
+
+Json response_json(const lensprof_response *responses, uint32_t count) {
+    static const char *const kinds[] = {"linear", "gamma", "emor", "table"};
+    Json json, values = Json::array();
+    for (uint32_t c = 0; c < count; c++)
+        values.push_back(std::vector<double>(responses[c].table, responses[c].table + LENSPROF_RESPONSE_SAMPLES));
+    json["kind"] = kinds[responses[0].kind];
+    if (responses[0].kind == LENSPROF_RESPONSE_EMOR)
+        json["emor"] = std::vector<double>(responses[0].emor, responses[0].emor + responses[0].modes);
+    if (responses[0].kind == LENSPROF_RESPONSE_GAMMA) json["gamma"] = responses[0].gamma;
+    json["values"] = values;
+    return json;
+}
+
+Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
+    Json json, k = Json::array();
+    for (uint32_t c = 0; c < count; c++) k.push_back(std::vector<double>(vignettings[c].k, vignettings[c].k + 3));
+    json["k"] = k;
+    json["center"] = {vignettings[0].center[0], vignettings[0].center[1]};
+    return json;
+}
+
+double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
+
+void print_vignetting(const lensprof_vignetting &v, std::ostream &out) {
+    out << format("falloff   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
+                  v.center[0], v.center[1]);
+    out << format("          light at r = 0.5: %.1f %%, in the corner: %.1f %% (%.2f stops)\n",
+                  100.0 * lensprof_vignetting_eval(&v, 0.25, nullptr), 100.0 * corner(v), -std::log2(corner(v)));
+}
+
+void print_response(const lensprof_response &r, std::ostream &out) {
+    static const char *const kinds[] = {"linear", "gamma", "EMoR", "table"};
+    std::string kind = kinds[r.kind];
+    if (r.kind == LENSPROF_RESPONSE_EMOR) kind += format(", %u modes", r.modes);
+    if (r.kind == LENSPROF_RESPONSE_GAMMA) kind += format(" %.3g", r.gamma);
+    out << "response  " << kind << ";  grey value (of 255) at irradiance";
+    for (double x : {0.01, 0.05, 0.2, 0.5}) out << format("  %g: %.1f", x, 255.0 * lensprof_response_eval(&r, x, nullptr));
+    out << "\n";
+}
+
+}  // namespace
+
+std::string format(const char *pattern, ...) {
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, pattern);
+    std::vsnprintf(text, sizeof text, pattern, arguments);
+    va_end(arguments);
+    return text;
+}
+
+const char *processing_name(uint32_t processing) {
+    static const char *const names[] = {"raw", "jpeg", "corrected"};
+    return processing <= LENSPROF_PROCESSING_CORRECTED ? names[processing] : "unknown";
+}
+
+uint32_t processing_of_name(const std::string &name) {
+    for (uint32_t p = 0; p <= LENSPROF_PROCESSING_CORRECTED; p++)
+        if (name == processing_name(p)) return p;
+    throw Failure(ExitCode::usage, name + ": not a processing state; use raw, jpeg or corrected");
+}
+
+Json build_json(const BuildReport &report) {
+    const auto &fit = report.fit;
+    Json json, images = Json::array();
+    for (size_t i = 0; i < report.names.size(); i++) {
+        const auto &e = report.exposures[i];
+        images.push_back({{"file", report.names[i]},
+                          {"ev", e.ev},
+                          {"white_balance", {e.white_balance[0], e.white_balance[1], e.white_balance[2]}}});
+    }
+    json["schema"] = 1;
+    json["usable"] = fit.usable != 0;
+    json["reason"] = fit.reason;
+    json["reference"] = report.reference;
+    json["images"] = images;
+    json["vignetting"] = vignetting_json(&fit.vignetting, 1);
+    json["response"] = response_json(&fit.response, 1);
+    json["residual"] = {{"before_rms", number_or_null(fit.before_rms)},
+                        {"heldout_rms", number_or_null(fit.heldout_rms)},
+                        {"heldout_median", number_or_null(fit.heldout_median)},
+                        {"noise", fit.noise_levels},
+                        {"inlier_share", fit.inlier_share}};
+    json["pairs"] = fit.pairs;
+    json["components"] = fit.components;
+    json["iterations"] = fit.iterations;
+    json["covariance"] = covariance_json(fit.covariance, fit.covariance_size);
+    json["seconds"] = {{"load", report.load_s}, {"sample", report.sample_s}, {"solve", fit.seconds}};
+    json["profile"] = report.profile_id ? Json(report.profile_id) : Json();
+    return json;
+}
+
+void print_build(const BuildReport &report, std::ostream &out) {
+    const auto &fit = report.fit;
+    size_t width = 5;
+    for (const auto &name : report.names) width = std::max(width, name.size());
+    out << format("%-*s  %8s  %7s  %7s\n", static_cast<int>(width), "image", "EV", "red", "blue");
+    for (size_t i = 0; i < report.names.size(); i++) {
+        const auto &e = report.exposures[i];
+        out << format("%-*s  %+8.3f  %7.4f  %7.4f%s\n", static_cast<int>(width), report.names[i].c_str(), e.ev,
+                      e.white_balance[0], e.white_balance[2], i == report.reference ? "  reference" : "");
+    }
+    print_vignetting(fit.vignetting, out);
+    print_response(fit.response, out);
+    std::string heldout = fit.heldout_rms == LENSPROF_UNKNOWN ? std::string("not measured (too few pairs)")
+                                                              : format("%.2f", fit.heldout_rms);
+    out << format("residual  before %.2f, after %s levels of 255 on pairs left out of the fit; %.1f %% inliers of %u pairs\n",
+                  fit.before_rms, heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
+    out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
+    if (!fit.usable) out << "NOT USABLE: " << fit.reason << "\n";
+}
+
+Json key_json(const lensprof_profile_key &key) {
+    return {{"camera_maker", key.camera_maker},
+            {"camera_model", key.camera_model},
+            {"lens", key.lens},
+            {"focal_mm", number_or_null(key.focal_mm)},
+            {"aperture", number_or_null(key.aperture)},
+            {"distance_m", distance_json(key.distance_m)},
+            {"processing", processing_name(key.processing)}};
+}
+
+Json provenance_json(const lensprof_provenance &p) {
+    return {{"method", p.method},
+            {"software", p.software},
+            {"source", p.source},
+            {"created_unix_s", p.created_unix_s},
+            {"images", p.images},
+            {"pairs", p.pairs},
+            {"heldout_rms", number_or_null(p.heldout_rms)},
+            {"inlier_share", number_or_null(p.inlier_share)}};
+}
+
+Json profile_json(int64_t id, const lensprof_profile &profile) {
+    Json json;
+    json["schema"] = 1;
+    json["id"] = id;
+    json["key"] = key_json(profile.key);
+    json["vignetting"] = vignetting_json(profile.vignetting, profile.vignettings);
+    json["response"] = response_json(profile.response, profile.responses);
+    json["covariance"] = covariance_json(profile.covariance, profile.covariance_size);
+    json["provenance"] = provenance_json(profile.provenance);
+    return json;
+}
+
+std::string describe_key(const lensprof_profile_key &key) {
+    auto or_unknown = [](const char *text, const char *what) { return *text ? std::string(text) : std::string(what) + " unknown"; };
+    std::string text = *key.camera_maker ? std::string(key.camera_maker) + " " : std::string();
+    text += or_unknown(key.camera_model, "camera") + ", " + or_unknown(key.lens, "lens");
+    text += key.focal_mm == LENSPROF_UNKNOWN ? ", focal length unknown" : format(", %g mm", key.focal_mm);
+    text += key.aperture == LENSPROF_UNKNOWN ? ", aperture unknown" : format(", f/%g", key.aperture);
+    text += key.distance_m == LENSPROF_UNKNOWN ? ", focus unknown"
+        : std::isinf(key.distance_m)           ? std::string(", focus at infinity")
+                                               : format(", focus at %g m", key.distance_m);
+    return text + ", " + processing_name(key.processing);
+}
+
+void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
+    const auto &p = profile.provenance;
+    out << "profile   " << id << ": " << describe_key(profile.key) << "\n";
+    for (uint32_t c = 0; c < profile.vignettings; c++) print_vignetting(profile.vignetting[c], out);
+    for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
+    out << "source    " << (*p.method ? p.method : "unknown method") << ", " << p.images << " images, " << p.pairs << " pairs";
+    if (p.heldout_rms != LENSPROF_UNKNOWN) out << format(", residual %.2f levels", p.heldout_rms);
+    out << (*p.source ? std::string(", ") + p.source : std::string()) << "\n";
+}
+
+void print_comparison(const BuildReport &report, const Json &truth, std::ostream &out) {
+    size_t n = report.exposures.size();
+    if (!truth.contains("images") || truth["images"].size() != n)
+        throw Failure(ExitCode::usage, "the truth to compare with is of another sequence");
+    std::vector<double> true_ev, ev;
+    for (size_t i = 0; i < n; i++) {
+        true_ev.push_back(truth["images"][i]["ev"].get<double>() - truth["images"][report.reference]["ev"].get<double>());
+        ev.push_back(report.exposures[i].ev);
+    }
+    double mean = 0, true_mean = 0, cross = 0, square = 0;
+    for (size_t i = 0; i < n; i++) mean += ev[i] / static_cast<double>(n), true_mean += true_ev[i] / static_cast<double>(n);
+    for (size_t i = 0; i < n; i++) {
+        cross += (ev[i] - mean) * (true_ev[i] - true_mean);
+        square += (true_ev[i] - true_mean) * (true_ev[i] - true_mean);
+    }
+    double gamma = square > 1e-6 && cross > 0 ? cross / square : 1.0;
+    lensprof_vignetting v{};
+    for (int k = 0; k < 3; k++) v.k[k] = truth["vignetting"]["k"][0][static_cast<size_t>(k)].get<double>();
+    double ev_error = 0, ev_aligned = 0, m_error = 0, m_aligned = 0;
+    out << "\nrecovered beside true (aligned: with the exponent " << format("%.3f", gamma)
+        << " that pictures alone leave open taken out)\n";
+    out << "image      EV  recovered     true  aligned\n";
+    for (size_t i = 0; i < n; i++) {
+        ev_error = std::max(ev_error, std::abs(ev[i] - true_ev[i]));
+        ev_aligned = std::max(ev_aligned, std::abs((ev[i] - mean) / gamma - (true_ev[i] - true_mean)));
+        out << format("%5zu          %+8.3f %+8.3f %+8.3f\n", i, ev[i], true_ev[i], ev[i] / gamma);
+    }
+    out << "radius falloff  recovered     true  aligned\n";
+    for (int k = 0; k <= 4; k++) {
+        double r2 = k * k / 16.0, m = lensprof_vignetting_eval(&report.fit.vignetting, r2, nullptr);
+        double t = lensprof_vignetting_eval(&v, r2, nullptr), a = std::pow(m, 1.0 / gamma);
+        m_error = std::max(m_error, std::abs(m - t));
+        m_aligned = std::max(m_aligned, std::abs(a - t));
+        out << format("%6.2f         %8.4f %8.4f %8.4f\n", k / 4.0, m, t, a);
+    }
+    const auto &c = truth["vignetting"]["center"];
+    out << format("centre         %+.4f %+.4f, true %+.4f %+.4f half diagonals\n", report.fit.vignetting.center[0],
+                  report.fit.vignetting.center[1], c[0].get<double>(), c[1].get<double>());
+    out << format("largest error  exposure %.4f EV (aligned %.4f), falloff %.4f (aligned %.4f)\n", ev_error, ev_aligned,
+                  m_error, m_aligned);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,53 @@
+/* report.hpp - what the program says about a fit or a profile: JSON objects and tables for people. */
+#ifndef LENSPROF_CLI_REPORT_HPP
+#define LENSPROF_CLI_REPORT_HPP
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <lensprof/lensprof.h>
+
+namespace lensprof {
+
+using Json = nlohmann::ordered_json;
+
+/* Everything `build` found out. */
+struct BuildReport {
+    std::vector<std::string> names;
+    std::vector<lensprof_exposure> exposures; /* relative to the reference */
+    lensprof_fit_result fit{};
+    uint32_t reference = 0;
+    double load_s = 0, sample_s = 0;
+    int64_t profile_id = 0; /* 0 = not stored */
+};
+
+/* The object that `build --json` prints; docs/json.md describes the schema. */
+Json build_json(const BuildReport &report);
+
+void print_build(const BuildReport &report, std::ostream &out);
+
+/* Recovered beside true values, raw and with the exponent gamma aligned (what pictures alone cannot tell). `truth` is the
+ * truth.json of `simulate`. */
+void print_comparison(const BuildReport &report, const Json &truth, std::ostream &out);
+
+Json key_json(const lensprof_profile_key &key);
+Json provenance_json(const lensprof_provenance &provenance);
+Json profile_json(int64_t id, const lensprof_profile &profile);
+void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out);
+
+/* "Canon EOS 5D, EF 50mm, 50 mm, f/1.8, focus unknown, jpeg". */
+std::string describe_key(const lensprof_profile_key &key);
+
+/* raw, jpeg, corrected; and back, with Failure (usage) for another word. */
+const char *processing_name(uint32_t processing);
+uint32_t processing_of_name(const std::string &name);
+
+/* printf into a string. */
+std::string format(const char *pattern, ...) __attribute__((format(printf, 1, 2)));
+
+}  // namespace lensprof
+
+#endif

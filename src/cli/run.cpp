@@ -1,0 +1,92 @@
+#include "run.hpp"
+
+#include <algorithm>
+#include <new>
+
+#include <lensprof/base.h>
+
+#include "error.hpp"
+#include "interrupt.hpp"
+
+namespace lensprof {
+namespace {
+
+int run_version(const std::vector<std::string> &, Streams &streams) {
+    streams.out << "lensprof " << lensprof_version() << "\n";
+    return 0;
+}
+
+int run_help(const std::vector<std::string> &arguments, Streams &streams);
+
+const Command commands[] = {
+    {"build", "pictures of a Hugin project -> a lens profile in the database", run_build},
+    {"apply", "correct pictures with a profile or a project", run_apply},
+    {"query", "look a profile up by camera, lens, focal length and aperture", run_query},
+    {"profile", "list, show or remove profiles", run_profile},
+    {"simulate", "render overlapping pictures with a known camera", run_simulate},
+    {"version", "print the version", run_version},
+    {"help", "print this, or the help of a command", run_help},
+};
+
+const Command *find_command(const std::string &name) {
+    auto match = std::find_if(std::begin(commands), std::end(commands),
+                              [&](const Command &c) { return name == c.name; });
+    return match == std::end(commands) ? nullptr : match;
+}
+
+int run_help(const std::vector<std::string> &arguments, Streams &streams) {
+    const Command *command = arguments.empty() ? nullptr : find_command(arguments[0]);
+    if (command && command->run != run_help && command->run != run_version) return command->run({"--help"}, streams);
+    if (!arguments.empty() && !command)
+        throw Failure(ExitCode::usage, arguments[0] + ": no such command; `lensprof help` lists them");
+    streams.out << "lensprof - what the camera did to the light, and how to undo it\n\n"
+                   "usage: lensprof COMMAND [OPTIONS]\n\n";
+    for (const Command &c : commands) {
+        std::string name = c.name;
+        streams.out << "  " << name << std::string(10 - name.size(), ' ') << c.help << "\n";
+    }
+    streams.out << "\n`lensprof help COMMAND` tells a command's options.\n"
+                   "exit codes: 0 done, 1 failed, 2 usage, 3 input unreadable, 4 fit not usable, 5 not found, "
+                   "6 store, 130 interrupted\n";
+    return 0;
+}
+
+}  // namespace
+
+bool parse(CLI::App &app, const std::vector<std::string> &arguments, Streams &streams) {
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+    try {
+        app.parse(reversed);
+        return true;
+    } catch (const CLI::CallForHelp &) {
+        streams.out << app.help();
+        return false;
+    } catch (const CLI::ParseError &e) {
+        throw Failure(ExitCode::usage, std::string(e.what()) + "; see `" + app.get_name() + " --help`");
+    }
+}
+
+int run(const std::vector<std::string> &words, Streams &streams) {
+    try {
+        if (words.empty()) {
+            run_help({}, streams);
+            return static_cast<int>(ExitCode::usage);
+        }
+        std::string name = words[0] == "--help" || words[0] == "-h" ? "help"
+            : words[0] == "--version"                               ? "version"
+                                                                    : words[0];
+        const Command *command = find_command(name);
+        if (!command) throw Failure(ExitCode::usage, name + ": no such command; `lensprof help` lists them");
+        return command->run({words.begin() + 1, words.end()}, streams);
+    } catch (const Failure &failure) {
+        streams.err << "lensprof: " << failure.what() << "\n";
+        return static_cast<int>(failure.code);
+    } catch (const std::bad_alloc &) {
+        streams.err << "lensprof: out of memory\n";
+    } catch (const std::exception &e) {
+        streams.err << "lensprof: " << e.what() << "\n";
+    }
+    return static_cast<int>(ExitCode::failed);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,41 @@
+/* run.hpp - the program as a function, so that tests run it in process. */
+#ifndef LENSPROF_CLI_RUN_HPP
+#define LENSPROF_CLI_RUN_HPP
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace lensprof {
+
+/* Where a command writes: results to `out`, everything else to `err`. */
+struct Streams {
+    std::ostream &out;
+    std::ostream &err;
+};
+
+/* A row of the command table. `arguments` are the words behind the command's name. Failures are thrown. */
+struct Command {
+    const char *name;
+    const char *help;
+    int (*run)(const std::vector<std::string> &arguments, Streams &streams);
+};
+
+int run_apply(const std::vector<std::string> &arguments, Streams &streams);
+int run_build(const std::vector<std::string> &arguments, Streams &streams);
+int run_profile(const std::vector<std::string> &arguments, Streams &streams);
+int run_query(const std::vector<std::string> &arguments, Streams &streams);
+int run_simulate(const std::vector<std::string> &arguments, Streams &streams);
+
+/* The whole program: returns its exit code (ExitCode in error.hpp). */
+int run(const std::vector<std::string> &words, Streams &streams);
+
+/* Parses a command's words. Returns true when the command shall run; otherwise help was asked for and printed.
+ * Words that do not fit are a Failure (usage). */
+bool parse(CLI::App &app, const std::vector<std::string> &arguments, Streams &streams);
+
+}  // namespace lensprof
+
+#endif

@@ -1,0 +1,27 @@
+/* scene.hpp - a procedural world: radiance of every direction, the same for every picture. */
+#ifndef LENSPROF_CLI_SCENE_HPP
+#define LENSPROF_CLI_SCENE_HPP
+
+#include <cstdint>
+
+namespace lensprof {
+
+/* A sky over fields and buildings: smooth gradients, flat patches of many colours and fine texture over about eight stops.
+ * Median radiance is near 0.16. Made of arithmetic and hashes alone: the same on every machine. */
+class Scene {
+public:
+    explicit Scene(uint32_t seed) : seed_(seed) {}
+
+    /* Radiance of red, green and blue in a direction (radians, latitude positive down). */
+    void radiance(double longitude, double latitude, double rgb[3]) const;
+
+private:
+    double noise(double x, double y, double z, uint32_t octave) const;
+    double fractal(const double d[3], double frequency, int octaves) const;
+
+    uint32_t seed_;
+};
+
+}  // namespace lensprof
+
+#endif

@@ -1,0 +1,89 @@
+/* Profiles as values: defaults and validation. */
+#include <lensprof/profile.h>
+
+#include <math.h>
+#include <string.h>
+
+void lensprof_profile_key_init(lensprof_profile_key *key)
+{
+    memset(key, 0, sizeof *key);
+    key->focal_mm = key->aperture = key->distance_m = LENSPROF_UNKNOWN;
+    key->processing = LENSPROF_PROCESSING_JPEG;
+}
+
+/* Terminated, and without control characters, which would break listings. */
+static int is_text(const char *text, size_t capacity)
+{
+    for (size_t i = 0; i < capacity; i++) {
+        unsigned char c = (unsigned char)text[i];
+        if (c == 0) return 1;
+        if (c < 0x20 || c == 0x7f) return 0;
+    }
+    return 0;
+}
+
+static int is_known_or_unknown(double value, double largest)
+{
+    return value == LENSPROF_UNKNOWN || (value > 0.0 && value <= largest);
+}
+
+lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key)
+{
+    if (!key || key->processing > LENSPROF_PROCESSING_CORRECTED || key->reserved) return LENSPROF_ERROR_ARGUMENT;
+    if (!is_text(key->camera_maker, sizeof key->camera_maker) || !is_text(key->camera_model, sizeof key->camera_model)
+        || !is_text(key->lens, sizeof key->lens))
+        return LENSPROF_ERROR_ARGUMENT;
+    if (!is_known_or_unknown(key->focal_mm, 1e5) || !is_known_or_unknown(key->aperture, 1e4)
+        || !is_known_or_unknown(key->distance_m, INFINITY))
+        return LENSPROF_ERROR_ARGUMENT;
+    return LENSPROF_OK;
+}
+
+void lensprof_profile_init(lensprof_profile *profile)
+{
+    memset(profile, 0, sizeof *profile);
+    lensprof_profile_key_init(&profile->key);
+    profile->provenance.heldout_rms = profile->provenance.inlier_share = LENSPROF_UNKNOWN;
+    profile->responses = profile->vignettings = 1;
+    for (int c = 0; c < 3; c++) lensprof_response_set_linear(&profile->response[c]);
+}
+
+static lensprof_status validate_provenance(const lensprof_provenance *p)
+{
+    if (!is_text(p->method, sizeof p->method) || !is_text(p->software, sizeof p->software)
+        || !is_text(p->source, sizeof p->source))
+        return LENSPROF_ERROR_ARGUMENT;
+    if (!(p->heldout_rms == LENSPROF_UNKNOWN || (p->heldout_rms >= 0.0 && p->heldout_rms <= 255.0)))
+        return LENSPROF_ERROR_ARGUMENT;
+    if (!(p->inlier_share == LENSPROF_UNKNOWN || (p->inlier_share >= 0.0 && p->inlier_share <= 1.0)))
+        return LENSPROF_ERROR_ARGUMENT;
+    return LENSPROF_OK;
+}
+
+static lensprof_status validate_covariance(const double *covariance, uint32_t n)
+{
+    if (n > LENSPROF_COVARIANCE_MAX) return LENSPROF_ERROR_SIZE;
+    for (uint32_t i = 0; i < n; i++) {
+        if (!(covariance[i * n + i] >= 0.0)) return LENSPROF_ERROR_ARGUMENT;
+        for (uint32_t j = 0; j < n; j++) {
+            if (!isfinite(covariance[i * n + j])) return LENSPROF_ERROR_NOT_FINITE;
+            if (covariance[i * n + j] != covariance[j * n + i]) return LENSPROF_ERROR_ARGUMENT;
+        }
+    }
+    return LENSPROF_OK;
+}
+
+lensprof_status lensprof_profile_validate(const lensprof_profile *profile)
+{
+    if (!profile || profile->reserved) return LENSPROF_ERROR_ARGUMENT;
+    if ((profile->responses != 1 && profile->responses != 3) || (profile->vignettings != 1 && profile->vignettings != 3))
+        return LENSPROF_ERROR_ARGUMENT;
+    lensprof_status status = lensprof_profile_key_validate(&profile->key);
+    if (status == LENSPROF_OK) status = validate_provenance(&profile->provenance);
+    for (uint32_t c = 0; c < profile->responses && status == LENSPROF_OK; c++)
+        status = lensprof_response_validate(&profile->response[c]);
+    for (uint32_t c = 0; c < profile->vignettings && status == LENSPROF_OK; c++)
+        status = lensprof_vignetting_validate(&profile->vignetting[c]);
+    if (status == LENSPROF_OK) status = validate_covariance(profile->covariance, profile->covariance_size);
+    return status;
+}

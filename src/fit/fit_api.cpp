@@ -1,0 +1,153 @@
+// The C face of the overlap fit: checks, and the exception fence.
+#include <cmath>
+#include <new>
+
+#include "fail.hpp"
+#include "overlap.hpp"
+#include "residual.hpp"
+
+using namespace lensprof;
+
+namespace {
+
+lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_count, lensprof_error *error) {
+    if (o.struct_size != sizeof o)
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit options: call lensprof_fit_options_init first");
+    if ((o.channels != 1 && o.channels != 3) || o.reference >= image_count || o.loss > LENSPROF_LOSS_SQUARED
+        || (o.modes > LENSPROF_EMOR_MODES && o.modes != LENSPROF_MODES_AUTO)
+        || !(o.huber_levels > 0.0 && o.huber_levels <= 255.0) || !(o.prior_weight >= 0.0 && o.prior_weight <= 1e6)
+        || o.max_iterations == 0 || o.reserved != 0)
+        return fail(LENSPROF_ERROR_ARGUMENT, error,
+                    "fit options: channels 1 or 3, reference < images, modes 0..25 or automatic, Huber 0..255 levels, "
+                    "prior weight >= 0, iterations > 0");
+    lensprof_status status = lensprof_vignetting_validate(&o.vignetting);
+    if (status != LENSPROF_OK) return fail(status, error, "fit options: the given vignetting is not positive and finite");
+    status = o.response ? lensprof_response_validate(o.response) : LENSPROF_OK;
+    return status == LENSPROF_OK ? status : fail(status, error, "fit options: the given response is not monotone from 0 to 1");
+}
+
+lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, lensprof_error *error) {
+    for (uint32_t i = 0; i < count; i++) {
+        const auto &image = images[i];
+        if (!image.width || !image.height || image.width > (1u << 20) || image.height > (1u << 20))
+            return fail(LENSPROF_ERROR_SIZE, error, "image %u: sizes must be 1..1048576", i);
+        if (lensprof_exposure_validate(&image.exposure) != LENSPROF_OK)
+            return fail(LENSPROF_ERROR_EXPOSURE, error, "image %u: exposure or white balance out of range", i);
+        for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})
+            if (of >= count) return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to image %u of %u", i, of, count);
+        if (images[image.ev_of].ev_of != image.ev_of || images[image.red_of].red_of != image.red_of
+            || images[image.blue_of].blue_of != image.blue_of)
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to an image that is linked itself", i);
+    }
+    return LENSPROF_OK;
+}
+
+lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, uint32_t image_count, int channels,
+                            lensprof_error *error) {
+    for (uint32_t p = 0; p < count; p++) {
+        const auto &pair = pairs[p];
+        if (pair.image[0] >= image_count || pair.image[1] >= image_count || pair.image[0] == pair.image[1])
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: images %u and %u of %u", p, pair.image[0],
+                        pair.image[1], image_count);
+        for (int side = 0; side < 2; side++) {
+            if (!std::isfinite(pair.xy[side][0]) || !std::isfinite(pair.xy[side][1]))
+                return fail(LENSPROF_ERROR_NOT_FINITE, error, "pair %u: a position is not a number", p);
+            if (std::abs(pair.xy[side][0]) > 4e6 || std::abs(pair.xy[side][1]) > 4e6)
+                return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: a position is far outside its image", p);
+            for (int c = 0; c < channels; c++) {
+                double value = pair.value[side][c];
+                if (!std::isfinite(value))
+                    return fail(LENSPROF_ERROR_NOT_FINITE, error, "pair %u: a grey value is not a number", p);
+                if (value < 0.0 || value > 1.0)
+                    return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: grey values must be 0..1", p);
+            }
+        }
+    }
+    return LENSPROF_OK;
+}
+
+bool has_unknowns(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t count) {
+    uint32_t shared = options.free;
+    if (options.modes == 0) shared &= ~LENSPROF_FREE_RESPONSE;
+    if (shared & (LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER))
+        return true;
+    for (uint32_t i = 0; i < count; i++)
+        if (i != options.reference && images[i].free) return true;
+    return false;
+}
+
+}  // namespace
+
+extern "C" {
+
+void lensprof_fit_options_init(lensprof_fit_options *options) {
+    *options = lensprof_fit_options{};
+    options->struct_size = sizeof *options;
+    options->channels = 3;
+    options->free = LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
+    options->modes = LENSPROF_MODES_AUTO;
+    options->huber_levels = 5.0;
+    options->prior_weight = 1.0;
+    options->max_iterations = 200;
+}
+
+void lensprof_fit_result_init(lensprof_fit_result *result) {
+    *result = lensprof_fit_result{};
+    result->struct_size = sizeof *result;
+    lensprof_response_set_linear(&result->response);
+}
+
+lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const lensprof_fit_image *images,
+                                     uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
+                                     lensprof_exposure *exposures, lensprof_fit_result *result, lensprof_error *error) {
+    if (error) error->text[0] = 0;
+    if (!options || !images || !exposures || !result || (pair_count && !pairs))
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: a pointer is NULL");
+    if (image_count < 2) return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: at least two images are needed");
+    if (result->struct_size != sizeof *result)
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit result: call lensprof_fit_result_init first");
+    lensprof_status status = check_options(*options, image_count, error);
+    if (status == LENSPROF_OK) status = check_images(images, image_count, error);
+    if (status == LENSPROF_OK)
+        status = check_pairs(pairs, pair_count, image_count, static_cast<int>(options->channels), error);
+    if (status != LENSPROF_OK) return status;
+    if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
+    if (!has_unknowns(*options, images, image_count))
+        return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "fit: every parameter is fixed; free at least one");
+    try {
+        fit_overlap(*options, images, image_count, pairs, pair_count, exposures, *result);
+        return LENSPROF_OK;
+    } catch (const Cancelled &) {
+        return fail(LENSPROF_ERROR_CANCELLED, error, "fit: cancelled");
+    } catch (const std::bad_alloc &) {
+        return fail(LENSPROF_ERROR_MEMORY, error, "fit: out of memory");
+    } catch (const std::exception &e) {
+        return fail(LENSPROF_ERROR_INTERNAL, error, "fit: %s", e.what());
+    }
+}
+
+lensprof_status lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting *vignetting,
+                                      const lensprof_fit_image *images, const lensprof_exposure *exposures,
+                                      uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
+                                      uint32_t channels, double *rms, double *median) {
+    if (!response || !vignetting || !images || !exposures || !pairs || !rms || !pair_count
+        || (channels != 1 && channels != 3))
+        return LENSPROF_ERROR_ARGUMENT;
+    lensprof_status status = lensprof_response_validate(response);
+    if (status == LENSPROF_OK) status = lensprof_vignetting_validate(vignetting);
+    if (status == LENSPROF_OK) status = check_images(images, image_count, nullptr);
+    if (status == LENSPROF_OK) status = check_pairs(pairs, pair_count, image_count, static_cast<int>(channels), nullptr);
+    for (uint32_t i = 0; i < image_count && status == LENSPROF_OK; i++) status = lensprof_exposure_validate(&exposures[i]);
+    if (status != LENSPROF_OK) return status;
+    try {
+        Summary summary = transfer_summary(*response, *vignetting, images, exposures, image_count, pairs, pair_count,
+                                           static_cast<int>(channels));
+        *rms = summary.rms;
+        if (median) *median = summary.median;
+        return LENSPROF_OK;
+    } catch (const std::exception &) {
+        return LENSPROF_ERROR_MEMORY;
+    }
+}
+
+}  // extern "C"

@@ -1,0 +1,22 @@
+// Gaussian priors on the shared unknowns, measured from data. They decide what pictures leave open (the exponent gamma,
+// unseen radii and grey levels) and weigh nothing where pairs are plenty.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "problem.hpp"
+
+namespace lensprof {
+
+// Standard deviation of each EMoR coefficient over the 201 curves of the DoRF database about the EMoR mean
+// (profiles/tools/make_response_prior.py).
+extern const double kEmorSigma[kMaxModes];
+
+// Mean and precision of the full shared vector (emor[0..24], k1..k3, centre x, y), times `weight`.
+struct Prior {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd precision;
+};
+Prior make_prior(double weight);
+
+}  // namespace lensprof

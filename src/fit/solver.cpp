@@ -1,0 +1,115 @@
+#include "solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "monotone.hpp"
+#include "normal_equations.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kLargestLogExposure = 20.0 * 0.6931471805599453;  // |ev| <= 20
+
+// One accepted Levenberg-Marquardt step; false when no damping finds an improvement.
+struct Stepper {
+    const Problem &problem;
+    const Prior &prior;
+    const Loss &loss;
+    const NoiseWeights &weights;
+    double lambda = 1e-4;
+    int steps = 0;
+
+    Estimate moved(const Estimate &from, const NormalEquations &model, const Eigen::VectorXd &d) const {
+        Estimate to = from;
+        Eigen::VectorXd full = shared_vector(from);
+        for (size_t u = 0; u < model.columns().size(); u++) full[model.columns()[u]] += d[static_cast<Eigen::Index>(u)];
+        set_shared(to, full);
+        auto step = model.image_step(d);
+        for (size_t i = 0; i < step.size(); i++)
+            for (int c = 0; c < 3; c++)
+                to.log_exposure[i][c] =
+                    std::clamp(from.log_exposure[i][c] + step[i][c], -kLargestLogExposure, kLargestLogExposure);
+        return to;
+    }
+
+    bool step(Estimate &estimate, double &cost) {
+        NormalEquations model(problem, prior, loss, weights, estimate);
+        Region region{estimate.modes, model.columns(), shared_vector(estimate)};
+        for (int attempt = 0; attempt < 12; attempt++, lambda *= 8.0) {
+            if (!model.reduce(lambda)) continue;
+            Eigen::VectorXd d = constrained_step(region, model.reduced_hessian(), model.reduced_gradient());
+            Estimate candidate = moved(estimate, model, d);
+            double value = objective(problem, prior, loss, weights, candidate);
+            if (!(value < model.objective())) continue;
+            estimate = candidate;
+            cost = value;
+            lambda = std::max(lambda * 0.1, 1e-9);
+            steps++;
+            return true;
+        }
+        cost = model.objective();
+        return false;
+    }
+};
+
+// Largest change of what a user sees: grey value of the response, falloff, log exposure.
+double change(const Estimate &a, const Estimate &b) {
+    double largest = 0.0;
+    for (size_t j = 0; j < a.table.size(); j += 31) largest = std::max(largest, std::abs(a.table[j] - b.table[j]));
+    for (double r2 : {0.25, 0.5, 1.0})
+        largest = std::max(largest, std::abs(lensprof_vignetting_eval(&a.vignetting, r2, nullptr)
+                                             - lensprof_vignetting_eval(&b.vignetting, r2, nullptr)));
+    for (int d = 0; d < 2; d++) largest = std::max(largest, std::abs(a.vignetting.center[d] - b.vignetting.center[d]));
+    for (size_t i = 0; i < a.log_exposure.size(); i++)
+        for (int c = 0; c < 3; c++) largest = std::max(largest, std::abs(a.log_exposure[i][c] - b.log_exposure[i][c]));
+    return largest;
+}
+
+}  // namespace
+
+Outcome solve(const Problem &problem, const Prior &prior, Loss &loss, bool refine_noise, const Control &control,
+              Estimate &estimate) {
+    constexpr double kStill = 1e-5;        // nothing a user sees moves by more in a step
+    constexpr double kFlat = 1e-8;         // a step gains less than this share of the objective
+    constexpr int kNoiseRounds = 4, kRounds = 6;
+    Outcome outcome;
+    for (int round = 0; round < kRounds; round++) {
+        Estimate before = estimate;
+        if (refine_noise && round < kNoiseRounds) loss.noise = estimate_noise(problem, estimate, loss.noise);
+        NoiseWeights weights = noise_weights(problem, estimate, loss);
+        Stepper stepper{problem, prior, loss, weights};
+        outcome.converged = false;
+        while (!outcome.converged && outcome.iterations < control.max_iterations) {
+            if (control.cancelled && control.cancelled()) throw Cancelled();
+            Estimate previous = estimate;
+            double last = outcome.cost;
+            outcome.iterations++;
+            bool improved = stepper.step(estimate, outcome.cost);
+            bool flat = stepper.steps > 1 && last - outcome.cost < kFlat * std::abs(last);
+            outcome.converged = !improved || flat || change(previous, estimate) < kStill;
+        }
+        if (outcome.iterations >= control.max_iterations || change(before, estimate) < 10 * kStill) break;
+    }
+    return outcome;
+}
+
+Eigen::MatrixXd shared_covariance(const Problem &problem, const Prior &prior, const Loss &loss,
+                                  const Estimate &estimate) {
+    Eigen::MatrixXd full = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
+    NormalEquations model(problem, prior, loss, noise_weights(problem, estimate, loss), estimate);
+    if (model.columns().empty() || !model.reduce(0.0)) return full;
+    auto n = static_cast<Eigen::Index>(model.columns().size());
+    Eigen::LDLT<Eigen::MatrixXd> factor(model.reduced_hessian());
+    Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(n, n));
+    if (factor.info() != Eigen::Success || !inverse.allFinite()) return full;
+    for (Eigen::Index u = 0; u < n; u++)
+        for (Eigen::Index v = 0; v < n; v++)
+            full(model.columns()[static_cast<size_t>(u)], model.columns()[static_cast<size_t>(v)]) =
+                0.5 * (inverse(u, v) + inverse(v, u));
+    return full;
+}
+
+}  // namespace lensprof

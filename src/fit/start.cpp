@@ -1,0 +1,123 @@
+#include "start.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/SparseCholesky>
+
+#include "monotone.hpp"
+#include "residual.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kDarkest = 0.03, kBrightest = 0.97;  // grey values whose ratio is worth something
+
+// Median over an edge's pairs of what the exposures must explain: ln g(B1)/M1 - ln g(B2)/M2.
+struct EdgeRatio {
+    double median[3] = {0.0, 0.0, 0.0};
+    double weight[3] = {0.0, 0.0, 0.0};
+};
+
+std::vector<EdgeRatio> edge_ratios(const Problem &problem, const Estimate &estimate) {
+    std::vector<std::array<std::vector<double>, 3>> ratios(problem.edges.size());
+    for (size_t p = 0; p < problem.pairs.size(); p++) {
+        const auto &pair = problem.pairs[p];
+        const Edge &edge = problem.edges[problem.edge_of_pair[p]];
+        double sign = pair.image[0] == edge.image[0] ? 1.0 : -1.0;
+        double fall = falloff(problem, estimate, pair).log_ratio;
+        for (int c = 0; c < problem.channels; c++) {
+            double b1 = pair.value[0][c], b2 = pair.value[1][c];
+            if (std::min(b1, b2) < kDarkest || std::max(b1, b2) > kBrightest) continue;
+            Transfer t = transfer(estimate, b1, b2, 0.0);
+            ratios[problem.edge_of_pair[p]][c].push_back(sign * (std::log(t.x[0] / t.x[1]) - fall));
+        }
+    }
+    std::vector<EdgeRatio> result(problem.edges.size());
+    for (size_t e = 0; e < ratios.size(); e++)
+        for (int c = 0; c < problem.channels; c++) {
+            auto &values = ratios[e][c];
+            if (values.empty()) continue;
+            auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+            std::nth_element(values.begin(), middle, values.end());
+            result[e].median[c] = *middle;
+            result[e].weight[c] = static_cast<double>(values.size());
+        }
+    return result;
+}
+
+}  // namespace
+
+void start_exposures(const Problem &problem, Estimate &estimate) {
+    int count = problem.image_unknowns;
+    if (count == 0) return;
+    auto ratios = edge_ratios(problem, estimate);
+    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
+    for (int q = 0; q < count; q++) entries.emplace_back(q, q, 1e-3);
+    for (size_t e = 0; e < problem.edges.size(); e++)
+        for (int c = 0; c < problem.channels; c++) {
+            // One equation: sum of the unknowns of image 1 minus those of image 2 = median minus what is fixed.
+            uint32_t i = problem.edges[e].image[0], j = problem.edges[e].image[1];
+            int q[4] = {problem.ev_unknown[i], problem.balance_unknown[i][c], problem.ev_unknown[j],
+                        problem.balance_unknown[j][c]};
+            double weight = ratios[e].weight[c];
+            double target = ratios[e].median[c] - (estimate.log_exposure[i][c] - estimate.log_exposure[j][c]);
+            for (int a = 0; a < 4; a++) {
+                if (q[a] < 0) continue;
+                double sign = a < 2 ? 1.0 : -1.0;
+                right[q[a]] += weight * sign * target;
+                for (int b = 0; b < 4; b++)
+                    if (q[b] >= 0) entries.emplace_back(q[a], q[b], weight * sign * (b < 2 ? 1.0 : -1.0));
+            }
+        }
+    Eigen::SparseMatrix<double> matrix(count, count);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+    if (factor.info() != Eigen::Success) return;
+    Eigen::VectorXd q = factor.solve(right);
+    if (!q.allFinite()) return;
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        for (int c = 0; c < problem.channels; c++)
+            for (int unknown : {problem.ev_unknown[i], problem.balance_unknown[i][c]})
+                if (unknown >= 0) estimate.log_exposure[i][c] += std::clamp(q[unknown], -10.0, 10.0);
+}
+
+std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit_options &options, int modes) {
+    Estimate base;
+    base.vignetting = options.vignetting;
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        const auto &exposure = problem.images[i].exposure;
+        std::array<double, 3> a{};
+        for (int c = 0; c < 3; c++) {
+            bool grey = problem.channels == 1;
+            a[c] = (problem.ev_unknown[i] >= 0 ? 0.0 : exposure.ev * std::log(2.0))
+                + (grey || problem.balance_unknown[i][c] >= 0 ? 0.0 : std::log(exposure.white_balance[c]));
+        }
+        base.log_exposure.push_back(a);
+    }
+    std::vector<Estimate> starts;
+    auto add = [&](const double *emor) {
+        Estimate start = base;
+        if (emor) set_response(start, emor, modes);
+        start_exposures(problem, start);
+        starts.push_back(std::move(start));
+    };
+    if (!(options.free & LENSPROF_FREE_RESPONSE) || modes == 0) {
+        base.modes = -1;
+        if (options.response) base.fixed = *options.response;
+        else if (lensprof_response_set_emor(&base.fixed, nullptr, 0) != LENSPROF_OK) lensprof_response_set_linear(&base.fixed);
+        std::copy(base.fixed.table, base.fixed.table + base.table.size(), base.table.begin());
+        add(nullptr);
+        return starts;
+    }
+    for (double exponent : {0.0, 1.0, 1.0 / 1.8, 1.0 / 4.0}) {
+        double curve[LENSPROF_RESPONSE_SAMPLES];
+        for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++)
+            curve[j] = exponent == 0.0 ? lensprof_emor_table(0)[j] : std::pow(j / 1023.0, exponent);
+        add(project_curve(curve, modes).data());
+    }
+    return starts;
+}
+
+}  // namespace lensprof

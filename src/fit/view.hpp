@@ -1,0 +1,43 @@
+// Reading grey values out of a picture to sample: patches, gradients, masks.
+#pragma once
+
+#include <lensprof/sample.h>
+
+namespace lensprof {
+
+// What a patch of the view says about one scene point.
+struct Patch {
+    double value[3];  // grey value 0..1 at the exact position
+    double gradient;  // grey values a view pixel, all channels
+};
+
+class View {
+public:
+    explicit View(const lensprof_sample_image &image) : image_(image) {}
+
+    const lensprof_sample_image &image() const { return image_; }
+    int channels() const;
+
+    // First pixel with a sample that is not a number; false when there is none. Only float views can have one.
+    bool find_not_finite(uint32_t &x, uint32_t &y) const;
+
+    // True when a full-frame position lies in the frame, far enough inside the view for a patch.
+    bool holds(double x, double y) const;
+
+    // Trimmed mean of 5 x 5 view pixels about a full-frame position, moved to the exact position along the patch's own
+    // gradient. False when a pixel of it is masked, or a channel's value is outside [black, white].
+    bool patch(double x, double y, Patch &out) const;
+
+    // Bilinear value and central difference gradient, as simple samplers take them.
+    bool point(double x, double y, Patch &out) const;
+
+private:
+    void to_view(double x, double y, double &u, double &v) const;
+    double sample(int u, int v, int channel) const;
+    bool is_allowed(int u, int v) const;
+    bool in_range(const Patch &patch) const;
+
+    const lensprof_sample_image &image_;
+};
+
+}  // namespace lensprof

@@ -1,0 +1,122 @@
+// Writing a Hugin project: new values go into the lines as they are, nothing else changes.
+#include <algorithm>
+#include <cmath>
+
+#include "pto.hpp"
+#include "text.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t kHuginModes = 5;
+
+// A new value for an item of an `i` line.
+struct Edit {
+    std::string_view name;
+    std::string value;
+};
+
+// The EMoR coefficients that Hugin can hold. The modes are orthonormal on the grid, so that the least squares
+// projection of the curve on the first five is a dot product with each.
+std::array<double, kHuginModes> hugin_modes(const lensprof_response &response) {
+    std::array<double, kHuginModes> coefficients;
+    bool exact = response.kind == LENSPROF_RESPONSE_EMOR && response.modes <= kHuginModes;
+    const double *mean = lensprof_emor_table(0);
+    for (uint32_t l = 0; l < kHuginModes; l++) {
+        const double *mode = lensprof_emor_table(l + 1);
+        double sum = 0;
+        for (size_t j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) sum += (response.table[j] - mean[j]) * mode[j];
+        coefficients[l] = exact ? response.emor[l] : sum;
+    }
+    return coefficients;
+}
+
+// New text of an `i` line. A link stays a link: the image it leads to receives the value. A missing item is added.
+std::string edit_line(std::string_view line, size_t number, const std::vector<Edit> &edits) {
+    const std::vector<PtoToken> tokens = split_pto_line(line, number);
+    std::vector<std::pair<const PtoToken *, const Edit *>> changes;
+    std::string added;
+    for (const Edit &edit : edits) {
+        const PtoToken *token = find_pto_token(tokens, edit.name);
+        if (!token) added += " " + std::string(edit.name) + edit.value;
+        else if (token->value.empty() || token->value[0] != '=') changes.push_back({token, &edit});
+    }
+    std::sort(changes.begin(), changes.end(),
+              [](const auto &a, const auto &b) { return a.first->begin < b.first->begin; });
+    std::string text;
+    size_t done = 0;
+    for (const auto &[token, edit] : changes) {
+        text.append(line.substr(done, token->begin - done)).append(edit->value);
+        done = token->begin + token->value.size();
+    }
+    return text.append(line.substr(done)).append(added);
+}
+
+// Exposure and white balance of an image in Hugin's terms: relative to the reference, whose own values stay.
+std::vector<Edit> exposure_edits(const lensprof_exposure &exposure, const lensprof_exposure &reference,
+                                 const PtoImage &written) {
+    const auto &value = written.value;
+    auto balance = [&](size_t c) {
+        return (exposure.white_balance[c] / exposure.white_balance[1]) /
+               (reference.white_balance[c] / reference.white_balance[1]);
+    };
+    return {{"Eev", number_text(value[kExposureValue] - (exposure.ev - reference.ev))},
+            {"Er", number_text(value[kRed] * balance(0))},
+            {"Eb", number_text(value[kBlue] * balance(2))}};
+}
+
+// Vm5: radial falloff, corrected by division. Rt0: EMoR, which is also what a line without Rt means.
+std::vector<Edit> model_edits(const std::array<double, kHuginModes> &modes, const lensprof_vignetting &vignetting,
+                              const PtoImage &image) {
+    std::vector<Edit> edits;
+    for (size_t i = 0; i < kHuginModes; i++)
+        edits.push_back({kPtoParameterInfo[kResponseA + i].name, number_text(modes[i])});
+    const lensprof_camera &camera = image.result.camera;
+    double rho = 0.5 * std::hypot(camera.width, camera.height);
+    edits.push_back({"Va", "1"});
+    for (size_t i = 0; i < 3; i++)
+        edits.push_back({kPtoParameterInfo[kVignettingB + i].name, number_text(vignetting.k[i])});
+    for (size_t i = 0; i < 2; i++)
+        edits.push_back({kPtoParameterInfo[kCenterX + i].name, number_text(vignetting.center[i] * rho)});
+    edits.push_back({"Vm", "5"});
+    if (image.result.response_type != 0) edits.push_back({"Rt", "0"});
+    return edits;
+}
+
+}  // namespace
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_response *response,
+                                        const lensprof_vignetting *vignetting, const lensprof_exposure *exposures,
+                                        uint32_t count, uint32_t reference) {
+    if (!pto || !response || !vignetting || !exposures || count != pto->images.size() || reference >= count)
+        return LENSPROF_ERROR_ARGUMENT;
+    lensprof_status status = lensprof_response_validate(response);
+    if (status == LENSPROF_OK) status = lensprof_vignetting_validate(vignetting);
+    for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = lensprof_exposure_validate(&exposures[i]);
+    if (status != LENSPROF_OK) return status;
+    return at_boundary(nullptr, [&] {
+        const std::array<double, kHuginModes> modes = hugin_modes(*response);
+        std::string text;
+        size_t done = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            const PtoImage &image = pto->images[i];
+            std::vector<Edit> edits = model_edits(modes, *vignetting, image);
+            for (Edit &edit : exposure_edits(exposures[i], exposures[reference], pto->images[reference]))
+                edits.push_back(std::move(edit));
+            std::string_view old = pto->text;
+            text.append(old.substr(done, image.begin - done));
+            text.append(edit_line(old.substr(image.begin, image.length), image.line, edits));
+            done = image.begin + image.length;
+        }
+        text.append(pto->text, done);
+        *pto = parse_pto(std::move(text));
+    });
+}
+
+lensprof_status lensprof_pto_write(const lensprof_pto *pto, char *text, size_t capacity, size_t *needed) {
+    if (!pto || (!text && capacity)) return LENSPROF_ERROR_ARGUMENT;
+    return copy_text(pto->text, text, capacity, needed);
+}

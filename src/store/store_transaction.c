@@ -1,0 +1,113 @@
+/* Transactions. Every public call is one: reads see one state of the file, writes happen whole or not at all. */
+#include "store_private.h"
+
+#include <stdio.h>
+
+int lp_store_number(sqlite3 *db, const char *sql, int64_t *value)
+{
+    sqlite3_stmt *statement;
+    int rc = sqlite3_prepare_v2(db, sql, -1, &statement, NULL);
+    if (rc) return rc;
+    rc = sqlite3_step(statement);
+    if (rc == SQLITE_ROW) *value = sqlite3_column_int64(statement, 0);
+    int finalized = sqlite3_finalize(statement);
+    return finalized ? finalized : rc == SQLITE_ROW ? SQLITE_OK : SQLITE_CORRUPT;
+}
+
+typedef struct layout {
+    int64_t application_id, user_version, pages;
+} layout;
+
+static int begin(sqlite3 *db, bool write, layout *found)
+{
+    int rc = SQLITE_OK;
+    if (!sqlite3_get_autocommit(db)) rc = sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL); /* lacked the memory before */
+    if (rc == SQLITE_OK) rc = sqlite3_exec(db, write ? "BEGIN IMMEDIATE" : "BEGIN", NULL, NULL, NULL);
+    if (rc) return rc;
+    rc = lp_store_number(db, "PRAGMA application_id", &found->application_id);
+    if (rc == SQLITE_OK) rc = lp_store_number(db, "PRAGMA user_version", &found->user_version);
+    if (rc == SQLITE_OK) rc = lp_store_number(db, "PRAGMA page_count", &found->pages);
+    return rc;
+}
+
+static lensprof_status check_layout(const lensprof_store *store, const layout *found, lensprof_error *error)
+{
+    const char *restore = "give the path of another file, or restore it from a copy";
+    if (found->pages == 0)
+        return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "is empty, not a lensprof database",
+                             "open it with LENSPROF_STORE_CREATE to make one of it", error);
+    if (found->application_id != LP_STORE_APPLICATION_ID)
+        return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "is not a lensprof database", restore, error);
+    if (found->user_version > LP_STORE_LAYOUT) {
+        char what[80];
+        snprintf(what, sizeof what, "has layout %lld of a newer lensprof, this one knows up to %d",
+                 (long long)found->user_version, LP_STORE_LAYOUT);
+        return lp_store_fail(store->path, LENSPROF_ERROR_LAYOUT, what, "update lensprof", error);
+    }
+    if (found->user_version < LP_STORE_LAYOUT)
+        return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "has no layout number", restore, error);
+    return LENSPROF_OK;
+}
+
+/* A writer that was killed leaves its journal beside the file, and nobody may read before it is played back. A
+ * connection that only reads cannot do that; one that may write does it at its first read. */
+static void undo_cut_off_write(const lensprof_store *store)
+{
+    sqlite3 *db;
+    int64_t pages;
+    if (sqlite3_open_v2(sqlite3_db_filename(store->db, "main"), &db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL)
+        == SQLITE_OK) {
+        sqlite3_busy_timeout(db, LP_STORE_BUSY_MS);
+        (void)lp_store_number(db, "PRAGMA page_count", &pages); /* success shows when the reader tries again */
+    }
+    sqlite3_close(db);
+}
+
+lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error *error)
+{
+    layout found = {0, 0, 0};
+    if (write && store->mode == LENSPROF_STORE_READ)
+        return lp_store_fail(store->path, LENSPROF_ERROR_READ_ONLY, "was opened for reading only",
+                             "open it with LENSPROF_STORE_WRITE", error);
+    int rc = begin(store->db, write, &found);
+    if (rc == SQLITE_READONLY_ROLLBACK) {
+        lp_store_rollback(store);
+        undo_cut_off_write(store);
+        rc = begin(store->db, write, &found);
+    }
+    lensprof_status status = rc ? lp_store_fail_sql(store->path, store->db, rc, error)
+                                : check_layout(store, &found, error);
+    if (status != LENSPROF_OK) lp_store_rollback(store);
+    return status;
+}
+
+lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error)
+{
+    int rc = sqlite3_exec(store->db, "COMMIT", NULL, NULL, NULL);
+    if (rc == SQLITE_OK) return LENSPROF_OK;
+    lensprof_status status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_rollback(store);
+    return status;
+}
+
+void lp_store_rollback(lensprof_store *store)
+{
+    /* Some failures have rolled back already. If there is not even the memory for this, the next begin does it. */
+    if (!sqlite3_get_autocommit(store->db)) (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+}
+
+lensprof_status lp_store_prepare(lensprof_store *store, const char *sql, sqlite3_stmt **statement,
+                                 lensprof_error *error)
+{
+    int rc = sqlite3_prepare_v2(store->db, sql, -1, statement, NULL);
+    return rc ? lp_store_fail_sql(store->path, store->db, rc, error) : LENSPROF_OK;
+}
+
+lensprof_status lp_store_run(lensprof_store *store, lp_store_binder *binder, lensprof_error *error)
+{
+    int rc = binder->rc;
+    if (rc == SQLITE_OK) rc = sqlite3_step(binder->statement);
+    lensprof_status status = rc == SQLITE_DONE ? LENSPROF_OK : lp_store_fail_sql(store->path, store->db, rc, error);
+    sqlite3_finalize(binder->statement);
+    return status;
+}

@@ -1,0 +1,386 @@
+/* Metadata of picture files: what is read from files written through Exiv2, and what a copy keeps and leaves out. */
+#include <cstring>
+#include <thread>
+
+#include <exiv2/exiv2.hpp> /* before cmocka, which makes a macro of `fail` */
+
+#include "picture_files.hpp"
+
+using namespace picture_files;
+
+namespace {
+
+const char *const names[] = {"a.jpg", "a.png", "a.tif"};
+
+/* Lets `change` edit the metadata of a file. */
+void edit(const std::string &path, const std::function<void(Exiv2::Image &)> &change) {
+    auto image = Exiv2::ImageFactory::open(path);
+    image->readMetadata();
+    change(*image);
+    image->writeMetadata();
+}
+
+/* A small JPEG with these EXIF values, in Exiv2's text form. */
+std::string make_exif(const std::vector<std::pair<const char *, const char *>> &values) {
+    const std::string path = in_folder("exif.jpg");
+    write_picture(path, make_smooth(16, 8, LENSPROF_LAYOUT_RGB));
+    edit(path, [&](Exiv2::Image &image) {
+        for (const auto &value : values)
+            image.exifData()[value.first] = std::string(value.second);
+    });
+    return path;
+}
+
+PictureMetadata read_exif(const std::vector<std::pair<const char *, const char *>> &values) {
+    const PictureMetadata metadata = read_metadata(make_exif(values));
+    assert_ok(lensprof_profile_key_validate(&metadata.key));
+    return metadata;
+}
+
+void test_nothing_known(void **) {
+    for (const char *name : names) {
+        write_picture(in_folder(name), make_smooth(9, 7, LENSPROF_LAYOUT_RGB));
+        const PictureMetadata metadata = read_metadata(in_folder(name));
+        assert_ok(lensprof_profile_key_validate(&metadata.key));
+        assert_string_equal(metadata.key.camera_maker, "");
+        assert_string_equal(metadata.key.camera_model, "");
+        assert_string_equal(metadata.key.lens, "");
+        assert_close(metadata.key.focal_mm, LENSPROF_UNKNOWN, 0);
+        assert_close(metadata.key.aperture, LENSPROF_UNKNOWN, 0);
+        assert_close(metadata.key.distance_m, LENSPROF_UNKNOWN, 0);
+        assert_int_equal(metadata.key.processing, LENSPROF_PROCESSING_JPEG);
+        assert_false(metadata.exposure_time_s || metadata.iso || metadata.f_number || metadata.exif_ev);
+    }
+}
+
+void test_written_is_read(void **) {
+    PictureMetadata metadata = unknown_metadata();
+    std::strcpy(metadata.key.camera_maker, "Lensprof");
+    std::strcpy(metadata.key.camera_model, "Simulated \xc3\xa9");
+    std::strcpy(metadata.key.lens, "24-70mm F2.8");
+    metadata.key.focal_mm = 35.5;
+    metadata.key.aperture = 5.6;
+    metadata.key.distance_m = INFINITY;
+    metadata.exposure_time_s = 1 / 320.0;
+    metadata.iso = 400;
+    for (const char *name : names) {
+        WriteOptions options;
+        options.metadata = &metadata;
+        const Picture picture = make_smooth(33, 20, LENSPROF_LAYOUT_RGB);
+        assert_true(write_picture(in_folder(name), picture, options));
+        assert_near_pixels(picture, read_picture(in_folder(name)), name[2] == 'j' ? 3 : 0);
+        const PictureMetadata again = read_metadata(in_folder(name));
+        assert_string_equal(again.key.camera_maker, metadata.key.camera_maker);
+        assert_string_equal(again.key.camera_model, metadata.key.camera_model);
+        assert_string_equal(again.key.lens, metadata.key.lens);
+        assert_close(again.key.focal_mm, 35.5, 1e-9);
+        assert_close(again.key.aperture, 5.6, 1e-9);
+        assert_true(std::isinf(again.key.distance_m));
+        assert_close(again.exposure_time_s.value_or(0), 1 / 320.0, 1e-12);
+        assert_close(again.iso.value_or(0), 400, 0);
+        assert_close(again.f_number.value_or(0), 5.6, 1e-9);
+        /* log2(400 / 100 / 320 / 5.6^2) */
+        assert_close(again.exif_ev.value_or(0), 2 - 8.321928094887362 - 2 * 2.485426827170242, 1e-9);
+        assert_int_equal(files_in_folder(), 1);
+        empty_folder(nullptr);
+    }
+}
+
+void test_float_tiff_is_linear(void **) {
+    write_picture(in_folder("a.tif"), make_noise(8, 8, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB));
+    assert_int_equal(read_metadata(in_folder("a.tif")).key.processing, LENSPROF_PROCESSING_RAW);
+}
+
+void test_texts(void **) {
+    const std::string longer = "  " + std::string(62, 'm') + "\xc3\xa9\xc3\xa9  ";
+    PictureMetadata metadata = read_exif({{"Exif.Image.Make", "  NIKON CORPORATION  "},
+                                          {"Exif.Image.Model", longer.c_str()},
+                                          {"Exif.Photo.LensModel", " Caf\xe9\t50mm \n"}});
+    assert_string_equal(metadata.key.camera_maker, "NIKON CORPORATION");
+    assert_string_equal(metadata.key.camera_model, std::string(62, 'm').c_str()); /* no half character at byte 63 */
+    assert_string_equal(metadata.key.lens, "Caf\xc3\xa9 50mm");
+    for (const char *nothing : {"", "   ", "----", "0.0 mm f/0.0", "n/a", "(65535)", "Unknown (7)", "None"}) {
+        metadata = read_exif({{"Exif.Photo.LensModel", nothing}});
+        assert_string_equal(metadata.key.lens, "");
+    }
+}
+
+void test_lens_of_maker_note(void **) {
+    const PictureMetadata canon = read_exif({{"Exif.Image.Make", "Canon"},
+                                             {"Exif.Image.Model", "Canon EOS 5D"},
+                                             {"Exif.Photo.LensModel", " "},
+                                             {"Exif.Canon.LensModel", "EF35mm f/1.4L USM"},
+                                             {"Exif.CanonCs.LensType", "131"},
+                                             {"Exif.CanonCs.Lens", "35 35 1"}});
+    assert_non_null(std::strstr(canon.key.lens, "35mm"));
+    const PictureMetadata olympus =
+        read_exif({{"Exif.Image.Make", "OLYMPUS IMAGING CORP."}, {"Exif.OlympusEq.LensModel", "OLYMPUS 14-54mm Lens"}});
+    assert_true(olympus.key.lens[0] == '\0' || std::strstr(olympus.key.lens, "14-54mm"));
+}
+
+void test_exposure(void **) {
+    PictureMetadata metadata =
+        read_exif({{"Exif.Photo.ShutterSpeedValue", "7/1"}, {"Exif.Photo.ApertureValue", "6/1"}});
+    assert_close(metadata.exposure_time_s.value_or(0), 1 / 128.0, 1e-12);
+    assert_close(metadata.f_number.value_or(0), 8, 1e-12);
+    assert_close(metadata.key.aperture, 8, 1e-12);
+    assert_false(metadata.iso || metadata.exif_ev);
+
+    /* Stated values win over APEX; zero and zero denominators are unknown. */
+    metadata = read_exif({{"Exif.Photo.ExposureTime", "1/250"},
+                          {"Exif.Photo.ShutterSpeedValue", "7/1"},
+                          {"Exif.Photo.FNumber", "28/10"},
+                          {"Exif.Photo.ApertureValue", "6/1"},
+                          {"Exif.Photo.ISOSpeedRatings", "200"},
+                          {"Exif.Photo.FocalLength", "18/1"}});
+    assert_close(metadata.exposure_time_s.value_or(0), 0.004, 1e-15);
+    assert_close(metadata.f_number.value_or(0), 2.8, 1e-15);
+    assert_close(metadata.iso.value_or(0), 200, 0);
+    assert_close(metadata.key.focal_mm, 18, 0);
+    assert_close(metadata.exif_ev.value_or(0), std::log2(0.004 * 2 / 7.84), 1e-12);
+    metadata = read_exif({{"Exif.Photo.ExposureTime", "0/1"},
+                          {"Exif.Photo.FNumber", "0/0"},
+                          {"Exif.Photo.FocalLength", "5/0"},
+                          {"Exif.Photo.ISOSpeedRatings", "0"}});
+    assert_false(metadata.exposure_time_s || metadata.f_number || metadata.iso || metadata.exif_ev);
+    assert_close(metadata.key.focal_mm, LENSPROF_UNKNOWN, 0);
+    assert_close(metadata.key.aperture, LENSPROF_UNKNOWN, 0);
+}
+
+void test_distance(void **) {
+    const std::pair<const char *, double> values[] = {{"35/10", 3.5},
+                                                      {"0/1", LENSPROF_UNKNOWN},
+                                                      {"0/0", LENSPROF_UNKNOWN},
+                                                      {"4294967295/1", INFINITY},
+                                                      {"4294967295/4294967295", INFINITY},
+                                                      {"90000/1", LENSPROF_UNKNOWN}};
+    for (const auto &value : values) {
+        const double distance = read_exif({{"Exif.Photo.SubjectDistance", value.first}}).key.distance_m;
+        if (std::isinf(value.second))
+            assert_true(std::isinf(distance));
+        else
+            assert_close(distance, value.second, 1e-12);
+    }
+    const PictureMetadata canon = read_exif({{"Exif.Image.Make", "Canon"}, {"Exif.CanonSi.SubjectDistance", "214"}});
+    assert_close(canon.key.distance_m, 2.14, 1e-9);
+}
+
+/* Copies. */
+
+/* A picture of the kind of `name`, with everything a camera and an editor put into it. */
+void make_source(const std::string &name) {
+    Picture picture = make_smooth(48, 32, LENSPROF_LAYOUT_RGB);
+    picture.traits.orientation = 6;
+    picture.icc = make_profile(false, 400);
+    write_picture(in_folder(name), picture);
+    const Bytes thumbnail = load(in_folder(name));
+    edit(in_folder(name), [&](Exiv2::Image &image) {
+        Exiv2::ExifData &exif = image.exifData();
+        exif["Exif.Image.Make"] = std::string("Canon");
+        exif["Exif.Image.Model"] = std::string("Canon EOS 5D");
+        exif["Exif.Image.Orientation"] = uint16_t(6);
+        exif["Exif.Image.Artist"] = std::string("A. Nonymous");
+        exif["Exif.Photo.ExposureTime"] = Exiv2::URational(1, 50);
+        exif["Exif.Photo.PixelXDimension"] = uint32_t(4368);
+        exif["Exif.Photo.PixelYDimension"] = uint32_t(2912);
+        exif["Exif.Photo.UserComment"] = std::string("charset=Ascii words");
+        exif["Exif.GPSInfo.GPSAltitude"] = Exiv2::URational(1234, 10);
+        exif["Exif.CanonSi.SubjectDistance"] = uint16_t(214);
+        if (image.mimeType() != "image/tiff")
+            Exiv2::ExifThumb(exif).setJpegThumbnail(thumbnail.data(), long(thumbnail.size()));
+        image.iptcData()["Iptc.Application2.Caption"] = std::string("A caption");
+        image.xmpData()["Xmp.dc.subject"] = std::string("words");
+        image.xmpData()["Xmp.dc.format"] = std::string("image/x-raw");
+        image.xmpData()["Xmp.tiff.ImageWidth"] = std::string("4368");
+        image.xmpData()["Xmp.xmpNote.HasExtendedXMP"] = std::string("0123");
+    });
+}
+
+void check_copy(const std::string &path, const char *mime_type) {
+    auto image = Exiv2::ImageFactory::open(path);
+    image->readMetadata();
+    Exiv2::ExifData &exif = image->exifData();
+    assert_string_equal(image->mimeType().c_str(), mime_type);
+    assert_string_equal(exif["Exif.Image.Model"].toString().c_str(), "Canon EOS 5D");
+    assert_string_equal(exif["Exif.Image.Artist"].toString().c_str(), "A. Nonymous");
+    assert_string_equal(exif["Exif.Image.Orientation"].toString().c_str(), "6");
+    assert_string_equal(exif["Exif.Photo.ExposureTime"].toString().c_str(), "1/50");
+    assert_string_equal(exif["Exif.Photo.PixelXDimension"].toString().c_str(), "60");
+    assert_string_equal(exif["Exif.Photo.PixelYDimension"].toString().c_str(), "40");
+    assert_string_equal(exif["Exif.Photo.UserComment"].toString().c_str(), "charset=Ascii words");
+    assert_string_equal(exif["Exif.GPSInfo.GPSAltitude"].toString().c_str(), "1234/10");
+    assert_string_equal(exif["Exif.CanonSi.SubjectDistance"].toString().c_str(), "214");
+    assert_string_equal(image->iptcData()["Iptc.Application2.Caption"].toString().c_str(), "A caption");
+    assert_string_equal(image->xmpData()["Xmp.dc.subject"].toString().c_str(), "words");
+    assert_string_equal(image->xmpData()["Xmp.dc.format"].toString().c_str(), mime_type);
+    assert_string_equal(image->xmpData()["Xmp.tiff.ImageWidth"].toString().c_str(), "60");
+    assert_true(image->xmpData().findKey(Exiv2::XmpKey("Xmp.xmpNote.HasExtendedXMP")) == image->xmpData().end());
+    for (const Exiv2::Exifdatum &datum : exif) {
+        assert_string_not_equal(datum.groupName().c_str(), "Thumbnail");
+        if (image->mimeType() == "image/tiff" || datum.groupName() != "Image")
+            continue;
+        for (uint16_t structure : {256, 258, 273, 279, 34675}) /* width, bits, strips, colour profile */
+            assert_int_not_equal(datum.tag(), structure);
+    }
+}
+
+/* From every format to every format: the metadata arrive, pixels, profile and resolution stay. */
+void test_copy(void **) {
+    const char *const mime_types[] = {"image/jpeg", "image/png", "image/tiff"};
+    Picture picture = make_smooth(60, 40, LENSPROF_LAYOUT_RGB);
+    picture.icc = make_profile(false, 100000);
+    picture.traits.x_resolution = picture.traits.y_resolution = 300;
+    picture.traits.resolution_unit = PictureTraits::Unit::inch;
+    for (const char *from : {"s.jpg", "s.png", "s.tif"}) {
+        make_source(from);
+        for (size_t i = 0; i < 3; ++i) {
+            WriteOptions options;
+            options.metadata_from = in_folder(from);
+            write_picture(in_folder("plain" + std::string(names[i])), picture);
+            assert_true(write_picture(in_folder(names[i]), picture, options));
+            check_copy(in_folder(names[i]), mime_types[i]);
+            const Picture plain = read_picture(in_folder("plain" + std::string(names[i])));
+            const Picture copied = read_picture(in_folder(names[i]));
+            assert_same_pixels(plain, copied);
+            assert_true(copied.icc == picture.icc);
+            assert_close(copied.traits.x_resolution, plain.traits.x_resolution, 0);
+            assert_true(copied.traits.resolution_unit == plain.traits.resolution_unit);
+            assert_true(copied.traits.quantisation == plain.traits.quantisation);
+        }
+    }
+}
+
+/* Exiv2 rebuilds the TIFF: no kind of pixels, strips or extra samples may be harmed, nor the byte order. */
+void test_copy_to_any_tiff(void **) {
+    make_source("s.jpg");
+    for (const char *mode : {"wl", "wb"}) {
+        for (uint32_t layout = LENSPROF_LAYOUT_GREY; layout <= LENSPROF_LAYOUT_RGBA; ++layout) {
+            for (uint32_t sample : {LENSPROF_SAMPLE_U8, LENSPROF_SAMPLE_U16, LENSPROF_SAMPLE_F32}) {
+                for (uint32_t tile : {0u, 16u}) {
+                    for (uint16_t planar : {PLANARCONFIG_CONTIG, PLANARCONFIG_SEPARATE}) {
+                        const Picture picture = make_noise(60, 40, sample, layout);
+                        TiffKind kind{mode, COMPRESSION_LZW, planar};
+                        kind.tile = tile;
+                        kind.rows_per_strip = 1;
+                        write_tiff_file(in_folder("a.tif"), picture, kind);
+                        const Picture before = read_picture(in_folder("a.tif"));
+                        assert_true(copy_metadata(in_folder("s.jpg"), in_folder("a.tif")));
+                        const Picture after = read_picture(in_folder("a.tif"));
+                        assert_same_pixels(picture, after);
+                        assert_true(before.traits.alpha == after.traits.alpha);
+                        assert_int_equal(before.traits.compression, after.traits.compression);
+                        assert_int_equal(load(in_folder("a.tif"))[0], mode[1] == 'l' ? 'I' : 'M');
+                        assert_string_equal(read_metadata(in_folder("a.tif")).key.camera_model, "Canon EOS 5D");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/* Correcting a file in place. */
+void test_copy_from_itself(void **) {
+    for (const char *name : {"s.jpg", "s.png", "s.tif"}) {
+        make_source(name);
+        Picture picture = make_smooth(60, 40, LENSPROF_LAYOUT_RGB);
+        picture.traits.orientation = 6;
+        WriteOptions options;
+        options.metadata_from = in_folder(name);
+        write_picture(in_folder(name), picture, options);
+        check_copy(in_folder(name), name[2] == 'j' ? "image/jpeg" : name[2] == 'p' ? "image/png" : "image/tiff");
+        assert_near_pixels(picture, read_picture(in_folder(name)), name[2] == 'j' ? 3 : 0);
+    }
+}
+
+void test_big_tiff_has_no_metadata(void **) {
+    make_source("s.jpg");
+    TiffKind kind;
+    kind.mode = "w8";
+    const Picture picture = make_noise(20, 10, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+    write_tiff_file(in_folder("big.tif"), picture, kind);
+    const Bytes before = load(in_folder("big.tif"));
+    assert_string_equal(read_metadata(in_folder("big.tif")).key.camera_model, "");
+    assert_false(copy_metadata(in_folder("s.jpg"), in_folder("big.tif")));
+    assert_false(write_metadata(in_folder("big.tif"), unknown_metadata()));
+    assert_true(load(in_folder("big.tif")) == before);
+    WriteOptions options;
+    options.metadata_from = in_folder("big.tif");
+    assert_false(write_picture(in_folder("a.tif"), picture, options));
+    assert_same_pixels(picture, read_picture(in_folder("a.tif")));
+}
+
+void test_copy_fails(void **) {
+    make_source("s.jpg");
+    const Bytes whole = load(in_folder("s.jpg"));
+    save(in_folder("cut.jpg"), Bytes(whole.begin(), whole.begin() + 15));
+    const auto copy = [](const char *from, const char *to) {
+        return [=] { copy_metadata(in_folder(from), in_folder(to)); };
+    };
+    assert_failure(ExitCode::unreadable, "no.jpg: cannot read", copy("no.jpg", "s.jpg"));
+    assert_failure(ExitCode::unreadable, "no.jpg: cannot read", copy("s.jpg", "no.jpg"));
+    assert_failure(ExitCode::unreadable, "cut.jpg: cannot read metadata: ", copy("s.jpg", "cut.jpg"));
+    assert_true(load(in_folder("s.jpg")) == whole);
+    assert_int_equal(files_in_folder(), 2);
+
+    /* More EXIF than a JPEG segment can hold. */
+    write_picture(in_folder("a.tif"), make_smooth(8, 8, LENSPROF_LAYOUT_RGB));
+    edit(in_folder("a.tif"), [](Exiv2::Image &image) {
+        for (const char *key : {"Exif.Image.Artist", "Exif.Image.Copyright", "Exif.Image.ImageDescription",
+                                "Exif.Image.Software", "Exif.Photo.UserComment"})
+            image.exifData()[key] = std::string(19000, 'a'); /* Exiv2 drops longer ones */
+    });
+    WriteOptions options;
+    options.metadata_from = in_folder("a.tif");
+    const Picture picture = make_smooth(8, 8, LENSPROF_LAYOUT_RGB);
+    assert_failure(ExitCode::failed, "a.jpg: cannot write metadata: ",
+                   [&] { write_picture(in_folder("a.jpg"), picture, options); });
+    assert_false(fs::exists(in_folder("a.jpg")));
+}
+
+/* Pictures are read by several threads at a time. */
+void test_threads(void **) {
+    make_source("s.jpg");
+    std::vector<std::thread> threads;
+    bool good[4] = {};
+    for (int i = 0; i < 4; ++i) {
+        threads.emplace_back([i, &good] {
+            const std::string target = in_folder("t" + std::to_string(i) + ".tif");
+            WriteOptions options;
+            options.metadata_from = in_folder("s.jpg");
+            good[i] = true;
+            for (int run = 0; run < 20; ++run) {
+                write_picture(target, read_picture(in_folder("s.jpg")), options);
+                good[i] = good[i] && std::strcmp(read_metadata(target).key.camera_model, "Canon EOS 5D") == 0;
+            }
+        });
+    }
+    for (std::thread &thread : threads)
+        thread.join();
+    for (bool one : good)
+        assert_true(one);
+}
+
+}  // namespace
+
+#define TEST(name) cmocka_unit_test_setup(name, empty_folder)
+
+int main() {
+    Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
+    Exiv2::XmpProperties::registerNs("http://ns.adobe.com/xmp/note/", "xmpNote");
+    const CMUnitTest tests[] = {
+        TEST(test_nothing_known),
+        TEST(test_written_is_read),
+        TEST(test_float_tiff_is_linear),
+        TEST(test_texts),
+        TEST(test_lens_of_maker_note),
+        TEST(test_exposure),
+        TEST(test_distance),
+        TEST(test_copy),
+        TEST(test_copy_to_any_tiff),
+        TEST(test_copy_from_itself),
+        TEST(test_big_tiff_has_no_metadata),
+        TEST(test_copy_fails),
+        TEST(test_threads),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,244 @@
+/* Writing Hugin projects: nothing changes but what was set, and what was set reads back. */
+#include "pto_support.h"
+
+#include <lensprof/model.h>
+
+static void test_unmodified_is_identical(void **state)
+{
+    (void)state;
+    const char *const texts[] = {SAMPLE_PTO, "i w10 h10",
+                                 "\r\n\t# x\r\ni w10 h10  n\"a b\" \r\nv\r\n\n\n*\n garbage \xff\n"};
+    for (size_t i = 0; i < 3; i++) {
+        lensprof_pto *pto = read_pto(texts[i]);
+        char *text = write_pto(pto);
+        assert_string_equal(text, texts[i]);
+        free(text);
+        lensprof_pto_destroy(pto);
+    }
+}
+
+static void test_write_into_buffers(void **state)
+{
+    (void)state;
+    const char *text = "i w10 h10\n";
+    lensprof_pto *pto = read_pto(text);
+    char buffer[16] = "untouched";
+    size_t needed = 0;
+    assert_int_equal(lensprof_pto_write(pto, buffer, 9, &needed), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(needed, 10);
+    assert_string_equal(buffer, "untouched");
+    buffer[10] = 'x';
+    assert_ok(lensprof_pto_write(pto, buffer, 10, NULL)); /* exactly the bytes */
+    assert_memory_equal(buffer, "i w10 h10\nx", 11);
+    assert_ok(lensprof_pto_write(pto, buffer, 11, NULL)); /* room for a terminator */
+    assert_string_equal(buffer, text);
+    assert_int_equal(lensprof_pto_write(NULL, buffer, 11, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_write(pto, NULL, 11, NULL), LENSPROF_ERROR_ARGUMENT);
+    lensprof_pto_destroy(pto);
+}
+
+static const double emor[5] = {0.71, -0.123456789012345, 0.05, 1e-7, -0.02};
+static const lensprof_vignetting falloff = {{-0.31, 0.0625, -0.011}, {0.04, -0.07}};
+
+/* Images 1 and 2 of the sample share Eev, 0 to 2 share Er. Exposures are relative to image 3. */
+static void make_exposures(lensprof_exposure exposures[4])
+{
+    const double ev[4] = {0.75, -0.5, -0.5, 0.25}, red[4] = {1.5, 1.5, 1.5, 1}, blue[4] = {0.5, 0.8, 0.8, 1};
+    for (int i = 0; i < 4; i++) exposures[i] = (lensprof_exposure){ev[i], {red[i], 1, blue[i]}};
+}
+
+static lensprof_pto *sample_with_result(void)
+{
+    lensprof_pto *pto = read_pto(SAMPLE_PTO);
+    lensprof_response *response = malloc(sizeof *response);
+    lensprof_exposure exposures[4];
+    make_exposures(exposures);
+    assert_ok(lensprof_response_set_emor(response, emor, 5));
+    assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 4, 3));
+    free(response);
+    return pto;
+}
+
+static void assert_result(const lensprof_pto *pto)
+{
+    lensprof_exposure exposures[4];
+    make_exposures(exposures);
+    for (uint32_t i = 0; i < 4; i++) {
+        lensprof_pto_image image = image_of(pto, i);
+        assert_memory_equal(image.emor, emor, sizeof emor);
+        assert_memory_equal(image.vignetting.k, falloff.k, sizeof falloff.k);
+        if (i != 2) { /* its centre is linked, in pixels, to that of a frame of another size */
+            assert_close(image.vignetting.center[0], falloff.center[0], 1e-15);
+            assert_close(image.vignetting.center[1], falloff.center[1], 1e-15);
+        }
+        assert_close(image.exposure.ev, exposures[i].ev - exposures[3].ev, 1e-15); /* image 3 has Eev0 */
+        assert_close(image.exposure.white_balance[0], exposures[i].white_balance[0], 1e-15);
+        assert_close(image.exposure.white_balance[2], exposures[i].white_balance[2], 1e-15);
+    }
+}
+
+static void test_result_reads_back(void **state)
+{
+    (void)state;
+    lensprof_pto *pto = sample_with_result();
+    assert_result(pto);
+    char *text = write_pto(pto);
+    lensprof_pto *again = read_pto(text);
+    assert_result(again);
+    lensprof_pto_destroy(again);
+    free(text);
+    lensprof_pto_destroy(pto);
+}
+
+static void test_only_the_result_changes(void **state)
+{
+    (void)state;
+    lensprof_pto *pto = sample_with_result();
+    char *text = write_pto(pto), *copy = text;
+    const char *old = SAMPLE_PTO;
+    while (*old) { /* every other line is the same */
+        size_t length = strcspn(old, "\n") + 1, new_length = strcspn(copy, "\n") + 1;
+        if (strncmp(old, "i ", 2) != 0) {
+            assert_int_equal(new_length, length);
+            assert_memory_equal(copy, old, length);
+        }
+        old += length;
+        copy += new_length;
+    }
+    assert_string_equal(copy, "");
+    const char *const kept[] = {"w", "h", "f", "v", "r", "p", "y", "TrX", "Tpp", "j", "a", "d", "g", "S", "C", "n\""};
+    for (size_t i = 0; i < sizeof kept / sizeof kept[0]; i++) {
+        for (int image = 0; image < 4; image++) {
+            const char *before = item_of(SAMPLE_PTO, image, kept[i]);
+            char expected[64] = "";
+            if (before) strcpy(expected, before);
+            const char *after = item_of(text, image, kept[i]);
+            assert_true(!before == !after);
+            if (after) assert_string_equal(after, expected);
+        }
+    }
+    free(text);
+    lensprof_pto_destroy(pto);
+}
+
+static void test_links_stay_and_missing_items_come(void **state)
+{
+    (void)state;
+    lensprof_pto *pto = sample_with_result();
+    char *text = write_pto(pto);
+    assert_string_equal(item_of(text, 1, "Ra"), "=0");
+    assert_string_equal(item_of(text, 2, "Ra"), "=1");
+    assert_string_equal(item_of(text, 2, "Eev"), "=1");
+    assert_string_equal(item_of(text, 1, "Eev"), "0.75");
+    assert_string_equal(item_of(text, 1, "Vx"), "=0");
+    assert_string_equal(item_of(text, 0, "Ra"), "0.71");
+    assert_string_equal(item_of(text, 0, "Rd"), "1e-07");
+    assert_string_equal(item_of(text, 3, "Ra"), "0.71");
+    assert_string_equal(item_of(text, 3, "Eev"), "0");
+    assert_string_equal(item_of(text, 3, "Vm"), "5");
+    assert_string_equal(item_of(text, 3, "Va"), "1");
+    assert_null(item_of(text, 3, "Rt"));
+    free(text);
+    lensprof_pto_destroy(pto);
+}
+
+/* The reference keeps its exposure and white balance to the bit, whatever they are. */
+static void test_reference_stays(void **state)
+{
+    (void)state;
+    lensprof_response *response = malloc(sizeof *response);
+    assert_ok(lensprof_response_set_emor(response, emor, 5));
+    const lensprof_exposure exposures[2] = {{3, {1.3, 1, 0.7}}, {2, {1.3, 1, 0.35}}};
+    lensprof_pto *pto = read_pto("i w10 h10 Eev7.123456 Er1.1 Eb0.9\r\ni w10 h10 Eev1 Er1 Eb1 Rt1 Vm0\r\n");
+    assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 2, 0));
+    lensprof_pto_image image = image_of(pto, 0);
+    assert_true(image.exposure.ev == -7.123456);
+    assert_true(image.exposure.white_balance[0] == 1.1 && image.exposure.white_balance[2] == 0.9);
+    image = image_of(pto, 1);
+    assert_close(image.exposure.ev, -8.123456, 1e-14); /* one step less light */
+    assert_close(image.exposure.white_balance[0], 1.1, 1e-15);
+    assert_close(image.exposure.white_balance[2], 0.45, 1e-15);
+    assert_int_equal(image.response_type, 0);
+    char *text = write_pto(pto);
+    assert_string_equal(item_of(text, 1, "Rt"), "0");
+    assert_string_equal(item_of(text, 1, "Vm"), "5");
+    assert_null(strstr(text, "\n\n"));
+    assert_int_equal(text[strlen(text) - 2], '\r'); /* items are added before the line end */
+    free(text);
+    free(response);
+    lensprof_pto_destroy(pto);
+}
+
+/* A curve beyond Hugin's five modes: the remainder must be orthogonal to all five, else a nearer curve exists. */
+static void test_other_responses_are_projected(void **state)
+{
+    (void)state;
+    lensprof_response *response = malloc(sizeof *response);
+    const double seven[7] = {0.5, 0.1, -0.2, 0.05, 0.01, 0.04, -0.03};
+    const lensprof_exposure exposure = {0, {1, 1, 1}};
+    for (int kind = 0; kind < 3; kind++) {
+        if (kind == 0) lensprof_response_set_linear(response);
+        if (kind == 1) assert_ok(lensprof_response_set_gamma(response, 2.2));
+        if (kind == 2) assert_ok(lensprof_response_set_emor(response, seven, 7));
+        lensprof_pto *pto = read_pto("i w10 h10\n");
+        assert_ok(lensprof_pto_set_result(pto, response, &falloff, &exposure, 1, 0));
+        lensprof_pto_image image = image_of(pto, 0);
+        double rest[LENSPROF_RESPONSE_SAMPLES];
+        for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) {
+            rest[j] = response->table[j] - lensprof_emor_table(0)[j];
+            for (uint32_t l = 0; l < 5; l++) rest[j] -= image.emor[l] * lensprof_emor_table(l + 1)[j];
+        }
+        for (uint32_t l = 1; l <= 5; l++) {
+            double product = 0;
+            for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) product += rest[j] * lensprof_emor_table(l)[j];
+            assert_close(product, 0, 1e-4);
+        }
+        if (kind == 2)
+            for (int l = 0; l < 5; l++) assert_close(image.emor[l], seven[l], 1e-4);
+        lensprof_pto_destroy(pto);
+    }
+    free(response);
+}
+
+static void test_set_result_refuses(void **state)
+{
+    (void)state;
+    lensprof_response *response = malloc(sizeof *response);
+    lensprof_response_set_linear(response);
+    lensprof_exposure e[2] = {{0, {1, 1, 1}}, {0, {1, 1, 1}}};
+    lensprof_vignetting dark = {{-1, 0, 0}, {0, 0}};
+    const char *before = "i w10 h10\ni w10 h10\n";
+    lensprof_pto *pto = read_pto(before);
+    assert_int_equal(lensprof_pto_set_result(NULL, response, &falloff, e, 2, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, NULL, &falloff, e, 2, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, response, NULL, e, 2, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, NULL, 2, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, e, 1, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, e, 2, 2), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, response, &dark, e, 2, 0), LENSPROF_ERROR_VIGNETTING);
+    e[1].white_balance[2] = 0;
+    assert_int_not_equal(lensprof_pto_set_result(pto, response, &falloff, e, 2, 0), LENSPROF_OK);
+    e[1].white_balance[2] = 1;
+    response->table[500] = 0;
+    assert_int_not_equal(lensprof_pto_set_result(pto, response, &falloff, e, 2, 0), LENSPROF_OK);
+    char *after = write_pto(pto);
+    assert_string_equal(after, before);
+    free(after);
+    free(response);
+    lensprof_pto_destroy(pto);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_unmodified_is_identical),
+        cmocka_unit_test(test_write_into_buffers),
+        cmocka_unit_test(test_result_reads_back),
+        cmocka_unit_test(test_only_the_result_changes),
+        cmocka_unit_test(test_links_stay_and_missing_items_come),
+        cmocka_unit_test(test_reference_stays),
+        cmocka_unit_test(test_other_responses_are_projected),
+        cmocka_unit_test(test_set_result_refuses),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

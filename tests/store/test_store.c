@@ -1,0 +1,493 @@
+/* The database in good times: what goes in comes out, is found, listed and removed. */
+#include "store_fixture.h"
+
+static void round_trip(const place *here, const lensprof_profile *profile)
+{
+    lensprof_profile *found = malloc(sizeof *found);
+    int64_t id;
+    memset(found, 0x55, sizeof *found);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    int64_t put = put_at(store, profile);
+    lensprof_store_close(store);
+    store = store_at(here->path, LENSPROF_STORE_READ);
+    assert_ok(lensprof_store_get(store, put, found, NULL));
+    assert_same_profile(profile, found);
+    memset(found, 0x55, sizeof *found);
+    assert_ok(lensprof_store_find(store, &profile->key, found, &id, NULL));
+    assert_int_equal(id, put);
+    assert_same_profile(profile, found);
+    lensprof_store_close(store);
+    assert_integrity(here->path);
+    free(found);
+}
+
+static void test_every_field_round_trips(void **state)
+{
+    lensprof_profile *profile = malloc(sizeof *profile);
+    fill_profile(profile);
+    round_trip(*state, profile);
+    free(profile);
+}
+
+static void test_three_curves_round_trip(void **state)
+{
+    lensprof_profile *profile = malloc(sizeof *profile);
+    double values[LENSPROF_RESPONSE_SAMPLES], coefficients[LENSPROF_EMOR_MODES] = {0};
+    uint64_t seed = 1;
+    fill_profile(profile);
+    profile->responses = profile->vignettings = 3;
+    for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) values[j] = j ? values[j - 1] + lp_random(&seed) : 0.0;
+    for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) values[j] /= values[LENSPROF_RESPONSE_SAMPLES - 1];
+    assert_ok(lensprof_response_set_table(&profile->response[0], values, LENSPROF_RESPONSE_SAMPLES));
+    assert_ok(lensprof_response_set_gamma(&profile->response[1], 2.2 + 1e-15));
+    coefficients[24] = 5e-324; /* the smallest number there is, after 24 zeros that count */
+    assert_ok(lensprof_response_set_emor(&profile->response[2], coefficients, LENSPROF_EMOR_MODES));
+    for (int c = 0; c < 3; c++)
+        profile->vignetting[c] = (lensprof_vignetting){{-0.1 / (c + 1), 1e-300 * c, 0.1 / 3.0}, {-1.0 / (c + 1), 1.0}};
+    profile->covariance_size = LENSPROF_COVARIANCE_MAX;
+    for (uint32_t i = 0; i < LENSPROF_COVARIANCE_MAX; i++)
+        for (uint32_t j = 0; j <= i; j++)
+            profile->covariance[36 * i + j] = profile->covariance[36 * j + i] = i == j ? 1.0 : -lp_random(&seed);
+    profile->covariance[1] = profile->covariance[36] = -0.0;
+    round_trip(*state, profile);
+    free(profile);
+}
+
+static void test_unknown_and_infinite_round_trip(void **state)
+{
+    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile_init(profile);
+    round_trip(*state, profile); /* everything unknown */
+    profile->key.distance_m = INFINITY;
+    profile->key.focal_mm = 35.0;
+    round_trip(*state, profile);
+    profile->key.processing = LENSPROF_PROCESSING_RAW;
+    profile->provenance.heldout_rms = 0.0;
+    profile->provenance.inlier_share = 1.0;
+    profile->provenance.created_unix_s = -1; /* a second before 1970, not unknown */
+    round_trip(*state, profile);
+    profile->key.processing = LENSPROF_PROCESSING_CORRECTED;
+    profile->key.aperture = 5e-324;
+    assert_ok(lensprof_response_set_emor(&profile->response[0], NULL, 0)); /* the mean curve */
+    round_trip(*state, profile);
+    free(profile);
+}
+
+/* The one number that SQLite does not keep to the bit; see 0001_profiles.sql. */
+static void test_negative_zero_becomes_zero(void **state)
+{
+    lensprof_profile *profile = malloc(sizeof *profile);
+    fill_profile(profile);
+    profile->vignetting[0].k[0] = -0.0;
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    int64_t id = put_at(store, profile);
+    assert_ok(lensprof_store_get(store, id, profile, NULL));
+    assert_close(profile->vignetting[0].k[0], 0.0, 0.0);
+    assert_false(signbit(profile->vignetting[0].k[0]));
+    lensprof_store_close(store);
+    free(profile);
+}
+
+static void test_longest_texts_round_trip(void **state)
+{
+    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile_init(profile);
+    memset(profile->key.camera_maker, 'a', sizeof profile->key.camera_maker - 1);
+    memset(profile->key.camera_model, 'b', sizeof profile->key.camera_model - 1);
+    memset(profile->key.lens, '\xe9', sizeof profile->key.lens - 1); /* Latin-1, not UTF-8: kept as it is */
+    memset(profile->provenance.method, 'd', sizeof profile->provenance.method - 1);
+    memset(profile->provenance.software, 'e', sizeof profile->provenance.software - 1);
+    for (size_t i = 0; i + 2 < sizeof profile->provenance.source; i += 2)
+        memcpy(profile->provenance.source + i, "\xc3\xa9", 2);
+    round_trip(*state, profile);
+    free(profile);
+}
+
+/* The columns are for other SQL users: this asks as they would. */
+static void test_numbers_can_be_queried(void **state)
+{
+    const place *here = *state;
+    lensprof_profile *profile = malloc(sizeof *profile);
+    sqlite3 *db;
+    sqlite3_stmt *statement;
+    fill_profile(profile);
+    profile->key.distance_m = INFINITY;
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    put_at(store, profile);
+    lensprof_store_close(store);
+    assert_int_equal(sqlite3_open(here->path, &db), SQLITE_OK);
+    const char *sql = "SELECT camera_maker, focal_mm, distance_m = 9e999, processing, kind, emor_modes, coefficient, k1,"
+                      " center_y, length(covariance) FROM profiles JOIN responses r ON r.profile_id = id"
+                      " JOIN vignettings v ON v.profile_id = id JOIN emor_coefficients e ON e.profile_id = id AND mode = 1";
+    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &statement, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
+    assert_string_equal((const char *)sqlite3_column_text(statement, 0), "Canon");
+    assert_close(sqlite3_column_double(statement, 1), 24.1, 0.0);
+    assert_int_equal(sqlite3_column_int(statement, 2), 1);
+    assert_string_equal((const char *)sqlite3_column_text(statement, 3), "jpeg");
+    assert_string_equal((const char *)sqlite3_column_text(statement, 4), "emor");
+    assert_int_equal(sqlite3_column_int(statement, 5), 5);
+    assert_close(sqlite3_column_double(statement, 6), -0.625, 0.0);
+    assert_close(sqlite3_column_double(statement, 7), -0.3, 0.0);
+    assert_close(sqlite3_column_double(statement, 8), -0.02, 0.0);
+    assert_int_equal(sqlite3_column_int(statement, 9), 800);
+    assert_int_equal(sqlite3_step(statement), SQLITE_DONE);
+    sqlite3_finalize(statement);
+    sqlite3_close(db);
+    free(profile);
+}
+
+static void test_blobs_are_little_endian(void **state)
+{
+    const place *here = *state;
+    static const unsigned char one[] = {0, 0, 0, 0, 0, 0, 0xf0, 0x3f}; /* 1.0, IEEE 754 */
+    lensprof_profile *profile = malloc(sizeof *profile);
+    sqlite3 *db;
+    sqlite3_stmt *statement;
+    fill_profile(profile);
+    profile->response[0].kind = LENSPROF_RESPONSE_TABLE;
+    profile->response[0].modes = 0;
+    memset(profile->response[0].emor, 0, sizeof profile->response[0].emor);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    put_at(store, profile);
+    lensprof_store_close(store);
+    assert_int_equal(sqlite3_open(here->path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, "SELECT samples FROM responses", -1, &statement, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
+    assert_int_equal(sqlite3_column_bytes(statement, 0), 8 * LENSPROF_RESPONSE_SAMPLES);
+    assert_memory_equal((const char *)sqlite3_column_blob(statement, 0) + 8 * 1023, one, 8);
+    sqlite3_finalize(statement);
+    sqlite3_close(db);
+    free(profile);
+}
+
+static void test_newest_wins(void **state)
+{
+    lensprof_profile *profile = malloc(sizeof *profile), *found = malloc(sizeof *found);
+    int64_t id;
+    fill_profile(profile);
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    int64_t first = put_at(store, profile);
+    profile->vignetting[0].k[0] = -0.25;
+    int64_t second = put_at(store, profile);
+    assert_true(second > first && first > 0);
+    assert_ok(lensprof_store_find(store, &profile->key, found, &id, NULL));
+    assert_int_equal(id, second);
+    assert_close(found->vignetting[0].k[0], -0.25, 0.0);
+    assert_ok(lensprof_store_get(store, first, found, NULL)); /* the older one stays */
+    assert_close(found->vignetting[0].k[0], -0.3, 0.0);
+    assert_ok(lensprof_store_remove(store, second, NULL));
+    assert_ok(lensprof_store_find(store, &profile->key, found, &id, NULL));
+    assert_int_equal(id, first);
+    assert_true(put_at(store, profile) > second); /* an id is never used again */
+    lensprof_store_close(store);
+    free(profile);
+    free(found);
+}
+
+/* Puts a profile with `put` and looks for `asked`. */
+static lensprof_status match(void **state, const lensprof_profile_key *put, const lensprof_profile_key *asked)
+{
+    const place *here = *state;
+    lensprof_profile *profile = malloc(sizeof *profile);
+    int64_t id;
+    unlink(here->path);
+    lensprof_profile_init(profile);
+    profile->key = *put;
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    put_at(store, profile);
+    lensprof_status status = lensprof_store_find(store, asked, profile, &id, NULL);
+    lensprof_store_close(store);
+    free(profile);
+    return status;
+}
+
+static void test_texts_match_without_case_and_blanks(void **state)
+{
+    lensprof_profile_key put, asked;
+    lensprof_profile_key_init(&put);
+    strcpy(put.camera_maker, "  Canon ");
+    strcpy(put.camera_model, "EOS 5D");
+    asked = put;
+    strcpy(asked.camera_maker, "cANON");
+    strcpy(asked.camera_model, " eos 5d  ");
+    assert_ok(match(state, &put, &asked));
+    strcpy(asked.camera_model, "eos  5d"); /* inner blanks count */
+    assert_int_equal(match(state, &put, &asked), LENSPROF_ERROR_NOT_FOUND);
+    strcpy(asked.camera_model, ""); /* unknown equals unknown only */
+    assert_int_equal(match(state, &put, &asked), LENSPROF_ERROR_NOT_FOUND);
+    asked = put;
+    strcpy(asked.lens, "EF50mm");
+    assert_int_equal(match(state, &put, &asked), LENSPROF_ERROR_NOT_FOUND);
+    strcpy(put.lens, "\xc3\x89tude"); /* capital e acute; only ASCII case is ignored */
+    strcpy(asked.lens, "\xc3\xa9tude");
+    assert_int_equal(match(state, &put, &asked), LENSPROF_ERROR_NOT_FOUND);
+    strcpy(asked.lens, "\xc3\x89TUDE");
+    assert_ok(match(state, &put, &asked));
+    strcpy(put.lens, "50%_");
+    strcpy(asked.lens, "50xx"); /* no wildcards */
+    assert_int_equal(match(state, &put, &asked), LENSPROF_ERROR_NOT_FOUND);
+    asked = put;
+    asked.processing = LENSPROF_PROCESSING_RAW;
+    assert_int_equal(match(state, &put, &asked), LENSPROF_ERROR_NOT_FOUND);
+}
+
+static void test_numbers_match_to_a_millionth(void **state)
+{
+    static const struct {
+        double put, asked;
+        int same;
+    } cases[] = {
+        {50.0, 50.0, 1}, {50.0, 50.0 * (1 + 9e-7), 1}, {50.0 * (1 + 9e-7), 50.0, 1}, {50.0, 50.0 * (1 + 1.1e-6), 0},
+        {50.0 * (1 + 1.1e-6), 50.0, 0}, {50.0, LENSPROF_UNKNOWN, 0}, {LENSPROF_UNKNOWN, 50.0, 0},
+        {LENSPROF_UNKNOWN, LENSPROF_UNKNOWN, 1}, {1e-7, 2e-7, 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        for (int field = 0; field < 3; field++) {
+            lensprof_profile_key put, asked;
+            lensprof_profile_key_init(&put);
+            lensprof_profile_key_init(&asked);
+            *(field == 0 ? &put.focal_mm : field == 1 ? &put.aperture : &put.distance_m) = cases[i].put;
+            *(field == 0 ? &asked.focal_mm : field == 1 ? &asked.aperture : &asked.distance_m) = cases[i].asked;
+            assert_int_equal(match(state, &put, &asked), cases[i].same ? LENSPROF_OK : LENSPROF_ERROR_NOT_FOUND);
+        }
+}
+
+static void test_infinity_matches_infinity_only(void **state)
+{
+    static const double others[] = {1.0, 1.7e308, LENSPROF_UNKNOWN};
+    lensprof_profile_key infinite, other;
+    lensprof_profile_key_init(&infinite);
+    infinite.distance_m = INFINITY;
+    assert_ok(match(state, &infinite, &infinite));
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        other = infinite;
+        other.distance_m = others[i];
+        assert_int_equal(match(state, &infinite, &other), LENSPROF_ERROR_NOT_FOUND);
+        assert_int_equal(match(state, &other, &infinite), LENSPROF_ERROR_NOT_FOUND);
+    }
+}
+
+static void put_key(lensprof_store *store, const char *maker, const char *lens, double focal, double distance)
+{
+    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile_init(profile);
+    strcpy(profile->key.camera_maker, maker);
+    strcpy(profile->key.lens, lens);
+    profile->key.focal_mm = focal;
+    profile->key.distance_m = distance;
+    put_at(store, profile);
+    free(profile);
+}
+
+static void assert_ids(lensprof_store *store, const lensprof_profile_key *filter, const char *expected)
+{
+    lensprof_store_row rows[20];
+    char ids[100] = "";
+    uint32_t found = 99;
+    assert_ok(lensprof_store_list(store, filter, rows, 20, &found, NULL));
+    assert_true(found <= 20);
+    for (uint32_t i = 0; i < found; i++)
+        snprintf(ids + strlen(ids), sizeof ids - strlen(ids), "%s%d", i ? " " : "", (int)rows[i].id);
+    assert_string_equal(ids, expected);
+}
+
+static void fill_listing(lensprof_store *store)
+{
+    put_key(store, "Nikon", "a", 50.0, INFINITY);           /* 1 */
+    put_key(store, "canon", "b", 35.0, 2.0);                /* 2 */
+    put_key(store, "Canon", "B", 35.0, INFINITY);           /* 3 */
+    put_key(store, "CANON ", "b ", 35.0, LENSPROF_UNKNOWN); /* 4 */
+    put_key(store, "Canon", "b", 24.0, 9.0);                /* 5 */
+    put_key(store, "", "z", LENSPROF_UNKNOWN, 1.0);         /* 6 */
+    put_key(store, "Canon", "a", 200.0, 1.0);               /* 7 */
+    put_key(store, "Canon", "b", 24.0, 9.0);                /* 8, as 5 */
+}
+
+static void test_list_order(void **state)
+{
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    assert_ids(store, NULL, "");
+    fill_listing(store);
+    assert_ids(store, NULL, "6 7 5 8 4 2 3 1");
+    lensprof_store_close(store);
+}
+
+static void test_list_filter(void **state)
+{
+    lensprof_profile_key filter;
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    fill_listing(store);
+    lensprof_profile_key_init(&filter);
+    filter.processing = LENSPROF_PROCESSING_RAW; /* never filters */
+    assert_ids(store, &filter, "6 7 5 8 4 2 3 1");
+    strcpy(filter.camera_maker, " CANON");
+    assert_ids(store, &filter, "7 5 8 4 2 3");
+    strcpy(filter.lens, "b");
+    assert_ids(store, &filter, "5 8 4 2 3");
+    filter.focal_mm = 35.00001;
+    assert_ids(store, &filter, "4 2 3");
+    filter.distance_m = INFINITY;
+    assert_ids(store, &filter, "3");
+    filter.aperture = 2.8;
+    assert_ids(store, &filter, "");
+    lensprof_profile_key_init(&filter);
+    filter.distance_m = 1.0;
+    assert_ids(store, &filter, "6 7");
+    lensprof_store_close(store);
+}
+
+static void test_list_capacity(void **state)
+{
+    lensprof_store_row rows[3];
+    uint32_t found = 0;
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    fill_listing(store);
+    assert_ok(lensprof_store_list(store, NULL, NULL, 0, &found, NULL));
+    assert_int_equal(found, 8);
+    memset(rows, 0x55, sizeof rows);
+    assert_ok(lensprof_store_list(store, NULL, rows, 2, &found, NULL));
+    assert_int_equal(found, 8);
+    assert_int_equal(rows[0].id, 6);
+    assert_int_equal(rows[1].id, 7);
+    assert_string_equal(rows[1].key.camera_maker, "Canon");
+    assert_close(rows[1].key.focal_mm, 200.0, 0.0);
+    assert_close(rows[1].provenance.heldout_rms, LENSPROF_UNKNOWN, 0.0);
+    assert_int_equal(rows[2].id, 0x5555555555555555);
+    lensprof_store_close(store);
+}
+
+static void test_long_list(void **state)
+{
+    const place *here = *state;
+    enum { COUNT = 1000 };
+    uint32_t found = 0;
+    lensprof_store_row *rows = malloc(COUNT * sizeof *rows);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    put_key(store, "Canon", "a", 1.0, 1.0);
+    run_sql(here->path, "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 1000)"
+                        " INSERT INTO profiles SELECT i, camera_maker, camera_model, lens, i, aperture, distance_m,"
+                        " processing, method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
+                        " response_curves, vignetting_curves, covariance_size, covariance FROM profiles, n");
+    assert_ok(lensprof_store_list(store, NULL, rows, COUNT, &found, NULL));
+    assert_int_equal(found, COUNT);
+    for (int i = 0; i < COUNT; i++) assert_close(rows[i].key.focal_mm, i + 1.0, 0.0);
+    assert_ok(lensprof_store_list(store, NULL, rows, 999, &found, NULL));
+    assert_int_equal(found, COUNT);
+    lensprof_store_close(store);
+    free(rows);
+}
+
+static void test_remove(void **state)
+{
+    const place *here = *state;
+    lensprof_profile *profile = malloc(sizeof *profile), *found = malloc(sizeof *found);
+    lensprof_error error;
+    int64_t left = 0;
+    fill_profile(profile);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    int64_t id = put_at(store, profile);
+    assert_ok(lensprof_store_remove(store, id, &error));
+    assert_string_equal(error.text, "");
+    assert_int_equal(lensprof_store_remove(store, id, &error), LENSPROF_ERROR_NOT_FOUND);
+    assert_non_null(strstr(error.text, "profiles.db: has no profile 1;"));
+    assert_int_equal(lensprof_store_get(store, id, found, &error), LENSPROF_ERROR_NOT_FOUND);
+    assert_int_equal(lensprof_store_remove(store, -5, NULL), LENSPROF_ERROR_NOT_FOUND);
+    const char *sql = "SELECT (SELECT count(*) FROM responses) + (SELECT count(*) FROM emor_coefficients)"
+                      " + (SELECT count(*) FROM vignettings)";
+    assert_int_equal(lp_store_number(store->db, sql, &left), SQLITE_OK);
+    assert_int_equal(left, 0);
+    lensprof_store_close(store);
+    assert_integrity(here->path);
+    free(profile);
+    free(found);
+}
+
+static void test_put_refuses_what_is_not_a_profile(void **state)
+{
+    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_error error;
+    int64_t id = 77;
+    uint32_t found = 9;
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    fill_profile(profile);
+    profile->vignetting[0].k[0] = NAN;
+    assert_int_equal(lensprof_store_put(store, profile, &id, &error), LENSPROF_ERROR_NOT_FINITE);
+    assert_non_null(strstr(error.text, "LENSPROF_ERROR_NOT_FINITE"));
+    fill_profile(profile);
+    profile->key.focal_mm = 0.0;
+    assert_int_equal(lensprof_store_put(store, profile, &id, &error), LENSPROF_ERROR_ARGUMENT);
+    fill_profile(profile);
+    profile->provenance.inlier_share = NAN;
+    assert_int_equal(lensprof_store_put(store, profile, &id, &error), LENSPROF_ERROR_ARGUMENT);
+    fill_profile(profile);
+    profile->response[0].emor[0] = -0.6; /* the table is that of -0.625 */
+    assert_int_equal(lensprof_store_put(store, profile, &id, &error), LENSPROF_ERROR_RESPONSE);
+    fill_profile(profile);
+    profile->response[0].kind = LENSPROF_RESPONSE_LINEAR;
+    assert_int_equal(lensprof_store_put(store, profile, &id, &error), LENSPROF_ERROR_RESPONSE);
+    assert_int_equal(id, 77);
+    assert_ok(lensprof_store_list(store, NULL, NULL, 0, &found, NULL));
+    assert_int_equal(found, 0);
+    lensprof_store_close(store);
+    free(profile);
+}
+
+static void test_wrong_arguments(void **state)
+{
+    const place *here = *state;
+    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_store *store = NULL;
+    lensprof_error error;
+    int64_t id;
+    uint32_t found;
+    fill_profile(profile);
+    assert_int_equal(lensprof_store_open(NULL, 0, &store, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_open("", 2, &store, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_open(here->path, 3, &store, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_open(here->path, 2, NULL, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_not_equal(error.text[0], 0);
+    assert_null(store);
+    assert_int_equal(access(here->path, F_OK), -1); /* nothing was made */
+    lensprof_store_close(NULL);
+    store = store_at(here->path, LENSPROF_STORE_CREATE);
+    assert_int_equal(lensprof_store_put(NULL, profile, &id, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_put(store, NULL, &id, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_put(store, profile, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_find(store, NULL, profile, &id, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_find(store, &profile->key, NULL, &id, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_get(store, 1, NULL, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_list(store, NULL, NULL, 1, &found, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_list(store, NULL, NULL, 0, NULL, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_remove(NULL, 1, &error), LENSPROF_ERROR_ARGUMENT);
+    profile->key.processing = 9;
+    assert_int_equal(lensprof_store_find(store, &profile->key, profile, &id, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_list(store, &profile->key, NULL, 0, &found, &error), LENSPROF_ERROR_ARGUMENT);
+    lensprof_store_close(store);
+    free(profile);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        store_test(test_every_field_round_trips),
+        store_test(test_three_curves_round_trip),
+        store_test(test_unknown_and_infinite_round_trip),
+        store_test(test_negative_zero_becomes_zero),
+        store_test(test_longest_texts_round_trip),
+        store_test(test_numbers_can_be_queried),
+        store_test(test_blobs_are_little_endian),
+        store_test(test_newest_wins),
+        store_test(test_texts_match_without_case_and_blanks),
+        store_test(test_numbers_match_to_a_millionth),
+        store_test(test_infinity_matches_infinity_only),
+        store_test(test_list_order),
+        store_test(test_list_filter),
+        store_test(test_list_capacity),
+        store_test(test_long_list),
+        store_test(test_remove),
+        store_test(test_put_refuses_what_is_not_a_profile),
+        store_test(test_wrong_arguments),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,198 @@
+/* Allocations and file operations of SQLite fail in turn, once or from there on: each call returns a status, leaks
+ * nothing, and the database is as before it or as after it. */
+#include "store_fixture.h"
+
+#ifndef STEP
+#define STEP 11 /* every 11th operation is made to fail; in the slow variant every one */
+#endif
+
+static int countdown = -1; /* faults when it comes to 0; negative = never */
+static bool for_good;      /* all later ones fail too */
+static int file_fault;     /* result code of failing file operations */
+static sqlite3_mem_methods memory;
+static sqlite3_vfs *real_vfs;
+
+static bool faults(void)
+{
+    if (countdown < 0) return false;
+    if (countdown > 0) return --countdown == 0;
+    return for_good;
+}
+
+static void *faulty_malloc(int size)
+{
+    return !file_fault && faults() ? NULL : memory.xMalloc(size);
+}
+
+static void *faulty_realloc(void *old, int size)
+{
+    return !file_fault && faults() ? NULL : memory.xRealloc(old, size);
+}
+
+/* Behind every file, in the same allocation, is the real one. */
+static sqlite3_file *real(sqlite3_file *file)
+{
+    return file + 1;
+}
+
+#define FORWARD(call) return file_fault && faults() ? file_fault : real(file)->pMethods->call
+
+static int faulty_read(sqlite3_file *file, void *bytes, int size, sqlite3_int64 at)
+{
+    FORWARD(xRead)(real(file), bytes, size, at);
+}
+static int faulty_write(sqlite3_file *file, const void *bytes, int size, sqlite3_int64 at)
+{
+    FORWARD(xWrite)(real(file), bytes, size, at);
+}
+static int faulty_truncate(sqlite3_file *file, sqlite3_int64 size) { FORWARD(xTruncate)(real(file), size); }
+static int faulty_sync(sqlite3_file *file, int flags) { FORWARD(xSync)(real(file), flags); }
+static int faulty_size(sqlite3_file *file, sqlite3_int64 *size) { FORWARD(xFileSize)(real(file), size); }
+static int faulty_lock(sqlite3_file *file, int kind) { FORWARD(xLock)(real(file), kind); }
+
+#define PLAIN(call) return real(file)->pMethods->call
+
+static int plain_close(sqlite3_file *file) { PLAIN(xClose)(real(file)); }
+static int plain_unlock(sqlite3_file *file, int kind) { PLAIN(xUnlock)(real(file), kind); }
+static int plain_reserved(sqlite3_file *file, int *out) { PLAIN(xCheckReservedLock)(real(file), out); }
+static int plain_control(sqlite3_file *file, int op, void *data) { PLAIN(xFileControl)(real(file), op, data); }
+static int plain_sector(sqlite3_file *file) { PLAIN(xSectorSize)(real(file)); }
+static int plain_features(sqlite3_file *file) { PLAIN(xDeviceCharacteristics)(real(file)); }
+
+static const sqlite3_io_methods methods = {
+    1, plain_close, faulty_read, faulty_write, faulty_truncate, faulty_sync, faulty_size, faulty_lock, plain_unlock,
+    plain_reserved, plain_control, plain_sector, plain_features, NULL, NULL, NULL, NULL, NULL, NULL,
+};
+
+static int faulty_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *file, int flags, int *out)
+{
+    (void)vfs;
+    file->pMethods = NULL;
+    if (file_fault && faults()) return SQLITE_CANTOPEN;
+    int rc = real_vfs->xOpen(real_vfs, name, real(file), flags, out);
+    if (rc == SQLITE_OK) file->pMethods = &methods;
+    return rc;
+}
+
+static int faulty_delete(sqlite3_vfs *vfs, const char *name, int sync)
+{
+    (void)vfs;
+    return file_fault && faults() ? SQLITE_IOERR_DELETE : real_vfs->xDelete(real_vfs, name, sync);
+}
+
+/* One call after another, as a program would; puts one profile. `done` tells whether it is in the file. */
+static lensprof_status session(const char *path, const lensprof_profile *profile, bool *done, lensprof_error *error)
+{
+    static lensprof_profile found;
+    lensprof_store *store = NULL;
+    lensprof_store_row rows[40];
+    uint32_t count;
+    int64_t id;
+    *done = false;
+    lensprof_status status = lp_store_open_waiting(path, LENSPROF_STORE_CREATE, 0, &store, error);
+    if (status == LENSPROF_OK) status = lensprof_store_put(store, profile, &id, error);
+    if (status == LENSPROF_OK) *done = true;
+    if (status == LENSPROF_OK) status = lensprof_store_find(store, &profile->key, &found, &id, error);
+    if (status == LENSPROF_OK) assert_same_profile(&found, profile);
+    if (status == LENSPROF_OK) status = lensprof_store_get(store, id, &found, error);
+    if (status == LENSPROF_OK) status = lensprof_store_list(store, NULL, rows, 40, &count, error);
+    if (status == LENSPROF_OK) status = lensprof_store_remove(store, id, error);
+    if (status == LENSPROF_OK) *done = false;
+    lensprof_store_close(store);
+    return status;
+}
+
+/* Lets the n-th operation fail for growing n until a session is over before; returns that n. */
+static int fail_each(const place *here, int first, bool new_file, lensprof_status only)
+{
+    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_error error;
+    lensprof_status status = LENSPROF_ERROR_INTERNAL;
+    uint32_t stored = 0;
+    int n = 0;
+    bool done;
+    fill_profile(profile);
+    for (n = first; n < 100000; n += STEP) {
+        if (new_file) unlink(here->path);
+        if (new_file) stored = 0;
+        error.text[0] = 0;
+        sqlite3_int64 used = sqlite3_memory_used();
+        countdown = n;
+        status = session(here->path, profile, &done, &error);
+        bool reached = countdown == 0;
+        countdown = -1;
+        assert_int_equal(sqlite3_memory_used(), used);
+        if (status != LENSPROF_OK && !strstr(error.text, "profiles.db: ")) fail_msg("n = %d: %s", n, error.text);
+        if (status != LENSPROF_OK && only != LENSPROF_OK && status != only) fail_msg("n = %d: %s", n, error.text);
+        if (status == LENSPROF_ERROR_INTERNAL || status == LENSPROF_ERROR_ARGUMENT) fail_msg("n = %d: %s", n, error.text);
+        stored += done ? 1 : 0;
+        lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+        if (count_at(store) != stored) fail_msg("n = %d: %u profiles, not %u: %s", n, count_at(store), stored, error.text);
+        lensprof_store_close(store);
+        if (!reached) break;
+    }
+    assert_ok(status); /* the last session met no fault */
+    assert_integrity(here->path);
+    free(profile);
+    return n;
+}
+
+static void fail_each_way(void **state, int fault, lensprof_status only)
+{
+    for (int way = 0; way < 4; way++) {
+        const place *here = *state;
+        unlink(here->path);
+        if (way < 2) lensprof_store_close(store_at(here->path, LENSPROF_STORE_CREATE));
+        file_fault = fault;
+        for_good = way % 2;
+        int n = fail_each(here, 1 + 5 * way % STEP, way >= 2, only);
+        file_fault = 0;
+        assert_true(n > 50); /* else the faults were not where they should be */
+    }
+}
+
+static void test_out_of_memory(void **state)
+{
+    fail_each_way(state, 0, LENSPROF_ERROR_MEMORY);
+}
+
+static void test_input_output_error(void **state)
+{
+    fail_each_way(state, SQLITE_IOERR_WRITE, LENSPROF_OK);
+}
+
+static void test_full_disk_at_every_operation(void **state)
+{
+    fail_each_way(state, SQLITE_FULL, LENSPROF_OK);
+}
+
+/* Before SQLite is used for the first time. */
+static int install_faults(void **state)
+{
+    static sqlite3_vfs vfs;
+    sqlite3_mem_methods faulty;
+    (void)state;
+    if (sqlite3_config(SQLITE_CONFIG_GETMALLOC, &memory)) return -1;
+    faulty = memory;
+    faulty.xMalloc = faulty_malloc;
+    faulty.xRealloc = faulty_realloc;
+    if (sqlite3_config(SQLITE_CONFIG_MALLOC, &faulty) || sqlite3_config(SQLITE_CONFIG_LOOKASIDE, 0, 0)) return -1;
+    real_vfs = sqlite3_vfs_find(NULL);
+    vfs = *real_vfs;
+    vfs.zName = "faulty";
+    vfs.pNext = NULL;
+    vfs.szOsFile = (int)sizeof(sqlite3_file) + real_vfs->szOsFile;
+    vfs.xOpen = faulty_open;
+    vfs.xDelete = faulty_delete;
+    return sqlite3_vfs_register(&vfs, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        store_test(test_out_of_memory),
+        store_test(test_input_output_error),
+        store_test(test_full_disk_at_every_operation),
+    };
+    return cmocka_run_group_tests(tests, install_faults, NULL);
+}
