@@ -43,7 +43,7 @@ bool little_endian() {
     return first == 1;
 }
 
-/* libpng refuses to write, and may replace, the oldest sRGB profile of all, which half of the cameras embed. */
+/* libpng refuses to write the sRGB profile of 1998, which many cameras and editors embed, for faults in its tags. */
 void keep_profile_as_it_is(png_structp png) {
     png_set_option(png, PNG_SKIP_sRGB_CHECK_PROFILE, PNG_OPTION_ON);
 }

@@ -83,7 +83,8 @@ struct Constraints {
     }
 };
 
-// The quadratic in the unknowns y = L' d, where its Hessian is the identity: SLSQP's first model is then exact.
+// The quadratic in the unknowns y = L' d / scale, where its Hessian is the identity and its gradient at 0 has length 1:
+// SLSQP's first model is then exact, and its tolerances mean what they say.
 struct Quadratic {
     Eigen::VectorXd b;
 };
@@ -114,13 +115,15 @@ Eigen::VectorXd solve_working_set(const std::vector<Inequality> &set, const Eige
                                   const Eigen::VectorXd &b) {
     auto n = static_cast<unsigned>(b.size());
     Quadratic quadratic{factor.matrixL().solve(b)};
+    double scale = std::max(quadratic.b.norm(), 1e-300);
+    quadratic.b /= scale;
     Rows rows{Eigen::MatrixXd(set.size(), n), Eigen::VectorXd(set.size())};
     for (size_t i = 0; i < set.size(); i++) {
         auto r = static_cast<Eigen::Index>(i);
         Eigen::VectorXd whitened = factor.matrixL().solve(set[i].row);
         double length = std::max(whitened.norm(), 1e-300);
         rows.a.row(r) = whitened.transpose() / length;
-        rows.limit[r] = set[i].limit / length;
+        rows.limit[r] = set[i].limit / (length * scale);
     }
     std::vector<double> y(n, 0.0), tolerance(set.size(), 1e-12);
     nlopt_opt optimizer = nlopt_create(NLOPT_LD_SLSQP, n);
@@ -136,7 +139,7 @@ Eigen::VectorXd solve_working_set(const std::vector<Inequality> &set, const Eige
     if (code == NLOPT_OUT_OF_MEMORY) throw std::bad_alloc();
     // NLOPT_ROUNDOFF_LIMITED leaves the best point found; anything unusable is caught by the feasibility search.
     if (!solution.allFinite()) return Eigen::VectorXd::Zero(n);
-    return factor.matrixL().transpose().solve(Eigen::VectorXd(solution));
+    return factor.matrixL().transpose().solve(Eigen::VectorXd(scale * solution));
 }
 
 // Adds the worst violated inequality of each contiguous run; false when there is none.

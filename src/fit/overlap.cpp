@@ -47,7 +47,7 @@ public:
     Fit(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
         const lensprof_pair *pairs, uint32_t pair_count)
         : options_(options), images_(images), image_count_(image_count), pairs_(pairs), split_(split_pairs(pair_count)),
-          prior_(make_prior(options.prior_weight)) {
+          prior_(make_prior(options.prior_weight, pair_count)) {
         control_.max_iterations = static_cast<int>(options.max_iterations);
         control_.cancelled = [this] { return options_.progress && options_.progress(done_, options_.progress_user) != 0; };
     }

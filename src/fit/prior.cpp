@@ -1,5 +1,7 @@
 #include "prior.hpp"
 
+#include <algorithm>
+
 #include <Eigen/LU>
 
 namespace lensprof {
@@ -18,13 +20,16 @@ const double kFalloffCovariance[3][3] = {
 // The falloff's centre lies where the optical axis meets the sensor: mounting tolerances, in half diagonals.
 constexpr double kCenterSigma = 0.02;
 
+constexpr double kPairsPerPrior = 200.0;
+
 }  // namespace
 
-Prior make_prior(double weight) {
+Prior make_prior(double weight, size_t pairs) {
+    double response_weight = weight * std::max(1.0, static_cast<double>(pairs) / kPairsPerPrior);
     Prior prior;
     prior.mean = Eigen::VectorXd::Zero(kMaxShared);
     prior.precision = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
-    for (int l = 0; l < kMaxModes; l++) prior.precision(l, l) = weight / (kEmorSigma[l] * kEmorSigma[l]);
+    for (int l = 0; l < kMaxModes; l++) prior.precision(l, l) = response_weight / (kEmorSigma[l] * kEmorSigma[l]);
     Eigen::Matrix3d covariance;
     for (int i = 0; i < 3; i++) {
         prior.mean(kMaxModes + i) = kFalloffMean[i];

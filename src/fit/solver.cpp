@@ -12,6 +12,7 @@ namespace lensprof {
 namespace {
 
 constexpr double kLargestLogExposure = 20.0 * 0.6931471805599453;  // |ev| <= 20
+constexpr double kLargestLogBalance = 12.0;                        // white balance factors stay valid, 1e-6..1e6
 
 // One accepted Levenberg-Marquardt step; false when no damping finds an improvement.
 struct Stepper {
@@ -28,10 +29,11 @@ struct Stepper {
         for (size_t u = 0; u < model.columns().size(); u++) full[model.columns()[u]] += d[static_cast<Eigen::Index>(u)];
         set_shared(to, full);
         auto step = model.image_step(d);
-        for (size_t i = 0; i < step.size(); i++)
-            for (int c = 0; c < 3; c++)
-                to.log_exposure[i][c] =
-                    std::clamp(from.log_exposure[i][c] + step[i][c], -kLargestLogExposure, kLargestLogExposure);
+        for (size_t i = 0; i < step.size(); i++) {
+            auto &a = to.log_exposure[i];
+            for (int c = 0; c < 3; c++) a[c] = std::clamp(a[c] + step[i][c], -kLargestLogExposure, kLargestLogExposure);
+            for (int c : {0, 2}) a[c] = std::clamp(a[c], a[1] - kLargestLogBalance, a[1] + kLargestLogBalance);
+        }
         return to;
     }
 

@@ -36,26 +36,22 @@ lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error)
     return LENSPROF_ERROR_ARGUMENT;
 }
 
-/* What the system said to the last failing call on the database file, else on its journal; 0 = nothing. */
+/* What the system said; SQLite forgets it when it cleans up after a failed COMMIT, the file does not. 0 = nothing. */
 static int last_errno(sqlite3 *db)
 {
     int number = sqlite3_system_errno(db);
-    sqlite3_file *journal = NULL;
     if (!number) (void)sqlite3_file_control(db, "main", SQLITE_FCNTL_LAST_ERRNO, &number);
-    if (!number) (void)sqlite3_file_control(db, "main", SQLITE_FCNTL_JOURNAL_POINTER, &journal);
-    if (journal && journal->pMethods)
-        (void)journal->pMethods->xFileControl(journal, SQLITE_FCNTL_LAST_ERRNO, &number);
     return number;
 }
 
 /* A file that could not be opened or made: SQLite tries several ways, and its errno is that of the last. */
 static lensprof_status status_of_folder(const char *path)
 {
-    sqlite3_vfs *vfs = sqlite3_vfs_find(NULL);
+    sqlite3_vfs *vfs = sqlite3_vfs_find(NULL); /* there is one: it was asked to open the file */
     const char *slash = strrchr(path, '/');
     char *folder = slash ? sqlite3_mprintf("%.*s", (int)(slash - path) + 1, path) : sqlite3_mprintf(".");
     int exists = 0, writable = 0;
-    if (!vfs || !folder) return LENSPROF_ERROR_STORE;
+    if (!folder) return LENSPROF_ERROR_MEMORY;
     (void)vfs->xAccess(vfs, folder, SQLITE_ACCESS_EXISTS, &exists);
     (void)vfs->xAccess(vfs, folder, SQLITE_ACCESS_READWRITE, &writable);
     sqlite3_free(folder);

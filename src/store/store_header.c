@@ -55,7 +55,7 @@ lensprof_status lp_store_probe(const char *path, lp_store_file *file, char **ful
 {
     if (sqlite3_initialize()) return lp_store_fail_sql(path, NULL, SQLITE_NOMEM, error);
     sqlite3_vfs *vfs = sqlite3_vfs_find(NULL);
-    if (!vfs) return lp_store_fail_sql(path, NULL, SQLITE_CANTOPEN, error);
+    if (!vfs) return lp_store_fail_sql(path, NULL, SQLITE_NOLFS, error);
     char *absolute = sqlite3_malloc(vfs->mxPathname + 1);
     if (!absolute) return lp_store_fail_sql(path, NULL, SQLITE_NOMEM, error);
     int rc = vfs->xFullPathname(vfs, path, vfs->mxPathname + 1, absolute);

@@ -21,8 +21,9 @@ typedef struct place {
     char path[160]; /* of the database */
 } place;
 
-/* Makes a file or directory unwritable, also for root, who runs the tests in a container and is not bound by permission
- * bits: there the immutable flag of the file system is tried. False when neither is possible; such tests are skipped. */
+/* Makes a file or directory unwritable, also for root, who runs the tests in a container and is not bound by
+ * permission bits: there the immutable flag of the file system is tried. False when neither is
+ * possible; such tests are skipped. */
 static inline bool set_protected(const char *path, bool on)
 {
     int flags, descriptor = open(path, O_RDONLY);

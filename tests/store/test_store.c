@@ -43,7 +43,7 @@ static void test_three_curves_round_trip(void **state)
     coefficients[24] = 5e-324; /* the smallest number there is, after 24 zeros that count */
     assert_ok(lensprof_response_set_emor(&profile->response[2], coefficients, LENSPROF_EMOR_MODES));
     for (int c = 0; c < 3; c++)
-        profile->vignetting[c] = (lensprof_vignetting){{-0.1 / (c + 1), 1e-300 * c, 0.1 / 3.0}, {-1.0 / (c + 1), 1.0}};
+        profile->vignetting[c] = (lensprof_vignetting){{-0.1 / (c + 1), 1e-300 * c, 1.0 / 30}, {-1.0 / (c + 1), 1.0}};
     profile->covariance_size = LENSPROF_COVARIANCE_MAX;
     for (uint32_t i = 0; i < LENSPROF_COVARIANCE_MAX; i++)
         for (uint32_t j = 0; j <= i; j++)
@@ -116,9 +116,10 @@ static void test_numbers_can_be_queried(void **state)
     put_at(store, profile);
     lensprof_store_close(store);
     assert_int_equal(sqlite3_open(here->path, &db), SQLITE_OK);
-    const char *sql = "SELECT camera_maker, focal_mm, distance_m = 9e999, processing, kind, emor_modes, coefficient, k1,"
-                      " center_y, length(covariance) FROM profiles JOIN responses r ON r.profile_id = id"
-                      " JOIN vignettings v ON v.profile_id = id JOIN emor_coefficients e ON e.profile_id = id AND mode = 1";
+    const char *sql = "SELECT camera_maker, focal_mm, distance_m = 9e999, processing, kind, emor_modes, coefficient,"
+                      " k1, center_y, length(covariance) FROM profiles JOIN responses r ON r.profile_id = id"
+                      " JOIN vignettings v ON v.profile_id = id"
+                      " JOIN emor_coefficients e ON e.profile_id = id AND mode = 1";
     assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &statement, NULL), SQLITE_OK);
     assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
     assert_string_equal((const char *)sqlite3_column_text(statement, 0), "Canon");
@@ -367,8 +368,9 @@ static void test_long_list(void **state)
     put_key(store, "Canon", "a", 1.0, 1.0);
     run_sql(here->path, "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 1000)"
                         " INSERT INTO profiles SELECT i, camera_maker, camera_model, lens, i, aperture, distance_m,"
-                        " processing, method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
-                        " response_curves, vignetting_curves, covariance_size, covariance FROM profiles, n");
+                        " processing, method, software, source, created_unix_s, images, pairs, heldout_rms,"
+                        " inlier_share, response_curves, vignetting_curves, covariance_size, covariance"
+                        " FROM profiles, n");
     assert_ok(lensprof_store_list(store, NULL, rows, COUNT, &found, NULL));
     assert_int_equal(found, COUNT);
     for (int i = 0; i < COUNT; i++) assert_close(rows[i].key.focal_mm, i + 1.0, 0.0);

@@ -152,7 +152,8 @@ static void test_impossible_tables(void **state)
     char sql[300];
     for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
         snprintf(sql, sizeof sql,
-                 "UPDATE responses SET kind = 'table', emor_modes = NULL, samples = CAST(%s AS BLOB) WHERE profile_id = 1",
+                 "UPDATE responses SET kind = 'table', emor_modes = NULL, samples = CAST(%s AS BLOB)"
+                 " WHERE profile_id = 1",
                  samples[i]);
         assert_damaged(*state, sql, i == 0 || i > 4 ? "response" : "samples", false);
     }
@@ -174,8 +175,8 @@ static void test_wrong_types(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         snprintf(sql, sizeof sql,
                  "PRAGMA writable_schema = ON; UPDATE sqlite_master SET sql = replace(replace(replace(sql,"
-                 " ') STRICT, WITHOUT', ') WITHOUT'), ') STRICT', ')'), 'T NOT NULL', 'T'); PRAGMA writable_schema = RESET;"
-                 " UPDATE %s SET %s = %s WHERE %s = 1",
+                 " ') STRICT, WITHOUT', ') WITHOUT'), ') STRICT', ')'), 'T NOT NULL', 'T');"
+                 " PRAGMA writable_schema = RESET; UPDATE %s SET %s = %s WHERE %s = 1",
                  cases[i][0], cases[i][1], cases[i][2], i < 12 ? "id" : "profile_id");
         assert_damaged(*state, sql, cases[i][1], i < 10);
     }
@@ -224,7 +225,8 @@ static void test_missing_column(void **state)
 static void test_triggers_are_ignored(void **state)
 {
     lensprof_profile *profile = malloc(sizeof *profile);
-    lensprof_store *store = crafted(*state, "CREATE TRIGGER t AFTER INSERT ON profiles BEGIN DELETE FROM profiles; END");
+    const char *sql = "CREATE TRIGGER t AFTER INSERT ON profiles BEGIN DELETE FROM profiles; END";
+    lensprof_store *store = crafted(*state, sql);
     fill_profile(profile);
     int64_t id = put_at(store, profile);
     assert_int_equal(count_at(store), 4);
@@ -243,6 +245,7 @@ static void test_foreign_constraint(void **state)
     fill_profile(profile);
     assert_int_equal(lensprof_store_put(store, profile, &id, &error), LENSPROF_ERROR_CORRUPT);
     assert_int_equal(id, 99);
+    run_sql(store->path, "BEGIN IMMEDIATE; COMMIT"); /* the lock is gone */
     assert_int_equal(count_at(store), 3);
     lensprof_store_close(store);
     free(profile);

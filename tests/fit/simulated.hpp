@@ -1,0 +1,117 @@
+// Simulated pairs with a known camera: the independent truth of the fit's tests.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+extern "C" {
+#include "support.h"
+}
+#undef fail
+
+#include <lensprof/fit.h>
+
+struct Simulation {
+    uint32_t width = 800, height = 600, images = 6, channels = 3;
+    lensprof_response response;
+    lensprof_vignetting vignetting{{-0.30, 0.05, -0.15}, {0.02, -0.015}};
+    std::vector<lensprof_exposure> exposures;
+    std::vector<lensprof_fit_image> fit_images;
+    std::vector<lensprof_pair> pairs;
+
+    // Neighbouring images with random positions, uniform log radiance, normal noise in the grey value, 8 bit rounding.
+    void make(uint32_t count, double noise_levels, double outliers, double ev_range, uint64_t seed) {
+        uint64_t random = seed;
+        for (uint32_t i = 0; i < images; i++) {
+            lensprof_exposure e;
+            lensprof_exposure_init(&e);
+            double draws[3] = {lp_random(&random), lp_random(&random), lp_random(&random)};
+            if (i > 0) e = {ev_range * (2 * draws[0] - 1), {0.85 + 0.3 * draws[1], 1.0, 0.85 + 0.3 * draws[2]}};
+            if (channels == 1) e.white_balance[0] = e.white_balance[2] = 1.0;
+            exposures.push_back(e);
+            lensprof_fit_image image{};
+            image.width = width;
+            image.height = height;
+            lensprof_exposure_init(&image.exposure);
+            image.free = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
+            image.ev_of = image.red_of = image.blue_of = i;
+            fit_images.push_back(image);
+        }
+        while (pairs.size() < count) {
+            lensprof_pair pair{};
+            pair.image[0] = static_cast<uint32_t>(lp_random(&random) * (images - 1));
+            pair.image[1] = pair.image[0] + 1;
+            double base = std::exp(-4.5 + 4.5 * lp_random(&random)), radiance[3];
+            for (double &r : radiance) r = base * std::exp(0.6 * (lp_random(&random) - 0.5));
+            for (int side = 0; side < 2; side++) {
+                pair.xy[side][0] = lp_random(&random) * (width - 1);
+                pair.xy[side][1] = lp_random(&random) * (height - 1);
+            }
+            if (see(pair, radiance, noise_levels, random)) pairs.push_back(pair);
+        }
+        for (auto &pair : pairs)
+            if (lp_random(&random) < outliers)
+                for (double &v : pair.value[lp_random(&random) < 0.5]) v = lp_random(&random);
+    }
+
+    bool see(lensprof_pair &pair, const double radiance[3], double noise_levels, uint64_t &random) const {
+        for (int side = 0; side < 2; side++) {
+            double r2 = lensprof_vignetting_r2(&vignetting, width, height, pair.xy[side][0], pair.xy[side][1], nullptr);
+            double m = lensprof_vignetting_eval(&vignetting, r2, nullptr);
+            for (uint32_t c = 0; c < 3; c++) {
+                double e = lensprof_exposure_factor(&exposures[pair.image[side]], c);
+                double b = lensprof_response_eval(&response, radiance[channels == 1 ? 0 : c] * m * e, nullptr);
+                if (b > 250.0 / 255.0 || b < 3.0 / 255.0) return false;
+                double noisy = b + noise_levels / 255.0 * (noise_levels > 0.0 ? lp_normal(&random) : 0.0);
+                pair.value[side][c] = std::round(std::clamp(noisy, 0.0, 1.0) * 255.0 * 256.0) / (255.0 * 256.0);
+                if (channels == 1) pair.value[side][c] = pair.value[side][0];
+            }
+        }
+        return true;
+    }
+
+    // Exponent that pictures leave open: slope of recovered on true exposures.
+    double gamma(const std::vector<lensprof_exposure> &found) const {
+        double mean = 0, true_mean = 0, cross = 0, square = 0;
+        for (size_t i = 0; i < found.size(); i++) mean += found[i].ev / found.size(), true_mean += exposures[i].ev / found.size();
+        for (size_t i = 0; i < found.size(); i++) {
+            cross += (found[i].ev - mean) * (exposures[i].ev - true_mean);
+            square += (exposures[i].ev - true_mean) * (exposures[i].ev - true_mean);
+        }
+        return square > 0 ? cross / square : 1.0;
+    }
+
+    double exposure_error(const std::vector<lensprof_exposure> &found, double g) const {
+        double worst = 0;
+        for (size_t i = 0; i < found.size(); i++) worst = std::max(worst, std::abs(found[i].ev / g - exposures[i].ev));
+        return worst;
+    }
+
+    double falloff_error(const lensprof_vignetting &found, double g) const {
+        double worst = 0;
+        for (int k = 0; k <= 20; k++) {
+            double r2 = k * k / 400.0, m = std::max(lensprof_vignetting_eval(&found, r2, nullptr), 1e-6);
+            worst = std::max(worst, std::abs(std::pow(m, 1.0 / g) - lensprof_vignetting_eval(&vignetting, r2, nullptr)));
+        }
+        return worst;
+    }
+};
+
+inline lensprof_response srgb_response() {
+    std::vector<double> table;
+    for (int j = 0; j < 1024; j++) {
+        double x = j / 1023.0;
+        table.push_back(x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
+    }
+    lensprof_response response;
+    assert_ok(lensprof_response_set_table(&response, table.data(), 1024));
+    return response;
+}
+
+inline bool is_monotone(const lensprof_response &response) {
+    for (int j = 0; j < 1023; j++)
+        if (!(response.table[j + 1] > response.table[j])) return false;
+    return true;
+}

@@ -1,0 +1,233 @@
+// Every derivative of the fit against central differences, and the elimination of the images against a full solve.
+#include "simulated.hpp"
+
+#include <Eigen/Dense>
+
+#include "fit/normal_equations.hpp"
+#include "fit/prior.hpp"
+#include "fit/residual.hpp"
+
+using namespace lensprof;
+
+namespace {
+
+struct Setting {
+    Simulation simulation;
+    lensprof_fit_options options;
+    Problem problem;
+    Estimate estimate;
+
+    explicit Setting(uint32_t channels, uint32_t count = 60) {
+        simulation.response = srgb_response();
+        simulation.channels = channels;
+        simulation.images = 4;
+        simulation.make(count, 2.0, 0.1, 1.0, 7);
+        lensprof_fit_options_init(&options);
+        options.channels = channels;
+        simulation.fit_images[3].ev_of = 2;  // a linked exposure
+        simulation.fit_images[2].free &= ~LENSPROF_FREE_RED;
+        std::vector<uint32_t> keep;
+        for (uint32_t p = 0; p < count; p++) keep.push_back(p);
+        problem = make_problem(options, simulation.fit_images.data(), 4, simulation.pairs.data(), keep);
+        const double emor[6] = {0.7, -0.4, 0.1, 0.05, -0.02, 0.01};
+        set_response(estimate, emor, 6);
+        estimate.vignetting = {{-0.2, 0.1, -0.1}, {0.05, -0.03}};
+        uint64_t random = 3;
+        for (int i = 0; i < 4; i++)
+            estimate.log_exposure.push_back({lp_random(&random) - 0.5, lp_random(&random) - 0.5, lp_random(&random) - 0.5});
+    }
+};
+
+// Residuals of all pairs at an estimate.
+std::vector<double> residuals(const Problem &problem, const Estimate &estimate) {
+    std::vector<double> values;
+    for (const auto &pair : problem.pairs) {
+        PairTransfer t = evaluate_pair(problem, estimate, pair);
+        for (int c = 0; c < problem.channels; c++)
+            for (double r : t.channel[c].residual) values.push_back(r);
+    }
+    return values;
+}
+
+// The response is piecewise linear: where a step crosses a kink a central difference is no derivative. With 1024 pieces and
+// steps of 1e-7 that is rare; the few are counted.
+void compare(const std::vector<double> &analytic, const std::vector<double> &low, const std::vector<double> &high, double h,
+             const char *what) {
+    size_t kinks = 0;
+    for (size_t i = 0; i < analytic.size(); i++) {
+        double numeric = (high[i] - low[i]) / (2 * h);
+        if (std::abs(analytic[i] - numeric) > 2e-5 * (1.0 + std::abs(numeric))) kinks++;
+    }
+    if (kinks * 100 > analytic.size()) print_error("%s: %zu of %zu derivatives differ\n", what, kinks, analytic.size());
+    assert_true(kinks * 100 <= analytic.size());
+}
+
+void test_residual_by_response(void **) {
+    Setting s(3);
+    const double h = 1e-7;
+    for (int l = 0; l < 6; l++) {
+        std::vector<double> analytic;
+        for (const auto &pair : s.problem.pairs) {
+            PairTransfer t = evaluate_pair(s.problem, s.estimate, pair);
+            for (int c = 0; c < 3; c++)
+                for (int side = 0; side < 2; side++) {
+                    double by_emor[kMaxModes];
+                    transfer_by_emor(s.estimate, t.channel[c], side, by_emor);
+                    analytic.push_back(by_emor[l]);
+                }
+        }
+        Estimate low = s.estimate, high = s.estimate;
+        low.emor[l] -= h, high.emor[l] += h;
+        set_response(low, low.emor.data(), 6), set_response(high, high.emor.data(), 6);
+        compare(analytic, residuals(s.problem, low), residuals(s.problem, high), h, "response");
+    }
+}
+
+void test_residual_by_falloff(void **) {
+    Setting s(3);
+    const double h = 1e-7;
+    for (int u = 0; u < 5; u++) {
+        std::vector<double> analytic;
+        for (const auto &pair : s.problem.pairs) {
+            PairTransfer t = evaluate_pair(s.problem, s.estimate, pair);
+            for (int c = 0; c < 3; c++)
+                for (int side = 0; side < 2; side++)
+                    analytic.push_back(-t.channel[c].by_delta[side] * (u < 3 ? t.fall.by_k[u] : t.fall.by_center[u - 3]));
+        }
+        Estimate low = s.estimate, high = s.estimate;
+        (u < 3 ? low.vignetting.k[u] : low.vignetting.center[u - 3]) -= h;
+        (u < 3 ? high.vignetting.k[u] : high.vignetting.center[u - 3]) += h;
+        compare(analytic, residuals(s.problem, low), residuals(s.problem, high), h, "falloff");
+    }
+}
+
+void test_residual_by_exposure_and_value(void **) {
+    Setting s(3);
+    const double h = 1e-7;
+    std::vector<double> analytic, by_value, value_low, value_high;
+    for (const auto &pair : s.problem.pairs) {
+        PairTransfer t = evaluate_pair(s.problem, s.estimate, pair);
+        for (int c = 0; c < 3; c++) {
+            double delta = t.fall.log_ratio + s.estimate.log_exposure[pair.image[0]][c] - s.estimate.log_exposure[pair.image[1]][c];
+            double b1 = pair.value[0][c], b2 = pair.value[1][c];
+            by_value.push_back(t.channel[c].by_value[0]);
+            value_low.push_back(-transfer(s.estimate, b1, b2 - h, delta).residual[0]);
+            value_high.push_back(-transfer(s.estimate, b1, b2 + h, delta).residual[0]);
+        }
+    }
+    compare(by_value, value_low, value_high, h, "grey value");
+    for (uint32_t image = 0; image < 4; image++)
+        for (int c = 0; c < 3; c++) {
+            analytic.clear();
+            for (const auto &pair : s.problem.pairs) {
+                PairTransfer t = evaluate_pair(s.problem, s.estimate, pair);
+                for (int channel = 0; channel < 3; channel++)
+                    for (int side = 0; side < 2; side++) {
+                        double sign = (pair.image[0] == image) - (pair.image[1] == image);
+                        analytic.push_back(channel == c ? -sign * t.channel[channel].by_delta[side] : 0.0);
+                    }
+            }
+            Estimate low = s.estimate, high = s.estimate;
+            low.log_exposure[image][c] -= h, high.log_exposure[image][c] += h;
+            compare(analytic, residuals(s.problem, low), residuals(s.problem, high), h, "exposure");
+        }
+}
+
+// The gradient that the reduced system stands for: differences of the objective along every shared unknown, the images'
+// unknowns held; and along a joint step, for each loss.
+void test_objective_gradient(void **) {
+    for (uint32_t kind : {LENSPROF_LOSS_ROBUST, LENSPROF_LOSS_HUBER, LENSPROF_LOSS_SQUARED})
+        for (uint32_t channels : {1u, 3u}) {
+            Setting s(channels, 400);
+            Loss loss;
+            loss.kind = kind;
+            Prior prior = make_prior(1.0, 400);
+            NoiseWeights weights = noise_weights(s.problem, s.estimate, loss);
+            NormalEquations model(s.problem, prior, loss, weights, s.estimate);
+            assert_close(model.objective(), objective(s.problem, prior, loss, weights, s.estimate), 1e-9 * model.objective());
+            assert_true(model.reduce(0.0));
+            // A step along the solution of the reduced system decreases the objective at the rate -b'S^-1 b - (images' part).
+            Eigen::VectorXd d = model.reduced_hessian().ldlt().solve(model.reduced_gradient());
+            auto images = model.image_step(d);
+            auto at = [&](double t) {
+                Estimate e = s.estimate;
+                Eigen::VectorXd full = shared_vector(e);
+                for (size_t u = 0; u < model.columns().size(); u++) full[model.columns()[u]] += t * d[static_cast<Eigen::Index>(u)];
+                set_shared(e, full);
+                for (size_t i = 0; i < images.size(); i++)
+                    for (int c = 0; c < 3; c++) e.log_exposure[i][c] += t * images[i][c];
+                return objective(s.problem, prior, loss, weights, e);
+            };
+            double h = 1e-4, slope = (at(h) - at(-h)) / (2 * h);
+            // For a Gauss-Newton step d = H^-1 g the slope is -g'd = -d'Hd, and the quadratic model promises half of it.
+            double model_slope = -(d.dot(model.reduced_gradient()));
+            assert_true(slope < 0.0);
+            assert_true(slope <= 0.98 * model_slope);  // the images' own gradient adds to the descent
+        }
+}
+
+// Schur elimination equals the solution of the full system, here formed densely from numeric Jacobians.
+void test_elimination_equals_full_solve(void **) {
+    Setting s(3, 200);
+    Loss loss;
+    loss.kind = LENSPROF_LOSS_SQUARED;
+    Prior prior = make_prior(0.5, 200);
+    NoiseWeights weights = noise_weights(s.problem, s.estimate, loss);
+    NormalEquations model(s.problem, prior, loss, weights, s.estimate);
+    assert_true(model.reduce(0.0));
+    Eigen::VectorXd shared_step = model.reduced_hessian().ldlt().solve(model.reduced_gradient());
+    auto image_step = model.image_step(shared_step);
+
+    int shared = static_cast<int>(model.columns().size()), unknowns = shared + s.problem.image_unknowns;
+    auto moved = [&](int u, double h) {
+        Estimate e = s.estimate;
+        if (u < shared) {
+            Eigen::VectorXd full = shared_vector(e);
+            full[model.columns()[static_cast<size_t>(u)]] += h;
+            set_shared(e, full);
+        } else {
+            for (uint32_t i = 0; i < 4; i++)
+                for (int c = 0; c < 3; c++)
+                    for (int q : {s.problem.ev_unknown[i], s.problem.balance_unknown[i][c]})
+                        if (q == u - shared) e.log_exposure[i][c] += h;
+        }
+        return residuals(s.problem, e);
+    };
+    std::vector<double> r = residuals(s.problem, s.estimate);
+    Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(r.size()), unknowns);
+    const double h = 1e-7;
+    for (int u = 0; u < unknowns; u++) {
+        auto low = moved(u, -h), high = moved(u, h);
+        for (size_t i = 0; i < r.size(); i++) jacobian(static_cast<Eigen::Index>(i), u) = (high[i] - low[i]) / (2 * h);
+    }
+    double scale = 0.5 / (loss.noise * loss.noise);
+    Eigen::MatrixXd hessian = scale * jacobian.transpose() * jacobian;
+    Eigen::VectorXd gradient = -scale * jacobian.transpose() * Eigen::Map<Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
+    Eigen::VectorXd full = shared_vector(s.estimate);
+    for (int u = 0; u < shared; u++)
+        for (int v = 0; v < shared; v++) {
+            double p = prior.precision(model.columns()[static_cast<size_t>(u)], model.columns()[static_cast<size_t>(v)]);
+            hessian(u, v) += p;
+            gradient[u] -= p * (full[model.columns()[static_cast<size_t>(v)]] - prior.mean[model.columns()[static_cast<size_t>(v)]]);
+        }
+    for (int q = shared; q < unknowns; q++) hessian(q, q) += 2e-3;
+    Eigen::VectorXd step = hessian.ldlt().solve(gradient);
+    for (int u = 0; u < shared; u++) assert_close(shared_step[u], step[u], 1e-3 * (0.01 + std::abs(step[u])));
+    assert_close(image_step[1][1], step[shared + s.problem.ev_unknown[1]], 1e-4);
+    assert_close(image_step[3][1], image_step[2][1], 0.0);  // linked
+    assert_close(image_step[2][0], image_step[2][1], 0.0);  // red of image 2 is fixed: it moves with the exposure alone
+    assert_close(image_step[0][0], 0.0, 0.0);               // the reference stays
+}
+
+}  // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_residual_by_response),
+        cmocka_unit_test(test_residual_by_falloff),
+        cmocka_unit_test(test_residual_by_exposure_and_value),
+        cmocka_unit_test(test_objective_gradient),
+        cmocka_unit_test(test_elimination_equals_full_solve),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

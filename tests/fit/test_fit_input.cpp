@@ -1,0 +1,124 @@
+// Bad input at the C boundary: a status, untouched outputs, never a crash or a number that is none.
+#include "simulated.hpp"
+
+namespace {
+
+struct Call {
+    Simulation s;
+    lensprof_fit_options options;
+    std::vector<lensprof_exposure> exposures;
+    lensprof_fit_result result;
+    lensprof_error error;
+
+    Call() {
+        s.response = srgb_response();
+        s.make(200, 1.0, 0.0, 1.0, 42);
+        lensprof_fit_options_init(&options);
+        exposures.resize(s.images);
+        std::memset(exposures.data(), 0x5A, exposures.size() * sizeof exposures[0]);
+        lensprof_fit_result_init(&result);
+    }
+    lensprof_status run() {
+        auto exposures_before = exposures;
+        lensprof_fit_result result_before;
+        std::memcpy(&result_before, &result, sizeof result);
+        lensprof_status status = lensprof_fit_overlap(&options, s.fit_images.data(), static_cast<uint32_t>(s.fit_images.size()),
+                                                      s.pairs.data(), static_cast<uint32_t>(s.pairs.size()), exposures.data(),
+                                                      &result, &error);
+        if (status != LENSPROF_OK) {
+            assert_memory_equal(exposures.data(), exposures_before.data(), exposures.size() * sizeof exposures[0]);
+            assert_memory_equal(&result, &result_before, sizeof result);
+            assert_true(error.text[0] != 0);
+        }
+        return status;
+    }
+};
+
+#define REFUSED(change, status)             \
+    do {                                    \
+        Call call;                          \
+        change;                             \
+        assert_int_equal(call.run(), status); \
+    } while (0)
+
+void test_refuses(void **) {
+    REFUSED(call.options.struct_size = 1, LENSPROF_ERROR_STRUCT_SIZE);
+    REFUSED(call.result.struct_size = 1, LENSPROF_ERROR_STRUCT_SIZE);
+    REFUSED(call.options.channels = 2, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.options.reference = 6, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.options.modes = 26, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.options.loss = 3, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.options.huber_levels = NAN, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.options.prior_weight = -1.0, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.options.max_iterations = 0, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.options.vignetting.k[0] = -2.0, LENSPROF_ERROR_VIGNETTING);
+    REFUSED((call.s.response.table[9] = -1.0, call.options.response = &call.s.response), LENSPROF_ERROR_RESPONSE);
+    REFUSED(call.s.fit_images[1].width = 0, LENSPROF_ERROR_SIZE);
+    REFUSED(call.s.fit_images[1].exposure.ev = INFINITY, LENSPROF_ERROR_EXPOSURE);
+    REFUSED(call.s.fit_images[1].ev_of = 6, LENSPROF_ERROR_ARGUMENT);
+    REFUSED((call.s.fit_images[1].ev_of = 2, call.s.fit_images[2].ev_of = 3), LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.s.pairs[7].image[0] = 6, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.s.pairs[7].image[0] = call.s.pairs[7].image[1], LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.s.pairs[7].value[1][2] = NAN, LENSPROF_ERROR_NOT_FINITE);
+    REFUSED(call.s.pairs[7].value[1][2] = 1.01, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.s.pairs[7].xy[0][0] = INFINITY, LENSPROF_ERROR_NOT_FINITE);
+    REFUSED(call.s.pairs[7].xy[0][0] = 1e9, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.s.pairs.clear(), LENSPROF_ERROR_NO_SAMPLES);
+    REFUSED(call.s.fit_images.resize(1), LENSPROF_ERROR_ARGUMENT);
+    REFUSED((call.options.free = 0, [&] { for (auto &i : call.s.fit_images) i.free = 0; }()), LENSPROF_ERROR_NO_UNKNOWNS);
+}
+
+int stop(double, void *user) { return ++*static_cast<int *>(user) > 3; }
+
+void test_progress_cancels(void **) {
+    Call call;
+    int asked = 0;
+    call.options.progress = stop;
+    call.options.progress_user = &asked;
+    assert_int_equal(call.run(), LENSPROF_ERROR_CANCELLED);
+    assert_int_equal(asked, 4);
+}
+
+// Problems with valid numbers but no sense: constant values, saturated values, one pair, every value random.
+void test_degenerate_problems_stay_finite(void **) {
+    uint64_t random = 17;
+    for (int trial = 0; trial < 150; trial++) {
+        Call call;
+        auto &pairs = call.s.pairs;
+        pairs.resize(1 + static_cast<size_t>(lp_random(&random) * 120));
+        for (auto &pair : pairs)
+            for (int side = 0; side < 2; side++) {
+                for (int c = 0; c < 3; c++) {
+                    double &v = pair.value[side][c];
+                    if (trial % 6 == 0) v = 0.0;
+                    if (trial % 6 == 1) v = 1.0;
+                    if (trial % 6 == 2) v = lp_random(&random);
+                    if (trial % 6 == 3) v = std::round(lp_random(&random));
+                    if (trial % 6 == 4) v = 0.5;
+                }
+                if (trial % 5 == 0) pair.xy[side][0] = pair.xy[side][1] = 0.0;
+                if (trial % 7 == 0) pair.image[side] = static_cast<uint32_t>(side);
+            }
+        call.options.modes = trial % 3 ? LENSPROF_MODES_AUTO : 5;
+        call.options.loss = static_cast<uint32_t>(trial % 3);
+        call.options.prior_weight = trial % 4 ? 1.0 : 0.0;
+        call.options.max_iterations = 40;
+        assert_ok(call.run());
+        assert_ok(lensprof_response_validate(&call.result.response));
+        assert_ok(lensprof_vignetting_validate(&call.result.vignetting));
+        for (const auto &e : call.exposures) assert_ok(lensprof_exposure_validate(&e));
+        assert_true(std::isfinite(call.result.heldout_rms) && std::isfinite(call.result.noise_levels));
+        for (double value : call.result.covariance) assert_true(std::isfinite(value));
+    }
+}
+
+}  // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_progress_cancels),
+        cmocka_unit_test(test_degenerate_problems_stay_finite),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

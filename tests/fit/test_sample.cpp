@@ -1,0 +1,222 @@
+// Sampling: pairs show the same scene point, are spread as promised, and keep away from what must not be used.
+#include "simulated.hpp"
+
+#include <map>
+
+namespace {
+
+// A smooth panorama as a function of direction, grey value 0..1 (the encoded value itself: the tests need no camera).
+double scene(double longitude, double latitude, int c) {
+    return 0.5 + 0.2 * std::sin(9 * longitude + c) + 0.2 * std::cos(7 * latitude - 2.0 * c);
+}
+
+struct Pictures {
+    std::vector<std::vector<float>> data;
+    std::vector<std::vector<uint8_t>> masks;
+    std::vector<lensprof_sample_image> images;
+
+    Pictures(uint32_t count, uint32_t width, uint32_t height, double step_deg, uint32_t reduction = 1) {
+        for (uint32_t i = 0; i < count; i++) {
+            lensprof_sample_image image{};
+            image.camera.width = width * reduction;
+            image.camera.height = height * reduction;
+            image.camera.hfov_deg = 50;
+            image.camera.yaw_deg = step_deg * i;
+            image.reduction = reduction;
+            image.black = 0.02, image.white = 0.98;
+            std::vector<float> pixels(static_cast<size_t>(width) * height * 3);
+            for (uint32_t v = 0; v < height; v++)
+                for (uint32_t u = 0; u < width; u++) {
+                    double d[2], x = (u + 0.5) * reduction - 0.5, y = (v + 0.5) * reduction - 0.5;
+                    assert_true(lensprof_camera_unproject(&image.camera, x, y, d));
+                    for (int c = 0; c < 3; c++) pixels[(static_cast<size_t>(v) * width + u) * 3 + c] = static_cast<float>(scene(d[0], d[1], c));
+                }
+            data.push_back(pixels);
+            masks.emplace_back(static_cast<size_t>(width) * height, uint8_t{1});
+            images.push_back(image);
+        }
+        for (uint32_t i = 0; i < count; i++) {
+            images[i].view = {data[i].data(), static_cast<ptrdiff_t>(width * 12), width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB};
+            images[i].mask = masks[i].data();
+            images[i].mask_row_bytes = static_cast<ptrdiff_t>(width);
+        }
+    }
+
+    lensprof_status sample(const lensprof_sample_options &options, std::vector<lensprof_pair> &pairs, lensprof_error *error = nullptr) {
+        uint32_t found = 0;
+        auto count = static_cast<uint32_t>(images.size());
+        lensprof_status status = lensprof_sample_overlap(&options, images.data(), count, nullptr, 0, &found, error);
+        if (status != LENSPROF_OK) return status;
+        pairs.assign(found, lensprof_pair{});
+        status = lensprof_sample_overlap(&options, images.data(), count, pairs.data(), found, &found, error);
+        pairs.resize(status == LENSPROF_OK ? found : 0);
+        return status;
+    }
+};
+
+lensprof_sample_options options_of(uint32_t sampling, uint32_t pairs) {
+    lensprof_sample_options options;
+    lensprof_sample_options_init(&options);
+    options.sampling = sampling;
+    options.pairs = pairs;
+    return options;
+}
+
+void test_pairs_show_one_scene_point(void **) {
+    for (uint32_t reduction : {1u, 3u})
+        for (uint32_t sampling : {LENSPROF_SAMPLING_BALANCED, LENSPROF_SAMPLING_PAPER}) {
+            Pictures pictures(4, 320, 240, 25.0, reduction);
+            std::vector<lensprof_pair> pairs;
+            assert_ok(pictures.sample(options_of(sampling, 500), pairs));
+            assert_true(pairs.size() > 400 && pairs.size() <= 500);
+            for (const auto &pair : pairs) {
+                double d[2][2];
+                for (int side = 0; side < 2; side++) {
+                    const auto &camera = pictures.images[pair.image[side]].camera;
+                    assert_true(lensprof_camera_unproject(&camera, pair.xy[side][0], pair.xy[side][1], d[side]));
+                    for (int c = 0; c < 3; c++) assert_close(pair.value[side][c], scene(d[side][0], d[side][1], c), 0.004);
+                }
+                assert_close(d[0][0], d[1][0], 1e-7);
+                assert_close(d[0][1], d[1][1], 1e-7);
+            }
+        }
+}
+
+void test_balanced_over_pairs_radius_and_grey(void **) {
+    Pictures pictures(6, 320, 240, 25.0);
+    std::vector<lensprof_pair> pairs;
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 1000), pairs));
+    assert_int_equal(pairs.size(), 1000);
+    std::map<std::pair<uint32_t, uint32_t>, int> per_edge;
+    int per_radius[10] = {}, per_grey[10] = {};
+    const lensprof_vignetting centred{};
+    for (const auto &pair : pairs) {
+        per_edge[std::minmax(pair.image[0], pair.image[1])]++;
+        for (int side = 0; side < 2; side++) {
+            double r2 = lensprof_vignetting_r2(&centred, 320, 240, pair.xy[side][0], pair.xy[side][1], nullptr);
+            per_radius[std::min(9, static_cast<int>(10 * std::sqrt(r2)))]++;
+            per_grey[std::min(9, static_cast<int>(10 * (pair.value[side][0] + pair.value[side][1] + pair.value[side][2]) / 3))]++;
+        }
+    }
+    assert_int_equal(per_edge.size(), 5);  // 50 degrees wide, 25 degrees apart: neighbours only
+    for (const auto &edge : per_edge) assert_true(edge.second >= 100 && edge.second <= 400);
+    // Two directions 25 degrees apart: no pair has both ends near the centre, rings 0 and 1 hold little.
+    for (int ring = 3; ring < 10; ring++) assert_true(per_radius[ring] > 50);
+    for (int grey = 4; grey < 6; grey++) assert_true(per_grey[grey] > 50 && per_grey[grey] < 1400);
+}
+
+void test_masks_levels_and_alpha_are_kept_out(void **) {
+    for (uint32_t sampling : {LENSPROF_SAMPLING_BALANCED, LENSPROF_SAMPLING_PAPER}) {
+        Pictures pictures(3, 320, 240, 20.0);
+        for (uint32_t v = 0; v < 240; v++)
+            for (uint32_t u = 0; u < 320; u++) {
+                if (v < 120) pictures.masks[1][v * 320 + u] = 0;  // upper half of image 1
+                float *pixel = &pictures.data[0][(v * 320 + u) * 3];
+                if (u > 300) pixel[1] = 1.0f;                      // saturated in one channel
+                if (v > 200) pixel[2] = 0.0f;                      // black in one channel
+            }
+        std::vector<lensprof_pair> pairs;
+        assert_ok(pictures.sample(options_of(sampling, 600), pairs));
+        for (const auto &pair : pairs)
+            for (int side = 0; side < 2; side++) {
+                if (pair.image[side] == 1) assert_true(pair.xy[side][1] > 119.0);
+                if (pair.image[side] == 0) assert_true(pair.xy[side][0] < 302.0 && pair.xy[side][1] < 202.0);
+                for (double v : pair.value[side]) assert_true(v >= 0.02 && v <= 0.98);
+            }
+    }
+}
+
+// Single wrong pixels hardly move a patch.
+void test_patches_shrug_off_hot_pixels(void **) {
+    Pictures pictures(3, 320, 240, 20.0);
+    uint64_t random = 5;
+    for (auto &picture : pictures.data)
+        for (size_t p = 0; p < picture.size(); p += 3)
+            if (lp_random(&random) < 0.10)
+                for (int c = 0; c < 3; c++) picture[p + c] = static_cast<float>(lp_random(&random));
+    std::vector<lensprof_pair> pairs;
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 500), pairs));
+    double sum = 0;
+    for (const auto &pair : pairs)
+        for (int c = 0; c < 3; c++) sum += std::pow(pair.value[0][c] - pair.value[1][c], 2);
+    assert_true(255 * std::sqrt(sum / (3 * pairs.size())) < 2.0);
+}
+
+void test_same_seed_same_pairs(void **) {
+    Pictures pictures(3, 160, 120, 20.0);
+    std::vector<lensprof_pair> a, b, other;
+    lensprof_sample_options options = options_of(LENSPROF_SAMPLING_BALANCED, 300);
+    assert_ok(pictures.sample(options, a));
+    assert_ok(pictures.sample(options, b));
+    assert_int_equal(a.size(), b.size());
+    assert_memory_equal(a.data(), b.data(), a.size() * sizeof a[0]);
+    options.seed = 2;
+    assert_ok(pictures.sample(options, other));
+    assert_true(other.size() != a.size() || std::memcmp(a.data(), other.data(), a.size() * sizeof a[0]) != 0);
+}
+
+void test_sample_types_and_layouts_agree(void **) {
+    Pictures pictures(2, 160, 120, 20.0);
+    std::vector<lensprof_pair> reference, pairs;
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_PAPER, 100), reference));
+    std::vector<std::vector<uint16_t>> bgra(2);
+    for (int i = 0; i < 2; i++) {
+        for (size_t p = 0; p < pictures.data[i].size(); p += 3) {
+            for (int c = 2; c >= 0; c--) bgra[i].push_back(static_cast<uint16_t>(std::lround(65535 * pictures.data[i][p + c])));
+            bgra[i].push_back(65535);
+        }
+        pictures.images[i].view = {bgra[i].data() + 119 * 160 * 4, -160 * 8, 160, 120, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_BGRA};
+        for (int v = 0; v < 60; v++)  // bottom up in memory
+            for (int k = 0; k < 160 * 4; k++) std::swap(bgra[i][v * 640 + k], bgra[i][(119 - v) * 640 + k]);
+    }
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_PAPER, 100), pairs));
+    // Rounding to 16 bit may change which of two points has the lower gradient: most pairs are the same ones.
+    size_t same = 0;
+    for (const auto &pair : pairs)
+        for (const auto &other : reference) {
+            if (pair.xy[0][0] != other.xy[0][0] || pair.image[0] != other.image[0]) continue;
+            same++;
+            for (int c = 0; c < 3; c++) assert_close(pair.value[1][c], other.value[1][c], 2e-5);
+        }
+    assert_true(same > 80);
+}
+
+void test_refuses(void **) {
+    std::vector<lensprof_pair> pairs;
+    lensprof_error error;
+    lensprof_sample_options options = options_of(LENSPROF_SAMPLING_BALANCED, 100);
+    Pictures apart(2, 80, 60, 90.0);
+    assert_int_equal(apart.sample(options, pairs, &error), LENSPROF_ERROR_NO_OVERLAP);
+    assert_non_null(strstr(error.text, "overlap"));
+    Pictures white(2, 80, 60, 20.0);
+    for (auto &picture : white.data) std::fill(picture.begin(), picture.end(), 1.0f);
+    assert_int_equal(white.sample(options, pairs, &error), LENSPROF_ERROR_NO_SAMPLES);
+    Pictures nan(2, 80, 60, 20.0);
+    nan.data[1][(7 * 80 + 5) * 3] = NAN;
+    assert_int_equal(nan.sample(options, pairs, &error), LENSPROF_ERROR_NOT_FINITE);
+    assert_non_null(strstr(error.text, "image 1: pixel 5, 7"));
+    Pictures bad(2, 80, 60, 20.0);
+    bad.images[0].reduction = 2;
+    assert_int_equal(bad.sample(options, pairs, &error), LENSPROF_ERROR_SIZE);
+    bad.images[0].reduction = 1, bad.images[0].white = 0.01;
+    assert_int_equal(bad.sample(options, pairs, &error), LENSPROF_ERROR_ARGUMENT);
+    bad.images.resize(1);
+    assert_int_equal(bad.sample(options, pairs, &error), LENSPROF_ERROR_ARGUMENT);
+    options.struct_size = 3;
+    assert_int_equal(apart.sample(options, pairs, &error), LENSPROF_ERROR_STRUCT_SIZE);
+}
+
+}  // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pairs_show_one_scene_point),
+        cmocka_unit_test(test_balanced_over_pairs_radius_and_grey),
+        cmocka_unit_test(test_masks_levels_and_alpha_are_kept_out),
+        cmocka_unit_test(test_patches_shrug_off_hot_pixels),
+        cmocka_unit_test(test_same_seed_same_pairs),
+        cmocka_unit_test(test_sample_types_and_layouts_agree),
+        cmocka_unit_test(test_refuses),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,314 @@
+/* Applying a model to pixels, against the formula in double precision. */
+#include "support.h"
+
+#include <lensprof/apply.h>
+
+enum { W = 37, H = 23 };
+static const double steps[3] = {255.0, 65535.0, 0.0};
+
+typedef struct fixture {
+    lensprof_response response[3];
+    lensprof_vignetting vignetting[3];
+    lensprof_apply_options options;
+    void *memory;
+    const lensprof_plan *plan;
+} fixture;
+
+static void make_model(fixture *f, uint32_t kind, uint32_t curves)
+{
+    const double emor[3] = {0.8, -0.3, 0.1}, table[4] = {0.0, 0.6, 0.9, 1.0};
+    lensprof_apply_options_init(&f->options);
+    for (int c = 0; c < 3; c++) {
+        if (kind == LENSPROF_RESPONSE_LINEAR) lensprof_response_set_linear(&f->response[c]);
+        else if (kind == LENSPROF_RESPONSE_GAMMA) assert_ok(lensprof_response_set_gamma(&f->response[c], 2.0 + 0.2 * c));
+        else if (kind == LENSPROF_RESPONSE_EMOR) assert_ok(lensprof_response_set_emor(&f->response[c], emor, 1 + (uint32_t)c));
+        else assert_ok(lensprof_response_set_table(&f->response[c], table, 4));
+        f->vignetting[c] = (lensprof_vignetting){{-0.4 + 0.1 * c, 0.1, -0.1}, {0.03, -0.05}};
+    }
+    f->options.response = f->response;
+    f->options.vignetting = f->vignetting;
+    f->options.responses = f->options.vignettings = curves;
+    f->options.frame_width = W;
+    f->options.frame_height = H;
+    f->options.source = (lensprof_exposure){0.7, {1.1, 1.0, 0.9}};
+    f->options.target = (lensprof_exposure){0.3, {1.0, 1.0, 1.05}};
+    f->options.saturated = LENSPROF_SATURATED_AS_VALUE;
+}
+
+static void make_plan(fixture *f)
+{
+    size_t bytes = lensprof_plan_bytes(&f->options);
+    assert_true(bytes > 0);
+    f->memory = malloc(bytes);
+    assert_ok(lensprof_plan_init(f->memory, bytes, &f->options, &f->plan));
+}
+
+/* The formula of apply.h for one sample; channel -1 is grey (treated as green). */
+static double reference(const fixture *f, double value, int channel, double x, double y)
+{
+    const lensprof_apply_options *o = &f->options;
+    int c = channel < 0 ? 1 : channel, one_r = o->responses == 3 ? c : 0, one_v = o->vignettings == 3 ? c : 0;
+    const lensprof_response *r = &f->response[one_r];
+    double m = lensprof_vignetting_eval(&f->vignetting[one_v],
+                                        lensprof_vignetting_r2(&f->vignetting[one_v], W, H, x, y, NULL), NULL);
+    double ratio = lensprof_exposure_factor(&o->target, (uint32_t)c) / lensprof_exposure_factor(&o->source, (uint32_t)c);
+    double light = o->input == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(r, value, NULL);
+    light *= o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / m : m / ratio;
+    return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(r, light, NULL);
+}
+
+static void put(uint8_t *p, uint32_t sample, double value)
+{
+    if (sample == LENSPROF_SAMPLE_U8) *p = (uint8_t)lround(value * 255.0);
+    uint16_t u = (uint16_t)lround(value * 65535.0);
+    float v = (float)value;
+    if (sample == LENSPROF_SAMPLE_U16) memcpy(p, &u, 2);
+    if (sample == LENSPROF_SAMPLE_F32) memcpy(p, &v, 4);
+}
+
+static double get(const uint8_t *p, uint32_t sample)
+{
+    uint16_t u;
+    float v;
+    if (sample == LENSPROF_SAMPLE_U8) return *p / 255.0;
+    if (sample == LENSPROF_SAMPLE_U16) return memcpy(&u, p, 2), u / 65535.0;
+    return memcpy(&v, p, 4), (double)v;
+}
+
+static lensprof_image make_image(uint32_t sample, uint32_t layout, uint64_t seed)
+{
+    lensprof_image image = {NULL, 0, W, H, sample, layout};
+    uint32_t bytes = lensprof_sample_bytes(sample), count = W * H * lensprof_layout_samples(layout);
+    image.row_bytes = (ptrdiff_t)(W * lensprof_layout_samples(layout) * bytes);
+    uint8_t *data = malloc((size_t)count * bytes);
+    for (uint32_t i = 0; i < count; i++) put(data + (size_t)i * bytes, sample, lp_random(&seed));
+    image.data = data;
+    return image;
+}
+
+static int channel_of(uint32_t layout, uint32_t s)
+{
+    if (s >= lensprof_layout_channels(layout)) return -2; /* alpha */
+    if (lensprof_layout_channels(layout) == 1) return -1;
+    return (int)(layout == LENSPROF_LAYOUT_BGR || layout == LENSPROF_LAYOUT_BGRA ? 2 - s : s);
+}
+
+static void compare(const fixture *f, const lensprof_image *source, const lensprof_image *target)
+{
+    uint32_t samples = lensprof_layout_samples(source->layout), sb = lensprof_sample_bytes(source->sample),
+             tb = lensprof_sample_bytes(target->sample);
+    for (uint32_t y = 0; y < H; y++)
+        for (uint32_t x = 0; x < W; x++)
+            for (uint32_t s = 0; s < samples; s++) {
+                double in = get((uint8_t *)source->data + y * source->row_bytes + (size_t)(x * samples + s) * sb, source->sample);
+                double out = get((uint8_t *)target->data + y * target->row_bytes + (size_t)(x * samples + s) * tb, target->sample);
+                int channel = channel_of(source->layout, s);
+                double expected = channel == -2 ? in : reference(f, in, channel, x, y), tolerance = 2e-6;
+                if (target->sample != LENSPROF_SAMPLE_F32) {
+                    expected = fmin(fmax(expected, 0.0), 1.0);
+                    tolerance = (0.5 + 0.02) / steps[target->sample] + 1e-6;
+                }
+                assert_close(out, expected, tolerance + 2e-6 * fabs(expected));
+            }
+}
+
+/* Every sample type in and out, every layout, response kind, direction, encoding, one and three curves. */
+static void test_every_format_follows_the_formula(void **state)
+{
+    (void)state;
+    for (uint32_t n = 0; n < 3 * 3 * 6 * 4 * 2 * 2 * 2 * 2; n++) {
+        fixture f;
+        uint32_t k = n, source_sample = k % 3, target_sample = (k /= 3) % 3, layout = (k /= 3) % 6, kind = (k /= 6) % 4;
+        make_model(&f, kind, (k /= 4) % 2 ? 3 : 1);
+        f.options.direction = (k /= 2) % 2;
+        f.options.input = (k /= 2) % 2;
+        f.options.output = (k /= 2) % 2;
+        f.options.source_sample = source_sample;
+        f.options.target_sample = target_sample;
+        f.options.source_layout = layout;
+        make_plan(&f);
+        lensprof_image source = make_image(source_sample, layout, n), target = make_image(target_sample, layout, 1);
+        assert_ok(lensprof_apply(f.plan, &source, &target, 0, 0));
+        compare(&f, &source, &target);
+        free(source.data), free(target.data), free(f.memory);
+    }
+}
+
+static void test_tiles_in_place_and_bottom_up_give_the_whole(void **state)
+{
+    (void)state;
+    fixture f;
+    make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
+    f.options.source_sample = f.options.target_sample = LENSPROF_SAMPLE_U16;
+    make_plan(&f);
+    lensprof_image source = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 4),
+                   whole = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 5);
+    assert_ok(lensprof_apply(f.plan, &source, &whole, 0, 0));
+    lensprof_image bottom_up = source; /* the rows of the tiles below are those of the frame */
+    uint8_t *flipped = malloc((size_t)source.row_bytes * H);
+    for (uint32_t y = 0; y < H; y++)
+        memcpy(flipped + (H - 1 - y) * source.row_bytes, (uint8_t *)source.data + y * source.row_bytes, (size_t)source.row_bytes);
+    bottom_up.data = flipped + (H - 1) * source.row_bytes;
+    bottom_up.row_bytes = -source.row_bytes;
+    for (uint32_t y = 0; y < H; y += 5)
+        for (uint32_t x = 0; x < W; x += 11) {
+            lensprof_image tile = bottom_up;
+            tile.data = (uint8_t *)bottom_up.data + (ptrdiff_t)y * bottom_up.row_bytes + x * 6;
+            tile.width = x + 11 > W ? W - x : 11;
+            tile.height = y + 5 > H ? H - y : 5;
+            assert_ok(lensprof_apply(f.plan, &tile, &tile, x, y));
+        }
+    for (uint32_t y = 0; y < H; y++)
+        assert_memory_equal(flipped + (H - 1 - y) * source.row_bytes, (uint8_t *)whole.data + y * whole.row_bytes,
+                            (size_t)source.row_bytes);
+    free(source.data), free(whole.data), free(flipped), free(f.memory);
+}
+
+/* Simulate, then correct: back to the start within rounding. */
+static void test_correct_undoes_simulate(void **state)
+{
+    (void)state;
+    fixture f;
+    make_model(&f, LENSPROF_RESPONSE_TABLE, 1);
+    f.options.source_sample = f.options.target_sample = LENSPROF_SAMPLE_F32;
+    f.options.source = f.options.target = (lensprof_exposure){0.0, {1, 1, 1}};
+    f.options.direction = LENSPROF_DIRECTION_SIMULATE;
+    make_plan(&f);
+    lensprof_image start = make_image(LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB, 8),
+                   there = make_image(LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB, 9);
+    assert_ok(lensprof_apply(f.plan, &start, &there, 0, 0));
+    free(f.memory);
+    f.options.direction = LENSPROF_DIRECTION_CORRECT;
+    make_plan(&f);
+    assert_ok(lensprof_apply(f.plan, &there, &there, 0, 0));
+    for (int i = 0; i < W * H * 3; i++) assert_close(((float *)there.data)[i], ((float *)start.data)[i], 2e-5);
+    free(start.data), free(there.data), free(f.memory);
+}
+
+static void test_not_a_number_stays_in_its_sample(void **state)
+{
+    (void)state;
+    fixture f;
+    make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
+    f.options.source_sample = f.options.target_sample = LENSPROF_SAMPLE_F32;
+    make_plan(&f);
+    lensprof_image image = make_image(LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB, 8);
+    ((float *)image.data)[100] = NAN;
+    assert_ok(lensprof_apply(f.plan, &image, &image, 0, 0));
+    for (int i = 0; i < W * H * 3; i++) assert_int_equal(isnan(((float *)image.data)[i]) != 0, i == 100);
+    free(image.data), free(f.memory);
+}
+
+/* White stays without a cast when the white balance changes, and well exposed pixels follow the formula. */
+static void test_saturated_pixels_stay_neutral(void **state)
+{
+    (void)state;
+    fixture f;
+    make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
+    f.options.saturated = LENSPROF_SATURATED_NEUTRAL;
+    make_plan(&f);
+    lensprof_image image = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8), before = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8);
+    uint8_t *data = image.data;
+    data[0] = data[1] = data[2] = 255;
+    data[3] = 240, data[4] = 200, data[5] = 100;
+    assert_ok(lensprof_apply(f.plan, &image, &image, 0, 0));
+    assert_int_equal(data[0], data[1]);
+    assert_int_equal(data[1], data[2]);
+    for (int c = 0; c < 3; c++) {
+        const double in[3] = {240, 200, 100};
+        assert_close(data[3 + c], 255.0 * fmin(1.0, reference(&f, in[c] / 255.0, c, 1, 0)), 0.6);
+    }
+    free(image.data), free(before.data), free(f.memory);
+}
+
+static void test_plan_refuses(void **state)
+{
+    (void)state;
+    fixture f;
+    make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
+    size_t bytes = lensprof_plan_bytes(&f.options);
+    uint8_t *memory = malloc(bytes + 8);
+    const lensprof_plan *plan = NULL;
+    const lensprof_apply_options good = f.options;
+    memset(memory, 0xAA, bytes + 8);
+#define REFUSED(change, status)                                                     \
+    do {                                                                            \
+        f.options = good;                                                           \
+        change;                                                                     \
+        assert_int_equal(lensprof_plan_init(memory, bytes, &f.options, &plan), status); \
+    } while (0)
+    REFUSED(f.options.struct_size = 4, LENSPROF_ERROR_STRUCT_SIZE);
+    REFUSED(f.options.direction = 2, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.source_sample = 3, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.source_layout = 6, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.saturated = 2, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.responses = 2, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.response = NULL, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.frame_width = 0, LENSPROF_ERROR_SIZE);
+    REFUSED(f.options.frame_height = 0xFFFFFFFFu, LENSPROF_ERROR_SIZE);
+    REFUSED(f.options.source.ev = NAN, LENSPROF_ERROR_EXPOSURE);
+    REFUSED(f.vignetting[0].k[0] = -2.0, LENSPROF_ERROR_VIGNETTING);
+    f.vignetting[0].k[0] = -0.4;
+    REFUSED((f.options.vignettings = 3, f.vignetting[1].center[0] = 0.2), LENSPROF_ERROR_VIGNETTING);
+    f.vignetting[1].center[0] = 0.03;
+    REFUSED(f.response[0].table[3] = 0.0, LENSPROF_ERROR_RESPONSE);
+#undef REFUSED
+    make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
+    assert_int_equal(lensprof_plan_init(memory, bytes - 1, &f.options, &plan), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(lensprof_plan_init(memory + 1, bytes, &f.options, &plan), LENSPROF_ERROR_CAPACITY);
+    for (size_t i = 0; i < bytes + 8; i++) assert_int_equal(memory[i], 0xAA);
+    assert_null(plan);
+    f.options.struct_size = 0;
+    assert_int_equal(lensprof_plan_bytes(&f.options), 0);
+    assert_int_equal(lensprof_plan_bytes(NULL), 0);
+    free(memory);
+}
+
+static void test_apply_refuses_and_writes_nothing(void **state)
+{
+    (void)state;
+    fixture f;
+    make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
+    make_plan(&f);
+    lensprof_image s = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 1), t = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 2);
+    size_t bytes = (size_t)t.row_bytes * H;
+    uint8_t *before = malloc(bytes);
+    memcpy(before, t.data, bytes);
+    lensprof_image bad;
+    assert_int_equal(lensprof_apply(NULL, &s, &t, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_apply(f.plan, &s, NULL, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_apply(f.plan, &s, &t, 1, 0), LENSPROF_ERROR_SIZE);
+    assert_int_equal(lensprof_apply(f.plan, &s, &t, 0, 0xFFFFFFFFu), LENSPROF_ERROR_SIZE);
+    bad = t, bad.layout = LENSPROF_LAYOUT_BGR;
+    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    bad = t, bad.sample = LENSPROF_SAMPLE_U16, bad.row_bytes *= 2;
+    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    bad = t, bad.width = W - 1;
+    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
+    bad = t, bad.row_bytes = 3 * W - 1;
+    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
+    bad = t, bad.data = NULL;
+    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    bad = t, bad.height = 0;
+    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
+    bad = s, bad.data = (uint8_t *)s.data + 3, bad.height = H - 1; /* overlaps the source, but is not the same memory */
+    lensprof_image shorter = s;
+    shorter.height = H - 1;
+    assert_int_equal(lensprof_apply(f.plan, &shorter, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_memory_equal(before, t.data, bytes);
+    free(s.data), free(t.data), free(before), free(f.memory);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_format_follows_the_formula),
+        cmocka_unit_test(test_tiles_in_place_and_bottom_up_give_the_whole),
+        cmocka_unit_test(test_correct_undoes_simulate),
+        cmocka_unit_test(test_not_a_number_stays_in_its_sample),
+        cmocka_unit_test(test_saturated_pixels_stay_neutral),
+        cmocka_unit_test(test_plan_refuses),
+        cmocka_unit_test(test_apply_refuses_and_writes_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
