@@ -52,6 +52,10 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_response(const l
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_name(const lensprof_pto *pto, uint32_t index, char *name,
                                                                      size_t capacity, size_t *needed);
 
+/* Changes the file name of an image, for a project that is written to another folder. ARGUMENT for an empty name or one with
+ * quotes or control characters. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index, const char *name);
+
 /* Draws where pairs may be taken from an image, at the size of a (possibly reduced) view of its frame: 1 inside the crop
  * and outside all mask polygons, else 0. Mask types: 0 exclude, 1 include (which takes the place from all other images,
  * so that no pair is left there), 2/3 the same for the stack (images with linked j), 4 exclude for the lens (linked v). */

@@ -27,12 +27,12 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_open(const char *p
                                                                    lensprof_store **store, lensprof_error *error);
 LENSPROF_API void lensprof_store_close(lensprof_store *store); /* NULL is allowed */
 
-/* Adds a profile and sets *id. A profile with the same key stays: `find` returns the newest. Errors: what
+/* Adds a profile and sets *id (may be NULL). A profile with the same key stays: `find` returns the newest. Errors: what
  * lensprof_profile_validate says, RESPONSE for a table that is not the curve of its kind and numbers, and the store's. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_put(lensprof_store *store, const lensprof_profile *profile,
                                                                   int64_t *id, lensprof_error *error);
 
-/* The newest profile whose key is equal (texts ignoring ASCII case and outer blanks; focal length, aperture and distance
+/* The newest profile whose key is equal, and its *id (may be NULL) (texts ignoring ASCII case and outer blanks; focal length, aperture and distance
  * to 1e-6 relative; unknown equals unknown only; the same processing). NOT_FOUND when there is none. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find(lensprof_store *store, const lensprof_profile_key *key,
                                                                    lensprof_profile *profile, int64_t *id,

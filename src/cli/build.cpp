@@ -25,7 +25,7 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("PROJECT", o.pto, "Hugin project; its v lines choose what is estimated")->required();
     app.add_option("--points", o.points, "use the pairs of this point file; the pictures need not exist");
     app.add_option("--points-out", o.points_out, "write the pairs used (Hugin's 16 columns)");
-    app.add_option("--pto-out", o.pto_out, "write the project with the result in it, for Hugin and nona");
+    app.add_option("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
     app.add_option("--db", o.db, "profile database; default the user's own");
     app.add_flag("--no-store", o.no_store, "do not store the profile");
     app.add_flag("--force", o.force, "store a result that is not usable");
@@ -184,6 +184,13 @@ int64_t store_profile(const Options &o, const Project &project, const lensprof_p
 void write_project(const Options &o, Project &project, const BuildReport &report) {
     check(lensprof_pto_set_result(project.pto.get(), &report.fit.response, &report.fit.vignetting, report.exposures.data(),
                                   static_cast<uint32_t>(report.exposures.size()), project.reference), o.pto);
+    // Names are relative to the project's folder, which may be another one now.
+    auto folder = std::filesystem::absolute(o.pto_out).parent_path();
+    if (folder.lexically_normal() != std::filesystem::absolute(o.pto).parent_path().lexically_normal())
+        for (uint32_t i = 0; i < project.files.size(); i++) {
+            auto file = std::filesystem::absolute(project.files[i]).lexically_normal().lexically_proximate(folder.lexically_normal());
+            check(lensprof_pto_set_name(project.pto.get(), i, file.string().c_str()), project.files[i]);
+        }
     std::string text = pto_text(*project.pto);
     write_file(o.pto_out, text.data(), text.size());
 }
@@ -212,6 +219,33 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     return pairs;
 }
 
+/* Median residual of every image's own pairs: an image that is misplaced in the project, or of another camera, shows. */
+std::vector<double> image_medians(const BuildReport &report, const std::vector<lensprof_fit_image> &images,
+                                  const std::vector<lensprof_pair> &pairs, uint32_t channels) {
+    std::vector<std::vector<lensprof_pair>> of_image(images.size());
+    for (const auto &pair : pairs)
+        for (uint32_t image : pair.image) of_image[image].push_back(pair);
+    std::vector<double> medians;
+    for (const auto &own : of_image) {
+        double rms = 0, median = LENSPROF_UNKNOWN;
+        if (!own.empty())
+            check(lensprof_transfer_rms(&report.fit.response, &report.fit.vignetting, images.data(), report.exposures.data(),
+                                        static_cast<uint32_t>(images.size()), own.data(), static_cast<uint32_t>(own.size()),
+                                        channels, &rms, &median), "residual");
+        medians.push_back(median);
+    }
+    return medians;
+}
+
+/* Five levels and four times the noise: far beyond what a good image shows, well below what a misplaced one does. */
+void warn_of_odd_images(const BuildReport &report, const Project &project, Streams &streams) {
+    double limit = std::max(5.0, 4.0 * report.fit.noise_levels);
+    for (size_t i = 0; i < report.image_median.size(); i++)
+        if (report.image_median[i] > limit)
+            streams.err << "lensprof: warning: " << project.files[i] << ": disagrees with the images it overlaps (median residual "
+                        << format("%.1f", report.image_median[i]) << " levels); check its place in " << project.path << "\n";
+}
+
 BuildReport build(const Options &o, Project &project, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
@@ -231,7 +265,10 @@ BuildReport build(const Options &o, Project &project, Streams &streams) {
     check(lensprof_fit_overlap(&options, images.data(), static_cast<uint32_t>(images.size()), pairs.data(),
                                static_cast<uint32_t>(pairs.size()), report.exposures.data(), &report.fit, &error),
           o.points.empty() ? o.pto : o.points, &error);
+    report.image_median = image_medians(report, images, pairs, options.channels);
     if (!o.points_out.empty()) write_points(o.points_out, pairs, project);
+    progress.clear();
+    warn_of_odd_images(report, project, streams);
     return report;
 }
 

@@ -91,7 +91,8 @@ Json build_json(const BuildReport &report) {
         const auto &e = report.exposures[i];
         images.push_back({{"file", report.names[i]},
                           {"ev", e.ev},
-                          {"white_balance", {e.white_balance[0], e.white_balance[1], e.white_balance[2]}}});
+                          {"white_balance", {e.white_balance[0], e.white_balance[1], e.white_balance[2]}},
+                          {"median_residual", number_or_null(report.image_median[i])}});
     }
     json["schema"] = 1;
     json["usable"] = fit.usable != 0;

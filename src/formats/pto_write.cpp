@@ -83,6 +83,28 @@ std::vector<Edit> model_edits(const std::array<double, kHuginModes> &modes, cons
     return edits;
 }
 
+// The project with edited `i` lines, parsed again, so that reading and writing cannot disagree.
+template <class EditsOf> lensprof_pto rewrite(const lensprof_pto &pto, const EditsOf &edits_of) {
+    std::string text;
+    std::string_view old = pto.text;
+    size_t done = 0;
+    for (uint32_t i = 0; i < pto.images.size(); i++) {
+        const PtoImage &image = pto.images[i];
+        text.append(old.substr(done, image.begin - done));
+        text.append(edit_line(old.substr(image.begin, image.length), image.line, edits_of(i)));
+        done = image.begin + image.length;
+    }
+    text.append(old.substr(done));
+    return parse_pto(std::move(text));
+}
+
+// A name that can stand between the quotes of a line.
+bool is_name(std::string_view name) {
+    return !name.empty() && std::none_of(name.begin(), name.end(), [](char c) {
+        return c == '"' || static_cast<unsigned char>(c) < 0x20;
+    });
+}
+
 }  // namespace
 }  // namespace lensprof
 
@@ -99,20 +121,21 @@ lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_respon
     if (status != LENSPROF_OK) return status;
     return at_boundary(nullptr, [&] {
         const std::array<double, kHuginModes> modes = hugin_modes(*response);
-        std::string text;
-        size_t done = 0;
-        for (uint32_t i = 0; i < count; i++) {
-            const PtoImage &image = pto->images[i];
-            std::vector<Edit> edits = model_edits(modes, *vignetting, image);
+        *pto = rewrite(*pto, [&](uint32_t i) {
+            std::vector<Edit> edits = model_edits(modes, *vignetting, pto->images[i]);
             for (Edit &edit : exposure_edits(exposures[i], exposures[reference], pto->images[reference]))
                 edits.push_back(std::move(edit));
-            std::string_view old = pto->text;
-            text.append(old.substr(done, image.begin - done));
-            text.append(edit_line(old.substr(image.begin, image.length), image.line, edits));
-            done = image.begin + image.length;
-        }
-        text.append(pto->text, done);
-        *pto = parse_pto(std::move(text));
+            return edits;
+        });
+    });
+}
+
+lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index, const char *name) {
+    if (!pto || !name || index >= pto->images.size() || !is_name(name)) return LENSPROF_ERROR_ARGUMENT;
+    return at_boundary(nullptr, [&] {
+        *pto = rewrite(*pto, [&](uint32_t i) {
+            return i == index ? std::vector<Edit>{{"n", '"' + std::string(name) + '"'}} : std::vector<Edit>{};
+        });
     });
 }
 

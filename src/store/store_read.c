@@ -122,13 +122,13 @@ lensprof_status lensprof_store_find(lensprof_store *store, const lensprof_profil
 {
     int64_t found = 0;
     lp_store_clear(error);
-    if (!store || !key || !profile || !id) return lp_store_fail_argument("store, key, profile or id is NULL", error);
+    if (!store || !key || !profile) return lp_store_fail_argument("store, key or profile is NULL", error);
     lensprof_status status = lensprof_profile_key_validate(key);
     if (status != LENSPROF_OK) return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
     status = fetch_in_transaction(store, key, &found, error);
     if (status != LENSPROF_OK) return status;
     *profile = store->scratch;
-    *id = found;
+    if (id) *id = found;
     return LENSPROF_OK;
 }
 

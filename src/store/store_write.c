@@ -83,7 +83,7 @@ lensprof_status lensprof_store_put(lensprof_store *store, const lensprof_profile
 {
     int64_t made = 0;
     lp_store_clear(error);
-    if (!store || !profile || !id) return lp_store_fail_argument("store, profile or id is NULL", error);
+    if (!store || !profile) return lp_store_fail_argument("store or profile is NULL", error);
     lensprof_status status = check_profile(store, profile, error);
     if (status == LENSPROF_OK) status = lp_store_begin(store, true, error);
     if (status != LENSPROF_OK) return status;
@@ -91,7 +91,7 @@ lensprof_status lensprof_store_put(lensprof_store *store, const lensprof_profile
     if (status == LENSPROF_OK) status = lp_store_put_curves(store, made, profile, error);
     if (status == LENSPROF_OK) status = lp_store_commit(store, error);
     else lp_store_rollback(store);
-    if (status == LENSPROF_OK) *id = made;
+    if (status == LENSPROF_OK && id) *id = made;
     return status;
 }
 

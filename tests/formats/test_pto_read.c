@@ -266,6 +266,29 @@ static void test_arguments(void **state)
     lensprof_pto_destroy(NULL);
 }
 
+/* Hugin evaluates a response that falls as its running maximum. */
+static void test_response_as_hugin_sees_it(void **state)
+{
+    (void)state;
+    lensprof_response response;
+    lensprof_pto *pto = read_pto("i w8 h4 Ra0.5\ni w8 h4 Rt1 Ra3\ni w8 h4 Ra20\n");
+    assert_ok(lensprof_pto_get_response(pto, 0, &response));
+    assert_int_equal(response.kind, LENSPROF_RESPONSE_EMOR);
+    assert_close(response.table[300], lensprof_emor_table(0)[300] + 0.5 * lensprof_emor_table(1)[300], 1e-12);
+    assert_ok(lensprof_pto_get_response(pto, 1, &response));
+    assert_int_equal(response.kind, LENSPROF_RESPONSE_LINEAR);
+    assert_ok(lensprof_pto_get_response(pto, 2, &response));
+    assert_int_equal(response.kind, LENSPROF_RESPONSE_TABLE);
+    assert_ok(lensprof_response_validate(&response));
+    double highest = 0.0;
+    for (int j = 1; j < 1023; j++) {
+        highest = fmax(highest, lensprof_emor_table(0)[j] + 20 * lensprof_emor_table(1)[j]);
+        assert_close(response.table[j], fmin(highest, 1.0), 1e-12);
+    }
+    assert_int_equal(lensprof_pto_get_response(pto, 3, &response), LENSPROF_ERROR_ARGUMENT);
+    lensprof_pto_destroy(pto);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -280,6 +303,7 @@ int main(void)
         cmocka_unit_test(test_errors),
         cmocka_unit_test(test_limits),
         cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_response_as_hugin_sees_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

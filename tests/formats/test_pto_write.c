@@ -228,6 +228,31 @@ static void test_set_result_refuses(void **state)
     lensprof_pto_destroy(pto);
 }
 
+static void test_set_name(void **state)
+{
+    (void)state;
+    lensprof_pto *pto = read_pto(SAMPLE_PTO);
+    char name[64];
+    assert_ok(lensprof_pto_set_name(pto, 1, "../other folder/2.jpg"));
+    assert_ok(lensprof_pto_set_name(pto, 3, "fourth.jpg")); /* its line has no name yet */
+    assert_ok(lensprof_pto_get_name(pto, 1, name, sizeof name, NULL));
+    assert_string_equal(name, "../other folder/2.jpg");
+    assert_ok(lensprof_pto_get_name(pto, 3, name, sizeof name, NULL));
+    assert_string_equal(name, "fourth.jpg");
+    assert_ok(lensprof_pto_get_name(pto, 0, name, sizeof name, NULL));
+    assert_string_equal(name, "first picture.jpg");
+    assert_ok(lensprof_pto_set_name(pto, 1, "second.jpg"));
+    assert_ok(lensprof_pto_set_name(pto, 0, "first picture.jpg"));
+    char *text = write_pto(pto);
+    assert_null(strstr(text, "other folder"));
+    free(text);
+    assert_int_equal(lensprof_pto_set_name(pto, 0, ""), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_name(pto, 0, "a\"b"), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_name(pto, 4, "x"), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_name(pto, 0, NULL), LENSPROF_ERROR_ARGUMENT);
+    lensprof_pto_destroy(pto);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -239,6 +264,7 @@ int main(void)
         cmocka_unit_test(test_reference_stays),
         cmocka_unit_test(test_other_responses_are_projected),
         cmocka_unit_test(test_set_result_refuses),
+        cmocka_unit_test(test_set_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
