@@ -22,7 +22,7 @@ build: ## build the library and the program build/lensprof
 demo: deps build ## calibrate and correct a rendered sequence, or yours: make demo PHOTOS=dir/pano.pto
 	examples/demo.sh "$(PHOTOS)"
 
-check: build ## the quick tests, under a minute
+check: test-deps build ## the quick tests, under a minute
 	ctest --preset check -j $(JOBS)
 
 test: test-deps build ## every test, and the same under sanitizers

@@ -24,7 +24,7 @@ public:
     // True when a full-frame position lies in the frame, far enough inside the view for a patch.
     bool holds(double x, double y) const;
 
-    // Trimmed mean of 5 x 5 view pixels about a full-frame position, moved to the exact position along the patch's own
+    // Robust mean of 5 x 5 view pixels about a full-frame position, moved to the exact position along the patch's own
     // gradient. False when a pixel of it is masked, or a channel's value is outside [black, white].
     bool patch(double x, double y, Patch &out) const;
 
