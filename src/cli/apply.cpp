@@ -87,10 +87,21 @@ std::string target_name(const Options &o, const std::string &source) {
     return (std::filesystem::path(o.output) / name).string();
 }
 
+/* A picture of another shape is not the one the project was made with; another size of the same shape will do. */
+void check_shape(const Project &project, uint32_t image, const std::string &file) {
+    const auto &camera = project.images[image].camera;
+    PictureSize size = read_size(file);
+    double expected = static_cast<double>(camera.width) / camera.height, shape = static_cast<double>(size.width) / size.height;
+    if (std::abs(shape / expected - 1.0) > 0.01)
+        throw Failure(ExitCode::unreadable, file + format(": is %u x %u pixels, but ", size.width, size.height) + project.path
+                      + format(" says %u x %u; use the pictures that the project was made with", camera.width, camera.height));
+}
+
 void check_targets(const std::vector<Job> &jobs) {
     std::set<std::string> seen;
     for (const Job &job : jobs) {
         std::error_code ignored;
+        read_header(job.source);  /* an unreadable picture shows before anything is written */
         if (std::filesystem::equivalent(job.source, job.target, ignored))
             throw Failure(ExitCode::usage, job.source + ": would be overwritten by its correction; give another folder with -o");
         if (!seen.insert(job.target).second)
@@ -117,7 +128,9 @@ std::vector<Job> make_jobs(const Options &o) {
         lensprof_exposure_init(&job.exposure);
         if (project) {
             const auto &reference = project->images[project->reference].exposure;
-            job.exposure = project->images[image_of_file(*project, file)].exposure;
+            uint32_t image = image_of_file(*project, file);
+            check_shape(*project, image, file);
+            job.exposure = project->images[image].exposure;
             job.exposure.ev -= reference.ev;
             for (int c = 0; c < 3; c++) job.exposure.white_balance[c] /= reference.white_balance[c];
         }
@@ -197,7 +210,8 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
         Picture after = correct(before, job, target, o);
         WriteOptions write;
         write.metadata_from = job.source;
-        write_picture(job.target, after, write);
+        if (!write_picture(job.target, after, write))
+            streams.err << "lensprof: warning: " << job.target << ": written without EXIF, which this kind of file cannot hold here\n";
         if (!o.sheet.empty()) sheet.add(before, after);
         Json entry = {{"file", job.source}, {"output", job.target}};
         if (job.profile_id) entry["profile"] = job.profile_id;

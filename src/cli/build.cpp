@@ -181,7 +181,8 @@ int64_t store_profile(const Options &o, const Project &project, const lensprof_p
     return id;
 }
 
-void write_project(const Options &o, Project &project, const BuildReport &report) {
+/* The text of the project with the result in it. */
+std::string project_text(const Options &o, Project &project, const BuildReport &report) {
     check(lensprof_pto_set_result(project.pto.get(), &report.fit.response, &report.fit.vignetting, report.exposures.data(),
                                   static_cast<uint32_t>(report.exposures.size()), project.reference), o.pto);
     // Names are relative to the project's folder, which may be another one now.
@@ -191,9 +192,23 @@ void write_project(const Options &o, Project &project, const BuildReport &report
             auto file = std::filesystem::absolute(project.files[i]).lexically_normal().lexically_proximate(folder.lexically_normal());
             check(lensprof_pto_set_name(project.pto.get(), i, file.string().c_str()), project.files[i]);
         }
-    std::string text = pto_text(*project.pto);
-    write_file(o.pto_out, text.data(), text.size());
+    return pto_text(*project.pto);
 }
+
+/* Files that are complete beside their final names until everything else has worked. */
+class Outputs {
+public:
+    void add(const std::string &path, const std::string &text) {
+        files_.push_back(std::make_unique<OutputFile>(path));
+        files_.back()->write(text.data(), text.size());
+    }
+    void commit() {
+        for (auto &file : files_) file->commit();
+    }
+
+private:
+    std::vector<std::unique_ptr<OutputFile>> files_;
+};
 
 std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, Progress &progress, BuildReport &report,
                                      uint32_t &channels) {
@@ -246,7 +261,7 @@ void warn_of_odd_images(const BuildReport &report, const Project &project, Strea
                         << format("%.1f", report.image_median[i]) << " levels); check its place in " << project.path << "\n";
 }
 
-BuildReport build(const Options &o, Project &project, Streams &streams) {
+BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
@@ -266,7 +281,7 @@ BuildReport build(const Options &o, Project &project, Streams &streams) {
                                static_cast<uint32_t>(pairs.size()), report.exposures.data(), &report.fit, &error),
           o.points.empty() ? o.pto : o.points, &error);
     report.image_median = image_medians(report, images, pairs, options.channels);
-    if (!o.points_out.empty()) write_points(o.points_out, pairs, project);
+    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(pairs, project));
     progress.clear();
     warn_of_odd_images(report, project, streams);
     return report;
@@ -290,11 +305,15 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
         truth = Json::parse(read_text(o.compare), nullptr, false);
         if (truth.is_discarded()) throw Failure(ExitCode::unreadable, o.compare + ": is not JSON; give simulate's truth.json");
     }
-    BuildReport report = build(o, project, streams);
-    stop_if_interrupted();
+    if (!o.no_store && std::filesystem::exists(store_path(o.db)))
+        open_store(o.db, LENSPROF_STORE_WRITE);  /* a database that cannot be used shows before the work is done */
+    Outputs outputs;
+    BuildReport report = build(o, project, outputs, streams);
     bool good = report.fit.usable || o.force;
-    if (good && !o.pto_out.empty()) write_project(o, project, report);
+    if (good && !o.pto_out.empty()) outputs.add(o.pto_out, project_text(o, project, report));
+    stop_if_interrupted();
     if (good && !o.no_store) report.profile_id = store_profile(o, project, key, report.fit);
+    outputs.commit();
     if (o.json) streams.out << build_json(report).dump() << "\n";
     else print_build(report, streams.out);
     if (report.profile_id && !o.json)

@@ -103,16 +103,20 @@ void OutputFile::commit() {
     sync_path(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
 }
 
-void write_file(const std::string &path, const void *data, size_t bytes) {
-    OutputFile output(path);
-    std::FILE *file = std::fopen(output.temporary().c_str(), "wb");
+void OutputFile::write(const void *data, size_t bytes) {
+    std::FILE *file = std::fopen(temporary_.c_str(), "wb");
     if (!file)
-        fail(path, errno);
+        fail(path_, errno);
     errno = 0;
     const bool written = std::fwrite(data, 1, bytes, file) == bytes;
     const int write_error = errno;
     if (std::fclose(file) != 0 || !written)
-        fail(path, write_error != 0 ? write_error : errno);
+        fail(path_, write_error != 0 ? write_error : errno);
+}
+
+void write_file(const std::string &path, const void *data, size_t bytes) {
+    OutputFile output(path);
+    output.write(data, bytes);
     output.commit();
 }
 

@@ -23,6 +23,9 @@ public:
      * and rewritten as often as needed. */
     const std::string &temporary() const { return temporary_; }
 
+    /* Writes these bytes, and nothing else, to the temporary file. */
+    void write(const void *data, size_t bytes);
+
     void commit();
 
 private:

@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "interrupt.hpp"
-#include "output_file.hpp"
 
 namespace lensprof {
 namespace {
@@ -158,7 +157,7 @@ std::vector<lensprof_pair> read_points(const std::string &path) {
     return pairs;
 }
 
-void write_points(const std::string &path, const std::vector<lensprof_pair> &pairs, const Project &project) {
+std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &project) {
     std::vector<lensprof_camera> cameras;
     for (const auto &image : project.images) cameras.push_back(image.camera);
     auto write = [&](char *text, size_t capacity, size_t *needed) {
@@ -166,10 +165,11 @@ void write_points(const std::string &path, const std::vector<lensprof_pair> &pai
                                      static_cast<uint32_t>(cameras.size()), text, capacity, needed);
     };
     size_t needed = 0;
-    if (write(nullptr, 0, &needed) != LENSPROF_ERROR_CAPACITY) return;
+    if (write(nullptr, 0, &needed) != LENSPROF_ERROR_CAPACITY) return {};
     std::string text(needed, 0);
-    check(write(text.data(), needed, &needed), path);
-    write_file(path, text.data(), needed);
+    check(write(text.data(), needed, &needed), "points");
+    text.resize(needed);
+    return text;
 }
 
 std::vector<lensprof_fit_image> fit_images(const Project &project) {

@@ -46,7 +46,7 @@ std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<Samp
                                         const lensprof_sample_options &options);
 
 std::vector<lensprof_pair> read_points(const std::string &path);
-void write_points(const std::string &path, const std::vector<lensprof_pair> &pairs, const Project &project);
+std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &project);
 
 /* The images of the fit: sizes, links, unknowns, and exposures relative to the reference. */
 std::vector<lensprof_fit_image> fit_images(const Project &project);

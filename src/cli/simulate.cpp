@@ -348,11 +348,12 @@ int run_simulate(const std::vector<std::string> &arguments, Streams &streams) {
     if (o.points || o.test_points) {
         Project read = read_project(pto, "", false);
         uint32_t levels = format_of(split(o.formats, ',')[0]).sample == LENSPROF_SAMPLE_U8 ? 255 : 65535;
-        if (o.points)
-            write_points((folder / "points.txt").string(), simulate_pairs(truth, scene, o.points, 1.0 / 255.0, true, levels), read);
-        if (o.test_points)
-            write_points((folder / "test_points.txt").string(),
-                         simulate_pairs(truth, scene, o.test_points, 3.0 / 255.0, false, levels), read);
+        auto write = [&](const char *name, uint32_t count, double darkest, bool noisy) {
+            std::string text = points_text(simulate_pairs(truth, scene, count, darkest, noisy, levels), read);
+            write_file((folder / name).string(), text.data(), text.size());
+        };
+        if (o.points) write("points.txt", o.points, 1.0 / 255.0, true);
+        if (o.test_points) write("test_points.txt", o.test_points, 3.0 / 255.0, false);
     }
     progress.clear();
     streams.out << pto << "\n";

@@ -179,7 +179,6 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
 
     Estimate estimate = train_fit;
     Outcome outcome = fit(split_.all, modes, used, estimate);
-    if (!estimate.modes) estimate.modes = 0;
 
     lensprof_fit_result r = result;
     r.iterations = static_cast<uint32_t>(outcome.iterations);
