@@ -92,13 +92,14 @@ LENSPROF_API size_t lensprof_plan_bytes(const lensprof_apply_options *options);
 
 /* Prepares a plan in memory[bytes] (8-byte aligned, owned by the caller, must outlive the plan). Nothing is to
  * be released. Errors: NULL or unknown values ARGUMENT, struct_size STRUCT_SIZE, zero frame SIZE, too little or
- * unaligned memory CAPACITY, and what the model's validate functions say. */
+ * unaligned memory CAPACITY, and what the model's validate functions say; three vignettings must have one centre. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_plan_init(void *memory, size_t bytes,
                                                                   const lensprof_apply_options *options,
                                                                   const lensprof_plan **plan);
 
 /* Applies the plan to a tile whose upper left pixel is pixel (x0, y0) of the frame. `target` has the tile's size;
- * it may be the same memory as `source` (same sample type and row_bytes), otherwise they must not overlap.
+ * it may be the same memory as `source` (same sample type and row_bytes), otherwise the byte ranges from the first to the last
+ * sample of the two must not overlap (so not two tiles side by side in one buffer).
  * Alpha samples are copied (converted to the target type). Integer output is rounded to nearest and clipped;
  * float output is not clipped when linear. NaN in float input comes out as NaN. A saturated sample stays saturated
  * where light is added; where it is taken away it becomes grey (see lensprof_saturated).

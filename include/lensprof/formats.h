@@ -48,7 +48,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_response(const l
                                                                          lensprof_response *response);
 
 /* File name of an image as written (relative to the project's folder). With capacity 0 or too small: CAPACITY.
- * *needed (may be NULL) receives the bytes with terminator in every case. */
+ * *needed (may be NULL) receives the bytes in every case, here with the terminator. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_name(const lensprof_pto *pto, uint32_t index, char *name,
                                                                      size_t capacity, size_t *needed);
 

@@ -99,7 +99,7 @@ typedef struct lensprof_exposure {
 /* ev = 0, white balance 1, 1, 1. */
 LENSPROF_API void lensprof_exposure_init(lensprof_exposure *exposure);
 
-/* e * w of a channel: 2^ev * white_balance[channel]. */
+/* e * w of a channel (0, 1, 2): 2^ev * white_balance[channel]; 0 for another channel. */
 LENSPROF_API double lensprof_exposure_factor(const lensprof_exposure *exposure, uint32_t channel);
 
 /* LENSPROF_OK when |ev| <= 64 and the factors are in [1e-6, 1e6]. */

@@ -71,7 +71,7 @@ typedef struct lensprof_profile {
 /* Empty key, linear response, no falloff, no covariance, provenance unknown. */
 LENSPROF_API void lensprof_profile_init(lensprof_profile *profile);
 
-/* LENSPROF_OK when key, provenance, responses, vignettings and covariance (finite, symmetric, non-negative diagonal) are
+/* LENSPROF_OK when key, provenance, responses, vignettings (which share one centre) and covariance (finite, symmetric, non-negative diagonal) are
  * valid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
 

@@ -27,7 +27,7 @@ typedef struct lensprof_sample_image {
     uint32_t reduction;     /* side of that square, px; 1 = full size. view.width * reduction <= camera.width */
     uint32_t reserved;      /* 0 */
     const uint8_t *mask;    /* one byte a view pixel, 0 = excluded; NULL = all included */
-    ptrdiff_t mask_row_bytes;
+    ptrdiff_t mask_row_bytes; /* at least the width of the view, or at most minus that; unused without a mask */
     double black, white;    /* samples outside [black, white] in any channel are not used; 0..1 */
 } lensprof_sample_image;
 
@@ -46,8 +46,9 @@ typedef struct lensprof_sample_options {
 /* Balanced, 0 pairs (= 300 per image, at least 2000), seed 1. */
 LENSPROF_API void lensprof_sample_options_init(lensprof_sample_options *options);
 
-/* Finds correspondences between `count` pictures. pairs[capacity] is the caller's; *found receives the number
- * written. With capacity 0, *found receives the capacity that surely suffices and nothing is sampled.
+/* Finds correspondences between `count` pictures. pairs[capacity] is the caller's; *found receives the number written. With
+ * capacity 0, *found receives the number wanted, which is the capacity to give, and nothing is sampled; a smaller one is
+ * refused with CAPACITY, whatever the overlaps hold.
  * Errors: fewer than two images ARGUMENT; NaN in a float view NOT_FINITE (the text names image and pixel);
  * NO_OVERLAP; NO_SAMPLES when overlaps exist but every sample is masked, black or saturated. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status

@@ -50,7 +50,7 @@ typedef struct lensprof_store_row {
 } lensprof_store_row;
 
 /* Lists profiles in the order camera maker, model, lens, focal, aperture, distance, id. Where filter (may be NULL) has a
- * text or a known number, only equal ones. rows[capacity]; *found receives how many there are, which may be more
+ * text or a known number, only equal ones; its processing does not matter. rows[capacity]; *found receives how many there are, which may be more
  * than capacity (which is no error; capacity 0 = count only). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list(lensprof_store *store,
                                                                    const lensprof_profile_key *filter,

@@ -55,12 +55,15 @@ std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
     return profile;
 }
 
+bool is_same_file(const std::string &a, const std::string &b) {
+    std::error_code ignored;
+    return a == b || std::filesystem::equivalent(a, b, ignored);
+}
+
 /* The image of the project that a picture is: the same file. */
 uint32_t image_of_file(const Project &project, const std::string &file) {
-    for (uint32_t i = 0; i < project.files.size(); i++) {
-        std::error_code ignored;
-        if (project.files[i] == file || std::filesystem::equivalent(project.files[i], file, ignored)) return i;
-    }
+    for (uint32_t i = 0; i < project.files.size(); i++)
+        if (is_same_file(project.files[i], file)) return i;
     throw Failure(ExitCode::usage, file + ": is not a picture of " + project.path + "; leave it out or leave --pto out");
 }
 
@@ -97,12 +100,13 @@ void check_shape(const Project &project, uint32_t image, const std::string &file
                       + format(" says %u x %u; use the pictures that the project was made with", camera.width, camera.height));
 }
 
-void check_targets(const std::vector<Job> &jobs) {
+void check_targets(const Options &o, const std::vector<Job> &jobs) {
     std::set<std::string> seen;
     for (const Job &job : jobs) {
-        std::error_code ignored;
         read_header(job.source);  /* an unreadable picture shows before anything is written */
-        if (std::filesystem::equivalent(job.source, job.target, ignored))
+        if (is_same_file(job.source, o.sheet) || job.target == o.sheet)
+            throw Failure(ExitCode::usage, o.sheet + ": the contact sheet would overwrite a picture; give it another name");
+        if (is_same_file(job.source, job.target))
             throw Failure(ExitCode::usage, job.source + ": would be overwritten by its correction; give another folder with -o");
         if (!seen.insert(job.target).second)
             throw Failure(ExitCode::usage, job.target + ": two pictures would get this name; correct them one folder at a time");
@@ -116,7 +120,7 @@ std::vector<Job> make_jobs(const Options &o) {
     std::unique_ptr<Project> project;
     std::shared_ptr<const lensprof_profile> model;
     if (!o.pto.empty()) {
-        project = std::make_unique<Project>(read_project(o.pto, "", true));
+        project = std::make_unique<Project>(read_project(o.pto, true));
         if (!from_store) model = model_of_project(*project);
     }
     std::vector<std::string> files = o.files.empty() && project ? project->files : o.files;
@@ -137,7 +141,7 @@ std::vector<Job> make_jobs(const Options &o) {
         if (from_store) look_up(store.get(), o, job);
         jobs.push_back(job);
     }
-    check_targets(jobs);
+    check_targets(o, jobs);
     return jobs;
 }
 

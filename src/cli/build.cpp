@@ -32,21 +32,21 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--method", o.method, "transfer (d'Angelo 2007)")->check(CLI::IsMember({"transfer"}));
     app.add_option("--modes", o.modes, "EMoR modes of the response: 0..25 or auto (held-out error decides)");
     app.add_option("--loss", o.loss, "robust, huber (the paper's) or squared")->check(CLI::IsMember({"robust", "huber", "squared"}));
-    app.add_option("--huber", o.huber, "sigma of the Huber loss, levels of 255")->check(CLI::Range(0.01, 255.0));
-    app.add_option("--prior", o.prior, "weight of the priors; 0 = none, as in the paper")->check(CLI::Range(0.0, 1e6));
+    app.add_option("--huber", o.huber, "sigma of the Huber loss, levels of 255")->check(in_range(0.01, 255.0));
+    app.add_option("--prior", o.prior, "weight of the priors; 0 = none, as in the paper")->check(in_range(0.0, 1e6));
     app.add_option("--free", o.free, "what is estimated instead of the v lines: response,falloff,center,ev,wb or all");
     app.add_option("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
     app.add_flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
     app.add_option("--sampling", o.sampling, "balanced or paper (d'Angelo 5.1)")->check(CLI::IsMember({"balanced", "paper"}));
-    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000")->check(CLI::Range(0u, 1u << 24));
+    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000")->check(in_range(0, 1 << 24));
     app.add_option("--seed", o.seed, "of the sampling");
     app.add_option("--max-side", o.max_side, "sample pictures reduced to about this many pixels; 0 = full size");
     app.add_option("--maker", o.maker, "camera maker, instead of EXIF's");
     app.add_option("--camera", o.camera, "camera model");
     app.add_option("--lens", o.lens, "lens");
-    app.add_option("--focal", o.focal, "focal length, mm")->check(CLI::PositiveNumber);
-    app.add_option("--aperture", o.aperture, "f-number")->check(CLI::PositiveNumber);
-    app.add_option("--distance", o.distance, "focus distance, m")->check(CLI::PositiveNumber);
+    app.add_option("--focal", o.focal, "focal length, mm")->check(in_range(0.01, 1e5));
+    app.add_option("--aperture", o.aperture, "f-number")->check(in_range(0.01, 1e4));
+    app.add_option("--distance", o.distance, "focus distance, m")->check(in_range(1e-6, INFINITY));
     app.add_option("--processing", o.processing, "raw, jpeg or corrected (falloff corrected in camera)");
     app.add_option("--compare", o.compare, "truth.json of `simulate`: print recovered beside true values");
     app.add_flag("--json", o.json, "print one JSON object");
@@ -174,17 +174,24 @@ int64_t store_profile(const Options &o, const Project &project, const lensprof_p
     p.pairs = fit.pairs;
     p.heldout_rms = fit.heldout_rms;
     p.inlier_share = fit.inlier_share;
-    Store store = open_store(o.db, LENSPROF_STORE_CREATE);
-    int64_t id = 0;
-    lensprof_error error{};
-    check(lensprof_store_put(store.get(), profile.get(), &id, &error), store_path(o.db), &error);
-    return id;
+    bool is_new = !std::filesystem::exists(store_path(o.db));
+    try {
+        Store store = open_store(o.db, LENSPROF_STORE_CREATE);
+        int64_t id = 0;
+        lensprof_error error{};
+        check(lensprof_store_put(store.get(), profile.get(), &id, &error), store_path(o.db), &error);
+        return id;
+    } catch (const Failure &) {
+        std::error_code ignored;  /* a database that was to be made for this profile is not left behind empty */
+        if (is_new) std::filesystem::remove(store_path(o.db), ignored);
+        throw;
+    }
 }
 
 /* The text of the project with the result in it. */
 std::string project_text(const Options &o, Project &project, const BuildReport &report) {
     check(lensprof_pto_set_result(project.pto.get(), &report.fit.response, &report.fit.vignetting, report.exposures.data(),
-                                  static_cast<uint32_t>(report.exposures.size()), project.reference), o.pto);
+                                  static_cast<uint32_t>(report.exposures.size()), report.reference), o.pto);
     // Names are relative to the project's folder, which may be another one now.
     auto folder = std::filesystem::absolute(o.pto_out).parent_path();
     if (folder.lexically_normal() != std::filesystem::absolute(o.pto).parent_path().lexically_normal())
@@ -215,7 +222,7 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     auto clock = std::chrono::steady_clock::now();
     std::vector<lensprof_pair> pairs;
     if (!o.points.empty()) {
-        pairs = read_points(o.points);
+        pairs = read_points(o.points, project);
         channels = is_grey(pairs) ? 1 : 3;
         report.load_s = lap(clock);
         return pairs;
@@ -232,6 +239,15 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     pairs = sample_pairs(project, pictures, options);
     report.sample_s = lap(clock);
     return pairs;
+}
+
+/* Exposures and white balances relative to those of the reference that the user wants. */
+void refer_to(uint32_t reference, std::vector<lensprof_exposure> &exposures) {
+    const lensprof_exposure zero = exposures[reference];
+    for (auto &e : exposures) {
+        e.ev -= zero.ev;
+        for (int c = 0; c < 3; c++) e.white_balance[c] /= zero.white_balance[c];
+    }
 }
 
 /* Median residual of every image's own pairs: an image that is misplaced in the project, or of another camera, shows. */
@@ -265,7 +281,7 @@ BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams 
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
-    report.reference = project.reference;
+    report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
     lensprof_response fixed;
     lensprof_fit_options options = fit_options(o, project, fixed);
     std::vector<lensprof_pair> pairs = get_pairs(o, project, progress, report, options.channels);
@@ -280,6 +296,7 @@ BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams 
     check(lensprof_fit_overlap(&options, images.data(), static_cast<uint32_t>(images.size()), pairs.data(),
                                static_cast<uint32_t>(pairs.size()), report.exposures.data(), &report.fit, &error),
           o.points.empty() ? o.pto : o.points, &error);
+    refer_to(report.reference, report.exposures);
     report.image_median = image_medians(report, images, pairs, options.channels);
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(pairs, project));
     progress.clear();
@@ -296,15 +313,12 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
     if (!parse(app, arguments, streams)) return 0;
     if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
 
-    Project project = read_project(o.pto, o.reference, o.one_lens);
+    Project project = read_project(o.pto, o.one_lens);
     if (!o.free.empty())
         for (auto &image : project.images) image.free = free_of(o.free);
     lensprof_profile_key key = profile_key(o, project, streams);
-    Json truth;
-    if (!o.compare.empty()) {
-        truth = Json::parse(read_text(o.compare), nullptr, false);
-        if (truth.is_discarded()) throw Failure(ExitCode::unreadable, o.compare + ": is not JSON; give simulate's truth.json");
-    }
+    TrueValues truth;
+    if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
     if (!o.no_store && std::filesystem::exists(store_path(o.db)))
         open_store(o.db, LENSPROF_STORE_WRITE);  /* a database that cannot be used shows before the work is done */
     Outputs outputs;

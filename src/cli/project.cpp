@@ -13,12 +13,7 @@
 namespace lensprof {
 namespace {
 
-uint32_t find_reference(const Project &project, const std::string &wanted) {
-    if (!wanted.empty()) {
-        for (uint32_t i = 0; i < project.names.size(); i++)
-            if (wanted == project.names[i] || wanted == std::to_string(i)) return i;
-        throw Failure(ExitCode::usage, wanted + ": no such image in " + project.path + "; --reference takes its number or name");
-    }
+uint32_t find_reference(const Project &project) {
     for (uint32_t i = 0; i < project.images.size(); i++)
         if (!(project.images[i].free & LENSPROF_FREE_EV)) return i;
     return 0;
@@ -70,7 +65,7 @@ SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
 
 }  // namespace
 
-Project read_project(const std::string &path, const std::string &wanted, bool one_lens) {
+Project read_project(const std::string &path, bool one_lens) {
     Project project;
     project.path = path;
     project.pto = read_pto(path);
@@ -85,8 +80,14 @@ Project read_project(const std::string &path, const std::string &wanted, bool on
     if (project.images.size() < 2)
         throw Failure(ExitCode::not_usable, path + ": has one image; at least two overlapping ones are needed");
     if (!one_lens) check_one_lens(project);
-    project.reference = find_reference(project, wanted);
+    project.reference = find_reference(project);
     return project;
+}
+
+uint32_t image_of_word(const Project &project, const std::string &word) {
+    for (uint32_t i = 0; i < project.names.size(); i++)
+        if (word == project.names[i] || word == std::to_string(i)) return i;
+    throw Failure(ExitCode::usage, word + ": no such image in " + project.path + "; give its number or name");
 }
 
 std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress) {
@@ -146,7 +147,7 @@ std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<Samp
     return pairs;
 }
 
-std::vector<lensprof_pair> read_points(const std::string &path) {
+std::vector<lensprof_pair> read_points(const std::string &path, const Project &project) {
     std::string text = read_text(path);
     lensprof_error error{};
     uint32_t found = 0;
@@ -154,6 +155,11 @@ std::vector<lensprof_pair> read_points(const std::string &path) {
     std::vector<lensprof_pair> pairs(found);
     if (found == 0) throw Failure(ExitCode::unreadable, path + ": holds no points");
     check(lensprof_points_read(text.data(), text.size(), pairs.data(), found, &found, &error), path, &error);
+    for (const auto &pair : pairs)
+        for (uint32_t image : pair.image)
+            if (image >= project.images.size())
+                throw Failure(ExitCode::unreadable, path + ": names image " + std::to_string(image) + ", but " + project.path
+                              + " has images 0 to " + std::to_string(project.images.size() - 1) + "; give the points of this project");
     return pairs;
 }
 

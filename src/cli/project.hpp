@@ -18,13 +18,15 @@ struct Project {
     std::vector<lensprof_pto_image> images;
     std::vector<std::string> names;         /* as written in the project */
     std::vector<std::string> files;         /* path of each picture */
-    uint32_t reference = 0;                 /* image whose exposure stays */
+    uint32_t reference = 0;                 /* image that the fit holds */
 };
 
-/* Reads a project. The reference is `wanted` (a number or a file name of the project), else the first image whose Eev is
- * not asked for, else image 0. With `one_lens`, images that are not linked are taken as one lens; otherwise that is a
+/* Reads a project. The reference is the first image whose Eev is not asked for, else image 0. With `one_lens`, images that are not linked are taken as one lens; otherwise that is a
  * Failure. Fewer than two images are a Failure (not usable). */
-Project read_project(const std::string &path, const std::string &wanted, bool one_lens);
+Project read_project(const std::string &path, bool one_lens);
+
+/* The image that a user means by a number or a file name of the project. */
+uint32_t image_of_word(const Project &project, const std::string &word);
 
 /* A picture reduced for sampling, with the mask of the project. */
 struct SamplePicture {
@@ -45,7 +47,8 @@ constexpr double darkest_value = 2.0 / 255.0, brightest_value = 250.0 / 255.0;
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
                                         const lensprof_sample_options &options);
 
-std::vector<lensprof_pair> read_points(const std::string &path);
+/* The pairs of a point file, which must be of images of the project. */
+std::vector<lensprof_pair> read_points(const std::string &path, const Project &project);
 std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &project);
 
 /* The images of the fit: sizes, links, unknowns, and exposures relative to the reference. */

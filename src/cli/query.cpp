@@ -1,4 +1,6 @@
 /* `lensprof query`: the profile of a camera, lens and setting. */
+#include <cmath>
+
 #include "library.hpp"
 #include "report.hpp"
 #include "run.hpp"
@@ -13,9 +15,9 @@ int run_query(const std::vector<std::string> &arguments, Streams &streams) {
     app.add_option("--camera", camera, "camera model");
     app.add_option("--maker", maker, "camera maker");
     app.add_option("--lens", lens, "lens");
-    app.add_option("--focal", focal, "focal length, mm")->check(CLI::PositiveNumber);
-    app.add_option("--aperture", aperture, "f-number")->check(CLI::PositiveNumber);
-    app.add_option("--distance", distance, "focus distance, m")->check(CLI::PositiveNumber);
+    app.add_option("--focal", focal, "focal length, mm")->check(in_range(0.01, 1e5));
+    app.add_option("--aperture", aperture, "f-number")->check(in_range(0.01, 1e4));
+    app.add_option("--distance", distance, "focus distance, m")->check(in_range(1e-6, INFINITY));
     app.add_option("--processing", processing, "raw, jpeg or corrected");
     app.add_option("--db", db, "profile database; default the user's own");
     app.add_flag("--json", json, "print one JSON object");

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdarg>
 
-#include "error.hpp"
+#include "library.hpp"
 
 namespace lensprof {
 namespace {
@@ -190,13 +190,28 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
     out << (*p.source ? std::string(", ") + p.source : std::string()) << "\n";
 }
 
-void print_comparison(const BuildReport &report, const Json &truth, std::ostream &out) {
+TrueValues read_truth(const std::string &path, size_t images) {
+    TrueValues truth;
+    try {
+        Json json = Json::parse(read_text(path));
+        for (const Json &image : json.at("images")) truth.ev.push_back(image.at("ev").get<double>());
+        const Json &curves = json.at("vignetting").at("k"), &center = json.at("vignetting").at("center");
+        for (size_t n = 0; n < 3; n++) truth.vignetting.k[n] = curves.at(curves.size() / 2).at(n).get<double>();
+        for (size_t d = 0; d < 2; d++) truth.vignetting.center[d] = center.at(d).get<double>();
+    } catch (const Json::exception &) {
+        throw Failure(ExitCode::unreadable, path + ": is not the truth.json of `lensprof simulate`");
+    }
+    if (truth.ev.size() != images)
+        throw Failure(ExitCode::unreadable, path + format(": is the truth of %zu images, not of %zu; give that of this project",
+                                                          truth.ev.size(), images));
+    return truth;
+}
+
+void print_comparison(const BuildReport &report, const TrueValues &truth, std::ostream &out) {
     size_t n = report.exposures.size();
-    if (!truth.contains("images") || truth["images"].size() != n)
-        throw Failure(ExitCode::usage, "the truth to compare with is of another sequence");
     std::vector<double> true_ev, ev;
     for (size_t i = 0; i < n; i++) {
-        true_ev.push_back(truth["images"][i]["ev"].get<double>() - truth["images"][report.reference]["ev"].get<double>());
+        true_ev.push_back(truth.ev[i] - truth.ev[report.reference]);
         ev.push_back(report.exposures[i].ev);
     }
     double mean = 0, true_mean = 0, cross = 0, square = 0;
@@ -206,8 +221,6 @@ void print_comparison(const BuildReport &report, const Json &truth, std::ostream
         square += (true_ev[i] - true_mean) * (true_ev[i] - true_mean);
     }
     double gamma = square > 1e-6 && cross > 0 ? cross / square : 1.0;
-    lensprof_vignetting v{};
-    for (int k = 0; k < 3; k++) v.k[k] = truth["vignetting"]["k"][0][static_cast<size_t>(k)].get<double>();
     double ev_error = 0, ev_aligned = 0, m_error = 0, m_aligned = 0;
     out << "\nrecovered beside true (aligned: with the exponent " << format("%.3f", gamma)
         << " that pictures alone leave open taken out)\n";
@@ -220,14 +233,13 @@ void print_comparison(const BuildReport &report, const Json &truth, std::ostream
     out << "radius falloff  recovered     true  aligned\n";
     for (int k = 0; k <= 4; k++) {
         double r2 = k * k / 16.0, m = lensprof_vignetting_eval(&report.fit.vignetting, r2, nullptr);
-        double t = lensprof_vignetting_eval(&v, r2, nullptr), a = std::pow(m, 1.0 / gamma);
+        double t = lensprof_vignetting_eval(&truth.vignetting, r2, nullptr), a = std::pow(m, 1.0 / gamma);
         m_error = std::max(m_error, std::abs(m - t));
         m_aligned = std::max(m_aligned, std::abs(a - t));
         out << format("%6.2f         %8.4f %8.4f %8.4f\n", k / 4.0, m, t, a);
     }
-    const auto &c = truth["vignetting"]["center"];
     out << format("centre         %+.4f %+.4f, true %+.4f %+.4f half diagonals\n", report.fit.vignetting.center[0],
-                  report.fit.vignetting.center[1], c[0].get<double>(), c[1].get<double>());
+                  report.fit.vignetting.center[1], truth.vignetting.center[0], truth.vignetting.center[1]);
     out << format("largest error  exposure %.4f EV (aligned %.4f), falloff %.4f (aligned %.4f)\n", ev_error, ev_aligned,
                   m_error, m_aligned);
 }

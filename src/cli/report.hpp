@@ -30,9 +30,17 @@ Json build_json(const BuildReport &report);
 
 void print_build(const BuildReport &report, std::ostream &out);
 
-/* Recovered beside true values, raw and with the exponent gamma aligned (what pictures alone cannot tell). `truth` is the
- * truth.json of `simulate`. */
-void print_comparison(const BuildReport &report, const Json &truth, std::ostream &out);
+/* What is true about a simulated sequence: exposures and (green) falloff. */
+struct TrueValues {
+    std::vector<double> ev;
+    lensprof_vignetting vignetting{};
+};
+
+/* Reads the truth.json of `simulate`; Failure (unreadable) when it is something else or of another number of images. */
+TrueValues read_truth(const std::string &path, size_t images);
+
+/* Recovered beside true values, raw and with the exponent gamma aligned (what pictures alone cannot tell). */
+void print_comparison(const BuildReport &report, const TrueValues &truth, std::ostream &out);
 
 Json key_json(const lensprof_profile_key &key);
 Json provenance_json(const lensprof_provenance &provenance);

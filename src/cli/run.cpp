@@ -1,7 +1,9 @@
 #include "run.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <new>
+#include <sstream>
 
 #include <lensprof/base.h>
 
@@ -64,6 +66,17 @@ bool parse(CLI::App &app, const std::vector<std::string> &arguments, Streams &st
     } catch (const CLI::ParseError &e) {
         throw Failure(ExitCode::usage, std::string(e.what()) + "; see `" + app.get_name() + " --help`");
     }
+}
+
+std::function<std::string(const std::string &)> in_range(double low, double high) {
+    return [low, high](const std::string &word) {
+        char *end = nullptr;
+        double value = std::strtod(word.c_str(), &end);
+        if (*end == 0 && end != word.c_str() && value >= low && value <= high) return std::string();
+        std::ostringstream text;
+        text << word << " is not a number from " << low << " to " << high;
+        return text.str();
+    };
 }
 
 int run(const std::vector<std::string> &words, Streams &streams) {

@@ -2,6 +2,7 @@
 #ifndef LENSPROF_CLI_RUN_HPP
 #define LENSPROF_CLI_RUN_HPP
 
+#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -35,6 +36,9 @@ int run(const std::vector<std::string> &words, Streams &streams);
 /* Parses a command's words. Returns true when the command shall run; otherwise help was asked for and printed.
  * Words that do not fit are a Failure (usage). */
 bool parse(CLI::App &app, const std::vector<std::string> &arguments, Streams &streams);
+
+/* Check of an option's word: a number from low to high, both included; neither "nan" nor "inf" beyond them. */
+std::function<std::string(const std::string &)> in_range(double low, double high);
 
 }  // namespace lensprof
 

@@ -29,20 +29,20 @@ struct Options {
 
 void declare(CLI::App &app, Options &o) {
     app.add_option("-o,--output", o.output, "folder for pictures, pano.pto and truth.json")->required();
-    app.add_option("--images", o.images, "number of pictures")->check(CLI::Range(2u, 5000u));
-    app.add_option("--rows", o.rows, "rows of pictures")->check(CLI::Range(1u, 100u));
+    app.add_option("--images", o.images, "number of pictures")->check(in_range(2, 5000));
+    app.add_option("--rows", o.rows, "rows of pictures")->check(in_range(1, 100));
     app.add_option("--size", o.size, "WIDTHxHEIGHT, px");
-    app.add_option("--hfov", o.hfov, "horizontal field of view, degrees")->check(CLI::Range(1.0, 150.0));
-    app.add_option("--overlap", o.overlap, "share of a picture that the next one sees too")->check(CLI::Range(0.0, 0.99));
-    app.add_option("--jitter", o.jitter, "sigma of yaw, pitch and roll, degrees")->check(CLI::Range(0.0, 20.0));
-    app.add_option("--misalign", o.misalign, "sigma of the error of the project's yaw and pitch, px")->check(CLI::Range(0.0, 1e3));
+    app.add_option("--hfov", o.hfov, "horizontal field of view, degrees")->check(in_range(1.0, 150.0));
+    app.add_option("--overlap", o.overlap, "share of a picture that the next one sees too")->check(in_range(0.0, 0.99));
+    app.add_option("--jitter", o.jitter, "sigma of yaw, pitch and roll, degrees")->check(in_range(0.0, 20.0));
+    app.add_option("--misalign", o.misalign, "sigma of the error of the project's yaw and pitch, px")->check(in_range(0.0, 1e3));
     app.add_option("--response", o.response, "linear, srgb, gamma:G, film, or emor:a,b,... (EMoR coefficients)");
     app.add_option("--vignetting", o.vignetting, "k1,k2,k3, or nine numbers for red, green, blue")->delimiter(',');
     app.add_option("--center", o.center, "x,y of the falloff's centre, half diagonals")->delimiter(',')->expected(2);
-    app.add_option("--ev", o.ev, "exposures are uniform within +- this, EV")->check(CLI::Range(0.0, 8.0));
-    app.add_option("--wb", o.wb, "white balance factors are uniform within 1 +- this")->check(CLI::Range(0.0, 0.9));
-    app.add_option("--noise", o.noise, "sigma, levels of 255")->check(CLI::Range(0.0, 100.0));
-    app.add_option("--outliers", o.outliers, "share of pixels (and of --points pairs) replaced by random numbers")->check(CLI::Range(0.0, 1.0));
+    app.add_option("--ev", o.ev, "exposures are uniform within +- this, EV")->check(in_range(0.0, 8.0));
+    app.add_option("--wb", o.wb, "white balance factors are uniform within 1 +- this")->check(in_range(0.0, 0.9));
+    app.add_option("--noise", o.noise, "sigma, levels of 255")->check(in_range(0.0, 100.0));
+    app.add_option("--outliers", o.outliers, "share of pixels (and of --points pairs) replaced by random numbers")->check(in_range(0.0, 1.0));
     app.add_option("--format", o.formats, "png, png16, tiff, tiff16, tiff32, jpeg; several, with commas, take turns");
     app.add_option("--seed", o.seed, "another seed, another scene and camera");
     app.add_option("--points", o.points, "also write points.txt with this many noisy pairs");
@@ -346,7 +346,7 @@ int run_simulate(const std::vector<std::string> &arguments, Streams &streams) {
     write_file(pto, project.data(), project.size());
     write_file((folder / "truth.json").string(), json.data(), json.size());
     if (o.points || o.test_points) {
-        Project read = read_project(pto, "", false);
+        Project read = read_project(pto, false);
         uint32_t levels = format_of(split(o.formats, ',')[0]).sample == LENSPROF_SAMPLE_U8 ? 255 : 65535;
         auto write = [&](const char *name, uint32_t count, double darkest, bool noisy) {
             std::string text = points_text(simulate_pairs(truth, scene, count, darkest, noisy, levels), read);

@@ -73,6 +73,15 @@ static lensprof_status validate_covariance(const double *covariance, uint32_t n)
     return LENSPROF_OK;
 }
 
+/* All channels look through one lens: one centre. */
+static lensprof_status validate_falloff(const lensprof_vignetting *vignetting, const lensprof_vignetting *first)
+{
+    lensprof_status status = lensprof_vignetting_validate(vignetting);
+    if (status != LENSPROF_OK) return status;
+    int same = vignetting->center[0] == first->center[0] && vignetting->center[1] == first->center[1];
+    return same ? LENSPROF_OK : LENSPROF_ERROR_VIGNETTING;
+}
+
 lensprof_status lensprof_profile_validate(const lensprof_profile *profile)
 {
     if (!profile || profile->reserved) return LENSPROF_ERROR_ARGUMENT;
@@ -83,7 +92,7 @@ lensprof_status lensprof_profile_validate(const lensprof_profile *profile)
     for (uint32_t c = 0; c < profile->responses && status == LENSPROF_OK; c++)
         status = lensprof_response_validate(&profile->response[c]);
     for (uint32_t c = 0; c < profile->vignettings && status == LENSPROF_OK; c++)
-        status = lensprof_vignetting_validate(&profile->vignetting[c]);
+        status = validate_falloff(&profile->vignetting[c], &profile->vignetting[0]);
     if (status == LENSPROF_OK) status = validate_covariance(profile->covariance, profile->covariance_size);
     return status;
 }

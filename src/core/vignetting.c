@@ -56,7 +56,7 @@ void lensprof_exposure_init(lensprof_exposure *exposure)
 
 double lensprof_exposure_factor(const lensprof_exposure *exposure, uint32_t channel)
 {
-    return exp2(exposure->ev) * exposure->white_balance[channel];
+    return channel < 3 ? exp2(exposure->ev) * exposure->white_balance[channel] : 0.0;
 }
 
 lensprof_status lensprof_exposure_validate(const lensprof_exposure *exposure)

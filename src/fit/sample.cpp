@@ -235,6 +235,9 @@ lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, lens
         || static_cast<uint64_t>(view.height) * image.reduction > image.camera.height)
         return fail(LENSPROF_ERROR_SIZE, error, "image %u: a view of %u x %u reduced %u times does not fit a frame of %u x %u",
                     i, view.width, view.height, image.reduction, image.camera.width, image.camera.height);
+    ptrdiff_t width = static_cast<ptrdiff_t>(view.width), row = image.mask_row_bytes;
+    if (image.mask && row < width && row > -width)
+        return fail(LENSPROF_ERROR_SIZE, error, "image %u: mask rows are %td bytes apart, less than the view's %td pixels", i, row, width);
     if (!(image.black >= 0.0 && image.white <= 1.0 && image.black < image.white))
         return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: black and white must satisfy 0 <= black < white <= 1", i);
     uint32_t x, y;

@@ -43,7 +43,7 @@ static void test_three_curves_round_trip(void **state)
     coefficients[24] = 5e-324; /* the smallest number there is, after 24 zeros that count */
     assert_ok(lensprof_response_set_emor(&profile->response[2], coefficients, LENSPROF_EMOR_MODES));
     for (int c = 0; c < 3; c++)
-        profile->vignetting[c] = (lensprof_vignetting){{-0.1 / (c + 1), 1e-300 * c, 1.0 / 30}, {-1.0 / (c + 1), 1.0}};
+        profile->vignetting[c] = (lensprof_vignetting){{-0.1 / (c + 1), 1e-300 * c, 1.0 / 30}, {-1.0 / 3, 1.0}};
     profile->covariance_size = LENSPROF_COVARIANCE_MAX;
     for (uint32_t i = 0; i < LENSPROF_COVARIANCE_MAX; i++)
         for (uint32_t j = 0; j <= i; j++)

@@ -1,0 +1,398 @@
+"""The C interface as tables: structures, enumerations, constants and functions of lensprof's public headers.
+
+Nothing else in the package knows a layout or a number of the C library. tests/python/test_abi.py compares all of it
+with the C compiler's view and with the headers. Raw structures have the same field names as in C; what users see are
+subclasses of them in the modules by topic.
+"""
+from __future__ import annotations
+
+from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t,
+                    c_ssize_t, c_uint8, c_uint32, c_void_p)
+from enum import IntEnum, IntFlag
+
+VERSION = "0.1.0"  # of the headers that these tables were written from
+
+RESPONSE_SAMPLES = 1024
+EMOR_MODES = 25
+COVARIANCE_MAX = 36
+UNKNOWN = -1.0
+MODES_AUTO = 0xFFFFFFFF
+
+
+# ---- enumerations ------------------------------------------------------------------------------------------------
+
+class Status(IntEnum):
+    """What a call came to; see lensprof/base.h."""
+    OK = 0
+    ERROR_ARGUMENT = 1
+    ERROR_STRUCT_SIZE = 2
+    ERROR_SIZE = 3
+    ERROR_CAPACITY = 4
+    ERROR_NOT_FINITE = 5
+    ERROR_MEMORY = 10
+    ERROR_CANCELLED = 11
+    ERROR_RESPONSE = 20
+    ERROR_VIGNETTING = 21
+    ERROR_EXPOSURE = 22
+    ERROR_GEOMETRY = 23
+    ERROR_NO_OVERLAP = 30
+    ERROR_NO_SAMPLES = 31
+    ERROR_NO_UNKNOWNS = 32
+    ERROR_STORE = 40
+    ERROR_NOT_FOUND = 41
+    ERROR_CORRUPT = 42
+    ERROR_LAYOUT = 43
+    ERROR_READ_ONLY = 44
+    ERROR_FULL = 45
+    ERROR_BUSY = 46
+    ERROR_SYNTAX = 50
+    ERROR_VARIABLE = 51
+    ERROR_UNSUPPORTED = 52
+    ERROR_INTERNAL = 90
+
+
+class ResponseKind(IntEnum):
+    """How a response curve is given."""
+    LINEAR = 0
+    GAMMA = 1
+    EMOR = 2
+    TABLE = 3
+
+
+class Projection(IntEnum):
+    """Lens projections, numbered as the `f` parameter of a Hugin project."""
+    RECTILINEAR = 0
+    CYLINDRICAL = 1
+    CIRCULAR_FISHEYE = 2
+    FULLFRAME_FISHEYE = 3
+    EQUIRECTANGULAR = 4
+    ORTHOGRAPHIC = 8
+    STEREOGRAPHIC = 10
+    THOBY = 20
+    EQUISOLID = 21
+
+
+class SampleType(IntEnum):
+    """Type of a sample: uint8 (0..255 = 0..1), uint16 (0..65535 = 0..1), float32 (0..1)."""
+    U8 = 0
+    U16 = 1
+    F32 = 2
+
+
+class Layout(IntEnum):
+    """Order of the samples of a pixel."""
+    GREY = 0
+    GREY_ALPHA = 1
+    RGB = 2
+    RGBA = 3
+    BGR = 4
+    BGRA = 5
+
+
+class Direction(IntEnum):
+    """Undo what the camera did to the light, or do it."""
+    CORRECT = 0
+    SIMULATE = 1
+
+
+class Encoding(IntEnum):
+    """Grey values encoded by the response, or irradiance."""
+    RESPONSE = 0
+    LINEAR = 1
+
+
+class Saturated(IntEnum):
+    """What happens to a pixel that is nearly saturated: towards white one gain for all channels, or nothing special."""
+    NEUTRAL = 0
+    AS_VALUE = 1
+
+
+class Processing(IntEnum):
+    """Linear sensor data, the camera's own rendering, or that with the falloff corrected in camera."""
+    RAW = 0
+    JPEG = 1
+    CORRECTED = 2
+
+
+class Sampling(IntEnum):
+    """Balanced over image pairs, radius and grey level; or as in d'Angelo 2007, section 5.1."""
+    BALANCED = 0
+    PAPER = 1
+
+
+class Free(IntFlag):
+    """What is unknown: RESPONSE to CENTER belong to FitOptions.free, EV, RED and BLUE to FitImage.free."""
+    RESPONSE = 0x01
+    K1 = 0x02
+    K2 = 0x04
+    K3 = 0x08
+    CENTER = 0x10
+    EV = 0x20
+    RED = 0x40
+    BLUE = 0x80
+
+
+class Loss(IntEnum):
+    """Noise-weighted and redescending; the paper's equation 11; or least squares."""
+    ROBUST = 0
+    HUBER = 1
+    SQUARED = 2
+
+
+class StoreMode(IntEnum):
+    """Read an existing file; write to an existing file; write, and make the file when there is none."""
+    READ = 0
+    WRITE = 1
+    CREATE = 2
+
+
+# Prefix of the names in C; a member's C name is prefix + name.
+ENUMS = {
+    "LENSPROF_": Status,
+    "LENSPROF_RESPONSE_": ResponseKind,
+    "LENSPROF_PROJECTION_": Projection,
+    "LENSPROF_SAMPLE_": SampleType,
+    "LENSPROF_LAYOUT_": Layout,
+    "LENSPROF_DIRECTION_": Direction,
+    "LENSPROF_ENCODING_": Encoding,
+    "LENSPROF_SATURATED_": Saturated,
+    "LENSPROF_PROCESSING_": Processing,
+    "LENSPROF_SAMPLING_": Sampling,
+    "LENSPROF_FREE_": Free,
+    "LENSPROF_LOSS_": Loss,
+    "LENSPROF_STORE_": StoreMode,
+}
+
+
+# ---- structures --------------------------------------------------------------------------------------------------
+
+class ErrorText(Structure):
+    _fields_ = [("text", c_char * 256)]
+
+
+class Response(Structure):
+    _fields_ = [("kind", c_uint32), ("modes", c_uint32), ("gamma", c_double), ("emor", c_double * EMOR_MODES),
+                ("table", c_double * RESPONSE_SAMPLES)]
+
+
+class Vignetting(Structure):
+    _fields_ = [("k", c_double * 3), ("center", c_double * 2)]
+
+
+class Exposure(Structure):
+    _fields_ = [("ev", c_double), ("white_balance", c_double * 3)]
+
+
+class Camera(Structure):
+    _fields_ = [("projection", c_uint32), ("width", c_uint32), ("height", c_uint32), ("hfov_deg", c_double),
+                ("yaw_deg", c_double), ("pitch_deg", c_double), ("roll_deg", c_double), ("radial", c_double * 3),
+                ("shift_px", c_double * 2), ("shear_px", c_double * 2), ("translation", c_double * 3),
+                ("plane_deg", c_double * 2)]
+
+
+class Image(Structure):
+    _fields_ = [("data", c_void_p), ("row_bytes", c_ssize_t), ("width", c_uint32), ("height", c_uint32),
+                ("sample", c_uint32), ("layout", c_uint32)]
+
+
+class ApplyOptions(Structure):
+    _fields_ = [("struct_size", c_uint32), ("direction", c_uint32), ("input", c_uint32), ("output", c_uint32),
+                ("frame_width", c_uint32), ("frame_height", c_uint32), ("source_sample", c_uint32),
+                ("source_layout", c_uint32), ("target_sample", c_uint32), ("saturated", c_uint32),
+                ("responses", c_uint32), ("vignettings", c_uint32), ("response", POINTER(Response)),
+                ("vignetting", POINTER(Vignetting)), ("source", Exposure), ("target", Exposure)]
+
+
+class Plan(Structure):
+    """Opaque."""
+
+
+class ProfileKey(Structure):
+    _fields_ = [("camera_maker", c_char * 64), ("camera_model", c_char * 64), ("lens", c_char * 128),
+                ("focal_mm", c_double), ("aperture", c_double), ("distance_m", c_double), ("processing", c_uint32),
+                ("reserved", c_uint32)]
+
+
+class Provenance(Structure):
+    _fields_ = [("method", c_char * 32), ("software", c_char * 32), ("source", c_char * 256),
+                ("created_unix_s", c_int64), ("images", c_uint32), ("pairs", c_uint32), ("heldout_rms", c_double),
+                ("inlier_share", c_double)]
+
+
+class Profile(Structure):
+    _fields_ = [("key", ProfileKey), ("provenance", Provenance), ("responses", c_uint32), ("vignettings", c_uint32),
+                ("response", Response * 3), ("vignetting", Vignetting * 3), ("covariance_size", c_uint32),
+                ("reserved", c_uint32), ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX))]
+
+
+class Pair(Structure):
+    _fields_ = [("image", c_uint32 * 2), ("xy", c_double * 2 * 2), ("value", c_double * 3 * 2)]
+
+
+class SampleImage(Structure):
+    _fields_ = [("view", Image), ("camera", Camera), ("reduction", c_uint32), ("reserved", c_uint32),
+                ("mask", POINTER(c_uint8)), ("mask_row_bytes", c_ssize_t), ("black", c_double), ("white", c_double)]
+
+
+class SampleOptions(Structure):
+    _fields_ = [("struct_size", c_uint32), ("sampling", c_uint32), ("pairs", c_uint32), ("seed", c_uint32)]
+
+
+class FitImage(Structure):
+    _fields_ = [("width", c_uint32), ("height", c_uint32), ("exposure", Exposure), ("free", c_uint32),
+                ("ev_of", c_uint32), ("red_of", c_uint32), ("blue_of", c_uint32)]
+
+
+Progress = CFUNCTYPE(c_int, c_double, c_void_p)
+
+
+class FitOptions(Structure):
+    _fields_ = [("struct_size", c_uint32), ("channels", c_uint32), ("reference", c_uint32), ("free", c_uint32),
+                ("modes", c_uint32), ("loss", c_uint32), ("huber_levels", c_double), ("prior_weight", c_double),
+                ("max_iterations", c_uint32), ("reserved", c_uint32), ("response", POINTER(Response)),
+                ("vignetting", Vignetting), ("progress", Progress), ("progress_user", c_void_p)]
+
+
+class FitResult(Structure):
+    _fields_ = [("struct_size", c_uint32), ("usable", c_uint32), ("reason", c_char * 256), ("response", Response),
+                ("vignetting", Vignetting), ("pairs", c_uint32), ("components", c_uint32), ("iterations", c_uint32),
+                ("converged", c_uint32), ("before_rms", c_double), ("heldout_rms", c_double),
+                ("heldout_median", c_double), ("noise_levels", c_double), ("inlier_share", c_double),
+                ("seconds", c_double), ("covariance_size", c_uint32), ("reserved", c_uint32),
+                ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX))]
+
+
+class Pto(Structure):
+    """Opaque."""
+
+
+class PtoImage(Structure):
+    _fields_ = [("camera", Camera), ("exposure", Exposure), ("vignetting", Vignetting), ("emor", c_double * 5),
+                ("response_type", c_uint32), ("free", c_uint32), ("response_of", c_uint32),
+                ("vignetting_of", c_uint32), ("center_of", c_uint32), ("ev_of", c_uint32), ("red_of", c_uint32),
+                ("blue_of", c_uint32), ("crop", c_int32 * 4), ("crop_circular", c_uint32), ("reserved", c_uint32)]
+
+
+class Store(Structure):
+    """Opaque."""
+
+
+class StoreRow(Structure):
+    _fields_ = [("id", c_int64), ("key", ProfileKey), ("provenance", Provenance)]
+
+
+STRUCTS = {
+    "lensprof_error": ErrorText,
+    "lensprof_response": Response,
+    "lensprof_vignetting": Vignetting,
+    "lensprof_exposure": Exposure,
+    "lensprof_camera": Camera,
+    "lensprof_image": Image,
+    "lensprof_apply_options": ApplyOptions,
+    "lensprof_profile_key": ProfileKey,
+    "lensprof_provenance": Provenance,
+    "lensprof_profile": Profile,
+    "lensprof_pair": Pair,
+    "lensprof_sample_image": SampleImage,
+    "lensprof_sample_options": SampleOptions,
+    "lensprof_fit_image": FitImage,
+    "lensprof_fit_options": FitOptions,
+    "lensprof_fit_result": FitResult,
+    "lensprof_pto_image": PtoImage,
+    "lensprof_store_row": StoreRow,
+}
+
+OPAQUE = {"lensprof_plan": Plan, "lensprof_pto": Pto, "lensprof_store": Store}
+
+
+# ---- functions ---------------------------------------------------------------------------------------------------
+
+_status = c_int
+_doubles = POINTER(c_double)
+_u32_out = POINTER(c_uint32)
+_size_out = POINTER(c_size_t)
+_error = POINTER(ErrorText)
+_response = POINTER(Response)
+_vignetting = POINTER(Vignetting)
+_exposures = POINTER(Exposure)
+_camera = POINTER(Camera)
+_image = POINTER(Image)
+_key = POINTER(ProfileKey)
+_profile = POINTER(Profile)
+_pairs = POINTER(Pair)
+_fit_images = POINTER(FitImage)
+_plan = POINTER(Plan)
+_pto = POINTER(Pto)
+_store = POINTER(Store)
+
+# name: (restype, argtypes)
+FUNCTIONS = {
+    # base.h
+    "lensprof_status_name": (c_char_p, [_status]),
+    "lensprof_version": (c_char_p, []),
+    # model.h
+    "lensprof_response_set_linear": (None, [_response]),
+    "lensprof_response_set_gamma": (_status, [_response, c_double]),
+    "lensprof_response_set_emor": (_status, [_response, _doubles, c_uint32]),
+    "lensprof_response_set_table": (_status, [_response, _doubles, c_uint32]),
+    "lensprof_response_validate": (_status, [_response]),
+    "lensprof_response_eval": (c_double, [_response, c_double, _doubles]),
+    "lensprof_response_invert": (c_double, [_response, c_double, _doubles]),
+    "lensprof_emor_table": (_doubles, [c_uint32]),
+    "lensprof_vignetting_eval": (c_double, [_vignetting, c_double, _doubles]),
+    "lensprof_vignetting_r2": (c_double, [_vignetting, c_uint32, c_uint32, c_double, c_double, _doubles]),
+    "lensprof_vignetting_validate": (_status, [_vignetting]),
+    "lensprof_exposure_init": (None, [_exposures]),
+    "lensprof_exposure_factor": (c_double, [_exposures, c_uint32]),
+    "lensprof_exposure_validate": (_status, [_exposures]),
+    # geometry.h
+    "lensprof_camera_validate": (_status, [_camera]),
+    "lensprof_camera_project": (c_int, [_camera, c_double, c_double, _doubles]),
+    "lensprof_camera_unproject": (c_int, [_camera, c_double, c_double, _doubles]),
+    # apply.h
+    "lensprof_layout_samples": (c_uint32, [c_uint32]),
+    "lensprof_layout_channels": (c_uint32, [c_uint32]),
+    "lensprof_sample_bytes": (c_uint32, [c_uint32]),
+    "lensprof_image_validate": (_status, [_image]),
+    "lensprof_apply_options_init": (None, [POINTER(ApplyOptions)]),
+    "lensprof_plan_bytes": (c_size_t, [POINTER(ApplyOptions)]),
+    "lensprof_plan_init": (_status, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(_plan)]),
+    "lensprof_apply": (_status, [_plan, _image, _image, c_uint32, c_uint32]),
+    # profile.h
+    "lensprof_profile_key_init": (None, [_key]),
+    "lensprof_profile_key_validate": (_status, [_key]),
+    "lensprof_profile_init": (None, [_profile]),
+    "lensprof_profile_validate": (_status, [_profile]),
+    # sample.h
+    "lensprof_sample_options_init": (None, [POINTER(SampleOptions)]),
+    "lensprof_sample_overlap": (_status, [POINTER(SampleOptions), POINTER(SampleImage), c_uint32, _pairs, c_uint32,
+                                          _u32_out, _error]),
+    # fit.h
+    "lensprof_fit_options_init": (None, [POINTER(FitOptions)]),
+    "lensprof_fit_result_init": (None, [POINTER(FitResult)]),
+    "lensprof_fit_overlap": (_status, [POINTER(FitOptions), _fit_images, c_uint32, _pairs, c_uint32, _exposures,
+                                       POINTER(FitResult), _error]),
+    "lensprof_transfer_rms": (_status, [_response, _vignetting, _fit_images, _exposures, c_uint32, _pairs, c_uint32,
+                                        c_uint32, _doubles, _doubles]),
+    # formats.h
+    "lensprof_pto_read": (_status, [c_char_p, c_size_t, POINTER(_pto), _error]),
+    "lensprof_pto_destroy": (None, [_pto]),
+    "lensprof_pto_image_count": (c_uint32, [_pto]),
+    "lensprof_pto_get_image": (_status, [_pto, c_uint32, POINTER(PtoImage)]),
+    "lensprof_pto_get_response": (_status, [_pto, c_uint32, _response]),
+    "lensprof_pto_get_name": (_status, [_pto, c_uint32, c_char_p, c_size_t, _size_out]),
+    "lensprof_pto_set_name": (_status, [_pto, c_uint32, c_char_p]),
+    "lensprof_pto_draw_mask": (_status, [_pto, c_uint32, POINTER(c_uint8), c_uint32, c_uint32, c_ssize_t]),
+    "lensprof_pto_set_result": (_status, [_pto, _response, _vignetting, _exposures, c_uint32, c_uint32]),
+    "lensprof_pto_write": (_status, [_pto, c_char_p, c_size_t, _size_out]),
+    "lensprof_points_read": (_status, [c_char_p, c_size_t, _pairs, c_uint32, _u32_out, _error]),
+    "lensprof_points_write": (_status, [_pairs, c_uint32, _camera, c_uint32, c_char_p, c_size_t, _size_out]),
+    # store.h
+    "lensprof_store_open": (_status, [c_char_p, c_uint32, POINTER(_store), _error]),
+    "lensprof_store_close": (None, [_store]),
+    "lensprof_store_put": (_status, [_store, _profile, POINTER(c_int64), _error]),
+    "lensprof_store_find": (_status, [_store, _key, _profile, POINTER(c_int64), _error]),
+    "lensprof_store_get": (_status, [_store, c_int64, _profile, _error]),
+    "lensprof_store_list": (_status, [_store, _key, POINTER(StoreRow), c_uint32, _u32_out, _error]),
+    "lensprof_store_remove": (_status, [_store, c_int64, _error]),
+}

@@ -1,0 +1,130 @@
+"""The shared library: finding it, errors, and handles that must be released.
+
+Searched in this order: the file that the environment variable LENSPROF_LIBRARY names, the folder of this package, the
+system's loader.
+"""
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import ctypes.util
+import os
+import pathlib
+import sys
+import threading
+import weakref
+from typing import Callable, Iterator, Optional
+
+from . import _abi
+from ._abi import Status
+
+
+def _file_names() -> list[str]:
+    if sys.platform == "win32":
+        return ["lensprof.dll"]
+    if sys.platform == "darwin":
+        return ["liblensprof.0.dylib", "liblensprof.dylib"]
+    return ["liblensprof.so.0", "liblensprof.so"]
+
+
+def _find() -> ctypes.CDLL:
+    named = os.environ.get("LENSPROF_LIBRARY")
+    if named:
+        try:
+            return ctypes.CDLL(named)
+        except OSError as error:
+            raise ImportError(f"LENSPROF_LIBRARY={named}: cannot be loaded ({error}); correct or unset it") from error
+    folder = pathlib.Path(__file__).parent
+    beside = [str(folder / name) for name in _file_names() if (folder / name).exists()]
+    found = ctypes.util.find_library("lensprof")
+    for name in beside + _file_names() + ([found] if found else []):
+        with contextlib.suppress(OSError):
+            return ctypes.CDLL(name)
+    raise ImportError("the lensprof library is not installed; install it or set LENSPROF_LIBRARY to the file "
+                      + _file_names()[0])
+
+
+def _check_version(library: ctypes.CDLL) -> None:
+    """While the major version is 0, structures may change with the minor one."""
+    library.lensprof_version.restype = ctypes.c_char_p
+    version = library.lensprof_version().decode()
+    if version.split(".")[:2] != _abi.VERSION.split(".")[:2]:
+        raise ImportError(f"{library._name}: is lensprof {version}, but this package is for {_abi.VERSION}; "
+                          "install the two together")
+
+
+def _load() -> ctypes.CDLL:
+    library = _find()
+    _check_version(library)
+    for name, (restype, argtypes) in _abi.FUNCTIONS.items():
+        try:
+            function = getattr(library, name)
+        except AttributeError:
+            raise ImportError(f"{library._name}: has no function {name}; install a complete lensprof") from None
+        function.restype, function.argtypes = restype, argtypes
+    return library
+
+
+lib = _load()
+
+
+def version() -> str:
+    """Version of the shared library, e.g. "0.1.0"."""
+    return lib.lensprof_version().decode()
+
+
+def status_name(status: int) -> str:
+    """Name of a status in C, e.g. "LENSPROF_ERROR_SIZE"; "unknown status" for other numbers."""
+    return lib.lensprof_status_name(status).decode()
+
+
+class Error(Exception):
+    """The library refused or could not do something.
+
+    status: why, a lensprof.Status. text: a sentence that names the offending item and the next step.
+    """
+
+    def __init__(self, status: Status, text: str):
+        super().__init__(status, text)
+        self.status = status
+        self.text = text
+
+    def __str__(self) -> str:
+        return f"{self.text} ({status_name(self.status)})"
+
+
+def check(status: int, text: str, error: Optional[_abi.ErrorText] = None) -> None:
+    """Raises lensprof.Error unless status is OK; `text` stands where the library gives none."""
+    if status != Status.OK:
+        given = error.text.decode("utf-8", "replace") if error is not None else ""
+        raise Error(Status(status), given or text)
+
+
+class Handle:
+    """Something of the library that must be released. A context manager; `close` may be called twice.
+
+    The library allows one thread at a time: calls from several threads wait for each other.
+    """
+
+    def __init__(self, pointer, release: Callable[..., None]):
+        self._pointer = pointer
+        self._lock = threading.Lock()
+        self._release = weakref.finalize(self, release, pointer)
+
+    @contextlib.contextmanager
+    def _use(self) -> Iterator[object]:
+        with self._lock:
+            if not self._release.alive:
+                raise ValueError(f"this {type(self).__name__} is closed; open it again")
+            yield self._pointer
+
+    def close(self) -> None:
+        """Releases the memory and files behind this object."""
+        with self._lock:
+            self._release()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()

@@ -1,0 +1,249 @@
+"""How C structures look in Python.
+
+A public class inherits from `Value` (or `Struct`) and the raw structure of `_abi`. Plain numbers are used as they are;
+the descriptors below show the other fields: texts as str, arrays as NumPy views, enumerations as enumerations and inner
+structures as public classes that share the outer one's memory.
+"""
+from __future__ import annotations
+
+import ctypes
+import operator
+from typing import Any, Generic, Iterable, Optional, Type, TypeVar, Union
+
+import numpy as np
+
+T = TypeVar("T")
+
+_LIMITS: dict[type, tuple[int, int]] = {ctypes.c_uint32: (0, 2**32 - 1), ctypes.c_int64: (-2**63, 2**63 - 1)}
+
+
+def integer(value: Any, what: str, kind: type = ctypes.c_uint32) -> int:
+    """The value as an int that the C type holds; ctypes itself would wrap it around."""
+    number = operator.index(value)
+    low, high = _LIMITS[kind]
+    if not low <= number <= high:
+        raise ValueError(f"{what} is {number}; give {low}..{high}")
+    return number
+
+
+def _raw(cls: type) -> Any:
+    """The structure of `_abi` behind a public class."""
+    return next(base for base in cls.__mro__ if "_fields_" in vars(base))
+
+
+class Struct:
+    """Fields are given by name; those left out have the library's defaults. Unknown names are errors."""
+
+    def __init__(self, **fields: Any):
+        self._set_defaults()
+        for name, value in fields.items():
+            setattr(self, name, value)
+
+    def _set_defaults(self) -> None:
+        """Calls the structure's _init function; those without one are all zeros."""
+
+    @classmethod
+    def _names(cls: Any) -> list[str]:
+        return [field[0] for field in _raw(cls)._fields_ if field[0] not in ("struct_size", "reserved")]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_"):
+            if not hasattr(type(self), name):
+                raise AttributeError(f"{type(self).__name__} has no field {name}; it has {', '.join(self._names())}")
+            kind = dict(_raw(type(self))._fields_).get(name)
+            if kind in _LIMITS:
+                value = integer(value, f"{type(self).__name__}.{name}", kind)
+        super().__setattr__(name, value)
+
+    def __repr__(self) -> str:
+        def shown(value: Any) -> str:
+            if not isinstance(value, np.ndarray):
+                return repr(value)
+            return repr(value.tolist()) if value.size <= 8 else f"<{' x '.join(map(str, value.shape))} {value.dtype}>"
+
+        return f"{type(self).__name__}({', '.join(f'{n}={shown(getattr(self, n))}' for n in self._names())})"
+
+
+class Value(Struct):
+    """A structure that is a plain value: it can be compared, copied and pickled."""
+
+    def copy(self: T) -> T:
+        """An independent copy."""
+        return type(self).from_buffer_copy(self)  # type: ignore[attr-defined]
+
+    def __eq__(self, other: Any) -> bool:
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(np.array_equal(getattr(self, n), getattr(other, n)) if isinstance(getattr(self, n), np.ndarray)
+                   else getattr(self, n) == getattr(other, n) for n in self._names())
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+class _Field:
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+        self.raw = vars(_raw(owner))[name]
+        self.kind = dict(_raw(owner)._fields_)[name]
+
+
+class Text(_Field):
+    """UTF-8 in a char array, as str."""
+
+    def __get__(self, instance: Any, owner: type) -> str:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        return self.raw.__get__(instance).decode("utf-8", "surrogateescape")
+
+    def __set__(self, instance: Any, value: str) -> None:
+        text, room = value.encode("utf-8", "surrogateescape"), ctypes.sizeof(self.kind)
+        if b"\0" in text or len(text) >= room:
+            raise ValueError(f"{self.name} holds at most {room - 1} bytes of UTF-8, none of them 0; shorten {value!r}")
+        place = ctypes.addressof(instance) + self.raw.offset
+        ctypes.memmove(place, text.ljust(room, b"\0"), room)  # ctypes would leave the end of a longer text behind
+
+
+class Vector(_Field):
+    """A C array of numbers as a NumPy view on the structure's memory."""
+
+    def __init__(self, writable: bool = True):
+        self.writable = writable
+
+    def __get__(self, instance: Any, owner: type) -> np.ndarray:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        view = np.ctypeslib.as_array(self.raw.__get__(instance))
+        view.flags.writeable = self.writable
+        return view
+
+    def __set__(self, instance: Any, value: Iterable[float]) -> None:
+        numbers = np.asarray(value)
+        if numbers.shape != (self.kind._length_,):
+            raise ValueError(f"{self.name} holds {self.kind._length_} numbers, not an array of shape {numbers.shape}")
+        self.raw.__set__(instance, self.kind(*numbers.tolist()))
+
+
+class Enumerated(_Field, Generic[T]):
+    """A number as a member of an enumeration."""
+
+    def __init__(self, enum: Type[T]):
+        self.enum = enum
+
+    def __get__(self, instance: Any, owner: type) -> T:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        return self.enum(self.raw.__get__(instance))  # type: ignore[call-arg]
+
+    def __set__(self, instance: Any, value: Union[T, int]) -> None:
+        self.raw.__set__(instance, int(self.enum(value)))  # type: ignore[call-arg, call-overload]
+
+
+class Nested(_Field, Generic[T]):
+    """An inner structure; assigning copies."""
+
+    def __init__(self, cls: Type[T]):
+        self.cls = cls
+
+    def __get__(self, instance: Any, owner: type) -> T:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        return self.cls.from_buffer(self.raw.__get__(instance))  # type: ignore[attr-defined]
+
+    def __set__(self, instance: Any, value: T) -> None:
+        self.raw.__set__(instance, value)
+
+
+class Flag(_Field):
+    """0 or 1 as bool."""
+
+    def __get__(self, instance: Any, owner: type) -> bool:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        return bool(self.raw.__get__(instance))
+
+    def __set__(self, instance: Any, value: bool) -> None:
+        self.raw.__set__(instance, int(bool(value)))
+
+
+def one_or_three(value: Any, cls: type, what: str) -> list:
+    """A value for all channels, or three of them."""
+    values = [value] if isinstance(value, cls) else list(value)
+    if len(values) not in (1, 3) or not all(isinstance(v, cls) for v in values):
+        raise TypeError(f"{what} takes one {cls.__name__} for all channels, or three")
+    return values
+
+
+class Curves(_Field, Generic[T]):
+    """An array of three structures of which as many count as another field says (1 or 3): a tuple that shares memory.
+
+    Assigning one value or three copies them and sets the count.
+    """
+
+    def __init__(self, cls: Type[T], count: str):
+        self.cls, self.count = cls, count
+
+    def __get__(self, instance: Any, owner: type) -> tuple[T, ...]:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        array, count = self.raw.__get__(instance), min(getattr(instance, self.count), 3)
+        return tuple(self.cls.from_buffer(array[i]) for i in range(count))  # type: ignore[attr-defined]
+
+    def __set__(self, instance: Any, value: Union[T, Iterable[T]]) -> None:
+        values = one_or_three(value, self.cls, self.name)
+        copies = [v.copy() for v in values]  # they may come from this very array
+        array = self.raw.__get__(instance)
+        for i, copy in enumerate(copies):
+            array[i] = copy
+        setattr(instance, self.count, len(copies))
+
+
+class Count(_Field):
+    """How many structures a pointer leads to: set together with the pointer, as the library reads so many."""
+
+    def __get__(self, instance: Any, owner: type) -> int:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        return self.raw.__get__(instance)
+
+    def __set__(self, instance: Any, value: int) -> None:
+        raise AttributeError(f"{self.name} cannot be set; assign one or three curves instead")
+
+
+class Referenced(_Field, Generic[T]):
+    """A pointer to structures: copies of what is assigned, kept alive by this structure. A tuple, empty for NULL."""
+
+    def __init__(self, cls: Type[T], count: str):
+        self.cls, self.count = cls, count
+
+    def __get__(self, instance: Any, owner: type) -> tuple[T, ...]:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        array = vars(instance).get("_" + self.name) or ()
+        return tuple(self.cls.from_buffer(item) for item in array)  # type: ignore[attr-defined]
+
+    def __set__(self, instance: Any, value: Union[T, Iterable[T]]) -> None:
+        values = one_or_three(value, self.cls, self.name)
+        self._point(instance, (_raw(self.cls) * len(values))(*values))
+        vars(_raw(type(instance)))[self.count].__set__(instance, len(values))
+
+    def _point(self, instance: Any, array: Any) -> None:
+        self.raw.__set__(instance, array)
+        vars(instance)["_" + self.name] = array  # ctypes keeps it alive too, but does not show it
+
+
+class OptionalReference(Referenced[T]):
+    """A pointer to one structure, or None for NULL."""
+
+    def __init__(self, cls: Type[T]):
+        super().__init__(cls, "")
+
+    def __get__(self, instance: Any, owner: type) -> Optional[T]:  # type: ignore[override]
+        found = super().__get__(instance, owner)
+        return found if instance is None else found[0] if found else None  # type: ignore[return-value]
+
+    def __set__(self, instance: Any, value: Optional[T]) -> None:  # type: ignore[override]
+        if not (value is None or isinstance(value, self.cls)):
+            raise TypeError(f"{self.name} takes a {self.cls.__name__} or None")
+        values = () if value is None else (value,)
+        array = (_raw(self.cls) * len(values))(*values)
+        self._point(instance, array if values else None)

@@ -1,0 +1,119 @@
+"""Undoing (or simulating) what the camera did to the light, on the memory of NumPy arrays; see lensprof/apply.h.
+
+Pictures have the shape (height, width) or (height, width, samples) and the type uint8 (0..255 = 0..1), uint16
+(0..65535) or float32 (0..1). Rows may be any number of bytes apart, also backwards: slices like a[10:20, 5:50] and
+a[::-1] work.
+"""
+from __future__ import annotations
+
+from ctypes import POINTER, byref
+from typing import Any, Optional
+
+import numpy as np
+
+from . import _abi, _arrays
+from ._abi import Direction, Encoding, Layout, SampleType, Saturated
+from ._library import check, lib
+from ._struct import Count, Enumerated, Nested, Referenced, Struct, integer
+from .model import Exposure, Response, Vignetting
+from .profile import Profile
+
+
+def layout_samples(layout: Layout) -> int:
+    """Samples of a pixel, 1..4."""
+    return lib.lensprof_layout_samples(Layout(layout))
+
+
+def layout_channels(layout: Layout) -> int:
+    """Colour channels of a pixel, 1 or 3."""
+    return lib.lensprof_layout_channels(Layout(layout))
+
+
+def sample_bytes(sample: SampleType) -> int:
+    """Bytes of one sample: 1, 2 or 4."""
+    return lib.lensprof_sample_bytes(SampleType(sample))
+
+
+class ApplyOptions(Struct, _abi.ApplyOptions):
+    """What a Plan does. By default: correct, encoded in and out, uint8 RGB in and out, 0 EV; frame, response and
+    vignetting must be given.
+
+    frame_width, frame_height: the full frame, px. response and vignetting: one for all channels, or three. source:
+    what the picture received. target: what it shall look like.
+    """
+
+    direction = Enumerated(Direction)
+    input = Enumerated(Encoding)
+    output = Enumerated(Encoding)
+    frame_width: int
+    frame_height: int
+    source_sample = Enumerated(SampleType)
+    source_layout = Enumerated(Layout)
+    target_sample = Enumerated(SampleType)
+    saturated = Enumerated(Saturated)
+    responses = Count()
+    vignettings = Count()
+    response = Referenced(Response, "responses")
+    vignetting = Referenced(Vignetting, "vignettings")
+    source = Nested(Exposure)
+    target = Nested(Exposure)
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_apply_options_init(byref(self))
+
+
+class Plan:
+    """Everything prepared for one picture; may be applied to any of its tiles, by several threads at once."""
+
+    def __init__(self, options: ApplyOptions):
+        size = lib.lensprof_plan_bytes(byref(options))
+        self._memory = np.zeros(size // 8 + 1, dtype=np.uint64)
+        self._plan = POINTER(_abi.Plan)()
+        check(lib.lensprof_plan_init(self._memory.ctypes.data, self._memory.nbytes, byref(options), byref(self._plan)),
+              "these options cannot be applied: give a frame of 1..1048576 px, a valid response, vignetting (one "
+              "centre for all channels), source and target")
+        self._layout = options.source_layout
+        self._target_dtype = _arrays.sample_dtype(options.target_sample)
+
+    def apply(self, source: np.ndarray, out: Optional[np.ndarray] = None, *, x0: int = 0, y0: int = 0) -> np.ndarray:
+        """Applies the plan to a tile whose upper left pixel is (x0, y0) of the frame; returns `out`.
+
+        out: an array of the tile's shape and the target's type; `source` itself to work in place; a new one when None.
+        """
+        view = _arrays.image(source, self._layout, what="source")
+        if out is None:
+            out = np.empty(source.shape, dtype=self._target_dtype)
+        target = _arrays.image(out, self._layout, writable=True, what="out")
+        check(lib.lensprof_apply(self._plan, byref(view), byref(target), integer(x0, "x0"), integer(y0, "y0")),
+              f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have "
+              "the plan's sample types, the same size, lie in the frame, and be the same array or apart")
+        return out
+
+
+def _apply(direction: Direction, array: np.ndarray, profile: Profile, out: Optional[np.ndarray],
+           layout: Optional[Layout], **fields: Any) -> np.ndarray:
+    view = _arrays.image(array, layout)
+    target = view.sample if out is None else _arrays.image(out, layout, writable=True, what="out").sample
+    options = ApplyOptions(direction=direction, frame_width=view.width, frame_height=view.height,
+                           source_sample=view.sample, source_layout=view.layout, target_sample=target,
+                           response=profile.response, vignetting=profile.vignetting,
+                           **{name: value for name, value in fields.items() if value is not None})
+    return Plan(options).apply(array, out)
+
+
+def correct(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] = None,
+            target: Optional[Exposure] = None, saturated: Optional[Saturated] = None,
+            layout: Optional[Layout] = None, out: Optional[np.ndarray] = None) -> np.ndarray:
+    """Removes a profile's falloff from a full frame and brings its exposure and white balance from source to target.
+
+    source, target: 0 EV when None. layout: grey, RGB or RGBA by the number of samples when None. out: `array` itself to
+    work in place, another array (its type is written), a new one when None. Returns out.
+    """
+    return _apply(Direction.CORRECT, array, profile, out, layout, source=source, target=target, saturated=saturated)
+
+
+def simulate(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] = None,
+             target: Optional[Exposure] = None, layout: Optional[Layout] = None,
+             out: Optional[np.ndarray] = None) -> np.ndarray:
+    """The inverse of `correct`, up to clipping: what the camera would have recorded."""
+    return _apply(Direction.SIMULATE, array, profile, out, layout, source=source, target=target)

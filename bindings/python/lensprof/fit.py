@@ -1,0 +1,193 @@
+"""Recovering response, vignetting, exposure and white balance from correspondences; see lensprof/fit.h."""
+from __future__ import annotations
+
+import contextlib
+import signal
+import threading
+from ctypes import byref, c_double
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _abi, _arrays
+from ._abi import Free, Loss
+from ._library import check, lib, version
+from ._struct import Enumerated, Flag, Nested, OptionalReference, Struct, Text, Value, integer
+from .model import Exposure, Response, Vignetting
+from .profile import Covariance, Profile, ProfileKey
+
+
+class FitImage(Value, _abi.FitImage):
+    """One image of a fit.
+
+    index: its own place among the images. width, height: full frame, px. exposure: the value where fixed. free:
+    Free.EV, RED, BLUE. ev_of, red_of, blue_of: index of the image whose ev or white balance factor this one shares;
+    its own unless told.
+    """
+
+    width: int
+    height: int
+    exposure = Nested(Exposure)
+    free = Enumerated(Free)
+    ev_of: int
+    red_of: int
+    blue_of: int
+
+    def __init__(self, index: int, width: int, height: int, **fields: Any):
+        own = {"exposure": Exposure(), "ev_of": index, "red_of": index, "blue_of": index}
+        super().__init__(width=width, height=height, **{**own, **fields})
+
+
+class FitOptions(Struct, _abi.FitOptions):
+    """What is estimated, and how. By default 3 channels, reference 0, everything free, modes chosen by held-out error.
+
+    channels: 1 or 3. reference: the image whose exposure stays as given. free: Free.RESPONSE .. CENTER. modes: EMoR
+    modes 0..25 or MODES_AUTO. huber_levels: levels of 255. prior_weight: 0 = none, as in the paper. response,
+    vignetting: the values where fixed (None = EMoR mean).
+
+    progress: called now and then during a fit with a fraction 0..1; the fit is cancelled when it returns True, and
+    when it raises an exception, which then comes out of fit_overlap.
+    """
+
+    channels: int
+    reference: int
+    free = Enumerated(Free)
+    modes: int
+    loss = Enumerated(Loss)
+    huber_levels: float
+    prior_weight: float
+    max_iterations: int
+    response = OptionalReference(Response)
+    vignetting = Nested(Vignetting)
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_fit_options_init(byref(self))
+        self._progress: Optional[Callable[[float], Optional[bool]]] = None
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [name for name in super()._names() if name != "progress_user"]
+
+    @property
+    def progress(self) -> Optional[Callable[[float], Optional[bool]]]:
+        return self._progress
+
+    @progress.setter
+    def progress(self, function: Optional[Callable[[float], Optional[bool]]]) -> None:
+        if not (function is None or callable(function)):
+            raise TypeError("progress takes a function or None")
+        self._progress = function
+
+
+class FitResult(Struct, _abi.FitResult):
+    """What a fit found. Arrays are views on this object.
+
+    usable: False with the `reason` in words. response, vignetting: of all images. exposures: what every image got
+    relative to the reference, EXPOSURE_DTYPE. pairs: used. components: connected groups of images. before_rms,
+    heldout_rms, heldout_median, noise_levels: levels of 255. inlier_share: 0..1. seconds: time taken. covariance: n x
+    n as in Profile; parameters held fixed have zero rows.
+    """
+
+    usable = Flag()
+    reason = Text()
+    response = Nested(Response)
+    vignetting = Nested(Vignetting)
+    pairs: int
+    components: int
+    iterations: int
+    converged = Flag()
+    before_rms: float
+    heldout_rms: float
+    heldout_median: float
+    noise_levels: float
+    inlier_share: float
+    seconds: float
+    covariance_size: int
+    covariance = Covariance()
+
+    def __init__(self, image_count: int):
+        super().__init__()
+        self._exposures = np.zeros(image_count, dtype=_arrays.EXPOSURE_DTYPE)
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_fit_result_init(byref(self))
+
+    @property
+    def exposures(self) -> np.ndarray:
+        return self._exposures
+
+    def exposure(self, index: int) -> Exposure:
+        """What image `index` got."""
+        return Exposure.from_buffer_copy(self._exposures[index])
+
+    def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0) -> Profile:
+        """A profile of this result, to be stored or applied. source: file that it was made from. Time 0 = unknown."""
+        profile = Profile(key=key, response=self.response, vignetting=self.vignetting, covariance=self.covariance)
+        origin = {"method": "transfer", "software": f"lensprof {version()}", "source": source,
+                  "created_unix_s": created_unix_s, "images": len(self._exposures), "pairs": self.pairs,
+                  "heldout_rms": self.heldout_rms, "inlier_share": self.inlier_share}
+        for name, value in origin.items():
+            setattr(profile.provenance, name, value)
+        return profile
+
+
+def _fit_images(images: Sequence[FitImage]) -> Any:
+    return (_abi.FitImage * len(images))(*images)
+
+
+@contextlib.contextmanager
+def _interrupts() -> Iterator[list[int]]:
+    """Ctrl-C during a fit. Python would raise KeyboardInterrupt on the way into a callback from C, where nothing can
+    catch it; so the signal is only noted, the callback then cancels the fit, and KeyboardInterrupt is raised at the
+    end."""
+    noted: list[int] = []
+    usual = (threading.current_thread() is threading.main_thread()
+             and signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+    if usual:
+        signal.signal(signal.SIGINT, lambda number, _frame: noted.append(number))
+    try:
+        yield noted
+    finally:
+        if usual:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+    if noted:
+        raise KeyboardInterrupt
+
+
+def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional[FitOptions] = None) -> FitResult:
+    """Fits pairs (PAIR_DTYPE) over at least two images. A fit that ran returns also when it is poor: see `usable`."""
+    options, error, result = options or FitOptions(), _abi.ErrorText(), FitResult(len(images))
+    progress, raised = options.progress, []  # type: ignore[var-annotated]
+    call = _abi.FitOptions.from_buffer_copy(options)  # what it points to is kept alive by options
+
+    def on_progress(done: float, _user: Any) -> int:
+        try:
+            return 1 if interrupted or (progress and progress(done)) else 0
+        except BaseException as exception:  # must not cross C
+            raised.append(exception)
+            return 1
+
+    with _interrupts() as interrupted:
+        call.progress = _abi.Progress(on_progress)
+        status = lib.lensprof_fit_overlap(byref(call), _fit_images(images), len(images), *_arrays.pairs(pairs),
+                                          _arrays.address(result.exposures, _abi.Exposure), byref(result), byref(error))
+    if raised:
+        raise raised[0]
+    check(status, "the fit failed", error)
+    return result
+
+
+def transfer_rms(response: Response, vignetting: Vignetting, images: Sequence[FitImage],
+                 exposures: Union[np.ndarray, Iterable[Exposure]], pairs: np.ndarray,
+                 channels: int = 3) -> tuple[float, float]:
+    """Root mean square and median absolute value of the transfer residual of pairs under a model, in levels of 255."""
+    given = _arrays.exposures(exposures)
+    if len(given) != len(images):
+        raise ValueError(f"{len(given)} exposures for {len(images)} images; give one an image")
+    rms, median = c_double(), c_double()
+    check(lib.lensprof_transfer_rms(byref(response), byref(vignetting), _fit_images(images),
+                                    _arrays.address(given, _abi.Exposure), len(images), *_arrays.pairs(pairs),
+                                    integer(channels, "channels"), byref(rms), byref(median)),
+          "this model and these pairs do not go together: give valid curves, channels 1 or 3, at least one pair, image "
+          "numbers of the images, finite values in 0..1")
+    return rms.value, median.value

@@ -1,0 +1,105 @@
+"""What is known about one camera, lens and setting; see lensprof/profile.h."""
+from __future__ import annotations
+
+from ctypes import byref
+from typing import Any
+
+import numpy as np
+
+from . import _abi
+from ._abi import Processing
+from ._library import check, lib
+from ._struct import Curves, Enumerated, Nested, Text, Value
+from .model import Response, Vignetting
+
+
+class ProfileKey(Value, _abi.ProfileKey):
+    """What a profile is for; empty texts and lensprof.UNKNOWN where not known, processing JPEG by default.
+
+    focal_mm, aperture (f-number) and distance_m (may be infinite) are above 0, or UNKNOWN.
+    """
+
+    camera_maker = Text()
+    camera_model = Text()
+    lens = Text()
+    focal_mm: float
+    aperture: float
+    distance_m: float
+    processing = Enumerated(Processing)
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_profile_key_init(byref(self))
+
+    def validate(self) -> None:
+        """Raises lensprof.Error unless the numbers are in range and the texts without control characters."""
+        check(lib.lensprof_profile_key_validate(byref(self)),
+              f"{self}: numbers must be above 0 or UNKNOWN, texts without control characters")
+
+
+class Provenance(Value, _abi.Provenance):
+    """Where a profile comes from. Part of a Profile, which sets the defaults.
+
+    created_unix_s: seconds since 1970-01-01 UTC, 0 = unknown. images, pairs: how many were used. heldout_rms: levels
+    of 255, or UNKNOWN. inlier_share: 0..1, or UNKNOWN.
+    """
+
+    method = Text()
+    software = Text()
+    source = Text()
+    created_unix_s: int
+    images: int
+    pairs: int
+    heldout_rms: float
+    inlier_share: float
+
+    def _set_defaults(self) -> None:
+        self.heldout_rms = self.inlier_share = _abi.UNKNOWN
+
+
+class Covariance:
+    """An n x n matrix in the first n*n numbers of the field; reading gives a view, assigning a matrix sets n."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.raw = next(vars(base)[name] for base in owner.__mro__ if "_fields_" in vars(base))
+
+    def __get__(self, instance: Any, owner: type) -> np.ndarray:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        n = min(instance.covariance_size, _abi.COVARIANCE_MAX)
+        return np.ctypeslib.as_array(self.raw.__get__(instance))[:n * n].reshape(n, n)
+
+    def __set__(self, instance: Any, matrix: np.ndarray) -> None:
+        matrix = np.asarray(matrix, dtype=np.float64)
+        n = matrix.shape[0] if matrix.ndim else 0
+        if matrix.shape != (n, n) or n > _abi.COVARIANCE_MAX:
+            raise ValueError(f"a covariance of shape {matrix.shape} is not n x n with n <= {_abi.COVARIANCE_MAX}")
+        numbers = np.ctypeslib.as_array(self.raw.__get__(instance))
+        numbers[:n * n] = matrix.ravel().copy()
+        numbers[n * n:] = 0.0
+        instance.covariance_size = n
+
+
+class Profile(Value, _abi.Profile):
+    """Response and vignetting of one camera, lens and setting: linear and without falloff by default.
+
+    response, vignetting: tuples of 1 (all channels) or 3; assign one or three. covariance: n x n, n = 0 when not
+    known; in the order EMoR coefficients, k1, k2, k3 of each vignetting, centre x and y.
+    """
+
+    key = Nested(ProfileKey)
+    provenance = Nested(Provenance)
+    responses: int
+    vignettings: int
+    response = Curves(Response, "responses")
+    vignetting = Curves(Vignetting, "vignettings")
+    covariance_size: int
+    covariance = Covariance()
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_profile_init(byref(self))
+
+    def validate(self) -> None:
+        """Raises lensprof.Error unless key, curves and covariance are valid."""
+        check(lib.lensprof_profile_validate(byref(self)),
+              f"{self.key}: not a valid profile; see validate() of its key, response and vignetting, the covariance "
+              "must be finite and symmetric")

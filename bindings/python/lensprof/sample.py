@@ -1,0 +1,67 @@
+"""Correspondences: the same scene point seen in two pictures; see lensprof/sample.h."""
+from __future__ import annotations
+
+from ctypes import byref, c_uint32
+from dataclasses import dataclass
+from typing import Optional, Sequence
+
+import numpy as np
+
+from . import _abi, _arrays
+from ._abi import Layout, Sampling
+from ._library import check, lib
+from ._struct import Enumerated, Struct, integer
+from .geometry import Camera
+
+
+@dataclass
+class SampleImage:
+    """A picture to sample; its arrays are read where they are.
+
+    array: (height, width) or (height, width, samples); layouts with alpha: alpha below half = excluded. camera: of
+    the full frame. layout: RGB order when None. reduction: pixel (u, v) of the array is the mean of the square of
+    `reduction` frame pixels from (u, v) * reduction on. mask: (height, width) uint8 or bool, 0 = excluded. black,
+    white: samples outside in any channel are not used; 0..1.
+    """
+
+    array: np.ndarray
+    camera: Camera
+    layout: Optional[Layout] = None
+    reduction: int = 1
+    mask: Optional[np.ndarray] = None
+    black: float = 2.0 / 255.0
+    white: float = 250.0 / 255.0
+
+    def _view(self, index: int) -> _abi.SampleImage:
+        """Points into this object's arrays."""
+        view = _arrays.image(self.array, self.layout, what=f"image {index}")
+        mask, row_bytes = (None, 0) if self.mask is None else _arrays.mask(self.mask, self.array.shape[:2])
+        return _abi.SampleImage(view, self.camera, integer(self.reduction, "reduction"), 0, mask, row_bytes, self.black,
+                                self.white)
+
+
+class SampleOptions(Struct, _abi.SampleOptions):
+    """How to sample. By default balanced, pairs 0 (= 300 per image, at least 2000), seed 1. Same seed, same pairs."""
+
+    sampling = Enumerated(Sampling)
+    pairs: int
+    seed: int
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_sample_options_init(byref(self))
+
+
+def sample_overlap(images: Sequence[SampleImage], options: Optional[SampleOptions] = None) -> np.ndarray:
+    """Finds correspondences between at least two overlapping pictures: an array of PAIR_DTYPE.
+
+    There are at most as many as options.pairs, fewer when the overlaps do not hold more.
+    """
+    images, options, error = list(images), options or SampleOptions(), _abi.ErrorText()
+    views = (_abi.SampleImage * len(images))(*[image._view(i) for i, image in enumerate(images)])
+    room, found = c_uint32(), c_uint32()
+    check(lib.lensprof_sample_overlap(byref(options), views, len(views), None, 0, byref(room), byref(error)),
+          "sampling failed", error)
+    pairs = np.empty(room.value, dtype=_arrays.PAIR_DTYPE)
+    check(lib.lensprof_sample_overlap(byref(options), views, len(views), *_arrays.pairs(pairs), byref(found),
+                                      byref(error)), "sampling failed", error)
+    return pairs[:found.value]

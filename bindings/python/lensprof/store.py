@@ -1,0 +1,80 @@
+"""The profile database (SQLite); see lensprof/store.h."""
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import POINTER, byref, c_int64, c_uint32
+from typing import Any, List, Optional, Union
+
+from . import _abi
+from ._abi import StoreMode
+from ._library import Handle, check, lib
+from ._struct import Nested, Value, integer
+from .profile import Profile, ProfileKey, Provenance
+
+
+class StoreRow(Value, _abi.StoreRow):
+    """A row of a listing: id, key and provenance of a profile."""
+
+    id: int
+    key = Nested(ProfileKey)
+    provenance = Nested(Provenance)
+
+
+class Store(Handle):
+    """A profile database; `with Store(path, StoreMode.CREATE) as store:`. Every call is one transaction."""
+
+    def __init__(self, path: Union[str, bytes, os.PathLike], mode: StoreMode = StoreMode.READ):
+        pointer, error = POINTER(_abi.Store)(), _abi.ErrorText()
+        name = os.fsencode(path)
+        if b"\0" in name:
+            raise ValueError(f"{path!r}: a path holds no zero bytes; name a file")
+        check(lib.lensprof_store_open(name, StoreMode(mode), byref(pointer), byref(error)),
+              f"{path!r}: cannot be opened", error)
+        super().__init__(pointer, lib.lensprof_store_close)
+
+    def _call(self, function: Any, *arguments: Any) -> None:
+        """Calls a function that takes a store first and an error text last."""
+        error = _abi.ErrorText()
+        with self._use() as store:
+            check(function(store, *arguments, byref(error)), f"{function.__name__} failed", error)
+
+    def put(self, profile: Profile) -> int:
+        """Adds a profile and returns its id. A profile with the same key stays: `find` returns the newest."""
+        number = c_int64()
+        self._call(lib.lensprof_store_put, byref(profile), byref(number))
+        return number.value
+
+    def find(self, key: ProfileKey) -> tuple[int, Profile]:
+        """Id and profile of the newest with an equal key; lensprof.Error NOT_FOUND when there is none.
+
+        Texts are compared without ASCII case and outer blanks, numbers to 1e-6 relative; UNKNOWN equals UNKNOWN only.
+        """
+        profile, number = Profile(), c_int64()
+        self._call(lib.lensprof_store_find, byref(key), byref(profile), byref(number))
+        return number.value, profile
+
+    def get(self, id: int) -> Profile:
+        """The profile with an id."""
+        profile = Profile()
+        self._call(lib.lensprof_store_get, integer(id, "id", c_int64), byref(profile))
+        return profile
+
+    def remove(self, id: int) -> None:
+        """Removes the profile with an id; lensprof.Error NOT_FOUND when there is none."""
+        self._call(lib.lensprof_store_remove, integer(id, "id", c_int64))
+
+    def list(self, filter: Optional[ProfileKey] = None) -> List[StoreRow]:
+        """Rows in the order camera maker, model, lens, focal, aperture, distance, id.
+
+        filter: where it has a text or a known number, only equal ones.
+        """
+        key = None if filter is None else byref(filter)
+        rows, found = (_abi.StoreRow * 0)(), c_uint32()
+        while True:  # until they fit: another process may add rows between two calls
+            self._call(lib.lensprof_store_list, key, rows, len(rows), byref(found))
+            if found.value <= len(rows):
+                break
+            rows = (_abi.StoreRow * found.value)()
+        size = ctypes.sizeof(_abi.StoreRow)
+        return [StoreRow.from_buffer(rows, i * size) for i in range(found.value)]

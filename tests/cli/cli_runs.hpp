@@ -1,0 +1,249 @@
+/* What the tests of the program share: commands run in process, the disk before and after, and a rendered sequence. */
+#ifndef LENSPROF_TESTS_CLI_CLI_RUNS_HPP
+#define LENSPROF_TESTS_CLI_CLI_RUNS_HPP
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <initializer_list>
+#include <map>
+#include <sstream>
+
+#include <regex.h> /* <regex> draws false warnings from gcc under sanitizers */
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run.hpp"
+
+#include "picture_files.hpp"
+
+namespace cli_runs {
+
+using namespace picture_files;
+
+using Words = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
+
+/* The numbers of the contract, written again: they must not follow a change of the program. */
+constexpr int done = 0, failed = 1, usage = 2, unreadable = 3, not_usable = 4, not_found = 5, store_failed = 6,
+              stopped = 130;
+
+struct Outcome {
+    int code; /* 128 + number of the signal that ended a child */
+    std::string out, err;
+};
+
+inline Words operator+(Words words, const Words &more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+inline std::string joined(const Words &words) {
+    std::string text;
+    for (const std::string &word : words)
+        text += word + " ";
+    return text;
+}
+
+inline bool contains(const std::string &text, const std::string &part) { return text.find(part) != std::string::npos; }
+
+inline Outcome run_words(const Words &words) {
+    std::ostringstream out, err;
+    Streams streams{out, err};
+    const int code = run(words, streams);
+    return {code, out.str(), err.str()};
+}
+
+/* Runs and returns what was printed; the exit code must be `code`. */
+inline std::string must_exit(int code, const Words &words) {
+    const Outcome outcome = run_words(words);
+    if (outcome.code != code)
+        fail_msg("%s: exit code %d, not %d: %s", joined(words).c_str(), outcome.code, code, outcome.err.c_str());
+    return outcome.out;
+}
+
+inline Json json_of(const Words &words, int code = done) {
+    const std::string text = must_exit(code, words);
+    assert_int_equal(std::count(text.begin(), text.end(), '\n'), 1);
+    const Json json = Json::parse(text, nullptr, false);
+    assert_false(json.is_discarded());
+    assert_int_equal(json.value("schema", 0), 1);
+    return json;
+}
+
+/* Runs in a child that `prepare` has changed: another user, another limit. Both outputs come back through a pipe, so
+ * that a full disk does not hide them. */
+inline Outcome run_child(const Words &words, const std::function<void()> &prepare = [] {}) {
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        prepare();
+        const Outcome outcome = run_words(words);
+        const std::string both = outcome.out + '\0' + outcome.err;
+        for (size_t at = 0; at < both.size();) {
+            const ssize_t written = write(ends[1], both.data() + at, both.size() - at);
+            if (written <= 0)
+                _exit(255);
+            at += size_t(written);
+        }
+        _exit(outcome.code);
+    }
+    close(ends[1]);
+    std::string both;
+    char buffer[4096];
+    for (ssize_t got; (got = read(ends[0], buffer, sizeof buffer)) > 0;)
+        both.append(buffer, size_t(got));
+    close(ends[0]);
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    const size_t middle = std::min(both.find('\0'), both.size());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), both.substr(0, middle),
+            both.substr(std::min(middle + 1, both.size()))};
+}
+
+/* Every file and folder below the tests' folder, with its bytes. */
+using Disk = std::map<std::string, Bytes>;
+
+inline Disk disk() {
+    Disk all;
+    for (const fs::directory_entry &entry : fs::recursive_directory_iterator(folder)) {
+        const std::string name = entry.path().lexically_relative(folder).string();
+        if (entry.is_directory())
+            all[name + "/"] = Bytes();
+        else
+            all[name] = load(entry.path().string());
+    }
+    return all;
+}
+
+inline std::string difference(const Disk &before, const Disk &after) {
+    std::string text;
+    for (const auto &file : before) {
+        const auto same = after.find(file.first);
+        if (same == after.end())
+            text += " lost " + file.first;
+        else if (same->second != file.second)
+            text += " changed " + file.first;
+    }
+    for (const auto &file : after)
+        if (!before.count(file.first))
+            text += " left " + file.first;
+    return text;
+}
+
+/* The failure is told on standard error with the names it is about, and the disk is as it was. */
+inline void assert_refusal(const Words &words, const Outcome &outcome, int code, const Words &named,
+                           const Disk &before) {
+    const std::string what = joined(words);
+    if (outcome.code != code)
+        fail_msg("%s: exit code %d, not %d: %s", what.c_str(), outcome.code, code, outcome.err.c_str());
+    if (outcome.err.rfind("lensprof: ", 0) != 0 || outcome.err.back() != '\n')
+        fail_msg("%s: not a line of lensprof's: %s", what.c_str(), outcome.err.c_str());
+    for (const std::string &name : named)
+        if (!contains(outcome.err, name))
+            fail_msg("%s: '%s' does not name %s", what.c_str(), outcome.err.c_str(), name.c_str());
+    const std::string changes = difference(before, disk());
+    if (!changes.empty())
+        fail_msg("%s: on the disk:%s", what.c_str(), changes.c_str());
+}
+
+inline void assert_refused(int code, const Words &words, const Words &named) {
+    const Disk before = disk();
+    const Outcome outcome = run_words(words);
+    assert_refusal(words, outcome, code, named, before);
+    if (code != not_usable && !outcome.out.empty())
+        fail_msg("%s: printed %s", joined(words).c_str(), outcome.out.c_str());
+}
+
+/* Where an extended regular expression matches in `text` from `at` on, with its groups; empty when it does not. `.`
+ * stays within a line. */
+inline std::vector<std::pair<size_t, size_t>> find_pattern(const std::string &pattern, const std::string &text,
+                                                           size_t at = 0) {
+    regex_t compiled;
+    regmatch_t found[4];
+    if (regcomp(&compiled, pattern.c_str(), REG_EXTENDED | REG_NEWLINE) != 0)
+        fail_msg("%s is not a regular expression", pattern.c_str());
+    std::vector<std::pair<size_t, size_t>> groups;
+    if (regexec(&compiled, text.c_str() + at, 4, found, 0) == 0)
+        for (const regmatch_t &group : found)
+            groups.push_back({at + size_t(std::max(group.rm_so, 0)), size_t(group.rm_eo - group.rm_so)});
+    regfree(&compiled);
+    return groups;
+}
+
+/* Every match replaced; $1 stands for the first group. */
+inline std::string replaced(const std::string &text, const std::string &pattern, const std::string &replacement) {
+    std::string result;
+    size_t at = 0;
+    for (auto match = find_pattern(pattern, text); !match.empty(); match = find_pattern(pattern, text, at)) {
+        std::string instead = replacement;
+        const size_t group = instead.find("$1");
+        if (group != std::string::npos)
+            instead.replace(group, 2, text, match[1].first, match[1].second);
+        result.append(text, at, match[0].first - at).append(instead);
+        at = match[0].first + match[0].second;
+    }
+    return result + text.substr(at);
+}
+
+inline std::string text_of(const std::string &path) {
+    const Bytes bytes = load(path);
+    return std::string(bytes.begin(), bytes.end());
+}
+
+/* A text file changed by a regular expression, which must match. */
+inline void edit(const std::string &path, const std::string &pattern, const std::string &replacement) {
+    const std::string text = text_of(path), changed = replaced(text, pattern, replacement);
+    if (changed == text)
+        fail_msg("%s: nothing matches %s", path.c_str(), pattern.c_str());
+    save(path, Bytes(changed.begin(), changed.end()));
+}
+
+inline void save_text(const std::string &path, const std::string &text) { save(path, Bytes(text.begin(), text.end())); }
+
+/* `scene` holds four PNG and `mixed` one picture of every kind, rendered once; `work` is empty before every test. */
+constexpr const char *mixed_names[] = {"img000.png", "img001.png", "img002.tif",
+                                       "img003.tif", "img004.tif", "img005.jpg"};
+
+inline std::string scene(const std::string &name) { return in_folder("scene/" + name); }
+inline std::string mixed(const std::string &name) { return in_folder("mixed/" + name); }
+inline std::string work(const std::string &name) { return in_folder("work/" + name); }
+
+/* A copy of a rendered folder that a test may change. */
+inline std::string copy_of(const std::string &from, const std::string &to = "copy") {
+    fs::copy(in_folder(from), work(to), fs::copy_options::recursive);
+    return work(to);
+}
+
+/* Enough for what is not about accuracy. */
+inline const Words quick = {"--pairs", "600", "--modes", "3"};
+
+inline int make_scene(void **state) {
+    umask(022);
+    if (make_folder(state) != 0)
+        return -1;
+    setenv("XDG_DATA_HOME", in_folder("work/data").c_str(), 1);
+    must_exit(done,
+              {"simulate", "-o", in_folder("scene"), "--images", "4", "--size", "320x240", "--test-points", "1500"});
+    must_exit(done, {"simulate", "-o", in_folder("mixed"), "--images", "6", "--size", "200x150", "--format",
+                     "png,png16,tiff,tiff16,tiff32,jpeg"});
+    return 0;
+}
+
+inline int empty_work(void **) {
+    fs::remove_all(work(""));
+    fs::create_directories(work(""));
+    return 0;
+}
+
+}  // namespace cli_runs
+
+#define CLI_TEST(name) cmocka_unit_test_setup(name, cli_runs::empty_work)
+
+#endif

@@ -1,0 +1,252 @@
+/* `lensprof apply`: pixels against formulas written out here, and what is kept of a picture beside its pixels. */
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+
+namespace {
+
+/* A project of pictures with a linear response and a known falloff and exposures, so that every pixel has a formula. */
+constexpr uint32_t width = 40, height = 30;
+constexpr double k1 = -0.3, k2 = 0.1, true_ev[3] = {0, 0.7, -0.4}, true_red[3] = {1, 1.1, 0.9},
+                 true_blue[3] = {1, 0.95, 1.2};
+
+double falloff(uint32_t x, uint32_t y) {
+    const double r = std::hypot(x - (width - 1) / 2.0, y - (height - 1) / 2.0) / (std::hypot(width, height) / 2);
+    return 1 + k1 * r * r + k2 * r * r * r * r;
+}
+
+double exposure(size_t image, size_t channel) {
+    return std::exp2(true_ev[image]) * (channel == 0 ? true_red[image] : channel == 2 ? true_blue[image] : 1);
+}
+
+std::string picture_name(size_t image) { return work("in/p" + std::to_string(image) + ".tif"); }
+
+/* Grey values of the middle range: nothing is near saturation. */
+Picture make_picture(size_t image, uint32_t sample = LENSPROF_SAMPLE_U16) {
+    Picture picture = make_noise(width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB);
+    uint64_t state = image + 1;
+    auto *values = reinterpret_cast<float *>(picture.pixels.data());
+    for (size_t i = 0; i < width * height * 3; ++i)
+        values[i] = static_cast<float>(0.1 + 0.25 * lp_random(&state));
+    if (sample == LENSPROF_SAMPLE_F32)
+        return picture;
+    Picture whole = make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+    auto *codes = reinterpret_cast<uint16_t *>(whole.pixels.data());
+    for (size_t i = 0; i < width * height * 3; ++i)
+        codes[i] = static_cast<uint16_t>(values[i] * 65535);
+    return whole;
+}
+
+double value_of(const Picture &picture, size_t i) {
+    if (picture.sample == LENSPROF_SAMPLE_U16)
+        return reinterpret_cast<const uint16_t *>(picture.pixels.data())[i] / 65535.0;
+    if (picture.sample == LENSPROF_SAMPLE_F32)
+        return double(reinterpret_cast<const float *>(picture.pixels.data())[i]);
+    return picture.pixels[i] / 255.0;
+}
+
+/* Writes pictures and project; the project's exposures begin at an absolute value, as Hugin's do. */
+std::string make_project() {
+    fs::create_directories(work("in"));
+    std::ostringstream pto;
+    pto << "p f2 w300 h150 v360 n\"TIFF_m\"\nm g1 i0 f0 m2 p0.00784314\n";
+    for (size_t i = 0; i < 3; ++i) {
+        write_picture(picture_name(i), make_picture(i));
+        pto << "i w40 h30 f0 v50 Rt1 Ra0 Rb0 Rc0 Rd0 Re0 Eev" << 9 - true_ev[i] << " Er" << 1.25 * true_red[i] << " Eb"
+            << 0.8 * true_blue[i] << " r0 p0 y" << 30 * i << " TrX0 TrY0 TrZ0 Tpy0 Tpp0 j0 a0 b0 c0 d0 e0 g0 t0 Va1 Vb"
+            << k1 << " Vc" << k2 << " Vd0 Vx0 Vy0 Vm5 n\"p" << i << ".tif\"\n";
+    }
+    pto << "v Eev1 Eev2\nv\n";
+    save_text(work("in/pano.pto"), pto.str());
+    return work("in/pano.pto");
+}
+
+/* Every pixel of every output is `wanted(image, channel)` times the input over falloff and exposure. */
+void check_pixels(const std::string &out, uint32_t sample, const std::function<double(size_t, size_t)> &wanted) {
+    for (size_t i = 0; i < 3; ++i) {
+        const Picture before = read_picture(picture_name(i)),
+                      after = read_picture(out + "/p" + std::to_string(i) + ".tif");
+        assert_int_equal(after.sample, sample);
+        assert_int_equal(after.layout, LENSPROF_LAYOUT_RGB);
+        for (size_t s = 0; s < width * height * 3; ++s) {
+            const uint32_t x = uint32_t(s / 3 % width), y = uint32_t(s / 3 / width);
+            const double light = value_of(before, s) / (falloff(x, y) * exposure(i, s % 3)) * wanted(i, s % 3);
+            assert_close(value_of(after, s), light, 1.5 / 65535);
+        }
+    }
+}
+
+double mean_exposure(size_t, size_t channel) {
+    double product = 1;
+    for (size_t i = 0; i < 3; ++i)
+        product *= exposure(i, channel);
+    return std::cbrt(product);
+}
+
+void test_output_exposures(void **) {
+    const Words words = {"apply", "--pto", make_project(), "--output-exposure"};
+    must_exit(done, words + Words{"mean", "-o", work("mean")});
+    check_pixels(work("mean"), LENSPROF_SAMPLE_U16, mean_exposure);
+    must_exit(done, words + Words{"reference", "-o", work("reference")});
+    check_pixels(work("reference"), LENSPROF_SAMPLE_U16, [](size_t, size_t) { return 1.0; });
+    must_exit(done, words + Words{"keep", "-o", work("keep")});
+    check_pixels(work("keep"), LENSPROF_SAMPLE_U16, exposure);
+    must_exit(done, {"apply", "--pto", work("in/pano.pto"), "-o", work("default")});
+    check_pixels(work("default"), LENSPROF_SAMPLE_U16, mean_exposure);
+}
+
+void test_linear_is_float(void **) {
+    must_exit(done,
+              {"apply", "--pto", make_project(), "--linear", "--output-exposure", "reference", "-o", work("linear")});
+    check_pixels(work("linear"), LENSPROF_SAMPLE_F32, [](size_t, size_t) { return 1.0; });
+    write_picture(work("in/p0.png"), make_picture(0));
+    edit(work("in/pano.pto"), "p0\\.tif", "p0.png");
+    must_exit(done, {"apply", "--pto", work("in/pano.pto"), "--linear", "-o", work("png"), work("in/p0.png")});
+    assert_int_equal(read_header(work("png/p0.tif")).sample, LENSPROF_SAMPLE_F32);
+}
+
+void test_simulate_undoes_correct(void **) {
+    must_exit(done, {"apply", "--pto", make_project(), "--output-exposure", "keep", "-o", work("once")});
+    fs::copy(work("in/pano.pto"), work("once/pano.pto"));
+    must_exit(done, {"apply", "--pto", work("once/pano.pto"), "--output-exposure", "keep", "--simulate", "-o",
+                     work("twice")});
+    for (size_t i = 0; i < 3; ++i) {
+        const Picture before = read_picture(picture_name(i)),
+                      after = read_picture(work("twice/p" + std::to_string(i) + ".tif"));
+        for (size_t s = 0; s < width * height * 3; ++s)
+            assert_close(value_of(after, s), value_of(before, s), 2.0 / 65535);
+    }
+}
+
+void test_some_pictures_of_a_project(void **) {
+    const std::string pto = make_project();
+    const Json json = json_of({"apply", "--pto", pto, "--json", "-o", work("out"), picture_name(2), picture_name(0)});
+    assert_int_equal(json["pictures"].size(), 2);
+    assert_string_equal(json["pictures"][0]["file"].get<std::string>().c_str(), picture_name(2).c_str());
+    assert_string_equal(json["pictures"][1]["output"].get<std::string>().c_str(), work("out/p0.tif").c_str());
+    assert_int_equal(std::distance(fs::directory_iterator(work("out")), fs::directory_iterator()), 2);
+}
+
+/* What both pictures see agrees better afterwards: at points that the simulation knows, not the fit. */
+double disagreement(const std::string &pictures) {
+    std::vector<Picture> held;
+    for (int i = 0; i < 4; ++i)
+        held.push_back(read_picture(pictures + "/img00" + std::to_string(i) + ".png"));
+    std::istringstream lines(text_of(scene("test_points.txt")));
+    std::vector<double> squares;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream numbers(line);
+        double column[6];
+        for (double &number : column)
+            numbers >> number;
+        for (size_t c = 0; c < 3; ++c) {
+            double value[2];
+            for (size_t side = 0; side < 2; ++side) {
+                const auto x = size_t(column[2 + 2 * side] + 0.5), y = size_t(column[3 + 2 * side] + 0.5);
+                value[side] = held[size_t(column[side])].pixels[(y * 320 + x) * 3 + c];
+            }
+            squares.push_back((value[0] - value[1]) * (value[0] - value[1]));
+        }
+    }
+    std::nth_element(squares.begin(), squares.begin() + long(squares.size() / 2), squares.end());
+    return std::sqrt(squares[squares.size() / 2]); /* the median forgives edges */
+}
+
+void test_overlaps_agree_better(void **) {
+    const std::string copy = copy_of("scene");
+    must_exit(done, {"build", copy + "/pano.pto", "--no-store", "--pto-out", copy + "/out.pto"});
+    for (const char *exposure : {"mean", "reference"}) {
+        must_exit(done, {"apply", "--pto", copy + "/out.pto", "--output-exposure", exposure, "-o", work(exposure)});
+        const double before = disagreement(in_folder("scene")), after = disagreement(work(exposure));
+        if (!(before > 10 && after < 3.5))
+            fail_msg("%s: the median difference was %.1f levels and is %.1f", exposure, before, after);
+    }
+}
+
+/* Depth, size, format, colour profile, EXIF. */
+void check_kept(const std::string &from, const std::string &to) {
+    const Picture before = read_header(from), after = read_header(to);
+    assert_int_equal(after.sample, before.sample);
+    assert_int_equal(after.layout, before.layout);
+    assert_int_equal(after.width, before.width);
+    assert_int_equal(after.height, before.height);
+    assert_true(after.traits.format == before.traits.format);
+    assert_false(before.icc.empty());
+    assert_true(after.icc == before.icc);
+    const PictureMetadata a = read_metadata(from), b = read_metadata(to);
+    assert_string_equal(a.key.camera_model, "Simulated Camera");
+    assert_memory_equal(&a.key, &b.key, sizeof a.key);
+    assert_true(a.exif_ev.has_value() && b.exif_ev.has_value());
+    assert_close(*a.exif_ev, *b.exif_ev, 0);
+    if (after.traits.format == FileFormat::jpeg)
+        assert_true(after.traits.quantisation == before.traits.quantisation);
+}
+
+void test_pictures_keep_their_nature(void **) {
+    const std::string copy = copy_of("mixed");
+    for (const char *name : mixed_names) {
+        Picture picture = read_picture(mixed(name));
+        picture.icc = make_profile(false, 500);
+        WriteOptions options;
+        options.metadata_from = mixed(name);
+        write_picture(copy + "/" + name, picture, options);
+    }
+    const Disk before = disk();
+    must_exit(done, Words{"build", copy + "/pano.pto", "--db", work("p.db")} + quick);
+    must_exit(done, {"apply", "--pto", copy + "/pano.pto", "--profile", "1", "--db", work("p.db"), "-o", work("out")});
+    for (const char *name : mixed_names) {
+        check_kept(copy + "/" + name, work("out/") + name);
+        assert_true(load(copy + "/" + name) != load(work("out/") + name));
+        assert_true(load(copy + "/" + name) == before.at(std::string("work/copy/") + name));
+    }
+    must_exit(done, {"apply", "--profile", "1", "--db", work("p.db"), "--linear", "-o", work("linear"),
+                     copy + "/img005.jpg"});
+    assert_int_equal(read_header(work("linear/img005.tif")).sample, LENSPROF_SAMPLE_F32);
+    assert_true(read_metadata(work("linear/img005.tif")).exposure_time_s.has_value());
+}
+
+void test_profile_by_id_or_exif(void **) {
+    const Words db = {"--db", work("p.db")};
+    must_exit(done, Words{"build", scene("pano.pto")} + quick + db);
+    must_exit(done, Words{"build", scene("pano.pto"), "--seed", "2"} + quick + db);
+    const Json by_exif = json_of(Words{"apply", "--from-db", "--json", "-o", work("exif"), scene("img001.png")} + db);
+    assert_int_equal(by_exif["pictures"][0]["profile"].get<int>(), 2); /* the newest */
+    must_exit(done, Words{"apply", "--profile", "2", "-o", work("two"), scene("img001.png")} + db);
+    must_exit(done, Words{"apply", "--profile", "1", "-o", work("one"), scene("img001.png")} + db);
+    assert_true(load(work("exif/img001.png")) == load(work("two/img001.png")));
+    assert_true(load(work("exif/img001.png")) != load(work("one/img001.png")));
+    /* One picture alone keeps its exposure: the middle stays, the corner gains what the falloff took, about 0.6 EV. */
+    const Picture before = read_picture(scene("img001.png")), after = read_picture(work("two/img001.png"));
+    const size_t middle = (119 * 320 + 160) * 3;
+    for (size_t c = 0; c < 3; ++c)
+        assert_true(std::abs(before.pixels[middle + c] - after.pixels[middle + c]) <= 1);
+    double sum[2] = {0, 0};
+    for (size_t y = 0; y < 10; ++y)
+        for (size_t s = 0; s < 30; ++s) {
+            sum[0] += before.pixels[y * before.row_bytes + s];
+            sum[1] += after.pixels[y * after.row_bytes + s];
+        }
+    assert_true(sum[1] > 1.1 * sum[0]);
+}
+
+void test_contact_sheet(void **) {
+    const std::string sheet = work("sheet.png");
+    const std::string said =
+        must_exit(done, {"apply", "--pto", make_project(), "-o", work("out"), "--contact-sheet", sheet});
+    assert_true(contains(said, sheet));
+    const Picture picture = read_picture(sheet);
+    assert_int_equal(picture.sample, LENSPROF_SAMPLE_U8);
+    assert_true(picture.width >= 3 * width && picture.height >= 2 * height);
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_output_exposures),        CLI_TEST(test_linear_is_float),
+        CLI_TEST(test_simulate_undoes_correct), CLI_TEST(test_some_pictures_of_a_project),
+        CLI_TEST(test_overlaps_agree_better),   CLI_TEST(test_pictures_keep_their_nature),
+        CLI_TEST(test_profile_by_id_or_exif),   CLI_TEST(test_contact_sheet),
+    };
+    return cmocka_run_group_tests(tests, make_scene, remove_folder);
+}

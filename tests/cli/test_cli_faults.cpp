@@ -1,0 +1,455 @@
+/* Bad input: the exit code, a message that names the file, nothing left behind, and the database as it was. */
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+
+namespace {
+
+/* A database with one profile, made once and copied: what a failing command must not change. */
+Bytes database;
+
+int make_all(void **state) {
+    if (make_scene(state) != 0)
+        return -1;
+    fs::create_directories(work(""));
+    must_exit(done, Words{"build", scene("pano.pto"), "--db", work("p.db")} + quick);
+    database = load(work("p.db"));
+    return 0;
+}
+
+int prepare(void **state) {
+    empty_work(state);
+    save(work("p.db"), database);
+    return 0;
+}
+
+/* A build with everything that could leave something behind. */
+Words build_of(const std::string &pto) {
+    return Words{"build", pto, "--db", work("p.db"), "--camera", "X", "--points-out",
+                 work("left.txt"), "--pto-out", work("left.pto")} +
+           quick;
+}
+
+void cut(const std::string &path, size_t bytes) {
+    Bytes all = load(path);
+    assert_true(bytes < all.size());
+    all.resize(bytes);
+    save(path, all);
+}
+
+/* Pictures. */
+
+void test_missing_picture(void **) {
+    for (const char *name : {"img000.png", "img002.tif", "img005.jpg"}) {
+        const std::string copy = copy_of("mixed", name);
+        fs::remove(copy + "/" + name);
+        assert_refused(unreadable, build_of(copy + "/pano.pto"), {copy + "/" + name});
+        assert_refused(unreadable, {"apply", "--profile", "1", "--db", work("p.db"), "-o", work(""), copy + "/" + name},
+                       {copy + "/" + name});
+        assert_refused(unreadable, {"apply", "--from-db", "--db", work("p.db"), "-o", work(""), copy + "/" + name},
+                       {copy + "/" + name});
+    }
+}
+
+void test_truncated_picture(void **) {
+    for (const char *name : mixed_names)
+        for (double share : {0.0, 0.01, 0.5, 0.95}) {
+            const std::string copy = copy_of("mixed"), path = copy + "/" + name;
+            cut(path, size_t(share * double(load(path).size())));
+            assert_refused(unreadable, build_of(copy + "/pano.pto"), {path});
+            assert_refused(unreadable, {"apply", "--profile", "1", "--db", work("p.db"), "-o", work(""), path}, {path});
+            fs::remove_all(copy);
+        }
+}
+
+void test_not_a_picture(void **) {
+    const std::string copy = copy_of("scene");
+    save_text(copy + "/img001.png", "P6 is something else");
+    assert_refused(unreadable, build_of(copy + "/pano.pto"), {copy + "/img001.png"});
+    fs::remove(copy + "/img001.png");
+    fs::create_directory(copy + "/img001.png");
+    assert_refused(unreadable, build_of(copy + "/pano.pto"), {copy + "/img001.png"});
+}
+
+void test_picture_of_another_size(void **) {
+    const std::string copy = copy_of("scene");
+    for (const char *size : {"w640 h480", "w240 h320", "w320 h239"}) {
+        save_text(copy + "/pano.pto", text_of(scene("pano.pto")));
+        edit(copy + "/pano.pto", "w320 h240( .*img002)", std::string(size) + "$1");
+        assert_refused(unreadable, build_of(copy + "/pano.pto"),
+                       {copy + "/img002.png", "320 x 240", copy + "/pano.pto"});
+    }
+}
+
+void test_not_finite_picture(void **) {
+    must_exit(done, {"simulate", "-o", work("float"), "--images", "2", "--size", "160x120", "--format", "tiff32"});
+    const std::string name = work("float/img001.tif");
+    const Picture good = read_picture(name);
+    WriteOptions options;
+    options.metadata_from = name;
+    for (float bad : {NAN, INFINITY, -INFINITY}) {
+        Picture picture = good;
+        reinterpret_cast<float *>(picture.pixels.data())[(7 * 160 + 12) * 3 + 1] = bad;
+        write_picture(name, picture, options);
+        assert_refused(unreadable, build_of(work("float/pano.pto")), {name, "12, 7"});
+    }
+    write_picture(name, good, options);
+    must_exit(done, build_of(work("float/pano.pto"))); /* it was the number */
+}
+
+void test_no_usable_sample(void **) {
+    const std::string copy = copy_of("scene");
+    for (uint8_t level : {255, 0}) {
+        for (int i = 0; i < 4; ++i) {
+            const std::string name = copy + "/img00" + std::to_string(i) + ".png";
+            Picture picture = read_picture(name);
+            std::fill(picture.pixels.begin(), picture.pixels.end(), level);
+            write_picture(name, picture);
+        }
+        assert_refused(not_usable, build_of(copy + "/pano.pto"), {copy + "/pano.pto"});
+    }
+}
+
+/* Projects. */
+
+void test_pictures_apart(void **) {
+    const std::string pto = copy_of("scene") + "/pano.pto";
+    for (int i = 0; i < 4; ++i)
+        edit(pto, " y[-.0-9]+( .*img00" + std::to_string(i) + ")", " y" + std::to_string(90 * i) + "$1");
+    assert_refused(not_usable, build_of(pto), {pto, "overlap"});
+}
+
+void test_pictures_in_two_groups(void **) {
+    const std::string pto = copy_of("scene") + "/pano.pto";
+    edit(pto, " y[-.0-9]+( .*img00[23])", " y180$1");
+    const Words words = Words{"build", pto, "--db", work("p.db"), "--pto-out", work("left.pto")} + quick;
+    assert_refused(not_usable, words, {pto, "2 groups", "nothing was stored"});
+}
+
+void test_one_picture(void **) {
+    const std::string pto = copy_of("scene") + "/pano.pto";
+    edit(pto, "(i [^\n]*img00[123][^\n]*\n)|(v E[^\n]*\n)", "");
+    assert_refused(not_usable, build_of(pto), {pto, "one image"});
+}
+
+void test_nothing_to_estimate(void **) {
+    const std::string pto = copy_of("scene") + "/pano.pto";
+    edit(pto, "\nv[^\n]*", "");
+    assert_refused(usage, build_of(pto), {pto});
+    must_exit(done, build_of(pto) + Words{"--free", "all"});
+}
+
+void test_damaged_projects(void **) {
+    const std::string pto = copy_of("scene") + "/pano.pto";
+    const struct {
+        const char *pattern, *replacement, *named;
+    } cases[] = {
+        {"Eev1", "Ev1", "\"Ev1\""},
+        {"Eev1", "Eev9", "Eev9"},
+        {"w320( .*img001)", "w0$1", "line 6"},
+        {"v50", "vnan", "line 5"},
+        {"v50", "v0", "line 5"},
+        {"f0 v50", "f99 v50", "line 5"},
+        {"Ra=0( .*img002)", "Ra=8$1", "line 7"},
+        {"y-?[.0-9]+( .*img001)", "y1e999$1", "line 6"},
+    };
+    for (const auto &bad : cases) {
+        save_text(pto, text_of(scene("pano.pto")));
+        edit(pto, bad.pattern, bad.replacement);
+        const Disk before = disk();
+        const Words words = build_of(pto);
+        assert_refusal(words, run_words(words), unreadable, {pto, bad.named}, before);
+    }
+}
+
+void test_not_a_project(void **) {
+    save_text(work("text.pto"), "hello\n");
+    save_text(work("empty.pto"), "");
+    save(work("binary.pto"), load(scene("img000.png")));
+    fs::create_directory(work("folder.pto"));
+    for (const char *name : {"missing.pto", "text.pto", "empty.pto", "binary.pto", "folder.pto"}) {
+        assert_refused(unreadable, build_of(work(name)), {work(name)});
+        assert_refused(unreadable, {"apply", "--pto", work(name), "-o", work("")}, {work(name)});
+    }
+}
+
+/* Point files. */
+
+void test_bad_points(void **) {
+    const std::string good = "0 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", path = work("points.txt");
+    const struct {
+        const char *line, *named;
+    } cases[] = {
+        {"0 1 10 10 20 oops .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "oops"},
+        {"0 1 10 10 20 20 .1 .2 .3 .4 .5\n", "line 3"},
+        {"0 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0 7\n", "line 3"},
+        {"0 1 10 10 20 20 nan .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
+        {"0 1 10 10 20 20 1.1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
+        {"0 0 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
+        {"0 1.5 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
+        {"-1 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
+        {"0 1 inf 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
+        {"# a comment is no point\n", "line 3"},
+    };
+    for (const auto &bad : cases) {
+        save_text(path, good + good + bad.line + good);
+        assert_refused(unreadable, build_of(scene("pano.pto")) + Words{"--points", path}, {path, bad.named});
+    }
+    save_text(path, "");
+    assert_refused(unreadable, build_of(scene("pano.pto")) + Words{"--points", path}, {path});
+    for (const std::string &name : {work("missing.txt"), work("p.db"), scene("")})
+        assert_refused(unreadable, build_of(scene("pano.pto")) + Words{"--points", name}, {name});
+}
+
+void test_points_of_other_images(void **) {
+    const std::string path = work("points.txt");
+    save_text(path, "0 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n0 4 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n");
+    assert_refused(unreadable, build_of(scene("pano.pto")) + Words{"--points", path}, {path, "4"});
+}
+
+/* Truth to compare with. */
+
+void test_bad_truth(void **) {
+    const Words words = build_of(scene("pano.pto")) + Words{"--compare", work("truth.json")};
+    assert_refused(unreadable, words, {work("truth.json")});
+    for (const char *text : {"{", "hello"}) {
+        save_text(work("truth.json"), text);
+        assert_refused(unreadable, words, {work("truth.json")});
+    }
+    /* JSON, but of something else. In a child, because a crash is one of the answers; nothing may be stored by then. */
+    for (const char *text : {"[]", "3", "{\"images\":[]}", "{\"images\":[{},{},{},{}]}",
+                             "{\"images\":[{\"ev\":0},{\"ev\":0},{\"ev\":0},{\"ev\":0}]}",
+                             "{\"images\":[{\"ev\":\"x\"},{\"ev\":0},{\"ev\":0},{\"ev\":0}],\"vignetting\":{\"k\":[[0,"
+                             "0,0]],\"center\":[0,0]}}"}) {
+        save_text(work("truth.json"), text);
+        const Disk before = disk();
+        const Outcome outcome = run_child(words);
+        assert_refusal(words, outcome, outcome.code == usage ? usage : unreadable, {work("truth.json")}, before);
+    }
+}
+
+/* Databases. */
+
+void test_corrupt_database(void **) {
+    fs::create_directory(work("folder.db"));
+    save_text(work("text.db"), std::string(300, 'x') + "\n");
+    for (size_t bytes : {50u, 100u, 4096u, 20000u})
+        save(work("cut" + std::to_string(bytes) + ".db"), Bytes(database.begin(), database.begin() + long(bytes)));
+    for (const char *name :
+         {"folder.db", "text.db", "cut50.db", "cut100.db", "cut4096.db", "cut20000.db", "p.db/inside.db"}) {
+        const std::string path = work(name);
+        const Words db = {"--db", path};
+        assert_refused(store_failed, Words{"query", "--camera", "x"} + db, {path});
+        assert_refused(store_failed, Words{"profile", "list"} + db, {path});
+        assert_refused(store_failed, Words{"profile", "show", "1"} + db, {path});
+        assert_refused(store_failed, Words{"profile", "remove", "1"} + db, {path});
+        assert_refused(store_failed, Words{"apply", "--profile", "1", "-o", work(""), scene("img000.png")} + db,
+                       {path});
+        assert_refused(store_failed, Words{"build", scene("pano.pto")} + quick + db, {path});
+    }
+}
+
+/* What else was asked for is not written either. */
+void test_corrupt_database_leaves_no_output(void **) {
+    save_text(work("p.db"), std::string(300, 'x') + "\n");
+    assert_refused(store_failed, build_of(scene("pano.pto")), {work("p.db")});
+}
+
+void test_no_database(void **) {
+    const Words db = {"--db", work("none.db")};
+    assert_refused(not_found, Words{"query", "--camera", "x"} + db, {work("none.db")});
+    assert_refused(not_found, Words{"profile", "list"} + db, {work("none.db")});
+    assert_refused(not_found, Words{"profile", "remove", "1"} + db, {work("none.db")});
+    assert_refused(not_found, Words{"apply", "--from-db", "-o", work(""), scene("img000.png")} + db, {work("none.db")});
+}
+
+void test_no_such_profile(void **) {
+    const Words db = {"--db", work("p.db")};
+    assert_refused(not_found, Words{"profile", "show", "7"} + db, {work("p.db"), "7"});
+    assert_refused(not_found, Words{"profile", "remove", "7"} + db, {work("p.db"), "7"});
+    assert_refused(not_found, Words{"apply", "--profile", "7", "-o", work(""), scene("img000.png")} + db,
+                   {work("p.db"), "7"});
+    assert_refused(not_found, Words{"query", "--camera", "Other Camera"} + db, {work("p.db"), "Other Camera"});
+    write_picture(work("bare.png"), make_smooth(40, 30, LENSPROF_LAYOUT_RGB));
+    assert_refused(not_found, Words{"apply", "--from-db", "-o", in_folder("work/out/../.."), work("bare.png")} + db,
+                   {work("bare.png")});
+}
+
+/* Outputs. */
+
+void test_output_is_a_file(void **) {
+    save_text(work("file"), "mine");
+    for (const std::string &out : {work("file"), work("file/below")}) {
+        assert_refused(failed, {"apply", "--profile", "1", "--db", work("p.db"), "-o", out, scene("img000.png")},
+                       {out});
+        assert_refused(failed, {"simulate", "--images", "2", "--size", "40x30", "-o", out}, {out});
+    }
+    const Words build = Words{"build", scene("pano.pto"), "--no-store"} + quick;
+    for (const char *option : {"--pto-out", "--points-out"})
+        for (const std::string &out : {work(""), work("file/x"), work("no such folder/x")})
+            assert_refused(failed, build + Words{option, out}, {out});
+}
+
+void test_output_would_replace_input(void **) {
+    const std::string copy = copy_of("scene");
+    const Words apply = {"apply", "--profile", "1", "--db", work("p.db"), "-o"};
+    fs::create_symlink(copy, work("link"));
+    for (const std::string &out : {copy, copy + "/", copy + "/../copy", work("link")})
+        assert_refused(usage, apply + Words{out, copy + "/img000.png"}, {copy + "/img000.png"});
+    assert_refused(usage, {"apply", "--pto", copy + "/pano.pto", "-o", copy}, {copy + "/img000.png"});
+    fs::remove(work("link")); /* the listing would follow it */
+}
+
+void test_contact_sheet_would_replace_input(void **) {
+    const std::string copy = copy_of("scene"), input = copy + "/img001.png";
+    const Words words = {"apply", "--profile", "1", "--db", work("p.db"), "-o",
+                         work(""), "--contact-sheet", input, input};
+    const Disk before = disk();
+    const Outcome outcome = run_words(words);
+    assert_true(load(input) == before.at("work/copy/img001.png")); /* the user's picture */
+    assert_refusal(words, outcome, usage, {input}, before);
+}
+
+void test_names_that_meet(void **) {
+    const std::string a = copy_of("scene", "a"), b = copy_of("scene", "b");
+    const Words apply = {"apply", "--profile", "1", "--db", work("p.db"), "-o", work("")};
+    assert_refused(usage, apply + Words{a + "/img000.png", b + "/img000.png"}, {"img000.png"});
+    fs::copy(mixed("img002.tif"), a + "/img000.tif");
+    assert_refused(usage, apply + Words{"--linear", a + "/img000.png", a + "/img000.tif"}, {"img000.tif"});
+}
+
+void test_picture_of_no_project(void **) {
+    assert_refused(usage, {"apply", "--pto", scene("pano.pto"), "-o", work(""), mixed("img000.png")},
+                   {mixed("img000.png"), scene("pano.pto")});
+}
+
+/* A picture that fails later: those before it are complete, nothing else is there. */
+void test_later_picture_fails(void **) {
+    const std::string copy = copy_of("scene");
+    cut(copy + "/img002.png", 50000);
+    const Outcome outcome = run_words({"apply", "--profile", "1", "--db", work("p.db"), "-o", work("out"),
+                                       copy + "/img000.png", copy + "/img002.png", copy + "/img003.png"});
+    assert_int_equal(outcome.code, unreadable);
+    assert_true(contains(outcome.err, copy + "/img002.png"));
+    for (const fs::directory_entry &entry : fs::directory_iterator(work("out")))
+        assert_int_equal(read_picture(entry.path().string()).width, 320);
+}
+
+/* Options. */
+
+void test_bad_options(void **) {
+    const std::string pto = scene("pano.pto"), png = scene("img000.png");
+    const Words cases[] = {
+        {"build"},
+        {"build", pto, pto},
+        {"build", pto, "--frobnicate"},
+        {"build", pto, "--modes", "26"},
+        {"build", pto, "--modes", "-1"},
+        {"build", pto, "--modes", "3x"},
+        {"build", pto, "--modes"},
+        {"build", pto, "--loss", "l1"},
+        {"build", pto, "--huber", "0"},
+        {"build", pto, "--prior", "-1"},
+        {"build", pto, "--free", "everything"},
+        {"build", pto, "--reference", "4"},
+        {"build", pto, "--reference", "img009.png"},
+        {"build", pto, "--pairs", "-1"},
+        {"build", pto, "--pairs", "99999999"},
+        {"build", pto, "--seed", "-1"},
+        {"build", pto, "--seed", "x"},
+        {"build", pto, "--max-side", "-5"},
+        {"build", pto, "--focal", "0"},
+        {"build", pto, "--aperture", "-2"},
+        {"build", pto, "--focal", "1e999"},
+        {"build", pto, "--processing", "cooked"},
+        {"build", pto, "--method", "magic"},
+        {"build", pto, "--sampling", "x"},
+        {"build", pto, "--no-store", "--db", work("p.db")},
+        {"apply"},
+        {"apply", png},
+        {"apply", "-o", work("out"), png},
+        {"apply", "--profile", "0", "-o", work("out"), png},
+        {"apply", "--profile", "x", "-o", work("out"), png},
+        {"apply", "--profile", "1", "--from-db", "-o", work("out"), png},
+        {"apply", "--profile", "1", "-o", work("out")},
+        {"apply", "--pto", pto, "-o", work("out"), "--output-exposure", "bright"},
+        {"query"},
+        {"query", "--focal", "50"},
+        {"query", "--camera", "x", "--focal", "-1"},
+        {"query", "x"},
+        {"profile"},
+        {"profile", "frob"},
+        {"profile", "show"},
+        {"profile", "remove"},
+        {"profile", "show", "x"},
+        {"profile", "show", "0"},
+        {"profile", "show", "-1"},
+        {"profile", "remove", "1", "2"},
+        {"simulate"},
+        {"simulate", "-o"},
+        {"simulate", "-o", work("s"), "--images", "1"},
+        {"simulate", "-o", work("s"), "--size", "10"},
+        {"simulate", "-o", work("s"), "--size", "10x10"},
+        {"simulate", "-o", work("s"), "--size", "axb"},
+        {"simulate", "-o", work("s"), "--hfov", "0"},
+        {"simulate", "-o", work("s"), "--hfov", "160"},
+        {"simulate", "-o", work("s"), "--response", "magic"},
+        {"simulate", "-o", work("s"), "--response", "gamma:0"},
+        {"simulate", "-o", work("s"), "--response", "emor:99"},
+        {"simulate", "-o", work("s"), "--vignetting", "1,2"},
+        {"simulate", "-o", work("s"), "--vignetting", "-5,0,0"},
+        {"simulate", "-o", work("s"), "--center", "1"},
+        {"simulate", "-o", work("s"), "--format", "bmp"},
+        {"simulate", "-o", work("s"), "--seed", "x"},
+        {"simulate", "-o", work("s"), "--overlap", "1"},
+    };
+    for (const Words &words : cases)
+        assert_refused(usage, words, {});
+}
+
+void test_options_that_are_no_numbers(void **) {
+    const std::string pto = scene("pano.pto"), out = work("s");
+    for (const char *option : {"--huber", "--prior", "--focal", "--aperture", "--distance"})
+        assert_refused(usage, Words{"build", pto, "--db", work("new.db"), option, "nan"} + quick, {option});
+    assert_refused(usage, {"query", "--camera", "x", "--focal", "nan", "--db", work("p.db")}, {"--focal"});
+    for (const char *option :
+         {"--hfov", "--overlap", "--jitter", "--misalign", "--ev", "--wb", "--noise", "--outliers"})
+        assert_refused(usage, {"simulate", "-o", out, "--images", "2", "--size", "40x30", option, "nan"}, {option});
+}
+
+}  // namespace
+
+#define FAULT_TEST(name) cmocka_unit_test_setup(name, prepare)
+
+int main() {
+    const CMUnitTest tests[] = {
+        FAULT_TEST(test_missing_picture),
+        FAULT_TEST(test_truncated_picture),
+        FAULT_TEST(test_not_a_picture),
+        FAULT_TEST(test_picture_of_another_size),
+        FAULT_TEST(test_not_finite_picture),
+        FAULT_TEST(test_no_usable_sample),
+        FAULT_TEST(test_pictures_apart),
+        FAULT_TEST(test_pictures_in_two_groups),
+        FAULT_TEST(test_one_picture),
+        FAULT_TEST(test_nothing_to_estimate),
+        FAULT_TEST(test_damaged_projects),
+        FAULT_TEST(test_not_a_project),
+        FAULT_TEST(test_bad_points),
+        FAULT_TEST(test_points_of_other_images),
+        FAULT_TEST(test_bad_truth),
+        FAULT_TEST(test_corrupt_database),
+        FAULT_TEST(test_corrupt_database_leaves_no_output),
+        FAULT_TEST(test_no_database),
+        FAULT_TEST(test_no_such_profile),
+        FAULT_TEST(test_output_is_a_file),
+        FAULT_TEST(test_output_would_replace_input),
+        FAULT_TEST(test_contact_sheet_would_replace_input),
+        FAULT_TEST(test_names_that_meet),
+        FAULT_TEST(test_picture_of_no_project),
+        FAULT_TEST(test_later_picture_fails),
+        FAULT_TEST(test_bad_options),
+        FAULT_TEST(test_options_that_are_no_numbers),
+    };
+    return cmocka_run_group_tests(tests, make_all, remove_folder);
+}

@@ -1,0 +1,315 @@
+/* The program and the system around it: another user's files, full disks, Ctrl-C, closed outputs. */
+#include "cli_runs.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+
+using namespace cli_runs;
+
+namespace {
+
+Words build_quick(const Words &more) { return Words{"build", scene("pano.pto")} + quick + more; }
+
+/* Read-only files: root may write everywhere, so that a child becomes nobody. */
+
+void become_nobody() {
+    if (getuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0))
+        _exit(254);
+}
+
+/* A folder with a database, nothing of which may be written, and one that anybody may write. */
+void make_read_only() {
+    fs::permissions(folder, fs::perms(0755));
+    fs::create_directories(work("closed"));
+    fs::create_directories(work("open"));
+    must_exit(done, build_quick({"--db", work("closed/p.db")}));
+    fs::permissions(work("closed/p.db"), fs::perms(0444));
+    fs::permissions(work("closed"), fs::perms(0555));
+    fs::permissions(work("open"), fs::perms(0777));
+}
+
+void test_read_only_database(void **) {
+    make_read_only();
+    const Disk before = disk();
+    const Words outputs = {"--points-out", work("open/left.txt"), "--pto-out", work("open/left.pto")};
+    Outcome outcome = run_child({"profile", "list", "--db", work("closed/p.db")}, become_nobody);
+    if (outcome.code == 254) {
+        print_message("skipped: this root may not become another user\n");
+        skip();
+    }
+    assert_int_equal(outcome.code, done); /* reading is allowed */
+    for (const std::string &db : {work("closed/p.db"), work("closed/new.db")}) {
+        const Words words = build_quick(outputs + Words{"--db", db});
+        assert_refusal(words, run_child(words, become_nobody), store_failed, {db}, before);
+    }
+    const Words remove = {"profile", "remove", "1", "--db", work("closed/p.db")};
+    assert_refusal(remove, run_child(remove, become_nobody), store_failed, {work("closed/p.db")}, before);
+    const Words apply = {"apply", "--profile", "1", "--db", work("closed/p.db"), "-o",
+                         work("closed"), scene("img000.png")};
+    assert_refusal(apply, run_child(apply, become_nobody), failed, {work("closed/img000.png")}, before);
+    const Words pto = build_quick({"--no-store", "--pto-out", work("closed/left.pto")});
+    assert_refusal(pto, run_child(pto, become_nobody), failed, {work("closed/left.pto")}, before);
+}
+
+void test_unreadable_inputs(void **) {
+    make_read_only();
+    const std::string copy = copy_of("scene", "open/copy");
+    fs::permissions(copy + "/img001.png", fs::perms(0));
+    Disk before = disk();
+    const Words build = Words{"build", copy + "/pano.pto", "--no-store"} + quick;
+    Outcome outcome = run_child(build, become_nobody);
+    if (outcome.code == 254)
+        skip();
+    assert_refusal(build, outcome, unreadable, {copy + "/img001.png"}, before);
+    fs::permissions(copy + "/pano.pto", fs::perms(0));
+    before = disk(); /* not as root: what cannot be read is empty here */
+    assert_refusal(build, run_child(build, become_nobody), unreadable, {copy + "/pano.pto"}, before);
+    fs::permissions(copy + "/pano.pto", fs::perms(0644));
+    fs::permissions(copy + "/img001.png", fs::perms(0644));
+    fs::permissions(work("closed/p.db"), fs::perms(0));
+    before = disk();
+    const Words query = {"query", "--camera", "x", "--db", work("closed/p.db")};
+    assert_refusal(query, run_child(query, become_nobody), store_failed, {work("closed/p.db")}, before);
+}
+
+/* Teardown: who is not root could not empty the folder. */
+int open_again(void **) {
+    std::error_code none;
+    fs::permissions(work("closed"), fs::perms(0755), none);
+    return 0;
+}
+
+/* A full disk: no file may grow beyond a limit. */
+
+std::function<void()> with_limit(rlim_t bytes) {
+    return [bytes] {
+        signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit = {bytes, bytes};
+        if (setrlimit(RLIMIT_FSIZE, &limit) != 0)
+            _exit(254);
+    };
+}
+
+void assert_refused_when_full(rlim_t bytes, const Words &words, int code, const std::string &named) {
+    const Disk before = disk();
+    const Outcome outcome = run_child(words, with_limit(bytes));
+    assert_refusal(words, outcome, code, {named}, before);
+}
+
+void test_full_disk(void **) {
+    must_exit(done, build_quick({"--db", work("p.db")}));
+    assert_true(load(work("p.db")).size() > 20000);
+    for (rlim_t bytes : {0, 512, 8192, 20000})
+        assert_refused_when_full(bytes, build_quick({"--db", work("p.db")}), store_failed, work("p.db"));
+    assert_refused_when_full(512, {"profile", "remove", "1", "--db", work("p.db")}, store_failed, work("p.db"));
+    /* The project is small enough, the database is not: neither appears. */
+    assert_refused_when_full(20000, build_quick({"--db", work("p.db"), "--pto-out", work("left.pto")}), store_failed,
+                             work("p.db"));
+    assert_refused_when_full(20000, build_quick({"--no-store", "--points-out", work("left.txt")}), failed,
+                             work("left.txt"));
+    assert_refused_when_full(20000, build_quick({"--db", work("p.db"), "--points-out", work("left.txt")}), failed,
+                             work("left.txt"));
+    assert_refused_when_full(100, build_quick({"--no-store", "--pto-out", work("left.pto")}), failed, work("left.pto"));
+    assert_refused_when_full(20000,
+                             {"apply", "--profile", "1", "--db", work("p.db"), "-o", work(""), scene("img000.png")},
+                             failed, work("img000.png"));
+    assert_refused_when_full(100, {"simulate", "-o", work(""), "--images", "2", "--size", "80x60"}, failed,
+                             work("img00"));
+    must_exit(done, build_quick({"--db", work("p.db")}));
+    assert_int_equal(json_of({"profile", "list", "--json", "--db", work("p.db")})["profiles"].size(), 2);
+}
+
+void test_full_disk_for_a_new_database(void **) {
+    for (rlim_t bytes : {0, 512, 8192, 20000})
+        assert_refused_when_full(bytes, build_quick({"--db", work("new.db")}), store_failed, work("new.db"));
+}
+
+/* The program itself, as a process. */
+
+struct Child {
+    pid_t id = -1;
+    int err = -1;
+    std::string said; /* on standard error */
+};
+
+Child start(const Words &words) {
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    Child child;
+    child.id = fork();
+    if (child.id == 0) {
+        std::vector<char *> arguments = {const_cast<char *>(LENSPROF_PROGRAM)};
+        for (const std::string &word : words)
+            arguments.push_back(const_cast<char *>(word.c_str()));
+        arguments.push_back(nullptr);
+        signal(SIGINT, SIG_DFL);
+        const int null = open("/dev/null", O_WRONLY);
+        dup2(null, 1);
+        dup2(ends[1], 2);
+        close(ends[0]);
+        close(ends[1]);
+        execv(LENSPROF_PROGRAM, arguments.data());
+        _exit(127);
+    }
+    close(ends[1]);
+    child.err = ends[0];
+    return child;
+}
+
+/* Reads what the child says until `word` comes, or to the end when word is empty. False when a minute passes. */
+bool listen_for(Child &child, const std::string &word) {
+    char buffer[4096];
+    while (word.empty() || !contains(child.said, word)) {
+        pollfd waiting = {child.err, POLLIN, 0};
+        if (poll(&waiting, 1, 60000) != 1)
+            return false;
+        const ssize_t got = read(child.err, buffer, sizeof buffer);
+        if (got <= 0)
+            return word.empty();
+        child.said.append(buffer, size_t(got));
+    }
+    return true;
+}
+
+int end_of(Child &child) {
+    const bool quiet = listen_for(child, "");
+    if (!quiet)
+        kill(child.id, SIGKILL);
+    close(child.err);
+    int status = 0;
+    waitpid(child.id, &status, 0);
+    return !quiet ? -1 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/* Interrupts a command when it says that it is at `stage`. Returns the seconds that it took to end. */
+double interrupt_at(const std::string &stage, const Words &words, int number = SIGINT) {
+    Child child = start(words);
+    if (!listen_for(child, stage)) {
+        kill(child.id, SIGKILL);
+        fail_msg("%s: did not get to %s: %s", joined(words).c_str(), stage.c_str(), child.said.c_str());
+    }
+    timespec before, after;
+    clock_gettime(CLOCK_MONOTONIC, &before);
+    kill(child.id, number);
+    const int code = end_of(child);
+    clock_gettime(CLOCK_MONOTONIC, &after);
+    if (code != stopped)
+        fail_msg("%s: interrupted at %s: exit code %d: %s", joined(words).c_str(), stage.c_str(), code,
+                 child.said.c_str());
+    return double(after.tv_sec - before.tv_sec) + 1e-9 * double(after.tv_nsec - before.tv_nsec);
+}
+
+/* Some 15000 pairs: seconds of fitting. */
+std::string make_many_points() {
+    must_exit(done, {"simulate", "-o", work("many"), "--no-images", "--images", "6", "--points", "15000"});
+    return work("many/pano.pto");
+}
+
+void test_interrupted_build(void **) {
+    const std::string pto = make_many_points();
+    must_exit(done, build_quick({"--db", work("p.db")}));
+    for (const std::string &db : {work("p.db"), work("new.db")})
+        for (int number : {SIGINT, SIGTERM}) {
+            const Disk before = disk();
+            const double seconds =
+                interrupt_at("fitting",
+                             {"build", pto, "--points", work("many/points.txt"), "--camera", "X", "--db", db, "--modes",
+                              "25", "--progress", "--pto-out", work("left.pto"), "--points-out", work("left.txt")},
+                             number);
+            const std::string changes = difference(before, disk());
+            if (!changes.empty())
+                fail_msg("after the interrupt:%s", changes.c_str());
+            if (seconds > 5)
+                fail_msg("it took %.1f s to stop", seconds);
+        }
+}
+
+/* More pictures than can be read, sampled and fitted before the signal comes. */
+void test_interrupted_with_pictures(void **) {
+    must_exit(done, {"simulate", "-o", work("many"), "--images", "12", "--size", "320x240"});
+    const Disk before = disk();
+    interrupt_at("reading pictures", {"build", work("many/pano.pto"), "--db", work("p.db"), "--progress", "--pairs",
+                                      "20000", "--pto-out", work("left.pto"), "--points-out", work("left.txt")});
+    const std::string changes = difference(before, disk());
+    if (!changes.empty())
+        fail_msg("after the interrupt:%s", changes.c_str());
+}
+
+/* What is there is complete. */
+void assert_complete_pictures(const std::string &place, size_t fewer_than) {
+    size_t count = 0;
+    for (const fs::directory_entry &entry : fs::directory_iterator(place)) {
+        assert_int_equal(read_picture(entry.path().string()).height, 400);
+        ++count;
+    }
+    assert_true(count < fewer_than);
+}
+
+void test_interrupted_apply(void **) {
+    must_exit(done, build_quick({"--db", work("p.db")}));
+    must_exit(done, {"simulate", "-o", work("one"), "--images", "2", "--size", "500x400"});
+    fs::create_directory(work("many"));
+    Words files;
+    for (int i = 0; i < 60; ++i) {
+        files.push_back(work("many/" + std::to_string(i) + ".png"));
+        fs::copy(work("one/img000.png"), files.back());
+    }
+    interrupt_at("correcting",
+                 Words{"apply", "--profile", "1", "--db", work("p.db"), "--progress", "-o", work("out")} + files);
+    assert_complete_pictures(work("out"), 60);
+}
+
+/* Says nothing without a terminal: the first picture tells that it is at work. */
+void test_interrupted_simulate(void **) {
+    Child child = start({"simulate", "-o", work("out"), "--images", "60", "--size", "500x400"});
+    for (int wait = 0; wait < 6000 && !fs::exists(work("out/img000.png")); ++wait)
+        usleep(10000);
+    kill(child.id, SIGINT);
+    assert_int_equal(end_of(child), stopped);
+    assert_true(contains(child.said, "interrupted"));
+    assert_complete_pictures(work("out"), 60);
+}
+
+void test_full_standard_output(void **) {
+    if (access("/dev/full", W_OK) != 0)
+        skip();
+    const pid_t child = fork();
+    if (child == 0) {
+        dup2(open("/dev/full", O_WRONLY), 1);
+        dup2(open("/dev/null", O_WRONLY), 2);
+        execl(LENSPROF_PROGRAM, LENSPROF_PROGRAM, "version", nullptr);
+        _exit(127);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), failed);
+}
+
+void test_program_is_the_function(void **) {
+    for (const Words &words :
+         {Words{"version"}, Words{"frobnicate"}, Words{"profile", "list", "--db", work("none.db")}}) {
+        Child child = start(words);
+        const Outcome outcome = run_words(words);
+        assert_int_equal(end_of(child), outcome.code);
+        assert_string_equal(child.said.c_str(), outcome.err.c_str());
+    }
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_read_only_database, empty_work, open_again),
+        cmocka_unit_test_setup_teardown(test_unreadable_inputs, empty_work, open_again),
+        CLI_TEST(test_full_disk),
+        CLI_TEST(test_full_disk_for_a_new_database),
+        CLI_TEST(test_interrupted_build),
+        CLI_TEST(test_interrupted_with_pictures),
+        CLI_TEST(test_interrupted_apply),
+        CLI_TEST(test_interrupted_simulate),
+        CLI_TEST(test_full_standard_output),
+        CLI_TEST(test_program_is_the_function),
+    };
+    return cmocka_run_group_tests(tests, make_scene, remove_folder);
+}

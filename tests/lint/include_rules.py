@@ -1,0 +1,280 @@
+#!/usr/bin/env python3
+"""Layer rules, by the #include lines: who may use what (docs/architecture.md, section 2).
+
+usage: include_rules.py SOURCE_DIR       list violations; exit 1 when there are any
+       include_rules.py --self-check     plant violations in made-up trees; exit 1 when one is not found
+"""
+
+import pathlib
+import re
+import sys
+import tempfile
+
+SOURCES = {".c", ".h", ".cpp", ".hpp", ".cc", ".cxx", ".hh", ".inc"}
+INCLUDE = re.compile(r'^\s*#\s*include(?:_next)?\s*(?:<([^>]+)>|"([^"]+)"|(\S+))')
+
+FREESTANDING = {"float.h", "limits.h", "stdbool.h", "stddef.h", "stdint.h"}
+C_LIBRARY = FREESTANDING | {
+    "assert.h",
+    "ctype.h",
+    "errno.h",
+    "fenv.h",
+    "inttypes.h",
+    "locale.h",
+    "math.h",
+    "setjmp.h",
+    "signal.h",
+    "stdarg.h",
+    "stdio.h",
+    "stdlib.h",
+    "string.h",
+    "time.h",
+}
+C_ARITHMETIC = C_LIBRARY - {"locale.h", "setjmp.h", "signal.h", "time.h"}
+POSIX = {"fcntl.h", "unistd.h", "sys/*"}
+INTRINSICS = {"immintrin.h", "smmintrin.h", "arm_neon.h"}
+CPP_LIBRARY = {"<c++>"}  # every standard C++ header: a name without a dot
+CPP_OUTSIDE = {
+    "condition_variable",
+    "csetjmp",
+    "csignal",
+    "ctime",
+    "filesystem",
+    "fstream",
+    "future",
+    "iostream",
+    "locale",
+    "mutex",
+    "shared_mutex",
+    "stop_token",
+    "syncstream",
+    "thread",
+}
+
+CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "profile.h"}
+FIT_API = CORE_API | {"sample.h", "fit.h"}
+FORMATS_API = FIT_API | {"formats.h"}
+STORE_API = CORE_API | {"store.h"}
+WHOLE_API = FORMATS_API | STORE_API | {"lensprof.h"}
+
+
+class Layer:
+    """api: public headers; other: headers in angle brackets; private: folders under src beside its own; never: standard
+    headers that are left out."""
+
+    def __init__(self, api, other, private=(), never=frozenset()):
+        self.api, self.other, self.private, self.never = api, other, private, never
+
+
+# The longest matching folder counts.
+LAYERS = {
+    "src/core": Layer(CORE_API, FREESTANDING | {"math.h", "string.h"}),
+    "src/core/kernels": Layer(CORE_API, FREESTANDING | {"string.h"} | INTRINSICS, private=["core"]),
+    "src/fit": Layer(FIT_API, C_ARITHMETIC | CPP_LIBRARY | {"Eigen/*", "nlopt.h", "nlopt.hpp"}, ["core"], CPP_OUTSIDE),
+    "src/formats": Layer(
+        FORMATS_API, C_ARITHMETIC | CPP_LIBRARY | {"pugixml.hpp", "nlohmann/*"}, ["core"], CPP_OUTSIDE
+    ),
+    "src/store": Layer(STORE_API, C_ARITHMETIC | {"sqlite3.h"}, ["core"]),
+    "src/cli": Layer(
+        WHOLE_API,
+        C_LIBRARY
+        | CPP_LIBRARY
+        | POSIX
+        | {"CLI/*", "exiv2/*", "jerror.h", "jpeglib.h", "nlohmann/*", "opencv2/*", "png.h", "tiffio.h"},
+    ),
+    "examples": Layer(WHOLE_API, C_LIBRARY),
+    "bindings": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | {"Python.h"}),
+}
+
+# What each public header may include, beside <stddef.h> and <stdint.h>: nothing above its own layer.
+PUBLIC = {
+    "base.h": set(),
+    "model.h": CORE_API,
+    "geometry.h": CORE_API,
+    "apply.h": CORE_API,
+    "profile.h": CORE_API,
+    "sample.h": FIT_API,
+    "fit.h": FIT_API,
+    "formats.h": FORMATS_API,
+    "store.h": STORE_API,
+    "lensprof.h": WHOLE_API,
+}
+
+
+def matches(header, allowed):
+    if header in allowed or ("." not in header and "/" not in header and "<c++>" in allowed):
+        return True
+    return any(pattern.endswith("/*") and header.startswith(pattern[:-1]) for pattern in allowed)
+
+
+def layer_of(folder):
+    found = [name for name in LAYERS if folder == name or folder.startswith(name + "/")]
+    return max(found, key=len, default=None)
+
+
+def check_quoted(root, path, layer_name, header):
+    """A quoted header must be the layer's own, or of a folder that it may see."""
+    if ".." in header.split("/"):
+        return "leads out of its folder by '..'; name it from src"
+    if (path.parent / header).is_file() or (root / layer_name / header).is_file():
+        return None
+    owner = header.split("/")[0]
+    if owner in LAYERS[layer_name].private and (root / "src" / header).is_file():
+        return None
+    if (
+        (root / "src" / header).is_file()
+        or (root / "include" / header).is_file()
+        or (root / "include/lensprof" / header).is_file()
+    ):
+        return f"is not {layer_name}'s own; it may use public headers as <lensprof/...>" + (
+            f" and private ones of {', '.join(LAYERS[layer_name].private)}" if LAYERS[layer_name].private else ""
+        )
+    return f"is not found in {layer_name}"
+
+
+def check_angle(layer_name, header):
+    layer = LAYERS[layer_name]
+    if header.startswith("lensprof/"):
+        name = header[len("lensprof/") :]
+        return None if name in layer.api else f"belongs to a layer that {layer_name} must not know"
+    if header in layer.never:
+        return f"{layer_name} does no input or output, threads or time"
+    return None if matches(header, layer.other) else f"is not among the headers that {layer_name} may use"
+
+
+def check_public(path, angle, quoted):
+    allowed = PUBLIC.get(path.name)
+    if allowed is None:
+        return "its header is not in the table PUBLIC of tests/lint/include_rules.py; add it with its layer"
+    if angle:
+        return None if angle in {"stddef.h", "stdint.h"} else "a public header includes stddef.h and stdint.h only"
+    return None if quoted in allowed else f"{path.name} must not know {quoted}"
+
+
+def check_tree(root):
+    """Violations as texts, and the number of files looked at."""
+    violations, files = [], 0
+    for path in sorted(p for top in ("src", "include", "examples", "bindings") for p in (root / top).rglob("*")):
+        folder = path.parent.relative_to(root).as_posix()
+        public = folder == "include/lensprof"
+        name = layer_of(folder)
+        if (
+            path.suffix not in SOURCES
+            or not path.is_file()
+            or (not public and name is None and not folder.startswith("src"))
+        ):
+            continue
+        files += 1
+        if not public and name is None:
+            violations.append(
+                f"{path.relative_to(root)}: is in no layer; add its folder to LAYERS in tests/lint/include_rules.py"
+            )
+            continue
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            match = INCLUDE.match(line)
+            if not match:
+                continue
+            angle, quoted, macro = match.groups()
+            if macro:
+                why = "is not a plain name"
+            elif public:
+                why = check_public(path, angle, quoted)
+            else:
+                why = check_angle(name, angle) if angle else check_quoted(root, path, name, quoted)
+            if why:
+                violations.append(f"{path.relative_to(root)}:{number}: {angle or quoted or macro}: {why}")
+    return violations, files
+
+
+GOOD = {
+    "include/lensprof/base.h": "#include <stddef.h>\n#include <stdint.h>\n",
+    "include/lensprof/store.h": '#include "base.h"\n',
+    "src/core/base.c": '#include <lensprof/base.h>\n#include <string.h>\n#include "own.h"\n',
+    "src/core/own.h": "#include <math.h>\n",
+    "src/fit/fit.cpp": '#include <vector>\n#include <Eigen/Core>\n#include "core/own.h"\n',
+    "src/formats/pto.cpp": "#include <string>\n#include <lensprof/fit.h>\n",
+    "src/store/store.c": "#include <sqlite3.h>\n#include <lensprof/store.h>\n// #include <fine.h>\n",
+    "src/cli/run.cpp": '#include <CLI/CLI.hpp>\n#include <sys/stat.h>\n#include "run.hpp"\n',
+    "src/cli/run.hpp": "#include <lensprof/lensprof.h>\n",
+    "examples/one.c": "#include <stdio.h>\n#include <lensprof/lensprof.h>\n",
+}
+BAD = [
+    ("src/core/base.c", "#include <stdio.h>"),
+    ("src/core/base.c", "#include <stdlib.h>"),
+    ("src/core/base.c", "#  include <threads.h>"),
+    ("src/core/base.c", "#include <lensprof/store.h>"),
+    ("src/core/base.c", '#include "fit/fit.hpp"'),
+    ("src/core/base.c", "#include <vector>"),
+    ("src/core/base.c", '#include "lensprof/base.h"'),
+    ("src/core/base.c", '#include "../fit/fit.cpp"'),
+    ("src/core/kernels/lane.c", "#include <math.h>"),
+    ("src/core/base.c", "#include <immintrin.h>"),
+    ("src/core/base.c", "#include HEADER"),
+    ("src/fit/fit.cpp", "#include <lensprof/store.h>"),
+    ("src/fit/fit.cpp", "#include <sqlite3.h>"),
+    ("src/fit/fit.cpp", "#include <lensprof/formats.h>"),
+    ("src/fit/fit.cpp", '#include "formats/pto.cpp"'),
+    ("src/fit/fit.cpp", "#include <iostream>"),
+    ("src/fit/fit.cpp", "#include <thread>"),
+    ("src/fit/fit.cpp", "#include <png.h>"),
+    ("src/fit/fit.cpp", "#include <lensprof/lensprof.h>"),
+    ("src/formats/pto.cpp", "#include <Eigen/Core>"),
+    ("src/formats/pto.cpp", "#include <nlopt.h>"),
+    ("src/formats/pto.cpp", '#include "fit/fit.cpp"'),
+    ("src/formats/pto.cpp", "#include <fstream>"),
+    ("src/formats/pto.cpp", "#include <lensprof/store.h>"),
+    ("src/store/store.c", "#include <lensprof/fit.h>"),
+    ("src/store/store.c", "#include <unistd.h>"),
+    ("src/store/store.c", '#include "cli/run.hpp"'),
+    ("src/cli/run.cpp", '#include "core/own.h"'),
+    ("src/cli/run.cpp", "#include <sqlite3.h>"),
+    ("src/cli/run.cpp", "#include <Eigen/Core>"),
+    ("src/cli/run.cpp", "#include <nlopt.h>"),
+    ("src/cli/run.cpp", '#include "store/store.c"'),
+    ("include/lensprof/base.h", "#include <stdio.h>"),
+    ("include/lensprof/base.h", '#include "store.h"'),
+    ("include/lensprof/new.h", "#include <stddef.h>"),
+    ("src/other/new.c", "#include <stddef.h>"),
+    ("examples/one.c", '#include "core/own.h"'),
+    ("bindings/python/x.c", "#include <sqlite3.h>"),
+]
+
+
+def write_tree(root, tree):
+    for name, text in tree.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text)
+
+
+def self_check():
+    failures = []
+    with tempfile.TemporaryDirectory() as folder:
+        write_tree(pathlib.Path(folder), GOOD)
+        violations, files = check_tree(pathlib.Path(folder))
+        failures += [f"false alarm: {v}" for v in violations]
+        if files != len(GOOD):
+            failures.append(f"looked at {files} files of {len(GOOD)}")
+    for name, line in BAD:
+        with tempfile.TemporaryDirectory() as folder:
+            write_tree(pathlib.Path(folder), {**GOOD, name: GOOD.get(name, "") + line + "\n"})
+            violations, _ = check_tree(pathlib.Path(folder))
+            if len(violations) != 1 or not violations[0].startswith(name):
+                failures.append(f"{name}: {line}: found {violations}")
+    print("\n".join(failures) or f"include_rules: {len(BAD)} planted violations found")
+    return 1 if failures else 0
+
+
+def main():
+    if sys.argv[1:] == ["--self-check"]:
+        return self_check()
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    violations, files = check_tree(pathlib.Path(sys.argv[1]))
+    if files < 20:
+        violations.append(f"only {files} files found under {sys.argv[1]}; is it the source folder?")
+    print("\n".join(violations) or f"include_rules: {files} files, no violation")
+    return 1 if violations else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,262 @@
+#!/usr/bin/env python3
+"""Layer rules, by what the compiled code refers to and what the shared library exports.
+
+usage: symbol_rules.py [--nm NM] [--cc CC] CHECK
+
+  core ARCHIVE                         the core needs nothing but the listed functions, and has no writable data
+  layer NAME ARCHIVE OBJECTS_FOLDER    fit, formats or store refer to themselves, the core and their library only
+  exports LIBRARY HEADERS              exported symbols = exported_symbols.txt = LENSPROF_API of the headers
+  self-check                           every check must find a planted violation
+
+Prints violations; exit 1 when there are any.
+"""
+
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+LIST = pathlib.Path(__file__).with_name("exported_symbols.txt")
+
+LIBM = """acos asin atan atan2 cbrt ceil copysign cos cosh exp exp2 expm1 fabs floor fma fmax fmin fmod frexp hypot ldexp
+log log10 log1p log2 lrint lround modf nearbyint pow remainder rint round scalbn sin sinh sqrt tan tanh trunc""".split()
+# sincos: what gcc makes of sin and cos of one number. _GLOBAL_OFFSET_TABLE_: of position-independent code.
+CORE_MAY_NEED = {
+    *LIBM,
+    *(name + "f" for name in LIBM),
+    "sincos",
+    "sincosf",
+    "memcmp",
+    "memcpy",
+    "memmove",
+    "memset",
+    "_GLOBAL_OFFSET_TABLE_",
+}
+WRITABLE = re.compile(r"^(\.t?data|\.t?bss|\*COM\*)(\.(?!rel\.ro).*)?$")  # tables of pointers are in .data.rel.ro
+
+# What fit, formats and store must leave to the program: files, output, environment, time of day, randomness, threads.
+OUTSIDE = re.compile(
+    r"""^_*(
+    f?(open|open64|close|read|write|printf|puts|putc|getc|scanf|seek|tell|flush) | fdopen | freopen(64)? | fopen(64)?
+  | remove | rename | unlink | tmpfile(64)? | mkstemp | v?f?printf | putchar | perror | std(in|out|err) | getenv
+  | setenv | setlocale | s?rand | random | drand48 | time | gettimeofday | localtime(_r)? | gmtime(_r)? | system | fork | exit
+  | abort | signal | pthread_create
+)(_chk)?$ | ^_ZSt[34](cin|cout|cerr|clog)$ | basic_[io]?fstream | basic_filebuf | St6thread | random_device""",
+    re.VERBOSE,
+)
+
+
+class Nm:
+    def __init__(self, program):
+        self.program = program
+
+    def symbols(self, path, *options):
+        """(name, type letter, section) of every symbol."""
+        text = subprocess.run(
+            [self.program, "--format=sysv", *options, str(path)],
+            check=True,
+            stdout=subprocess.PIPE,
+            universal_newlines=True,
+        ).stdout
+        found = []
+        for line in text.splitlines():
+            fields = [field.strip() for field in line.split("|")]
+            if len(fields) == 7 and fields[0] != "Name":
+                found.append((fields[0].split("@")[0], fields[2], fields[6]))
+        return found
+
+    def needed_and_made(self, paths):
+        needed, made = set(), set()
+        for path in paths:
+            for name, kind, _ in self.symbols(path):
+                (needed if kind in "Uw" else made).add(name)
+        return needed - made, made
+
+
+def check_core(nm, archive):
+    needed, made = nm.needed_and_made([archive])
+    if "lensprof_apply" not in made and "planted" not in made:
+        return [f"{archive}: does not hold the core"]
+    violations = [
+        f"{archive}: refers to {name}; the core needs libm and memcpy only" for name in sorted(needed - CORE_MAY_NEED)
+    ]
+    for name, _, section in nm.symbols(archive):
+        if WRITABLE.match(section):
+            violations.append(f"{archive}: {name} is writable data ({section}); the core has no mutable globals")
+    return violations
+
+
+LIBRARY_OF = {"fit": re.compile(r"^nlopt_"), "formats": re.compile(r"^$"), "store": re.compile(r"^sqlite3_")}
+OF_LIBRARIES = re.compile(r"^(nlopt_|sqlite3_|lensprof_|lp_|_ZNK?8lensprof|png_|TIFF|jpeg_|_ZN5Exiv2)")
+
+
+def check_layer(nm, name, archive, folder):
+    objects = sorted(pathlib.Path(folder).rglob("*.o"))
+    if not objects:
+        return [f"{folder}: holds no object files"]
+    needed, _ = nm.needed_and_made(objects)
+    _, core = nm.needed_and_made([archive])
+    violations = []
+    for symbol in sorted(needed - core):
+        if OUTSIDE.search(symbol):
+            violations.append(
+                f"{name}: refers to {symbol}; files, output, environment, clock and threads belong to the program"
+            )
+        elif OF_LIBRARIES.match(symbol) and not LIBRARY_OF[name].match(symbol):
+            violations.append(f"{name}: refers to {symbol}, of a layer or library that it must not know")
+    return violations
+
+
+def declared_functions(headers):
+    found = set()
+    for header in sorted(pathlib.Path(headers).glob("*.h")):
+        text = re.sub(r"/\*.*?\*/", " ", header.read_text(encoding="utf-8"), flags=re.DOTALL)
+        text = re.sub(r"^\s*#.*$", "", text, flags=re.MULTILINE)
+        found |= set(re.findall(r"\bLENSPROF_API\b[^;({]*?(\w+)\s*\(", text))
+    return found
+
+
+def check_exports(nm, library, headers, listed):
+    exported = {name for name, kind, _ in nm.symbols(library, "--dynamic", "--defined-only") if kind != "A"}
+    declared = declared_functions(headers)
+    cpp = sorted(name for name in exported - listed if name.startswith("_Z"))
+    violations = [
+        f"{library}: exports {name}, which is not in {LIST.name}" for name in sorted(exported - listed - set(cpp))
+    ]
+    if cpp:
+        violations.append(
+            f"{library}: exports {len(cpp)} symbols of C++, which can clash with those of the program that loads it: "
+            f"{' '.join(cpp)}; link it with a version script that lets out lensprof_* only"
+        )
+    violations += [f"{library}: does not export {name}, which is in {LIST.name}" for name in sorted(listed - exported)]
+    violations += [f"{headers}: declares {name}, which is not in {LIST.name}" for name in sorted(declared - listed)]
+    violations += [f"{headers}: does not declare {name}, which is in {LIST.name}" for name in sorted(listed - declared)]
+    return violations
+
+
+def read_list():
+    lines = [line.strip() for line in LIST.read_text().splitlines() if line.strip() and not line.startswith("#")]
+    if lines != sorted(set(lines)):
+        sys.exit(f"{LIST}: is not sorted or names a function twice")
+    return set(lines)
+
+
+def self_check(nm, cc):
+    failures = []
+
+    def expect(what, violations, wanted):
+        if len(violations) != len(wanted) or any(word not in text for word, text in zip(wanted, violations)):
+            failures.append(f"{what}: found {violations}, wanted {wanted}")
+
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+
+        def compile_c(text, name="planted"):
+            (folder / name).mkdir(exist_ok=True)
+            (folder / f"{name}.c").write_text(text)
+            subprocess.run(
+                [cc, "-O1", "-fPIC", "-c", "-o", folder / name / f"{name}.o", folder / f"{name}.c"], check=True
+            )
+            return folder / name / f"{name}.o"
+
+        clean = (
+            "#include <math.h>\nstatic const char *const names[] = {\"a\", \"b\"};\n"
+            "double planted(double x, int i) { return pow(x, names[i][0]); }\n"
+        )
+        expect("clean core", check_core(nm, compile_c(clean)), [])
+        expect(
+            "malloc",
+            check_core(nm, compile_c(clean + "#include <stdlib.h>\nvoid *m(int n) { return malloc(n); }\n")),
+            ["malloc"],
+        )
+        expect(
+            "puts", check_core(nm, compile_c(clean + "#include <stdio.h>\nvoid p(void) { puts(\"x\"); }\n")), ["puts"]
+        )
+        expect(
+            "errno",
+            check_core(nm, compile_c(clean + "#include <errno.h>\nint e(void) { return errno; }\n")),
+            ["__errno_location"],
+        )
+        expect(
+            "static",
+            check_core(nm, compile_c(clean + "static int count;\nint c(void) { return ++count; }\n")),
+            ["count"],
+        )
+        expect("initialised", check_core(nm, compile_c(clean + "int count = 3;\n")), ["count"])
+        expect("thread-local", check_core(nm, compile_c(clean + "_Thread_local int count = 3;\n")), ["count"])
+        core = compile_c(clean)
+        for layer, code, wanted in [
+            (
+                "fit",
+                "int nlopt_create(void); double planted(double, int); "
+                "int f(void) { return nlopt_create() + planted(1, 1); }",
+                [],
+            ),
+            ("fit", "int sqlite3_open(void); int f(void) { return sqlite3_open(); }", ["sqlite3_open"]),
+            (
+                "fit",
+                "int lensprof_store_open(void); int f(void) { return lensprof_store_open(); }",
+                ["lensprof_store_open"],
+            ),
+            ("formats", "int nlopt_create(void); int f(void) { return nlopt_create(); }", ["nlopt_create"]),
+            ("formats", "#include <stdio.h>\nvoid *f(void) { return fopen(\"x\", \"r\"); }", ["fopen"]),
+            ("formats", "#include <stdio.h>\nint f(char *s) { return snprintf(s, 9, \"%s\", s + 1); }", []),
+            ("store", "#include <time.h>\nlong f(void) { return time(0); }", ["time"]),
+            ("store", "int sqlite3_open(void); int f(void) { return sqlite3_open(); }", []),
+        ]:
+            compile_c(code, "layer")
+            expect(f"{layer}: {code}", check_layer(nm, layer, core, folder / "layer"), wanted)
+        headers = folder / "headers"
+        headers.mkdir()
+        (headers / "x.h").write_text(
+            "/* LENSPROF_API int lensprof_no(void); */\n#define LENSPROF_API\n"
+            "LENSPROF_API LENSPROF_MUST_USE const double *\nlensprof_one(int x);\n"
+            "LENSPROF_API void lensprof_two(void (*f)(int));\n"
+        )
+        library = folder / "lib.so"
+        for code, listed, wanted in [
+            ("int lensprof_one, lensprof_two;", {"lensprof_one", "lensprof_two"}, []),
+            ("int lensprof_one, lensprof_two, lp_x;", {"lensprof_one", "lensprof_two"}, ["exports lp_x"]),
+            (
+                "int lensprof_one, lensprof_two, _ZSt1x, _ZSt1y;",
+                {"lensprof_one", "lensprof_two"},
+                ["exports 2 symbols of C++"],
+            ),
+            ("int lensprof_one;", {"lensprof_one", "lensprof_two"}, ["not export lensprof_two"]),
+            ("int lensprof_one, lensprof_two;", {"lensprof_one"}, ["exports lensprof_two", "declares lensprof_two"]),
+            (
+                "int lensprof_one, lensprof_two, lensprof_x;",
+                {"lensprof_one", "lensprof_two", "lensprof_x"},
+                ["not declare lensprof_x"],
+            ),
+        ]:
+            subprocess.run([cc, "-shared", "-o", library, compile_c(code, "exports")], check=True)
+            expect(code, check_exports(nm, library, headers, listed), wanted)
+    print("\n".join(failures) or "symbol_rules: planted violations found")
+    return 1 if failures else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--nm", default="nm")
+    parser.add_argument("--cc", default="cc")
+    parser.add_argument("check", choices=["core", "layer", "exports", "self-check"])
+    parser.add_argument("arguments", nargs="*")
+    options = parser.parse_args()
+    nm = Nm(options.nm)
+    if options.check == "self-check":
+        return self_check(nm, options.cc)
+    if options.check == "core":
+        violations = check_core(nm, *options.arguments)
+    elif options.check == "layer":
+        violations = check_layer(nm, *options.arguments)
+    else:
+        violations = check_exports(nm, *options.arguments, read_list())
+    print("\n".join(violations) or f"symbol_rules: {options.check} {' '.join(options.arguments)}: no violation")
+    return 1 if violations else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

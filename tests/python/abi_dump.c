@@ -1,0 +1,347 @@
+/* Prints what the C compiler makes of the public headers, as JSON: sizes and offsets of structs, values of constants.
+ * test_abi.py compares it with the tables of the Python package, and with the headers that nothing is missing here. */
+#include <lensprof/lensprof.h>
+
+#include <stdio.h>
+
+static const char *separator = "";
+
+static void begin_struct(const char *name, size_t size, size_t alignment)
+{
+    printf("%s\n\"%s\": {\"size\": %zu, \"alignment\": %zu, \"fields\": {", separator, name, size, alignment);
+    separator = "";
+}
+
+static void print_field(const char *name, size_t offset, size_t size)
+{
+    printf("%s\"%s\": [%zu, %zu]", separator, name, offset, size);
+    separator = ", ";
+}
+
+static void end_struct(void)
+{
+    printf("}}");
+    separator = ",";
+}
+
+static void print_value(const char *name, double value)
+{
+    printf("%s\n\"%s\": %.17g", separator, name, value);
+    separator = ",";
+}
+
+#define BEGIN(type) begin_struct(#type, sizeof(type), _Alignof(type))
+#define FIELD(type, name) print_field(#name, offsetof(type, name), sizeof(((type *)0)->name))
+#define VALUE(name) print_value(#name, (double)(name))
+
+static void print_model_structs(void)
+{
+    BEGIN(lensprof_error);
+    FIELD(lensprof_error, text);
+    end_struct();
+    BEGIN(lensprof_response);
+    FIELD(lensprof_response, kind);
+    FIELD(lensprof_response, modes);
+    FIELD(lensprof_response, gamma);
+    FIELD(lensprof_response, emor);
+    FIELD(lensprof_response, table);
+    end_struct();
+    BEGIN(lensprof_vignetting);
+    FIELD(lensprof_vignetting, k);
+    FIELD(lensprof_vignetting, center);
+    end_struct();
+    BEGIN(lensprof_exposure);
+    FIELD(lensprof_exposure, ev);
+    FIELD(lensprof_exposure, white_balance);
+    end_struct();
+    BEGIN(lensprof_camera);
+    FIELD(lensprof_camera, projection);
+    FIELD(lensprof_camera, width);
+    FIELD(lensprof_camera, height);
+    FIELD(lensprof_camera, hfov_deg);
+    FIELD(lensprof_camera, yaw_deg);
+    FIELD(lensprof_camera, pitch_deg);
+    FIELD(lensprof_camera, roll_deg);
+    FIELD(lensprof_camera, radial);
+    FIELD(lensprof_camera, shift_px);
+    FIELD(lensprof_camera, shear_px);
+    FIELD(lensprof_camera, translation);
+    FIELD(lensprof_camera, plane_deg);
+    end_struct();
+}
+
+static void print_apply_structs(void)
+{
+    BEGIN(lensprof_image);
+    FIELD(lensprof_image, data);
+    FIELD(lensprof_image, row_bytes);
+    FIELD(lensprof_image, width);
+    FIELD(lensprof_image, height);
+    FIELD(lensprof_image, sample);
+    FIELD(lensprof_image, layout);
+    end_struct();
+    BEGIN(lensprof_apply_options);
+    FIELD(lensprof_apply_options, struct_size);
+    FIELD(lensprof_apply_options, direction);
+    FIELD(lensprof_apply_options, input);
+    FIELD(lensprof_apply_options, output);
+    FIELD(lensprof_apply_options, frame_width);
+    FIELD(lensprof_apply_options, frame_height);
+    FIELD(lensprof_apply_options, source_sample);
+    FIELD(lensprof_apply_options, source_layout);
+    FIELD(lensprof_apply_options, target_sample);
+    FIELD(lensprof_apply_options, saturated);
+    FIELD(lensprof_apply_options, responses);
+    FIELD(lensprof_apply_options, vignettings);
+    FIELD(lensprof_apply_options, response);
+    FIELD(lensprof_apply_options, vignetting);
+    FIELD(lensprof_apply_options, source);
+    FIELD(lensprof_apply_options, target);
+    end_struct();
+}
+
+static void print_profile_structs(void)
+{
+    BEGIN(lensprof_profile_key);
+    FIELD(lensprof_profile_key, camera_maker);
+    FIELD(lensprof_profile_key, camera_model);
+    FIELD(lensprof_profile_key, lens);
+    FIELD(lensprof_profile_key, focal_mm);
+    FIELD(lensprof_profile_key, aperture);
+    FIELD(lensprof_profile_key, distance_m);
+    FIELD(lensprof_profile_key, processing);
+    FIELD(lensprof_profile_key, reserved);
+    end_struct();
+    BEGIN(lensprof_provenance);
+    FIELD(lensprof_provenance, method);
+    FIELD(lensprof_provenance, software);
+    FIELD(lensprof_provenance, source);
+    FIELD(lensprof_provenance, created_unix_s);
+    FIELD(lensprof_provenance, images);
+    FIELD(lensprof_provenance, pairs);
+    FIELD(lensprof_provenance, heldout_rms);
+    FIELD(lensprof_provenance, inlier_share);
+    end_struct();
+    BEGIN(lensprof_profile);
+    FIELD(lensprof_profile, key);
+    FIELD(lensprof_profile, provenance);
+    FIELD(lensprof_profile, responses);
+    FIELD(lensprof_profile, vignettings);
+    FIELD(lensprof_profile, response);
+    FIELD(lensprof_profile, vignetting);
+    FIELD(lensprof_profile, covariance_size);
+    FIELD(lensprof_profile, reserved);
+    FIELD(lensprof_profile, covariance);
+    end_struct();
+    BEGIN(lensprof_store_row);
+    FIELD(lensprof_store_row, id);
+    FIELD(lensprof_store_row, key);
+    FIELD(lensprof_store_row, provenance);
+    end_struct();
+}
+
+static void print_sample_structs(void)
+{
+    BEGIN(lensprof_pair);
+    FIELD(lensprof_pair, image);
+    FIELD(lensprof_pair, xy);
+    FIELD(lensprof_pair, value);
+    end_struct();
+    BEGIN(lensprof_sample_image);
+    FIELD(lensprof_sample_image, view);
+    FIELD(lensprof_sample_image, camera);
+    FIELD(lensprof_sample_image, reduction);
+    FIELD(lensprof_sample_image, reserved);
+    FIELD(lensprof_sample_image, mask);
+    FIELD(lensprof_sample_image, mask_row_bytes);
+    FIELD(lensprof_sample_image, black);
+    FIELD(lensprof_sample_image, white);
+    end_struct();
+    BEGIN(lensprof_sample_options);
+    FIELD(lensprof_sample_options, struct_size);
+    FIELD(lensprof_sample_options, sampling);
+    FIELD(lensprof_sample_options, pairs);
+    FIELD(lensprof_sample_options, seed);
+    end_struct();
+}
+
+static void print_fit_structs(void)
+{
+    BEGIN(lensprof_fit_image);
+    FIELD(lensprof_fit_image, width);
+    FIELD(lensprof_fit_image, height);
+    FIELD(lensprof_fit_image, exposure);
+    FIELD(lensprof_fit_image, free);
+    FIELD(lensprof_fit_image, ev_of);
+    FIELD(lensprof_fit_image, red_of);
+    FIELD(lensprof_fit_image, blue_of);
+    end_struct();
+    BEGIN(lensprof_fit_options);
+    FIELD(lensprof_fit_options, struct_size);
+    FIELD(lensprof_fit_options, channels);
+    FIELD(lensprof_fit_options, reference);
+    FIELD(lensprof_fit_options, free);
+    FIELD(lensprof_fit_options, modes);
+    FIELD(lensprof_fit_options, loss);
+    FIELD(lensprof_fit_options, huber_levels);
+    FIELD(lensprof_fit_options, prior_weight);
+    FIELD(lensprof_fit_options, max_iterations);
+    FIELD(lensprof_fit_options, reserved);
+    FIELD(lensprof_fit_options, response);
+    FIELD(lensprof_fit_options, vignetting);
+    FIELD(lensprof_fit_options, progress);
+    FIELD(lensprof_fit_options, progress_user);
+    end_struct();
+    BEGIN(lensprof_fit_result);
+    FIELD(lensprof_fit_result, struct_size);
+    FIELD(lensprof_fit_result, usable);
+    FIELD(lensprof_fit_result, reason);
+    FIELD(lensprof_fit_result, response);
+    FIELD(lensprof_fit_result, vignetting);
+    FIELD(lensprof_fit_result, pairs);
+    FIELD(lensprof_fit_result, components);
+    FIELD(lensprof_fit_result, iterations);
+    FIELD(lensprof_fit_result, converged);
+    FIELD(lensprof_fit_result, before_rms);
+    FIELD(lensprof_fit_result, heldout_rms);
+    FIELD(lensprof_fit_result, heldout_median);
+    FIELD(lensprof_fit_result, noise_levels);
+    FIELD(lensprof_fit_result, inlier_share);
+    FIELD(lensprof_fit_result, seconds);
+    FIELD(lensprof_fit_result, covariance_size);
+    FIELD(lensprof_fit_result, reserved);
+    FIELD(lensprof_fit_result, covariance);
+    end_struct();
+}
+
+static void print_formats_structs(void)
+{
+    BEGIN(lensprof_pto_image);
+    FIELD(lensprof_pto_image, camera);
+    FIELD(lensprof_pto_image, exposure);
+    FIELD(lensprof_pto_image, vignetting);
+    FIELD(lensprof_pto_image, emor);
+    FIELD(lensprof_pto_image, response_type);
+    FIELD(lensprof_pto_image, free);
+    FIELD(lensprof_pto_image, response_of);
+    FIELD(lensprof_pto_image, vignetting_of);
+    FIELD(lensprof_pto_image, center_of);
+    FIELD(lensprof_pto_image, ev_of);
+    FIELD(lensprof_pto_image, red_of);
+    FIELD(lensprof_pto_image, blue_of);
+    FIELD(lensprof_pto_image, crop);
+    FIELD(lensprof_pto_image, crop_circular);
+    FIELD(lensprof_pto_image, reserved);
+    end_struct();
+}
+
+static void print_constants(void)
+{
+    VALUE(LENSPROF_VERSION_MAJOR);
+    VALUE(LENSPROF_VERSION_MINOR);
+    VALUE(LENSPROF_VERSION_PATCH);
+    VALUE(LENSPROF_RESPONSE_SAMPLES);
+    VALUE(LENSPROF_EMOR_MODES);
+    VALUE(LENSPROF_COVARIANCE_MAX);
+    VALUE(LENSPROF_UNKNOWN);
+    VALUE(LENSPROF_MODES_AUTO);
+    VALUE(LENSPROF_FREE_RESPONSE);
+    VALUE(LENSPROF_FREE_K1);
+    VALUE(LENSPROF_FREE_K2);
+    VALUE(LENSPROF_FREE_K3);
+    VALUE(LENSPROF_FREE_CENTER);
+    VALUE(LENSPROF_FREE_EV);
+    VALUE(LENSPROF_FREE_RED);
+    VALUE(LENSPROF_FREE_BLUE);
+}
+
+static void print_statuses(void)
+{
+    VALUE(LENSPROF_OK);
+    VALUE(LENSPROF_ERROR_ARGUMENT);
+    VALUE(LENSPROF_ERROR_STRUCT_SIZE);
+    VALUE(LENSPROF_ERROR_SIZE);
+    VALUE(LENSPROF_ERROR_CAPACITY);
+    VALUE(LENSPROF_ERROR_NOT_FINITE);
+    VALUE(LENSPROF_ERROR_MEMORY);
+    VALUE(LENSPROF_ERROR_CANCELLED);
+    VALUE(LENSPROF_ERROR_RESPONSE);
+    VALUE(LENSPROF_ERROR_VIGNETTING);
+    VALUE(LENSPROF_ERROR_EXPOSURE);
+    VALUE(LENSPROF_ERROR_GEOMETRY);
+    VALUE(LENSPROF_ERROR_NO_OVERLAP);
+    VALUE(LENSPROF_ERROR_NO_SAMPLES);
+    VALUE(LENSPROF_ERROR_NO_UNKNOWNS);
+    VALUE(LENSPROF_ERROR_STORE);
+    VALUE(LENSPROF_ERROR_NOT_FOUND);
+    VALUE(LENSPROF_ERROR_CORRUPT);
+    VALUE(LENSPROF_ERROR_LAYOUT);
+    VALUE(LENSPROF_ERROR_READ_ONLY);
+    VALUE(LENSPROF_ERROR_FULL);
+    VALUE(LENSPROF_ERROR_BUSY);
+    VALUE(LENSPROF_ERROR_SYNTAX);
+    VALUE(LENSPROF_ERROR_VARIABLE);
+    VALUE(LENSPROF_ERROR_UNSUPPORTED);
+    VALUE(LENSPROF_ERROR_INTERNAL);
+}
+
+static void print_enumerations(void)
+{
+    VALUE(LENSPROF_RESPONSE_LINEAR);
+    VALUE(LENSPROF_RESPONSE_GAMMA);
+    VALUE(LENSPROF_RESPONSE_EMOR);
+    VALUE(LENSPROF_RESPONSE_TABLE);
+    VALUE(LENSPROF_PROJECTION_RECTILINEAR);
+    VALUE(LENSPROF_PROJECTION_CYLINDRICAL);
+    VALUE(LENSPROF_PROJECTION_CIRCULAR_FISHEYE);
+    VALUE(LENSPROF_PROJECTION_FULLFRAME_FISHEYE);
+    VALUE(LENSPROF_PROJECTION_EQUIRECTANGULAR);
+    VALUE(LENSPROF_PROJECTION_ORTHOGRAPHIC);
+    VALUE(LENSPROF_PROJECTION_STEREOGRAPHIC);
+    VALUE(LENSPROF_PROJECTION_THOBY);
+    VALUE(LENSPROF_PROJECTION_EQUISOLID);
+    VALUE(LENSPROF_SAMPLE_U8);
+    VALUE(LENSPROF_SAMPLE_U16);
+    VALUE(LENSPROF_SAMPLE_F32);
+    VALUE(LENSPROF_LAYOUT_GREY);
+    VALUE(LENSPROF_LAYOUT_GREY_ALPHA);
+    VALUE(LENSPROF_LAYOUT_RGB);
+    VALUE(LENSPROF_LAYOUT_RGBA);
+    VALUE(LENSPROF_LAYOUT_BGR);
+    VALUE(LENSPROF_LAYOUT_BGRA);
+    VALUE(LENSPROF_DIRECTION_CORRECT);
+    VALUE(LENSPROF_DIRECTION_SIMULATE);
+    VALUE(LENSPROF_ENCODING_RESPONSE);
+    VALUE(LENSPROF_ENCODING_LINEAR);
+    VALUE(LENSPROF_SATURATED_NEUTRAL);
+    VALUE(LENSPROF_SATURATED_AS_VALUE);
+    VALUE(LENSPROF_PROCESSING_RAW);
+    VALUE(LENSPROF_PROCESSING_JPEG);
+    VALUE(LENSPROF_PROCESSING_CORRECTED);
+    VALUE(LENSPROF_SAMPLING_BALANCED);
+    VALUE(LENSPROF_SAMPLING_PAPER);
+    VALUE(LENSPROF_LOSS_ROBUST);
+    VALUE(LENSPROF_LOSS_HUBER);
+    VALUE(LENSPROF_LOSS_SQUARED);
+    VALUE(LENSPROF_STORE_READ);
+    VALUE(LENSPROF_STORE_WRITE);
+    VALUE(LENSPROF_STORE_CREATE);
+}
+
+int main(void)
+{
+    printf("{\"structs\": {");
+    print_model_structs();
+    print_apply_structs();
+    print_profile_structs();
+    print_sample_structs();
+    print_fit_structs();
+    print_formats_structs();
+    separator = "";
+    printf("},\n\"values\": {");
+    print_constants();
+    print_statuses();
+    print_enumerations();
+    printf("}}\n");
+    return 0;
+}

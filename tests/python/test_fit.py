@@ -1,0 +1,245 @@
+"""Fitting pairs, and the whole way from overlapping arrays to corrected ones."""
+import gc
+import os
+import signal
+import subprocess
+import sys
+import threading
+import unittest
+import weakref
+
+import numpy as np
+
+import lensprof as lp
+from support import (EXPOSURES, RED, fit_images, linear_options, pictures, refused, sample_images, simple_pairs,
+                     true_profile, two_images)
+
+
+def overlap_rms(pairs):
+    """How far the two pictures of every pair are apart, levels of 255."""
+    return 255 * np.sqrt(np.mean((pairs["value"][:, 0] - pairs["value"][:, 1]) ** 2))
+
+
+class WholeWay(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.pictures = pictures()
+        cls.pairs = lp.sample_overlap(sample_images(cls.pictures))
+        cls.result = lp.fit_overlap(fit_images(), cls.pairs)
+        # f and M are only known up to a common exponent: compare after the gamma that brings the responses together.
+        grey = np.linspace(0.1, 0.9, 50)
+        found, true = np.log(cls.result.response.invert(grey)), np.log(true_profile().response[0].invert(grey))
+        cls.gamma = (found @ true) / (true @ true)
+        cls.response_error = np.abs(np.exp(found / cls.gamma) - np.exp(true)).max()
+
+    def test_parameters_are_near_the_truth(self):
+        self.assertTrue(self.result.usable, self.result.reason)
+        self.assertTrue(self.result.converged)
+        self.assertLess(abs(self.gamma - 1), 0.1)
+        self.assertLess(self.response_error, 0.01)
+        np.testing.assert_allclose(self.result.exposures["ev"] / self.gamma, EXPOSURES, atol=0.02)
+        np.testing.assert_allclose(self.result.exposures["white_balance"][:, 0] ** (1 / self.gamma), RED, atol=0.02)
+        r2 = np.linspace(0, 1, 11)
+        np.testing.assert_allclose(self.result.vignetting.eval(r2) ** (1 / self.gamma),
+                                   true_profile().vignetting[0].eval(r2), atol=0.02)
+
+    def test_statistics(self):
+        result = self.result
+        self.assertGreater(result.before_rms, 10)
+        self.assertLess(result.heldout_rms, 1)
+        self.assertEqual((result.components, result.covariance.shape), (1, (result.response.modes + 5,) * 2))
+        self.assertTrue((np.diag(result.covariance) > 0).all())
+        rms, median = lp.transfer_rms(result.response, result.vignetting, fit_images(), result.exposures, self.pairs)
+        self.assertLess(abs(rms - result.heldout_rms), 0.3)
+        self.assertLess(median, rms)
+        flat = lp.transfer_rms(result.response, lp.Vignetting(), fit_images(), [lp.Exposure()] * 3, self.pairs)
+        self.assertGreater(flat[0], 10 * rms)
+
+    def test_corrected_overlap_agrees(self):
+        profile = self.result.profile(lp.ProfileKey(lens="test"))
+        reference = self.result.exposure(0)
+        for i, array in enumerate(self.pictures):
+            lp.correct(array, profile, source=self.result.exposure(i), target=reference, out=array)
+        after = lp.sample_overlap(sample_images(self.pictures))
+        self.assertGreater(overlap_rms(self.pairs), 30)
+        self.assertLess(overlap_rms(after), 1)
+
+    def test_profile(self):
+        profile = self.result.profile(lp.ProfileKey(lens="test"), source="a.pto", created_unix_s=5)
+        profile.validate()
+        self.assertEqual((profile.response, profile.vignetting), ((self.result.response,), (self.result.vignetting,)))
+        np.testing.assert_array_equal(profile.covariance, self.result.covariance)
+        self.assertEqual(profile.provenance, lp.Provenance(
+            method="transfer", software=f"lensprof {lp.version()}", source="a.pto", created_unix_s=5, images=3,
+            pairs=self.result.pairs, heldout_rms=self.result.heldout_rms, inlier_share=self.result.inlier_share))
+
+    def test_same_input_same_result(self):
+        again = lp.fit_overlap(fit_images(), self.pairs)
+        self.assertEqual(again.response, self.result.response)
+        np.testing.assert_array_equal(again.exposures, self.result.exposures)
+
+
+class Fits(unittest.TestCase):
+    def test_exposure_of_a_linear_pair(self):
+        for loss in lp.Loss:
+            result = lp.fit_overlap(two_images(), simple_pairs(gain=1.5), linear_options(loss=loss))
+            np.testing.assert_allclose(result.exposures["ev"], [0, np.log2(1.5)], atol=1e-4)
+            self.assertEqual(result.exposure(1).ev, result.exposures["ev"][1])
+
+    def test_links(self):
+        images = [lp.FitImage(0, 240, 180), lp.FitImage(1, 240, 180, free=lp.Free.EV),
+                  lp.FitImage(2, 240, 180, free=lp.Free.EV, ev_of=1)]
+        self.assertEqual((images[1].ev_of, images[1].red_of, images[2].ev_of, images[2].blue_of), (1, 1, 1, 2))
+        pairs = np.concatenate([simple_pairs(), simple_pairs()])
+        pairs["image"][len(pairs) // 2:] = (0, 2)
+        result = lp.fit_overlap(images, pairs, linear_options())
+        self.assertEqual(result.exposures["ev"][1], result.exposures["ev"][2])
+        self.assertAlmostEqual(result.exposures["ev"][1], np.log2(1.5), places=4)
+
+    def test_pairs_are_not_copied(self):
+        from lensprof import _arrays
+        import ctypes
+        pairs = simple_pairs()
+        pointer, count = _arrays.pairs(pairs[100:])
+        self.assertEqual((ctypes.addressof(pointer.contents), count), (pairs.ctypes.data + 100 * 88, 300))
+        exposures = np.zeros(2, dtype=lp.EXPOSURE_DTYPE)
+        self.assertIs(_arrays.exposures(exposures), exposures)
+
+    def test_views_outlive_the_result(self):
+        result = lp.fit_overlap(two_images(), simple_pairs(), linear_options())
+        views = result.response.table, result.exposures, result.covariance, result.vignetting
+        copies = [view.copy() for view in views]
+        del result
+        gc.collect()
+        junk = [lp.FitResult(2) for _ in range(20)]
+        for view, expected in zip(views, copies):
+            self.assertTrue(np.array_equal(view, expected) if isinstance(view, np.ndarray) else view == expected)
+        del junk
+
+
+class Options(unittest.TestCase):
+    def test_defaults(self):
+        options = lp.FitOptions()
+        self.assertEqual(options.free, lp.Free.RESPONSE | lp.Free.K1 | lp.Free.K2 | lp.Free.K3 | lp.Free.CENTER)
+        self.assertEqual((options.channels, options.modes, options.loss), (3, lp.MODES_AUTO, lp.Loss.ROBUST))
+        self.assertEqual((options.huber_levels, options.prior_weight, options.max_iterations), (5, 1, 200))
+        self.assertIsNone(options.response)
+        self.assertIsNone(options.progress)
+
+    def test_response_is_kept_alive(self):
+        options = linear_options(response=lp.Response.from_gamma(2.0))
+        gc.collect()
+        junk = [lp.Response.from_gamma(0.5) for _ in range(50)]
+        self.assertEqual(options.response, lp.Response.from_gamma(2.0))
+        result = lp.fit_overlap(two_images(), simple_pairs(gain=1.5), options)
+        self.assertAlmostEqual(result.exposures["ev"][1], 2 * np.log2(1.5), places=3)  # 1.5 in sqrt(light)
+        options.response = None
+        self.assertIsNone(options.response)
+        self.assertEqual(lp.fit_overlap(two_images(), simple_pairs(), options).response.kind, lp.ResponseKind.EMOR)
+        with self.assertRaises(TypeError):
+            options.response = 2.0
+        del junk
+
+    def test_progress_is_kept_alive_and_called(self):
+        seen = []
+
+        def note(done):
+            seen.append(done)
+        options, alive = linear_options(progress=note), weakref.ref(note)
+        del note
+        gc.collect()
+        self.assertIsNotNone(alive())
+        lp.fit_overlap(two_images(), simple_pairs(), options)
+        self.assertGreater(len(seen), 0)
+        self.assertTrue(all(0 <= done <= 1 for done in seen) and seen == sorted(seen))
+        del options
+        gc.collect()
+        self.assertIsNone(alive())
+
+    def test_progress_cancels(self):
+        with refused(self, lp.Status.ERROR_CANCELLED):
+            lp.fit_overlap(two_images(), simple_pairs(), linear_options(progress=lambda done: True))
+
+    def test_exception_in_progress_comes_out(self):
+        def fail(done):
+            raise ZeroDivisionError("mine")
+        with self.assertRaisesRegex(ZeroDivisionError, "mine"):
+            lp.fit_overlap(two_images(), simple_pairs(), linear_options(progress=fail))
+        with self.assertRaises(TypeError):
+            lp.FitOptions(progress=5)
+
+    def test_interrupt_cancels(self):
+        code = """
+import os, signal, lensprof as lp, support
+signal.signal(signal.SIGINT, signal.default_int_handler)
+calls = []
+def progress(done):
+    calls.append(done)
+    if len(calls) == 1:
+        os.kill(os.getpid(), signal.SIGINT)
+try:
+    lp.fit_overlap(support.two_images(), support.simple_pairs(), lp.FitOptions(progress=progress))
+except KeyboardInterrupt:
+    print("interrupted", len(calls), signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+"""
+        output = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
+                                cwd=os.path.dirname(os.path.abspath(__file__)))
+        self.assertEqual((output.stdout, output.stderr), ("interrupted 1 True\n", ""))
+
+    def test_in_another_thread(self):
+        results, before = [], signal.getsignal(signal.SIGINT)
+        thread = threading.Thread(
+            target=lambda: results.append(lp.fit_overlap(two_images(), simple_pairs(), linear_options())))
+        thread.start()
+        thread.join()
+        self.assertTrue(results)
+        self.assertIs(signal.getsignal(signal.SIGINT), before)
+
+
+class Refused(unittest.TestCase):
+    def expect(self, status, images=None, pairs=None, options=None):
+        pairs = simple_pairs() if pairs is None else pairs
+        before = pairs.copy()
+        with refused(self, status):
+            lp.fit_overlap(two_images() if images is None else images, pairs, options or linear_options())
+        self.assertEqual(pairs.tobytes(), before.tobytes())
+
+    def test_by_the_library(self):
+        nan, far, bright = simple_pairs(), simple_pairs(), simple_pairs()
+        nan["value"][5, 0, 1] = np.nan
+        far["image"][7] = (0, 2)
+        bright["value"][0, 1, 2] = 1.5
+        self.expect(lp.Status.ERROR_NOT_FINITE, pairs=nan)
+        self.expect(lp.Status.ERROR_ARGUMENT, pairs=far)
+        self.expect(lp.Status.ERROR_ARGUMENT, pairs=bright)
+        self.expect(lp.Status.ERROR_NO_SAMPLES, pairs=simple_pairs()[:0])
+        self.expect(lp.Status.ERROR_NO_UNKNOWNS, images=[lp.FitImage(i, 10, 10) for i in range(2)])
+        self.expect(lp.Status.ERROR_ARGUMENT, images=two_images()[:1])
+        self.expect(lp.Status.ERROR_SIZE, images=[lp.FitImage(i, 0, 10) for i in range(2)])
+        self.expect(lp.Status.ERROR_ARGUMENT, options=linear_options(channels=2))
+        self.expect(lp.Status.ERROR_VIGNETTING, options=linear_options(vignetting=lp.Vignetting(k=(-3, 0, 0))))
+
+    def test_by_the_package(self):
+        with self.assertRaisesRegex(TypeError, "pairs must be an array of dtype"):
+            lp.fit_overlap(two_images(), np.zeros((5, 16)))
+        with self.assertRaisesRegex(ValueError, "one contiguous dimension"):
+            lp.fit_overlap(two_images(), simple_pairs()[::2])
+        with self.assertRaisesRegex(TypeError, "numpy.ndarray, not list"):
+            lp.fit_overlap(two_images(), [1])
+
+    def test_transfer_rms(self):
+        model = lp.Response.linear(), lp.Vignetting(), two_images()
+        truth = [lp.Exposure(), lp.Exposure(ev=np.log2(1.5))]
+        rms, _ = lp.transfer_rms(*model, truth, simple_pairs(gain=1.5), channels=1)
+        self.assertLess(rms, 1e-9)
+        with self.assertRaisesRegex(ValueError, "1 exposures for 2 images"):
+            lp.transfer_rms(*model, [lp.Exposure()], simple_pairs())
+        for fields, status in (({"pairs": simple_pairs()[:0]}, lp.Status.ERROR_ARGUMENT),
+                               ({"channels": 2}, lp.Status.ERROR_ARGUMENT),
+                               ({"exposures": [lp.Exposure(ev=99)] * 2}, lp.Status.ERROR_EXPOSURE)):
+            with refused(self, status):
+                lp.transfer_rms(*model, **{"exposures": [lp.Exposure()] * 2, "pairs": simple_pairs(), **fields})
+
+
+if __name__ == "__main__":
+    unittest.main()

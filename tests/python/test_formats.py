@@ -1,0 +1,181 @@
+"""Hugin projects and point files."""
+import gc
+import math
+import unittest
+
+import numpy as np
+
+import lensprof as lp
+from support import refused, simple_pairs
+
+PROJECT = """# hugin project file
+p f2 w3000 h1500 v360  n"TIFF_m"
+
+i w400 h300 f0 v55.5 Ra0 Rb0 Rc0 Rd0 Re0 Eev11.5 Er1.25 Eb0.75 r1.5 p-2.5 y10 a0.01 b-0.02 c0.03 d4 e-5 Va1 Vb-0.3 \
+Vc0.1 Vd-0.05 Vx25 Vy-50 Vm5 n"first picture.jpg"
+i w400 h300 f0 v=0 Ra=0 Rb=0 Rc=0 Rd=0 Re=0 Eev12.5 Er=0 Eb1 r0 p0 y-20 a=0 b=0 c=0 d=0 e=0 Va=0 Vb=0 Vc=0 Vd=0 Vx=0 \
+Vy=0 S20,380,30,290 Vm5 n"zwei\u00e9.jpg"
+
+v Ra0 Vb0 Eev1
+
+k i0 t0 p"9.5 19.5 29.5 19.5 29.5 39.5 9.5 39.5"
+"""
+
+
+class Projects(unittest.TestCase):
+    def test_images(self):
+        with lp.Pto(PROJECT) as pto:
+            self.assertEqual(len(pto), 2)
+            first, second = pto.image(0), pto.image(1)
+            self.assertEqual([pto.name(0), pto.name(1)], ["first picture.jpg", "zwei\u00e9.jpg"])
+        self.assertEqual(first.camera, lp.Camera(width=400, height=300, hfov_deg=55.5, yaw_deg=10, pitch_deg=-2.5,
+                                                 roll_deg=1.5, radial=(0.01, -0.02, 0.03), shift_px=(4, -5)))
+        self.assertEqual(first.exposure, lp.Exposure(ev=-11.5, white_balance=(1.25, 1, 0.75)))
+        self.assertEqual(first.vignetting, lp.Vignetting(k=(-0.3, 0.1, -0.05), center=(0.1, -0.2)))
+        self.assertEqual(first.free, lp.Free.RESPONSE | lp.Free.K1)
+        self.assertEqual(second.free, lp.Free.RESPONSE | lp.Free.K1 | lp.Free.EV)
+        self.assertEqual((second.response_of, second.red_of, second.ev_of, second.blue_of), (0, 0, 1, 1))
+        self.assertEqual(second.crop.tolist(), [20, 30, 380, 290])
+        self.assertIs(second.crop_circular, False)
+
+    def test_bytes_and_text(self):
+        self.assertEqual(lp.Pto(PROJECT).write(), PROJECT.encode())
+        latin = PROJECT.encode("latin-1")
+        pto = lp.Pto(latin)
+        self.assertEqual(pto.write(), latin)
+        self.assertEqual(pto.name(1).encode("utf-8", "surrogateescape"), "zwei\u00e9.jpg".encode("latin-1"))
+
+    def test_response(self):
+        self.assertEqual(lp.Pto(PROJECT.replace("Vm5 n", "Vm5 Rt1 n")).response(0).kind, lp.ResponseKind.LINEAR)
+        response = lp.Pto(PROJECT).response(1)
+        np.testing.assert_allclose(response.table, lp.emor_table(0), atol=1e-6)
+
+    def test_set_name(self):
+        pto = lp.Pto(PROJECT)
+        pto.set_name(1, "../other \u00e9.jpg")
+        self.assertEqual(pto.name(1), "../other \u00e9.jpg")
+        self.assertEqual(pto.write().decode(), PROJECT.replace("zwei\u00e9.jpg", "../other \u00e9.jpg"))
+        for name in ("", 'a"b'):
+            with refused(self, lp.Status.ERROR_ARGUMENT):
+                pto.set_name(0, name)
+        with self.assertRaises(ValueError):
+            pto.set_name(0, "a\0b")
+        self.assertEqual(pto.name(0), "first picture.jpg")
+
+    def test_draw_mask(self):
+        pto = lp.Pto(PROJECT)
+        y, x = np.mgrid[0:300, 0:400]
+        mask = np.full((300, 400), 7, dtype=np.uint8)
+        self.assertIs(pto.draw_mask(1, mask), mask)
+        np.testing.assert_array_equal(mask, (x >= 20) & (x < 380) & (y >= 30) & (y < 290))
+        parent = np.zeros((320, 420), dtype=bool)
+        pto.draw_mask(0, parent[309:9:-1, 5:405])
+        inside = (x >= 10) & (x < 30) & (y >= 20) & (y < 40)
+        np.testing.assert_array_equal(parent[309:9:-1, 5:405], ~inside)
+        self.assertEqual(parent.sum(), (~inside).sum())
+        small = pto.draw_mask(1, np.zeros((30, 40), dtype=np.uint8))
+        self.assertEqual((small.sum(), small[3:29, 2:38].sum()), (26 * 36, 26 * 36))
+
+    def test_draw_mask_refused(self):
+        pto, mask = lp.Pto(PROJECT), np.full((30, 40), 7, dtype=np.uint8)
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            pto.draw_mask(2, mask)
+        with refused(self, lp.Status.ERROR_SIZE):
+            pto.draw_mask(0, mask[:0])
+        self.assertTrue((mask == 7).all())
+        for wrong, error in ((mask[:, ::2], ValueError), (mask.astype(float), TypeError), (mask[0], ValueError)):
+            with self.assertRaises(error):
+                pto.draw_mask(0, wrong)
+        mask.flags.writeable = False
+        with self.assertRaisesRegex(ValueError, "read-only"):
+            pto.draw_mask(0, mask)
+
+    def test_set_result(self):
+        pto = lp.Pto(PROJECT)
+        response, vignetting = lp.Response.from_emor([0.5, -0.125]), lp.Vignetting(k=(-0.25, 0, 0), center=(0.1, 0))
+        pto.set_result(response, vignetting, [lp.Exposure(), lp.Exposure(ev=1.5, white_balance=(1, 1, 2))])
+        again = lp.Pto(pto.write())
+        for index in (0, 1):
+            self.assertEqual(again.image(index).emor.tolist(), [0.5, -0.125, 0, 0, 0])
+            np.testing.assert_allclose(again.image(index).vignetting.k, vignetting.k)
+            np.testing.assert_allclose(again.image(index).vignetting.center, vignetting.center)
+        self.assertEqual([again.image(index).exposure.ev for index in (0, 1)], [-11.5, -10])
+        self.assertEqual(again.image(1).exposure.white_balance[2], 1.5)
+        array = np.zeros(2, dtype=lp.EXPOSURE_DTYPE)
+        array["white_balance"], array["ev"] = 1, (2, 0)
+        again.set_result(response, vignetting, array, reference=1)
+        self.assertEqual([again.image(index).exposure.ev for index in (0, 1)], [-8, -10])
+
+    def test_set_result_refused(self):
+        pto, good = lp.Pto(PROJECT), [lp.Exposure()] * 2
+        curves = lp.Response(), lp.Vignetting()
+        for arguments, status in (((*curves, good[:1]), lp.Status.ERROR_ARGUMENT),
+                                  ((*curves, good, 2), lp.Status.ERROR_ARGUMENT),
+                                  ((curves[0], lp.Vignetting(k=(-5, 0, 0)), good), lp.Status.ERROR_VIGNETTING),
+                                  ((*curves, [lp.Exposure(ev=80)] * 2), lp.Status.ERROR_EXPOSURE)):
+            with refused(self, status):
+                pto.set_result(*arguments)
+        self.assertEqual(pto.write(), PROJECT.encode())
+
+    def test_refused(self):
+        for text, status, words in (("i w10 h10\ni w0 h10\n", lp.Status.ERROR_SYNTAX, "line 2"),
+                                    ("i w10 h10\nv Q0\n", lp.Status.ERROR_VARIABLE, "line 2"),
+                                    ("i w10 h10 f7\n", lp.Status.ERROR_UNSUPPORTED, "line 1")):
+            with refused(self, status) as caught:
+                lp.Pto(text)
+            self.assertIn(words, caught.exception.text)
+        pto = lp.Pto(PROJECT)
+        for call in (pto.image, pto.response, pto.name):
+            with refused(self, lp.Status.ERROR_ARGUMENT):
+                call(2)
+            with self.assertRaises(ValueError):
+                call(-1)
+
+    def test_closed(self):
+        pto = lp.Pto(PROJECT)
+        image = pto.image(0)
+        pto.close()
+        pto.close()
+        for call in (lambda: len(pto), lambda: pto.image(0), pto.write):
+            with self.assertRaisesRegex(ValueError, "this Pto is closed"):
+                call()
+        gc.collect()
+        self.assertEqual(image.camera.width, 400)
+
+
+class Points(unittest.TestCase):
+    def test_round_trip(self):
+        pairs = simple_pairs()
+        text = lp.points_write(pairs, [lp.Camera(width=240, height=180)] * 2)
+        again = lp.points_read(text)
+        self.assertEqual(again.tobytes(), pairs.tobytes())
+        columns = np.array([line.split() for line in text.decode().splitlines()], dtype=float)
+        self.assertEqual(columns.shape, (len(pairs), 16))
+        np.testing.assert_array_equal(columns[:, 2:6], pairs["xy"].reshape(-1, 4))
+        x, y = pairs["xy"][:, 1].T
+        np.testing.assert_allclose(columns[:, 14], np.hypot(x - 119.5, y - 89.5) / 150, rtol=1e-14)
+
+    def test_empty(self):
+        self.assertEqual(len(lp.points_read("")), 0)
+        self.assertEqual(lp.points_write(np.zeros(0, lp.PAIR_DTYPE), []), b"")
+
+    def test_refused(self):
+        pairs, cameras = simple_pairs(), [lp.Camera(width=240, height=180)] * 2
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            lp.points_write(pairs, cameras[:1])
+        with refused(self, lp.Status.ERROR_SIZE):
+            lp.points_write(pairs, [lp.Camera()] * 2)
+        pairs["xy"][3, 0, 0] = math.inf
+        with refused(self, lp.Status.ERROR_NOT_FINITE):
+            lp.points_write(pairs, cameras)
+        with self.assertRaises(ValueError):
+            lp.points_write(pairs[::-1], cameras)
+        with self.assertRaises(TypeError):
+            lp.points_write(pairs["xy"], cameras)
+        with refused(self, lp.Status.ERROR_SYNTAX) as caught:
+            lp.points_read(b"0 1 1 1 2 2 .1 .1 .1 .2 .2 .2 0 0 0 0\n0 1\n")
+        self.assertIn("line 2", caught.exception.text)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,135 @@
+"""Sampling overlapping arrays."""
+import unittest
+
+import numpy as np
+
+import lensprof as lp
+from support import HEIGHT, WIDTH, cameras, pictures, radiance, refused, sample_images
+
+
+class Sampling(unittest.TestCase):
+    def test_pairs_see_the_same_point(self):
+        pairs = lp.sample_overlap(sample_images(pictures()))
+        self.assertEqual(pairs.dtype, lp.PAIR_DTYPE)
+        self.assertGreater(len(pairs), 1500)
+        self.assertLessEqual(len(pairs), 2000)
+        self.assertTrue((pairs["image"][:, 0] != pairs["image"][:, 1]).all())
+        for i, camera in enumerate(cameras()):
+            for side in (0, 1):
+                chosen = pairs[pairs["image"][:, side] == i]
+                here = camera.unproject(chosen["xy"][:, side, 0], chosen["xy"][:, side, 1])
+                others = chosen["xy"][:, 1 - side]
+                for j, other in enumerate(cameras()):
+                    at = chosen["image"][:, 1 - side] == j
+                    there = other.unproject(others[at, 0], others[at, 1])
+                    np.testing.assert_allclose(here[at], there, atol=1e-9)
+
+    def test_values_are_those_of_the_pictures(self):
+        arrays = pictures()
+        pairs = lp.sample_overlap(sample_images(arrays))
+        column, row = np.rint(pairs["xy"][:, 0]).astype(int).T
+        for i, array in enumerate(arrays):
+            own = pairs["image"][:, 0] == i
+            difference = pairs["value"][own, 0] * 255 - array[row[own], column[own]]
+            self.assertLess(np.median(np.abs(difference)), 2)  # patches of 5 x 5 px against one noisy pixel
+
+    def test_options(self):
+        images = sample_images(pictures())
+        few = lp.sample_overlap(images, lp.SampleOptions(pairs=300, seed=4))
+        np.testing.assert_array_equal(few, lp.sample_overlap(images, lp.SampleOptions(pairs=300, seed=4)))
+        self.assertFalse(np.array_equal(few, lp.sample_overlap(images, lp.SampleOptions(pairs=300, seed=5))))
+        self.assertLessEqual(len(few), 300)
+        paper = lp.sample_overlap(images, lp.SampleOptions(pairs=300, sampling=lp.Sampling.PAPER))
+        self.assertGreater(len(paper), 100)
+
+    def test_views_of_any_kind(self):
+        """The same picture in another place, order and type gives the same pairs."""
+        arrays = pictures()
+        expected = lp.sample_overlap(sample_images(arrays))
+        inside = np.zeros((3, HEIGHT + 20, WIDTH + 30, 3), dtype=np.uint8)
+        slices = [frame[5:5 + HEIGHT, 7:7 + WIDTH] for frame in inside]
+        upside_down = [np.ascontiguousarray(array[::-1])[::-1] for array in arrays]
+        for view, array in zip(slices, arrays):
+            view[...] = array
+        for views in (slices, upside_down):
+            np.testing.assert_array_equal(lp.sample_overlap(sample_images(views)), expected)
+        mirrored = [lp.SampleImage(np.ascontiguousarray(array[..., ::-1]), camera, layout=lp.Layout.BGR)
+                    for array, camera in zip(arrays, cameras())]
+        np.testing.assert_array_equal(lp.sample_overlap(mirrored), expected)
+
+    def test_masks(self):
+        arrays, mask = pictures(), np.zeros((HEIGHT * 2, WIDTH), dtype=bool)
+        mask[::-2, :][:, : WIDTH // 2] = True
+        images = sample_images(arrays)
+        images[0].mask = mask[::-2]  # rows backwards and apart: the left half
+        pairs = lp.sample_overlap(images)
+        used = np.concatenate([pairs["xy"][pairs["image"][:, side] == 0, side, 0] for side in (0, 1)])
+        self.assertGreater(len(used), 100)
+        self.assertLess(used.max(), WIDTH // 2)
+        self.assertLess(used.min(), WIDTH // 4)
+
+    def test_alpha_excludes(self):
+        alpha = np.full((HEIGHT, WIDTH, 1), 255, dtype=np.uint8)
+        alpha[:, WIDTH // 2:] = 0
+        images = sample_images(pictures())
+        images[0].array = np.concatenate([images[0].array, alpha], axis=2)
+        pairs = lp.sample_overlap(images)
+        used = np.concatenate([pairs["xy"][pairs["image"][:, side] == 0, side, 0] for side in (0, 1)])
+        self.assertLess(used.max(), WIDTH // 2)
+
+    def test_reduced_pictures(self):
+        large = [lp.Camera(width=WIDTH * 2, height=HEIGHT * 2, hfov_deg=45, yaw_deg=camera.yaw_deg)
+                 for camera in cameras()]
+        images = [lp.SampleImage(array, camera, reduction=2) for array, camera in zip(pictures(), large)]
+        pairs = lp.sample_overlap(images)
+        self.assertGreater(pairs["xy"][..., 0].max(), WIDTH * 1.5)
+
+    def test_grey_floats_repeat_their_value(self):
+        y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
+        images = [lp.SampleImage(radiance(camera.unproject(x, y))[..., 1].astype(np.float32), camera)
+                  for camera in cameras()]
+        pairs = lp.sample_overlap(images)
+        np.testing.assert_array_equal(pairs["value"][..., 0], pairs["value"][..., 2])
+        np.testing.assert_allclose(pairs["value"][:, 0], pairs["value"][:, 1], atol=0.01)  # the scene itself
+
+
+class Refused(unittest.TestCase):
+    def test_by_the_library(self):
+        arrays = pictures()
+        images = sample_images(arrays)
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            lp.sample_overlap(images[:1])
+        far = [lp.SampleImage(array, lp.Camera(width=WIDTH, height=HEIGHT, hfov_deg=20, yaw_deg=90 * i))
+               for i, array in enumerate(arrays)]
+        with refused(self, lp.Status.ERROR_NO_OVERLAP):
+            lp.sample_overlap(far)
+        dark = [lp.SampleImage(np.zeros_like(array), camera) for array, camera in zip(arrays, cameras())]
+        with refused(self, lp.Status.ERROR_NO_SAMPLES):
+            lp.sample_overlap(dark)
+        images[1].array = arrays[1].astype(np.float32) / 255
+        images[1].array[3, 5, 1] = np.nan
+        with refused(self, lp.Status.ERROR_NOT_FINITE) as caught:
+            lp.sample_overlap(images)
+        self.assertIn("image 1: pixel 5, 3", caught.exception.text)
+        images[1].camera = lp.Camera()
+        with refused(self, lp.Status.ERROR_GEOMETRY):
+            lp.sample_overlap(images)
+
+    def test_by_the_package(self):
+        images = sample_images(pictures())
+        images[2].array = images[2].array.astype(np.float64)
+        with self.assertRaisesRegex(TypeError, "convert the picture"):
+            lp.sample_overlap(images)
+        images[2].array = np.zeros((HEIGHT, WIDTH * 2, 3), np.uint8)[:, ::2]
+        with self.assertRaisesRegex(ValueError, "image 2 of shape"):
+            lp.sample_overlap(images)
+        for mask, error in ((np.zeros((HEIGHT, WIDTH)), TypeError), (np.zeros((WIDTH, HEIGHT), bool), ValueError),
+                            (np.zeros((HEIGHT, WIDTH * 2), bool)[:, ::2], ValueError), ([[1]], TypeError)):
+            images = sample_images(pictures())
+            images[0].mask = mask
+            with self.assertRaises(error):
+                lp.sample_overlap(images)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,158 @@
+"""The profile database."""
+import gc
+import math
+import os
+import pathlib
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+
+import lensprof as lp
+from support import refused
+
+
+def sample_profile(lens="Distagon 28 mm", **key):
+    profile = lp.Profile(
+        key=lp.ProfileKey(camera_maker="Maker", camera_model="Model \u00e9", lens=lens, focal_mm=28, aperture=2.8,
+                          distance_m=math.inf, processing=lp.Processing.RAW, **key),
+        response=[lp.Response.from_gamma(2.2), lp.Response.from_emor([0.5, -0.25]),
+                  lp.Response.from_table([0, 0.7, 1])],
+        vignetting=lp.Vignetting(k=(-0.3, 0.1, -0.05), center=(0.01, -0.02)), covariance=np.diag(np.arange(1.0, 8.0)))
+    for name, value in {"method": "transfer", "software": "lensprof test", "source": "/tmp/a.pto",
+                        "created_unix_s": 10**10, "images": 5, "pairs": 2000, "heldout_rms": 0.5,
+                        "inlier_share": 0.97}.items():
+        setattr(profile.provenance, name, value)
+    return profile
+
+
+class Stores(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = pathlib.Path(folder.name) / "profiles \u00e9.db"
+
+    def make(self, *profiles):
+        with lp.Store(self.path, lp.StoreMode.CREATE) as store:
+            return [store.put(profile) for profile in profiles]
+
+    def test_round_trip(self):
+        profile = sample_profile()
+        number, = self.make(profile)
+        with lp.Store(self.path) as store:
+            self.assertEqual(store.get(number), profile)
+            self.assertEqual(store.find(profile.key), (number, profile))
+        with lp.Store(os.fsencode(self.path)) as store:
+            self.assertEqual(len(store.list()), 1)
+
+    def test_newest_is_found(self):
+        first, second = sample_profile(), sample_profile()
+        second.vignetting = lp.Vignetting(k=(-0.1, 0, 0))
+        numbers = self.make(first, second)
+        with lp.Store(self.path) as store:
+            self.assertEqual(store.find(first.key.copy()), (numbers[1], second))
+            self.assertEqual(store.get(numbers[0]), first)
+
+    def test_list(self):
+        numbers = self.make(*[sample_profile(lens) for lens in ("c", "a", "b", "a")])
+        with lp.Store(self.path) as store:
+            rows = store.list()
+            only = store.list(lp.ProfileKey(lens="A"))
+            self.assertEqual(store.list(lp.ProfileKey(lens="nothing")), [])
+        gc.collect()
+        junk = [lp.Profile() for _ in range(20)]
+        self.assertEqual([row.id for row in rows], [numbers[i] for i in (1, 3, 2, 0)])
+        self.assertEqual([row.key.lens for row in rows], ["a", "a", "b", "c"])
+        self.assertEqual(rows[2].key, sample_profile("b").key)
+        self.assertEqual(rows[2].provenance, sample_profile().provenance)
+        self.assertEqual(only, rows[:2])
+        del junk
+
+    def test_list_while_another_adds(self):
+        """Rows that appear between counting and fetching are fetched too."""
+        self.make(sample_profile("a"))
+        with lp.Store(self.path) as store, lp.Store(self.path, lp.StoreMode.WRITE) as other:
+            from lensprof import _library
+            inner, added = _library.lib.lensprof_store_list, []
+
+            def counted_then_added(*arguments):
+                status = inner(*arguments)
+                if not added:
+                    added.append(other.put(sample_profile("b")))
+                return status
+            _library.lib.lensprof_store_list = counted_then_added
+            try:
+                self.assertEqual([row.key.lens for row in store.list()], ["a", "b"])
+            finally:
+                _library.lib.lensprof_store_list = inner
+
+    def test_remove(self):
+        numbers = self.make(sample_profile("a"), sample_profile("b"))
+        with lp.Store(self.path, lp.StoreMode.WRITE) as store:
+            store.remove(numbers[0])
+            self.assertEqual([row.id for row in store.list()], numbers[1:])
+            with refused(self, lp.Status.ERROR_NOT_FOUND):
+                store.remove(numbers[0])
+
+    def test_threads_share_a_store(self):
+        profile = sample_profile()
+        number, = self.make(profile)
+        results = []
+        with lp.Store(self.path) as store:
+            threads = [threading.Thread(target=lambda: results.extend(store.get(number) == profile for _ in range(20)))
+                       for _ in range(4)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+        self.assertEqual(results, [True] * 80)
+
+    def test_closed(self):
+        self.make(sample_profile())
+        store = lp.Store(self.path)
+        store.close()
+        store.close()
+        with self.assertRaisesRegex(ValueError, "this Store is closed"):
+            store.list()
+
+    def test_refused(self):
+        with refused(self, lp.Status.ERROR_NOT_FOUND) as caught:
+            lp.Store(self.path)
+        self.assertIn(self.path.name, caught.exception.text)
+        number, = self.make(sample_profile())
+        with lp.Store(self.path) as store:
+            with refused(self, lp.Status.ERROR_READ_ONLY):
+                store.put(sample_profile())
+            with refused(self, lp.Status.ERROR_NOT_FOUND):
+                store.get(number + 1)
+            with refused(self, lp.Status.ERROR_NOT_FOUND):
+                store.find(lp.ProfileKey(lens="nothing"))
+            with refused(self, lp.Status.ERROR_ARGUMENT):
+                store.find(lp.ProfileKey(lens="a\tb"))
+            with self.assertRaises(ValueError):
+                store.get(2**63)
+            self.assertEqual(len(store.list()), 1)
+
+    def test_invalid_profile_is_not_stored(self):
+        broken = sample_profile()
+        broken.vignetting[0].k[0] = -9
+        before = broken.copy()
+        with lp.Store(self.path, lp.StoreMode.CREATE) as store:
+            with refused(self, lp.Status.ERROR_VIGNETTING):
+                store.put(broken)
+            self.assertEqual(store.list(), [])
+        self.assertEqual(broken, before)
+
+    def test_not_a_database(self):
+        self.path.write_text("something else, and long enough to be no header of SQLite at all")
+        with refused(self, lp.Status.ERROR_CORRUPT):
+            lp.Store(self.path)
+        with self.assertRaisesRegex(ValueError, "zero bytes"):
+            lp.Store("a\0b")
+        with self.assertRaises(ValueError):
+            lp.Store(self.path, 3)
+
+
+if __name__ == "__main__":
+    unittest.main()
