@@ -156,6 +156,15 @@ lensprof_profile_key profile_key(const Options &o, const Project &project, Strea
     return key;
 }
 
+/* A database that cannot be used shows before the work is done. */
+void check_store(const std::string &db) {
+    std::filesystem::path file = store_path(db), folder = std::filesystem::absolute(file).parent_path();
+    if (std::filesystem::exists(file) && !(std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) == 0))
+        open_store(db, LENSPROF_STORE_WRITE);
+    else if (!db.empty() && !std::filesystem::is_directory(folder))
+        throw Failure(ExitCode::store, db + ": there is no folder " + folder.string() + " for the database; make it first");
+}
+
 int64_t store_profile(const Options &o, const Project &project, const lensprof_profile_key &key,
                       const lensprof_fit_result &fit) {
     auto profile = std::make_unique<lensprof_profile>();
@@ -293,9 +302,11 @@ BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams 
     report.exposures.resize(images.size());
     lensprof_fit_result_init(&report.fit);
     lensprof_error error{};
-    check(lensprof_fit_overlap(&options, images.data(), static_cast<uint32_t>(images.size()), pairs.data(),
-                               static_cast<uint32_t>(pairs.size()), report.exposures.data(), &report.fit, &error),
-          o.points.empty() ? o.pto : o.points, &error);
+    lensprof_status status = lensprof_fit_overlap(&options, images.data(), static_cast<uint32_t>(images.size()), pairs.data(),
+                                                  static_cast<uint32_t>(pairs.size()), report.exposures.data(),
+                                                  &report.fit, &error);
+    stop_if_interrupted();
+    check(status, o.points.empty() ? o.pto : o.points, &error);
     refer_to(report.reference, report.exposures);
     report.image_median = image_medians(report, images, pairs, options.channels);
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(pairs, project));
@@ -311,6 +322,8 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
     CLI::App app("Recovers response, falloff, exposure and white balance from overlapping pictures.", "lensprof build");
     declare(app, o);
     if (!parse(app, arguments, streams)) return 0;
+    if (o.max_side != 0 && o.max_side < 64)
+        throw Failure(ExitCode::usage, "--max-side: pictures of less than 64 pixels hold too few samples; give more, or 0 for full size");
     if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
 
     Project project = read_project(o.pto, o.one_lens);
@@ -319,8 +332,7 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
     lensprof_profile_key key = profile_key(o, project, streams);
     TrueValues truth;
     if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
-    if (!o.no_store && std::filesystem::exists(store_path(o.db)))
-        open_store(o.db, LENSPROF_STORE_WRITE);  /* a database that cannot be used shows before the work is done */
+    if (!o.no_store) check_store(o.db);
     Outputs outputs;
     BuildReport report = build(o, project, outputs, streams);
     bool good = report.fit.usable || o.force;

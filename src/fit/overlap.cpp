@@ -18,6 +18,7 @@ namespace {
 constexpr int kStartModes = 5;       // enough to tell the starts apart
 constexpr uint32_t kStartPairs = 800;
 constexpr uint32_t kSmallestHeldout = 20;
+constexpr double kLargestNoise = 6.0;  // levels of 255: no camera's noise, but a model that does not fit
 
 // Every fifth pair is left out, by a hash of its number: independent of order along images, same every time.
 bool is_heldout(uint32_t p) {
@@ -273,6 +274,10 @@ void Fit::judge(const Problem &all, lensprof_fit_result &r) const {
         std::snprintf(r.reason, sizeof r.reason,
                       "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
                       100.0 * r.inlier_share);
+    else if (r.noise_levels > kLargestNoise)
+        std::snprintf(r.reason, sizeof r.reason,
+                      "the pairs scatter by %.1f levels about the best camera model; free more parameters, or check the alignment",
+                      r.noise_levels);
     else if (!r.converged)
         std::snprintf(r.reason, sizeof r.reason, "the fit did not settle in %u iterations", r.iterations);
     else

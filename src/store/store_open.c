@@ -87,7 +87,7 @@ static lensprof_status check_file(const char *path, uint32_t mode, lp_store_file
 {
     if (file == LP_STORE_FILE_MISSING && mode != LENSPROF_STORE_CREATE)
         return lp_store_fail(path, LENSPROF_ERROR_NOT_FOUND, "no such file",
-                             "check the path, or open it with LENSPROF_STORE_CREATE", error);
+                             "check the path; storing a profile makes a new one", error);
     if (file == LP_STORE_FILE_FOREIGN)
         return lp_store_fail(path, LENSPROF_ERROR_CORRUPT, "is not a lensprof database",
                              "give the path of another file, or restore it from a copy", error);

@@ -35,7 +35,7 @@ static lensprof_status check_layout(const lensprof_store *store, const layout *f
     const char *restore = "give the path of another file, or restore it from a copy";
     if (found->pages == 0)
         return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "is empty, not a lensprof database",
-                             "open it with LENSPROF_STORE_CREATE to make one of it", error);
+                             "storing a profile makes a database of it", error);
     if (found->application_id != LP_STORE_APPLICATION_ID)
         return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "is not a lensprof database", restore, error);
     if (found->user_version > LP_STORE_LAYOUT) {
