@@ -1,14 +1,10 @@
 #include "project.hpp"
 
-#include <atomic>
 #include <cmath>
 #include <cstring>
-#include <exception>
 #include <filesystem>
-#include <mutex>
-#include <thread>
 
-#include "interrupt.hpp"
+#include "parallel.hpp"
 
 namespace lensprof {
 namespace {
@@ -91,29 +87,9 @@ uint32_t image_of_word(const Project &project, const std::string &word) {
 }
 
 std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress) {
-    auto count = static_cast<uint32_t>(project.files.size());
-    std::vector<SamplePicture> pictures(count);
-    std::vector<std::exception_ptr> failures(count);
-    std::atomic<uint32_t> next{0}, done{0};
-    auto work = [&] {
-        for (uint32_t i = next++; i < count; i = next++) {
-            try {
-                stop_if_interrupted();
-                pictures[i] = read_one(project, i, max_side);
-            } catch (...) {
-                failures[i] = std::current_exception();
-                next = count;
-            }
-            progress.update("reading pictures", static_cast<double>(++done) / count);
-        }
-    };
-    std::vector<std::thread> threads;
-    for (uint32_t t = 1; t < std::min(std::max(std::thread::hardware_concurrency(), 1u), count); t++)
-        threads.emplace_back(work);
-    work();
-    for (auto &thread : threads) thread.join();
-    for (const auto &failure : failures)
-        if (failure) std::rethrow_exception(failure);
+    std::vector<SamplePicture> pictures(project.files.size());
+    for_each_parallel(static_cast<uint32_t>(pictures.size()), "reading pictures", progress,
+                      [&](uint32_t i) { pictures[i] = read_one(project, i, max_side); });
     return pictures;
 }
 

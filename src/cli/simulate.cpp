@@ -2,14 +2,12 @@
 #include "simulate.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <thread>
 
-#include "interrupt.hpp"
 #include "output_file.hpp"
+#include "parallel.hpp"
 #include "picture.hpp"
 #include "progress.hpp"
 #include "project.hpp"
@@ -295,33 +293,15 @@ Json truth_json(const Truth &truth) {
 
 void write_pictures(const Options &o, const Truth &truth, const Scene &scene, Progress &progress) {
     auto formats = split(o.formats, ',');
-    auto count = static_cast<uint32_t>(truth.files.size());
-    std::vector<std::exception_ptr> failures(count);
-    std::atomic<uint32_t> next{0}, done{0};
-    auto work = [&] {
-        for (uint32_t i = next++; i < count; i = next++) {
-            try {
-                stop_if_interrupted();
-                Picture picture = render(truth, scene, i);
-                expose(truth, i, picture);
-                digitise(truth, i, format_of(formats[i % formats.size()]).sample, picture);
-                PictureMetadata metadata = metadata_of(truth, i);
-                WriteOptions write;
-                write.metadata = &metadata;
-                write_picture((std::filesystem::path(o.output) / truth.files[i]).string(), picture, write);
-            } catch (...) {
-                failures[i] = std::current_exception();
-                next = count;
-            }
-            progress.update("rendering", static_cast<double>(++done) / count);
-        }
-    };
-    std::vector<std::thread> threads;
-    for (uint32_t t = 1; t < std::min(std::max(std::thread::hardware_concurrency(), 1u), count); t++) threads.emplace_back(work);
-    work();
-    for (auto &thread : threads) thread.join();
-    for (const auto &failure : failures)
-        if (failure) std::rethrow_exception(failure);
+    for_each_parallel(static_cast<uint32_t>(truth.files.size()), "rendering", progress, [&](uint32_t i) {
+        Picture picture = render(truth, scene, i);
+        expose(truth, i, picture);
+        digitise(truth, i, format_of(formats[i % formats.size()]).sample, picture);
+        PictureMetadata metadata = metadata_of(truth, i);
+        WriteOptions write;
+        write.metadata = &metadata;
+        write_picture((std::filesystem::path(o.output) / truth.files[i]).string(), picture, write);
+    });
 }
 
 }  // namespace
