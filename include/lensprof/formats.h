@@ -79,7 +79,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_write(const lensprof
 
 /* ---- Hugin point files (vig_optimize -i / -w) ------------------------------------------------------------- */
 
-/* 16 numbers a line: image1 image2 x1 y1 x2 y2 R1 G1 B1 R2 G2 B2 0 r1 r2 0. With capacity 0, *found receives the
+/* 16 numbers a line: image1 image2 x1 y1 x2 y2 R1 G1 B1 R2 G2 B2 0 r1 r2 0. Grey values up to 0.25 beyond 0..1, which
+ * vig_optimize's interpolation leaves at edges, are cut to it. With capacity 0, *found receives the
  * number of lines and nothing else is done; CAPACITY when there are more than capacity. SYNTAX names the line. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_read(const char *text, size_t bytes, lensprof_pair *pairs,
                                                                     uint32_t capacity, uint32_t *found,

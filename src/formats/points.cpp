@@ -1,4 +1,5 @@
 // Point files of vig_optimize: one correspondence a line, 16 numbers.
+#include <algorithm>
 #include <cmath>
 
 #include <lensprof/formats.h>
@@ -10,6 +11,7 @@ namespace {
 
 constexpr size_t kColumns = 16;
 constexpr double kMaxImage = 4294967294.0;
+constexpr double kOvershoot = 0.25;  // vig_optimize interpolates with a cubic, which rings beyond 0..1 at edges
 // image1 image2 x1 y1 x2 y2 R1 G1 B1 R2 G2 B2 0 r1 r2 0
 constexpr const char *kColumnNames[kColumns] = {"image1", "image2", "x1", "y1", "x2", "y2",         "R1", "G1",
                                                 "B1",     "R2",     "G2", "B2", "0",  "radius1", "radius2", "0"};
@@ -28,7 +30,7 @@ lensprof_pair read_pair(std::string_view line, size_t number) {
             fail_at_column(number, i, "is " + quoted(word) + ", not a finite number; correct or delete the line");
         if (i < 2 && !read_whole(word, 0, kMaxImage, column[i]))
             fail_at_column(number, i, "is " + quoted(word) + ", not an image number; count images from 0");
-        if (i >= 6 && i < 12 && !(column[i] >= 0 && column[i] <= 1))
+        if (i >= 6 && i < 12 && !(column[i] >= -kOvershoot && column[i] <= 1 + kOvershoot))
             fail_at_column(number, i, "is " + quoted(word) + ", not within 0..1; scale grey values to 1");
     }
     if (!next_word(rest).empty())
@@ -39,7 +41,7 @@ lensprof_pair read_pair(std::string_view line, size_t number) {
     for (size_t side = 0; side < 2; side++) {
         pair.image[side] = static_cast<uint32_t>(column[side]);
         for (size_t i = 0; i < 2; i++) pair.xy[side][i] = column[2 + 2 * side + i];
-        for (size_t c = 0; c < 3; c++) pair.value[side][c] = column[6 + 3 * side + c];
+        for (size_t c = 0; c < 3; c++) pair.value[side][c] = std::clamp(column[6 + 3 * side + c], 0.0, 1.0);
     }
     return pair;
 }

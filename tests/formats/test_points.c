@@ -59,8 +59,8 @@ static void test_read_errors(void **state)
         {"0 4294967295 10 20 30 40 0.1 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8 0", "column 2"},
         {"0 1 nan 20 30 40 0.1 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8 0", "column 3 (x1) is \"nan\""},
         {"0 1 10 20 30 inf 0.1 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8 0", "column 6 (y2)"},
-        {"0 1 10 20 30 40 1.01 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8 0", "column 7 (R1) is \"1.01\", not within 0..1"},
-        {"0 1 10 20 30 40 0.1 0.2 0.3 0.4 0.5 -0.1 0 0.7 0.8 0", "column 12 (B2)"},
+        {"0 1 10 20 30 40 1.31 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8 0", "column 7 (R1) is \"1.31\", not within 0..1"},
+        {"0 1 10 20 30 40 0.1 0.2 0.3 0.4 0.5 -0.3 0 0.7 0.8 0", "column 12 (B2)"},
         {"0 1 10 20 30 40 0.1 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8x 0", "column 15 (radius2) is \"0.8x\""},
         {"0 1 10,5 20 30 40 0.1 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8 0", "column 3"},
         {"# comment", "column 1"},
@@ -157,6 +157,19 @@ static void test_arguments(void **state)
     assert_int_equal(lensprof_points_read(two, 5, &pair, 1, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
 }
 
+/* What vig_optimize writes where its cubic interpolation rings. */
+static void test_overshoot_is_cut(void **state)
+{
+    (void)state;
+    const char *text = "0 1 10 20 30 40 1.02 0.2 0.3 0.4 0.5 -0.015 0 0.7 0.8 0\n";
+    lensprof_pair pair;
+    uint32_t found = 0;
+    assert_ok(lensprof_points_read(text, strlen(text), &pair, 1, &found, NULL));
+    assert_close(pair.value[0][0], 1.0, 0.0);
+    assert_close(pair.value[1][2], 0.0, 0.0);
+    assert_close(pair.value[1][1], 0.5, 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -167,6 +180,7 @@ int main(void)
         cmocka_unit_test(test_write_refuses),
         cmocka_unit_test(test_round_trip_is_exact),
         cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_overshoot_is_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
