@@ -11,10 +11,10 @@ database=$work/profiles.db
 project=${1:-}
 
 say() { printf '\n== %s\n' "$*"; }
-run() { printf '$ lensprof %s\n' "$*"; "$lensprof" "$@"; }
+run() { printf '$ lensprof'; printf ' %q' "$@"; printf '\n'; "$lensprof" "$@"; }
 
 mkdir -p "$work"
-rm -rf "$database" "$work/corrected" "$work/result.pto"
+rm -rf "$database" "$work/corrected" "$work/result.pto" "$work/contact-sheet.png"
 if [[ -z $project ]]; then
     say "Render six overlapping pictures with a known camera"
     rm -rf "$work/pictures"

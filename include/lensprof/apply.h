@@ -62,7 +62,8 @@ typedef enum lensprof_encoding {
 
 /* What happens to a pixel that is nearly saturated in some channel, whose true colour is not known. */
 typedef enum lensprof_saturated {
-    LENSPROF_SATURATED_NEUTRAL = 0, /* towards white all channels get the largest channel's gain: clouds keep no cast */
+    LENSPROF_SATURATED_NEUTRAL = 0, /* towards white all channels get the largest channel's gain: clouds keep no cast.
+                                       Only pixels with a channel above 0.9 and none below 0.6 are touched */
     LENSPROF_SATURATED_AS_VALUE = 1 /* nothing special: every sample stands for its value */
 } lensprof_saturated;
 

@@ -1,4 +1,5 @@
 /* `lensprof apply`: corrected pictures (Goldman & Chen 2005, equation 16). */
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -28,7 +29,8 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--pto", o.pto, "take exposures (and, without --profile or --from-db, the curves) from this project");
     app.add_option("--db", o.db, "profile database; default the user's own");
     app.add_option("--output-exposure", o.exposure,
-                   "mean: all like their geometric mean; reference: like 0 EV; keep: each its own (default without --pto)")
+                   "mean: all like the geometric mean of the project (default with --pto); reference: like its 0 EV; "
+                   "keep: each its own (default without --pto)")
         ->check(CLI::IsMember({"mean", "reference", "keep"}));
     app.add_flag("--linear", o.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
     app.add_flag("--simulate", o.simulate, "put the falloff in instead of taking it out");
@@ -113,15 +115,56 @@ void check_targets(const Options &o, const std::vector<Job> &jobs) {
     }
 }
 
-std::vector<Job> make_jobs(const Options &o) {
+/* Exposures of a project's images relative to its reference. */
+std::vector<lensprof_exposure> exposures_of(const Project &project) {
+    const auto &reference = project.images[project.reference].exposure;
+    std::vector<lensprof_exposure> exposures;
+    for (const auto &image : project.images) {
+        lensprof_exposure e = image.exposure;
+        e.ev -= reference.ev;
+        for (int c = 0; c < 3; c++) e.white_balance[c] /= reference.white_balance[c];
+        exposures.push_back(e);
+    }
+    return exposures;
+}
+
+/* Geometric mean of exposures and white balances: Goldman & Chen, equation 15. */
+lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures) {
+    lensprof_exposure mean{};
+    double logs[3] = {0, 0, 0}, share = 1.0 / static_cast<double>(exposures.size());
+    for (const auto &e : exposures) {
+        mean.ev += e.ev * share;
+        for (int c = 0; c < 3; c++) logs[c] += std::log(e.white_balance[c]) * share;
+    }
+    for (int c = 0; c < 3; c++) mean.white_balance[c] = std::exp(logs[c]);
+    return mean;
+}
+
+/* A project without a result would change nothing, which nobody asks for on purpose. */
+void check_has_result(const Project &project) {
+    for (const auto &image : project.images) {
+        bool response = std::any_of(image.emor, image.emor + 5, [](double a) { return a != 0.0; });
+        bool falloff = std::any_of(image.vignetting.k, image.vignetting.k + 3, [](double k) { return k != 0.0; });
+        if (response || falloff || image.response_type == 1) return;
+    }
+    throw Failure(ExitCode::usage, project.path + ": holds no response and no falloff; give the project that `lensprof build --pto-out` wrote");
+}
+
+/* The pictures, and in `mean` what --output-exposure mean makes them like. */
+std::vector<Job> make_jobs(const Options &o, lensprof_exposure &mean) {
     if (o.profile && o.from_db) throw Failure(ExitCode::usage, "--profile and --from-db contradict each other");
     bool from_store = o.profile || o.from_db;
     if (!from_store && o.pto.empty()) throw Failure(ExitCode::usage, "say what to correct with: --profile ID, --from-db or --pto FILE");
     std::unique_ptr<Project> project;
+    std::vector<lensprof_exposure> exposures;
     std::shared_ptr<const lensprof_profile> model;
     if (!o.pto.empty()) {
         project = std::make_unique<Project>(read_project(o.pto, true));
+        exposures = exposures_of(*project);
         if (!from_store) model = model_of_project(*project);
+        mean = mean_exposure(exposures);
+    } else if (!o.exposure.empty() && o.exposure != "keep") {
+        throw Failure(ExitCode::usage, "--output-exposure " + o.exposure + " needs the exposures of a project; give it with --pto");
     }
     std::vector<std::string> files = o.files.empty() && project ? project->files : o.files;
     if (files.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
@@ -131,30 +174,16 @@ std::vector<Job> make_jobs(const Options &o) {
         Job job{file, target_name(o, file), model, {}, 0};
         lensprof_exposure_init(&job.exposure);
         if (project) {
-            const auto &reference = project->images[project->reference].exposure;
             uint32_t image = image_of_file(*project, file);
             check_shape(*project, image, file);
-            job.exposure = project->images[image].exposure;
-            job.exposure.ev -= reference.ev;
-            for (int c = 0; c < 3; c++) job.exposure.white_balance[c] /= reference.white_balance[c];
+            job.exposure = exposures[image];
         }
         if (from_store) look_up(store.get(), o, job);
         jobs.push_back(job);
     }
     check_targets(o, jobs);
+    if (model) check_has_result(*project);
     return jobs;
-}
-
-/* Geometric mean of the exposures and white balances: Goldman & Chen, equation 15. */
-lensprof_exposure mean_exposure(const std::vector<Job> &jobs) {
-    lensprof_exposure mean{};
-    double logs[3] = {0, 0, 0};
-    for (const Job &job : jobs) {
-        mean.ev += job.exposure.ev / static_cast<double>(jobs.size());
-        for (int c = 0; c < 3; c++) logs[c] += std::log(job.exposure.white_balance[c]) / static_cast<double>(jobs.size());
-    }
-    for (int c = 0; c < 3; c++) mean.white_balance[c] = std::exp(logs[c]);
-    return mean;
 }
 
 Picture correct(Picture &source, const Job &job, const lensprof_exposure &target, const Options &o) {
@@ -194,15 +223,16 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
     CLI::App app("Corrects pictures: undoes falloff, exposure and white balance, and encodes again.", "lensprof apply");
     declare(app, o);
     if (!parse(app, arguments, streams)) return 0;
-    std::vector<Job> jobs = make_jobs(o);
+    lensprof_exposure mean, reference;
+    lensprof_exposure_init(&mean);
+    lensprof_exposure_init(&reference);
+    std::vector<Job> jobs = make_jobs(o, mean);
     if (o.exposure.empty()) o.exposure = o.pto.empty() ? "keep" : "mean";
     std::error_code error;
     std::filesystem::create_directories(o.output, error);
     if (error) throw Failure(ExitCode::failed, o.output + ": cannot be made: " + error.message());
 
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
-    lensprof_exposure mean = mean_exposure(jobs), reference;
-    lensprof_exposure_init(&reference);
     ContactSheet sheet;
     Json written = Json::array();
     for (size_t i = 0; i < jobs.size(); i++) {
@@ -210,6 +240,7 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
         progress.update("correcting", static_cast<double>(i) / static_cast<double>(jobs.size()));
         const Job &job = jobs[i];
         Picture before = read_picture(job.source);
+        check_finite(before, job.source);
         const auto &target = o.exposure == "keep" ? job.exposure : o.exposure == "mean" ? mean : reference;
         Picture after = correct(before, job, target, o);
         WriteOptions write;

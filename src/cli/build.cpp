@@ -4,6 +4,8 @@
 #include <ctime>
 #include <filesystem>
 
+#include <unistd.h>
+
 #include "interrupt.hpp"
 #include "output_file.hpp"
 #include "project.hpp"
@@ -163,6 +165,11 @@ void check_store(const std::string &db) {
         open_store(db, LENSPROF_STORE_WRITE);
     else if (!db.empty() && !std::filesystem::is_directory(folder))
         throw Failure(ExitCode::store, db + ": there is no folder " + folder.string() + " for the database; make it first");
+    else if (db.empty()) {
+        while (!std::filesystem::exists(folder) && folder.has_relative_path()) folder = folder.parent_path();
+        if (access(folder.c_str(), W_OK) != 0)
+            throw Failure(ExitCode::store, file.string() + ": cannot be made in " + folder.string() + "; name a database with --db FILE");
+    }
 }
 
 int64_t store_profile(const Options &o, const Project &project, const lensprof_profile_key &key,
@@ -282,7 +289,7 @@ void warn_of_odd_images(const BuildReport &report, const Project &project, Strea
     double limit = std::max(5.0, 4.0 * report.fit.noise_levels);
     for (size_t i = 0; i < report.image_median.size(); i++)
         if (report.image_median[i] > limit)
-            streams.err << "lensprof: warning: " << project.files[i] << ": disagrees with the images it overlaps (median residual "
+            streams.err << "lensprof: warning: " << project.files[i] << ": disagrees with the images it overlaps, so that its exposure means nothing (median residual "
                         << format("%.1f", report.image_median[i]) << " levels); check its place in " << project.path << "\n";
 }
 
@@ -293,6 +300,7 @@ BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams 
     report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
     lensprof_response fixed;
     lensprof_fit_options options = fit_options(o, project, fixed);
+    report.response_known = !(options.free & LENSPROF_FREE_RESPONSE) || options.modes == 0;
     std::vector<lensprof_pair> pairs = get_pairs(o, project, progress, report, options.channels);
     stop_if_interrupted();
     Watch watch{&progress};
@@ -306,6 +314,8 @@ BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams 
                                                   static_cast<uint32_t>(pairs.size()), report.exposures.data(),
                                                   &report.fit, &error);
     stop_if_interrupted();
+    if (status == LENSPROF_ERROR_NO_UNKNOWNS)
+        throw Failure(ExitCode::usage, o.pto + ": asks for nothing on its v lines; add some in Hugin, or give --free all");
     check(status, o.points.empty() ? o.pto : o.points, &error);
     refer_to(report.reference, report.exposures);
     report.image_median = image_medians(report, images, pairs, options.channels);
@@ -315,18 +325,22 @@ BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams 
     return report;
 }
 
-}  // namespace
+/* What --json prints where no fit could be made: the same object, neutral, with the reason. */
+void print_no_fit(const std::vector<std::string> &names, const std::string &reason, Streams &streams) {
+    BuildReport report;
+    report.names = names;
+    report.exposures.resize(names.size());
+    for (auto &e : report.exposures) lensprof_exposure_init(&e);
+    lensprof_fit_result_init(&report.fit);
+    report.fit.heldout_rms = report.fit.heldout_median = report.fit.before_rms = LENSPROF_UNKNOWN;
+    set_text(report.fit.reason, sizeof report.fit.reason, reason);
+    streams.out << build_json(report).dump() << "\n";
+}
 
-int run_build(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app("Recovers response, falloff, exposure and white balance from overlapping pictures.", "lensprof build");
-    declare(app, o);
-    if (!parse(app, arguments, streams)) return 0;
-    if (o.max_side != 0 && o.max_side < 64)
-        throw Failure(ExitCode::usage, "--max-side: pictures of less than 64 pixels hold too few samples; give more, or 0 for full size");
-    if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
-
+/* The command behind its options; `names` receives the images as soon as they are known. */
+int build_and_store(const Options &o, std::vector<std::string> &names, Streams &streams) {
     Project project = read_project(o.pto, o.one_lens);
+    names = project.names;
     if (!o.free.empty())
         for (auto &image : project.images) image.free = free_of(o.free);
     lensprof_profile_key key = profile_key(o, project, streams);
@@ -349,6 +363,26 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
         streams.err << "lensprof: " << o.pto << ": not usable: " << report.fit.reason
                     << (good ? "" : "; nothing was stored (--force stores it all the same)") << "\n";
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
+}
+
+}  // namespace
+
+int run_build(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app("Recovers response, falloff, exposure and white balance from overlapping pictures.", "lensprof build");
+    declare(app, o);
+    if (!parse(app, arguments, streams)) return 0;
+    if (o.max_side != 0 && o.max_side < 64)
+        throw Failure(ExitCode::usage, "--max-side: pictures of less than 64 pixels hold too few samples; give more, or 0 for full size");
+    if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
+
+    std::vector<std::string> names;
+    try {
+        return build_and_store(o, names, streams);
+    } catch (const Failure &failure) {
+        if (o.json && failure.code == ExitCode::not_usable) print_no_fit(names, failure.what(), streams);
+        throw;
+    }
 }
 
 }  // namespace lensprof

@@ -24,7 +24,7 @@ void catch_interrupts() {
 bool interrupted() { return flag != 0; }
 
 void stop_if_interrupted() {
-    if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted; nothing was stored");
+    if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted");
 }
 
 }  // namespace lensprof

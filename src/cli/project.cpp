@@ -26,19 +26,6 @@ void check_one_lens(const Project &project) {
     }
 }
 
-void check_finite(const Picture &picture, const std::string &file) {
-    if (picture.sample != LENSPROF_SAMPLE_F32) return;
-    uint32_t samples = lensprof_layout_samples(picture.layout);
-    for (uint32_t y = 0; y < picture.height; y++)
-        for (uint32_t s = 0; s < picture.width * samples; s++) {
-            float value;
-            std::memcpy(&value, &picture.pixels[y * picture.row_bytes + s * sizeof value], sizeof value);
-            if (!std::isfinite(value))
-                throw Failure(ExitCode::unreadable, file + ": pixel " + std::to_string(s / samples * picture.reduction) + ", "
-                              + std::to_string(y * picture.reduction) + " is not a finite number; repair the picture");
-        }
-}
-
 SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
     const auto &camera = project.images[i].camera;
     const std::string &file = project.files[i];
@@ -60,6 +47,19 @@ SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
 }
 
 }  // namespace
+
+void check_finite(const Picture &picture, const std::string &file) {
+    if (picture.sample != LENSPROF_SAMPLE_F32) return;
+    uint32_t samples = lensprof_layout_samples(picture.layout);
+    for (uint32_t y = 0; y < picture.height; y++)
+        for (uint32_t s = 0; s < picture.width * samples; s++) {
+            float value;
+            std::memcpy(&value, &picture.pixels[y * picture.row_bytes + s * sizeof value], sizeof value);
+            if (!std::isfinite(value))
+                throw Failure(ExitCode::unreadable, file + ": pixel " + std::to_string(s / samples * picture.reduction) + ", "
+                              + std::to_string(y * picture.reduction) + " is not a finite number; repair the picture");
+        }
+}
 
 Project read_project(const std::string &path, bool one_lens) {
     Project project;

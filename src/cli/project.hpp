@@ -38,6 +38,9 @@ struct SamplePicture {
  * project, unreadable files and float samples that are not finite are a Failure that names the file. */
 std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress);
 
+/* Failure (unreadable) that names the first sample that is not a finite number. */
+void check_finite(const Picture &picture, const std::string &file);
+
 /* 3, or 1 when every picture is grey. */
 uint32_t channel_count(const std::vector<SamplePicture> &pictures);
 

@@ -49,7 +49,7 @@ int run_query(const std::vector<std::string> &arguments, Streams &streams) {
         if (!newest || row.id > newest->id) newest = &row;
     }
     if (!newest)
-        throw Failure(ExitCode::not_found, "no profile for " + describe_key(filter) + " in " + store_path(db)
+        throw Failure(ExitCode::not_found, "no profile for " + (camera.empty() ? lens : camera) + " with this setting" + " in " + store_path(db)
                       + "; `lensprof profile list` shows what there is");
     auto profile = std::make_unique<lensprof_profile>();
     check(lensprof_store_get(store.get(), newest->id, profile.get(), &error), store_path(db), &error);

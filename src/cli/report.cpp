@@ -92,7 +92,7 @@ Json build_json(const BuildReport &report) {
         images.push_back({{"file", report.names[i]},
                           {"ev", e.ev},
                           {"white_balance", {e.white_balance[0], e.white_balance[1], e.white_balance[2]}},
-                          {"median_residual", number_or_null(report.image_median[i])}});
+                          {"median_residual", number_or_null(i < report.image_median.size() ? report.image_median[i] : LENSPROF_UNKNOWN)}});
     }
     json["schema"] = 1;
     json["usable"] = fit.usable != 0;
@@ -106,6 +106,7 @@ Json build_json(const BuildReport &report) {
                         {"heldout_median", number_or_null(fit.heldout_median)},
                         {"noise", fit.noise_levels},
                         {"inlier_share", fit.inlier_share}};
+    json["gamma_from"] = report.response_known ? "known" : "prior";
     json["pairs"] = fit.pairs;
     json["components"] = fit.components;
     json["iterations"] = fit.iterations;
@@ -127,6 +128,8 @@ void print_build(const BuildReport &report, std::ostream &out) {
     }
     print_vignetting(fit.vignetting, out);
     print_response(fit.response, out);
+    if (!report.response_known)
+        out << "gamma     from the prior: pictures leave a common exponent of exposure, falloff and response open (docs/model.md)\n";
     std::string heldout = fit.heldout_rms == LENSPROF_UNKNOWN ? std::string("not measured (too few pairs)")
                                                               : format("%.2f", fit.heldout_rms);
     out << format("residual  before %.2f, after %s levels of 255 on pairs left out of the fit; %.1f %% inliers of %u pairs\n",

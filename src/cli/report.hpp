@@ -22,6 +22,7 @@ struct BuildReport {
     lensprof_fit_result fit{};
     uint32_t reference = 0;
     double load_s = 0, sample_s = 0;
+    bool response_known = false; /* given by the project, not estimated: the exponent gamma is then known too */
     int64_t profile_id = 0; /* 0 = not stored */
 };
 

@@ -249,12 +249,21 @@ static void store(uint32_t sample, uint8_t *p, float value)
     }
 }
 
-/* Gains of red, green and blue. Towards saturation they approach the largest one: the grey value 0.97 (247 of 255) is the
- * first that is not what the formula says. */
+/* 0 below `low`, 1 at white, smooth between. */
+static float ramp(float value, float low)
+{
+    float t = (value - low) / (1.0f - low);
+    if (!(t > 0.0f)) return 0.0f;
+    if (t > 1.0f) t = 1.0f;
+    return t * t * (3.0f - 2.0f * t);
+}
+
+/* Gains of red, green and blue. Towards white they approach the largest one, gradually, as the brightest channel nears
+ * saturation (from 0.9 on) and the darkest one follows (from 0.6 on): a clipped cloud, not a bright colour. */
 static void gains_at(const lensprof_plan *plan, const uint8_t *source, float r2, float gain[3])
 {
     uint32_t bytes = lensprof_sample_bytes(plan->source_sample);
-    float largest = 0.0f, brightest = 0.0f;
+    float largest = 0.0f, brightest = 0.0f, darkest = 1.0f;
     for (uint32_t c = 0; c < 3; c++) {
         gain[c] = gain_at(plan, c, r2);
         if (gain[c] > largest) largest = gain[c];
@@ -263,10 +272,9 @@ static void gains_at(const lensprof_plan *plan, const uint8_t *source, float r2,
     for (uint32_t s = 0; s < 3; s++) {
         float value = load(plan->source_sample, source + s * bytes);
         if (value > brightest) brightest = value;
+        if (!(value > darkest)) darkest = value;
     }
-    float t = (brightest - 0.97f) / 0.03f;
-    if (!(t > 0.0f)) return;
-    if (t > 1.0f) t = 1.0f;
+    float t = ramp(brightest, 0.9f) * ramp(darkest, 0.6f);
     for (uint32_t c = 0; c < 3; c++) gain[c] += t * (largest - gain[c]);
 }
 

@@ -184,7 +184,7 @@ void test_bad_points(void **) {
         {"0 1 10 10 20 20 .1 .2 .3 .4 .5\n", "line 3"},
         {"0 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0 7\n", "line 3"},
         {"0 1 10 10 20 20 nan .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
-        {"0 1 10 10 20 20 1.1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
+        {"0 1 10 10 20 20 1.3 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
         {"0 0 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
         {"0 1.5 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
         {"-1 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", "line 3"},
@@ -205,6 +205,24 @@ void test_points_of_other_images(void **) {
     const std::string path = work("points.txt");
     save_text(path, "0 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n0 4 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n");
     assert_refused(unreadable, build_of(scene("pano.pto")) + Words{"--points", path}, {path, "4"});
+}
+
+/* Where no fit can be made at all, --json still prints the object with the reason. */
+void test_reason_in_json(void **) {
+    save_text(work("one.pto"), "i w320 h240 f0 v50 n\"one.png\"\nv Ra0\n");
+    const Outcome outcome = run_words({"build", work("one.pto"), "--no-store", "--json"});
+    assert_int_equal(outcome.code, not_usable);
+    const Json json = Json::parse(outcome.out);
+    assert_true(json["usable"] == false);
+    assert_true(contains(json["reason"].get<std::string>(), "at least two"));
+    assert_int_equal(json["response"]["values"][0].size(), 1024);
+}
+
+/* A project that was not written by build holds nothing to undo. */
+void test_apply_without_a_result(void **) {
+    assert_refused(usage, {"apply", "--pto", scene("pano.pto"), "-o", work("corrected")}, {"pano.pto", "--pto-out"});
+    assert_refused(usage, {"apply", "--profile", "1", "--db", work("p.db"), "--output-exposure", "mean", "-o", work("corrected"),
+                           scene("img000.png")}, {"--pto"});
 }
 
 /* Truth to compare with. */
@@ -437,6 +455,8 @@ int main() {
         FAULT_TEST(test_not_a_project),
         FAULT_TEST(test_bad_points),
         FAULT_TEST(test_points_of_other_images),
+        FAULT_TEST(test_reason_in_json),
+        FAULT_TEST(test_apply_without_a_result),
         FAULT_TEST(test_bad_truth),
         FAULT_TEST(test_corrupt_database),
         FAULT_TEST(test_corrupt_database_leaves_no_output),
