@@ -47,7 +47,8 @@ LENSPROF_API uint32_t lensprof_layout_channels(uint32_t layout);
 /* Bytes of one sample (1, 2, 4); 0 for an unknown one. */
 LENSPROF_API uint32_t lensprof_sample_bytes(uint32_t sample);
 
-/* LENSPROF_OK when data is aligned and not NULL, the sizes are in 1..2^20, and |row_bytes| holds a row. */
+/* LENSPROF_OK when data is aligned and not NULL, the sizes are in 1..2^20, and |row_bytes| holds a row and is
+ * at most 2^28. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_image_validate(const lensprof_image *image);
 
 typedef enum lensprof_direction {
@@ -93,7 +94,8 @@ LENSPROF_API size_t lensprof_plan_bytes(const lensprof_apply_options *options);
 
 /* Prepares a plan in memory[bytes] (8-byte aligned, owned by the caller, must outlive the plan). Nothing is to
  * be released. Errors: NULL or unknown values ARGUMENT, struct_size STRUCT_SIZE, zero frame SIZE, too little or
- * unaligned memory CAPACITY, and what the model's validate functions say; three vignettings must have one centre. */
+ * unaligned memory CAPACITY, and what the model's validate functions say; three vignettings must have one centre; target over
+ * source must be within 1e-12..1e12 (EXPOSURE). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_plan_init(void *memory, size_t bytes,
                                                                   const lensprof_apply_options *options,
                                                                   const lensprof_plan **plan);

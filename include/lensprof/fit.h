@@ -85,7 +85,7 @@ typedef struct lensprof_fit_result {
     double noise_levels;     /* estimated noise of a sample, levels of 255 */
     double inlier_share;     /* pairs within 3 sigma of the noise */
     double seconds;          /* time taken by the solver */
-    uint32_t covariance_size; /* order as in profile.h; parameters held fixed have zero rows */
+    uint32_t covariance_size; /* order as in profile.h; parameters held fixed have zero rows; 0 = not determined */
     uint32_t reserved;
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
 } lensprof_fit_result;

@@ -85,7 +85,7 @@ LENSPROF_API double lensprof_vignetting_eval(const lensprof_vignetting *vignetti
 LENSPROF_API double lensprof_vignetting_r2(const lensprof_vignetting *vignetting, uint32_t width, uint32_t height,
                                            double x, double y, double *gradient);
 
-/* LENSPROF_OK when finite, |center| <= 1 in each coordinate, and M >= 0.001 for every r from the centre to
+/* LENSPROF_OK when finite, |k| <= 1e6, |center| <= 1 in each coordinate, and M >= 0.001 for every r from the centre to
  * the corner farthest from it (in any frame shape: r <= 1 + |center|). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_vignetting_validate(const lensprof_vignetting *vignetting);

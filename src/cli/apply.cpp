@@ -57,11 +57,6 @@ std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
     return profile;
 }
 
-bool is_same_file(const std::string &a, const std::string &b) {
-    std::error_code ignored;
-    return a == b || std::filesystem::equivalent(a, b, ignored);
-}
-
 /* The image of the project that a picture is: the same file. */
 uint32_t image_of_file(const Project &project, const std::string &file) {
     for (uint32_t i = 0; i < project.files.size(); i++)
@@ -128,6 +123,19 @@ std::vector<lensprof_exposure> exposures_of(const Project &project) {
     return exposures;
 }
 
+/* One response and one falloff are applied to all images. */
+void check_one_result(const Project &project) {
+    const auto &first = project.images[project.reference];
+    for (uint32_t i = 0; i < project.images.size(); i++) {
+        const auto &image = project.images[i];
+        bool same = image.response_type == first.response_type && std::equal(image.emor, image.emor + 5, first.emor)
+            && std::equal(image.vignetting.k, image.vignetting.k + 3, first.vignetting.k);
+        if (!same)
+            throw Failure(ExitCode::usage, project.path + ": image " + std::to_string(i) + " (" + project.names[i]
+                          + ") has a response or falloff of its own; correct one lens at a time");
+    }
+}
+
 /* Geometric mean of exposures and white balances: Goldman & Chen, equation 15. */
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures) {
     lensprof_exposure mean{};
@@ -182,7 +190,10 @@ std::vector<Job> make_jobs(const Options &o, lensprof_exposure &mean) {
         jobs.push_back(job);
     }
     check_targets(o, jobs);
-    if (model) check_has_result(*project);
+    if (model) {
+        check_has_result(*project);
+        check_one_result(*project);
+    }
     return jobs;
 }
 
@@ -255,7 +266,7 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
     progress.clear();
     if (!o.sheet.empty()) sheet.write(o.sheet);
     if (o.json) {
-        streams.out << Json{{"schema", 1}, {"pictures", written}}.dump() << "\n";
+        print_json(Json{{"schema", 1}, {"pictures", written}}, streams.out);
     } else {
         for (const auto &entry : written) streams.out << entry["output"].get<std::string>() << "\n";
         if (!o.sheet.empty()) streams.out << o.sheet << "\n";

@@ -137,7 +137,8 @@ bool is_grey(const std::vector<lensprof_pair> &pairs) {
 lensprof_profile_key profile_key(const Options &o, const Project &project, Streams &streams) {
     PictureMetadata metadata = unknown_metadata();
     const std::string &file = project.files[project.reference];
-    if (std::filesystem::exists(file)) metadata = read_metadata(file);
+    bool need_not_exist = !o.points.empty();  /* pictures beside given pairs may be anything */
+    if (std::filesystem::exists(file) && !(need_not_exist && o.no_store)) metadata = read_metadata(file);
     lensprof_profile_key key = metadata.key;
     if (!o.maker.empty()) set_text(key.camera_maker, sizeof key.camera_maker, o.maker);
     if (!o.camera.empty()) set_text(key.camera_model, sizeof key.camera_model, o.camera);
@@ -148,7 +149,7 @@ lensprof_profile_key profile_key(const Options &o, const Project &project, Strea
     if (!o.processing.empty()) key.processing = processing_of_name(o.processing);
     if (!*key.camera_model && !*key.lens && !o.no_store)
         throw Failure(ExitCode::usage, file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");
-    for (size_t i = 0; i < project.files.size() && o.aperture == LENSPROF_UNKNOWN; i++) {
+    for (size_t i = 0; i < project.files.size() && o.aperture == LENSPROF_UNKNOWN && !need_not_exist; i++) {
         if (!std::filesystem::exists(project.files[i])) continue;
         lensprof_profile_key other = read_metadata(project.files[i]).key;
         if (other.aperture != key.aperture || other.focal_mm != key.focal_mm)
@@ -170,6 +171,18 @@ void check_store(const std::string &db) {
         if (access(folder.c_str(), W_OK) != 0)
             throw Failure(ExitCode::store, file.string() + ": cannot be made in " + folder.string() + "; name a database with --db FILE");
     }
+}
+
+/* A database that was to be made for one profile is not left behind empty; one that somebody else has filled stays. */
+void remove_empty_store(const std::string &file) {
+    lensprof_store *store = nullptr;
+    uint32_t profiles = 0;
+    if (lensprof_store_open(file.c_str(), LENSPROF_STORE_READ, &store, nullptr) == LENSPROF_OK) {
+        Store closing(store);
+        if (lensprof_store_list(store, nullptr, nullptr, 0, &profiles, nullptr) != LENSPROF_OK) return;
+    }
+    std::error_code ignored;
+    if (profiles == 0) std::filesystem::remove(file, ignored);
 }
 
 int64_t store_profile(const Options &o, const Project &project, const lensprof_profile_key &key,
@@ -198,9 +211,21 @@ int64_t store_profile(const Options &o, const Project &project, const lensprof_p
         check(lensprof_store_put(store.get(), profile.get(), &id, &error), store_path(o.db), &error);
         return id;
     } catch (const Failure &) {
-        std::error_code ignored;  /* a database that was to be made for this profile is not left behind empty */
-        if (is_new) std::filesystem::remove(store_path(o.db), ignored);
+        if (is_new) remove_empty_store(store_path(o.db));
         throw;
+    }
+}
+
+/* No output may take the place of an input, of the database or of another output. */
+void check_outputs(const Options &o, const Project &project) {
+    std::vector<std::string> taken{o.pto, o.points, o.compare};
+    taken.insert(taken.end(), project.files.begin(), project.files.end());
+    if (!o.no_store) taken.push_back(store_path(o.db));
+    for (const std::string &output : {o.points_out, o.pto_out}) {
+        if (output.empty()) continue;
+        for (const std::string &other : taken)
+            if (is_same_file(output, other)) throw Failure(ExitCode::usage, output + ": would be written over; give the output another name");
+        taken.push_back(output);
     }
 }
 
@@ -334,13 +359,16 @@ void print_no_fit(const std::vector<std::string> &names, const std::string &reas
     lensprof_fit_result_init(&report.fit);
     report.fit.heldout_rms = report.fit.heldout_median = report.fit.before_rms = LENSPROF_UNKNOWN;
     set_text(report.fit.reason, sizeof report.fit.reason, reason);
-    streams.out << build_json(report).dump() << "\n";
+    print_json(build_json(report), streams.out);
 }
 
 /* The command behind its options; `names` receives the images as soon as they are known. */
 int build_and_store(const Options &o, std::vector<std::string> &names, Streams &streams) {
     Project project = read_project(o.pto, o.one_lens);
     names = project.names;
+    if (project.images.size() < 2)
+        throw Failure(ExitCode::not_usable, o.pto + ": has one image; at least two overlapping ones are needed");
+    check_outputs(o, project);
     if (!o.free.empty())
         for (auto &image : project.images) image.free = free_of(o.free);
     lensprof_profile_key key = profile_key(o, project, streams);
@@ -354,7 +382,7 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     stop_if_interrupted();
     if (good && !o.no_store) report.profile_id = store_profile(o, project, key, report.fit);
     outputs.commit();
-    if (o.json) streams.out << build_json(report).dump() << "\n";
+    if (o.json) print_json(build_json(report), streams.out);
     else print_build(report, streams.out);
     if (report.profile_id && !o.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.db) << ": " << describe_key(key) << "\n";

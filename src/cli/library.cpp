@@ -19,6 +19,9 @@ ExitCode exit_code(lensprof_status status) {
     case LENSPROF_ERROR_CANCELLED: return ExitCode::interrupted;
     case LENSPROF_ERROR_NOT_FINITE:
     case LENSPROF_ERROR_GEOMETRY:
+    case LENSPROF_ERROR_RESPONSE:
+    case LENSPROF_ERROR_VIGNETTING:
+    case LENSPROF_ERROR_EXPOSURE:
     case LENSPROF_ERROR_SYNTAX:
     case LENSPROF_ERROR_VARIABLE:
     case LENSPROF_ERROR_UNSUPPORTED: return ExitCode::unreadable;
@@ -31,6 +34,17 @@ ExitCode exit_code(lensprof_status status) {
     case LENSPROF_ERROR_BUSY: return ExitCode::store;
     default: return ExitCode::failed;
     }
+}
+
+bool is_utf8(const std::string &text) {
+    for (size_t i = 0; i < text.size();) {
+        auto c = static_cast<unsigned char>(text[i++]);
+        int more = c < 0x80 ? 0 : c >= 0xC2 && c < 0xE0 ? 1 : c >= 0xE0 && c < 0xF0 ? 2 : c >= 0xF0 && c < 0xF5 ? 3 : -1;
+        if (more < 0) return false;
+        for (; more > 0; more--, i++)
+            if (i >= text.size() || (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return false;
+    }
+    return true;
 }
 
 }  // namespace
@@ -60,6 +74,13 @@ Store open_store(const std::string &path, lensprof_store_mode mode) {
     lensprof_error error{};
     check(lensprof_store_open(file.c_str(), mode, &store, &error), file, &error);
     return Store(store);
+}
+
+bool is_same_file(const std::string &a, const std::string &b) {
+    if (a.empty() || b.empty()) return false;
+    std::error_code ignored;
+    auto plain = [](const std::string &path) { return std::filesystem::absolute(path).lexically_normal(); };
+    return plain(a) == plain(b) || std::filesystem::equivalent(a, b, ignored);
 }
 
 std::string read_text(const std::string &path) {
@@ -101,12 +122,13 @@ std::string pto_text(const lensprof_pto &pto) {
 }
 
 void set_text(char *field, size_t size, const std::string &text) {
+    const bool readable = is_utf8(text);
     size_t length = std::min(size - 1, text.size());
     while (length > 0 && length < text.size() && (text[length] & 0xC0) == 0x80) length--;
     std::memset(field, 0, size);
     for (size_t i = 0; i < length; i++) {
         auto c = static_cast<unsigned char>(text[i]);
-        field[i] = c < 0x20 || c == 0x7f ? ' ' : text[i];
+        field[i] = c < 0x20 || c == 0x7f ? ' ' : c >= 0x80 && !readable ? '?' : text[i];
     }
 }
 

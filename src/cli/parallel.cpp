@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -26,7 +27,11 @@ void for_each_parallel(uint32_t count, const std::string &what, Progress &progre
         }
     };
     std::vector<std::thread> threads;
-    for (uint32_t t = 1; t < std::min(std::max(std::thread::hardware_concurrency(), 1u), count); t++) threads.emplace_back(run);
+    try {
+        for (uint32_t t = 1; t < std::min(std::max(std::thread::hardware_concurrency(), 1u), count); t++) threads.emplace_back(run);
+    } catch (const std::system_error &) {
+        /* no more threads to be had: those there are do the work */
+    }
     run();
     for (auto &thread : threads) thread.join();
     for (const auto &failure : failures)

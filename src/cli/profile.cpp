@@ -22,7 +22,7 @@ int list(const std::string &db, bool json, Streams &streams) {
         Json profiles = Json::array();
         for (const auto &row : rows)
             profiles.push_back({{"id", row.id}, {"key", key_json(row.key)}, {"provenance", provenance_json(row.provenance)}});
-        streams.out << Json{{"schema", 1}, {"profiles", profiles}}.dump() << "\n";
+        print_json(Json{{"schema", 1}, {"profiles", profiles}}, streams.out);
         return 0;
     }
     streams.out << format("%6s  %-28s %-32s %7s %6s %9s  %s\n", "id", "camera", "lens", "mm", "f/", "focus m", "state");
@@ -40,7 +40,7 @@ int show(const std::string &db, int64_t id, bool json, Streams &streams) {
     auto profile = std::make_unique<lensprof_profile>();
     lensprof_error error{};
     check(lensprof_store_get(store.get(), id, profile.get(), &error), store_path(db), &error);
-    if (json) streams.out << profile_json(id, *profile).dump() << "\n";
+    if (json) print_json(profile_json(id, *profile), streams.out);
     else print_profile(id, *profile, streams.out);
     return 0;
 }
@@ -49,7 +49,7 @@ int remove(const std::string &db, int64_t id, bool json, Streams &streams) {
     Store store = open_store(db, LENSPROF_STORE_WRITE);
     lensprof_error error{};
     check(lensprof_store_remove(store.get(), id, &error), store_path(db), &error);
-    if (json) streams.out << Json{{"schema", 1}, {"removed", id}}.dump() << "\n";
+    if (json) print_json(Json{{"schema", 1}, {"removed", id}}, streams.out);
     else streams.out << "removed profile " << id << "\n";
     return 0;
 }

@@ -22,7 +22,7 @@ void check_one_lens(const Project &project) {
         if (image.response_of != project.images[0].response_of || image.vignetting_of != project.images[0].vignetting_of)
             throw Failure(ExitCode::usage, project.path + ": image " + std::to_string(i) + " (" + project.names[i]
                           + ") is not linked to image 0 in Ra..Re and Va..Vd, which makes it another lens; link them in "
-                            "Hugin or give --one-lens");
+                            "Hugin (or give build --one-lens)");
     }
 }
 
@@ -73,8 +73,6 @@ Project read_project(const std::string &path, bool one_lens) {
         project.names.push_back(pto_name(*project.pto, i));
         project.files.push_back((folder / project.names[i]).string());
     }
-    if (project.images.size() < 2)
-        throw Failure(ExitCode::not_usable, path + ": has one image; at least two overlapping ones are needed");
     if (!one_lens) check_one_lens(project);
     project.reference = find_reference(project);
     return project;

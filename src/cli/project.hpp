@@ -22,7 +22,7 @@ struct Project {
 };
 
 /* Reads a project. The reference is the first image whose Eev is not asked for, else image 0. With `one_lens`, images that are not linked are taken as one lens; otherwise that is a
- * Failure. Fewer than two images are a Failure (not usable). */
+ * Failure. */
 Project read_project(const std::string &path, bool one_lens);
 
 /* The image that a user means by a number or a file name of the project. */

@@ -22,6 +22,7 @@ int run_query(const std::vector<std::string> &arguments, Streams &streams) {
     app.add_option("--db", db, "profile database; default the user's own");
     app.add_flag("--json", json, "print one JSON object");
     if (!parse(app, arguments, streams)) return 0;
+    if (!processing.empty()) processing_of_name(processing);  /* a word that is none is an error whatever is stored */
     if (camera.empty() && lens.empty()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
 
     lensprof_profile_key filter;
@@ -56,7 +57,7 @@ int run_query(const std::vector<std::string> &arguments, Streams &streams) {
     if (json) {
         Json object = profile_json(newest->id, *profile);
         object["matches"] = matches;
-        streams.out << object.dump() << "\n";
+        print_json(object, streams.out);
     } else {
         print_profile(newest->id, *profile, streams.out);
         if (matches > 1) streams.out << matches << " profiles match; this is the newest. Give more of the setting to choose.\n";

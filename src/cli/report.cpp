@@ -84,6 +84,8 @@ uint32_t processing_of_name(const std::string &name) {
     throw Failure(ExitCode::usage, name + ": not a processing state; use raw, jpeg or corrected");
 }
 
+void print_json(const Json &json, std::ostream &out) { out << json.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n"; }
+
 Json build_json(const BuildReport &report) {
     const auto &fit = report.fit;
     Json json, images = Json::array();

@@ -26,6 +26,9 @@ struct BuildReport {
     int64_t profile_id = 0; /* 0 = not stored */
 };
 
+/* One line. Names of files need not be UTF-8, JSON must: bytes that are not become U+FFFD. */
+void print_json(const Json &json, std::ostream &out);
+
 /* The object that `build --json` prints; docs/json.md describes the schema. */
 Json build_json(const BuildReport &report);
 

@@ -43,8 +43,8 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--outliers", o.outliers, "share of pixels (and of --points pairs) replaced by random numbers")->check(in_range(0.0, 1.0));
     app.add_option("--format", o.formats, "png, png16, tiff, tiff16, tiff32, jpeg; several, with commas, take turns");
     app.add_option("--seed", o.seed, "another seed, another scene and camera");
-    app.add_option("--points", o.points, "also write points.txt with this many noisy pairs");
-    app.add_option("--test-points", o.test_points, "also write test_points.txt with noise-free pairs, for scoring");
+    app.add_option("--points", o.points, "also write points.txt with this many noisy pairs")->check(in_range(0, 1e6));
+    app.add_option("--test-points", o.test_points, "also write test_points.txt with noise-free pairs, for scoring")->check(in_range(0, 1e6));
     app.add_flag("--no-images", o.no_images, "write no pictures");
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interrupt.hpp"
 #include "simulate.hpp"
 
 namespace lensprof {
@@ -80,6 +81,7 @@ std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const Scene &scene
     uint32_t per_ring[kRings] = {}, share = (count + kRings - 1) / kRings;
     for (uint64_t trial = 0, most = 2000ull * count + 100000; trial < most && pairs.size() < count; trial++) {
         if (trial % (most / 20) == most / 20 - 1) share += share / 4 + 1;  /* rings that cannot be filled: others take more */
+        if (trial % 4096 == 0) stop_if_interrupted();
         lensprof_pair pair;
         int ring[2];
         if (!draw(truth, scene, darkest, random, pair, ring)) continue;

@@ -9,6 +9,7 @@
 
 #define LAST (LENSPROF_RESPONSE_SAMPLES - 1)
 #define LARGEST_SIDE (1u << 20)
+#define LARGEST_ROW ((ptrdiff_t)1 << 28) /* bytes; times LARGEST_SIDE rows it stays within an address */
 
 typedef struct curve {
     const float *forward; /* 1024 samples of f */
@@ -56,6 +57,7 @@ lensprof_status lensprof_image_validate(const lensprof_image *image)
     if (!bytes || !samples) return LENSPROF_ERROR_ARGUMENT;
     if (!image->width || !image->height || image->width > LARGEST_SIDE || image->height > LARGEST_SIDE)
         return LENSPROF_ERROR_SIZE;
+    if (image->row_bytes > LARGEST_ROW || image->row_bytes < -LARGEST_ROW) return LENSPROF_ERROR_SIZE;
     int64_t row = image->row_bytes < 0 ? -(int64_t)image->row_bytes : (int64_t)image->row_bytes;
     if (row < (int64_t)image->width * samples * bytes && image->height > 1) return LENSPROF_ERROR_SIZE;
     if ((uintptr_t)image->data % bytes || row % bytes) return LENSPROF_ERROR_ARGUMENT;
@@ -99,6 +101,10 @@ static lensprof_status validate_options(const lensprof_apply_options *o)
         return LENSPROF_ERROR_SIZE;
     lensprof_status status = lensprof_exposure_validate(&o->source);
     if (status == LENSPROF_OK) status = lensprof_exposure_validate(&o->target);
+    for (uint32_t c = 0; c < 3 && status == LENSPROF_OK; c++) { /* single precision must hold the factor */
+        double factor = lensprof_exposure_factor(&o->target, c) / lensprof_exposure_factor(&o->source, c);
+        if (!(factor >= 1e-12 && factor <= 1e12)) status = LENSPROF_ERROR_EXPOSURE;
+    }
     for (uint32_t c = 0; c < o->responses && status == LENSPROF_OK; c++)
         status = lensprof_response_validate(&o->response[c]);
     for (uint32_t c = 0; c < o->vignettings && status == LENSPROF_OK; c++) {

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #define SMALLEST_M 0.001
+#define LARGEST_K 1e6 /* far beyond any lens; keeps the arithmetic below exact enough */
 
 double lensprof_vignetting_eval(const lensprof_vignetting *vignetting, double r2, double *slope)
 {
@@ -32,6 +33,7 @@ lensprof_status lensprof_vignetting_validate(const lensprof_vignetting *vignetti
     const double *k = vignetting->k, *c = vignetting->center;
     if (!isfinite(k[0]) || !isfinite(k[1]) || !isfinite(k[2])) return LENSPROF_ERROR_NOT_FINITE;
     if (!isfinite(c[0]) || !isfinite(c[1])) return LENSPROF_ERROR_NOT_FINITE;
+    if (fabs(k[0]) > LARGEST_K || fabs(k[1]) > LARGEST_K || fabs(k[2]) > LARGEST_K) return LENSPROF_ERROR_VIGNETTING;
     if (fabs(c[0]) > 1.0 || fabs(c[1]) > 1.0) return LENSPROF_ERROR_VIGNETTING;
     /* The minimum over s = r^2 in [0, limit] is at an end or where dM/ds = k1 + 2 k2 s + 3 k3 s^2 = 0. */
     double reach = 1.0 + hypot(c[0], c[1]), limit = reach * reach, candidate[3] = {limit, 0.0, 0.0};

@@ -3,6 +3,7 @@
 #include <new>
 
 #include "fail.hpp"
+#include "normal_equations.hpp"
 #include "overlap.hpp"
 #include "residual.hpp"
 
@@ -10,16 +11,19 @@ using namespace lensprof;
 
 namespace {
 
+constexpr uint32_t kSharedFlags = LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
+constexpr uint32_t kImageFlags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
+
 lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_count, lensprof_error *error) {
     if (o.struct_size != sizeof o)
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit options: call lensprof_fit_options_init first");
     if ((o.channels != 1 && o.channels != 3) || o.reference >= image_count || o.loss > LENSPROF_LOSS_SQUARED
         || (o.modes > LENSPROF_EMOR_MODES && o.modes != LENSPROF_MODES_AUTO)
         || !(o.huber_levels > 0.0 && o.huber_levels <= 255.0) || !(o.prior_weight >= 0.0 && o.prior_weight <= 1e6)
-        || o.max_iterations == 0 || o.reserved != 0)
+        || o.max_iterations == 0 || o.max_iterations > 1000000 || (o.free & ~kSharedFlags) || o.reserved != 0)
         return fail(LENSPROF_ERROR_ARGUMENT, error,
                     "fit options: channels 1 or 3, reference < images, modes 0..25 or automatic, Huber 0..255 levels, "
-                    "prior weight >= 0, iterations > 0");
+                    "prior weight >= 0, iterations 1..1000000, flags of the shared unknowns only");
     lensprof_status status = lensprof_vignetting_validate(&o.vignetting);
     if (status != LENSPROF_OK) return fail(status, error, "fit options: the given vignetting is not positive and finite");
     status = o.response ? lensprof_response_validate(o.response) : LENSPROF_OK;
@@ -33,6 +37,8 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
             return fail(LENSPROF_ERROR_SIZE, error, "image %u: sizes must be 1..1048576", i);
         if (lensprof_exposure_validate(&image.exposure) != LENSPROF_OK)
             return fail(LENSPROF_ERROR_EXPOSURE, error, "image %u: exposure or white balance out of range", i);
+        if (image.free & ~kImageFlags)
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: only EV, RED and BLUE can be free in an image", i);
         for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})
             if (of >= count) return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to image %u of %u", i, of, count);
         if (images[image.ev_of].ev_of != image.ev_of || images[image.red_of].red_of != image.red_of
@@ -42,8 +48,8 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
     return LENSPROF_OK;
 }
 
-lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, uint32_t image_count, int channels,
-                            lensprof_error *error) {
+lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const lensprof_fit_image *images, uint32_t image_count,
+                            int channels, lensprof_error *error) {
     for (uint32_t p = 0; p < count; p++) {
         const auto &pair = pairs[p];
         if (pair.image[0] >= image_count || pair.image[1] >= image_count || pair.image[0] == pair.image[1])
@@ -52,8 +58,10 @@ lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, uint32_t
         for (int side = 0; side < 2; side++) {
             if (!std::isfinite(pair.xy[side][0]) || !std::isfinite(pair.xy[side][1]))
                 return fail(LENSPROF_ERROR_NOT_FINITE, error, "pair %u: a position is not a number", p);
-            if (std::abs(pair.xy[side][0]) > 4e6 || std::abs(pair.xy[side][1]) > 4e6)
-                return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: a position is far outside its image", p);
+            const auto &frame = images[pair.image[side]];
+            double x = pair.xy[side][0], y = pair.xy[side][1];
+            if (x < -1.0 || y < -1.0 || x > frame.width || y > frame.height)
+                return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: position %g, %g is outside image %u", p, x, y, pair.image[side]);
             for (int c = 0; c < channels; c++) {
                 double value = pair.value[side][c];
                 if (!std::isfinite(value))
@@ -67,13 +75,8 @@ lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, uint32_t
 }
 
 bool has_unknowns(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t count) {
-    uint32_t shared = options.free;
-    if (options.modes == 0) shared &= ~LENSPROF_FREE_RESPONSE;
-    if (shared & (LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER))
-        return true;
-    for (uint32_t i = 0; i < count; i++)
-        if (i != options.reference && images[i].free) return true;
-    return false;
+    Problem problem = make_problem(options, images, count, nullptr, {});
+    return problem.image_unknowns > 0 || !free_columns(problem, options.modes == 0 ? 0 : 1).empty();
 }
 
 }  // namespace
@@ -109,12 +112,12 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
     lensprof_status status = check_options(*options, image_count, error);
     if (status == LENSPROF_OK) status = check_images(images, image_count, error);
     if (status == LENSPROF_OK)
-        status = check_pairs(pairs, pair_count, image_count, static_cast<int>(options->channels), error);
+        status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(options->channels), error);
     if (status != LENSPROF_OK) return status;
     if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
-    if (!has_unknowns(*options, images, image_count))
-        return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "fit: every parameter is fixed; free at least one");
     try {
+        if (!has_unknowns(*options, images, image_count))
+            return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "fit: every parameter is fixed; free at least one");
         fit_overlap(*options, images, image_count, pairs, pair_count, exposures, *result);
         return LENSPROF_OK;
     } catch (const Cancelled &) {
@@ -123,6 +126,8 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
         return fail(LENSPROF_ERROR_MEMORY, error, "fit: out of memory");
     } catch (const std::exception &e) {
         return fail(LENSPROF_ERROR_INTERNAL, error, "fit: %s", e.what());
+    } catch (...) {
+        return fail(LENSPROF_ERROR_INTERNAL, error, "fit: an unknown exception");
     }
 }
 
@@ -136,7 +141,7 @@ lensprof_status lensprof_transfer_rms(const lensprof_response *response, const l
     lensprof_status status = lensprof_response_validate(response);
     if (status == LENSPROF_OK) status = lensprof_vignetting_validate(vignetting);
     if (status == LENSPROF_OK) status = check_images(images, image_count, nullptr);
-    if (status == LENSPROF_OK) status = check_pairs(pairs, pair_count, image_count, static_cast<int>(channels), nullptr);
+    if (status == LENSPROF_OK) status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(channels), nullptr);
     for (uint32_t i = 0; i < image_count && status == LENSPROF_OK; i++) status = lensprof_exposure_validate(&exposures[i]);
     if (status != LENSPROF_OK) return status;
     try {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 #include "monotone.hpp"
@@ -18,6 +19,8 @@ namespace {
 constexpr int kStartModes = 5;       // enough to tell the starts apart
 constexpr uint32_t kStartPairs = 800;
 constexpr uint32_t kSmallestHeldout = 20;
+constexpr double kBlack = 0.004;         // one level of 255
+constexpr double kSmallestRange = 0.05;  // of grey values
 constexpr double kLargestNoise = 6.0;  // levels of 255: no camera's noise, but a model that does not fit
 
 // Every fifth pair is left out, by a hash of its number: independent of order along images, same every time.
@@ -70,7 +73,7 @@ private:
     int choose_modes(const Estimate &start, Estimate &best);
     std::vector<double> heldout_losses(const Estimate &estimate, const Loss &loss) const;
     void describe(const Estimate &train, const Estimate &estimate, const Loss &used, lensprof_fit_result &result) const;
-    void judge(const Problem &all, lensprof_fit_result &result) const;
+    void judge(const Problem &all, int modes, lensprof_fit_result &result) const;
 
     const lensprof_fit_options &options_;
     const lensprof_fit_image *images_;
@@ -185,7 +188,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     r.iterations = static_cast<uint32_t>(outcome.iterations);
     r.converged = outcome.converged;
     describe(train_fit, estimate, used, r);
-    judge(problem(split_.all), r);
+    judge(problem(split_.all), estimate.modes, r);
     r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     for (uint32_t i = 0; i < image_count_; i++) {
         const auto &a = estimate.log_exposure[i];
@@ -252,24 +255,52 @@ void Fit::describe(const Estimate &train, const Estimate &estimate, const Loss &
     Loss final = used;
     final.noise = noise;
     Eigen::MatrixXd covariance = shared_covariance(all, prior_, final, estimate);
-    int modes = std::max(estimate.modes, 0), n = modes + 5;
+    int modes = static_cast<int>(r.response.modes), n = covariance.isZero() ? 0 : modes + 5;
     auto column = [&](int i) { return i < modes ? i : kMaxModes + i - modes; };
     r.covariance_size = static_cast<uint32_t>(n);
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) r.covariance[i * n + j] = covariance(column(i), column(j));
 }
 
+// Pairs that tell something: different from each other, with both grey values of a channel between black and white.
+size_t count_informative(const Problem &problem) {
+    std::set<std::array<double, 10>> seen;
+    for (const auto &p : problem.pairs) {
+        bool tells = false;
+        for (int c = 0; c < problem.channels; c++)
+            tells = tells || (std::min(p.value[0][c], p.value[1][c]) > kBlack && std::max(p.value[0][c], p.value[1][c]) < 1.0 - kBlack);
+        if (tells)
+            seen.insert({p.xy[0][0], p.xy[0][1], p.xy[1][0], p.xy[1][1], p.value[0][0], p.value[0][1], p.value[0][2],
+                         p.value[1][0], p.value[1][1], p.value[1][2]});
+    }
+    return seen.size();
+}
+
+// From the darkest to the brightest grey value of all pairs, without a twentieth at either end.
+double grey_range(const Problem &problem) {
+    std::vector<double> values;
+    for (const auto &p : problem.pairs)
+        for (const auto &side : p.value) values.insert(values.end(), side, side + problem.channels);
+    std::sort(values.begin(), values.end());
+    return values[values.size() - 1 - values.size() / 20] - values[values.size() / 20];
+}
+
 // Plain words for what makes a result unusable.
-void Fit::judge(const Problem &all, lensprof_fit_result &r) const {
-    size_t unknowns = free_columns(all, static_cast<int>(r.response.modes)).size() + static_cast<size_t>(all.image_unknowns);
+void Fit::judge(const Problem &all, int modes, lensprof_fit_result &r) const {
+    size_t unknowns = free_columns(all, modes).size() + static_cast<size_t>(all.image_unknowns);
+    size_t informative = count_informative(all);
     r.usable = 0;
     if (r.components > 1)
         std::snprintf(r.reason, sizeof r.reason,
                       "the images fall into %u groups without usable overlap between them; add pictures that join them",
                       r.components);
-    else if (all.pairs.size() * static_cast<size_t>(all.channels) < 2 * unknowns)
-        std::snprintf(r.reason, sizeof r.reason, "%zu pairs are too few for %zu unknowns; sample more", all.pairs.size(),
+    else if (informative * static_cast<size_t>(all.channels) < 2 * unknowns)
+        std::snprintf(r.reason, sizeof r.reason,
+                      "%zu different pairs between black and white are too few for %zu unknowns; sample more", informative,
                       unknowns);
+    else if (grey_range(all) < kSmallestRange)
+        std::snprintf(r.reason, sizeof r.reason, "the pairs cover %.0f grey levels only, which does not show a response",
+                      255.0 * grey_range(all));
     else if (r.inlier_share < 0.3)
         std::snprintf(r.reason, sizeof r.reason,
                       "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",

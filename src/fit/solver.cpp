@@ -31,8 +31,10 @@ struct Stepper {
         auto step = model.image_step(d);
         for (size_t i = 0; i < step.size(); i++) {
             auto &a = to.log_exposure[i];
-            for (int c = 0; c < 3; c++) a[c] = std::clamp(a[c] + step[i][c], -kLargestLogExposure, kLargestLogExposure);
-            for (int c : {0, 2}) a[c] = std::clamp(a[c], a[1] - kLargestLogBalance, a[1] + kLargestLogBalance);
+            for (int c = 0; c < 3; c++)
+                if (step[i][c] != 0.0) a[c] = std::clamp(a[c] + step[i][c], -kLargestLogExposure, kLargestLogExposure);
+            for (int c : {0, 2})
+                if (problem.balance_unknown[i][c] >= 0) a[c] = std::clamp(a[c], a[1] - kLargestLogBalance, a[1] + kLargestLogBalance);
         }
         return to;
     }
@@ -104,9 +106,10 @@ Eigen::MatrixXd shared_covariance(const Problem &problem, const Prior &prior, co
     NormalEquations model(problem, prior, loss, noise_weights(problem, estimate, loss), estimate);
     if (model.columns().empty() || !model.reduce(0.0)) return full;
     auto n = static_cast<Eigen::Index>(model.columns().size());
-    Eigen::LDLT<Eigen::MatrixXd> factor(model.reduced_hessian());
+    Eigen::LLT<Eigen::MatrixXd> factor(model.reduced_hessian());
+    if (factor.info() != Eigen::Success) return full;  // not determined: no statement
     Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(n, n));
-    if (factor.info() != Eigen::Success || !inverse.allFinite()) return full;
+    if (!inverse.allFinite() || inverse.diagonal().minCoeff() <= 0.0) return full;
     for (Eigen::Index u = 0; u < n; u++)
         for (Eigen::Index v = 0; v < n; v++)
             full(model.columns()[static_cast<size_t>(u)], model.columns()[static_cast<size_t>(v)]) =

@@ -29,7 +29,7 @@ Outcome solve(const Problem &problem, const Prior &prior, Loss &loss, bool refin
               Estimate &estimate);
 
 // Covariance of the full shared vector (emor[0..24], k1..k3, centre): inverse of the reduced Hessian at the estimate, with
-// the images' unknowns free. Zero rows where a parameter was held fixed.
+// the images' unknowns free. Zero rows where a parameter was held fixed; all zero where the data do not determine it.
 Eigen::MatrixXd shared_covariance(const Problem &problem, const Prior &prior, const Loss &loss, const Estimate &estimate);
 
 }  // namespace lensprof

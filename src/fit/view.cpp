@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace lensprof {
 namespace {
@@ -99,6 +100,19 @@ bool View::in_range(const Patch &patch) const {
     return true;
 }
 
+// A quick look before the work: in some channel, the middle and its four neighbours are all black or saturated.
+bool View::is_out_of_range(int u, int v) const {
+    for (int c = 0; c < channels(); c++) {
+        int bad = 0;
+        for (auto [du, dv] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+            double value = sample(u + du, v + dv, c);
+            bad += !(value >= image_.black && value <= image_.white);
+        }
+        if (bad == 5) return true;
+    }
+    return false;
+}
+
 bool View::patch(double x, double y, Patch &out) const {
     double u, v;
     to_view(x, y, u, v);
@@ -106,6 +120,7 @@ bool View::patch(double x, double y, Patch &out) const {
     for (int dv = -kReach; dv <= kReach; dv++)
         for (int du = -kReach; du <= kReach; du++)
             if (!is_allowed(iu + du, iv + dv)) return false;
+    if (is_out_of_range(iu, iv)) return false;
     out.gradient = 0.0;
     for (int c = 0; c < channels(); c++) {
         double all[kCount], low[2][kReach * kSide], high[2][kReach * kSide];  // [0] columns, [1] rows

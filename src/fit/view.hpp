@@ -36,6 +36,7 @@ private:
     double sample(int u, int v, int channel) const;
     bool is_allowed(int u, int v) const;
     bool in_range(const Patch &patch) const;
+    bool is_out_of_range(int u, int v) const;
 
     const lensprof_sample_image &image_;
 };

@@ -218,6 +218,24 @@ void test_reason_in_json(void **) {
     assert_int_equal(json["response"]["values"][0].size(), 1024);
 }
 
+/* Outputs that would take the place of an input, the database or each other. */
+void test_outputs_that_meet(void **) {
+    const std::string copy = copy_of("scene"), pto = copy + "/pano.pto", db = work("p.db");
+    const Words build = Words{"build", pto, "--db", db, "--camera", "X"} + quick;
+    assert_refused(usage, build + Words{"--pto-out", pto}, {pto});
+    assert_refused(usage, build + Words{"--pto-out", db}, {db});
+    assert_refused(usage, build + Words{"--points-out", copy + "/img001.png"}, {"img001.png"});
+    assert_refused(usage, build + Words{"--points-out", work("same"), "--pto-out", work("same")}, {"same"});
+}
+
+/* Bytes that are not UTF-8, in names and options: stored as question marks, printed as U+FFFD. */
+void test_text_that_is_not_utf8(void **) {
+    const Json json = json_of({"build", scene("pano.pto"), "--db", work("p.db"), "--camera", "X\xe9", "--json", "--pairs", "600", "--modes", "3"});
+    assert_true(json["profile"].is_number());
+    const Json list = json_of({"profile", "list", "--db", work("p.db"), "--json"});
+    assert_true(contains(list.dump(), "X?"));
+}
+
 /* A project that was not written by build holds nothing to undo. */
 void test_apply_without_a_result(void **) {
     assert_refused(usage, {"apply", "--pto", scene("pano.pto"), "-o", work("corrected")}, {"pano.pto", "--pto-out"});
@@ -457,6 +475,8 @@ int main() {
         FAULT_TEST(test_points_of_other_images),
         FAULT_TEST(test_reason_in_json),
         FAULT_TEST(test_apply_without_a_result),
+        FAULT_TEST(test_outputs_that_meet),
+        FAULT_TEST(test_text_that_is_not_utf8),
         FAULT_TEST(test_bad_truth),
         FAULT_TEST(test_corrupt_database),
         FAULT_TEST(test_corrupt_database_leaves_no_output),

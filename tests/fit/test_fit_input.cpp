@@ -63,9 +63,36 @@ void test_refuses(void **) {
     REFUSED(call.s.pairs[7].value[1][2] = 1.01, LENSPROF_ERROR_ARGUMENT);
     REFUSED(call.s.pairs[7].xy[0][0] = INFINITY, LENSPROF_ERROR_NOT_FINITE);
     REFUSED(call.s.pairs[7].xy[0][0] = 1e9, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.s.pairs[7].xy[0][0] = 802.0, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.options.max_iterations = 0xFFFFFFFFu, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.options.free = LENSPROF_FREE_EV, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(call.s.fit_images[1].free = 0x100, LENSPROF_ERROR_ARGUMENT);
+    REFUSED((call.options.free = 0, call.options.channels = 1,
+             [&] { for (auto &i : call.s.fit_images) i.free = LENSPROF_FREE_RED; }()), LENSPROF_ERROR_NO_UNKNOWNS);
+    REFUSED((call.options.free = 0, [&] { for (auto &i : call.s.fit_images) i.ev_of = 0, i.free = LENSPROF_FREE_EV; }()),
+            LENSPROF_ERROR_NO_UNKNOWNS);
     REFUSED(call.s.pairs.clear(), LENSPROF_ERROR_NO_SAMPLES);
     REFUSED(call.s.fit_images.resize(1), LENSPROF_ERROR_ARGUMENT);
     REFUSED((call.options.free = 0, [&] { for (auto &i : call.s.fit_images) i.free = 0; }()), LENSPROF_ERROR_NO_UNKNOWNS);
+}
+
+// Pairs that tell nothing: one pair repeated, one grey value, black and white alone.
+void test_data_without_information_are_not_usable(void **) {
+    for (int kind = 0; kind < 4; kind++)
+        for (double prior : {0.0, 1.0}) {
+            Call call;
+            call.options.prior_weight = prior;
+            for (auto &pair : call.s.pairs) {
+                auto value = kind == 0 ? call.s.pairs[0].value[0][1] : kind == 1 ? 0.5 : kind == 2 ? 0.0 : 1.0;
+                if (kind == 0) pair = call.s.pairs[0];
+                else for (auto &side : pair.value) side[0] = side[1] = side[2] = value;
+            }
+            assert_ok(call.run());
+            assert_int_equal(call.result.usable, 0);
+            assert_true(call.result.reason[0] != 0);
+            for (uint32_t i = 0; i < call.result.covariance_size; i++)
+                assert_true(call.result.covariance[i * call.result.covariance_size + i] >= 0.0);
+        }
 }
 
 int stop(double, void *user) { return ++*static_cast<int *>(user) > 3; }
@@ -117,6 +144,7 @@ void test_degenerate_problems_stay_finite(void **) {
 int main() {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_data_without_information_are_not_usable),
         cmocka_unit_test(test_progress_cancels),
         cmocka_unit_test(test_degenerate_problems_stay_finite),
     };

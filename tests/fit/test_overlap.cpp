@@ -117,6 +117,7 @@ void test_known_response_gives_absolute_values(void **) {
     options.free &= ~LENSPROF_FREE_RESPONSE;
     options.response = &s.response;
     Run run = fit(s, options);
+    assert_int_equal(run.result.covariance_size, run.result.response.modes + 5);
     assert_memory_equal(run.result.response.table, s.response.table, sizeof s.response.table);
     assert_close(run.gamma, 1.0, 0.01);
     assert_true(s.exposure_error(run.exposures, 1.0) < 0.01);
@@ -132,10 +133,14 @@ void test_fixed_and_linked_parameters(void **) {
     s.fit_images[2].exposure.ev = s.exposures[2].ev;
     s.fit_images[4].free = 0;
     s.fit_images[4].exposure = s.exposures[4];
+    s.fit_images[0].free = 0;  // far outside what a free exposure may become, and kept all the same
+    s.fit_images[0].exposure.ev = 30.0;
+    s.pairs.erase(std::remove_if(s.pairs.begin(), s.pairs.end(), [](const lensprof_pair &p) { return p.image[0] == 0; }), s.pairs.end());
     s.fit_images[5].red_of = 3;
     Run run = fit(s, options);
     assert_close(run.exposures[2].ev, s.exposures[2].ev, 1e-12);       // the reference
     assert_close(run.exposures[4].ev, s.exposures[4].ev, 1e-12);       // fixed
+    assert_close(run.exposures[0].ev, 30.0, 1e-12);
     assert_close(run.exposures[4].white_balance[2], s.exposures[4].white_balance[2], 1e-12);
     assert_close(run.exposures[5].white_balance[0], run.exposures[3].white_balance[0], 1e-12);  // linked
     assert_close(run.result.vignetting.k[1], 0.05, 0.0);

@@ -247,6 +247,7 @@ static void test_plan_refuses(void **state)
     REFUSED(f.options.frame_width = 0, LENSPROF_ERROR_SIZE);
     REFUSED(f.options.frame_height = 0xFFFFFFFFu, LENSPROF_ERROR_SIZE);
     REFUSED(f.options.source.ev = NAN, LENSPROF_ERROR_EXPOSURE);
+    REFUSED((f.options.source.ev = -64.0, f.options.target.ev = 64.0), LENSPROF_ERROR_EXPOSURE);
     REFUSED(f.vignetting[0].k[0] = -2.0, LENSPROF_ERROR_VIGNETTING);
     f.vignetting[0].k[0] = -0.4;
     REFUSED((f.options.vignettings = 3, f.vignetting[1].center[0] = 0.2), LENSPROF_ERROR_VIGNETTING);
@@ -286,6 +287,8 @@ static void test_apply_refuses_and_writes_nothing(void **state)
     bad = t, bad.width = W - 1;
     assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
     bad = t, bad.row_bytes = 3 * W - 1;
+    assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
+    bad = t, bad.row_bytes = PTRDIFF_MIN;
     assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_SIZE);
     bad = t, bad.data = NULL;
     assert_int_equal(lensprof_apply(f.plan, &s, &bad, 0, 0), LENSPROF_ERROR_ARGUMENT);

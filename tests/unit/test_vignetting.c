@@ -70,6 +70,8 @@ static void test_validate_refuses(void **state)
     assert_int_equal(lensprof_vignetting_validate(&v), LENSPROF_ERROR_NOT_FINITE);
     v = (lensprof_vignetting){{0}, {1.5, 0}};
     assert_int_equal(lensprof_vignetting_validate(&v), LENSPROF_ERROR_VIGNETTING);
+    v = (lensprof_vignetting){{-4e155, 4e155, 1e150}, {0, 0}}; /* squares overflow */
+    assert_int_equal(lensprof_vignetting_validate(&v), LENSPROF_ERROR_VIGNETTING);
     assert_int_equal(lensprof_vignetting_validate(NULL), LENSPROF_ERROR_ARGUMENT);
 }
 

@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Measures lensprof beside its peers; see run.sh."""
+import argparse
+import json
+import os
+import pathlib
+import sys
+import time
+
+import cases
+import real
+import report
+import speed
+import tools
+
+PARTS = ("points", "pictures", "speed", "real")
+
+
+def parse():
+    p = argparse.ArgumentParser(description="Measures lensprof beside Hugin's vig_optimize.", prog="run.sh")
+    p.add_argument("--quick", action="store_true", help="few cases, under two minutes")
+    p.add_argument("--real", metavar="DIR", help="also cross-validate on every pano.pto below DIR")
+    p.add_argument("--only", default=",".join(PARTS), help="parts, with commas: points, pictures, speed, real")
+    p.add_argument("--repeat", type=int, default=5, help="turns of the speed measurement")
+    p.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), help="cases at a time (accuracy only)")
+    p.add_argument("--keep", action="store_true", help="keep the rendered pictures")
+    options = p.parse_args()
+    options.only = options.only.split(",")
+    if set(options.only) - set(PARTS):
+        p.error("--only: use " + ", ".join(PARTS))
+    if options.real and not any(pathlib.Path(options.real).rglob("pano.pto")):
+        p.error("--real %s: holds no pano.pto" % options.real)
+    return options
+
+
+def main():
+    options, start = parse(), time.time()
+    if not os.access(tools.LENSPROF, os.X_OK):
+        sys.exit("run.sh: %s: no such program; run `make` first" % tools.LENSPROF)
+
+    def say(text):
+        print("[%4d s] %s" % (time.time() - start, text), file=sys.stderr, flush=True)
+
+    tools.WORK.mkdir(parents=True, exist_ok=True)
+    skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize is not installed (package hugin-tools); lensprof is alone"
+    results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
+               "points": [], "pictures": [], "speed": {}, "real": [], "skipped": skipped}
+    if skipped:
+        say("SKIPPED: " + skipped)
+    if "speed" in options.only:
+        results["speed"] = speed.run_all(options.quick, options.repeat, say)
+    for part, of in (("points", cases.point_cases), ("pictures", cases.picture_cases)):
+        if part in options.only:
+            results[part] = cases.run_all(of(options.quick), options.jobs, options.keep, say)
+    if options.real and "real" in options.only:
+        results["real"] = real.run_all(options.real, options.jobs, say)
+    results["seconds"] = time.time() - start
+    text = report.document(results)
+    (tools.WORK / "results.json").write_text(json.dumps(results, indent=1) + "\n")
+    (tools.WORK / "benchmarks.md").write_text(text)
+    print(text, end="")
+    say("done; figures in %s" % (tools.WORK / "results.json"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,124 @@
+"""The synthetic cases, rendered by `lensprof simulate`, and what every tool makes of them."""
+import shutil
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import scorer
+import tools
+
+EMOR = ["emor:2.05,-0.12,-0.49,0.27,-0.18", "emor:-0.92,-0.88,1.03,0.36,-0.28", "emor:3.21,-0.4,-0.81,-0.08,0.17"]
+POINT_RESPONSES = ["srgb", "gamma:2.2", "film", "linear", EMOR[0], EMOR[1]]
+PICTURE_RESPONSES = ["srgb", "film", EMOR[0]]  # of the seeds, where the group does not name one
+SHARES, COUNTS = (0, 10, 30, 50), (50, 100, 200, 300, 500, 1000)
+POINT_SEEDS, PICTURE_SEEDS = 24, 3
+TEST_PAIRS = "2000"
+
+PICTURES = [
+    ("sRGB", "--response srgb"),
+    ("gamma 2.2", "--response gamma:2.2"),
+    ("film", "--response film"),
+    ("EMoR curves", "--response EMOR"),
+    ("linear", "--response linear"),
+    ("chromatic falloff", "--vignetting -0.30,0.05,-0.15,-0.25,0.03,-0.15,-0.36,0.08,-0.16"),
+    ("10 % outlier pixels", "--outliers 0.1"),
+    ("30 % outlier pixels", "--outliers 0.3"),
+    ("JPEG", "--format jpeg"),
+    ("16-bit TIFF", "--format tiff16 --noise 0.5"),
+    ("float TIFF", "--format tiff32 --noise 0.5"),
+    ("fixed exposure", "--ev 0 --wb 0"),
+    ("misaligned 3 px", "--misalign 3"),
+    ("misaligned 10 px", "--misalign 10"),
+    ("overlap 8 degrees", "--overlap 0.16"),
+    ("2 images", "--images 2"),
+    ("24 images, 2 rows", "--images 24 --rows 2"),
+    ("falloff of 4 stops", "--vignetting=-1.6,0.9,-0.2375"),
+]
+QUICK_PICTURES = ("sRGB", "30 % outlier pixels", "JPEG", "fixed exposure", "2 images", "falloff of 4 stops")
+
+
+@dataclass
+class Case:
+    name: str
+    groups: list      # of the tables
+    seed: int
+    response: str
+    arguments: list   # of `lensprof simulate`
+    pictures: bool
+
+
+def point_cases(quick):
+    """Like d'Angelo's figure 1: error over the share of outliers (300 pairs) and over the number of pairs (10 %)."""
+    jobs = [(300, share) for share in SHARES] + [(count, 10) for count in COUNTS if count != 300]
+    for seed in range(1, (4 if quick else POINT_SEEDS) + 1):
+        response = POINT_RESPONSES[(seed - 1) % len(POINT_RESPONSES)]
+        for count, share in jobs:
+            groups = ["300 pairs, %d %% outliers" % share] if count == 300 else []
+            groups += ["%d pairs, 10 %% outliers" % count] if share == 10 and count != 300 else []
+            yield Case("points_%d_%d_%d" % (count, share, seed), groups, seed, response,
+                       ["--no-images", "--points", str(count), "--outliers", str(share / 100.0)], False)
+
+
+def picture_cases(quick):
+    for group, options in PICTURES:
+        if quick and group not in QUICK_PICTURES:
+            continue
+        for seed in range(1, (1 if quick else PICTURE_SEEDS) + 1):
+            words = options.replace("EMOR", EMOR[(seed - 1) % len(EMOR)]).split()
+            named = "--response" in words
+            response = words[words.index("--response") + 1] if named else PICTURE_RESPONSES[(seed - 1) % 3]
+            name = "".join(c if c.isalnum() else "_" for c in "%s_%d" % (group, seed))
+            yield Case(name, [group], 100 + seed, response, words, True)
+
+
+def make(case, folder):
+    shutil.rmtree(folder, ignore_errors=True)
+    words = case.arguments if "--response" in case.arguments else case.arguments + ["--response", case.response]
+    common = ["-o", str(folder), "--seed", str(case.seed), "--test-points", TEST_PAIRS]
+    subprocess.run([tools.LENSPROF, "simulate", *common, *words], check=True, stdout=subprocess.DEVNULL)
+
+
+def calls(case, folder):
+    """(tool, function, arguments) in the order in which they must run."""
+    points = folder / ("pairs.txt" if case.pictures else "points.txt")
+    given = ["--points-out", str(points)] if case.pictures else ["--points", str(points)]
+    yield "lensprof", tools.run_lensprof, given
+    yield "lensprof-paper", tools.run_lensprof, tools.PAPER + ([] if case.pictures else given)
+    if tools.VIG_OPTIMIZE:
+        yield "hugin", tools.run_hugin, ["-i", str(points)]
+        if case.pictures:
+            yield "hugin-2000", tools.run_hugin, ["-s", "0", "-p", "2000"]
+            yield "hugin-default", tools.run_hugin, []
+
+
+def run_case(case, keep):
+    """-> one record for every tool."""
+    folder = tools.WORK / "cases" / case.name
+    make(case, folder)
+    truth = scorer.read_truth(folder / "truth.json", case.response)
+    pairs, sizes = scorer.read_points(folder / "test_points.txt"), tools.sizes_of_pto((folder / "pano.pto").read_text())
+    before = scorer.rms(scorer.transfer(scorer.identity(len(sizes)), pairs, sizes))
+    records = []
+    for tool, run, extra in calls(case, folder):
+        record = {"case": case.name, "groups": case.groups, "seed": case.seed, "response": case.response, "tool": tool,
+                  "uncorrected_rms": before, "failed": True}
+        used, model = run(str(folder / "pano.pto"), str(folder / tool), extra)
+        used.pop("timeless", None)
+        record.update(used)
+        if model:
+            record.update(scorer.score(truth, model, pairs, sizes))
+        records.append(record)
+    if not keep:
+        for picture in folder.glob("img*"):
+            picture.unlink()
+    return records
+
+
+def run_all(cases, jobs, keep, say):
+    cases, done = list(cases), []
+    with ThreadPoolExecutor(jobs) as pool:
+        for records in pool.map(lambda case: run_case(case, keep), cases):
+            done.append(records)
+            if len(done) % 20 == 0 or len(done) == len(cases):
+                say("%d of %d cases" % (len(done), len(cases)))
+    return [record for records in done for record in records]

@@ -1,0 +1,79 @@
+"""Time and memory. The tools take turns within one run, so that other load on the machine meets all of them alike;
+a ratio is taken within a turn and its median over the turns is stated."""
+import shutil
+import statistics
+import subprocess
+
+import scorer
+import tools
+
+SOLVER = [("6 images, 300 pairs", "--images 6 --points 300 --no-images"),
+          ("20 images, 5000 pairs", "--images 20 --rows 2 --points 5000 --no-images")]
+COMMAND = [("6 JPEG of 0.5 MP", "--images 6 --size 816x612 --format jpeg"),
+           ("20 JPEG of 2 MP", "--images 20 --rows 2 --size 1632x1224 --format jpeg")]
+COMMON = "--seed 1 --outliers 0.1 --test-points 2000"
+
+
+def render(name, options):
+    folder = tools.WORK / "speed" / "".join(c if c.isalnum() else "_" for c in name)
+    shutil.rmtree(folder, ignore_errors=True)
+    subprocess.run([tools.LENSPROF, "simulate", "-o", str(folder), *COMMON.split(), *options.split()], check=True,
+                   stdout=subprocess.DEVNULL)
+    return folder
+
+
+def solver_runs(folder):
+    """{tool: call}: the pairs are given, no picture is opened; one thread each."""
+    project, points = str(folder / "pano.pto"), str(folder / "points.txt")
+    yield "lensprof", lambda: tools.run_lensprof(project, str(folder / "lensprof"), ["--points", points])
+    if tools.VIG_OPTIMIZE:
+        yield "hugin", lambda: tools.run_hugin(project, str(folder / "hugin"), ["-i", points])
+
+
+def command_runs(folder):
+    """{tool: call}: the whole command from the pictures, with the threads that the tool takes by itself."""
+    project = str(folder / "pano.pto")
+    yield "lensprof", lambda: tools.run_lensprof(project, str(folder / "lensprof"))
+    if tools.VIG_OPTIMIZE:
+        for tool, extra in (("hugin-2000", ["-s", "0", "-p", "2000"]), ("hugin-default", [])):
+            yield tool, lambda tool=tool, extra=extra: tools.run_hugin(project, str(folder / tool), extra, threads=None)
+
+
+def measure(name, options, runs, turns):
+    """-> one record for every tool: the figures of every turn, medians, ratios of lensprof to the tool."""
+    folder = render(name, options)
+    truth, pairs = scorer.read_truth(folder / "truth.json", "srgb"), scorer.read_points(folder / "test_points.txt")
+    sizes, calls, taken = tools.sizes_of_pto((folder / "pano.pto").read_text()), dict(runs(folder)), {}
+    for _ in range(turns):
+        for tool, call in calls.items():
+            taken.setdefault(tool, []).append(call())
+    records = []
+    for tool, results in taken.items():
+        used = [u for u, _ in results]
+        record = {"case": name, "tool": tool, "turns": turns, "complete": all(model for _, model in results)}
+        for key in ("wall_s", "cpu_s", "peak_mb", "solve_s"):
+            if all(key in u for u in used):
+                record[key] = statistics.median(u[key] for u in used)
+                record[key + "_turns"] = [u[key] for u in used]
+        if record["complete"]:
+            record["clean_rms"] = scorer.score(truth, results[-1][1], pairs, sizes)["clean_rms"]
+        if tool == "lensprof":
+            record["identical"] = len({u.get("timeless") for u in used}) == 1
+        records.append(record)
+    for record in records:  # solver: against the peer's whole process, which does not state its solver's time
+        for key, own in (("wall_s", "wall_s"), ("cpu_s", "cpu_s"), ("peak_mb", "peak_mb"), ("solve_to_cpu", "solve_s")):
+            ours, theirs = records[0].get(own + "_turns"), record.get(key.replace("solve_to_cpu", "cpu_s") + "_turns")
+            if ours and theirs:
+                record["ratio_" + key] = statistics.median(a / b for a, b in zip(ours, theirs))
+    return records
+
+
+def run_all(quick, turns, say):
+    solver, command = [], []
+    for name, options in SOLVER:
+        say("speed: " + name)
+        solver += measure(name, options, solver_runs, 1 if quick and "5000" in name else turns)
+    for name, options in COMMAND[:1] if quick else COMMAND:
+        say("speed: " + name)
+        command += measure(name, options, command_runs, turns)
+    return {"solver": solver, "command": command}

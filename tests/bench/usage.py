@@ -1,0 +1,22 @@
+#!/usr/bin/env python3
+"""usage.py FILE SECONDS COMMAND...: runs a command, killed after SECONDS, and writes what it used to FILE.
+
+A process of its own because a child's peak memory counts from the fork: it must not inherit NumPy's.
+"""
+import json
+import os
+import signal
+import sys
+import time
+
+report, limit, command = sys.argv[1], int(sys.argv[2]), sys.argv[3:]
+start = time.perf_counter()
+child = os.posix_spawnp(command[0], command, os.environ)
+signal.signal(signal.SIGALRM, lambda *_: os.kill(child, signal.SIGKILL))
+signal.alarm(limit)
+_, status, used = os.wait4(child, 0)
+wall = time.perf_counter() - start
+signal.alarm(0)
+with open(report, "w") as file:
+    json.dump({"code": os.waitstatus_to_exitcode(status), "wall_s": wall, "cpu_s": used.ru_utime + used.ru_stime,
+               "peak_mb": used.ru_maxrss / 1024.0}, file)
