@@ -138,10 +138,10 @@ std::vector<Candidate> Sampler::candidates(size_t wanted) {
     std::vector<Candidate> found;
     Random random{options_.seed};
     double shift[2] = {random.next(), random.next()};
-    size_t sights = 0;  // ways from image to image
+    size_t sights = 0;  // ways from image to image: a round looks `chunk` times along each
     for (const auto &list : neighbours_) sights += list.size();
-    auto chunk = static_cast<uint32_t>(std::clamp<size_t>(wanted / (4 * std::max<size_t>(sights, 1)), 4, 256));
-    const uint32_t most = 102400 / chunk, hopeless = 10240 / chunk;
+    auto chunk = static_cast<uint32_t>(std::clamp<size_t>(4 * wanted / std::max<size_t>(sights, 1), 4, 256));
+    const uint32_t most = 102400 / chunk, hopeless = 2560 / chunk;
     for (uint32_t round = 0; round < most && found.size() < wanted && !(round > hopeless && found.empty()); round++)
         for (uint32_t i = 0; i < views_.size(); i++) {
             const auto &camera = views_[i].image().camera;
