@@ -1,5 +1,6 @@
-/* fit_pairs - recover response, falloff and exposures from correspondences: here those of a camera that we know. Pictures
- * leave one exponent open, common to all of them, which prior knowledge of cameras decides to within some per cent. */
+/* fit_pairs - recover response, falloff and exposures from correspondences: here those of a camera that we know.
+ * Pictures leave one exponent open, common to all of them, which prior knowledge of cameras decides to within some per
+ * cent. */
 #include <math.h>
 #include <stdio.h>
 
@@ -68,6 +69,7 @@ int main(void)
     }
     printf("usable: %s, residual %.2f of 255 levels\n", result.usable ? "yes" : result.reason, result.heldout_rms);
     for (i = 0; i < IMAGES; i++) printf("image %u: %+.3f EV, true %+.3f\n", i, exposures[i].ev, true_ev[i]);
-    printf("light in the corner: %.3f, true %.3f\n", lensprof_vignetting_eval(&result.vignetting, 1.0, NULL), 1.0 + true_k1);
+    printf("light in the corner: %.3f, true %.3f\n", lensprof_vignetting_eval(&result.vignetting, 1.0, NULL),
+           1.0 + true_k1);
     return 0;
 }

@@ -5,8 +5,7 @@
  *
  * e, w: the picture's own exposure and white balance; e', w': the wanted ones.
  * A plan is prepared once per picture in memory that the caller provides, then applied to any tile.
- * No heap, no I/O. Threads: a plan is immutable after init and may be used by several threads on different tiles.
- */
+ * No heap, no I/O. Threads: a plan is immutable after init and may be used by several threads on different tiles. */
 #ifndef LENSPROF_APPLY_H
 #define LENSPROF_APPLY_H
 
@@ -75,8 +74,8 @@ typedef struct lensprof_apply_options {
     uint32_t frame_width, frame_height;     /* the full frame that tiles belong to, px */
     uint32_t source_sample, source_layout;  /* pixel format of the pictures to come */
     uint32_t target_sample;                 /* sample type written; the layout is the source's */
-    uint32_t saturated;                     /* lensprof_saturated; NEUTRAL acts where direction is CORRECT and both input
-                                               and output are encoded */
+    uint32_t saturated; /* lensprof_saturated; NEUTRAL acts where direction is CORRECT and both input
+                           and output are encoded */
     uint32_t responses, vignettings;        /* 1 for all channels, or 3: red, green, blue; grey is treated as green */
     const lensprof_response *response;      /* read during plan init only */
     const lensprof_vignetting *vignetting;  /* read during plan init only */
@@ -94,19 +93,19 @@ LENSPROF_API size_t lensprof_plan_bytes(const lensprof_apply_options *options);
 
 /* Prepares a plan in memory[bytes] (8-byte aligned, owned by the caller, must outlive the plan). Nothing is to
  * be released. Errors: NULL or unknown values ARGUMENT, struct_size STRUCT_SIZE, zero frame SIZE, too little or
- * unaligned memory CAPACITY, and what the model's validate functions say; three vignettings must have one centre; target over
- * source must be within 1e-12..1e12 (EXPOSURE). */
+ * unaligned memory CAPACITY, and what the model's validate functions say; three vignettings must have one centre;
+ * target over source must be within 1e-12..1e12 (EXPOSURE). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_plan_init(void *memory, size_t bytes,
                                                                   const lensprof_apply_options *options,
                                                                   const lensprof_plan **plan);
 
 /* Applies the plan to a tile whose upper left pixel is pixel (x0, y0) of the frame. `target` has the tile's size;
- * it may be the same memory as `source` (same sample type and row_bytes), otherwise the byte ranges from the first to the last
- * sample of the two must not overlap (so not two tiles side by side in one buffer).
- * Alpha samples are copied (converted to the target type). Integer output is rounded to nearest and clipped;
- * float output is not clipped when linear. NaN in float input comes out as NaN. A saturated sample stays saturated
- * where light is added; where it is taken away it becomes grey (see lensprof_saturated).
- * Errors: views that do not fit the plan or the frame SIZE or ARGUMENT; nothing is written then. */
+ * it may be the same memory as `source` (same sample type and row_bytes), otherwise the byte ranges from the first to
+ * the last sample of the two must not overlap (so not two tiles side by side in one buffer). Alpha samples are copied
+ * (converted to the target type). Integer output is rounded to nearest and clipped; float output is not clipped when
+ * linear. NaN in float input comes out as NaN. A saturated sample stays saturated where light is added; where it is
+ * taken away it becomes grey (see lensprof_saturated). Errors: views that do not fit the plan or the frame SIZE or
+ * ARGUMENT; nothing is written then. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply(const lensprof_plan *plan, const lensprof_image *source,
                                                               const lensprof_image *target, uint32_t x0, uint32_t y0);
 

@@ -1,7 +1,6 @@
 /* lensprof/formats.h - other tools' files, from and to memory: Hugin projects and point files.
  *
- * No function here opens a file. Threads: a handle belongs to one thread at a time.
- */
+ * No function here opens a file. Threads: a handle belongs to one thread at a time. */
 #ifndef LENSPROF_FORMATS_H
 #define LENSPROF_FORMATS_H
 
@@ -24,17 +23,18 @@ typedef struct lensprof_pto_image {
     lensprof_vignetting vignetting; /* Vb/Va, Vc/Va, Vd/Va; Vx, Vy in half diagonals; none where Vm asks for none */
     double emor[5];                 /* Ra..Re */
     uint32_t response_type;         /* Rt: 0 EMoR, 1 linear */
-    uint32_t free;                  /* LENSPROF_FREE_* that the `v` lines ask for on this image or on the one it is linked to */
+    uint32_t free; /* LENSPROF_FREE_* that the `v` lines ask for on this image or on the one it is linked to */
     uint32_t response_of;           /* index of the image at the end of the link, own index when not linked */
     uint32_t vignetting_of, center_of, ev_of, red_of, blue_of;
     int32_t crop[4];                /* left, top, right, bottom (right and bottom exclusive), the frame when none */
-    uint32_t crop_circular;         /* 1 when only the circle about the crop's middle that touches its nearer sides counts */
+    uint32_t crop_circular; /* 1 when only the circle about the crop's middle that touches its nearer sides counts */
     uint32_t reserved;              /* 0 */
 } lensprof_pto_image;
 
 /* Parses a project. *pto is created and must be destroyed by the caller.
- * Errors (the text names the line): ARGUMENT; SIZE over 64 MiB; SYNTAX; VARIABLE for an unknown name or image number on a
- * `v` line; UNSUPPORTED for a lens type that is not in geometry.h, a response type above 1, or over 100000 images; MEMORY. */
+ * Errors (the text names the line): ARGUMENT; SIZE over 64 MiB; SYNTAX; VARIABLE for an unknown name or image number on
+ * a `v` line; UNSUPPORTED for a lens type that is not in geometry.h, a response type above 1, or over 100000 images;
+ * MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_read(const char *text, size_t bytes, lensprof_pto **pto,
                                                                  lensprof_error *error);
 LENSPROF_API void lensprof_pto_destroy(lensprof_pto *pto); /* NULL is allowed */
@@ -43,22 +43,25 @@ LENSPROF_API uint32_t lensprof_pto_image_count(const lensprof_pto *pto);
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_image(const lensprof_pto *pto, uint32_t index,
                                                                       lensprof_pto_image *image);
 
-/* The response of an image as Hugin evaluates it: linear, or Ra..Re made monotone by a running maximum (then a TABLE). */
+/* The response of an image as Hugin evaluates it: linear, or Ra..Re made monotone by a running maximum (then a
+ * TABLE). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_response(const lensprof_pto *pto, uint32_t index,
                                                                          lensprof_response *response);
 
 /* File name of an image as written (relative to the project's folder). With capacity 0 or too small: CAPACITY.
  * *needed (may be NULL) receives the bytes in every case, here with the terminator. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_name(const lensprof_pto *pto, uint32_t index, char *name,
-                                                                     size_t capacity, size_t *needed);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_name(const lensprof_pto *pto, uint32_t index,
+                                                                     char *name, size_t capacity, size_t *needed);
 
-/* Changes the file name of an image, for a project that is written to another folder. ARGUMENT for an empty name or one with
- * quotes or control characters. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index, const char *name);
+/* Changes the file name of an image, for a project that is written to another folder. ARGUMENT for an empty name or one
+ * with quotes or control characters. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index,
+                                                                     const char *name);
 
-/* Draws where pairs may be taken from an image, at the size of a (possibly reduced) view of its frame: 1 inside the crop
- * and outside all mask polygons, else 0. Mask types: 0 exclude, 1 include (which takes the place from all other images,
- * so that no pair is left there), 2/3 the same for the stack (images with linked j), 4 exclude for the lens (linked v). */
+/* Draws where pairs may be taken from an image, at the size of a (possibly reduced) view of its frame: 1 inside the
+ * crop and outside all mask polygons, else 0. Mask types: 0 exclude, 1 include (which takes the place from all other
+ * images, so that no pair is left there), 2/3 the same for the stack (images with linked j), 4 exclude for the lens
+ * (linked v). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_draw_mask(const lensprof_pto *pto, uint32_t index,
                                                                       uint8_t *mask, uint32_t width, uint32_t height,
                                                                       ptrdiff_t row_bytes);
@@ -72,8 +75,8 @@ lensprof_pto_set_result(lensprof_pto *pto, const lensprof_response *response, co
                         const lensprof_exposure *exposures, uint32_t count, uint32_t reference);
 
 /* The project as text: everything that was read, unchanged but for what was set. Returns CAPACITY when the buffer is
- * too small (capacity 0 asks for the size); *needed receives the bytes without terminator, which is added where there is
- * room. */
+ * too small (capacity 0 asks for the size); *needed receives the bytes without terminator, which is added where there
+ * is room. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_write(const lensprof_pto *pto, char *text, size_t capacity,
                                                                   size_t *needed);
 
@@ -82,9 +85,9 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_write(const lensprof
 /* 16 numbers a line: image1 image2 x1 y1 x2 y2 R1 G1 B1 R2 G2 B2 0 r1 r2 0. Grey values up to 0.25 beyond 0..1, which
  * vig_optimize's interpolation leaves at edges, are cut to it. With capacity 0, *found receives the
  * number of lines and nothing else is done; CAPACITY when there are more than capacity. SYNTAX names the line. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_read(const char *text, size_t bytes, lensprof_pair *pairs,
-                                                                    uint32_t capacity, uint32_t *found,
-                                                                    lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_read(const char *text, size_t bytes,
+                                                                    lensprof_pair *pairs, uint32_t capacity,
+                                                                    uint32_t *found, lensprof_error *error);
 
 /* Writes the same. cameras[count] give the frame sizes for the radius columns. Sizes as lensprof_pto_write. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status

@@ -3,8 +3,7 @@
  * The PanoTools camera model as Hugin and nona use it; agrees with libpano13 (`pano_trafo`) to 1e-4 px.
  * Directions are longitude and latitude in radians, latitude positive DOWN; (0,0) is the panorama's centre.
  * Pixel centres are integers; pixel (0,0) is the centre of the upper left pixel. No heap, no I/O.
- * Threads: all functions are pure.
- */
+ * Threads: all functions are pure. */
 #ifndef LENSPROF_GEOMETRY_H
 #define LENSPROF_GEOMETRY_H
 
@@ -47,7 +46,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_camera_validate(const le
 /* Direction -> pixel. Returns 1 and sets xy, or returns 0 when the camera does not see that direction (behind
  * it, or beyond the radius where the radial polynomial turns back). The pixel may lie outside the frame.
  * The camera must be valid. */
-LENSPROF_API int lensprof_camera_project(const lensprof_camera *camera, double longitude, double latitude, double xy[2]);
+LENSPROF_API int lensprof_camera_project(const lensprof_camera *camera, double longitude, double latitude,
+                                         double xy[2]);
 
 /* Pixel -> direction {longitude, latitude}. Returns 1, or 0 when no direction maps to that pixel. Inverse of
  * lensprof_camera_project to 1e-9 px. */

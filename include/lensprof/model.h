@@ -7,8 +7,7 @@
  *   e  exposure factor 2^ev       w  white balance factor of the channel, green = 1
  *
  * The maths of the model lives in the core and nowhere else. No heap, no I/O.
- * Threads: all functions are pure; any thread may call them on any data.
- */
+ * Threads: all functions are pure; any thread may call them on any data. */
 #ifndef LENSPROF_MODEL_H
 #define LENSPROF_MODEL_H
 
@@ -54,8 +53,8 @@ lensprof_response_set_emor(lensprof_response *response, const double *coefficien
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_response_set_table(lensprof_response *response, const double *values, uint32_t count);
 
-/* LENSPROF_OK when kind and its numbers are in range and the table is finite, non-decreasing on all 1024 samples, with ends
- * 0 and 1. Whether the table is the curve of its kind is not checked. */
+/* LENSPROF_OK when kind and its numbers are in range and the table is finite, non-decreasing on all 1024 samples, with
+ * ends 0 and 1. Whether the table is the curve of its kind is not checked. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_validate(const lensprof_response *response);
 
 /* f(x) and, when not NULL, its slope df/dx. x outside [0,1] is clamped (slope 0 there): a sensor saturates. */

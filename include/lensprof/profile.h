@@ -1,8 +1,7 @@
 /* lensprof/profile.h - what is known about one camera, lens and setting.
  *
  * A profile is a value: it can be copied, stored (store.h) and applied (apply.h). No heap, no I/O.
- * Threads: all functions are pure.
- */
+ * Threads: all functions are pure. */
 #ifndef LENSPROF_PROFILE_H
 #define LENSPROF_PROFILE_H
 
@@ -71,8 +70,8 @@ typedef struct lensprof_profile {
 /* Empty key, linear response, no falloff, no covariance, provenance unknown. */
 LENSPROF_API void lensprof_profile_init(lensprof_profile *profile);
 
-/* LENSPROF_OK when key, provenance, responses, vignettings (which share one centre) and covariance (finite, symmetric, non-negative diagonal) are
- * valid. */
+/* LENSPROF_OK when key, provenance, responses, vignettings (which share one centre) and covariance (finite, symmetric,
+ * non-negative diagonal) are valid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
 
 #ifdef __cplusplus

@@ -1,7 +1,6 @@
 /* lensprof/sample.h - correspondences: the same scene point seen in two pictures.
  *
- * Threads: functions are independent of each other; the pictures are only read.
- */
+ * Threads: functions are independent of each other; the pictures are only read. */
 #ifndef LENSPROF_SAMPLE_H
 #define LENSPROF_SAMPLE_H
 
@@ -33,7 +32,7 @@ typedef struct lensprof_sample_image {
 
 typedef enum lensprof_sampling {
     LENSPROF_SAMPLING_BALANCED = 0, /* balanced over image pairs, radius and grey level; quiet patches preferred */
-    LENSPROF_SAMPLING_PAPER = 1     /* d'Angelo 2007 section 5.1: 5n random points, 10 radius bins, n/10 lowest gradient */
+    LENSPROF_SAMPLING_PAPER = 1 /* d'Angelo 2007 section 5.1: 5n random points, 10 radius bins, n/10 lowest gradient */
 } lensprof_sampling;
 
 typedef struct lensprof_sample_options {
@@ -46,11 +45,11 @@ typedef struct lensprof_sample_options {
 /* Balanced, 0 pairs (= 300 per image, at least 2000), seed 1. */
 LENSPROF_API void lensprof_sample_options_init(lensprof_sample_options *options);
 
-/* Finds correspondences between `count` pictures. pairs[capacity] is the caller's; *found receives the number written. With
- * capacity 0, *found receives the number wanted, which is the capacity to give, and nothing is sampled; a smaller one is
- * refused with CAPACITY, whatever the overlaps hold.
- * Errors: fewer than two images ARGUMENT; NaN in a float view NOT_FINITE (the text names image and pixel);
- * NO_OVERLAP; NO_SAMPLES when overlaps exist but every sample is masked, black or saturated. */
+/* Finds correspondences between `count` pictures. pairs[capacity] is the caller's; *found receives the number written.
+ * With capacity 0, *found receives the number wanted, which is the capacity to give, and nothing is sampled; a smaller
+ * one is refused with CAPACITY, whatever the overlaps hold. Errors: fewer than two images ARGUMENT; NaN in a float view
+ * NOT_FINITE (the text names image and pixel); NO_OVERLAP; NO_SAMPLES when overlaps exist but every sample is masked,
+ * black or saturated. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_sample_overlap(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
                         lensprof_pair *pairs, uint32_t capacity, uint32_t *found, lensprof_error *error);

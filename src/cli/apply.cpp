@@ -26,7 +26,8 @@ struct Options {
 void declare(CLI::App &app, Options &o) {
     app.add_option("--profile", o.profile, "id of the profile to use")->check(CLI::PositiveNumber);
     app.add_flag("--from-db", o.from_db, "look each picture's profile up by its EXIF");
-    app.add_option("--pto", o.pto, "take exposures (and, without --profile or --from-db, the curves) from this project");
+    app.add_option("--pto", o.pto,
+                   "take exposures (and, without --profile or --from-db, the curves) from this project");
     app.add_option("--db", o.db, "profile database; default the user's own");
     app.add_option("--output-exposure", o.exposure,
                    "mean: all like the geometric mean of the project (default with --pto); reference: like its 0 EV; "
@@ -61,7 +62,8 @@ std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
 uint32_t image_of_file(const Project &project, const std::string &file) {
     for (uint32_t i = 0; i < project.files.size(); i++)
         if (is_same_file(project.files[i], file)) return i;
-    throw Failure(ExitCode::usage, file + ": is not a picture of " + project.path + "; leave it out or leave --pto out");
+    throw Failure(ExitCode::usage,
+                  file + ": is not a picture of " + project.path + "; leave it out or leave --pto out");
 }
 
 void look_up(lensprof_store *store, const Options &o, Job &job) {
@@ -74,8 +76,9 @@ void look_up(lensprof_store *store, const Options &o, Job &job) {
         lensprof_profile_key key = read_metadata(job.source).key;
         lensprof_status status = lensprof_store_find(store, &key, profile.get(), &job.profile_id, &error);
         if (status == LENSPROF_ERROR_NOT_FOUND)
-            throw Failure(ExitCode::not_found, job.source + ": no profile for " + describe_key(key) + " in " + store_path(o.db)
-                          + "; make one with `lensprof build` or name one with --profile");
+            throw Failure(ExitCode::not_found, job.source + ": no profile for " + describe_key(key) + " in "
+                                                   + store_path(o.db)
+                                                   + "; make one with `lensprof build` or name one with --profile");
         check(status, store_path(o.db), &error);
     }
     job.model = profile;
@@ -91,10 +94,13 @@ std::string target_name(const Options &o, const std::string &source) {
 void check_shape(const Project &project, uint32_t image, const std::string &file) {
     const auto &camera = project.images[image].camera;
     PictureSize size = read_size(file);
-    double expected = static_cast<double>(camera.width) / camera.height, shape = static_cast<double>(size.width) / size.height;
+    double expected = static_cast<double>(camera.width) / camera.height,
+           shape = static_cast<double>(size.width) / size.height;
     if (std::abs(shape / expected - 1.0) > 0.01)
-        throw Failure(ExitCode::unreadable, file + format(": is %u x %u pixels, but ", size.width, size.height) + project.path
-                      + format(" says %u x %u; use the pictures that the project was made with", camera.width, camera.height));
+        throw Failure(ExitCode::unreadable,
+                      file + format(": is %u x %u pixels, but ", size.width, size.height) + project.path
+                          + format(" says %u x %u; use the pictures that the project was made with", camera.width,
+                                   camera.height));
 }
 
 void check_targets(const Options &o, const std::vector<Job> &jobs) {
@@ -102,11 +108,14 @@ void check_targets(const Options &o, const std::vector<Job> &jobs) {
     for (const Job &job : jobs) {
         read_header(job.source);  /* an unreadable picture shows before anything is written */
         if (is_same_file(job.source, o.sheet) || job.target == o.sheet)
-            throw Failure(ExitCode::usage, o.sheet + ": the contact sheet would overwrite a picture; give it another name");
+            throw Failure(ExitCode::usage,
+                          o.sheet + ": the contact sheet would overwrite a picture; give it another name");
         if (is_same_file(job.source, job.target))
-            throw Failure(ExitCode::usage, job.source + ": would be overwritten by its correction; give another folder with -o");
+            throw Failure(ExitCode::usage,
+                          job.source + ": would be overwritten by its correction; give another folder with -o");
         if (!seen.insert(job.target).second)
-            throw Failure(ExitCode::usage, job.target + ": two pictures would get this name; correct them one folder at a time");
+            throw Failure(ExitCode::usage,
+                          job.target + ": two pictures would get this name; correct them one folder at a time");
     }
 }
 
@@ -155,14 +164,17 @@ void check_has_result(const Project &project) {
         bool falloff = std::any_of(image.vignetting.k, image.vignetting.k + 3, [](double k) { return k != 0.0; });
         if (response || falloff || image.response_type == 1) return;
     }
-    throw Failure(ExitCode::usage, project.path + ": holds no response and no falloff; give the project that `lensprof build --pto-out` wrote");
+    throw Failure(
+        ExitCode::usage,
+        project.path + ": holds no response and no falloff; give the project that `lensprof build --pto-out` wrote");
 }
 
 /* The pictures, and in `mean` what --output-exposure mean makes them like. */
 std::vector<Job> make_jobs(const Options &o, lensprof_exposure &mean) {
     if (o.profile && o.from_db) throw Failure(ExitCode::usage, "--profile and --from-db contradict each other");
     bool from_store = o.profile || o.from_db;
-    if (!from_store && o.pto.empty()) throw Failure(ExitCode::usage, "say what to correct with: --profile ID, --from-db or --pto FILE");
+    if (!from_store && o.pto.empty())
+        throw Failure(ExitCode::usage, "say what to correct with: --profile ID, --from-db or --pto FILE");
     std::unique_ptr<Project> project;
     std::vector<lensprof_exposure> exposures;
     std::shared_ptr<const lensprof_profile> model;
@@ -172,7 +184,8 @@ std::vector<Job> make_jobs(const Options &o, lensprof_exposure &mean) {
         if (!from_store) model = model_of_project(*project);
         mean = mean_exposure(exposures);
     } else if (!o.exposure.empty() && o.exposure != "keep") {
-        throw Failure(ExitCode::usage, "--output-exposure " + o.exposure + " needs the exposures of a project; give it with --pto");
+        throw Failure(ExitCode::usage,
+                      "--output-exposure " + o.exposure + " needs the exposures of a project; give it with --pto");
     }
     std::vector<std::string> files = o.files.empty() && project ? project->files : o.files;
     if (files.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
@@ -257,7 +270,8 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
         WriteOptions write;
         write.metadata_from = job.source;
         if (!write_picture(job.target, after, write))
-            streams.err << "lensprof: warning: " << job.target << ": written without EXIF, which this kind of file cannot hold here\n";
+            streams.err << "lensprof: warning: " << job.target
+                        << ": written without EXIF, which this kind of file cannot hold here\n";
         if (!o.sheet.empty()) sheet.add(before, after);
         Json entry = {{"file", job.source}, {"output", job.target}};
         if (job.profile_id) entry["profile"] = job.profile_id;

@@ -33,13 +33,15 @@ void declare(CLI::App &app, Options &o) {
     app.add_flag("--force", o.force, "store a result that is not usable");
     app.add_option("--method", o.method, "transfer (d'Angelo 2007)")->check(CLI::IsMember({"transfer"}));
     app.add_option("--modes", o.modes, "EMoR modes of the response: 0..25 or auto (held-out error decides)");
-    app.add_option("--loss", o.loss, "robust, huber (the paper's) or squared")->check(CLI::IsMember({"robust", "huber", "squared"}));
+    app.add_option("--loss", o.loss, "robust, huber (the paper's) or squared")
+        ->check(CLI::IsMember({"robust", "huber", "squared"}));
     app.add_option("--huber", o.huber, "sigma of the Huber loss, levels of 255")->check(in_range(0.01, 255.0));
     app.add_option("--prior", o.prior, "weight of the priors; 0 = none, as in the paper")->check(in_range(0.0, 1e6));
     app.add_option("--free", o.free, "what is estimated instead of the v lines: response,falloff,center,ev,wb or all");
     app.add_option("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
     app.add_flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
-    app.add_option("--sampling", o.sampling, "balanced or paper (d'Angelo 5.1)")->check(CLI::IsMember({"balanced", "paper"}));
+    app.add_option("--sampling", o.sampling, "balanced or paper (d'Angelo 5.1)")
+        ->check(CLI::IsMember({"balanced", "paper"}));
     app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000")->check(in_range(0, 1 << 24));
     app.add_option("--seed", o.seed, "of the sampling");
     app.add_option("--max-side", o.max_side, "sample pictures reduced to about this many pixels; 0 = full size");
@@ -97,7 +99,9 @@ lensprof_fit_options fit_options(const Options &o, const Project &project, lensp
     for (const auto &image : project.images) options.free |= image.free & 0x1F;
     options.reference = project.reference;
     options.modes = modes_of(o.modes);
-    options.loss = o.loss == "huber" ? LENSPROF_LOSS_HUBER : o.loss == "squared" ? LENSPROF_LOSS_SQUARED : LENSPROF_LOSS_ROBUST;
+    options.loss = o.loss == "huber"     ? LENSPROF_LOSS_HUBER
+                   : o.loss == "squared" ? LENSPROF_LOSS_SQUARED
+                                         : LENSPROF_LOSS_ROBUST;
     options.huber_levels = o.huber;
     options.prior_weight = o.prior;
     options.vignetting = lens.vignetting;
@@ -148,7 +152,8 @@ lensprof_profile_key profile_key(const Options &o, const Project &project, Strea
     if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;
     if (!o.processing.empty()) key.processing = processing_of_name(o.processing);
     if (!*key.camera_model && !*key.lens && !o.no_store)
-        throw Failure(ExitCode::usage, file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");
+        throw Failure(ExitCode::usage,
+                      file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");
     for (size_t i = 0; i < project.files.size() && o.aperture == LENSPROF_UNKNOWN && !need_not_exist; i++) {
         if (!std::filesystem::exists(project.files[i])) continue;
         lensprof_profile_key other = read_metadata(project.files[i]).key;
@@ -162,14 +167,17 @@ lensprof_profile_key profile_key(const Options &o, const Project &project, Strea
 /* A database that cannot be used shows before the work is done. */
 void check_store(const std::string &db) {
     std::filesystem::path file = store_path(db), folder = std::filesystem::absolute(file).parent_path();
-    if (std::filesystem::exists(file) && !(std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) == 0))
+    if (std::filesystem::exists(file)
+        && !(std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) == 0))
         open_store(db, LENSPROF_STORE_WRITE);
     else if (!db.empty() && !std::filesystem::is_directory(folder))
-        throw Failure(ExitCode::store, db + ": there is no folder " + folder.string() + " for the database; make it first");
+        throw Failure(ExitCode::store,
+                      db + ": there is no folder " + folder.string() + " for the database; make it first");
     else if (db.empty()) {
         while (!std::filesystem::exists(folder) && folder.has_relative_path()) folder = folder.parent_path();
         if (access(folder.c_str(), W_OK) != 0)
-            throw Failure(ExitCode::store, file.string() + ": cannot be made in " + folder.string() + "; name a database with --db FILE");
+            throw Failure(ExitCode::store, file.string() + ": cannot be made in " + folder.string()
+                                               + "; name a database with --db FILE");
     }
 }
 
@@ -224,20 +232,25 @@ void check_outputs(const Options &o, const Project &project) {
     for (const std::string &output : {o.points_out, o.pto_out}) {
         if (output.empty()) continue;
         for (const std::string &other : taken)
-            if (is_same_file(output, other)) throw Failure(ExitCode::usage, output + ": would be written over; give the output another name");
+            if (is_same_file(output, other))
+                throw Failure(ExitCode::usage, output + ": would be written over; give the output another name");
         taken.push_back(output);
     }
 }
 
 /* The text of the project with the result in it. */
 std::string project_text(const Options &o, Project &project, const BuildReport &report) {
-    check(lensprof_pto_set_result(project.pto.get(), &report.fit.response, &report.fit.vignetting, report.exposures.data(),
-                                  static_cast<uint32_t>(report.exposures.size()), report.reference), o.pto);
+    check(lensprof_pto_set_result(project.pto.get(), &report.fit.response, &report.fit.vignetting,
+                                  report.exposures.data(), static_cast<uint32_t>(report.exposures.size()),
+                                  report.reference),
+          o.pto);
     // Names are relative to the project's folder, which may be another one now.
     auto folder = std::filesystem::absolute(o.pto_out).parent_path();
     if (folder.lexically_normal() != std::filesystem::absolute(o.pto).parent_path().lexically_normal())
         for (uint32_t i = 0; i < project.files.size(); i++) {
-            auto file = std::filesystem::absolute(project.files[i]).lexically_normal().lexically_proximate(folder.lexically_normal());
+            auto file = std::filesystem::absolute(project.files[i])
+                            .lexically_normal()
+                            .lexically_proximate(folder.lexically_normal());
             check(lensprof_pto_set_name(project.pto.get(), i, file.string().c_str()), project.files[i]);
         }
     return pto_text(*project.pto);
@@ -291,7 +304,8 @@ void refer_to(uint32_t reference, std::vector<lensprof_exposure> &exposures) {
     }
 }
 
-/* Median residual of every image's own pairs: an image that is misplaced in the project, or of another camera, shows. */
+/* Median residual of every image's own pairs: an image that is misplaced in the project, or of another camera,
+ * shows. */
 std::vector<double> image_medians(const BuildReport &report, const std::vector<lensprof_fit_image> &images,
                                   const std::vector<lensprof_pair> &pairs, uint32_t channels) {
     std::vector<std::vector<lensprof_pair>> of_image(images.size());
@@ -301,9 +315,10 @@ std::vector<double> image_medians(const BuildReport &report, const std::vector<l
     for (const auto &own : of_image) {
         double rms = 0, median = LENSPROF_UNKNOWN;
         if (!own.empty())
-            check(lensprof_transfer_rms(&report.fit.response, &report.fit.vignetting, images.data(), report.exposures.data(),
-                                        static_cast<uint32_t>(images.size()), own.data(), static_cast<uint32_t>(own.size()),
-                                        channels, &rms, &median), "residual");
+            check(lensprof_transfer_rms(&report.fit.response, &report.fit.vignetting, images.data(),
+                                        report.exposures.data(), static_cast<uint32_t>(images.size()), own.data(),
+                                        static_cast<uint32_t>(own.size()), channels, &rms, &median),
+                  "residual");
         medians.push_back(median);
     }
     return medians;
@@ -314,8 +329,10 @@ void warn_of_odd_images(const BuildReport &report, const Project &project, Strea
     double limit = std::max(5.0, 4.0 * report.fit.noise_levels);
     for (size_t i = 0; i < report.image_median.size(); i++)
         if (report.image_median[i] > limit)
-            streams.err << "lensprof: warning: " << project.files[i] << ": disagrees with the images it overlaps, so that its exposure means nothing (median residual "
-                        << format("%.1f", report.image_median[i]) << " levels); check its place in " << project.path << "\n";
+            streams.err
+                << "lensprof: warning: " << project.files[i]
+                << ": disagrees with the images it overlaps, so that its exposure means nothing (median residual "
+                << format("%.1f", report.image_median[i]) << " levels); check its place in " << project.path << "\n";
 }
 
 BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams &streams) {
@@ -335,12 +352,13 @@ BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams 
     report.exposures.resize(images.size());
     lensprof_fit_result_init(&report.fit);
     lensprof_error error{};
-    lensprof_status status = lensprof_fit_overlap(&options, images.data(), static_cast<uint32_t>(images.size()), pairs.data(),
-                                                  static_cast<uint32_t>(pairs.size()), report.exposures.data(),
-                                                  &report.fit, &error);
+    lensprof_status status =
+        lensprof_fit_overlap(&options, images.data(), static_cast<uint32_t>(images.size()), pairs.data(),
+                             static_cast<uint32_t>(pairs.size()), report.exposures.data(), &report.fit, &error);
     stop_if_interrupted();
     if (status == LENSPROF_ERROR_NO_UNKNOWNS)
-        throw Failure(ExitCode::usage, o.pto + ": asks for nothing on its v lines; add some in Hugin, or give --free all");
+        throw Failure(ExitCode::usage,
+                      o.pto + ": asks for nothing on its v lines; add some in Hugin, or give --free all");
     check(status, o.points.empty() ? o.pto : o.points, &error);
     refer_to(report.reference, report.exposures);
     report.image_median = image_medians(report, images, pairs, options.channels);
@@ -385,7 +403,8 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (o.json) print_json(build_json(report), streams.out);
     else print_build(report, streams.out);
     if (report.profile_id && !o.json)
-        streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.db) << ": " << describe_key(key) << "\n";
+        streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.db) << ": "
+                    << describe_key(key) << "\n";
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     if (!report.fit.usable)
         streams.err << "lensprof: " << o.pto << ": not usable: " << report.fit.reason
@@ -401,7 +420,9 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
     declare(app, o);
     if (!parse(app, arguments, streams)) return 0;
     if (o.max_side != 0 && o.max_side < 64)
-        throw Failure(ExitCode::usage, "--max-side: pictures of less than 64 pixels hold too few samples; give more, or 0 for full size");
+        throw Failure(
+            ExitCode::usage,
+            "--max-side: pictures of less than 64 pixels hold too few samples; give more, or 0 for full size");
     if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
 
     std::vector<std::string> names;

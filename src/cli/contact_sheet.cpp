@@ -39,7 +39,8 @@ ContactSheet::Thumbnail ContactSheet::shrink(const Picture &picture) {
                     for (uint32_t u = x * step; u < std::min(picture.width, (x + 1) * step); u++, count++)
                         sum += load(picture, u, v, grey ? 0 : c);
                 double mean = std::clamp(sum / count, 0.0, 1.0);
-                small.rgb[(static_cast<size_t>(y) * small.width + x) * 3 + c] = static_cast<uint8_t>(mean * 255.0 + 0.5);
+                small.rgb[(static_cast<size_t>(y) * small.width + x) * 3 + c] =
+                    static_cast<uint8_t>(mean * 255.0 + 0.5);
             }
     return small;
 }

@@ -39,7 +39,11 @@ ExitCode exit_code(lensprof_status status) {
 bool is_utf8(const std::string &text) {
     for (size_t i = 0; i < text.size();) {
         auto c = static_cast<unsigned char>(text[i++]);
-        int more = c < 0x80 ? 0 : c >= 0xC2 && c < 0xE0 ? 1 : c >= 0xE0 && c < 0xF0 ? 2 : c >= 0xF0 && c < 0xF5 ? 3 : -1;
+        int more = c < 0x80                ? 0
+                   : c >= 0xC2 && c < 0xE0 ? 1
+                   : c >= 0xE0 && c < 0xF0 ? 2
+                   : c >= 0xF0 && c < 0xF5 ? 3
+                                           : -1;
         if (more < 0) return false;
         for (; more > 0; more--, i++)
             if (i >= text.size() || (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return false;

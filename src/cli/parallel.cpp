@@ -11,7 +11,8 @@
 
 namespace lensprof {
 
-void for_each_parallel(uint32_t count, const std::string &what, Progress &progress, const std::function<void(uint32_t)> &work) {
+void for_each_parallel(uint32_t count, const std::string &what, Progress &progress,
+                       const std::function<void(uint32_t)> &work) {
     std::vector<std::exception_ptr> failures(count);
     std::atomic<uint32_t> next{0}, done{0};
     auto run = [&] {
@@ -28,7 +29,8 @@ void for_each_parallel(uint32_t count, const std::string &what, Progress &progre
     };
     std::vector<std::thread> threads;
     try {
-        for (uint32_t t = 1; t < std::min(std::max(std::thread::hardware_concurrency(), 1u), count); t++) threads.emplace_back(run);
+        for (uint32_t t = 1; t < std::min(std::max(std::thread::hardware_concurrency(), 1u), count); t++)
+            threads.emplace_back(run);
     } catch (const std::system_error &) {
         /* no more threads to be had: those there are do the work */
     }

@@ -21,15 +21,16 @@ int list(const std::string &db, bool json, Streams &streams) {
     if (json) {
         Json profiles = Json::array();
         for (const auto &row : rows)
-            profiles.push_back({{"id", row.id}, {"key", key_json(row.key)}, {"provenance", provenance_json(row.provenance)}});
+            profiles.push_back(
+                {{"id", row.id}, {"key", key_json(row.key)}, {"provenance", provenance_json(row.provenance)}});
         print_json(Json{{"schema", 1}, {"profiles", profiles}}, streams.out);
         return 0;
     }
     streams.out << format("%6s  %-28s %-32s %7s %6s %9s  %s\n", "id", "camera", "lens", "mm", "f/", "focus m", "state");
     for (const auto &row : rows) {
         const auto &k = row.key;
-        streams.out << format("%6lld  %-28s %-32s %7s %6s %9s  %s\n", static_cast<long long>(row.id),
-                              k.camera_model, k.lens, number_or(k.focal_mm, "%g").c_str(), number_or(k.aperture, "%g").c_str(),
+        streams.out << format("%6lld  %-28s %-32s %7s %6s %9s  %s\n", static_cast<long long>(row.id), k.camera_model,
+                              k.lens, number_or(k.focal_mm, "%g").c_str(), number_or(k.aperture, "%g").c_str(),
                               number_or(k.distance_m, "%g").c_str(), processing_name(k.processing));
     }
     return 0;

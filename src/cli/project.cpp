@@ -19,7 +19,8 @@ uint32_t find_reference(const Project &project) {
 void check_one_lens(const Project &project) {
     for (uint32_t i = 1; i < project.images.size(); i++) {
         const auto &image = project.images[i];
-        if (image.response_of != project.images[0].response_of || image.vignetting_of != project.images[0].vignetting_of)
+        if (image.response_of != project.images[0].response_of
+            || image.vignetting_of != project.images[0].vignetting_of)
             throw Failure(ExitCode::usage, project.path + ": image " + std::to_string(i) + " (" + project.names[i]
                           + ") is not linked to image 0 in Ra..Re and Va..Vd, which makes it another lens; link them in "
                             "Hugin (or give build --one-lens)");
@@ -56,8 +57,9 @@ void check_finite(const Picture &picture, const std::string &file) {
             float value;
             std::memcpy(&value, &picture.pixels[y * picture.row_bytes + s * sizeof value], sizeof value);
             if (!std::isfinite(value))
-                throw Failure(ExitCode::unreadable, file + ": pixel " + std::to_string(s / samples * picture.reduction) + ", "
-                              + std::to_string(y * picture.reduction) + " is not a finite number; repair the picture");
+                throw Failure(ExitCode::unreadable, file + ": pixel " + std::to_string(s / samples * picture.reduction)
+                                                        + ", " + std::to_string(y * picture.reduction)
+                                                        + " is not a finite number; repair the picture");
         }
 }
 
@@ -116,7 +118,8 @@ std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<Samp
     auto count = static_cast<uint32_t>(images.size());
     check(lensprof_sample_overlap(&options, images.data(), count, nullptr, 0, &found, &error), project.path, &error);
     std::vector<lensprof_pair> pairs(found);
-    check(lensprof_sample_overlap(&options, images.data(), count, pairs.data(), found, &found, &error), project.path, &error);
+    check(lensprof_sample_overlap(&options, images.data(), count, pairs.data(), found, &found, &error), project.path,
+          &error);
     pairs.resize(found);
     return pairs;
 }
@@ -132,8 +135,10 @@ std::vector<lensprof_pair> read_points(const std::string &path, const Project &p
     for (const auto &pair : pairs)
         for (uint32_t image : pair.image)
             if (image >= project.images.size())
-                throw Failure(ExitCode::unreadable, path + ": names image " + std::to_string(image) + ", but " + project.path
-                              + " has images 0 to " + std::to_string(project.images.size() - 1) + "; give the points of this project");
+                throw Failure(ExitCode::unreadable, path + ": names image " + std::to_string(image) + ", but "
+                                                        + project.path + " has images 0 to "
+                                                        + std::to_string(project.images.size() - 1)
+                                                        + "; give the points of this project");
     return pairs;
 }
 

@@ -21,8 +21,8 @@ struct Project {
     uint32_t reference = 0;                 /* image that the fit holds */
 };
 
-/* Reads a project. The reference is the first image whose Eev is not asked for, else image 0. With `one_lens`, images that are not linked are taken as one lens; otherwise that is a
- * Failure. */
+/* Reads a project. The reference is the first image whose Eev is not asked for, else image 0. With `one_lens`, images
+ * that are not linked are taken as one lens; otherwise that is a Failure. */
 Project read_project(const std::string &path, bool one_lens);
 
 /* The image that a user means by a number or a file name of the project. */
@@ -34,8 +34,8 @@ struct SamplePicture {
     std::vector<uint8_t> mask;
 };
 
-/* Reads all pictures, several at once, each reduced to a longer side of at least `max_side` pixels. Sizes that contradict the
- * project, unreadable files and float samples that are not finite are a Failure that names the file. */
+/* Reads all pictures, several at once, each reduced to a longer side of at least `max_side` pixels. Sizes that
+ * contradict the project, unreadable files and float samples that are not finite are a Failure that names the file. */
 std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress);
 
 /* Failure (unreadable) that names the first sample that is not a finite number. */

@@ -50,8 +50,9 @@ int run_query(const std::vector<std::string> &arguments, Streams &streams) {
         if (!newest || row.id > newest->id) newest = &row;
     }
     if (!newest)
-        throw Failure(ExitCode::not_found, "no profile for " + (camera.empty() ? lens : camera) + " with this setting" + " in " + store_path(db)
-                      + "; `lensprof profile list` shows what there is");
+        throw Failure(ExitCode::not_found, "no profile for " + (camera.empty() ? lens : camera) + " with this setting"
+                                               + " in " + store_path(db)
+                                               + "; `lensprof profile list` shows what there is");
     auto profile = std::make_unique<lensprof_profile>();
     check(lensprof_store_get(store.get(), newest->id, profile.get(), &error), store_path(db), &error);
     if (json) {
@@ -60,7 +61,8 @@ int run_query(const std::vector<std::string> &arguments, Streams &streams) {
         print_json(object, streams.out);
     } else {
         print_profile(newest->id, *profile, streams.out);
-        if (matches > 1) streams.out << matches << " profiles match; this is the newest. Give more of the setting to choose.\n";
+        if (matches > 1)
+            streams.out << matches << " profiles match; this is the newest. Give more of the setting to choose.\n";
     }
     return 0;
 }

@@ -46,8 +46,8 @@ Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
 double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
 void print_vignetting(const lensprof_vignetting &v, std::ostream &out) {
-    out << format("falloff   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
-                  v.center[0], v.center[1]);
+    out << format("falloff   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1],
+                  v.k[2], v.center[0], v.center[1]);
     out << format("          light at r = 0.5: %.1f %%, in the corner: %.1f %% (%.2f stops)\n",
                   100.0 * lensprof_vignetting_eval(&v, 0.25, nullptr), 100.0 * corner(v), -std::log2(corner(v)));
 }
@@ -58,7 +58,8 @@ void print_response(const lensprof_response &r, std::ostream &out) {
     if (r.kind == LENSPROF_RESPONSE_EMOR) kind += format(", %u modes", r.modes);
     if (r.kind == LENSPROF_RESPONSE_GAMMA) kind += format(" %.3g", r.gamma);
     out << "response  " << kind << ";  grey value (of 255) at irradiance";
-    for (double x : {0.01, 0.05, 0.2, 0.5}) out << format("  %g: %.1f", x, 255.0 * lensprof_response_eval(&r, x, nullptr));
+    for (double x : {0.01, 0.05, 0.2, 0.5})
+        out << format("  %g: %.1f", x, 255.0 * lensprof_response_eval(&r, x, nullptr));
     out << "\n";
 }
 
@@ -84,7 +85,9 @@ uint32_t processing_of_name(const std::string &name) {
     throw Failure(ExitCode::usage, name + ": not a processing state; use raw, jpeg or corrected");
 }
 
-void print_json(const Json &json, std::ostream &out) { out << json.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n"; }
+void print_json(const Json &json, std::ostream &out) {
+    out << json.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+}
 
 Json build_json(const BuildReport &report) {
     const auto &fit = report.fit;
@@ -94,7 +97,8 @@ Json build_json(const BuildReport &report) {
         images.push_back({{"file", report.names[i]},
                           {"ev", e.ev},
                           {"white_balance", {e.white_balance[0], e.white_balance[1], e.white_balance[2]}},
-                          {"median_residual", number_or_null(i < report.image_median.size() ? report.image_median[i] : LENSPROF_UNKNOWN)}});
+                          {"median_residual", number_or_null(i < report.image_median.size() ? report.image_median[i]
+                                                                                            : LENSPROF_UNKNOWN)}});
     }
     json["schema"] = 1;
     json["usable"] = fit.usable != 0;
@@ -131,11 +135,13 @@ void print_build(const BuildReport &report, std::ostream &out) {
     print_vignetting(fit.vignetting, out);
     print_response(fit.response, out);
     if (!report.response_known)
-        out << "gamma     from the prior: pictures leave a common exponent of exposure, falloff and response open (docs/model.md)\n";
+        out << "gamma     from the prior: pictures leave a common exponent of exposure, falloff and response open "
+               "(docs/model.md)\n";
     std::string heldout = fit.heldout_rms == LENSPROF_UNKNOWN ? std::string("not measured (too few pairs)")
                                                               : format("%.2f", fit.heldout_rms);
-    out << format("residual  before %.2f, after %s levels of 255 on pairs left out of the fit; %.1f %% inliers of %u pairs\n",
-                  fit.before_rms, heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
+    out << format(
+        "residual  before %.2f, after %s levels of 255 on pairs left out of the fit; %.1f %% inliers of %u pairs\n",
+        fit.before_rms, heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
     if (!fit.usable) out << "NOT USABLE: " << fit.reason << "\n";
 }
@@ -174,7 +180,9 @@ Json profile_json(int64_t id, const lensprof_profile &profile) {
 }
 
 std::string describe_key(const lensprof_profile_key &key) {
-    auto or_unknown = [](const char *text, const char *what) { return *text ? std::string(text) : std::string(what) + " unknown"; };
+    auto or_unknown = [](const char *text, const char *what) {
+        return *text ? std::string(text) : std::string(what) + " unknown";
+    };
     std::string text = *key.camera_maker ? std::string(key.camera_maker) + " " : std::string();
     text += or_unknown(key.camera_model, "camera") + ", " + or_unknown(key.lens, "lens");
     text += key.focal_mm == LENSPROF_UNKNOWN ? ", focal length unknown" : format(", %g mm", key.focal_mm);
@@ -190,7 +198,8 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
     out << "profile   " << id << ": " << describe_key(profile.key) << "\n";
     for (uint32_t c = 0; c < profile.vignettings; c++) print_vignetting(profile.vignetting[c], out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
-    out << "source    " << (*p.method ? p.method : "unknown method") << ", " << p.images << " images, " << p.pairs << " pairs";
+    out << "source    " << (*p.method ? p.method : "unknown method") << ", " << p.images << " images, " << p.pairs
+        << " pairs";
     if (p.heldout_rms != LENSPROF_UNKNOWN) out << format(", residual %.2f levels", p.heldout_rms);
     out << (*p.source ? std::string(", ") + p.source : std::string()) << "\n";
 }
@@ -207,8 +216,10 @@ TrueValues read_truth(const std::string &path, size_t images) {
         throw Failure(ExitCode::unreadable, path + ": is not the truth.json of `lensprof simulate`");
     }
     if (truth.ev.size() != images)
-        throw Failure(ExitCode::unreadable, path + format(": is the truth of %zu images, not of %zu; give that of this project",
-                                                          truth.ev.size(), images));
+        throw Failure(ExitCode::unreadable,
+                      path
+                          + format(": is the truth of %zu images, not of %zu; give that of this project",
+                                   truth.ev.size(), images));
     return truth;
 }
 
@@ -220,7 +231,8 @@ void print_comparison(const BuildReport &report, const TrueValues &truth, std::o
         ev.push_back(report.exposures[i].ev);
     }
     double mean = 0, true_mean = 0, cross = 0, square = 0;
-    for (size_t i = 0; i < n; i++) mean += ev[i] / static_cast<double>(n), true_mean += true_ev[i] / static_cast<double>(n);
+    for (size_t i = 0; i < n; i++)
+        mean += ev[i] / static_cast<double>(n), true_mean += true_ev[i] / static_cast<double>(n);
     for (size_t i = 0; i < n; i++) {
         cross += (ev[i] - mean) * (true_ev[i] - true_mean);
         square += (true_ev[i] - true_mean) * (true_ev[i] - true_mean);

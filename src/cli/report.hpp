@@ -18,7 +18,8 @@ using Json = nlohmann::ordered_json;
 struct BuildReport {
     std::vector<std::string> names;
     std::vector<lensprof_exposure> exposures; /* relative to the reference */
-    std::vector<double> image_median; /* median residual of each image's pairs, levels of 255; LENSPROF_UNKNOWN without pairs */
+    std::vector<double>
+        image_median; /* median residual of each image's pairs, levels of 255; LENSPROF_UNKNOWN without pairs */
     lensprof_fit_result fit{};
     uint32_t reference = 0;
     double load_s = 0, sample_s = 0;

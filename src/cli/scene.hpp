@@ -6,8 +6,8 @@
 
 namespace lensprof {
 
-/* A sky over fields and buildings: smooth gradients, flat patches of many colours and fine texture over about eight stops.
- * Median radiance is near 0.16. Made of arithmetic and hashes alone: the same on every machine. */
+/* A sky over fields and buildings: smooth gradients, flat patches of many colours and fine texture over about eight
+ * stops. Median radiance is near 0.16. Made of arithmetic and hashes alone: the same on every machine. */
 class Scene {
 public:
     explicit Scene(uint32_t seed) : seed_(seed) {}

@@ -33,18 +33,21 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--hfov", o.hfov, "horizontal field of view, degrees")->check(in_range(1.0, 150.0));
     app.add_option("--overlap", o.overlap, "share of a picture that the next one sees too")->check(in_range(0.0, 0.99));
     app.add_option("--jitter", o.jitter, "sigma of yaw, pitch and roll, degrees")->check(in_range(0.0, 20.0));
-    app.add_option("--misalign", o.misalign, "sigma of the error of the project's yaw and pitch, px")->check(in_range(0.0, 1e3));
+    app.add_option("--misalign", o.misalign, "sigma of the error of the project's yaw and pitch, px")
+        ->check(in_range(0.0, 1e3));
     app.add_option("--response", o.response, "linear, srgb, gamma:G, film, or emor:a,b,... (EMoR coefficients)");
     app.add_option("--vignetting", o.vignetting, "k1,k2,k3, or nine numbers for red, green, blue")->delimiter(',');
     app.add_option("--center", o.center, "x,y of the falloff's centre, half diagonals")->delimiter(',')->expected(2);
     app.add_option("--ev", o.ev, "exposures are uniform within +- this, EV")->check(in_range(0.0, 8.0));
     app.add_option("--wb", o.wb, "white balance factors are uniform within 1 +- this")->check(in_range(0.0, 0.9));
     app.add_option("--noise", o.noise, "sigma, levels of 255")->check(in_range(0.0, 100.0));
-    app.add_option("--outliers", o.outliers, "share of pixels (and of --points pairs) replaced by random numbers")->check(in_range(0.0, 1.0));
+    app.add_option("--outliers", o.outliers, "share of pixels (and of --points pairs) replaced by random numbers")
+        ->check(in_range(0.0, 1.0));
     app.add_option("--format", o.formats, "png, png16, tiff, tiff16, tiff32, jpeg; several, with commas, take turns");
     app.add_option("--seed", o.seed, "another seed, another scene and camera");
     app.add_option("--points", o.points, "also write points.txt with this many noisy pairs")->check(in_range(0, 1e6));
-    app.add_option("--test-points", o.test_points, "also write test_points.txt with noise-free pairs, for scoring")->check(in_range(0, 1e6));
+    app.add_option("--test-points", o.test_points, "also write test_points.txt with noise-free pairs, for scoring")
+        ->check(in_range(0, 1e6));
     app.add_flag("--no-images", o.no_images, "write no pictures");
 }
 
@@ -72,7 +75,8 @@ double srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 
 
 /* A film-like S: toe and shoulder (Naka-Rushton), with f(0) = 0 and f(1) = 1. */
 double film(double x) {
-    const double p = 0.95, s = std::pow(0.28, p), at_one = 1.0 / (1.0 + s), y = std::pow(x, p) / (std::pow(x, p) + s) / at_one;
+    const double p = 0.95, s = std::pow(0.28, p), at_one = 1.0 / (1.0 + s),
+                 y = std::pow(x, p) / (std::pow(x, p) + s) / at_one;
     return y - 0.04 * std::sin(6.283185307179586 * y);
 }
 
@@ -84,7 +88,8 @@ lensprof_response response_of(const std::string &name) {
         lensprof_response_set_linear(&response);
     } else if (name == "srgb" || name == "film") {
         std::vector<double> table;
-        for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) table.push_back(name == "srgb" ? srgb(j / 1023.0) : film(j / 1023.0));
+        for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++)
+            table.push_back(name == "srgb" ? srgb(j / 1023.0) : film(j / 1023.0));
         status = lensprof_response_set_table(&response, table.data(), static_cast<uint32_t>(table.size()));
     } else if (parts.size() == 2 && parts[0] == "gamma") {
         status = lensprof_response_set_gamma(&response, number_of(parts[1], "--response"));
@@ -120,7 +125,8 @@ void place_cameras(const Options &o, Random &random, Truth &truth) {
     double width = number_of(size[0], "--size"), height = number_of(size[1], "--size");
     if (!(width >= 16 && height >= 16 && width <= 32768 && height <= 32768))
         throw Failure(ExitCode::usage, "--size " + o.size + ": sides must be 16..32768");
-    double degree = std::acos(-1.0) / 180.0, vfov = 2.0 / degree * std::atan(std::tan(o.hfov / 2.0 * degree) * height / width);
+    double degree = std::acos(-1.0) / 180.0,
+           vfov = 2.0 / degree * std::atan(std::tan(o.hfov / 2.0 * degree) * height / width);
     uint32_t columns = (o.images + o.rows - 1) / o.rows;
     for (uint32_t i = 0; i < o.images; i++) {
         uint32_t row = i / columns, column = i % columns;
@@ -147,7 +153,8 @@ Truth make_truth(const Options &o) {
         throw Failure(ExitCode::usage, "--vignetting: give three numbers, or nine");
     truth.vignettings = static_cast<uint32_t>(o.vignetting.size() / 3);
     for (uint32_t c = 0; c < 3; c++) {
-        for (uint32_t n = 0; n < 3; n++) truth.vignetting[c].k[n] = o.vignetting[(truth.vignettings == 3 ? 3 * c : 0) + n];
+        for (uint32_t n = 0; n < 3; n++)
+            truth.vignetting[c].k[n] = o.vignetting[(truth.vignettings == 3 ? 3 * c : 0) + n];
         for (uint32_t d = 0; d < 2; d++) truth.vignetting[c].center[d] = o.center[d];
         if (lensprof_vignetting_validate(&truth.vignetting[c]) != LENSPROF_OK)
             throw Failure(ExitCode::usage, "--vignetting: the falloff must stay positive to the corner");
@@ -158,7 +165,8 @@ Truth make_truth(const Options &o) {
     for (uint32_t i = 0; i < o.images; i++) {
         lensprof_exposure e;
         lensprof_exposure_init(&e);
-        double draws[3] = {random.uniform(-o.ev, o.ev), random.uniform(1 - o.wb, 1 + o.wb), random.uniform(1 - o.wb, 1 + o.wb)};
+        double draws[3] = {random.uniform(-o.ev, o.ev), random.uniform(1 - o.wb, 1 + o.wb),
+                           random.uniform(1 - o.wb, 1 + o.wb)};
         e.ev = draws[0];
         if (i > 0) e.white_balance[0] = draws[1], e.white_balance[2] = draws[2];
         truth.exposures.push_back(e);
@@ -257,17 +265,21 @@ PictureMetadata metadata_of(const Truth &truth, uint32_t i) {
 /* The project as an alignment program would leave it: geometry known, exposures to be found. */
 std::string project_text(const Options &o, const Truth &truth) {
     Random random(truth.seed * 31ull + 5);
-    std::string text = "# rendered by lensprof simulate\np f2 w3000 h1500 v360  E0 R0 n\"TIFF_m c:LZW\"\nm g1 i0 f0 m2 p0.00784314\n\n";
+    std::string text =
+        "# rendered by lensprof simulate\np f2 w3000 h1500 v360  E0 R0 n\"TIFF_m c:LZW\"\nm g1 i0 f0 m2 "
+        "p0.00784314\n\n";
     for (size_t i = 0; i < truth.cameras.size(); i++) {
         const auto &c = truth.cameras[i];
         double degrees_per_px = c.hfov_deg / c.width, e[2] = {random.normal(), random.normal()};
         const char *link = i ? "=0" : "0", *va = i ? "=0" : "1";
         text += format("i w%u h%u f0 v%s", c.width, c.height, i ? "=0" : format("%.17g", c.hfov_deg).c_str());
         for (char letter : {'a', 'b', 'c', 'd', 'e'}) text += format(" R%c%s", letter, link);
-        text += format(" Eev0 Er1 Eb1 r%.17g p%.17g y%.17g TrX0 TrY0 TrZ0 Tpy0 Tpp0 j0", c.roll_deg,
-                       c.pitch_deg + o.misalign * degrees_per_px * e[0], c.yaw_deg + o.misalign * degrees_per_px * e[1]);
+        text +=
+            format(" Eev0 Er1 Eb1 r%.17g p%.17g y%.17g TrX0 TrY0 TrZ0 Tpy0 Tpp0 j0", c.roll_deg,
+                   c.pitch_deg + o.misalign * degrees_per_px * e[0], c.yaw_deg + o.misalign * degrees_per_px * e[1]);
         for (char letter : {'a', 'b', 'c', 'd', 'e', 'g', 't'}) text += format(" %c%s", letter, link);
-        text += format(" Va%s Vb%s Vc%s Vd%s Vx%s Vy%s Vm5 n\"%s\"\n", va, link, link, link, link, link, truth.files[i].c_str());
+        text += format(" Va%s Vb%s Vc%s Vd%s Vx%s Vy%s Vm5 n\"%s\"\n", va, link, link, link, link, link,
+                       truth.files[i].c_str());
     }
     text += "\nv Ra0 Rb0 Rc0 Rd0 Re0\nv Vb0 Vc0 Vd0 Vx0 Vy0\n";
     for (size_t i = 1; i < truth.cameras.size(); i++) text += format("v Eev%zu Er%zu Eb%zu\n", i, i, i);
@@ -278,14 +290,16 @@ Json truth_json(const Truth &truth) {
     Json json, images = Json::array(), k = Json::array();
     for (size_t i = 0; i < truth.files.size(); i++) {
         const auto &e = truth.exposures[i];
-        images.push_back({{"file", truth.files[i]}, {"ev", e.ev}, {"white_balance", {e.white_balance[0], 1.0, e.white_balance[2]}}});
+        images.push_back(
+            {{"file", truth.files[i]}, {"ev", e.ev}, {"white_balance", {e.white_balance[0], 1.0, e.white_balance[2]}}});
     }
     for (uint32_t c = 0; c < truth.vignettings; c++)
         k.push_back({truth.vignetting[c].k[0], truth.vignetting[c].k[1], truth.vignetting[c].k[2]});
     json["schema"] = 1;
     json["images"] = images;
     json["vignetting"] = {{"k", k}, {"center", {truth.vignetting[0].center[0], truth.vignetting[0].center[1]}}};
-    json["response"] = {{"values", {std::vector<double>(truth.response.table, truth.response.table + LENSPROF_RESPONSE_SAMPLES)}}};
+    json["response"] = {
+        {"values", {std::vector<double>(truth.response.table, truth.response.table + LENSPROF_RESPONSE_SAMPLES)}}};
     json["noise"] = truth.noise_levels;
     json["outliers"] = truth.outlier_share;
     return json;
@@ -308,7 +322,8 @@ void write_pictures(const Options &o, const Truth &truth, const Scene &scene, Pr
 
 int run_simulate(const std::vector<std::string> &arguments, Streams &streams) {
     Options o;
-    CLI::App app("Renders overlapping pictures of a procedural scene, taken by a camera whose truth is written down.", "lensprof simulate");
+    CLI::App app("Renders overlapping pictures of a procedural scene, taken by a camera whose truth is written down.",
+                 "lensprof simulate");
     declare(app, o);
     if (!parse(app, arguments, streams)) return 0;
     for (const auto &name : split(o.formats, ',')) format_of(name);

@@ -39,11 +39,11 @@ private:
 /* Grey values 0..1 that image `index` records of radiance `rgb` at a pixel, without noise. */
 void record(const Truth &truth, uint32_t index, double x, double y, const double rgb[3], double value[3]);
 
-/* `count` correspondences in random overlaps, evenly over ten rings of radius, both ends between `darkest` and 250 levels.
- * `noisy` adds noise, outlier pairs (one end random) and rounding to `levels` steps. Fewer come back where overlaps
- * hold too few. */
-std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const Scene &scene, uint32_t count, double darkest, bool noisy,
-                                          uint32_t levels);
+/* `count` correspondences in random overlaps, evenly over ten rings of radius, both ends between `darkest` and 250
+ * levels. `noisy` adds noise, outlier pairs (one end random) and rounding to `levels` steps. Fewer come back where
+ * overlaps hold too few. */
+std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const Scene &scene, uint32_t count, double darkest,
+                                          bool noisy, uint32_t levels);
 
 }  // namespace lensprof
 

@@ -55,7 +55,8 @@ bool draw(const Truth &truth, const Scene &scene, double darkest, Random &random
         const auto &camera = truth.cameras[pair.image[side]];
         record(truth, pair.image[side], pair.xy[side][0], pair.xy[side][1], rgb, pair.value[side]);
         if (!well_exposed(pair.value[side], darkest)) return false;
-        double r2 = lensprof_vignetting_r2(&centred, camera.width, camera.height, pair.xy[side][0], pair.xy[side][1], nullptr);
+        double r2 =
+            lensprof_vignetting_r2(&centred, camera.width, camera.height, pair.xy[side][0], pair.xy[side][1], nullptr);
         ring[side] = std::min(static_cast<int>(std::sqrt(r2) * kRings), kRings - 1);
     }
     return true;
@@ -74,13 +75,14 @@ void disturb(const Truth &truth, Random &random, uint32_t levels, lensprof_pair 
 
 }  // namespace
 
-std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const Scene &scene, uint32_t count, double darkest, bool noisy,
-                                          uint32_t levels) {
+std::vector<lensprof_pair> simulate_pairs(const Truth &truth, const Scene &scene, uint32_t count, double darkest,
+                                          bool noisy, uint32_t levels) {
     Random random(truth.seed * 1000003ull + (noisy ? 1 : 2)), noise(truth.seed * 1000003ull + 3);
     std::vector<lensprof_pair> pairs;
     uint32_t per_ring[kRings] = {}, share = (count + kRings - 1) / kRings;
     for (uint64_t trial = 0, most = 2000ull * count + 100000; trial < most && pairs.size() < count; trial++) {
-        if (trial % (most / 20) == most / 20 - 1) share += share / 4 + 1;  /* rings that cannot be filled: others take more */
+        if (trial % (most / 20) == most / 20 - 1)
+            share += share / 4 + 1; /* rings that cannot be filled: others take more */
         if (trial % 4096 == 0) stop_if_interrupted();
         lensprof_pair pair;
         int ring[2];

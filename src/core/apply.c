@@ -79,13 +79,16 @@ void lensprof_apply_options_init(lensprof_apply_options *options)
 static size_t codes_of(const lensprof_apply_options *options)
 {
     if (options->input == LENSPROF_ENCODING_LINEAR) return 0;
-    return options->source_sample == LENSPROF_SAMPLE_U8 ? 256 : options->source_sample == LENSPROF_SAMPLE_U16 ? 65536 : 0;
+    return options->source_sample == LENSPROF_SAMPLE_U8    ? 256
+           : options->source_sample == LENSPROF_SAMPLE_U16 ? 65536
+                                                           : 0;
 }
 
 size_t lensprof_plan_bytes(const lensprof_apply_options *options)
 {
     if (!options || options->struct_size != sizeof *options) return 0;
-    if (!lensprof_sample_bytes(options->source_sample) || (options->responses != 1 && options->responses != 3)) return 0;
+    if (!lensprof_sample_bytes(options->source_sample) || (options->responses != 1 && options->responses != 3))
+        return 0;
     return sizeof(lensprof_plan) + options->responses * (LENSPROF_RESPONSE_SAMPLES + codes_of(options)) * sizeof(float);
 }
 
@@ -93,9 +96,10 @@ static lensprof_status validate_options(const lensprof_apply_options *o)
 {
     if (o->struct_size != sizeof *o) return LENSPROF_ERROR_STRUCT_SIZE;
     if (o->direction > LENSPROF_DIRECTION_SIMULATE || o->input > LENSPROF_ENCODING_LINEAR
-        || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE || !lensprof_sample_bytes(o->source_sample)
-        || !lensprof_sample_bytes(o->target_sample) || !lensprof_layout_samples(o->source_layout) || !o->response
-        || !o->vignetting || (o->responses != 1 && o->responses != 3) || (o->vignettings != 1 && o->vignettings != 3))
+        || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE
+        || !lensprof_sample_bytes(o->source_sample) || !lensprof_sample_bytes(o->target_sample)
+        || !lensprof_layout_samples(o->source_layout) || !o->response || !o->vignetting
+        || (o->responses != 1 && o->responses != 3) || (o->vignettings != 1 && o->vignettings != 3))
         return LENSPROF_ERROR_ARGUMENT;
     if (!o->frame_width || !o->frame_height || o->frame_width > LARGEST_SIDE || o->frame_height > LARGEST_SIDE)
         return LENSPROF_ERROR_SIZE;
@@ -169,7 +173,8 @@ lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_ap
         for (int n = 0; n < 3; n++) plan->k[c][n] = (float)vignetting->k[n];
         plan->factor[c] = (float)(lensprof_exposure_factor(&options->target, c)
                                   / lensprof_exposure_factor(&options->source, c));
-        if (c < options->responses) tables = prepare_curve(&plan->curves[c], &options->response[c], codes_of(options), tables);
+        if (c < options->responses)
+            tables = prepare_curve(&plan->curves[c], &options->response[c], codes_of(options), tables);
         else plan->curves[c] = plan->curves[0];
     }
     *result = plan;
@@ -311,7 +316,8 @@ static void extent(const lensprof_image *image, uintptr_t *first, uintptr_t *las
 {
     uintptr_t top = (uintptr_t)image->data;
     uintptr_t bottom = top + (uintptr_t)((intptr_t)(image->height - 1) * image->row_bytes);
-    uintptr_t row = (uintptr_t)image->width * lensprof_layout_samples(image->layout) * lensprof_sample_bytes(image->sample);
+    uintptr_t row =
+        (uintptr_t)image->width * lensprof_layout_samples(image->layout) * lensprof_sample_bytes(image->sample);
     *first = top < bottom ? top : bottom;
     *last = (top < bottom ? bottom : top) + row - 1;
 }

@@ -85,7 +85,8 @@ static lensprof_status validate_falloff(const lensprof_vignetting *vignetting, c
 lensprof_status lensprof_profile_validate(const lensprof_profile *profile)
 {
     if (!profile || profile->reserved) return LENSPROF_ERROR_ARGUMENT;
-    if ((profile->responses != 1 && profile->responses != 3) || (profile->vignettings != 1 && profile->vignettings != 3))
+    if ((profile->responses != 1 && profile->responses != 3)
+        || (profile->vignettings != 1 && profile->vignettings != 3))
         return LENSPROF_ERROR_ARGUMENT;
     lensprof_status status = lensprof_profile_key_validate(&profile->key);
     if (status == LENSPROF_OK) status = validate_provenance(&profile->provenance);

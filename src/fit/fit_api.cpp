@@ -11,7 +11,8 @@ using namespace lensprof;
 
 namespace {
 
-constexpr uint32_t kSharedFlags = LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
+constexpr uint32_t kSharedFlags =
+    LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
 constexpr uint32_t kImageFlags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
 
 lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_count, lensprof_error *error) {
@@ -25,9 +26,11 @@ lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_coun
                     "fit options: channels 1 or 3, reference < images, modes 0..25 or automatic, Huber 0..255 levels, "
                     "prior weight >= 0, iterations 1..1000000, flags of the shared unknowns only");
     lensprof_status status = lensprof_vignetting_validate(&o.vignetting);
-    if (status != LENSPROF_OK) return fail(status, error, "fit options: the given vignetting is not positive and finite");
+    if (status != LENSPROF_OK)
+        return fail(status, error, "fit options: the given vignetting is not positive and finite");
     status = o.response ? lensprof_response_validate(o.response) : LENSPROF_OK;
-    return status == LENSPROF_OK ? status : fail(status, error, "fit options: the given response is not monotone from 0 to 1");
+    return status == LENSPROF_OK ? status
+                                 : fail(status, error, "fit options: the given response is not monotone from 0 to 1");
 }
 
 lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, lensprof_error *error) {
@@ -40,7 +43,8 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
         if (image.free & ~kImageFlags)
             return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: only EV, RED and BLUE can be free in an image", i);
         for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})
-            if (of >= count) return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to image %u of %u", i, of, count);
+            if (of >= count)
+                return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to image %u of %u", i, of, count);
         if (images[image.ev_of].ev_of != image.ev_of || images[image.red_of].red_of != image.red_of
             || images[image.blue_of].blue_of != image.blue_of)
             return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to an image that is linked itself", i);
@@ -48,8 +52,8 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
     return LENSPROF_OK;
 }
 
-lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const lensprof_fit_image *images, uint32_t image_count,
-                            int channels, lensprof_error *error) {
+lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const lensprof_fit_image *images,
+                            uint32_t image_count, int channels, lensprof_error *error) {
     for (uint32_t p = 0; p < count; p++) {
         const auto &pair = pairs[p];
         if (pair.image[0] >= image_count || pair.image[1] >= image_count || pair.image[0] == pair.image[1])
@@ -61,7 +65,8 @@ lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const le
             const auto &frame = images[pair.image[side]];
             double x = pair.xy[side][0], y = pair.xy[side][1];
             if (x < -1.0 || y < -1.0 || x > frame.width || y > frame.height)
-                return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: position %g, %g is outside image %u", p, x, y, pair.image[side]);
+                return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: position %g, %g is outside image %u", p, x, y,
+                            pair.image[side]);
             for (int c = 0; c < channels; c++) {
                 double value = pair.value[side][c];
                 if (!std::isfinite(value))
@@ -87,7 +92,8 @@ void lensprof_fit_options_init(lensprof_fit_options *options) {
     *options = lensprof_fit_options{};
     options->struct_size = sizeof *options;
     options->channels = 3;
-    options->free = LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
+    options->free =
+        LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
     options->modes = LENSPROF_MODES_AUTO;
     options->huber_levels = 5.0;
     options->prior_weight = 1.0;
@@ -141,8 +147,10 @@ lensprof_status lensprof_transfer_rms(const lensprof_response *response, const l
     lensprof_status status = lensprof_response_validate(response);
     if (status == LENSPROF_OK) status = lensprof_vignetting_validate(vignetting);
     if (status == LENSPROF_OK) status = check_images(images, image_count, nullptr);
-    if (status == LENSPROF_OK) status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(channels), nullptr);
-    for (uint32_t i = 0; i < image_count && status == LENSPROF_OK; i++) status = lensprof_exposure_validate(&exposures[i]);
+    if (status == LENSPROF_OK)
+        status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(channels), nullptr);
+    for (uint32_t i = 0; i < image_count && status == LENSPROF_OK; i++)
+        status = lensprof_exposure_validate(&exposures[i]);
     if (status != LENSPROF_OK) return status;
     try {
         Summary summary = transfer_summary(*response, *vignetting, images, exposures, image_count, pairs, pair_count,

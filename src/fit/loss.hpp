@@ -1,9 +1,9 @@
 // What a residual costs.
 //
-// SQUARED and HUBER take every residual as it is, in grey values (d'Angelo eq. 10 and 11). ROBUST weighs a residual by the
-// noise it carries: a noise of sigma in both grey values puts sigma sqrt(1 + tau'^2) into B1 - tau(B2), and the two directions
-// are then the same measurement twice. A pair's residuals of all channels form z, chi-squared with one degree of freedom a
-// channel; the pair is trusted or distrusted as a whole by
+// SQUARED and HUBER take every residual as it is, in grey values (d'Angelo eq. 10 and 11). ROBUST weighs a residual by
+// the noise it carries: a noise of sigma in both grey values puts sigma sqrt(1 + tau'^2) into B1 - tau(B2), and the two
+// directions are then the same measurement twice. A pair's residuals of all channels form z, chi-squared with one
+// degree of freedom a channel; the pair is trusted or distrusted as a whole by
 //     rho(z) = c^2 atan(z / c^2),    weight rho'(z) = 1 / (1 + (z / c^2)^2),
 // quadratic for noise and bounded for outliers.
 #pragma once

@@ -184,7 +184,8 @@ bool step_is_feasible(const Region &region, const Eigen::VectorXd &d, double t) 
 
 bool is_feasible(const double *emor, int modes, const lensprof_vignetting &vignetting) {
     if (lensprof_vignetting_validate(&vignetting) != LENSPROF_OK) return false;
-    if (std::abs(vignetting.center[0]) > kLargestCenter || std::abs(vignetting.center[1]) > kLargestCenter) return false;
+    if (std::abs(vignetting.center[0]) > kLargestCenter || std::abs(vignetting.center[1]) > kLargestCenter)
+        return false;
     if (modes < 0) return true;
     double table[kGrid];
     lp_emor_curve(emor, static_cast<uint32_t>(modes), table);

@@ -1,8 +1,9 @@
 // The quadratic model of the objective about an estimate, with the images' unknowns eliminated (Schur complement).
 //
-// Shared unknowns s (response, falloff, centre) are dense and few. The images' log exposures a_ic enter every residual only
-// through a_ic - a_jc, so their Hessian is a sum over edges of image pairs: a weighted graph Laplacian for each channel.
-// Links and fixed values are a linear map a = T q. Cost is linear in pairs, and nearly so in images (sparse Cholesky).
+// Shared unknowns s (response, falloff, centre) are dense and few. The images' log exposures a_ic enter every residual
+// only through a_ic - a_jc, so their Hessian is a sum over edges of image pairs: a weighted graph Laplacian for each
+// channel. Links and fixed values are a linear map a = T q. Cost is linear in pairs, and nearly so in images (sparse
+// Cholesky).
 #pragma once
 
 #include <Eigen/Core>

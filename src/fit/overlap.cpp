@@ -53,7 +53,9 @@ public:
         : options_(options), images_(images), image_count_(image_count), pairs_(pairs), split_(split_pairs(pair_count)),
           prior_(make_prior(options.prior_weight, pair_count)) {
         control_.max_iterations = static_cast<int>(options.max_iterations);
-        control_.cancelled = [this] { return options_.progress && options_.progress(done_, options_.progress_user) != 0; };
+        control_.cancelled = [this] {
+            return options_.progress && options_.progress(done_, options_.progress_user) != 0;
+        };
     }
 
     void run(lensprof_exposure *exposures, lensprof_fit_result &result);
@@ -121,7 +123,8 @@ std::vector<double> Fit::heldout_losses(const Estimate &estimate, const Loss &co
     std::vector<double> losses;
     for (size_t p = 0; p < heldout.pairs.size(); p++) {
         PairTransfer t = evaluate_pair(heldout, estimate, heldout.pairs[p]);
-        losses.push_back(pair_cost(weighted_residuals(t, heldout.channels, weights[p]), heldout.channels, common, nullptr));
+        losses.push_back(
+            pair_cost(weighted_residuals(t, heldout.channels, weights[p]), heldout.channels, common, nullptr));
     }
     return losses;
 }
@@ -204,7 +207,8 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
 
 void set_result_response(const Estimate &estimate, lensprof_response &response) {
     if (estimate.modes < 0) response = estimate.fixed;
-    else if (lensprof_response_set_emor(&response, estimate.emor.data(), static_cast<uint32_t>(estimate.modes)) != LENSPROF_OK)
+    else if (lensprof_response_set_emor(&response, estimate.emor.data(), static_cast<uint32_t>(estimate.modes))
+             != LENSPROF_OK)
         throw std::runtime_error("the fitted response is not monotone");
 }
 
@@ -243,7 +247,8 @@ void Fit::describe(const Estimate &train, const Estimate &estimate, const Loss &
     r.heldout_median = has_heldout ? summary.median : LENSPROF_UNKNOWN;
     std::vector<double> before;
     for (const auto &pair : tested.pairs)
-        for (int c = 0; c < tested.channels; c++) before.push_back(255.0 * std::abs(pair.value[0][c] - pair.value[1][c]));
+        for (int c = 0; c < tested.channels; c++)
+            before.push_back(255.0 * std::abs(pair.value[0][c] - pair.value[1][c]));
     r.before_rms = summarise(before).rms;
 
     double noise = estimate_noise(all, estimate, used.noise);
@@ -268,7 +273,9 @@ size_t count_informative(const Problem &problem) {
     for (const auto &p : problem.pairs) {
         bool tells = false;
         for (int c = 0; c < problem.channels; c++)
-            tells = tells || (std::min(p.value[0][c], p.value[1][c]) > kBlack && std::max(p.value[0][c], p.value[1][c]) < 1.0 - kBlack);
+            tells = tells
+                    || (std::min(p.value[0][c], p.value[1][c]) > kBlack
+                        && std::max(p.value[0][c], p.value[1][c]) < 1.0 - kBlack);
         if (tells)
             seen.insert({p.xy[0][0], p.xy[0][1], p.xy[1][0], p.xy[1][1], p.value[0][0], p.value[0][1], p.value[0][2],
                          p.value[1][0], p.value[1][1], p.value[1][2]});
@@ -296,18 +303,19 @@ void Fit::judge(const Problem &all, int modes, lensprof_fit_result &r) const {
                       r.components);
     else if (informative * static_cast<size_t>(all.channels) < 2 * unknowns)
         std::snprintf(r.reason, sizeof r.reason,
-                      "%zu different pairs between black and white are too few for %zu unknowns; sample more", informative,
-                      unknowns);
+                      "%zu different pairs between black and white are too few for %zu unknowns; sample more",
+                      informative, unknowns);
     else if (grey_range(all) < kSmallestRange)
-        std::snprintf(r.reason, sizeof r.reason, "the pairs cover %.0f grey levels only, which does not show a response",
-                      255.0 * grey_range(all));
+        std::snprintf(r.reason, sizeof r.reason,
+                      "the pairs cover %.0f grey levels only, which does not show a response", 255.0 * grey_range(all));
     else if (r.inlier_share < 0.3)
         std::snprintf(r.reason, sizeof r.reason,
                       "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
                       100.0 * r.inlier_share);
     else if (r.noise_levels > kLargestNoise)
         std::snprintf(r.reason, sizeof r.reason,
-                      "the pairs scatter by %.1f levels about the best camera model; free more parameters, or check the alignment",
+                      "the pairs scatter by %.1f levels about the best camera model; free more parameters, or check "
+                      "the alignment",
                       r.noise_levels);
     else if (!r.converged)
         std::snprintf(r.reason, sizeof r.reason, "the fit did not settle in %u iterations", r.iterations);

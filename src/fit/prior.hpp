@@ -14,10 +14,10 @@ extern const double kEmorSigma[kMaxModes];
 
 // Mean and precision of the full shared vector (emor[0..24], k1..k3, centre x, y), times `weight`.
 //
-// The prior on the response grows with the number of pairs, as if it were one more pair in every 200. Pictures say nothing
-// about the exponent gamma, but a basis of few modes does: it represents some members of a curve's gamma family better than
-// others, and that preference grows with the pairs. The prior has to keep up with it. What pictures do determine they
-// determine a hundredfold better, so that it is not disturbed.
+// The prior on the response grows with the number of pairs, as if it were one more pair in every 200. Pictures say
+// nothing about the exponent gamma, but a basis of few modes does: it represents some members of a curve's gamma family
+// better than others, and that preference grows with the pairs. The prior has to keep up with it. What pictures do
+// determine they determine a hundredfold better, so that it is not disturbed.
 struct Prior {
     Eigen::VectorXd mean;
     Eigen::MatrixXd precision;

@@ -61,7 +61,8 @@ PairTransfer evaluate_pair(const Problem &problem, const Estimate &estimate, con
     result.fall = falloff(problem, estimate, pair);
     const auto &a1 = estimate.log_exposure[pair.image[0]], &a2 = estimate.log_exposure[pair.image[1]];
     for (int c = 0; c < problem.channels; c++)
-        result.channel[c] = transfer(estimate, pair.value[0][c], pair.value[1][c], result.fall.log_ratio + a1[c] - a2[c]);
+        result.channel[c] =
+            transfer(estimate, pair.value[0][c], pair.value[1][c], result.fall.log_ratio + a1[c] - a2[c]);
     return result;
 }
 

@@ -133,7 +133,8 @@ bool Sampler::measure(uint32_t i, uint32_t j, double x, double y, const double x
     return true;
 }
 
-// Candidates spread evenly over every image (a low-discrepancy sequence), until there are enough or overlaps are used up.
+// Candidates spread evenly over every image (a low-discrepancy sequence), until there are enough or overlaps are used
+// up.
 std::vector<Candidate> Sampler::candidates(size_t wanted) {
     std::vector<Candidate> found;
     Random random{options_.seed};
@@ -236,13 +237,16 @@ lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, lens
     const auto &view = image.view;
     if (!image.reduction || image.reserved || static_cast<uint64_t>(view.width) * image.reduction > image.camera.width
         || static_cast<uint64_t>(view.height) * image.reduction > image.camera.height)
-        return fail(LENSPROF_ERROR_SIZE, error, "image %u: a view of %u x %u reduced %u times does not fit a frame of %u x %u",
-                    i, view.width, view.height, image.reduction, image.camera.width, image.camera.height);
+        return fail(LENSPROF_ERROR_SIZE, error,
+                    "image %u: a view of %u x %u reduced %u times does not fit a frame of %u x %u", i, view.width,
+                    view.height, image.reduction, image.camera.width, image.camera.height);
     ptrdiff_t width = static_cast<ptrdiff_t>(view.width), row = image.mask_row_bytes;
     if (image.mask && row < width && row > -width)
-        return fail(LENSPROF_ERROR_SIZE, error, "image %u: mask rows are %td bytes apart, less than the view's %td pixels", i, row, width);
+        return fail(LENSPROF_ERROR_SIZE, error,
+                    "image %u: mask rows are %td bytes apart, less than the view's %td pixels", i, row, width);
     if (!(image.black >= 0.0 && image.white <= 1.0 && image.black < image.white))
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: black and white must satisfy 0 <= black < white <= 1", i);
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: black and white must satisfy 0 <= black < white <= 1",
+                    i);
     uint32_t x, y;
     if (View(image).find_not_finite(x, y))
         return fail(LENSPROF_ERROR_NOT_FINITE, error, "image %u: pixel %u, %u is not a finite number", i, x, y);

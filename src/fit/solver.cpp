@@ -34,7 +34,8 @@ struct Stepper {
             for (int c = 0; c < 3; c++)
                 if (step[i][c] != 0.0) a[c] = std::clamp(a[c] + step[i][c], -kLargestLogExposure, kLargestLogExposure);
             for (int c : {0, 2})
-                if (problem.balance_unknown[i][c] >= 0) a[c] = std::clamp(a[c], a[1] - kLargestLogBalance, a[1] + kLargestLogBalance);
+                if (problem.balance_unknown[i][c] >= 0)
+                    a[c] = std::clamp(a[c], a[1] - kLargestLogBalance, a[1] + kLargestLogBalance);
         }
         return to;
     }

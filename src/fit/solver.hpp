@@ -23,13 +23,16 @@ struct Outcome {
 
 struct Cancelled {};
 
-// Improves `estimate` (feasible, `modes` modes) until it no longer moves. Between rounds the noise weights are renewed, and
-// with `refine_noise` in the first rounds the noise level too (loss.noise): every round minimises one fixed objective.
+// Improves `estimate` (feasible, `modes` modes) until it no longer moves. Between rounds the noise weights are renewed,
+// and with `refine_noise` in the first rounds the noise level too (loss.noise): every round minimises one fixed
+// objective.
 Outcome solve(const Problem &problem, const Prior &prior, Loss &loss, bool refine_noise, const Control &control,
               Estimate &estimate);
 
-// Covariance of the full shared vector (emor[0..24], k1..k3, centre): inverse of the reduced Hessian at the estimate, with
-// the images' unknowns free. Zero rows where a parameter was held fixed; all zero where the data do not determine it.
-Eigen::MatrixXd shared_covariance(const Problem &problem, const Prior &prior, const Loss &loss, const Estimate &estimate);
+// Covariance of the full shared vector (emor[0..24], k1..k3, centre): inverse of the reduced Hessian at the estimate,
+// with the images' unknowns free. Zero rows where a parameter was held fixed; all zero where the data do not determine
+// it.
+Eigen::MatrixXd shared_covariance(const Problem &problem, const Prior &prior, const Loss &loss,
+                                  const Estimate &estimate);
 
 }  // namespace lensprof

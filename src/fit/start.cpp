@@ -106,7 +106,8 @@ std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit
     if (!(options.free & LENSPROF_FREE_RESPONSE) || modes == 0) {
         base.modes = -1;
         if (options.response) base.fixed = *options.response;
-        else if (lensprof_response_set_emor(&base.fixed, nullptr, 0) != LENSPROF_OK) lensprof_response_set_linear(&base.fixed);
+        else if (lensprof_response_set_emor(&base.fixed, nullptr, 0) != LENSPROF_OK)
+            lensprof_response_set_linear(&base.fixed);
         std::copy(base.fixed.table, base.fixed.table + base.table.size(), base.table.begin());
         add(nullptr);
         return starts;

@@ -5,8 +5,9 @@
 
 namespace lensprof {
 
-// The curves from which a fit with unknown response starts, each projected on `modes` EMoR modes: the mean of the model,
-// a linear sensor, a gamma curve and a strongly compressed one. The transfer error has a local optimum for each kind.
+// The curves from which a fit with unknown response starts, each projected on `modes` EMoR modes: the mean of the
+// model, a linear sensor, a gamma curve and a strongly compressed one. The transfer error has a local optimum for each
+// kind.
 std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit_options &options, int modes);
 
 // Sets the free exposures of an estimate whose response and vignetting are set.

@@ -36,8 +36,8 @@ double median(double *values, int count) {
     return values[count / 2];
 }
 
-// Mean of the values within 2.5 standard deviations of the centre, which starts at the median: nearly as exact as a mean for
-// plain noise, and hardly moved where a third of the pixels are wrong, even all on one side.
+// Mean of the values within 2.5 standard deviations of the centre, which starts at the median: nearly as exact as a
+// mean for plain noise, and hardly moved where a third of the pixels are wrong, even all on one side.
 double robust_mean(double *values, int count) {
     double center = median(values, count), deviation[kCount];
     for (int i = 0; i < count; i++) deviation[i] = std::abs(values[i] - center);
@@ -91,7 +91,8 @@ void View::to_view(double x, double y, double &u, double &v) const {
 bool View::holds(double x, double y) const {
     double u, v;
     to_view(x, y, u, v);
-    return u >= kReach && v >= kReach && u <= image_.view.width - 1.0 - kReach && v <= image_.view.height - 1.0 - kReach;
+    return u >= kReach && v >= kReach && u <= image_.view.width - 1.0 - kReach
+           && v <= image_.view.height - 1.0 - kReach;
 }
 
 bool View::in_range(const Patch &patch) const {

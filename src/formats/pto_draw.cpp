@@ -80,8 +80,8 @@ lensprof_status lensprof_pto_draw_mask(const lensprof_pto *pto, uint32_t index, 
         const lensprof_pto_image &image = pto->images[index].result;
         Axis across = {image.camera.width / static_cast<double>(width), width};
         Axis down = {image.camera.height / static_cast<double>(height), height};
-        // An include mask asks for this image's content there, and so takes it from every other image: as no pair can be
-        // made there, it excludes as well (as in Hugin's own search for control points).
+        // An include mask asks for this image's content there, and so takes it from every other image: as no pair can
+        // be made there, it excludes as well (as in Hugin's own search for control points).
         std::vector<const PtoMask *> excludes;
         size_t corners = 0;
         for (const PtoMask &m : pto->masks) {

@@ -230,7 +230,8 @@ void test_outputs_that_meet(void **) {
 
 /* Bytes that are not UTF-8, in names and options: stored as question marks, printed as U+FFFD. */
 void test_text_that_is_not_utf8(void **) {
-    const Json json = json_of({"build", scene("pano.pto"), "--db", work("p.db"), "--camera", "X\xe9", "--json", "--pairs", "600", "--modes", "3"});
+    const Json json = json_of({"build", scene("pano.pto"), "--db", work("p.db"), "--camera", "X\xe9", "--json",
+                               "--pairs", "600", "--modes", "3"});
     assert_true(json["profile"].is_number());
     const Json list = json_of({"profile", "list", "--db", work("p.db"), "--json"});
     assert_true(contains(list.dump(), "X?"));
@@ -239,8 +240,10 @@ void test_text_that_is_not_utf8(void **) {
 /* A project that was not written by build holds nothing to undo. */
 void test_apply_without_a_result(void **) {
     assert_refused(usage, {"apply", "--pto", scene("pano.pto"), "-o", work("corrected")}, {"pano.pto", "--pto-out"});
-    assert_refused(usage, {"apply", "--profile", "1", "--db", work("p.db"), "--output-exposure", "mean", "-o", work("corrected"),
-                           scene("img000.png")}, {"--pto"});
+    assert_refused(usage,
+                   {"apply", "--profile", "1", "--db", work("p.db"), "--output-exposure", "mean", "-o",
+                    work("corrected"), scene("img000.png")},
+                   {"--pto"});
 }
 
 /* Truth to compare with. */

@@ -75,7 +75,8 @@ struct Simulation {
     // Exponent that pictures leave open: slope of recovered on true exposures.
     double gamma(const std::vector<lensprof_exposure> &found) const {
         double mean = 0, true_mean = 0, cross = 0, square = 0;
-        for (size_t i = 0; i < found.size(); i++) mean += found[i].ev / found.size(), true_mean += exposures[i].ev / found.size();
+        for (size_t i = 0; i < found.size(); i++)
+            mean += found[i].ev / found.size(), true_mean += exposures[i].ev / found.size();
         for (size_t i = 0; i < found.size(); i++) {
             cross += (found[i].ev - mean) * (exposures[i].ev - true_mean);
             square += (exposures[i].ev - true_mean) * (exposures[i].ev - true_mean);
@@ -93,7 +94,8 @@ struct Simulation {
         double worst = 0;
         for (int k = 0; k <= 20; k++) {
             double r2 = k * k / 400.0, m = std::max(lensprof_vignetting_eval(&found, r2, nullptr), 1e-6);
-            worst = std::max(worst, std::abs(std::pow(m, 1.0 / g) - lensprof_vignetting_eval(&vignetting, r2, nullptr)));
+            worst =
+                std::max(worst, std::abs(std::pow(m, 1.0 / g) - lensprof_vignetting_eval(&vignetting, r2, nullptr)));
         }
         return worst;
     }

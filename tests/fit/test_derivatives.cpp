@@ -34,7 +34,8 @@ struct Setting {
         estimate.vignetting = {{-0.2, 0.1, -0.1}, {0.05, -0.03}};
         uint64_t random = 3;
         for (int i = 0; i < 4; i++)
-            estimate.log_exposure.push_back({lp_random(&random) - 0.5, lp_random(&random) - 0.5, lp_random(&random) - 0.5});
+            estimate.log_exposure.push_back(
+                {lp_random(&random) - 0.5, lp_random(&random) - 0.5, lp_random(&random) - 0.5});
     }
 };
 
@@ -49,10 +50,10 @@ std::vector<double> residuals(const Problem &problem, const Estimate &estimate) 
     return values;
 }
 
-// The response is piecewise linear: where a step crosses a kink a central difference is no derivative. With 1024 pieces and
-// steps of 1e-7 that is rare; the few are counted.
-void compare(const std::vector<double> &analytic, const std::vector<double> &low, const std::vector<double> &high, double h,
-             const char *what) {
+// The response is piecewise linear: where a step crosses a kink a central difference is no derivative. With 1024 pieces
+// and steps of 1e-7 that is rare; the few are counted.
+void compare(const std::vector<double> &analytic, const std::vector<double> &low, const std::vector<double> &high,
+             double h, const char *what) {
     size_t kinks = 0;
     for (size_t i = 0; i < analytic.size(); i++) {
         double numeric = (high[i] - low[i]) / (2 * h);
@@ -92,7 +93,8 @@ void test_residual_by_falloff(void **) {
             PairTransfer t = evaluate_pair(s.problem, s.estimate, pair);
             for (int c = 0; c < 3; c++)
                 for (int side = 0; side < 2; side++)
-                    analytic.push_back(-t.channel[c].by_delta[side] * (u < 3 ? t.fall.by_k[u] : t.fall.by_center[u - 3]));
+                    analytic.push_back(-t.channel[c].by_delta[side]
+                                       * (u < 3 ? t.fall.by_k[u] : t.fall.by_center[u - 3]));
         }
         Estimate low = s.estimate, high = s.estimate;
         (u < 3 ? low.vignetting.k[u] : low.vignetting.center[u - 3]) -= h;
@@ -108,7 +110,8 @@ void test_residual_by_exposure_and_value(void **) {
     for (const auto &pair : s.problem.pairs) {
         PairTransfer t = evaluate_pair(s.problem, s.estimate, pair);
         for (int c = 0; c < 3; c++) {
-            double delta = t.fall.log_ratio + s.estimate.log_exposure[pair.image[0]][c] - s.estimate.log_exposure[pair.image[1]][c];
+            double delta = t.fall.log_ratio + s.estimate.log_exposure[pair.image[0]][c]
+                           - s.estimate.log_exposure[pair.image[1]][c];
             double b1 = pair.value[0][c], b2 = pair.value[1][c];
             by_value.push_back(t.channel[c].by_value[0]);
             value_low.push_back(-transfer(s.estimate, b1, b2 - h, delta).residual[0]);
@@ -144,22 +147,26 @@ void test_objective_gradient(void **) {
             Prior prior = make_prior(1.0, 400);
             NoiseWeights weights = noise_weights(s.problem, s.estimate, loss);
             NormalEquations model(s.problem, prior, loss, weights, s.estimate);
-            assert_close(model.objective(), objective(s.problem, prior, loss, weights, s.estimate), 1e-9 * model.objective());
+            assert_close(model.objective(), objective(s.problem, prior, loss, weights, s.estimate),
+                         1e-9 * model.objective());
             assert_true(model.reduce(0.0));
-            // A step along the solution of the reduced system decreases the objective at the rate -b'S^-1 b - (images' part).
+            // A step along the solution of the reduced system decreases the objective at the rate -b'S^-1 b - (images'
+            // part).
             Eigen::VectorXd d = model.reduced_hessian().ldlt().solve(model.reduced_gradient());
             auto images = model.image_step(d);
             auto at = [&](double t) {
                 Estimate e = s.estimate;
                 Eigen::VectorXd full = shared_vector(e);
-                for (size_t u = 0; u < model.columns().size(); u++) full[model.columns()[u]] += t * d[static_cast<Eigen::Index>(u)];
+                for (size_t u = 0; u < model.columns().size(); u++)
+                    full[model.columns()[u]] += t * d[static_cast<Eigen::Index>(u)];
                 set_shared(e, full);
                 for (size_t i = 0; i < images.size(); i++)
                     for (int c = 0; c < 3; c++) e.log_exposure[i][c] += t * images[i][c];
                 return objective(s.problem, prior, loss, weights, e);
             };
             double h = 1e-4, slope = (at(h) - at(-h)) / (2 * h);
-            // For a Gauss-Newton step d = H^-1 g the slope is -g'd = -d'Hd, and the quadratic model promises half of it.
+            // For a Gauss-Newton step d = H^-1 g the slope is -g'd = -d'Hd, and the quadratic model promises half of
+            // it.
             double model_slope = -(d.dot(model.reduced_gradient()));
             assert_true(slope < 0.0);
             assert_true(slope <= 0.98 * model_slope);  // the images' own gradient adds to the descent
@@ -202,13 +209,17 @@ void test_elimination_equals_full_solve(void **) {
     }
     double scale = 0.5 / (loss.noise * loss.noise);
     Eigen::MatrixXd hessian = scale * jacobian.transpose() * jacobian;
-    Eigen::VectorXd gradient = -scale * jacobian.transpose() * Eigen::Map<Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
+    Eigen::VectorXd gradient =
+        -scale * jacobian.transpose() * Eigen::Map<Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
     Eigen::VectorXd full = shared_vector(s.estimate);
     for (int u = 0; u < shared; u++)
         for (int v = 0; v < shared; v++) {
-            double p = prior.precision(model.columns()[static_cast<size_t>(u)], model.columns()[static_cast<size_t>(v)]);
+            double p =
+                prior.precision(model.columns()[static_cast<size_t>(u)], model.columns()[static_cast<size_t>(v)]);
             hessian(u, v) += p;
-            gradient[u] -= p * (full[model.columns()[static_cast<size_t>(v)]] - prior.mean[model.columns()[static_cast<size_t>(v)]]);
+            gradient[u] -=
+                p
+                * (full[model.columns()[static_cast<size_t>(v)]] - prior.mean[model.columns()[static_cast<size_t>(v)]]);
         }
     for (int q = shared; q < unknowns; q++) hessian(q, q) += 2e-3;
     Eigen::VectorXd step = hessian.ldlt().solve(gradient);

@@ -22,9 +22,9 @@ struct Call {
         auto exposures_before = exposures;
         lensprof_fit_result result_before;
         std::memcpy(&result_before, &result, sizeof result);
-        lensprof_status status = lensprof_fit_overlap(&options, s.fit_images.data(), static_cast<uint32_t>(s.fit_images.size()),
-                                                      s.pairs.data(), static_cast<uint32_t>(s.pairs.size()), exposures.data(),
-                                                      &result, &error);
+        lensprof_status status = lensprof_fit_overlap(
+            &options, s.fit_images.data(), static_cast<uint32_t>(s.fit_images.size()), s.pairs.data(),
+            static_cast<uint32_t>(s.pairs.size()), exposures.data(), &result, &error);
         if (status != LENSPROF_OK) {
             assert_memory_equal(exposures.data(), exposures_before.data(), exposures.size() * sizeof exposures[0]);
             assert_memory_equal(&result, &result_before, sizeof result);
@@ -69,11 +69,18 @@ void test_refuses(void **) {
     REFUSED(call.s.fit_images[1].free = 0x100, LENSPROF_ERROR_ARGUMENT);
     REFUSED((call.options.free = 0, call.options.channels = 1,
              [&] { for (auto &i : call.s.fit_images) i.free = LENSPROF_FREE_RED; }()), LENSPROF_ERROR_NO_UNKNOWNS);
-    REFUSED((call.options.free = 0, [&] { for (auto &i : call.s.fit_images) i.ev_of = 0, i.free = LENSPROF_FREE_EV; }()),
+    REFUSED((call.options.free = 0,
+             [&] {
+                 for (auto &i : call.s.fit_images) i.ev_of = 0, i.free = LENSPROF_FREE_EV;
+             }()),
             LENSPROF_ERROR_NO_UNKNOWNS);
     REFUSED(call.s.pairs.clear(), LENSPROF_ERROR_NO_SAMPLES);
     REFUSED(call.s.fit_images.resize(1), LENSPROF_ERROR_ARGUMENT);
-    REFUSED((call.options.free = 0, [&] { for (auto &i : call.s.fit_images) i.free = 0; }()), LENSPROF_ERROR_NO_UNKNOWNS);
+    REFUSED((call.options.free = 0,
+             [&] {
+                 for (auto &i : call.s.fit_images) i.free = 0;
+             }()),
+            LENSPROF_ERROR_NO_UNKNOWNS);
 }
 
 // Pairs that tell nothing: one pair repeated, one grey value, black and white alone.

@@ -54,8 +54,8 @@ void test_projections_are_strictly_monotone(void **) {
     }
 }
 
-// No feasible point near the solution is better: random feasible points and their mixtures with the solution (the region is
-// convex) never have a lower cost.
+// No feasible point near the solution is better: random feasible points and their mixtures with the solution (the
+// region is convex) never have a lower cost.
 void test_step_is_optimal(void **) {
     uint64_t random = 11;
     for (int trial = 0; trial < 20; trial++) {

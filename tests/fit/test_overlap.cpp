@@ -14,8 +14,9 @@ Run fit(const Simulation &s, const lensprof_fit_options &options) {
     run.exposures.resize(s.images);
     lensprof_fit_result_init(&run.result);
     lensprof_error error;
-    lensprof_status status = lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                                                  static_cast<uint32_t>(s.pairs.size()), run.exposures.data(), &run.result, &error);
+    lensprof_status status =
+        lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
+                             static_cast<uint32_t>(s.pairs.size()), run.exposures.data(), &run.result, &error);
     if (status != LENSPROF_OK) print_error("%s\n", error.text);
     assert_ok(status);
     assert_true(is_monotone(run.result.response));
@@ -44,8 +45,9 @@ double clean_rms(const Simulation &s, const Run &run) {
     clean.exposures.clear(), clean.fit_images.clear(), clean.pairs.clear();
     clean.make(1000, 0.0, 0.0, 1.0, 42);
     double rms = 0;
-    assert_ok(lensprof_transfer_rms(&run.result.response, &run.result.vignetting, s.fit_images.data(), run.exposures.data(),
-                                    s.images, clean.pairs.data(), 1000, s.channels, &rms, nullptr));
+    assert_ok(lensprof_transfer_rms(&run.result.response, &run.result.vignetting, s.fit_images.data(),
+                                    run.exposures.data(), s.images, clean.pairs.data(), 1000, s.channels, &rms,
+                                    nullptr));
     return rms;
 }
 
@@ -135,7 +137,9 @@ void test_fixed_and_linked_parameters(void **) {
     s.fit_images[4].exposure = s.exposures[4];
     s.fit_images[0].free = 0;  // far outside what a free exposure may become, and kept all the same
     s.fit_images[0].exposure.ev = 30.0;
-    s.pairs.erase(std::remove_if(s.pairs.begin(), s.pairs.end(), [](const lensprof_pair &p) { return p.image[0] == 0; }), s.pairs.end());
+    s.pairs.erase(
+        std::remove_if(s.pairs.begin(), s.pairs.end(), [](const lensprof_pair &p) { return p.image[0] == 0; }),
+        s.pairs.end());
     s.fit_images[5].red_of = 3;
     Run run = fit(s, options);
     assert_close(run.exposures[2].ev, s.exposures[2].ev, 1e-12);       // the reference
@@ -176,7 +180,9 @@ void test_same_input_same_bytes(void **) {
 
 void test_unconnected_images_are_not_usable(void **) {
     Simulation s = simulate(srgb_response(), 1000, 1.0, 0.0);
-    s.pairs.erase(std::remove_if(s.pairs.begin(), s.pairs.end(), [](const lensprof_pair &p) { return p.image[0] == 2; }), s.pairs.end());
+    s.pairs.erase(
+        std::remove_if(s.pairs.begin(), s.pairs.end(), [](const lensprof_pair &p) { return p.image[0] == 2; }),
+        s.pairs.end());
     Run run = fit(s, default_options());
     assert_int_equal(run.result.usable, 0);
     assert_int_equal(run.result.components, 2);

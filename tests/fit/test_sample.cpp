@@ -29,20 +29,24 @@ struct Pictures {
                 for (uint32_t u = 0; u < width; u++) {
                     double d[2], x = (u + 0.5) * reduction - 0.5, y = (v + 0.5) * reduction - 0.5;
                     assert_true(lensprof_camera_unproject(&image.camera, x, y, d));
-                    for (int c = 0; c < 3; c++) pixels[(static_cast<size_t>(v) * width + u) * 3 + c] = static_cast<float>(scene(d[0], d[1], c));
+                    for (int c = 0; c < 3; c++)
+                        pixels[(static_cast<size_t>(v) * width + u) * 3 + c] = static_cast<float>(scene(d[0], d[1], c));
                 }
             data.push_back(pixels);
             masks.emplace_back(static_cast<size_t>(width) * height, uint8_t{1});
             images.push_back(image);
         }
         for (uint32_t i = 0; i < count; i++) {
-            images[i].view = {data[i].data(), static_cast<ptrdiff_t>(width * 12), width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB};
+            images[i].view = {
+                data[i].data(),     static_cast<ptrdiff_t>(width * 12), width, height, LENSPROF_SAMPLE_F32,
+                LENSPROF_LAYOUT_RGB};
             images[i].mask = masks[i].data();
             images[i].mask_row_bytes = static_cast<ptrdiff_t>(width);
         }
     }
 
-    lensprof_status sample(const lensprof_sample_options &options, std::vector<lensprof_pair> &pairs, lensprof_error *error = nullptr) {
+    lensprof_status sample(const lensprof_sample_options &options, std::vector<lensprof_pair> &pairs,
+                           lensprof_error *error = nullptr) {
         uint32_t found = 0;
         auto count = static_cast<uint32_t>(images.size());
         lensprof_status status = lensprof_sample_overlap(&options, images.data(), count, nullptr, 0, &found, error);
@@ -74,7 +78,8 @@ void test_pairs_show_one_scene_point(void **) {
                 for (int side = 0; side < 2; side++) {
                     const auto &camera = pictures.images[pair.image[side]].camera;
                     assert_true(lensprof_camera_unproject(&camera, pair.xy[side][0], pair.xy[side][1], d[side]));
-                    for (int c = 0; c < 3; c++) assert_close(pair.value[side][c], scene(d[side][0], d[side][1], c), 0.004);
+                    for (int c = 0; c < 3; c++)
+                        assert_close(pair.value[side][c], scene(d[side][0], d[side][1], c), 0.004);
                 }
                 assert_close(d[0][0], d[1][0], 1e-7);
                 assert_close(d[0][1], d[1][1], 1e-7);
@@ -95,7 +100,8 @@ void test_balanced_over_pairs_radius_and_grey(void **) {
         for (int side = 0; side < 2; side++) {
             double r2 = lensprof_vignetting_r2(&centred, 320, 240, pair.xy[side][0], pair.xy[side][1], nullptr);
             per_radius[std::min(9, static_cast<int>(10 * std::sqrt(r2)))]++;
-            per_grey[std::min(9, static_cast<int>(10 * (pair.value[side][0] + pair.value[side][1] + pair.value[side][2]) / 3))]++;
+            per_grey[std::min(
+                9, static_cast<int>(10 * (pair.value[side][0] + pair.value[side][1] + pair.value[side][2]) / 3))]++;
         }
     }
     assert_int_equal(per_edge.size(), 5);  // 50 degrees wide, 25 degrees apart: neighbours only
@@ -162,10 +168,12 @@ void test_sample_types_and_layouts_agree(void **) {
     std::vector<std::vector<uint16_t>> bgra(2);
     for (int i = 0; i < 2; i++) {
         for (size_t p = 0; p < pictures.data[i].size(); p += 3) {
-            for (int c = 2; c >= 0; c--) bgra[i].push_back(static_cast<uint16_t>(std::lround(65535 * pictures.data[i][p + c])));
+            for (int c = 2; c >= 0; c--)
+                bgra[i].push_back(static_cast<uint16_t>(std::lround(65535 * pictures.data[i][p + c])));
             bgra[i].push_back(65535);
         }
-        pictures.images[i].view = {bgra[i].data() + 119 * 160 * 4, -160 * 8, 160, 120, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_BGRA};
+        pictures.images[i].view = {
+            bgra[i].data() + 119 * 160 * 4, -160 * 8, 160, 120, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_BGRA};
         for (int v = 0; v < 60; v++)  // bottom up in memory
             for (int k = 0; k < 160 * 4; k++) std::swap(bgra[i][v * 640 + k], bgra[i][(119 - v) * 640 + k]);
     }

@@ -20,8 +20,10 @@ static void make_model(fixture *f, uint32_t kind, uint32_t curves)
     lensprof_apply_options_init(&f->options);
     for (int c = 0; c < 3; c++) {
         if (kind == LENSPROF_RESPONSE_LINEAR) lensprof_response_set_linear(&f->response[c]);
-        else if (kind == LENSPROF_RESPONSE_GAMMA) assert_ok(lensprof_response_set_gamma(&f->response[c], 2.0 + 0.2 * c));
-        else if (kind == LENSPROF_RESPONSE_EMOR) assert_ok(lensprof_response_set_emor(&f->response[c], emor, 1 + (uint32_t)c));
+        else if (kind == LENSPROF_RESPONSE_GAMMA)
+            assert_ok(lensprof_response_set_gamma(&f->response[c], 2.0 + 0.2 * c));
+        else if (kind == LENSPROF_RESPONSE_EMOR)
+            assert_ok(lensprof_response_set_emor(&f->response[c], emor, 1 + (uint32_t)c));
         else assert_ok(lensprof_response_set_table(&f->response[c], table, 4));
         f->vignetting[c] = (lensprof_vignetting){{-0.4 + 0.1 * c, 0.1, -0.1}, {0.03, -0.05}};
     }
@@ -51,7 +53,8 @@ static double reference(const fixture *f, double value, int channel, double x, d
     const lensprof_response *r = &f->response[one_r];
     double m = lensprof_vignetting_eval(&f->vignetting[one_v],
                                         lensprof_vignetting_r2(&f->vignetting[one_v], W, H, x, y, NULL), NULL);
-    double ratio = lensprof_exposure_factor(&o->target, (uint32_t)c) / lensprof_exposure_factor(&o->source, (uint32_t)c);
+    double ratio =
+        lensprof_exposure_factor(&o->target, (uint32_t)c) / lensprof_exposure_factor(&o->source, (uint32_t)c);
     double light = o->input == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(r, value, NULL);
     light *= o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / m : m / ratio;
     return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(r, light, NULL);
@@ -100,8 +103,10 @@ static void compare(const fixture *f, const lensprof_image *source, const lenspr
     for (uint32_t y = 0; y < H; y++)
         for (uint32_t x = 0; x < W; x++)
             for (uint32_t s = 0; s < samples; s++) {
-                double in = get((uint8_t *)source->data + y * source->row_bytes + (size_t)(x * samples + s) * sb, source->sample);
-                double out = get((uint8_t *)target->data + y * target->row_bytes + (size_t)(x * samples + s) * tb, target->sample);
+                double in = get((uint8_t *)source->data + y * source->row_bytes + (size_t)(x * samples + s) * sb,
+                                source->sample);
+                double out = get((uint8_t *)target->data + y * target->row_bytes + (size_t)(x * samples + s) * tb,
+                                 target->sample);
                 int channel = channel_of(source->layout, s);
                 double expected = channel == -2 ? in : reference(f, in, channel, x, y), tolerance = 2e-6;
                 if (target->sample != LENSPROF_SAMPLE_F32) {
@@ -147,7 +152,8 @@ static void test_tiles_in_place_and_bottom_up_give_the_whole(void **state)
     lensprof_image bottom_up = source; /* the rows of the tiles below are those of the frame */
     uint8_t *flipped = malloc((size_t)source.row_bytes * H);
     for (uint32_t y = 0; y < H; y++)
-        memcpy(flipped + (H - 1 - y) * source.row_bytes, (uint8_t *)source.data + y * source.row_bytes, (size_t)source.row_bytes);
+        memcpy(flipped + (H - 1 - y) * source.row_bytes, (uint8_t *)source.data + y * source.row_bytes,
+               (size_t)source.row_bytes);
     bottom_up.data = flipped + (H - 1) * source.row_bytes;
     bottom_up.row_bytes = -source.row_bytes;
     for (uint32_t y = 0; y < H; y += 5)
@@ -207,7 +213,8 @@ static void test_saturated_pixels_stay_neutral(void **state)
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
     f.options.saturated = LENSPROF_SATURATED_NEUTRAL;
     make_plan(&f);
-    lensprof_image image = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8), before = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8);
+    lensprof_image image = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8),
+                   before = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 8);
     uint8_t *data = image.data;
     data[0] = data[1] = data[2] = 255;
     data[3] = 255, data[4] = 200, data[5] = 100; /* bright, but a colour */
@@ -271,7 +278,8 @@ static void test_apply_refuses_and_writes_nothing(void **state)
     fixture f;
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
     make_plan(&f);
-    lensprof_image s = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 1), t = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 2);
+    lensprof_image s = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 1),
+                   t = make_image(LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB, 2);
     size_t bytes = (size_t)t.row_bytes * H;
     uint8_t *before = malloc(bytes);
     memcpy(before, t.data, bytes);

@@ -41,7 +41,8 @@ static void test_kinds_follow_their_formulas(void **state)
     assert_close(lensprof_response_invert(&r, 0.3, NULL), pow(0.3, 2.2), 1e-15);
     assert_close(r.table[512], pow(512.0 / LAST, 1.0 / 2.2), 1e-15);
     r = emor(0.5, -0.2);
-    double expected = lensprof_emor_table(0)[100] + 0.5 * lensprof_emor_table(1)[100] - 0.2 * lensprof_emor_table(2)[100];
+    double expected =
+        lensprof_emor_table(0)[100] + 0.5 * lensprof_emor_table(1)[100] - 0.2 * lensprof_emor_table(2)[100];
     assert_close(lensprof_response_eval(&r, 100.0 / LAST, NULL), expected, 1e-12);
     const double table[3] = {0.0, 0.8, 1.0};
     assert_ok(lensprof_response_set_table(&r, table, 3));
@@ -74,7 +75,8 @@ static void test_invert_undoes_eval(void **state)
     for (int k = 0; k < 4; k++)
         for (int i = 0; i <= 5000; i++) {
             double x = i / 5000.0;
-            assert_close(lensprof_response_invert(&kinds[k], lensprof_response_eval(&kinds[k], x, NULL), NULL), x, 1e-9);
+            assert_close(lensprof_response_invert(&kinds[k], lensprof_response_eval(&kinds[k], x, NULL), NULL), x,
+                         1e-9);
         }
 }
 
@@ -103,8 +105,9 @@ static void test_slopes_against_central_differences(void **state)
             /* inside one grid interval, where the curve is smooth */
             double x = (floor(lp_random(&random) * LAST) + 0.5) / LAST, h = 1e-6, slope, inverse_slope;
             double b = lensprof_response_eval(&kinds[k], x, &slope);
-            double numeric = (lensprof_response_eval(&kinds[k], x + h, NULL) - lensprof_response_eval(&kinds[k], x - h, NULL))
-                             / (2.0 * h);
+            double numeric =
+                (lensprof_response_eval(&kinds[k], x + h, NULL) - lensprof_response_eval(&kinds[k], x - h, NULL))
+                / (2.0 * h);
             assert_close(slope, numeric, 1e-4 * (1.0 + fabs(numeric)));
             lensprof_response_invert(&kinds[k], b, &inverse_slope);
             assert_close(inverse_slope * slope, 1.0, 1e-9);

@@ -25,16 +25,19 @@ static void test_derivatives_against_central_differences(void **state)
     for (int i = 0; i < 1000; i++) {
         lensprof_vignetting v = {{lp_random(&random) - 0.5, lp_random(&random) - 0.5, lp_random(&random) - 0.5},
                                  {0.2 * (lp_random(&random) - 0.5), 0.2 * (lp_random(&random) - 0.5)}};
-        double r2 = lp_random(&random), h = 1e-5, slope, gradient[2], x = 640 * lp_random(&random), y = 480 * lp_random(&random);
+        double r2 = lp_random(&random), h = 1e-5, slope, gradient[2], x = 640 * lp_random(&random),
+               y = 480 * lp_random(&random);
         lensprof_vignetting_eval(&v, r2, &slope);
-        double numeric = (lensprof_vignetting_eval(&v, r2 + h, NULL) - lensprof_vignetting_eval(&v, r2 - h, NULL)) / (2 * h);
+        double numeric =
+            (lensprof_vignetting_eval(&v, r2 + h, NULL) - lensprof_vignetting_eval(&v, r2 - h, NULL)) / (2 * h);
         assert_close(slope, numeric, 1e-8);
         lensprof_vignetting_r2(&v, 640, 480, x, y, gradient);
         for (int d = 0; d < 2; d++) {
             lensprof_vignetting low = v, high = v;
             low.center[d] -= h;
             high.center[d] += h;
-            numeric = (lensprof_vignetting_r2(&high, 640, 480, x, y, NULL) - lensprof_vignetting_r2(&low, 640, 480, x, y, NULL))
+            numeric = (lensprof_vignetting_r2(&high, 640, 480, x, y, NULL)
+                       - lensprof_vignetting_r2(&low, 640, 480, x, y, NULL))
                       / (2 * h);
             assert_close(gradient[d], numeric, 1e-8);
         }
@@ -53,7 +56,8 @@ static void test_validate_finds_every_minimum(void **state)
         if (i % 3 == 0) v.k[2] = 0.0;
         if (i % 7 == 0) v.k[1] = 0.0;
         double reach = 1.0 + hypot(v.center[0], v.center[1]), smallest = 1.0;
-        for (int s = 0; s <= 2000; s++) smallest = fmin(smallest, lensprof_vignetting_eval(&v, reach * reach * s / 2000.0, NULL));
+        for (int s = 0; s <= 2000; s++)
+            smallest = fmin(smallest, lensprof_vignetting_eval(&v, reach * reach * s / 2000.0, NULL));
         lensprof_status status = lensprof_vignetting_validate(&v);
         if (smallest > 0.0015) assert_ok(status), valid++;
         if (smallest < 0.0009) assert_int_equal(status, LENSPROF_ERROR_VIGNETTING), invalid++;

@@ -20,7 +20,8 @@ int main(void)
     if (lensprof_pto_read(text, sizeof text - 1, &pto, &error) != LENSPROF_OK) return 3;
     if (lensprof_pto_image_count(pto) != 1) return 4;
     lensprof_pto_destroy(pto);
-    if (lensprof_store_open("/nonexistent/x.db", LENSPROF_STORE_READ, &store, &error) != LENSPROF_ERROR_NOT_FOUND) return 5;
+    if (lensprof_store_open("/nonexistent/x.db", LENSPROF_STORE_READ, &store, &error) != LENSPROF_ERROR_NOT_FOUND)
+        return 5;
     printf("lensprof %s from C\n", version);
     return 0;
 }
