@@ -70,6 +70,10 @@ uint32_t modes_of(const std::string &text) {
     return static_cast<uint32_t>(value);
 }
 
+constexpr uint32_t falloff_flags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+constexpr uint32_t lens_flags = LENSPROF_FREE_RESPONSE | falloff_flags | LENSPROF_FREE_CENTER;
+constexpr uint32_t balance_flags = LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
+
 /* --free: the same unknowns for every image. */
 uint32_t free_of(const std::string &list) {
     uint32_t flags = 0;
@@ -80,11 +84,11 @@ uint32_t free_of(const std::string &list) {
             continue;
         }
         if (word == "response") flags |= LENSPROF_FREE_RESPONSE;
-        else if (word == "falloff") flags |= LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+        else if (word == "falloff") flags |= falloff_flags;
         else if (word == "center") flags |= LENSPROF_FREE_CENTER;
         else if (word == "ev") flags |= LENSPROF_FREE_EV;
-        else if (word == "wb") flags |= LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
-        else if (word == "all") flags |= 0xFF;
+        else if (word == "wb") flags |= balance_flags;
+        else if (word == "all") flags |= lens_flags | LENSPROF_FREE_EV | balance_flags;
         else throw Failure(ExitCode::usage, "--free " + word + ": use response, falloff, center, ev, wb, all");
         word.clear();
     }
@@ -96,7 +100,7 @@ lensprof_fit_options fit_options(const Options &o, const Project &project, lensp
     lensprof_fit_options_init(&options);
     const auto &lens = project.images[project.reference];
     options.free = 0;
-    for (const auto &image : project.images) options.free |= image.free & 0x1F;
+    for (const auto &image : project.images) options.free |= image.free & lens_flags;
     options.reference = project.reference;
     options.modes = modes_of(o.modes);
     options.loss = o.loss == "huber"     ? LENSPROF_LOSS_HUBER
@@ -107,18 +111,14 @@ lensprof_fit_options fit_options(const Options &o, const Project &project, lensp
     options.vignetting = lens.vignetting;
     check(lensprof_pto_get_response(project.pto.get(), project.reference, &fixed), project.path);
     options.response = &fixed;
-    if (options.free & (LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3))
+    if (options.free & falloff_flags)
         if (lensprof_vignetting_validate(&options.vignetting) != LENSPROF_OK)
             options.vignetting = lensprof_vignetting{};
     return options;
 }
 
-struct Watch {
-    Progress *progress;
-};
-
-int on_progress(double done, void *user) {
-    static_cast<Watch *>(user)->progress->update("fitting", done);
+int on_progress(double done, void *progress) {
+    static_cast<Progress *>(progress)->update("fitting", done);
     return interrupted();
 }
 
@@ -345,9 +345,8 @@ BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams 
     report.response_known = !(options.free & LENSPROF_FREE_RESPONSE) || options.modes == 0;
     std::vector<lensprof_pair> pairs = get_pairs(o, project, progress, report, options.channels);
     stop_if_interrupted();
-    Watch watch{&progress};
     options.progress = on_progress;
-    options.progress_user = &watch;
+    options.progress_user = &progress;
     auto images = fit_images(project);
     report.exposures.resize(images.size());
     lensprof_fit_result_init(&report.fit);
