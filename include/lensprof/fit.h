@@ -36,6 +36,23 @@ typedef enum lensprof_loss {
 
 #define LENSPROF_MODES_AUTO 0xFFFFFFFFu /* number of EMoR modes chosen by held-out error */
 
+/* What settles the exponent gamma that pictures leave open: (f, M, e) and (f o x^(1/gamma), M^gamma, e^gamma) make the
+ * same pictures. */
+typedef enum lensprof_gamma_from {
+    LENSPROF_GAMMA_AUTO = 0,      /* default: known exposures and the prior on the response, each by its standard error */
+    LENSPROF_GAMMA_PRIOR = 1,     /* the prior on the response alone */
+    LENSPROF_GAMMA_EXPOSURES = 2, /* known_ev of the images alone; without differences there, the prior */
+    LENSPROF_GAMMA_KNOWN = 3,     /* results only: parameters held fixed, be it response, falloff or exposures */
+    LENSPROF_GAMMA_NONE = 4       /* results only: nothing, for want of a prior (the paper's method): it is arbitrary */
+} lensprof_gamma_from;
+
+/* The measured responses behind the prior (DoRF database). */
+typedef enum lensprof_camera_kind {
+    LENSPROF_CAMERA_ANY = 0,    /* all 201 curves */
+    LENSPROF_CAMERA_FILM = 1,   /* scanned film: 154 curves */
+    LENSPROF_CAMERA_DIGITAL = 2 /* digital and video cameras with a tone curve: 29 curves */
+} lensprof_camera_kind;
+
 /* One image of the fit. Frozen value struct. */
 typedef struct lensprof_fit_image {
     uint32_t width, height;     /* full frame, px */
@@ -43,6 +60,8 @@ typedef struct lensprof_fit_image {
     uint32_t free;              /* LENSPROF_FREE_EV | _RED | _BLUE */
     uint32_t ev_of;             /* index of the image whose ev this one shares (links); own index = its own */
     uint32_t red_of, blue_of;   /* the same for the white balance factors */
+    double known_ev;            /* exposure from elsewhere (EXIF), EV up to a common offset: a soft observation */
+    double known_ev_sigma;      /* its standard error, EV; 0 = not known. Rounded EXIF figures: about 0.1 */
 } lensprof_fit_image;
 
 /* Called now and then with a fraction 0..1; a non-zero return cancels the fit. */
@@ -58,7 +77,9 @@ typedef struct lensprof_fit_options {
     double huber_levels;    /* HUBER: sigma in levels of 255 (paper: 5) */
     double prior_weight;    /* weight of the priors on response, vignetting and centre; 0 = none (paper), 1 = default */
     uint32_t max_iterations;
-    uint32_t reserved;                /* 0 */
+    uint32_t vignettings;   /* falloff curves: 1 for all channels, 3, or 0 = chosen by held-out error */
+    uint32_t gamma_from;    /* lensprof_gamma_from */
+    uint32_t camera_kind;   /* lensprof_camera_kind */
     const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
     lensprof_vignetting vignetting;   /* the value where fixed */
     lensprof_progress progress;       /* or NULL */
@@ -66,28 +87,51 @@ typedef struct lensprof_fit_options {
 } lensprof_fit_options;
 
 /* 3 channels, reference 0, everything free, modes AUTO, loss ROBUST, Huber 5 levels, prior weight 1,
- * 200 iterations. */
+ * 200 iterations, vignettings and gamma AUTO, any camera. */
 LENSPROF_API void lensprof_fit_options_init(lensprof_fit_options *options);
+
+/* How well one image is determined. Frozen value struct. */
+typedef struct lensprof_fit_image_quality {
+    double ev_sigma;              /* standard error of ev, EV; 0 where fixed or not determined */
+    double white_balance_sigma[3]; /* of the factors */
+    double median_residual;       /* median absolute transfer residual of its pairs, levels of 255; 0 without pairs */
+    double known_ev_residual;     /* ev minus known_ev, less the common offset, EV; 0 where not known */
+    double radius;                /* largest r of a pair, half diagonals */
+    double grey_low, grey_high;   /* 5 % and 95 % quantile of its grey values, 0..1 */
+    uint32_t pairs;
+    uint32_t component;           /* smallest index of an image it is tied to through pairs */
+} lensprof_fit_image_quality;
+
+#define LENSPROF_COVERAGE_BINS 10
 
 typedef struct lensprof_fit_result {
     uint32_t struct_size;
     uint32_t usable;         /* 1, or 0 with the reason in words */
-    char reason[256];        /* empty when usable */
+    char reason[256];        /* why not usable; when usable empty, or what to mind */
     lensprof_response response;
-    lensprof_vignetting vignetting;
+    lensprof_vignetting vignetting[3]; /* of the channels; all alike when `vignettings` is 1; they share one centre */
+    uint32_t vignettings;    /* 1 or 3 */
     uint32_t pairs;          /* pairs used */
     uint32_t components;     /* connected groups of images; 1 when all are tied together */
     uint32_t iterations;
     uint32_t converged;
+    uint32_t gamma_from;     /* what settled gamma: PRIOR, EXPOSURES, KNOWN or NONE */
+    double gamma_sigma;      /* standard error of ln gamma; 0 when KNOWN, LENSPROF_UNKNOWN when NONE */
     double before_rms;       /* |B1 - B2| of the held-out pairs, levels of 255 */
     double heldout_rms;      /* transfer residual of pairs left out of the fit, levels of 255 */
     double heldout_median;   /* median absolute value of the same */
     double noise_levels;     /* estimated noise of a sample, levels of 255 */
     double inlier_share;     /* pairs within 3 sigma of the noise */
+    double local_levels;     /* part of the residual that neighbouring pairs share, levels of 255: what no camera model
+                                explains (local tone mapping, flare); 0 for noise */
     double seconds;          /* time taken by the solver */
+    uint32_t radius_ends[LENSPROF_COVERAGE_BINS]; /* pair ends in rings of r, each 1/10 half diagonal wide */
+    uint32_t grey_ends[LENSPROF_COVERAGE_BINS];   /* pair ends in tenths of the grey range, all channels */
     uint32_t covariance_size; /* order as in profile.h; parameters held fixed have zero rows; 0 = not determined */
     uint32_t reserved;
-    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
+    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* of the data and of gamma together */
+    double gamma_direction[LENSPROF_COVARIANCE_MAX]; /* change of each parameter per unit of ln gamma */
+    lensprof_fit_image_quality *image_quality; /* the caller's array of image_count, set before the call; or NULL */
 } lensprof_fit_result;
 
 LENSPROF_API void lensprof_fit_result_init(lensprof_fit_result *result);
@@ -102,9 +146,10 @@ lensprof_fit_overlap(const lensprof_fit_options *options, const lensprof_fit_ima
                      lensprof_fit_result *result, lensprof_error *error);
 
 /* Root mean square of the symmetric transfer residual (levels of 255) and, when not NULL, its median absolute
- * value, of pairs under a given model: the figure that lensprof_fit_result.heldout_rms states. */
+ * value, of pairs under a given model (vignetting of the three channels): the figure that
+ * lensprof_fit_result.heldout_rms states. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting *vignetting,
+lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting vignetting[3],
                       const lensprof_fit_image *images, const lensprof_exposure *exposures, uint32_t image_count,
                       const lensprof_pair *pairs, uint32_t pair_count, uint32_t channels, double *rms,
                       double *median);

@@ -119,19 +119,6 @@ void check_targets(const Options &o, const std::vector<Job> &jobs) {
     }
 }
 
-/* Exposures of a project's images relative to its reference. */
-std::vector<lensprof_exposure> exposures_of(const Project &project) {
-    const auto &reference = project.images[project.reference].exposure;
-    std::vector<lensprof_exposure> exposures;
-    for (const auto &image : project.images) {
-        lensprof_exposure e = image.exposure;
-        e.ev -= reference.ev;
-        for (int c = 0; c < 3; c++) e.white_balance[c] /= reference.white_balance[c];
-        exposures.push_back(e);
-    }
-    return exposures;
-}
-
 /* One response and one falloff are applied to all images. */
 void check_one_result(const Project &project) {
     const auto &first = project.images[project.reference];
@@ -180,7 +167,7 @@ std::vector<Job> make_jobs(const Options &o, lensprof_exposure &mean) {
     std::shared_ptr<const lensprof_profile> model;
     if (!o.pto.empty()) {
         project = std::make_unique<Project>(read_project(o.pto, true));
-        exposures = exposures_of(*project);
+        exposures = project_exposures(*project);
         if (!from_store) model = model_of_project(*project);
         mean = mean_exposure(exposures);
     } else if (!o.exposure.empty() && o.exposure != "keep") {

@@ -17,9 +17,10 @@ namespace {
 
 struct Options {
     std::string pto, points, points_out, pto_out, db, method = "transfer", modes = "auto", loss = "robust",
-                sampling = "balanced", reference, free, compare, maker, camera, lens, processing;
+                sampling = "balanced", gamma_from = "auto", camera_kind = "any", falloff = "auto", reference, free, compare, maker, camera,
+                lens, processing;
     bool no_store = false, json = false, force = false, one_lens = false, progress = false;
-    double huber = 5.0, prior = 1.0, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN, distance = LENSPROF_UNKNOWN;
+    double huber = 5.0, prior = 1.0, exif_sigma = 0.1, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN, distance = LENSPROF_UNKNOWN;
     uint32_t seed = 1, pairs = 0, max_side = 1600;
 };
 
@@ -37,6 +38,16 @@ void declare(CLI::App &app, Options &o) {
         ->check(CLI::IsMember({"robust", "huber", "squared"}));
     app.add_option("--huber", o.huber, "sigma of the Huber loss, levels of 255")->check(in_range(0.01, 255.0));
     app.add_option("--prior", o.prior, "weight of the priors; 0 = none, as in the paper")->check(in_range(0.0, 1e6));
+    app.add_option("--gamma-from", o.gamma_from,
+                   "what settles the common exponent of exposure, falloff and response: auto (EXIF exposures that "
+                   "differ, and the prior, each by its standard error), exif, prior, known (the project's response)")
+        ->check(CLI::IsMember({"auto", "exif", "prior", "known"}));
+    app.add_option("--exif-sigma", o.exif_sigma, "standard error of an EXIF exposure, EV; 0 = do not use them")
+        ->check(in_range(0.0, 10.0));
+    app.add_option("--camera-kind", o.camera_kind, "whose responses the prior is of: any, film or digital")
+        ->check(CLI::IsMember({"any", "film", "digital"}));
+    app.add_option("--falloff-curves", o.falloff, "1, 3 (one a channel) or auto (held-out error decides)")
+        ->check(CLI::IsMember({"auto", "1", "3"}));
     app.add_option("--free", o.free, "what is estimated instead of the v lines: response,falloff,center,ev,wb or all");
     app.add_option("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
     app.add_flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
@@ -106,6 +117,12 @@ lensprof_fit_options fit_options(const Options &o, const Project &project, lensp
     options.loss = o.loss == "huber"     ? LENSPROF_LOSS_HUBER
                    : o.loss == "squared" ? LENSPROF_LOSS_SQUARED
                                          : LENSPROF_LOSS_ROBUST;
+    options.vignettings = o.falloff == "auto" ? 0 : o.falloff == "3" ? 3 : 1;
+    options.gamma_from = o.gamma_from == "exif"    ? LENSPROF_GAMMA_EXPOSURES
+                         : o.gamma_from == "prior" ? LENSPROF_GAMMA_PRIOR
+                                                   : LENSPROF_GAMMA_AUTO;
+    if (o.gamma_from == "known") options.free &= ~LENSPROF_FREE_RESPONSE;
+    options.camera_kind = camera_kind_of_name(o.camera_kind);
     options.huber_levels = o.huber;
     options.prior_weight = o.prior;
     options.vignetting = lens.vignetting;
@@ -137,13 +154,21 @@ bool is_grey(const std::vector<lensprof_pair> &pairs) {
     return true;
 }
 
-/* The key of the profile: EXIF of the reference picture, then what the command line says. */
-lensprof_profile_key profile_key(const Options &o, const Project &project, Streams &streams) {
-    PictureMetadata metadata = unknown_metadata();
-    const std::string &file = project.files[project.reference];
+/* What the pictures say about themselves; unknown where they do not exist, as they need not beside given pairs. */
+std::vector<PictureMetadata> picture_metadata(const Options &o, const Project &project) {
+    std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
     bool need_not_exist = !o.points.empty();  /* pictures beside given pairs may be anything */
-    if (std::filesystem::exists(file) && !(need_not_exist && o.no_store)) metadata = read_metadata(file);
-    lensprof_profile_key key = metadata.key;
+    for (size_t i = 0; i < metadata.size(); i++)
+        if (std::filesystem::exists(project.files[i]) && !(need_not_exist && o.no_store))
+            metadata[i] = read_metadata(project.files[i]);
+    return metadata;
+}
+
+/* The key of the profile: EXIF of the reference picture, then what the command line says. */
+lensprof_profile_key profile_key(const Options &o, const Project &project,
+                                 const std::vector<PictureMetadata> &metadata, Streams &streams) {
+    const std::string &file = project.files[project.reference];
+    lensprof_profile_key key = metadata[project.reference].key;
     if (!o.maker.empty()) set_text(key.camera_maker, sizeof key.camera_maker, o.maker);
     if (!o.camera.empty()) set_text(key.camera_model, sizeof key.camera_model, o.camera);
     if (!o.lens.empty()) set_text(key.lens, sizeof key.lens, o.lens);
@@ -154,14 +179,25 @@ lensprof_profile_key profile_key(const Options &o, const Project &project, Strea
     if (!*key.camera_model && !*key.lens && !o.no_store)
         throw Failure(ExitCode::usage,
                       file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");
-    for (size_t i = 0; i < project.files.size() && o.aperture == LENSPROF_UNKNOWN && !need_not_exist; i++) {
-        if (!std::filesystem::exists(project.files[i])) continue;
-        lensprof_profile_key other = read_metadata(project.files[i]).key;
-        if (other.aperture != key.aperture || other.focal_mm != key.focal_mm)
+    for (size_t i = 0; i < project.files.size() && o.aperture == LENSPROF_UNKNOWN && o.points.empty(); i++) {
+        const lensprof_profile_key &other = metadata[i].key;
+        if (std::filesystem::exists(project.files[i])
+            && (other.aperture != key.aperture || other.focal_mm != key.focal_mm))
             streams.err << "lensprof: warning: " << project.files[i] << ": aperture or focal length differ from "
                         << file << "; one falloff is estimated for both\n";
     }
     return key;
+}
+
+/* Exposures by EXIF, where all of the lens's pictures were taken at one aperture (its own light loss is not EXIF's). */
+void add_known_exposures(const Options &o, const std::vector<PictureMetadata> &metadata,
+                         std::vector<lensprof_fit_image> &images) {
+    if (o.exif_sigma == 0.0) return;
+    for (size_t i = 0; i < images.size(); i++)
+        if (metadata[i].exif_ev) {
+            images[i].known_ev = *metadata[i].exif_ev;
+            images[i].known_ev_sigma = o.exif_sigma;
+        }
 }
 
 /* A database that cannot be used shows before the work is done. */
@@ -199,7 +235,8 @@ int64_t store_profile(const Options &o, const Project &project, const lensprof_p
     lensprof_profile_init(profile.get());
     profile->key = key;
     profile->response[0] = fit.response;
-    profile->vignetting[0] = fit.vignetting;
+    profile->vignettings = fit.vignettings;
+    std::copy(fit.vignetting, fit.vignetting + 3, profile->vignetting);
     profile->covariance_size = fit.covariance_size;
     std::copy(fit.covariance, fit.covariance + fit.covariance_size * fit.covariance_size, profile->covariance);
     auto &p = profile->provenance;
@@ -240,7 +277,7 @@ void check_outputs(const Options &o, const Project &project) {
 
 /* The text of the project with the result in it. */
 std::string project_text(const Options &o, Project &project, const BuildReport &report) {
-    check(lensprof_pto_set_result(project.pto.get(), &report.fit.response, &report.fit.vignetting,
+    check(lensprof_pto_set_result(project.pto.get(), &report.fit.response, &green_falloff(report.fit),
                                   report.exposures.data(), static_cast<uint32_t>(report.exposures.size()),
                                   report.reference),
           o.pto);
@@ -295,61 +332,25 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     return pairs;
 }
 
-/* Exposures and white balances relative to those of the reference that the user wants. */
-void refer_to(uint32_t reference, std::vector<lensprof_exposure> &exposures) {
-    const lensprof_exposure zero = exposures[reference];
-    for (auto &e : exposures) {
-        e.ev -= zero.ev;
-        for (int c = 0; c < 3; c++) e.white_balance[c] /= zero.white_balance[c];
-    }
-}
-
-/* Median residual of every image's own pairs: an image that is misplaced in the project, or of another camera,
- * shows. */
-std::vector<double> image_medians(const BuildReport &report, const std::vector<lensprof_fit_image> &images,
-                                  const std::vector<lensprof_pair> &pairs, uint32_t channels) {
-    std::vector<std::vector<lensprof_pair>> of_image(images.size());
-    for (const auto &pair : pairs)
-        for (uint32_t image : pair.image) of_image[image].push_back(pair);
-    std::vector<double> medians;
-    for (const auto &own : of_image) {
-        double rms = 0, median = LENSPROF_UNKNOWN;
-        if (!own.empty())
-            check(lensprof_transfer_rms(&report.fit.response, &report.fit.vignetting, images.data(),
-                                        report.exposures.data(), static_cast<uint32_t>(images.size()), own.data(),
-                                        static_cast<uint32_t>(own.size()), channels, &rms, &median),
-                  "residual");
-        medians.push_back(median);
-    }
-    return medians;
-}
-
-/* Five levels and four times the noise: far beyond what a good image shows, well below what a misplaced one does. */
-void warn_of_odd_images(const BuildReport &report, const Project &project, Streams &streams) {
-    double limit = std::max(5.0, 4.0 * report.fit.noise_levels);
-    for (size_t i = 0; i < report.image_median.size(); i++)
-        if (report.image_median[i] > limit)
-            streams.err
-                << "lensprof: warning: " << project.files[i]
-                << ": disagrees with the images it overlaps, so that its exposure means nothing (median residual "
-                << format("%.1f", report.image_median[i]) << " levels); check its place in " << project.path << "\n";
-}
-
-BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams &streams) {
+BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata, Outputs &outputs,
+                  Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
     report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
     lensprof_response fixed;
     lensprof_fit_options options = fit_options(o, project, fixed);
-    report.response_known = !(options.free & LENSPROF_FREE_RESPONSE) || options.modes == 0;
+    report.camera_kind = options.camera_kind;
     std::vector<lensprof_pair> pairs = get_pairs(o, project, progress, report, options.channels);
     stop_if_interrupted();
     options.progress = on_progress;
     options.progress_user = &progress;
     auto images = fit_images(project);
+    add_known_exposures(o, metadata, images);
     report.exposures.resize(images.size());
+    report.quality.resize(images.size());
     lensprof_fit_result_init(&report.fit);
+    report.fit.image_quality = report.quality.data();
     lensprof_error error{};
     lensprof_status status =
         lensprof_fit_overlap(&options, images.data(), static_cast<uint32_t>(images.size()), pairs.data(),
@@ -359,11 +360,12 @@ BuildReport build(const Options &o, Project &project, Outputs &outputs, Streams 
         throw Failure(ExitCode::usage,
                       o.pto + ": asks for nothing on its v lines; add some in Hugin, or give --free all");
     check(status, o.points.empty() ? o.pto : o.points, &error);
-    refer_to(report.reference, report.exposures);
-    report.image_median = image_medians(report, images, pairs, options.channels);
+    report.fit.image_quality = nullptr;
+    report.exposures = relative_exposures(report.exposures, report.reference);
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(pairs, project));
     progress.clear();
-    warn_of_odd_images(report, project, streams);
+    if (report.fit.usable && *report.fit.reason)
+        streams.err << "lensprof: warning: " << o.pto << ": " << report.fit.reason << "\n";
     return report;
 }
 
@@ -388,12 +390,13 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     check_outputs(o, project);
     if (!o.free.empty())
         for (auto &image : project.images) image.free = free_of(o.free);
-    lensprof_profile_key key = profile_key(o, project, streams);
+    auto metadata = picture_metadata(o, project);
+    lensprof_profile_key key = profile_key(o, project, metadata, streams);
     TrueValues truth;
     if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
     if (!o.no_store) check_store(o.db);
     Outputs outputs;
-    BuildReport report = build(o, project, outputs, streams);
+    BuildReport report = build(o, project, metadata, outputs, streams);
     bool good = report.fit.usable || o.force;
     if (good && !o.pto_out.empty()) outputs.add(o.pto_out, project_text(o, project, report));
     stop_if_interrupted();

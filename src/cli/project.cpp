@@ -157,16 +157,29 @@ std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &
     return text;
 }
 
+std::vector<lensprof_exposure> relative_exposures(std::vector<lensprof_exposure> exposures, uint32_t reference) {
+    const lensprof_exposure zero = exposures[reference];
+    for (auto &e : exposures) {
+        e.ev -= zero.ev;
+        for (int c = 0; c < 3; c++) e.white_balance[c] /= zero.white_balance[c];
+    }
+    return exposures;
+}
+
+std::vector<lensprof_exposure> project_exposures(const Project &project) {
+    std::vector<lensprof_exposure> exposures;
+    for (const auto &image : project.images) exposures.push_back(image.exposure);
+    return relative_exposures(exposures, project.reference);
+}
+
 std::vector<lensprof_fit_image> fit_images(const Project &project) {
     std::vector<lensprof_fit_image> images;
-    const auto &reference = project.images[project.reference].exposure;
+    auto exposures = project_exposures(project);
     for (const auto &from : project.images) {
         lensprof_fit_image image{};
         image.width = from.camera.width;
         image.height = from.camera.height;
-        image.exposure.ev = from.exposure.ev - reference.ev;
-        for (int c = 0; c < 3; c++)
-            image.exposure.white_balance[c] = from.exposure.white_balance[c] / reference.white_balance[c];
+        image.exposure = exposures[images.size()];
         image.free = from.free & (LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE);
         image.ev_of = from.ev_of;
         image.red_of = from.red_of;

@@ -57,6 +57,12 @@ std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &
 /* The images of the fit: sizes, links, unknowns, and exposures relative to the reference. */
 std::vector<lensprof_fit_image> fit_images(const Project &project);
 
+/* Exposures and white balances relative to those of one image. */
+std::vector<lensprof_exposure> relative_exposures(std::vector<lensprof_exposure> exposures, uint32_t reference);
+
+/* The project's own, relative to its reference. */
+std::vector<lensprof_exposure> project_exposures(const Project &project);
+
 }  // namespace lensprof
 
 #endif

@@ -45,8 +45,8 @@ Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
 
 double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
-void print_vignetting(const lensprof_vignetting &v, std::ostream &out) {
-    out << format("falloff   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1],
+void print_vignetting(const lensprof_vignetting &v, const char *channel, std::ostream &out) {
+    out << "falloff" << channel << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1],
                   v.k[2], v.center[0], v.center[1]);
     out << format("          light at r = 0.5: %.1f %%, in the corner: %.1f %% (%.2f stops)\n",
                   100.0 * lensprof_vignetting_eval(&v, 0.25, nullptr), 100.0 * corner(v), -std::log2(corner(v)));
@@ -74,6 +74,22 @@ std::string format(const char *pattern, ...) {
     return text;
 }
 
+const char *gamma_name(uint32_t from) {
+    static const char *const names[] = {"auto", "prior", "exif", "known", "none"};
+    return from <= LENSPROF_GAMMA_NONE ? names[from] : "unknown";
+}
+
+const char *camera_kind_name(uint32_t kind) {
+    static const char *const names[] = {"any", "film", "digital"};
+    return kind <= LENSPROF_CAMERA_DIGITAL ? names[kind] : "unknown";
+}
+
+uint32_t camera_kind_of_name(const std::string &name) {
+    for (uint32_t kind = 0; kind <= LENSPROF_CAMERA_DIGITAL; kind++)
+        if (name == camera_kind_name(kind)) return kind;
+    throw Failure(ExitCode::usage, name + ": not a kind of camera; use any, film or digital");
+}
+
 const char *processing_name(uint32_t processing) {
     static const char *const names[] = {"raw", "jpeg", "corrected"};
     return processing <= LENSPROF_PROCESSING_CORRECTED ? names[processing] : "unknown";
@@ -89,30 +105,73 @@ void print_json(const Json &json, std::ostream &out) {
     out << json.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
 }
 
-Json build_json(const BuildReport &report) {
-    const auto &fit = report.fit;
-    Json json, images = Json::array();
+namespace {
+
+Json numbers(const double *values, size_t count) { return std::vector<double>(values, values + count); }
+
+/* Exposure and quality of every image. */
+Json images_json(const BuildReport &report) {
+    Json images = Json::array();
     for (size_t i = 0; i < report.names.size(); i++) {
         const auto &e = report.exposures[i];
-        images.push_back({{"file", report.names[i]},
-                          {"ev", e.ev},
-                          {"white_balance", {e.white_balance[0], e.white_balance[1], e.white_balance[2]}},
-                          {"median_residual", number_or_null(i < report.image_median.size() ? report.image_median[i]
-                                                                                            : LENSPROF_UNKNOWN)}});
+        Json image = {{"file", report.names[i]}, {"ev", e.ev}, {"white_balance", numbers(e.white_balance, 3)}};
+        if (i < report.quality.size()) {
+            const auto &q = report.quality[i];
+            image["ev_sigma"] = q.ev_sigma;
+            image["white_balance_sigma"] = numbers(q.white_balance_sigma, 3);
+            image["median_residual"] = q.pairs ? Json(q.median_residual) : Json();
+            image["known_ev_residual"] = q.known_ev_residual;
+            image["pairs"] = q.pairs;
+            image["component"] = q.component;
+            image["radius"] = q.radius;
+            image["grey"] = {q.grey_low, q.grey_high};
+        } else {
+            image["median_residual"] = Json();
+        }
+        images.push_back(image);
     }
+    return images;
+}
+
+/* Where the exponent comes from, its standard error, and how strongly every parameter hangs on it. */
+Json gamma_json(const BuildReport &report) {
+    const auto &fit = report.fit;
+    Json correlation = Json::array();
+    for (uint32_t i = 0; i < fit.covariance_size; i++) {
+        double sigma = std::sqrt(fit.covariance[i * fit.covariance_size + i]);
+        correlation.push_back(sigma > 0.0 ? fit.gamma_sigma * fit.gamma_direction[i] / sigma : 0.0);
+    }
+    Json json;
+    json["from"] = gamma_name(fit.gamma_from);
+    json["sigma"] = number_or_null(fit.gamma_sigma);
+    json["camera_kind"] = camera_kind_name(report.camera_kind);
+    json["direction"] = numbers(fit.gamma_direction, fit.covariance_size);
+    json["correlation"] = correlation;
+    return json;
+}
+
+}  // namespace
+
+Json build_json(const BuildReport &report) {
+    const auto &fit = report.fit;
+    Json json;
     json["schema"] = 1;
     json["usable"] = fit.usable != 0;
     json["reason"] = fit.reason;
     json["reference"] = report.reference;
-    json["images"] = images;
-    json["vignetting"] = vignetting_json(&fit.vignetting, 1);
+    json["images"] = images_json(report);
+    json["vignetting"] = vignetting_json(fit.vignetting, fit.vignettings);
     json["response"] = response_json(&fit.response, 1);
     json["residual"] = {{"before_rms", number_or_null(fit.before_rms)},
                         {"heldout_rms", number_or_null(fit.heldout_rms)},
                         {"heldout_median", number_or_null(fit.heldout_median)},
                         {"noise", fit.noise_levels},
+                        {"local", fit.local_levels},
                         {"inlier_share", fit.inlier_share}};
-    json["gamma_from"] = report.response_known ? "known" : "prior";
+    json["gamma_from"] = gamma_name(fit.gamma_from);
+    json["gamma"] = gamma_json(report);
+    json["coverage"] = {{"radius", std::vector<uint32_t>(fit.radius_ends, fit.radius_ends + LENSPROF_COVERAGE_BINS)},
+                        {"grey", std::vector<uint32_t>(fit.grey_ends, fit.grey_ends + LENSPROF_COVERAGE_BINS)}};
     json["pairs"] = fit.pairs;
     json["components"] = fit.components;
     json["iterations"] = fit.iterations;
@@ -122,21 +181,39 @@ Json build_json(const BuildReport &report) {
     return json;
 }
 
-void print_build(const BuildReport &report, std::ostream &out) {
-    const auto &fit = report.fit;
+namespace {
+
+void print_exposures(const BuildReport &report, std::ostream &out) {
     size_t width = 5;
     for (const auto &name : report.names) width = std::max(width, name.size());
-    out << format("%-*s  %8s  %7s  %7s\n", static_cast<int>(width), "image", "EV", "red", "blue");
+    out << format("%-*s  %8s  %6s  %7s  %7s\n", static_cast<int>(width), "image", "EV", "+-", "red", "blue");
     for (size_t i = 0; i < report.names.size(); i++) {
         const auto &e = report.exposures[i];
-        out << format("%-*s  %+8.3f  %7.4f  %7.4f%s\n", static_cast<int>(width), report.names[i].c_str(), e.ev,
-                      e.white_balance[0], e.white_balance[2], i == report.reference ? "  reference" : "");
+        double sigma = i < report.quality.size() ? report.quality[i].ev_sigma : 0.0;
+        out << format("%-*s  %+8.3f  %6.3f  %7.4f  %7.4f%s\n", static_cast<int>(width), report.names[i].c_str(), e.ev,
+                      sigma, e.white_balance[0], e.white_balance[2], i == report.reference ? "  reference" : "");
     }
-    print_vignetting(fit.vignetting, out);
+}
+
+void print_gamma(const BuildReport &report, std::ostream &out) {
+    const auto &fit = report.fit;
+    if (fit.gamma_from == LENSPROF_GAMMA_KNOWN) return;
+    out << "gamma     from " << gamma_name(fit.gamma_from);
+    if (fit.gamma_from == LENSPROF_GAMMA_PRIOR) out << " (" << camera_kind_name(report.camera_kind) << " camera)";
+    if (fit.gamma_sigma > 0.0) out << format(", +- %.0f %%", 100.0 * fit.gamma_sigma);
+    out << ": pictures leave a common exponent of exposure, falloff and response open (docs/model.md)\n";
+}
+
+}  // namespace
+
+void print_build(const BuildReport &report, std::ostream &out) {
+    const auto &fit = report.fit;
+    print_exposures(report, out);
+    static const char *const channels[3] = {" of red", " of green", " of blue"};
+    for (uint32_t c = 0; c < fit.vignettings; c++)
+        print_vignetting(fit.vignetting[c], fit.vignettings == 3 ? channels[c] : "", out);
     print_response(fit.response, out);
-    if (!report.response_known)
-        out << "gamma     from the prior: pictures leave a common exponent of exposure, falloff and response open "
-               "(docs/model.md)\n";
+    print_gamma(report, out);
     std::string heldout = fit.heldout_rms == LENSPROF_UNKNOWN ? std::string("not measured (too few pairs)")
                                                               : format("%.2f", fit.heldout_rms);
     out << format(
@@ -144,6 +221,7 @@ void print_build(const BuildReport &report, std::ostream &out) {
         fit.before_rms, heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
     if (!fit.usable) out << "NOT USABLE: " << fit.reason << "\n";
+    else if (*fit.reason) out << "mind      " << fit.reason << "\n";
 }
 
 Json key_json(const lensprof_profile_key &key) {
@@ -196,7 +274,7 @@ std::string describe_key(const lensprof_profile_key &key) {
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
     const auto &p = profile.provenance;
     out << "profile   " << id << ": " << describe_key(profile.key) << "\n";
-    for (uint32_t c = 0; c < profile.vignettings; c++) print_vignetting(profile.vignetting[c], out);
+    for (uint32_t c = 0; c < profile.vignettings; c++) print_vignetting(profile.vignetting[c], "", out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
     out << "source    " << (*p.method ? p.method : "unknown method") << ", " << p.images << " images, " << p.pairs
         << " pairs";
@@ -221,6 +299,10 @@ TrueValues read_truth(const std::string &path, size_t images) {
                           + format(": is the truth of %zu images, not of %zu; give that of this project",
                                    truth.ev.size(), images));
     return truth;
+}
+
+const lensprof_vignetting &green_falloff(const lensprof_fit_result &fit) {
+    return fit.vignetting[fit.vignettings == 3 ? 1 : 0];
 }
 
 void print_comparison(const BuildReport &report, const TrueValues &truth, std::ostream &out) {
@@ -249,14 +331,14 @@ void print_comparison(const BuildReport &report, const TrueValues &truth, std::o
     }
     out << "radius falloff  recovered     true  aligned\n";
     for (int k = 0; k <= 4; k++) {
-        double r2 = k * k / 16.0, m = lensprof_vignetting_eval(&report.fit.vignetting, r2, nullptr);
+        double r2 = k * k / 16.0, m = lensprof_vignetting_eval(&green_falloff(report.fit), r2, nullptr);
         double t = lensprof_vignetting_eval(&truth.vignetting, r2, nullptr), a = std::pow(m, 1.0 / gamma);
         m_error = std::max(m_error, std::abs(m - t));
         m_aligned = std::max(m_aligned, std::abs(a - t));
         out << format("%6.2f         %8.4f %8.4f %8.4f\n", k / 4.0, m, t, a);
     }
-    out << format("centre         %+.4f %+.4f, true %+.4f %+.4f half diagonals\n", report.fit.vignetting.center[0],
-                  report.fit.vignetting.center[1], truth.vignetting.center[0], truth.vignetting.center[1]);
+    out << format("centre         %+.4f %+.4f, true %+.4f %+.4f half diagonals\n", report.fit.vignetting[0].center[0],
+                  report.fit.vignetting[0].center[1], truth.vignetting.center[0], truth.vignetting.center[1]);
     out << format("largest error  exposure %.4f EV (aligned %.4f), falloff %.4f (aligned %.4f)\n", ev_error, ev_aligned,
                   m_error, m_aligned);
 }

@@ -18,12 +18,11 @@ using Json = nlohmann::ordered_json;
 struct BuildReport {
     std::vector<std::string> names;
     std::vector<lensprof_exposure> exposures; /* relative to the reference */
-    std::vector<double>
-        image_median; /* median residual of each image's pairs, levels of 255; LENSPROF_UNKNOWN without pairs */
+    std::vector<lensprof_fit_image_quality> quality;
     lensprof_fit_result fit{};
     uint32_t reference = 0;
     double load_s = 0, sample_s = 0;
-    bool response_known = false; /* given by the project, not estimated: the exponent gamma is then known too */
+    uint32_t camera_kind = LENSPROF_CAMERA_ANY; /* whose prior settled gamma */
     int64_t profile_id = 0; /* 0 = not stored */
 };
 
@@ -32,6 +31,9 @@ void print_json(const Json &json, std::ostream &out);
 
 /* The object that `build --json` prints; docs/json.md describes the schema. */
 Json build_json(const BuildReport &report);
+
+/* The falloff that stands for all channels where only one can be written. */
+const lensprof_vignetting &green_falloff(const lensprof_fit_result &fit);
 
 void print_build(const BuildReport &report, std::ostream &out);
 
@@ -58,6 +60,13 @@ std::string describe_key(const lensprof_profile_key &key);
 /* raw, jpeg, corrected; and back, with Failure (usage) for another word. */
 const char *processing_name(uint32_t processing);
 uint32_t processing_of_name(const std::string &name);
+
+/* prior, exif, known, none. */
+const char *gamma_name(uint32_t from);
+
+/* any, film, digital; and back, with Failure (usage) for another word. */
+const char *camera_kind_name(uint32_t kind);
+uint32_t camera_kind_of_name(const std::string &name);
 
 /* printf into a string. */
 std::string format(const char *pattern, ...) __attribute__((format(printf, 1, 2)));

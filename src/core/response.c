@@ -7,40 +7,11 @@
 
 #include "emor_table.h"
 
-#define LAST (LENSPROF_RESPONSE_SAMPLES - 1)
+#define LAST LP_CURVE_LAST
 
 const double *lensprof_emor_table(uint32_t mode)
 {
     return mode <= LENSPROF_EMOR_MODES ? lp_emor_table[mode] : NULL;
-}
-
-double lp_curve_eval(const double *table, double x, double *slope)
-{
-    if (!(x > 0.0) || x >= 1.0) {
-        if (slope) *slope = 0.0;
-        return x > 0.0 ? table[LAST] : table[0];
-    }
-    double position = x * LAST;
-    uint32_t j = (uint32_t)position;
-    double step = table[j + 1] - table[j];
-    if (slope) *slope = step * LAST;
-    return table[j] + (position - j) * step;
-}
-
-double lp_curve_invert(const double *table, double b, double *slope)
-{
-    uint32_t low = 0, high = LAST; /* table[low] < b <= table[high] once inside */
-    if (slope) *slope = 0.0;
-    if (!(b > table[0])) return 0.0;
-    if (b > table[LAST]) return 1.0;
-    while (high - low > 1) {
-        uint32_t middle = (low + high) / 2;
-        if (table[middle] < b) low = middle;
-        else high = middle;
-    }
-    double step = table[high] - table[low];
-    if (slope) *slope = 1.0 / (step * LAST);
-    return (low + (b - table[low]) / step) / LAST;
 }
 
 static int is_curve(const double *table)

@@ -8,11 +8,43 @@
 extern "C" {
 #endif
 
-/* f(x) of a table of 1024 samples; slope as lensprof_response_eval. The table need not end at 1. */
-double lp_curve_eval(const double *table, double x, double *slope);
+#define LP_CURVE_LAST (LENSPROF_RESPONSE_SAMPLES - 1)
 
-/* Smallest x with f(x) >= b; slope dg/db as lensprof_response_invert. The table must not decrease. */
-double lp_curve_invert(const double *table, double b, double *slope);
+/* f(x) of a table of 1024 samples; slope as lensprof_response_eval. The table need not end at 1. */
+static inline double lp_curve_eval(const double *table, double x, double *slope)
+{
+    if (!(x > 0.0) || x >= 1.0) {
+        if (slope) *slope = 0.0;
+        return x > 0.0 ? table[LP_CURVE_LAST] : table[0];
+    }
+    double position = x * LP_CURVE_LAST;
+    int32_t j = (int32_t)position; /* signed: one instruction, where unsigned takes several */
+    double step = table[j + 1] - table[j];
+    if (slope) *slope = step * LP_CURVE_LAST;
+    return table[j] + (position - j) * step;
+}
+
+/* Smallest x with f(x) >= b, where table[low] < b <= table[high]; slope dg/db as lensprof_response_invert. */
+static inline double lp_curve_invert_between(const double *table, double b, uint32_t low, uint32_t high, double *slope)
+{
+    while (high - low > 1) {
+        uint32_t middle = (low + high) / 2;
+        if (table[middle] < b) low = middle;
+        else high = middle;
+    }
+    double step = table[high] - table[low];
+    if (slope) *slope = 1.0 / (step * LP_CURVE_LAST);
+    return (low + (b - table[low]) / step) / LP_CURVE_LAST;
+}
+
+/* The same over the whole table, which must not decrease. */
+static inline double lp_curve_invert(const double *table, double b, double *slope)
+{
+    if (slope) *slope = 0.0;
+    if (!(b > table[0])) return 0.0;
+    if (b > table[LP_CURVE_LAST]) return 1.0;
+    return lp_curve_invert_between(table, b, 0, LP_CURVE_LAST, slope);
+}
 
 /* table = f0 + sum coefficients[l] h_(l+1), ends set to 0 and 1 exactly. Not checked for monotony. */
 void lp_emor_curve(const double *coefficients, uint32_t modes, double *table);

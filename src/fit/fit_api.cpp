@@ -3,7 +3,6 @@
 #include <new>
 
 #include "fail.hpp"
-#include "normal_equations.hpp"
 #include "overlap.hpp"
 #include "residual.hpp"
 
@@ -21,10 +20,13 @@ lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_coun
     if ((o.channels != 1 && o.channels != 3) || o.reference >= image_count || o.loss > LENSPROF_LOSS_SQUARED
         || (o.modes > LENSPROF_EMOR_MODES && o.modes != LENSPROF_MODES_AUTO)
         || !(o.huber_levels > 0.0 && o.huber_levels <= 255.0) || !(o.prior_weight >= 0.0 && o.prior_weight <= 1e6)
-        || o.max_iterations == 0 || o.max_iterations > 1000000 || (o.free & ~kSharedFlags) || o.reserved != 0)
+        || o.max_iterations == 0 || o.max_iterations > 1000000 || (o.free & ~kSharedFlags)
+        || (o.vignettings > 1 && o.vignettings != 3) || o.gamma_from > LENSPROF_GAMMA_EXPOSURES
+        || o.camera_kind > LENSPROF_CAMERA_DIGITAL)
         return fail(LENSPROF_ERROR_ARGUMENT, error,
                     "fit options: channels 1 or 3, reference < images, modes 0..25 or automatic, Huber 0..255 levels, "
-                    "prior weight >= 0, iterations 1..1000000, flags of the shared unknowns only");
+                    "prior weight >= 0, iterations 1..1000000, flags of the shared unknowns only, vignettings 0, 1 or "
+                    "3, gamma automatic or from prior or exposures, a known kind of camera");
     lensprof_status status = lensprof_vignetting_validate(&o.vignetting);
     if (status != LENSPROF_OK)
         return fail(status, error, "fit options: the given vignetting is not positive and finite");
@@ -40,6 +42,10 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
             return fail(LENSPROF_ERROR_SIZE, error, "image %u: sizes must be 1..1048576", i);
         if (lensprof_exposure_validate(&image.exposure) != LENSPROF_OK)
             return fail(LENSPROF_ERROR_EXPOSURE, error, "image %u: exposure or white balance out of range", i);
+        if (!(image.known_ev_sigma >= 0.0 && image.known_ev_sigma <= 100.0)
+            || (image.known_ev_sigma > 0.0 && !(std::abs(image.known_ev) <= 64.0)))
+            return fail(LENSPROF_ERROR_EXPOSURE, error, "image %u: known exposure beyond 64 EV, or its sigma not 0..100",
+                        i);
         if (image.free & ~kImageFlags)
             return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: only EV, RED and BLUE can be free in an image", i);
         for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})
@@ -137,7 +143,7 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
     }
 }
 
-lensprof_status lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting *vignetting,
+lensprof_status lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting vignetting[3],
                                       const lensprof_fit_image *images, const lensprof_exposure *exposures,
                                       uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
                                       uint32_t channels, double *rms, double *median) {
@@ -145,7 +151,8 @@ lensprof_status lensprof_transfer_rms(const lensprof_response *response, const l
         || (channels != 1 && channels != 3))
         return LENSPROF_ERROR_ARGUMENT;
     lensprof_status status = lensprof_response_validate(response);
-    if (status == LENSPROF_OK) status = lensprof_vignetting_validate(vignetting);
+    for (uint32_t c = 0; c < channels && status == LENSPROF_OK; c++)
+        status = lensprof_vignetting_validate(&vignetting[c]);
     if (status == LENSPROF_OK) status = check_images(images, image_count, nullptr);
     if (status == LENSPROF_OK)
         status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(channels), nullptr);
@@ -153,7 +160,7 @@ lensprof_status lensprof_transfer_rms(const lensprof_response *response, const l
         status = lensprof_exposure_validate(&exposures[i]);
     if (status != LENSPROF_OK) return status;
     try {
-        Summary summary = transfer_summary(*response, *vignetting, images, exposures, image_count, pairs, pair_count,
+        Summary summary = transfer_summary(*response, vignetting, images, exposures, image_count, pairs, pair_count,
                                            static_cast<int>(channels));
         *rms = summary.rms;
         if (median) *median = summary.median;

@@ -23,8 +23,9 @@ PairWeights pair_weights(const PairTransfer &transfer, int channels) {
 NoiseWeights noise_weights(const Problem &problem, const Estimate &estimate, const Loss &loss) {
     NoiseWeights weights(problem.pairs.size(), {{{1.f, 1.f}, {1.f, 1.f}, {1.f, 1.f}}});
     if (loss.kind != LENSPROF_LOSS_ROBUST) return weights;
-    for (size_t p = 0; p < problem.pairs.size(); p++)
-        weights[p] = pair_weights(evaluate_pair(problem, estimate, problem.pairs[p]), problem.channels);
+    for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
+        weights[p] = pair_weights(t, problem.channels);
+    });
     return weights;
 }
 
@@ -65,11 +66,10 @@ double pair_cost(const PairResiduals &residuals, int channels, const Loss &loss,
 std::vector<double> all_chi2(const Problem &problem, const Estimate &estimate, double noise) {
     std::vector<double> z;
     z.reserve(problem.pairs.size());
-    for (const auto &pair : problem.pairs) {
-        PairTransfer t = evaluate_pair(problem, estimate, pair);
+    for_each_transfer(problem, estimate, [&](size_t, const PairTransfer &t) {
         PairResiduals residuals = weighted_residuals(t, problem.channels, pair_weights(t, problem.channels));
         z.push_back(pair_chi2(residuals, problem.channels, noise));
-    }
+    });
     return z;
 }
 

@@ -12,6 +12,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kGrid = LENSPROF_RESPONSE_SAMPLES;
+constexpr int kRises = kGrid - 1;
 constexpr int kRadii = 33;             // samples of r^2 at which M is held positive
 constexpr double kSmallestM = 0.01;
 constexpr double kReach2 = 1.8 * 1.8;  // (1 + largest |centre|)^2 that the bound below leaves
@@ -25,61 +26,66 @@ struct Inequality {
 
 // The r^2 up to which M must be positive for a centre: the farthest corner, with a margin for the centre's own step.
 double reach2(const Eigen::VectorXd &value) {
-    double reach = 1.0 + std::hypot(value[kMaxModes + 3], value[kMaxModes + 4]) + 0.02;
+    double reach = 1.0 + std::hypot(value[kCenter], value[kCenter + 1]) + 0.02;
     return std::min(reach * reach, kReach2);
 }
 
+// In this order: rises of f, values of each M, bounds of the centre.
 struct Constraints {
     const Region &region;
-    std::vector<double> curve;  // f at the start of the step
     double limit2;
 
-    explicit Constraints(const Region &r) : region(r), curve(kGrid), limit2(reach2(r.value)) {
-        lp_emor_curve(r.value.data(), static_cast<uint32_t>(std::max(r.modes, 0)), curve.data());
+    explicit Constraints(const Region &r) : region(r), limit2(reach2(r.value)) {}
+
+    int first_center() const { return kRises + kRadii * region.vignettings; }
+    int count() const { return first_center() + 4; }
+
+    // What every inequality lacks (> 0: violated) after a step.
+    std::vector<double> gaps(const Eigen::VectorXd &d) const {
+        Eigen::VectorXd value = region.value;
+        for (size_t u = 0; u < region.columns.size(); u++) value[region.columns[u]] += d[static_cast<Eigen::Index>(u)];
+        std::vector<double> gap(static_cast<size_t>(count()), -1.0);
+        if (!region.columns.empty() && region.columns[0] < kMaxModes) {
+            double curve[kGrid];
+            lp_emor_curve(value.data(), static_cast<uint32_t>(region.modes), curve);
+            for (int i = 0; i < kRises; i++) gap[static_cast<size_t>(i)] = kSmallestRise - (curve[i + 1] - curve[i]);
+        }
+        for (int i = kRises; i < first_center(); i++) {
+            const double *k = value.data() + kFalloff + 3 * ((i - kRises) / kRadii);
+            double s = radius2(i);
+            gap[static_cast<size_t>(i)] = kSmallestM - (1.0 + s * (k[0] + s * (k[1] + s * k[2])));
+        }
+        for (int b = 0; b < 4; b++)
+            gap[static_cast<size_t>(first_center() + b)] =
+                (b % 2 ? value[kCenter + b / 2] : -value[kCenter + b / 2]) - kLargestCenter;
+        return gap;
     }
 
-    int count() const { return (kGrid - 1) + kRadii + 4; }
+    // Row i by the free unknowns; zero where none is involved.
+    Eigen::VectorXd row(int i) const {
+        Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(region.columns.size()));
+        for (Eigen::Index u = 0; u < row.size(); u++) {
+            int column = region.columns[static_cast<size_t>(u)];
+            if (i < kRises) {
+                if (column < kMaxModes) row[u] = rise_of_mode(column, i);
+            } else if (i < first_center()) {
+                int power = column - kFalloff - 3 * ((i - kRises) / kRadii);
+                if (column >= kFalloff && power >= 0 && power < 3) row[u] = std::pow(radius2(i), power + 1);
+            } else {
+                int b = i - first_center();
+                if (column == kCenter + b / 2) row[u] = b % 2 ? -1.0 : 1.0;
+            }
+        }
+        return row;
+    }
+
+private:
+    double radius2(int i) const { return limit2 * ((i - kRises) % kRadii + 1) / kRadii; }
 
     // Rise of mode `l` between samples j and j + 1. The ends of f stay at 0 and 1 exactly (see lp_emor_curve).
     static double rise_of_mode(int l, int j) {
         const double *h = lensprof_emor_table(static_cast<uint32_t>(l) + 1);
         return (j + 1 == kGrid - 1 ? 0.0 : h[j + 1]) - (j == 0 ? 0.0 : h[j]);
-    }
-
-    // Row i: rises of f, then values of M, then bounds of the centre. False where no free unknown is involved.
-    bool make(int i, Inequality &out) const {
-        size_t n = region.columns.size();
-        out.row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
-        bool used = false;
-        for (size_t u = 0; u < n; u++) {
-            int column = region.columns[u];
-            double entry = 0.0;
-            if (i < kGrid - 1) {
-                if (column < kMaxModes) entry = rise_of_mode(column, i);
-            } else if (i < kGrid - 1 + kRadii) {
-                double s = limit2 * (i - (kGrid - 1) + 1) / kRadii;
-                if (column >= kMaxModes && column < kMaxModes + 3) entry = std::pow(s, column - kMaxModes + 1);
-            } else {
-                int b = i - (kGrid - 1 + kRadii);
-                if (column == kMaxModes + 3 + b / 2) entry = b % 2 ? -1.0 : 1.0;
-            }
-            out.row[static_cast<Eigen::Index>(u)] = entry;
-            used = used || entry != 0.0;
-        }
-        out.limit = limit(i);
-        return used;
-    }
-
-    double limit(int i) const {
-        const double *k = region.value.data() + kMaxModes;
-        if (i < kGrid - 1) return kSmallestRise - (curve[i + 1] - curve[i]);
-        if (i < kGrid - 1 + kRadii) {
-            double s = limit2 * (i - (kGrid - 1) + 1) / kRadii;
-            return kSmallestM - (1.0 + s * (k[0] + s * (k[1] + s * k[2])));
-        }
-        int b = i - (kGrid - 1 + kRadii);
-        double center = k[3 + b / 2];
-        return -kLargestCenter - (b % 2 ? -center : center);
     }
 };
 
@@ -145,24 +151,22 @@ Eigen::VectorXd solve_working_set(const std::vector<Inequality> &set, const Eige
 // Adds the worst violated inequality of each contiguous run; false when there is none.
 bool add_violated(const Constraints &all, const Eigen::VectorXd &d, std::vector<bool> &in_set,
                   std::vector<Inequality> &set) {
+    std::vector<double> gap = all.gaps(d);
     int worst = -1;
-    double worst_gap = 0.0;
     bool added = false;
     auto flush = [&] {
-        Inequality inequality;
-        if (worst >= 0 && !in_set[worst] && all.make(worst, inequality)) {
-            in_set[worst] = added = true;
-            set.push_back(std::move(inequality));
+        Eigen::VectorXd row;
+        if (worst >= 0 && !(row = all.row(worst)).isZero(0.0)) {
+            in_set[static_cast<size_t>(worst)] = added = true;
+            double limit = gap[static_cast<size_t>(worst)] + row.dot(d);
+            set.push_back({std::move(row), limit});
         }
         worst = -1;
-        worst_gap = 0.0;
     };
-    Inequality inequality;
     for (int i = 0; i < all.count(); i++) {
-        double gap = all.make(i, inequality) ? inequality.limit - inequality.row.dot(d) : -1.0;
-        double tolerance = i < kGrid - 1 ? 0.25 * kSmallestRise : 1e-6;
-        if (gap > tolerance) {
-            if (gap > worst_gap && !in_set[i]) worst = i, worst_gap = gap;
+        auto at = static_cast<size_t>(i);
+        if (gap[at] > (i < kRises ? 0.25 * kSmallestRise : 1e-6)) {
+            if (!in_set[at] && (worst < 0 || gap[at] > gap[static_cast<size_t>(worst)])) worst = i;
         } else {
             flush();
         }
@@ -171,27 +175,34 @@ bool add_violated(const Constraints &all, const Eigen::VectorXd &d, std::vector<
     return added;
 }
 
+bool is_rising(const double *emor, int modes) {
+    double table[kGrid];
+    lp_emor_curve(emor, static_cast<uint32_t>(modes), table);
+    for (int j = 0; j < kRises; j++)
+        if (!(table[j + 1] - table[j] >= 0.5 * kSmallestRise)) return false;
+    return true;
+}
+
+bool is_positive(const double *k, const double *center) {
+    lensprof_vignetting v{{k[0], k[1], k[2]}, {center[0], center[1]}};
+    return lensprof_vignetting_validate(&v) == LENSPROF_OK && std::abs(center[0]) <= kLargestCenter
+        && std::abs(center[1]) <= kLargestCenter;
+}
+
 bool step_is_feasible(const Region &region, const Eigen::VectorXd &d, double t) {
     Eigen::VectorXd value = region.value;
     for (size_t u = 0; u < region.columns.size(); u++) value[region.columns[u]] += t * d[static_cast<Eigen::Index>(u)];
-    lensprof_vignetting v;
-    std::copy(value.data() + kMaxModes, value.data() + kMaxModes + 3, v.k);
-    std::copy(value.data() + kMaxModes + 3, value.data() + kMaxModes + 5, v.center);
-    return is_feasible(value.data(), region.modes, v);
+    for (int c = 0; c < region.vignettings; c++)
+        if (!is_positive(value.data() + kFalloff + 3 * c, value.data() + kCenter)) return false;
+    return region.modes < 0 || is_rising(value.data(), region.modes);
 }
 
 }  // namespace
 
-bool is_feasible(const double *emor, int modes, const lensprof_vignetting &vignetting) {
-    if (lensprof_vignetting_validate(&vignetting) != LENSPROF_OK) return false;
-    if (std::abs(vignetting.center[0]) > kLargestCenter || std::abs(vignetting.center[1]) > kLargestCenter)
-        return false;
-    if (modes < 0) return true;
-    double table[kGrid];
-    lp_emor_curve(emor, static_cast<uint32_t>(modes), table);
-    for (int j = 0; j + 1 < kGrid; j++)
-        if (!(table[j + 1] - table[j] >= 0.5 * kSmallestRise)) return false;
-    return true;
+bool is_feasible(const Estimate &estimate, int vignettings) {
+    for (int c = 0; c < vignettings; c++)
+        if (!is_positive(estimate.vignetting[static_cast<size_t>(c)].k, estimate.vignetting[0].center)) return false;
+    return estimate.modes < 0 || is_rising(estimate.emor.data(), estimate.modes);
 }
 
 Eigen::VectorXd constrained_step(const Region &region, const Eigen::MatrixXd &S, const Eigen::VectorXd &b) {
@@ -214,7 +225,7 @@ Eigen::VectorXd constrained_step(const Region &region, const Eigen::MatrixXd &S,
 
 std::vector<double> project_curve(const double *curve, int modes) {
     // The modes are orthonormal on the grid, so the normal matrix is the identity.
-    Region region{modes, {}, Eigen::VectorXd::Zero(kMaxShared)};
+    Region region{modes, 1, {}, Eigen::VectorXd::Zero(kMaxShared)};
     Eigen::VectorXd b(modes);
     for (int l = 0; l < modes; l++) {
         const double *h = lensprof_emor_table(static_cast<uint32_t>(l) + 1), *f0 = lensprof_emor_table(0);

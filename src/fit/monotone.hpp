@@ -10,13 +10,14 @@ namespace lensprof {
 // Smallest increase of f between two of its 1024 samples, 1/1000 of the mean increase: strictly invertible.
 constexpr double kSmallestRise = 1e-6;
 
-// True when f rises by at least half of kSmallestRise everywhere and M is positive wherever a frame can reach.
-bool is_feasible(const double *emor, int modes, const lensprof_vignetting &vignetting);
+// True when f rises by at least half of kSmallestRise everywhere and every M is positive wherever a frame can reach.
+bool is_feasible(const Estimate &estimate, int vignettings);
 
-// A feasible region in the free shared unknowns. columns[u] is the index of unknown u in the full shared vector
-// (emor[0..24], k1..k3, centre x, y); `value` is the full vector at which steps start, itself feasible.
+// A feasible region in the free shared unknowns. columns[u] is the index of unknown u in the full shared vector;
+// `value` is the full vector at which steps start, itself feasible.
 struct Region {
     int modes;
+    int vignettings;
     std::vector<int> columns;
     Eigen::VectorXd value;
 };

@@ -6,113 +6,117 @@
 #include "residual.hpp"
 
 namespace lensprof {
-namespace {
 
-// Shared unknowns that take part: those of a fixed response, or of modes not in use, do not count against the prior.
-double prior_cost(const Prior &prior, const std::vector<int> &columns, const Estimate &estimate) {
-    Eigen::VectorXd full = shared_vector(estimate), d = Eigen::VectorXd::Zero(kMaxShared);
-    for (int column : columns) d[column] = full[column] - prior.mean[column];
-    return 0.5 * d.dot(prior.precision * d);
-}
+// One row a residual, scaled by the root of its weight: d prediction / d shared, d prediction / d delta, residual. The
+// product of the rows with themselves holds everything that the edge adds to the model.
+struct NormalEquations::Rows {
+    static constexpr Eigen::Index kCapacity = 256;
+    Eigen::MatrixXd rows;  // a column each
+    Eigen::MatrixXd product;
+    Eigen::Index count = 0;
 
-}  // namespace
-
-std::vector<int> free_columns(const Problem &problem, int modes) {
-    std::vector<int> columns;
-    if (problem.free & LENSPROF_FREE_RESPONSE)
-        for (int l = 0; l < modes; l++) columns.push_back(l);
-    const uint32_t flags[3] = {LENSPROF_FREE_K1, LENSPROF_FREE_K2, LENSPROF_FREE_K3};
-    for (int n = 0; n < 3; n++)
-        if (problem.free & flags[n]) columns.push_back(kMaxModes + n);
-    if (problem.free & LENSPROF_FREE_CENTER)
-        for (int d = 0; d < 2; d++) columns.push_back(kMaxModes + 3 + d);
-    return columns;
-}
-
-Eigen::VectorXd shared_vector(const Estimate &estimate) {
-    Eigen::VectorXd full(kMaxShared);
-    std::copy(estimate.emor.begin(), estimate.emor.end(), full.data());
-    std::copy(estimate.vignetting.k, estimate.vignetting.k + 3, full.data() + kMaxModes);
-    std::copy(estimate.vignetting.center, estimate.vignetting.center + 2, full.data() + kMaxModes + 3);
-    return full;
-}
-
-void set_shared(Estimate &estimate, const Eigen::VectorXd &full) {
-    if (estimate.modes >= 0) set_response(estimate, full.data(), estimate.modes);
-    std::copy(full.data() + kMaxModes, full.data() + kMaxModes + 3, estimate.vignetting.k);
-    std::copy(full.data() + kMaxModes + 3, full.data() + kMaxModes + 5, estimate.vignetting.center);
-}
+    explicit Rows(Eigen::Index n) : rows(n + 2, kCapacity), product(n + 2, n + 2) {}
+};
 
 NormalEquations::NormalEquations(const Problem &problem, const Prior &prior, const Loss &loss,
-                                 const NoiseWeights &weights, const Estimate &estimate)
+                                 const NoiseWeights &weights, const Estimate &estimate, const ModeTable &modes)
     : problem_(problem), columns_(free_columns(problem, estimate.modes)) {
     auto n = static_cast<Eigen::Index>(columns_.size());
     auto images = static_cast<Eigen::Index>(3 * problem.image_count);
     shared_ = Eigen::MatrixXd::Zero(n, n);
     gradient_ = Eigen::VectorXd::Zero(n);
-    edge_weight_.assign(problem.edges.size(), {0.0, 0.0, 0.0});
-    cross_ = Eigen::MatrixXd::Zero(images, n);
+    edge_weight_.reserve(problem.edges.size());
+    cross_ = Eigen::MatrixXd::Zero(n, images);
     image_gradient_ = Eigen::VectorXd::Zero(images);
-    for (size_t p = 0; p < problem.pairs.size(); p++) add_pair(p, weights, loss, estimate);
+    std::vector<Rows> rows(static_cast<size_t>(problem.channels), Rows(n));
+    for (const Edge &edge : problem.edges) add_edge(edge, rows.data(), loss, weights, estimate, modes);
     shared_.triangularView<Eigen::StrictlyUpper>() = shared_.transpose();
+    objective_ += prior_cost(prior, problem, columns_, estimate);
     add_prior(prior, estimate);
-    map_images();
+    map_images(prior, estimate);
 }
 
-void NormalEquations::add_pair(size_t p, const NoiseWeights &weights, const Loss &loss, const Estimate &estimate) {
-    const auto &pair = problem_.pairs[p];
-    PairTransfer pair_transfer = evaluate_pair(problem_, estimate, pair);
-    const Falloff &fall = pair_transfer.fall;
-    const auto &t = pair_transfer.channel;
-    PairResiduals factor, residuals = weighted_residuals(pair_transfer, problem_.channels, weights[p]);
-    objective_ += 0.5 * pair_cost(residuals, problem_.channels, loss, &factor);
-
+void NormalEquations::add_edge(const Edge &edge, Rows *rows, const Loss &loss, const NoiseWeights &weights,
+                               const Estimate &estimate, const ModeTable &modes) {
     auto n = static_cast<Eigen::Index>(columns_.size());
-    double by_emor[kMaxModes], row_data[kMaxShared];
-    Eigen::Map<Eigen::VectorXd> row(row_data, n);  // d prediction / d shared
-    for (int c = 0; c < problem_.channels; c++)
-        for (int side = 0; side < 2; side++) {
-            double w = weights[p][c][side], f = factor[c][side] * w * w, by_delta = t[c].by_delta[side];
-            if (f * by_delta * by_delta == 0.0 && t[c].by_value[side] == 0.0) continue;  // saturated prediction
-            if (!columns_.empty() && columns_[0] < kMaxModes) transfer_by_emor(estimate, t[c], side, by_emor);
-            for (Eigen::Index u = 0; u < n; u++) {
-                int column = columns_[static_cast<size_t>(u)];
-                row[u] = column < kMaxModes       ? -by_emor[column]
-                         : column < kMaxModes + 3 ? by_delta * fall.by_k[column - kMaxModes]
-                                                  : by_delta * fall.by_center[column - kMaxModes - 3];
-            }
-            double residual = t[c].residual[side];
-            shared_.selfadjointView<Eigen::Lower>().rankUpdate(row, f);
-            gradient_ += f * residual * row;
-            edge_weight_[problem_.edge_of_pair[p]][c] += f * by_delta * by_delta;
-            for (int end = 0; end < 2; end++) {
-                Eigen::Index i = 3 * static_cast<Eigen::Index>(pair.image[end]) + c;
-                double by_exposure = end == 0 ? by_delta : -by_delta;
-                cross_.row(i) += f * by_exposure * row.transpose();
-                image_gradient_[i] += f * by_exposure * residual;
+    auto ratio = exposure_ratios(problem_, estimate, edge);
+    int emor = columns_.empty() || columns_[0] >= kMaxModes ? 0 : modes.modes();
+    edge_weight_.push_back({0.0, 0.0, 0.0});
+    PairTransfer t;
+    for (size_t p = edge.first; p < edge.last; p++) {
+        evaluate_pair(problem_, estimate, problem_.pairs[p], ratio.data(), t);
+        PairResiduals factor;
+        objective_ += 0.5
+                      * pair_cost(weighted_residuals(t, problem_.channels, weights[p]), problem_.channels, loss,
+                                  &factor);
+        for (int c = 0; c < problem_.channels; c++) {
+            int curve = problem_.vignettings == 3 ? c : 0;
+            const Falloff &fall = t.fall[static_cast<size_t>(curve)];
+            for (int side = 0; side < 2; side++) {
+                const Transfer &one = t.channel[static_cast<size_t>(c)];
+                double by_delta = one.by_delta[side];
+                if (by_delta == 0.0 && one.by_value[side] == 0.0) continue;  // saturated prediction
+                double root = weights[p][c][side] * std::sqrt(factor[c][side]);
+                double *row = rows[c].rows.col(rows[c].count).data();
+                if (emor) modes.transfer_by_emor(one, side, row);
+                for (Eigen::Index u = emor; u < n; u++) {
+                    int column = columns_[static_cast<size_t>(u)], k = column - kFalloff - 3 * curve;
+                    row[u] = column >= kCenter  ? by_delta * fall.by_center[column - kCenter]
+                             : k >= 0 && k < 3 ? by_delta * fall.by_k[k]
+                                               : 0.0;
+                }
+                row[n] = by_delta;
+                row[n + 1] = one.residual[side];
+                for (Eigen::Index u = 0; u < n + 2; u++) row[u] *= root;
+                if (++rows[c].count == Rows::kCapacity) add_rows(edge, c, rows[c]);
             }
         }
+    }
+    for (int c = 0; c < problem_.channels; c++) add_rows(edge, c, rows[c]);
+}
+
+void NormalEquations::add_rows(const Edge &edge, int channel, Rows &rows) {
+    if (rows.count == 0) return;
+    auto n = static_cast<Eigen::Index>(columns_.size());
+    rows.product.setZero();
+    rows.product.selfadjointView<Eigen::Lower>().rankUpdate(rows.rows.leftCols(rows.count));
+    rows.count = 0;
+    const auto &product = rows.product;
+    shared_.triangularView<Eigen::Lower>() += product.topLeftCorner(n, n);
+    gradient_ += product.row(n + 1).head(n).transpose();
+    edge_weight_.back()[static_cast<size_t>(channel)] += product(n, n);
+    for (int end = 0; end < 2; end++) {
+        Eigen::Index i = 3 * static_cast<Eigen::Index>(edge.image[end]) + channel;
+        double sign = end == 0 ? 1.0 : -1.0;
+        cross_.col(i) += sign * product.row(n).head(n).transpose();
+        image_gradient_[i] += sign * product(n + 1, n);
+    }
 }
 
 void NormalEquations::add_prior(const Prior &prior, const Estimate &estimate) {
     Eigen::VectorXd full = shared_vector(estimate);
-    objective_ += prior_cost(prior, columns_, estimate);
-    for (size_t u = 0; u < columns_.size(); u++)
+    double off = prior.pin.dot(full.head(kMaxModes)) - prior.pin_value;
+    auto pin = [&](int column) { return column < kMaxModes ? prior.pin[column] : 0.0; };
+    for (size_t u = 0; u < columns_.size(); u++) {
+        auto i = static_cast<Eigen::Index>(u);
+        gradient_[i] -= prior.pin_precision * off * pin(columns_[u]);
         for (size_t v = 0; v < columns_.size(); v++) {
-            auto i = static_cast<Eigen::Index>(u), j = static_cast<Eigen::Index>(v);
             double precision = prior.precision(columns_[u], columns_[v]);
-            shared_(i, j) += precision;
+            shared_(i, static_cast<Eigen::Index>(v)) +=
+                precision + prior.pin_precision * pin(columns_[u]) * pin(columns_[v]);
             gradient_[i] -= precision * (full[columns_[v]] - prior.mean[columns_[v]]);
         }
+    }
 }
 
 // From log exposures a_ic to the images' unknowns q.
-void NormalEquations::map_images() {
+void NormalEquations::map_images(const Prior &prior, const Estimate &estimate) {
     int count = problem_.image_unknowns;
     auto columns_of = [&](uint32_t i, int c) {
         return std::array<int, 2>{problem_.ev_unknown[i], problem_.balance_unknown[i][c]};
     };
     std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(8 * problem_.edges.size() * static_cast<size_t>(problem_.channels));
     for (size_t e = 0; e < problem_.edges.size(); e++)
         for (int c = 0; c < problem_.channels; c++)
             for (int end = 0; end < 2; end++)
@@ -121,17 +125,25 @@ void NormalEquations::map_images() {
                         for (int r : columns_of(problem_.edges[e].image[other], c))
                             if (q >= 0 && r >= 0)
                                 entries.emplace_back(q, r, (end == other ? 1.0 : -1.0) * edge_weight_[e][c]);
-    images_.resize(count, count);
-    images_.setFromTriplets(entries.begin(), entries.end());
     cross_q_ = Eigen::MatrixXd::Zero(count, static_cast<Eigen::Index>(columns_.size()));
     gradient_q_ = Eigen::VectorXd::Zero(count);
     for (uint32_t i = 0; i < problem_.image_count; i++)
         for (int c = 0; c < problem_.channels; c++)
             for (int q : columns_of(i, c))
                 if (q >= 0) {
-                    cross_q_.row(q) += cross_.row(3 * static_cast<Eigen::Index>(i) + c);
+                    cross_q_.row(q) += cross_.col(3 * static_cast<Eigen::Index>(i) + c).transpose();
                     gradient_q_[q] += image_gradient_[3 * static_cast<Eigen::Index>(i) + c];
                 }
+    for (size_t i = 0; i < prior.known.size(); i++) {
+        int q = problem_.ev_unknown[i];
+        double precision = prior.known[i].precision;
+        if (q < 0 || precision == 0.0) continue;
+        entries.emplace_back(q, q, precision);
+        gradient_q_[q] -=
+            precision * (estimate.log_exposure[i][problem_.measured_channel()] - prior.known[i].log_exposure);
+    }
+    images_.resize(count, count);
+    images_.setFromTriplets(entries.begin(), entries.end());
 }
 
 bool NormalEquations::reduce(double lambda) {
@@ -167,14 +179,38 @@ std::vector<std::array<double, 3>> NormalEquations::image_step(const Eigen::Vect
     return step;
 }
 
-double objective(const Problem &problem, const Prior &prior, const Loss &loss, const NoiseWeights &weights,
-                 const Estimate &estimate) {
-    double sum = prior_cost(prior, free_columns(problem, estimate.modes), estimate);
-    for (size_t p = 0; p < problem.pairs.size(); p++) {
-        PairTransfer t = evaluate_pair(problem, estimate, problem.pairs[p]);
-        sum += 0.5 * pair_cost(weighted_residuals(t, problem.channels, weights[p]), problem.channels, loss, nullptr);
+Eigen::VectorXd NormalEquations::image_variance(const Eigen::MatrixXd &shared) const {
+    if (problem_.image_unknowns == 0) return {};
+    return inverse_diagonal(factor_) + (eliminated_ * shared).cwiseProduct(eliminated_).rowwise().sum();
+}
+
+Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> &factor) {
+    // Z = D^-1 L^-1 + (I - L') Z  for the permuted matrix L D L', from the last column to the first; Z_ij is needed
+    // where L_ij is not zero, and there only from such entries.
+    Eigen::SparseMatrix<double> l = factor.matrixL();
+    l.makeCompressed();
+    Eigen::VectorXd d = factor.vectorD(), diagonal(l.cols());
+    const int *start = l.outerIndexPtr(), *row = l.innerIndexPtr();
+    std::vector<double> z(static_cast<size_t>(l.nonZeros()), 0.0);
+    auto first_below = [&](int j) { return start[j] + (start[j] < start[j + 1] && row[start[j]] == j); };
+    auto entry = [&](int i, int j) {  // Z_ij, i > j
+        const int *end = row + start[j + 1], *at = std::lower_bound(row + first_below(j), end, i);
+        return at != end && *at == i ? z[static_cast<size_t>(at - row)] : 0.0;
+    };
+    for (int j = static_cast<int>(l.cols()) - 1; j >= 0; j--) {
+        for (int a = start[j + 1] - 1; a >= first_below(j); a--) {
+            double sum = 0.0;
+            for (int b = first_below(j); b < start[j + 1]; b++) {
+                int i = row[a], k = row[b];
+                sum -= l.valuePtr()[b] * (i == k ? diagonal[i] : entry(std::max(i, k), std::min(i, k)));
+            }
+            z[static_cast<size_t>(a)] = sum;
+        }
+        diagonal[j] = 1.0 / d[j];
+        for (int b = first_below(j); b < start[j + 1]; b++)
+            diagonal[j] -= l.valuePtr()[b] * z[static_cast<size_t>(b)];
     }
-    return sum;
+    return factor.permutationPinv() * diagonal;
 }
 
 }  // namespace lensprof

@@ -15,18 +15,11 @@
 
 namespace lensprof {
 
-// Which entries of the full shared vector are estimated.
-std::vector<int> free_columns(const Problem &problem, int modes);
-
-// (emor[0..24], k1..k3, centre x, y) of an estimate, and back.
-Eigen::VectorXd shared_vector(const Estimate &estimate);
-void set_shared(Estimate &estimate, const Eigen::VectorXd &full);
-
 class NormalEquations {
 public:
     // Builds the model. `objective` receives the value at the estimate, priors included.
     NormalEquations(const Problem &problem, const Prior &prior, const Loss &loss, const NoiseWeights &weights,
-                    const Estimate &estimate);
+                    const Estimate &estimate, const ModeTable &modes);
 
     double objective() const { return objective_; }
     const std::vector<int> &columns() const { return columns_; }
@@ -39,10 +32,16 @@ public:
     // The images' step that belongs to a shared step, as changes of a_ic.
     std::vector<std::array<double, 3>> image_step(const Eigen::VectorXd &shared_step) const;
 
+    // Variance of every unknown of the images, when `shared` is the covariance of the shared unknowns.
+    Eigen::VectorXd image_variance(const Eigen::MatrixXd &shared) const;
+
 private:
-    void add_pair(size_t p, const NoiseWeights &weights, const Loss &loss, const Estimate &estimate);
+    struct Rows;  // residuals of one edge and channel
+    void add_edge(const Edge &edge, Rows *rows, const Loss &loss, const NoiseWeights &weights,
+                  const Estimate &estimate, const ModeTable &modes);
+    void add_rows(const Edge &edge, int channel, Rows &rows);
     void add_prior(const Prior &prior, const Estimate &estimate);
-    void map_images();
+    void map_images(const Prior &prior, const Estimate &estimate);
 
     const Problem &problem_;
     std::vector<int> columns_;
@@ -50,7 +49,7 @@ private:
     Eigen::MatrixXd shared_;                         // shared x shared
     Eigen::VectorXd gradient_;                       // shared, of -objective
     std::vector<std::array<double, 3>> edge_weight_; // Laplacian weight of each edge and channel
-    Eigen::MatrixXd cross_;                          // (3 images) x shared, in a_ic
+    Eigen::MatrixXd cross_;                          // shared x (3 images), in a_ic
     Eigen::VectorXd image_gradient_;                 // 3 images
     Eigen::SparseMatrix<double> images_;             // in q
     Eigen::MatrixXd cross_q_;
@@ -62,8 +61,8 @@ private:
     Eigen::VectorXd b_;
 };
 
-// The objective alone.
-double objective(const Problem &problem, const Prior &prior, const Loss &loss, const NoiseWeights &weights,
-                 const Estimate &estimate);
+// Diagonal of the inverse of a factored matrix (Takahashi, Fagan and Chen 1973): only entries in the pattern of the
+// factor are ever formed, so that the cost follows the factor's.
+Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> &factor);
 
 }  // namespace lensprof

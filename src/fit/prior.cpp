@@ -1,7 +1,5 @@
 #include "prior.hpp"
 
-#include <algorithm>
-
 #include <Eigen/LU>
 
 namespace lensprof {
@@ -20,25 +18,49 @@ const double kFalloffCovariance[3][3] = {
 // The falloff's centre lies where the optical axis meets the sensor: mounting tolerances, in half diagonals.
 constexpr double kCenterSigma = 0.02;
 
-constexpr double kPairsPerPrior = 200.0;
+// Falloff curves of the channels about that of green: lateral colour and sensor stacks.
+constexpr double kChannelSigma = 0.1;
 
 }  // namespace
 
-Prior make_prior(double weight, size_t pairs) {
-    double response_weight = weight * std::max(1.0, static_cast<double>(pairs) / kPairsPerPrior);
+Prior make_prior(double weight, int vignettings) {
     Prior prior;
     prior.mean = Eigen::VectorXd::Zero(kMaxShared);
     prior.precision = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
-    for (int l = 0; l < kMaxModes; l++) prior.precision(l, l) = response_weight / (kEmorSigma[l] * kEmorSigma[l]);
+    for (int l = 0; l < kMaxModes; l++) prior.precision(l, l) = weight / (kEmorSigma[l] * kEmorSigma[l]);
     Eigen::Matrix3d covariance;
-    for (int i = 0; i < 3; i++) {
-        prior.mean(kMaxModes + i) = kFalloffMean[i];
+    for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) covariance(i, j) = kFalloffCovariance[i][j];
-    }
-    prior.precision.block<3, 3>(kMaxModes, kMaxModes) = weight * covariance.inverse();
-    for (int d = 0; d < 2; d++)
-        prior.precision(kMaxModes + 3 + d, kMaxModes + 3 + d) = weight / (kCenterSigma * kCenterSigma);
+    int green = kFalloff + (vignettings == 3 ? 3 : 0);
+    prior.precision.block<3, 3>(green, green) = weight * covariance.inverse();
+    for (int c = 0; c < vignettings; c++)
+        for (int i = 0; i < 3; i++) {
+            int own = kFalloff + 3 * c + i;
+            double tie = weight / (kChannelSigma * kChannelSigma);
+            prior.mean(own) = kFalloffMean[i];
+            if (own == green + i) continue;
+            prior.precision(own, own) += tie;
+            prior.precision(green + i, green + i) += tie;
+            prior.precision(own, green + i) = prior.precision(green + i, own) = -tie;
+        }
+    for (int d = 0; d < 2; d++) prior.precision(kCenter + d, kCenter + d) = weight / (kCenterSigma * kCenterSigma);
     return prior;
+}
+
+double prior_cost(const Prior &prior, const Problem &problem, const std::vector<int> &columns,
+                  const Estimate &estimate) {
+    Eigen::VectorXd full = shared_vector(estimate), d = Eigen::VectorXd::Zero(kMaxShared);
+    for (int column : columns) d[column] = full[column] - prior.mean[column];
+    double cost = 0.5 * d.dot(prior.precision * d);
+    if (prior.pin_precision > 0.0) {
+        double off = prior.pin.dot(full.head(kMaxModes)) - prior.pin_value;
+        cost += 0.5 * prior.pin_precision * off * off;
+    }
+    for (size_t i = 0; i < prior.known.size(); i++) {
+        double off = estimate.log_exposure[i][problem.measured_channel()] - prior.known[i].log_exposure;
+        if (problem.ev_unknown[i] >= 0) cost += 0.5 * prior.known[i].precision * off * off;
+    }
+    return cost;
 }
 
 }  // namespace lensprof

@@ -1,5 +1,4 @@
-// Gaussian priors on the shared unknowns, measured from data. They decide what pictures leave open (the exponent gamma,
-// unseen radii and grey levels) and weigh nothing where pairs are plenty.
+// What is known before the pairs are seen, as a quadratic cost: measured responses and lenses, and known exposures.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,16 +11,27 @@ namespace lensprof {
 // (profiles/tools/make_response_prior.py).
 extern const double kEmorSigma[kMaxModes];
 
-// Mean and precision of the full shared vector (emor[0..24], k1..k3, centre x, y), times `weight`.
-//
-// The prior on the response grows with the number of pairs, as if it were one more pair in every 200. Pictures say
-// nothing about the exponent gamma, but a basis of few modes does: it represents some members of a curve's gamma family
-// better than others, and that preference grows with the pairs. The prior has to keep up with it. What pictures do
-// determine they determine a hundredfold better, so that it is not disturbed.
 struct Prior {
+    // Of the full shared vector: (s - mean)' precision (s - mean) / 2.
     Eigen::VectorXd mean;
     Eigen::MatrixXd precision;
+
+    // The exponent gamma, held where it was settled (gauge.hpp): pin_precision (pin'emor - pin_value)^2 / 2.
+    Eigen::VectorXd pin = Eigen::VectorXd::Zero(kMaxModes);
+    double pin_value = 0.0, pin_precision = 0.0;
+
+    // Known exposures: precision (a - log_exposure)^2 / 2 of the measured channel; empty where there are none.
+    struct KnownExposure {
+        double log_exposure = 0.0, precision = 0.0;
+    };
+    std::vector<KnownExposure> known;
 };
-Prior make_prior(double weight, size_t pairs);
+
+// Response and falloff of measured cameras and lenses, times `weight`.
+Prior make_prior(double weight, int vignettings);
+
+// Its share of the objective; of the shared unknowns those in `columns` alone.
+double prior_cost(const Prior &prior, const Problem &problem, const std::vector<int> &columns,
+                  const Estimate &estimate);
 
 }  // namespace lensprof

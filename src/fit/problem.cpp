@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include "core/response.h"
@@ -15,16 +14,25 @@ uint32_t find_root(std::vector<uint32_t> &parent, uint32_t i) {
     return i;
 }
 
+// Sorts the pairs by edge: what an edge shares is then computed once, and sums come in one order.
 void find_edges(Problem &problem) {
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> index;
-    for (const auto &pair : problem.pairs) index[std::minmax(pair.image[0], pair.image[1])] = 0;
-    for (auto &[images, number] : index) {
-        number = static_cast<uint32_t>(problem.edges.size());
-        problem.edges.push_back({{images.first, images.second}});
+    auto &pairs = problem.pairs;
+    for (auto &pair : pairs)
+        if (pair.image[0] > pair.image[1]) {
+            std::swap(pair.image[0], pair.image[1]);
+            for (int n = 0; n < 3; n++) std::swap(pair.value[0][n], pair.value[1][n]);
+            for (int n = 0; n < 2; n++) std::swap(pair.xy[0][n], pair.xy[1][n]);
+        }
+    std::stable_sort(pairs.begin(), pairs.end(), [](const lensprof_pair &a, const lensprof_pair &b) {
+        return a.image[0] != b.image[0] ? a.image[0] < b.image[0] : a.image[1] < b.image[1];
+    });
+    for (size_t p = 0; p < pairs.size(); p++) {
+        const uint32_t *image = pairs[p].image;
+        if (problem.edges.empty() || problem.edges.back().image[0] != image[0]
+            || problem.edges.back().image[1] != image[1])
+            problem.edges.push_back({{image[0], image[1]}, p, p});
+        problem.edges.back().last = p + 1;
     }
-    problem.edge_of_pair.reserve(problem.pairs.size());
-    for (const auto &pair : problem.pairs)
-        problem.edge_of_pair.push_back(index[std::minmax(pair.image[0], pair.image[1])]);
 }
 
 void find_components(Problem &problem) {
@@ -90,12 +98,59 @@ Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_ima
     return problem;
 }
 
+void Curve::renew_guide() {
+    uint16_t j = 0;
+    for (int k = 0; k <= kGuide; k++) {
+        while (j + 1 < LENSPROF_RESPONSE_SAMPLES && table[j + 1] < static_cast<double>(k) / kGuide) j++;
+        guide[k] = j;
+    }
+}
+
+double Curve::invert(double b, double *slope) const {
+    if (!(b > table.front()) || b > table.back()) return lp_curve_invert(table.data(), b, slope);
+    auto k = static_cast<uint32_t>(b * kGuide);
+    uint32_t next = std::min<uint32_t>(k + 1, kGuide);
+    return lp_curve_invert_between(table.data(), b, guide[k], std::min(guide[next] + 1, LP_CURVE_LAST), slope);
+}
+
 void set_response(Estimate &estimate, const double *emor, int modes) {
     estimate.modes = modes;
     std::array<double, kMaxModes> copy{};
     std::copy(emor, emor + modes, copy.begin());
     estimate.emor = copy;
-    lp_emor_curve(copy.data(), static_cast<uint32_t>(modes), estimate.table.data());
+    lp_emor_curve(copy.data(), static_cast<uint32_t>(modes), estimate.curve.table.data());
+    estimate.curve.renew_guide();
+}
+
+Eigen::VectorXd shared_vector(const Estimate &estimate) {
+    Eigen::VectorXd full(kMaxShared);
+    std::copy(estimate.emor.begin(), estimate.emor.end(), full.data());
+    for (int c = 0; c < 3; c++)
+        std::copy(estimate.vignetting[c].k, estimate.vignetting[c].k + 3, full.data() + kFalloff + 3 * c);
+    std::copy(estimate.vignetting[0].center, estimate.vignetting[0].center + 2, full.data() + kCenter);
+    return full;
+}
+
+void set_shared(Estimate &estimate, const Eigen::VectorXd &full, int vignettings) {
+    if (estimate.modes >= 0) set_response(estimate, full.data(), estimate.modes);
+    for (int c = 0; c < 3; c++) {
+        const double *k = full.data() + kFalloff + (vignettings == 3 ? 3 * c : 0);
+        std::copy(k, k + 3, estimate.vignetting[c].k);
+        std::copy(full.data() + kCenter, full.data() + kCenter + 2, estimate.vignetting[c].center);
+    }
+}
+
+std::vector<int> free_columns(const Problem &problem, int modes) {
+    std::vector<int> columns;
+    if (problem.free & LENSPROF_FREE_RESPONSE)
+        for (int l = 0; l < modes; l++) columns.push_back(l);
+    const uint32_t flags[3] = {LENSPROF_FREE_K1, LENSPROF_FREE_K2, LENSPROF_FREE_K3};
+    for (int c = 0; c < problem.vignettings; c++)
+        for (int n = 0; n < 3; n++)
+            if (problem.free & flags[n]) columns.push_back(kFalloff + 3 * c + n);
+    if (problem.free & LENSPROF_FREE_CENTER)
+        for (int d = 0; d < 2; d++) columns.push_back(kCenter + d);
+    return columns;
 }
 
 }  // namespace lensprof

@@ -5,28 +5,35 @@
 #include <cstdint>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <lensprof/fit.h>
 
 namespace lensprof {
 
+// The full shared vector: EMoR coefficients, k1..k3 of up to three falloff curves, centre x, y. Where one curve serves
+// all channels it is the first.
 constexpr int kMaxModes = LENSPROF_EMOR_MODES;
-constexpr int kMaxShared = kMaxModes + 5;  // EMoR coefficients, k1..k3, centre x, y
+constexpr int kFalloff = kMaxModes;
+constexpr int kCenter = kFalloff + 9;
+constexpr int kMaxShared = kCenter + 2;
 
-// Two images that share pairs.
+// Two images that share pairs, and these pairs: [first, last) of Problem::pairs.
 struct Edge {
     uint32_t image[2];
+    size_t first, last;
 };
 
 struct Problem {
     int channels = 3;
+    int vignettings = 1;  // falloff curves: 1, or one a channel
     uint32_t reference = 0;
-    uint32_t free = 0;  // LENSPROF_FREE_RESPONSE .. _CENTER
+    uint32_t free = 0;    // LENSPROF_FREE_RESPONSE .. _CENTER
     const lensprof_fit_image *images = nullptr;
     uint32_t image_count = 0;
-    std::vector<lensprof_pair> pairs;
-    std::vector<uint32_t> edge_of_pair;
-    std::vector<Edge> edges;         // sorted by image indices
-    std::vector<uint32_t> component; // of each image: smallest image index of its connected group
+    std::vector<lensprof_pair> pairs;  // by edge, the lower image first, otherwise in the order given
+    std::vector<Edge> edges;           // sorted by image indices
+    std::vector<uint32_t> component;   // of each image: smallest image index of its connected group
 
     // Unknowns of the images. Log exposure of image i in channel c: a_ic = ev_i ln 2 + ln w_ic.
     // ev_unknown[i] and balance_unknown[i][c] are columns of the image block, -1 where the value is fixed.
@@ -35,23 +42,41 @@ struct Problem {
     int image_unknowns = 0;
 
     uint32_t component_count() const;
+    int measured_channel() const { return channels == 3 ? 1 : 0; }  // the one whose white balance factor is 1
 };
 
 // Copies pairs[keep[...]] into a problem over the given images and numbers the unknowns.
 Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                      const lensprof_pair *pairs, const std::vector<uint32_t> &keep);
 
-// The current estimate.
-struct Estimate {
-    int modes = 0;                                        // EMoR modes in use; -1 where the response is fixed
-    std::array<double, kMaxModes> emor{};
-    std::array<double, LENSPROF_RESPONSE_SAMPLES> table;  // f on the grid; follows emor
-    lensprof_response fixed;                              // modes == -1: the response
-    lensprof_vignetting vignetting{};
-    std::vector<std::array<double, 3>> log_exposure;      // a_ic
+// A response table, with a guide that shortens the search of its inverse.
+struct Curve {
+    static constexpr int kGuide = 256;
+    std::array<double, LENSPROF_RESPONSE_SAMPLES> table;
+    std::array<uint16_t, kGuide + 1> guide;  // largest sample below each k / 256
+
+    void renew_guide();
+    double invert(double b, double *slope) const;
 };
 
-// Sets emor and table.
+// The current estimate.
+struct Estimate {
+    int modes = 0;                                    // EMoR modes in use; -1 where the response is fixed
+    std::array<double, kMaxModes> emor{};
+    Curve curve;                                      // f; follows emor
+    lensprof_response fixed;                          // modes == -1: the response
+    std::array<lensprof_vignetting, 3> vignetting{};  // of the channels; the first alone when one curve serves all
+    std::vector<std::array<double, 3>> log_exposure;  // a_ic
+};
+
+// Sets emor and curve.
 void set_response(Estimate &estimate, const double *emor, int modes);
+
+// The full shared vector of an estimate, and back.
+Eigen::VectorXd shared_vector(const Estimate &estimate);
+void set_shared(Estimate &estimate, const Eigen::VectorXd &full, int vignettings);
+
+// Which entries of the full shared vector are estimated.
+std::vector<int> free_columns(const Problem &problem, int modes);
 
 }  // namespace lensprof

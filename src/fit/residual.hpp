@@ -4,6 +4,8 @@
 //   t = s1/s2 = exp(delta),  delta = ln M(p1) + a1 - ln M(p2) - a2              (d'Angelo eq. 5, 8 and section 3)
 #pragma once
 
+#include <cmath>
+
 #include "problem.hpp"
 
 namespace lensprof {
@@ -14,28 +16,63 @@ struct Transfer {
     double by_delta[2];   // d prediction / d delta
     double by_value[2];   // d prediction / d the other grey value: tau'
     double x[2], y[2];    // irradiances behind the two values, and arguments of f in the two predictions
-    double slope_x[2], slope_y[2];
 };
 
-// ln M of a pair's two ends and their derivatives: by_k[n], by_center[0..1] of ln M(p1) - ln M(p2).
+// M(p1) / M(p2) of a pair, and the derivatives of its logarithm: by_k[n], by_center[0..1].
 struct Falloff {
-    double log_ratio;
+    double ratio;
     double by_k[3];
     double by_center[2];
 };
 
-Falloff falloff(const Problem &problem, const Estimate &estimate, const lensprof_pair &pair);
+// ratio: s1/s2.
+Transfer transfer(const Estimate &estimate, double value1, double value2, double ratio);
 
-Transfer transfer(const Estimate &estimate, double value1, double value2, double delta);
-
-// All channels of a pair, at an estimate.
+// All channels of a pair, at an estimate. exposure_ratio[c]: e1 w1 / (e2 w2).
 struct PairTransfer {
-    Falloff fall;
+    std::array<Falloff, 3> fall;  // the first alone when one curve serves all channels
     std::array<Transfer, 3> channel;
 };
-PairTransfer evaluate_pair(const Problem &problem, const Estimate &estimate, const lensprof_pair &pair);
+void evaluate_pair(const Problem &problem, const Estimate &estimate, const lensprof_pair &pair,
+                   const double exposure_ratio[3], PairTransfer &result);
 
-// d residual[side] / d emor[l] for l < modes (the negative of the prediction's).
-void transfer_by_emor(const Estimate &estimate, const Transfer &t, int side, double *by_emor);
+// M1/M2 of one falloff curve.
+Falloff falloff(const Problem &problem, const lensprof_vignetting &vignetting, const lensprof_pair &pair);
+
+inline std::array<double, 3> exposure_ratios(const Problem &problem, const Estimate &estimate, const Edge &edge) {
+    std::array<double, 3> ratio{1.0, 1.0, 1.0};
+    const auto &a1 = estimate.log_exposure[edge.image[0]], &a2 = estimate.log_exposure[edge.image[1]];
+    for (int c = 0; c < problem.channels; c++) ratio[c] = std::exp(a1[c] - a2[c]);
+    return ratio;
+}
+
+// visit(number of the pair, its transfer) for every pair in order.
+template <class Visit>
+void for_each_transfer(const Problem &problem, const Estimate &estimate, Visit visit) {
+    PairTransfer transfer;
+    for (const Edge &edge : problem.edges) {
+        auto ratio = exposure_ratios(problem, estimate, edge);
+        for (size_t p = edge.first; p < edge.last; p++) {
+            evaluate_pair(problem, estimate, problem.pairs[p], ratio.data(), transfer);
+            visit(p, transfer);
+        }
+    }
+}
+
+// The EMoR modes in use, sample by sample: all modes at one irradiance lie together.
+class ModeTable {
+public:
+    explicit ModeTable(int modes);
+    int modes() const { return modes_; }
+
+    // d prediction[side] / d emor[l] for all modes.
+    void transfer_by_emor(const Transfer &t, int side, double *by_emor) const;
+
+private:
+    const double *at(double x, double &fraction) const;
+
+    int modes_;
+    std::vector<double> rows_;  // 1024 + 1 rows of `modes`
+};
 
 }  // namespace lensprof

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <Eigen/Cholesky>
 
@@ -14,26 +15,34 @@ namespace {
 constexpr double kLargestLogExposure = 20.0 * 0.6931471805599453;  // |ev| <= 20
 constexpr double kLargestLogBalance = 12.0;                        // white balance factors stay valid, 1e-6..1e6
 
-// One accepted Levenberg-Marquardt step; false when no damping finds an improvement.
+// One accepted Levenberg-Marquardt step; false when no damping finds an improvement. The model of the accepted point is
+// kept for the next step.
 struct Stepper {
     const Problem &problem;
     const Prior &prior;
     const Loss &loss;
     const NoiseWeights &weights;
+    const ModeTable &modes;
+    std::unique_ptr<NormalEquations> model;
     double lambda = 1e-4;
     int steps = 0;
 
-    Estimate moved(const Estimate &from, const NormalEquations &model, const Eigen::VectorXd &d) const {
+    std::unique_ptr<NormalEquations> model_at(const Estimate &estimate) const {
+        return std::make_unique<NormalEquations>(problem, prior, loss, weights, estimate, modes);
+    }
+
+    Estimate moved(const Estimate &from, const Eigen::VectorXd &d) const {
         Estimate to = from;
         Eigen::VectorXd full = shared_vector(from);
-        for (size_t u = 0; u < model.columns().size(); u++) full[model.columns()[u]] += d[static_cast<Eigen::Index>(u)];
-        set_shared(to, full);
-        auto step = model.image_step(d);
+        for (size_t u = 0; u < model->columns().size(); u++)
+            full[model->columns()[u]] += d[static_cast<Eigen::Index>(u)];
+        set_shared(to, full, problem.vignettings);
+        auto step = model->image_step(d);
         for (size_t i = 0; i < step.size(); i++) {
             auto &a = to.log_exposure[i];
-            for (int c = 0; c < 3; c++)
+            for (size_t c = 0; c < 3; c++)
                 if (step[i][c] != 0.0) a[c] = std::clamp(a[c] + step[i][c], -kLargestLogExposure, kLargestLogExposure);
-            for (int c : {0, 2})
+            for (size_t c : {0, 2})
                 if (problem.balance_unknown[i][c] >= 0)
                     a[c] = std::clamp(a[c], a[1] - kLargestLogBalance, a[1] + kLargestLogBalance);
         }
@@ -41,21 +50,22 @@ struct Stepper {
     }
 
     bool step(Estimate &estimate, double &cost) {
-        NormalEquations model(problem, prior, loss, weights, estimate);
-        Region region{estimate.modes, model.columns(), shared_vector(estimate)};
+        if (!model) model = model_at(estimate);
+        Region region{estimate.modes, problem.vignettings, model->columns(), shared_vector(estimate)};
         for (int attempt = 0; attempt < 12; attempt++, lambda *= 8.0) {
-            if (!model.reduce(lambda)) continue;
-            Eigen::VectorXd d = constrained_step(region, model.reduced_hessian(), model.reduced_gradient());
-            Estimate candidate = moved(estimate, model, d);
-            double value = objective(problem, prior, loss, weights, candidate);
-            if (!(value < model.objective())) continue;
+            if (!model->reduce(lambda)) continue;
+            Eigen::VectorXd d = constrained_step(region, model->reduced_hessian(), model->reduced_gradient());
+            Estimate candidate = moved(estimate, d);
+            auto next = model_at(candidate);
+            if (!(next->objective() < model->objective())) continue;
             estimate = candidate;
-            cost = value;
+            model = std::move(next);
+            cost = model->objective();
             lambda = std::max(lambda * 0.1, 1e-9);
             steps++;
             return true;
         }
-        cost = model.objective();
+        cost = model->objective();
         return false;
     }
 };
@@ -63,29 +73,36 @@ struct Stepper {
 // Largest change of what a user sees: grey value of the response, falloff, log exposure.
 double change(const Estimate &a, const Estimate &b) {
     double largest = 0.0;
-    for (size_t j = 0; j < a.table.size(); j += 31) largest = std::max(largest, std::abs(a.table[j] - b.table[j]));
-    for (double r2 : {0.25, 0.5, 1.0})
-        largest = std::max(largest, std::abs(lensprof_vignetting_eval(&a.vignetting, r2, nullptr)
-                                             - lensprof_vignetting_eval(&b.vignetting, r2, nullptr)));
-    for (int d = 0; d < 2; d++) largest = std::max(largest, std::abs(a.vignetting.center[d] - b.vignetting.center[d]));
+    for (size_t j = 0; j < a.curve.table.size(); j += 31)
+        largest = std::max(largest, std::abs(a.curve.table[j] - b.curve.table[j]));
+    for (size_t c = 0; c < 3; c++)
+        for (double r2 : {0.25, 0.5, 1.0})
+            largest = std::max(largest, std::abs(lensprof_vignetting_eval(&a.vignetting[c], r2, nullptr)
+                                                 - lensprof_vignetting_eval(&b.vignetting[c], r2, nullptr)));
+    for (int d = 0; d < 2; d++)
+        largest = std::max(largest, std::abs(a.vignetting[0].center[d] - b.vignetting[0].center[d]));
     for (size_t i = 0; i < a.log_exposure.size(); i++)
-        for (int c = 0; c < 3; c++) largest = std::max(largest, std::abs(a.log_exposure[i][c] - b.log_exposure[i][c]));
+        for (size_t c = 0; c < 3; c++)
+            largest = std::max(largest, std::abs(a.log_exposure[i][c] - b.log_exposure[i][c]));
     return largest;
 }
 
 }  // namespace
 
-Outcome solve(const Problem &problem, const Prior &prior, Loss &loss, bool refine_noise, const Control &control,
-              Estimate &estimate) {
+Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &loss, bool refine_noise,
+              const Control &control, Estimate &estimate) {
     constexpr double kStill = 1e-5;        // nothing a user sees moves by more in a step
     constexpr double kFlat = 1e-8;         // a step gains less than this share of the objective
-    constexpr int kNoiseRounds = 4, kRounds = 6;
+    constexpr int kNoiseRounds = 4;
+    const ModeTable modes(std::max(estimate.modes, 0));
+    Prior renewed = prior;
     Outcome outcome;
-    for (int round = 0; round < kRounds; round++) {
+    for (int round = 0; round < control.rounds; round++) {
         Estimate before = estimate;
         if (refine_noise && round < kNoiseRounds) loss.noise = estimate_noise(problem, estimate, loss.noise);
+        gauge.renew(problem, estimate, renewed);
         NoiseWeights weights = noise_weights(problem, estimate, loss);
-        Stepper stepper{problem, prior, loss, weights};
+        Stepper stepper{problem, renewed, loss, weights, modes, nullptr};
         outcome.converged = false;
         while (!outcome.converged && outcome.iterations < control.max_iterations) {
             if (control.cancelled && control.cancelled()) throw Cancelled();
@@ -101,21 +118,31 @@ Outcome solve(const Problem &problem, const Prior &prior, Loss &loss, bool refin
     return outcome;
 }
 
-Eigen::MatrixXd shared_covariance(const Problem &problem, const Prior &prior, const Loss &loss,
-                                  const Estimate &estimate) {
-    Eigen::MatrixXd full = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
-    NormalEquations model(problem, prior, loss, noise_weights(problem, estimate, loss), estimate);
-    if (model.columns().empty() || !model.reduce(0.0)) return full;
+Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
+                      const Estimate &estimate) {
+    Covariance result;
+    result.shared = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
+    result.images = Eigen::VectorXd::Zero(problem.image_unknowns);
+    Prior renewed = prior;
+    gauge.renew(problem, estimate, renewed);
+    NormalEquations model(problem, renewed, loss, noise_weights(problem, estimate, loss), estimate,
+                          ModeTable(std::max(estimate.modes, 0)));
     auto n = static_cast<Eigen::Index>(model.columns().size());
-    Eigen::LLT<Eigen::MatrixXd> factor(model.reduced_hessian());
-    if (factor.info() != Eigen::Success) return full;  // not determined: no statement
-    Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(n, n));
-    if (!inverse.allFinite() || inverse.diagonal().minCoeff() <= 0.0) return full;
+    if (!model.reduce(0.0)) return result;
+    Eigen::MatrixXd inverse(n, n);
+    if (n) {
+        Eigen::LLT<Eigen::MatrixXd> factor(model.reduced_hessian());
+        if (factor.info() != Eigen::Success) return result;  // not determined: no statement
+        inverse = factor.solve(Eigen::MatrixXd::Identity(n, n));
+        if (!inverse.allFinite() || inverse.diagonal().minCoeff() <= 0.0) return result;
+    }
     for (Eigen::Index u = 0; u < n; u++)
         for (Eigen::Index v = 0; v < n; v++)
-            full(model.columns()[static_cast<size_t>(u)], model.columns()[static_cast<size_t>(v)]) =
+            result.shared(model.columns()[static_cast<size_t>(u)], model.columns()[static_cast<size_t>(v)]) =
                 0.5 * (inverse(u, v) + inverse(v, u));
-    return full;
+    if (problem.image_unknowns) result.images = model.image_variance(inverse);
+    result.is_determined = result.images.allFinite();
+    return result;
 }
 
 }  // namespace lensprof

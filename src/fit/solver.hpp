@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "gauge.hpp"
 #include "loss.hpp"
 #include "prior.hpp"
 #include "problem.hpp"
@@ -12,6 +13,7 @@ namespace lensprof {
 
 struct Control {
     int max_iterations = 200;
+    int rounds = 6;
     std::function<bool()> cancelled;  // asked once an iteration
 };
 
@@ -23,16 +25,19 @@ struct Outcome {
 
 struct Cancelled {};
 
-// Improves `estimate` (feasible, `modes` modes) until it no longer moves. Between rounds the noise weights are renewed,
-// and with `refine_noise` in the first rounds the noise level too (loss.noise): every round minimises one fixed
-// objective.
-Outcome solve(const Problem &problem, const Prior &prior, Loss &loss, bool refine_noise, const Control &control,
-              Estimate &estimate);
+// Improves `estimate` (feasible, `modes` modes) until it no longer moves. Between rounds the noise weights and what is
+// known of gamma and exposures are renewed, and with `refine_noise` in the first rounds the noise level too
+// (loss.noise): every round minimises one fixed objective.
+Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &loss, bool refine_noise,
+              const Control &control, Estimate &estimate);
 
-// Covariance of the full shared vector (emor[0..24], k1..k3, centre): inverse of the reduced Hessian at the estimate,
-// with the images' unknowns free. Zero rows where a parameter was held fixed; all zero where the data do not determine
-// it.
-Eigen::MatrixXd shared_covariance(const Problem &problem, const Prior &prior, const Loss &loss,
-                                  const Estimate &estimate);
+// Covariances at an estimate, gamma held: inverse of the Hessian of all unknowns.
+struct Covariance {
+    bool is_determined = false;
+    Eigen::MatrixXd shared;  // full shared vector; zero rows where a parameter was held fixed
+    Eigen::VectorXd images;  // variances of the images' unknowns
+};
+Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
+                      const Estimate &estimate);
 
 }  // namespace lensprof

@@ -16,42 +16,41 @@ constexpr double kDarkest = 0.03, kBrightest = 0.97;  // grey values whose ratio
 // Median over an edge's pairs of what the exposures must explain: ln g(B1)/M1 - ln g(B2)/M2.
 struct EdgeRatio {
     double median[3] = {0.0, 0.0, 0.0};
-    double weight[3] = {0.0, 0.0, 0.0};
+    double weight[3] = {0.0, 0.0, 0.0};  // number of pairs
+    double trust[3] = {1.0, 1.0, 1.0};
 };
 
 std::vector<EdgeRatio> edge_ratios(const Problem &problem, const Estimate &estimate) {
-    std::vector<std::array<std::vector<double>, 3>> ratios(problem.edges.size());
-    for (size_t p = 0; p < problem.pairs.size(); p++) {
-        const auto &pair = problem.pairs[p];
-        const Edge &edge = problem.edges[problem.edge_of_pair[p]];
-        double sign = pair.image[0] == edge.image[0] ? 1.0 : -1.0;
-        double fall = falloff(problem, estimate, pair).log_ratio;
-        for (int c = 0; c < problem.channels; c++) {
-            double b1 = pair.value[0][c], b2 = pair.value[1][c];
-            if (std::min(b1, b2) < kDarkest || std::max(b1, b2) > kBrightest) continue;
-            Transfer t = transfer(estimate, b1, b2, 0.0);
-            ratios[problem.edge_of_pair[p]][c].push_back(sign * (std::log(t.x[0] / t.x[1]) - fall));
-        }
-    }
     std::vector<EdgeRatio> result(problem.edges.size());
-    for (size_t e = 0; e < ratios.size(); e++)
-        for (int c = 0; c < problem.channels; c++) {
-            auto &values = ratios[e][c];
+    std::array<std::vector<double>, 3> ratios;
+    for (size_t e = 0; e < problem.edges.size(); e++) {
+        const Edge &edge = problem.edges[e];
+        for (auto &channel : ratios) channel.clear();
+        for (size_t p = edge.first; p < edge.last; p++) {
+            const auto &pair = problem.pairs[p];
+            double fall = falloff(problem, estimate.vignetting[0], pair).ratio;
+            for (int c = 0; c < problem.channels; c++) {
+                double b1 = pair.value[0][c], b2 = pair.value[1][c];
+                if (std::min(b1, b2) < kDarkest || std::max(b1, b2) > kBrightest) continue;
+                Transfer t = transfer(estimate, b1, b2, 1.0);
+                ratios[static_cast<size_t>(c)].push_back(std::log(t.x[0] / t.x[1] / fall));
+            }
+        }
+        for (size_t c = 0; c < 3; c++) {
+            auto &values = ratios[c];
             if (values.empty()) continue;
             auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
             std::nth_element(values.begin(), middle, values.end());
             result[e].median[c] = *middle;
             result[e].weight[c] = static_cast<double>(values.size());
         }
+    }
     return result;
 }
 
-}  // namespace
-
-void start_exposures(const Problem &problem, Estimate &estimate) {
+// One round of start_exposures with a trust in every edge and channel; false when it failed numerically.
+bool add_exposures(const Problem &problem, const std::vector<EdgeRatio> &ratios, Estimate &estimate) {
     int count = problem.image_unknowns;
-    if (count == 0) return;
-    auto ratios = edge_ratios(problem, estimate);
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
     for (int q = 0; q < count; q++) entries.emplace_back(q, q, 1e-3);
@@ -61,8 +60,8 @@ void start_exposures(const Problem &problem, Estimate &estimate) {
             uint32_t i = problem.edges[e].image[0], j = problem.edges[e].image[1];
             int q[4] = {problem.ev_unknown[i], problem.balance_unknown[i][c], problem.ev_unknown[j],
                         problem.balance_unknown[j][c]};
-            double weight = ratios[e].weight[c];
             double target = ratios[e].median[c] - (estimate.log_exposure[i][c] - estimate.log_exposure[j][c]);
+            double weight = ratios[e].weight[c] * ratios[e].trust[c];
             for (int a = 0; a < 4; a++) {
                 if (q[a] < 0) continue;
                 double sign = a < 2 ? 1.0 : -1.0;
@@ -74,18 +73,36 @@ void start_exposures(const Problem &problem, Estimate &estimate) {
     Eigen::SparseMatrix<double> matrix(count, count);
     matrix.setFromTriplets(entries.begin(), entries.end());
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
-    if (factor.info() != Eigen::Success) return;
+    if (factor.info() != Eigen::Success) return false;
     Eigen::VectorXd q = factor.solve(right);
-    if (!q.allFinite()) return;
+    if (!q.allFinite()) return false;
     for (uint32_t i = 0; i < problem.image_count; i++)
         for (int c = 0; c < problem.channels; c++)
             for (int unknown : {problem.ev_unknown[i], problem.balance_unknown[i][c]})
                 if (unknown >= 0) estimate.log_exposure[i][c] += std::clamp(q[unknown], -10.0, 10.0);
+    return true;
+}
+
+}  // namespace
+
+// Least squares over the edges, then again with less trust in those that disagree.
+void start_exposures(const Problem &problem, Estimate &estimate) {
+    constexpr double kSurprise = 0.3;  // natural logarithm by which an edge's median may be off
+    if (problem.image_unknowns == 0) return;
+    auto ratios = edge_ratios(problem, estimate);
+    for (int round = 0; round < 4 && add_exposures(problem, ratios, estimate); round++)
+        for (size_t e = 0; e < problem.edges.size(); e++)
+            for (size_t c = 0; c < 3; c++) {
+                const auto &a = estimate.log_exposure[problem.edges[e].image[0]],
+                           &b = estimate.log_exposure[problem.edges[e].image[1]];
+                double off = (ratios[e].median[c] - (a[c] - b[c])) / kSurprise;
+                ratios[e].trust[c] = 1.0 / (1.0 + off * off);
+            }
 }
 
 std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit_options &options, int modes) {
     Estimate base;
-    base.vignetting = options.vignetting;
+    base.vignetting.fill(options.vignetting);
     for (uint32_t i = 0; i < problem.image_count; i++) {
         const auto &exposure = problem.images[i].exposure;
         std::array<double, 3> a{};
@@ -108,7 +125,7 @@ std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit
         if (options.response) base.fixed = *options.response;
         else if (lensprof_response_set_emor(&base.fixed, nullptr, 0) != LENSPROF_OK)
             lensprof_response_set_linear(&base.fixed);
-        std::copy(base.fixed.table, base.fixed.table + base.table.size(), base.table.begin());
+        std::copy(base.fixed.table, base.fixed.table + LENSPROF_RESPONSE_SAMPLES, base.curve.table.begin());
         add(nullptr);
         return starts;
     }

@@ -31,7 +31,7 @@ struct Setting {
         problem = make_problem(options, simulation.fit_images.data(), 4, simulation.pairs.data(), keep);
         const double emor[6] = {0.7, -0.4, 0.1, 0.05, -0.02, 0.01};
         set_response(estimate, emor, 6);
-        estimate.vignetting = {{-0.2, 0.1, -0.1}, {0.05, -0.03}};
+        estimate.vignetting.fill({{-0.2, 0.1, -0.1}, {0.05, -0.03}});
         uint64_t random = 3;
         for (int i = 0; i < 4; i++)
             estimate.log_exposure.push_back(
@@ -42,11 +42,10 @@ struct Setting {
 // Residuals of all pairs at an estimate.
 std::vector<double> residuals(const Problem &problem, const Estimate &estimate) {
     std::vector<double> values;
-    for (const auto &pair : problem.pairs) {
-        PairTransfer t = evaluate_pair(problem, estimate, pair);
+    for_each_transfer(problem, estimate, [&](size_t, const PairTransfer &t) {
         for (int c = 0; c < problem.channels; c++)
             for (double r : t.channel[c].residual) values.push_back(r);
-    }
+    });
     return values;
 }
 
@@ -65,18 +64,18 @@ void compare(const std::vector<double> &analytic, const std::vector<double> &low
 
 void test_residual_by_response(void **) {
     Setting s(3);
+    const ModeTable modes(6);
     const double h = 1e-7;
     for (int l = 0; l < 6; l++) {
         std::vector<double> analytic;
-        for (const auto &pair : s.problem.pairs) {
-            PairTransfer t = evaluate_pair(s.problem, s.estimate, pair);
+        for_each_transfer(s.problem, s.estimate, [&](size_t, const PairTransfer &t) {
             for (int c = 0; c < 3; c++)
                 for (int side = 0; side < 2; side++) {
                     double by_emor[kMaxModes];
-                    transfer_by_emor(s.estimate, t.channel[c], side, by_emor);
-                    analytic.push_back(by_emor[l]);
+                    modes.transfer_by_emor(t.channel[c], side, by_emor);
+                    analytic.push_back(-by_emor[l]);
                 }
-        }
+        });
         Estimate low = s.estimate, high = s.estimate;
         low.emor[l] -= h, high.emor[l] += h;
         set_response(low, low.emor.data(), 6), set_response(high, high.emor.data(), 6);
@@ -84,22 +83,32 @@ void test_residual_by_response(void **) {
     }
 }
 
+// One curve for all channels, and one a channel: unknown u of curve `curve`.
 void test_residual_by_falloff(void **) {
-    Setting s(3);
     const double h = 1e-7;
-    for (int u = 0; u < 5; u++) {
-        std::vector<double> analytic;
-        for (const auto &pair : s.problem.pairs) {
-            PairTransfer t = evaluate_pair(s.problem, s.estimate, pair);
-            for (int c = 0; c < 3; c++)
-                for (int side = 0; side < 2; side++)
-                    analytic.push_back(-t.channel[c].by_delta[side]
-                                       * (u < 3 ? t.fall.by_k[u] : t.fall.by_center[u - 3]));
-        }
-        Estimate low = s.estimate, high = s.estimate;
-        (u < 3 ? low.vignetting.k[u] : low.vignetting.center[u - 3]) -= h;
-        (u < 3 ? high.vignetting.k[u] : high.vignetting.center[u - 3]) += h;
-        compare(analytic, residuals(s.problem, low), residuals(s.problem, high), h, "falloff");
+    for (int vignettings : {1, 3}) {
+        Setting s(3);
+        s.problem.vignettings = vignettings;
+        for (int curve = 0; curve < vignettings; curve++)
+            for (int u = 0; u < 5; u++) {
+                std::vector<double> analytic;
+                for_each_transfer(s.problem, s.estimate, [&](size_t, const PairTransfer &t) {
+                    for (int c = 0; c < 3; c++)
+                        for (int side = 0; side < 2; side++) {
+                            const Falloff &fall = t.fall[vignettings == 3 ? c : 0];
+                            double by = u < 3 ? fall.by_k[u] : fall.by_center[u - 3];
+                            bool own = u >= 3 || vignettings == 1 || c == curve;
+                            analytic.push_back(own ? -t.channel[c].by_delta[side] * by : 0.0);
+                        }
+                });
+                Estimate low = s.estimate, high = s.estimate;
+                for (int c = 0; c < 3; c++) {
+                    if (u < 3 && vignettings == 3 && c != curve) continue;
+                    (u < 3 ? low.vignetting[c].k[u] : low.vignetting[c].center[u - 3]) -= h;
+                    (u < 3 ? high.vignetting[c].k[u] : high.vignetting[c].center[u - 3]) += h;
+                }
+                compare(analytic, residuals(s.problem, low), residuals(s.problem, high), h, "falloff");
+            }
     }
 }
 
@@ -107,33 +116,56 @@ void test_residual_by_exposure_and_value(void **) {
     Setting s(3);
     const double h = 1e-7;
     std::vector<double> analytic, by_value, value_low, value_high;
-    for (const auto &pair : s.problem.pairs) {
-        PairTransfer t = evaluate_pair(s.problem, s.estimate, pair);
-        for (int c = 0; c < 3; c++) {
-            double delta = t.fall.log_ratio + s.estimate.log_exposure[pair.image[0]][c]
-                           - s.estimate.log_exposure[pair.image[1]][c];
-            double b1 = pair.value[0][c], b2 = pair.value[1][c];
-            by_value.push_back(t.channel[c].by_value[0]);
-            value_low.push_back(-transfer(s.estimate, b1, b2 - h, delta).residual[0]);
-            value_high.push_back(-transfer(s.estimate, b1, b2 + h, delta).residual[0]);
+    for (const Edge &edge : s.problem.edges) {
+        auto exposure = exposure_ratios(s.problem, s.estimate, edge);
+        for (size_t p = edge.first; p < edge.last; p++) {
+            const auto &pair = s.problem.pairs[p];
+            for (int c = 0; c < 3; c++) {
+                double ratio = falloff(s.problem, s.estimate.vignetting[0], pair).ratio * exposure[c];
+                double b1 = pair.value[0][c], b2 = pair.value[1][c];
+                by_value.push_back(transfer(s.estimate, b1, b2, ratio).by_value[0]);
+                value_low.push_back(-transfer(s.estimate, b1, b2 - h, ratio).residual[0]);
+                value_high.push_back(-transfer(s.estimate, b1, b2 + h, ratio).residual[0]);
+            }
         }
     }
     compare(by_value, value_low, value_high, h, "grey value");
     for (uint32_t image = 0; image < 4; image++)
         for (int c = 0; c < 3; c++) {
             analytic.clear();
-            for (const auto &pair : s.problem.pairs) {
-                PairTransfer t = evaluate_pair(s.problem, s.estimate, pair);
+            for_each_transfer(s.problem, s.estimate, [&](size_t p, const PairTransfer &t) {
+                const auto &pair = s.problem.pairs[p];
                 for (int channel = 0; channel < 3; channel++)
                     for (int side = 0; side < 2; side++) {
                         double sign = (pair.image[0] == image) - (pair.image[1] == image);
                         analytic.push_back(channel == c ? -sign * t.channel[channel].by_delta[side] : 0.0);
                     }
-            }
+            });
             Estimate low = s.estimate, high = s.estimate;
             low.log_exposure[image][c] -= h, high.log_exposure[image][c] += h;
             compare(analytic, residuals(s.problem, low), residuals(s.problem, high), h, "exposure");
         }
+}
+
+// What the solver minimises, by itself.
+double objective(const Problem &problem, const Prior &prior, const Loss &loss, const NoiseWeights &weights,
+                 const Estimate &estimate) {
+    double sum = prior_cost(prior, problem, free_columns(problem, estimate.modes), estimate);
+    for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
+        sum += 0.5 * pair_cost(weighted_residuals(t, problem.channels, weights[p]), problem.channels, loss, nullptr);
+    });
+    return sum;
+}
+
+// A prior with everything in it: response, falloff, a held gamma and known exposures.
+Prior full_prior(double weight, const Problem &problem) {
+    Prior prior = make_prior(weight, problem.vignettings);
+    for (int l = 0; l < 6; l++) prior.pin[l] = 0.3 - 0.1 * l;
+    prior.pin_value = 0.2;
+    prior.pin_precision = 50.0;
+    prior.known.resize(problem.image_count);
+    prior.known[1] = {0.1, 30.0};
+    return prior;
 }
 
 // The gradient that the reduced system stands for: differences of the objective along every shared unknown, the images'
@@ -144,9 +176,10 @@ void test_objective_gradient(void **) {
             Setting s(channels, 400);
             Loss loss;
             loss.kind = kind;
-            Prior prior = make_prior(1.0, 400);
+            s.problem.vignettings = static_cast<int>(channels);
+            Prior prior = full_prior(1.0, s.problem);
             NoiseWeights weights = noise_weights(s.problem, s.estimate, loss);
-            NormalEquations model(s.problem, prior, loss, weights, s.estimate);
+            NormalEquations model(s.problem, prior, loss, weights, s.estimate, ModeTable(6));
             assert_close(model.objective(), objective(s.problem, prior, loss, weights, s.estimate),
                          1e-9 * model.objective());
             assert_true(model.reduce(0.0));
@@ -159,7 +192,7 @@ void test_objective_gradient(void **) {
                 Eigen::VectorXd full = shared_vector(e);
                 for (size_t u = 0; u < model.columns().size(); u++)
                     full[model.columns()[u]] += t * d[static_cast<Eigen::Index>(u)];
-                set_shared(e, full);
+                set_shared(e, full, s.problem.vignettings);
                 for (size_t i = 0; i < images.size(); i++)
                     for (int c = 0; c < 3; c++) e.log_exposure[i][c] += t * images[i][c];
                 return objective(s.problem, prior, loss, weights, e);
@@ -178,9 +211,10 @@ void test_elimination_equals_full_solve(void **) {
     Setting s(3, 200);
     Loss loss;
     loss.kind = LENSPROF_LOSS_SQUARED;
-    Prior prior = make_prior(0.5, 200);
+    s.problem.vignettings = 3;
+    Prior prior = full_prior(0.5, s.problem);
     NoiseWeights weights = noise_weights(s.problem, s.estimate, loss);
-    NormalEquations model(s.problem, prior, loss, weights, s.estimate);
+    NormalEquations model(s.problem, prior, loss, weights, s.estimate, ModeTable(6));
     assert_true(model.reduce(0.0));
     Eigen::VectorXd shared_step = model.reduced_hessian().ldlt().solve(model.reduced_gradient());
     auto image_step = model.image_step(shared_step);
@@ -191,7 +225,7 @@ void test_elimination_equals_full_solve(void **) {
         if (u < shared) {
             Eigen::VectorXd full = shared_vector(e);
             full[model.columns()[static_cast<size_t>(u)]] += h;
-            set_shared(e, full);
+            set_shared(e, full, s.problem.vignettings);
         } else {
             for (uint32_t i = 0; i < 4; i++)
                 for (int c = 0; c < 3; c++)
@@ -221,6 +255,13 @@ void test_elimination_equals_full_solve(void **) {
                 p
                 * (full[model.columns()[static_cast<size_t>(v)]] - prior.mean[model.columns()[static_cast<size_t>(v)]]);
         }
+    Eigen::VectorXd pin = Eigen::VectorXd::Zero(unknowns);
+    pin.head(6) = prior.pin.head(6);
+    hessian += prior.pin_precision * pin * pin.transpose();
+    gradient -= prior.pin_precision * (prior.pin.dot(full.head(kMaxModes)) - prior.pin_value) * pin;
+    int known = shared + s.problem.ev_unknown[1];
+    hessian(known, known) += prior.known[1].precision;
+    gradient[known] -= prior.known[1].precision * (s.estimate.log_exposure[1][1] - prior.known[1].log_exposure);
     for (int q = shared; q < unknowns; q++) hessian(q, q) += 2e-3;
     Eigen::VectorXd step = hessian.ldlt().solve(gradient);
     for (int u = 0; u < shared; u++) assert_close(shared_step[u], step[u], 1e-3 * (0.01 + std::abs(step[u])));
@@ -228,6 +269,13 @@ void test_elimination_equals_full_solve(void **) {
     assert_close(image_step[3][1], image_step[2][1], 0.0);  // linked
     assert_close(image_step[2][0], image_step[2][1], 0.0);  // red of image 2 is fixed: it moves with the exposure alone
     assert_close(image_step[0][0], 0.0, 0.0);               // the reference stays
+
+    // Variances: the diagonal of the full inverse.
+    Eigen::MatrixXd inverse = hessian.inverse(), shared_inverse = model.reduced_hessian().inverse();
+    Eigen::VectorXd variance = model.image_variance(shared_inverse);
+    for (int u = 0; u < shared; u++) assert_close(shared_inverse(u, u), inverse(u, u), 1e-3 * inverse(u, u));
+    for (int q = 0; q < s.problem.image_unknowns; q++)
+        assert_close(variance[q], inverse(shared + q, shared + q), 1e-3 * inverse(shared + q, shared + q));
 }
 
 }  // namespace

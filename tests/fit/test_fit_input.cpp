@@ -139,7 +139,7 @@ void test_degenerate_problems_stay_finite(void **) {
         call.options.max_iterations = 40;
         assert_ok(call.run());
         assert_ok(lensprof_response_validate(&call.result.response));
-        assert_ok(lensprof_vignetting_validate(&call.result.vignetting));
+        assert_ok(lensprof_vignetting_validate(&call.result.vignetting[0]));
         for (const auto &e : call.exposures) assert_ok(lensprof_exposure_validate(&e));
         assert_true(std::isfinite(call.result.heldout_rms) && std::isfinite(call.result.noise_levels));
         for (double value : call.result.covariance) assert_true(std::isfinite(value));

@@ -4,10 +4,11 @@ A thin layer over the C library lensprof on the memory of NumPy arrays. What the
 with a `status`; what it could not be asked (an array of a wrong type, shape or stride) raises TypeError or
 ValueError.
 """
-from ._abi import (COVARIANCE_MAX, EMOR_MODES, MODES_AUTO, RESPONSE_SAMPLES, UNKNOWN, Direction, Encoding, Free, Layout,
-                   Loss, Processing, Projection, ResponseKind, SampleType, Sampling, Saturated, Status, StoreMode)
+from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, MODES_AUTO, RESPONSE_SAMPLES, UNKNOWN, CameraKind,
+                   Direction, Encoding, Free, GammaFrom, Layout, Loss, Processing, Projection, ResponseKind, SampleType,
+                   Sampling, Saturated, Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
-from ._arrays import EXPOSURE_DTYPE, PAIR_DTYPE
+from ._arrays import EXPOSURE_DTYPE, IMAGE_QUALITY_DTYPE, PAIR_DTYPE
 from ._library import Error, status_name, version
 from .apply import ApplyOptions, Plan, correct, layout_channels, layout_samples, sample_bytes, simulate
 from .fit import FitImage, FitOptions, FitResult, fit_overlap, transfer_rms
@@ -19,11 +20,12 @@ from .sample import SampleImage, SampleOptions, sample_overlap
 from .store import Store, StoreRow
 
 __all__ = [
-    "ApplyOptions", "COVARIANCE_MAX", "Camera", "Direction", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error",
-    "Exposure", "FitImage", "FitOptions", "FitResult", "Free", "Layout", "Loss", "MODES_AUTO", "PAIR_DTYPE", "Plan",
-    "Processing", "Profile", "ProfileKey", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES",
-    "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status",
-    "Store", "StoreMode", "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_overlap",
-    "layout_channels", "layout_samples", "points_read", "points_write", "sample_bytes", "sample_overlap", "simulate",
-    "status_name", "transfer_rms", "version",
+    "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "Direction", "EMOR_MODES",
+    "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FitImage", "FitOptions", "FitResult", "Free", "GammaFrom",
+    "IMAGE_QUALITY_DTYPE", "Layout", "Loss", "MODES_AUTO", "PAIR_DTYPE", "Plan", "Processing", "Profile",
+    "ProfileKey", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Response", "ResponseKind",
+    "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreMode",
+    "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_overlap", "layout_channels",
+    "layout_samples", "points_read", "points_write", "sample_bytes", "sample_overlap", "simulate", "status_name",
+    "transfer_rms", "version",
 ]

@@ -15,6 +15,7 @@ VERSION = "0.1.0"  # of the headers that these tables were written from
 RESPONSE_SAMPLES = 1024
 EMOR_MODES = 25
 COVARIANCE_MAX = 36
+COVERAGE_BINS = 10
 UNKNOWN = -1.0
 MODES_AUTO = 0xFFFFFFFF
 
@@ -139,6 +140,22 @@ class Loss(IntEnum):
     SQUARED = 2
 
 
+class GammaFrom(IntEnum):
+    """What settles the exponent that pictures leave open; KNOWN and NONE in results only."""
+    AUTO = 0
+    PRIOR = 1
+    EXPOSURES = 2
+    KNOWN = 3
+    NONE = 4
+
+
+class CameraKind(IntEnum):
+    """The measured responses behind the prior."""
+    ANY = 0
+    FILM = 1
+    DIGITAL = 2
+
+
 class StoreMode(IntEnum):
     """Read an existing file; write to an existing file; write, and make the file when there is none."""
     READ = 0
@@ -160,6 +177,8 @@ ENUMS = {
     "LENSPROF_SAMPLING_": Sampling,
     "LENSPROF_FREE_": Free,
     "LENSPROF_LOSS_": Loss,
+    "LENSPROF_GAMMA_": GammaFrom,
+    "LENSPROF_CAMERA_": CameraKind,
     "LENSPROF_STORE_": StoreMode,
 }
 
@@ -240,7 +259,8 @@ class SampleOptions(Structure):
 
 class FitImage(Structure):
     _fields_ = [("width", c_uint32), ("height", c_uint32), ("exposure", Exposure), ("free", c_uint32),
-                ("ev_of", c_uint32), ("red_of", c_uint32), ("blue_of", c_uint32)]
+                ("ev_of", c_uint32), ("red_of", c_uint32), ("blue_of", c_uint32), ("known_ev", c_double),
+                ("known_ev_sigma", c_double)]
 
 
 Progress = CFUNCTYPE(c_int, c_double, c_void_p)
@@ -249,17 +269,27 @@ Progress = CFUNCTYPE(c_int, c_double, c_void_p)
 class FitOptions(Structure):
     _fields_ = [("struct_size", c_uint32), ("channels", c_uint32), ("reference", c_uint32), ("free", c_uint32),
                 ("modes", c_uint32), ("loss", c_uint32), ("huber_levels", c_double), ("prior_weight", c_double),
-                ("max_iterations", c_uint32), ("reserved", c_uint32), ("response", POINTER(Response)),
-                ("vignetting", Vignetting), ("progress", Progress), ("progress_user", c_void_p)]
+                ("max_iterations", c_uint32), ("vignettings", c_uint32), ("gamma_from", c_uint32),
+                ("camera_kind", c_uint32), ("response", POINTER(Response)), ("vignetting", Vignetting),
+                ("progress", Progress), ("progress_user", c_void_p)]
+
+
+class FitImageQuality(Structure):
+    _fields_ = [("ev_sigma", c_double), ("white_balance_sigma", c_double * 3), ("median_residual", c_double),
+                ("known_ev_residual", c_double), ("radius", c_double), ("grey_low", c_double),
+                ("grey_high", c_double), ("pairs", c_uint32), ("component", c_uint32)]
 
 
 class FitResult(Structure):
     _fields_ = [("struct_size", c_uint32), ("usable", c_uint32), ("reason", c_char * 256), ("response", Response),
-                ("vignetting", Vignetting), ("pairs", c_uint32), ("components", c_uint32), ("iterations", c_uint32),
-                ("converged", c_uint32), ("before_rms", c_double), ("heldout_rms", c_double),
+                ("vignetting", Vignetting * 3), ("vignettings", c_uint32), ("pairs", c_uint32),
+                ("components", c_uint32), ("iterations", c_uint32), ("converged", c_uint32), ("gamma_from", c_uint32),
+                ("gamma_sigma", c_double), ("before_rms", c_double), ("heldout_rms", c_double),
                 ("heldout_median", c_double), ("noise_levels", c_double), ("inlier_share", c_double),
-                ("seconds", c_double), ("covariance_size", c_uint32), ("reserved", c_uint32),
-                ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX))]
+                ("local_levels", c_double), ("seconds", c_double), ("radius_ends", c_uint32 * COVERAGE_BINS),
+                ("grey_ends", c_uint32 * COVERAGE_BINS), ("covariance_size", c_uint32), ("reserved", c_uint32),
+                ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX)),
+                ("gamma_direction", c_double * COVARIANCE_MAX), ("image_quality", POINTER(FitImageQuality))]
 
 
 class Pto(Structure):
@@ -297,6 +327,7 @@ STRUCTS = {
     "lensprof_sample_options": SampleOptions,
     "lensprof_fit_image": FitImage,
     "lensprof_fit_options": FitOptions,
+    "lensprof_fit_image_quality": FitImageQuality,
     "lensprof_fit_result": FitResult,
     "lensprof_pto_image": PtoImage,
     "lensprof_store_row": StoreRow,

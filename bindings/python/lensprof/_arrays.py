@@ -27,6 +27,10 @@ PAIR_DTYPE = _dtype(_abi.Pair)
 EXPOSURE_DTYPE = _dtype(_abi.Exposure)
 """Layout of an exposure: ev, white_balance[3]."""
 
+IMAGE_QUALITY_DTYPE = _dtype(_abi.FitImageQuality)
+"""Layout of an image's quality: ev_sigma, white_balance_sigma[3], median_residual, known_ev_residual, radius, grey_low,
+grey_high, pairs, component."""
+
 _SAMPLE_TYPES = {np.dtype(np.uint8): SampleType.U8, np.dtype(np.uint16): SampleType.U16,
                  np.dtype(np.float32): SampleType.F32}
 _LAYOUTS = {1: Layout.GREY, 2: Layout.GREY_ALPHA, 3: Layout.RGB, 4: Layout.RGBA}

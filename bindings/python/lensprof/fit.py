@@ -10,9 +10,10 @@ from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import Free, Loss
+from ._abi import CameraKind, Free, GammaFrom, Loss
 from ._library import check, lib, version
-from ._struct import Enumerated, Flag, Nested, OptionalReference, Struct, Text, Value, integer
+from ._struct import (Curves, Enumerated, Flag, Nested, OptionalReference, Struct, Text, Value, Vector, integer,
+                      one_or_three)
 from .model import Exposure, Response, Vignetting
 from .profile import Covariance, Profile, ProfileKey
 
@@ -22,7 +23,8 @@ class FitImage(Value, _abi.FitImage):
 
     index: its own place among the images. width, height: full frame, px. exposure: the value where fixed. free:
     Free.EV, RED, BLUE. ev_of, red_of, blue_of: index of the image whose ev or white balance factor this one shares;
-    its own unless told.
+    its own unless told. known_ev: exposure from elsewhere (EXIF), EV up to a common offset, a soft observation;
+    known_ev_sigma: its standard error, EV, 0 = not known.
     """
 
     width: int
@@ -32,6 +34,8 @@ class FitImage(Value, _abi.FitImage):
     ev_of: int
     red_of: int
     blue_of: int
+    known_ev: float
+    known_ev_sigma: float
 
     def __init__(self, index: int, width: int, height: int, **fields: Any):
         own = {"exposure": Exposure(), "ev_of": index, "red_of": index, "blue_of": index}
@@ -43,7 +47,8 @@ class FitOptions(Struct, _abi.FitOptions):
 
     channels: 1 or 3. reference: the image whose exposure stays as given. free: Free.RESPONSE .. CENTER. modes: EMoR
     modes 0..25 or MODES_AUTO. huber_levels: levels of 255. prior_weight: 0 = none, as in the paper. response,
-    vignetting: the values where fixed (None = EMoR mean).
+    vignetting: the values where fixed (None = EMoR mean). vignettings: falloff curves, 1, 3 or 0 = chosen by held-out
+    error. gamma_from: GammaFrom.AUTO, PRIOR or EXPOSURES. camera_kind: whose responses the prior is of.
 
     progress: called now and then during a fit with a fraction 0..1; the fit is cancelled when it returns True, and
     when it raises an exception, which then comes out of fit_overlap.
@@ -57,6 +62,9 @@ class FitOptions(Struct, _abi.FitOptions):
     huber_levels: float
     prior_weight: float
     max_iterations: int
+    vignettings: int
+    gamma_from = Enumerated(GammaFrom)
+    camera_kind = Enumerated(CameraKind)
     response = OptionalReference(Response)
     vignetting = Nested(Vignetting)
 
@@ -82,32 +90,47 @@ class FitOptions(Struct, _abi.FitOptions):
 class FitResult(Struct, _abi.FitResult):
     """What a fit found. Arrays are views on this object.
 
-    usable: False with the `reason` in words. response, vignetting: of all images. exposures: what every image got
-    relative to the reference, EXPOSURE_DTYPE. pairs: used. components: connected groups of images. before_rms,
-    heldout_rms, heldout_median, noise_levels: levels of 255. inlier_share: 0..1. seconds: time taken. covariance: n x
-    n as in Profile; parameters held fixed have zero rows.
+    usable: False with the `reason` in words; a usable result may have a reason to mind. response: of all images.
+    vignetting: tuple of 1 (all channels) or 3. exposures: what every image got relative to the reference,
+    EXPOSURE_DTYPE; image_quality: how well each is determined, IMAGE_QUALITY_DTYPE. pairs: used. components: connected
+    groups of images. gamma_from: what settled the exponent gamma; gamma_sigma: standard error of ln gamma;
+    gamma_direction: change of each parameter per unit of it. before_rms, heldout_rms, heldout_median, noise_levels,
+    local_levels: levels of 255. inlier_share: 0..1. seconds: time taken. radius_ends, grey_ends: pair ends by tenths of
+    the half diagonal and of the grey range. covariance: n x n as in Profile; parameters held fixed have zero rows.
     """
 
     usable = Flag()
     reason = Text()
     response = Nested(Response)
-    vignetting = Nested(Vignetting)
+    vignetting = Curves(Vignetting, "vignettings")
+    vignettings: int
     pairs: int
     components: int
     iterations: int
     converged = Flag()
+    gamma_from = Enumerated(GammaFrom)
+    gamma_sigma: float
     before_rms: float
     heldout_rms: float
     heldout_median: float
     noise_levels: float
     inlier_share: float
+    local_levels: float
     seconds: float
+    radius_ends = Vector(writable=False)
+    grey_ends = Vector(writable=False)
     covariance_size: int
     covariance = Covariance()
+    gamma_direction = Vector(writable=False)
 
     def __init__(self, image_count: int):
         super().__init__()
         self._exposures = np.zeros(image_count, dtype=_arrays.EXPOSURE_DTYPE)
+        self._quality = np.zeros(image_count, dtype=_arrays.IMAGE_QUALITY_DTYPE)
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [name for name in super()._names() if name != "image_quality"]
 
     def _set_defaults(self) -> None:
         lib.lensprof_fit_result_init(byref(self))
@@ -115,6 +138,10 @@ class FitResult(Struct, _abi.FitResult):
     @property
     def exposures(self) -> np.ndarray:
         return self._exposures
+
+    @property
+    def image_quality(self) -> np.ndarray:
+        return self._quality
 
     def exposure(self, index: int) -> Exposure:
         """What image `index` got."""
@@ -167,6 +194,8 @@ def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional
             raised.append(exception)
             return 1
 
+    out = _abi.FitResult.from_buffer(result)
+    out.image_quality = _arrays.address(result.image_quality, _abi.FitImageQuality)
     with _interrupts() as interrupted:
         call.progress = _abi.Progress(on_progress)
         status = lib.lensprof_fit_overlap(byref(call), _fit_images(images), len(images), *_arrays.pairs(pairs),
@@ -177,15 +206,17 @@ def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional
     return result
 
 
-def transfer_rms(response: Response, vignetting: Vignetting, images: Sequence[FitImage],
+def transfer_rms(response: Response, vignetting: Union[Vignetting, Iterable[Vignetting]], images: Sequence[FitImage],
                  exposures: Union[np.ndarray, Iterable[Exposure]], pairs: np.ndarray,
                  channels: int = 3) -> tuple[float, float]:
-    """Root mean square and median absolute value of the transfer residual of pairs under a model, in levels of 255."""
+    """Root mean square and median absolute value of the transfer residual of pairs under a model, in levels of 255.
+    vignetting: one for all channels, or three."""
+    curves = one_or_three(vignetting, Vignetting, "vignetting")
     given = _arrays.exposures(exposures)
     if len(given) != len(images):
         raise ValueError(f"{len(given)} exposures for {len(images)} images; give one an image")
     rms, median = c_double(), c_double()
-    check(lib.lensprof_transfer_rms(byref(response), byref(vignetting), _fit_images(images),
+    check(lib.lensprof_transfer_rms(byref(response), (_abi.Vignetting * 3)(*(curves * 3)[:3]), _fit_images(images),
                                     _arrays.address(given, _abi.Exposure), len(images), *_arrays.pairs(pairs),
                                     integer(channels, "channels"), byref(rms), byref(median)),
           "this model and these pairs do not go together: give valid curves, channels 1 or 3, at least one pair, image "

@@ -1,0 +1,195 @@
+#include "gauge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "core/response.h"
+#include "monotone.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kLn2 = 0.6931471805599453;
+constexpr double kPinSigma = 1e-3;       // of ln gamma while it is held
+constexpr double kLargestStep = 1.2;     // of ln gamma in one move along the family
+constexpr double kDoubtful = 3.0;        // known exposures farther off, in standard errors, count for less
+
+// Images whose exposure or white balance is held away from the reference's.
+bool has_fixed_exposure(const Problem &problem) {
+    const auto &reference = problem.images[problem.reference].exposure;
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        const auto &e = problem.images[i].exposure;
+        if (problem.ev_unknown[i] < 0 && e.ev != reference.ev) return true;
+        for (int c = 0; c < problem.channels; c += 2)
+            if (problem.channels == 3 && problem.balance_unknown[i][c] < 0
+                && e.white_balance[c] != reference.white_balance[c])
+                return true;
+    }
+    return false;
+}
+
+// Nothing that is held fixed tells one member of the family from another.
+bool nothing_fixes_gamma(const lensprof_fit_options &options, const Problem &problem) {
+    for (int n = 0; n < 3; n++)
+        if (!(options.free & (LENSPROF_FREE_K1 << n)) && options.vignetting.k[n] != 0.0) return false;
+    return (options.free & LENSPROF_FREE_RESPONSE) && options.modes != 0 && !has_fixed_exposure(problem);
+}
+
+// Least squares k1..k3 (those that are free) of M^gamma over the frame.
+void raise_falloff(const Problem &problem, double gamma, lensprof_vignetting &v) {
+    std::vector<int> columns;
+    for (int n = 0; n < 3; n++)
+        if (problem.free & (LENSPROF_FREE_K1 << n)) columns.push_back(n);
+    if (columns.empty()) return;
+    auto count = static_cast<Eigen::Index>(columns.size());
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(count), row(count);
+    for (int i = 1; i <= 40; i++) {
+        double r2 = i * i / 1600.0, m = std::max(lensprof_vignetting_eval(&v, r2, nullptr), 1e-3);
+        for (Eigen::Index u = 0; u < count; u++) row[u] = std::pow(r2, columns[static_cast<size_t>(u)] + 1);
+        normal += row * row.transpose();
+        right += row * (std::pow(m, gamma) - 1.0);
+    }
+    Eigen::VectorXd k = normal.ldlt().solve(right);
+    for (Eigen::Index u = 0; u < count; u++) v.k[columns[static_cast<size_t>(u)]] = k[u];
+}
+
+}  // namespace
+
+Estimate with_exponent(const Problem &problem, const Estimate &estimate, double log_gamma) {
+    Estimate moved = estimate;
+    double gamma = std::exp(log_gamma), curve[LENSPROF_RESPONSE_SAMPLES];
+    for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++)
+        curve[j] = lp_curve_eval(estimate.curve.table.data(), std::pow(j / 1023.0, 1.0 / gamma), nullptr);
+    set_response(moved, project_curve(curve, estimate.modes).data(), estimate.modes);
+    for (auto &v : moved.vignetting) raise_falloff(problem, gamma, v);
+    const auto &reference = estimate.log_exposure[problem.reference];
+    for (auto &a : moved.log_exposure)
+        for (size_t c = 0; c < 3; c++) a[c] = reference[c] + gamma * (a[c] - reference[c]);
+    return moved;
+}
+
+Gauge::Gauge(const lensprof_fit_options &options, const Problem &problem)
+    : prior_(gamma_prior(options.camera_kind)), wanted_(static_cast<lensprof_gamma_from>(options.gamma_from)) {
+    bool is_family = nothing_fixes_gamma(options, problem);
+    open_ = is_family && options.prior_weight > 0.0;
+    if (is_family && !open_) from_ = LENSPROF_GAMMA_NONE;
+    bool any = false;
+    for (uint32_t i = 0; i < problem.image_count; i++) any = any || problem.images[i].known_ev_sigma > 0.0;
+    if (any) known_weight_.assign(problem.image_count, 1.0);
+}
+
+Gauge Gauge::unheld() const {
+    Gauge other = *this;
+    other.open_ = false;
+    other.known_weight_.clear();
+    return other;
+}
+
+// Regression of the known exposures on the estimate's, over the reference's component: the known ones carry the error.
+// What they vary beyond their own error is what they say about gamma: equal ones say nothing.
+void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
+    slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
+    if (known_weight_.empty()) return;
+    std::vector<uint32_t> members;
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        if (problem.images[i].known_ev_sigma > 0.0 && problem.component[i] == problem.component[problem.reference])
+            members.push_back(i);
+    for (uint32_t i : members) known_weight_[i] = 1.0;
+    auto found = [&](uint32_t i) { return estimate.log_exposure[i][problem.measured_channel()] / kLn2; };
+    double per_known = 1.0;  // known EV per found EV
+    for (int round = 0; round < 8 && !members.empty(); round++) {
+        double sum = 0, mean_found = 0, mean_known = 0, xx = 0, xy = 0, yy = 0, own = 0;
+        for (uint32_t i : members) {
+            double w = known_weight_[i] / std::pow(problem.images[i].known_ev_sigma, 2);
+            sum += w, mean_found += w * found(i), mean_known += w * problem.images[i].known_ev;
+            own += known_weight_[i];
+        }
+        mean_found /= sum, mean_known /= sum;
+        for (uint32_t i : members) {
+            double w = known_weight_[i] / std::pow(problem.images[i].known_ev_sigma, 2);
+            double dx = found(i) - mean_found, dy = problem.images[i].known_ev - mean_known;
+            xx += w * dx * dx, xy += w * dx * dy, yy += w * dy * dy;
+        }
+        double excess = yy > 0.0 ? std::max(0.0, 1.0 - own / yy) : 0.0;  // yy is chi-squared where exposures are equal
+        bool says = open_ && excess > 0.0 && xy > 0.0 && members.size() > 1;
+        per_known = says ? xy / xx : 1.0;
+        slope_ = 1.0 / per_known;
+        slope_sigma_ = says ? 1.0 / (per_known * std::sqrt(xx * excess)) : 0.0;
+        known_offset_ = kLn2 * (mean_found - slope_ * mean_known);
+        for (uint32_t i : members) {
+            double off = mean_known + per_known * (found(i) - mean_found) - problem.images[i].known_ev;
+            double z = off / (kDoubtful * problem.images[i].known_ev_sigma);
+            known_weight_[i] = 1.0 / (1.0 + z * z);
+        }
+    }
+}
+
+// ln gamma by which the estimate is away from where prior and known exposures, each by its standard error, want it.
+double Gauge::distance(const Problem &problem, const Estimate &estimate) {
+    compare_known(problem, estimate);
+    const double *table = estimate.curve.table.data();
+    double offset = gamma_position(table) - expected_position(prior_, table);
+    bool says = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;
+    double prior_precision = 1.0 / (prior_.sigma * prior_.sigma);
+    if (says) {  // errors of the prior have heavy tails: where exposures contradict it, it counts for less
+        double z = (offset - std::log(slope_)) / prior_.sigma;
+        prior_precision *= wanted_ == LENSPROF_GAMMA_EXPOSURES ? 0.0 : 1.0 / (1.0 + z * z);
+    }
+    double precision = says ? 1.0 / (slope_sigma_ * slope_sigma_) : 0.0;
+    from_ = precision > prior_precision ? LENSPROF_GAMMA_EXPOSURES : LENSPROF_GAMMA_PRIOR;
+    sigma_ = 1.0 / std::sqrt(precision + prior_precision);
+    return (prior_precision * offset + precision * std::log(slope_)) / (precision + prior_precision);
+}
+
+void Gauge::settle(const Problem &problem, Estimate &estimate) {
+    if (!open_) return;
+    for (int round = 0; round < 3; round++) {
+        double step = -std::clamp(distance(problem, estimate), -kLargestStep, kLargestStep);
+        if (std::abs(step) < 0.01) return;
+        Estimate moved = with_exponent(problem, estimate, step);
+        for (int half = 0; half < 6; half++) {
+            if (is_feasible(moved, problem.vignettings)) break;
+            step *= 0.5;
+            moved = with_exponent(problem, estimate, step);
+        }
+        if (!is_feasible(moved, problem.vignettings)) return;
+        estimate = moved;
+    }
+}
+
+void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior) {
+    prior.pin.setZero();
+    prior.pin_precision = prior.pin_value = 0.0;
+    if (open_) {
+        double here = distance(problem, estimate);
+        // d position / d emor: dx = -h(x) / f'(x) at the grey value that defines it.
+        double slope, x = estimate.curve.invert(kGaugeGrey, &slope);
+        for (int l = 0; l < estimate.modes; l++)
+            prior.pin[l] = -lp_curve_eval(lensprof_emor_table(static_cast<uint32_t>(l) + 1), x, nullptr) * slope
+                           / (x * std::log(x));
+        prior.pin_precision = 1.0 / (kPinSigma * kPinSigma);
+        prior.pin_value = prior.pin.dot(Eigen::Map<const Eigen::VectorXd>(estimate.emor.data(), kMaxModes)) - here;
+    } else {
+        compare_known(problem, estimate);
+    }
+    prior.known.clear();
+    if (known_weight_.empty()) return;
+    prior.known.resize(problem.image_count);
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        const auto &image = problem.images[i];
+        if (!(image.known_ev_sigma > 0.0) || problem.component[i] != problem.component[problem.reference]) continue;
+        prior.known[i].log_exposure = known_offset_ + slope_ * kLn2 * image.known_ev;
+        prior.known[i].precision = known_weight_[i] / std::pow(slope_ * kLn2 * image.known_ev_sigma, 2);
+    }
+}
+
+Eigen::VectorXd Gauge::direction(const Problem &problem, const Estimate &estimate) {
+    constexpr double h = 0.01;
+    Eigen::VectorXd up = shared_vector(with_exponent(problem, estimate, h));
+    return (up - shared_vector(with_exponent(problem, estimate, -h))) / (2 * h);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,52 @@
+// The gauge gamma: (f, M, e, w) and (f o x^(1/gamma), M^gamma, e^gamma, w^gamma) make the same pictures.
+//
+// A basis of few modes represents some members of that family better than others, so that a fit left to itself settles
+// gamma by accident. Here it is settled by what is known - the prior on the response's shape, and known exposures that
+// differ - and then held while everything else is fitted.
+#pragma once
+
+#include "gamma_prior.hpp"
+#include "prior.hpp"
+#include "problem.hpp"
+
+namespace lensprof {
+
+class Gauge {
+public:
+    Gauge(const lensprof_fit_options &options, const Problem &problem);
+
+    // False where parameters held fixed settle gamma, or where no prior is wanted (the paper's method).
+    bool is_open() const { return open_; }
+
+    // The same knowledge, which nothing holds gamma to: for first fits, whose shape is to find its own optimum.
+    Gauge unheld() const;
+
+    // Moves the estimate along its family to where gamma is settled, as well as its modes and falloff curves can follow.
+    void settle(const Problem &problem, Estimate &estimate);
+
+    // Writes what holds gamma, and the known exposures, into the prior, linearised at the estimate.
+    void renew(const Problem &problem, const Estimate &estimate, Prior &prior);
+
+    lensprof_gamma_from from() const { return from_; }
+    double sigma() const { return sigma_; }  // standard error of ln gamma; 0 when known
+    double slope() const { return slope_; }  // of the estimate's exposures on the known ones
+    double known_offset() const { return known_offset_; }  // common offset of the known exposures, natural logarithm
+
+    // Change of the full shared vector per unit of ln gamma.
+    static Eigen::VectorXd direction(const Problem &problem, const Estimate &estimate);
+
+private:
+    double distance(const Problem &problem, const Estimate &estimate);
+    void compare_known(const Problem &problem, const Estimate &estimate);
+
+    const GammaPrior &prior_;
+    lensprof_gamma_from wanted_, from_ = LENSPROF_GAMMA_KNOWN;
+    bool open_ = false;
+    double sigma_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
+    std::vector<double> known_weight_;  // trust in each known exposure, 0..1
+};
+
+// The same estimate with the exponent gamma = exp(log_gamma) put in.
+Estimate with_exponent(const Problem &problem, const Estimate &estimate, double log_gamma);
+
+}  // namespace lensprof

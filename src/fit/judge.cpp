@@ -1,0 +1,174 @@
+// The verdict: why a result is not usable, or what to mind about it, in plain words.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "quality.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kBlack = 0.004;               // one level of 255
+constexpr double kSmallestRange = 0.05;        // of grey values
+constexpr double kSmallestRadius = 0.6;        // half diagonals: beyond, k1..k3 extrapolate
+constexpr double kLargestNoise = 6.0;          // levels of 255: no camera's noise, but a model that does not fit
+constexpr double kLargestLocal = 2.5;          // levels of 255 that neighbouring pairs share, and
+constexpr double kLargestLocalShare = 0.6;     // their share of the noise
+constexpr double kLargestCornerSigma = 0.1;    // of M
+constexpr double kLargestEvSigma = 0.3;        // EV, gamma apart
+constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
+
+// Pairs that tell something: different from each other, with both grey values of a channel between black and white.
+size_t count_informative(const Problem &problem) {
+    std::set<std::array<double, 10>> seen;
+    for (const auto &p : problem.pairs) {
+        bool tells = false;
+        for (int c = 0; c < problem.channels; c++)
+            tells = tells
+                    || (std::min(p.value[0][c], p.value[1][c]) > kBlack
+                        && std::max(p.value[0][c], p.value[1][c]) < 1.0 - kBlack);
+        if (tells)
+            seen.insert({p.xy[0][0], p.xy[0][1], p.xy[1][0], p.xy[1][1], p.value[0][0], p.value[0][1], p.value[0][2],
+                         p.value[1][0], p.value[1][1], p.value[1][2]});
+    }
+    return seen.size();
+}
+
+// From the darkest to the brightest grey value of all pairs, without a twentieth at either end.
+double grey_range(const Problem &problem) {
+    std::vector<double> values;
+    for (const auto &p : problem.pairs)
+        for (const auto &side : p.value) values.insert(values.end(), side, side + problem.channels);
+    std::sort(values.begin(), values.end());
+    return values[values.size() - 1 - values.size() / 20] - values[values.size() / 20];
+}
+
+// Outer edge of the outermost ring that holds more than a few pair ends.
+double covered_radius(const lensprof_fit_result &r) {
+    for (int bin = LENSPROF_COVERAGE_BINS; bin > 0; bin--)
+        if (r.radius_ends[bin - 1] > 2 + r.pairs / 1000) return bin / static_cast<double>(LENSPROF_COVERAGE_BINS);
+    return 0.0;
+}
+
+// Standard error of M in the corner, gamma held.
+double corner_sigma(const Problem &problem, const lensprof_fit_result &r) {
+    auto n = r.covariance_size;
+    double worst = 0.0;
+    for (int curve = 0; curve < problem.vignettings; curve++) {
+        double sum = 0.0;
+        uint32_t first = r.response.modes + 3 * static_cast<uint32_t>(curve);
+        for (uint32_t i = first; i < first + 3 && n; i++)
+            for (uint32_t j = first; j < first + 3; j++)
+                sum += r.covariance[i * n + j]
+                       - r.gamma_sigma * r.gamma_sigma * r.gamma_direction[i] * r.gamma_direction[j];
+        worst = std::max(worst, sum);
+    }
+    return std::sqrt(worst);
+}
+
+// The image that disagrees most with those it overlaps, when it clearly does; else -1.
+int odd_image(const Problem &problem, const lensprof_fit_result &r) {
+    int odd = -1;
+    double limit = std::max(kOddImage, 4.0 * r.noise_levels);
+    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++)
+        if (r.image_quality[i].median_residual > limit) {
+            limit = r.image_quality[i].median_residual;
+            odd = static_cast<int>(i);
+        }
+    return odd;
+}
+
+// The image whose exposure the pairs leave most uncertain, when they do; else -1.
+int uncertain_image(const Problem &problem, const Estimate &estimate, const lensprof_fit_result &r) {
+    int worst = -1;
+    double limit = kLargestEvSigma;
+    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
+        double away = estimate.log_exposure[i][1] - estimate.log_exposure[problem.reference][1];
+        double of_gamma = std::max(r.gamma_sigma, 0.0) * away / std::log(2.0), sigma = r.image_quality[i].ev_sigma;
+        double own = std::sqrt(std::max(0.0, sigma * sigma - of_gamma * of_gamma));
+        if (own > limit) limit = own, worst = static_cast<int>(i);
+    }
+    return worst;
+}
+
+template <class... Values>
+bool refuse(lensprof_fit_result &r, const char *reason, Values... values) {
+    r.usable = 0;
+    std::snprintf(r.reason, sizeof r.reason, reason, values...);
+    return true;
+}
+
+// Too few, too alike, or in places that tell nothing.
+bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    size_t unknowns = free_columns(problem, estimate.modes).size() + static_cast<size_t>(problem.image_unknowns);
+    size_t informative = count_informative(problem);
+    if (r.components > 1)
+        return refuse(r,
+                      "the images fall into %u groups without usable overlap between them; add pictures that join them",
+                      r.components);
+    if (informative * static_cast<size_t>(problem.channels) < 2 * unknowns)
+        return refuse(r, "%zu different pairs between black and white are too few for %zu unknowns; sample more",
+                      informative, unknowns);
+    if (grey_range(problem) < kSmallestRange)
+        return refuse(r, "the pairs cover %.0f grey levels only, which does not show a response",
+                      255.0 * grey_range(problem));
+    bool falloff = problem.free & (LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3);
+    if (falloff && covered_radius(r) < kSmallestRadius)
+        return refuse(r,
+                      "the pairs reach to %.1f of the half diagonal only, which does not show the falloff in the "
+                      "corners; overlap the pictures more, or fix the falloff",
+                      covered_radius(r));
+    return false;
+}
+
+bool contradicts_model(const Problem &problem, lensprof_fit_result &r) {
+    constexpr uint32_t lens = LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+    bool is_free = (problem.free & lens) == lens;  // else it is what was held that does not fit
+    if (r.inlier_share < 0.3)
+        return refuse(r, "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
+                      100.0 * r.inlier_share);
+    if (is_free && r.local_levels > kLargestLocal && r.local_levels > kLargestLocalShare * r.noise_levels)
+        return refuse(r,
+                      "neighbouring pairs share residuals of %.1f levels, which no response and falloff explain: the "
+                      "pictures were processed by their surroundings (local tone mapping, HDR), or light changed",
+                      r.local_levels);
+    if (r.noise_levels > kLargestNoise)
+        return refuse(r,
+                      "the pairs scatter by %.1f levels about the best camera model; free more parameters, or check "
+                      "the alignment",
+                      r.noise_levels);
+    return false;
+}
+
+bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    if (!r.converged) return refuse(r, "the fit did not settle in %u iterations", r.iterations);
+    if (r.covariance_size == 0 && !free_columns(problem, estimate.modes).empty())
+        return refuse(r, "the pairs do not determine all parameters; fix some, or take pictures of more exposures");
+    double corner = corner_sigma(problem, r);
+    if (corner > kLargestCornerSigma)
+        return refuse(r, "the pairs leave the falloff in the corners uncertain by %.0f %%; sample more, or overlap more",
+                      100.0 * corner);
+    int image = uncertain_image(problem, estimate, r);
+    if (image >= 0)
+        return refuse(r, "the pairs leave the exposure of image %d uncertain by %.1f EV; overlap it more", image,
+                      r.image_quality[image].ev_sigma);
+    return false;
+}
+
+}  // namespace
+
+void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    if (lacks_data(problem, estimate, r) || contradicts_model(problem, r) || is_undetermined(problem, estimate, r)) return;
+    r.usable = 1;
+    r.reason[0] = 0;
+    int odd = odd_image(problem, r);
+    if (odd >= 0)
+        std::snprintf(r.reason, sizeof r.reason,
+                      "image %d disagrees with the images it overlaps (median residual %.1f levels): its exposure means "
+                      "nothing; check its place in the project",
+                      odd, r.image_quality[odd].median_residual);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,202 @@
+#include "quality.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "residual.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kLn2 = 0.6931471805599453;
+
+double quantile(std::vector<double> &values, double share) {
+    if (values.empty()) return 0.0;
+    auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+double radius(const Problem &problem, const lensprof_vignetting &vignetting, const lensprof_pair &pair, int side) {
+    const auto &image = problem.images[pair.image[side]];
+    return std::sqrt(
+        lensprof_vignetting_r2(&vignetting, image.width, image.height, pair.xy[side][0], pair.xy[side][1], nullptr));
+}
+
+uint32_t bin_of(double value) {
+    return static_cast<uint32_t>(std::clamp(value, 0.0, 0.999) * LENSPROF_COVERAGE_BINS);
+}
+
+void count_coverage(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    std::fill_n(r.radius_ends, LENSPROF_COVERAGE_BINS, 0u);
+    std::fill_n(r.grey_ends, LENSPROF_COVERAGE_BINS, 0u);
+    for (const auto &pair : problem.pairs)
+        for (int side = 0; side < 2; side++) {
+            r.radius_ends[bin_of(radius(problem, estimate.vignetting[0], pair, side))]++;
+            for (int c = 0; c < problem.channels; c++) r.grey_ends[bin_of(pair.value[side][c])]++;
+        }
+}
+
+// Signed residual of a pair: mean over the channels of the forward direction, weighted by its noise, levels of 255.
+double signed_residual(const PairTransfer &t, int channels) {
+    double sum = 0.0;
+    for (int c = 0; c < channels; c++) {
+        const Transfer &one = t.channel[static_cast<size_t>(c)];
+        sum += 255.0 * one.residual[0] / std::sqrt(1.0 + one.by_value[0] * one.by_value[0]);
+    }
+    return sum / channels;
+}
+
+// The pairs of an edge along a winding path over the frame of its first image: neighbours there lie close together.
+std::vector<size_t> winding_order(const Problem &problem, const Edge &edge, const std::vector<bool> &is_inlier) {
+    std::vector<size_t> order;
+    for (size_t p = edge.first; p < edge.last; p++)
+        if (is_inlier[p]) order.push_back(p);
+    const auto &image = problem.images[edge.image[0]];
+    double band = std::sqrt(static_cast<double>(image.width) * image.height / std::max<size_t>(order.size(), 1));
+    auto row = [&](size_t p) { return static_cast<int>(problem.pairs[p].xy[0][1] / band); };
+    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+        if (row(a) != row(b)) return row(a) < row(b);
+        double xa = problem.pairs[a].xy[0][0], xb = problem.pairs[b].xy[0][0];
+        return xa != xb ? (row(a) % 2 ? xa > xb : xa < xb) : a < b;
+    });
+    return order;
+}
+
+// What neighbouring pairs share of their residuals (d'Angelo's model has none of it: noise is independent). The root
+// of the mean product of neighbours' residuals, where that is beyond chance.
+double local_residual(const Problem &problem, const std::vector<double> &residual,
+                      const std::vector<bool> &is_inlier) {
+    double sum = 0.0, square = 0.0;
+    size_t count = 0;
+    for (const Edge &edge : problem.edges) {
+        const auto &image = problem.images[edge.image[0]];
+        double near = 0.15 * std::hypot(image.width, image.height);
+        auto order = winding_order(problem, edge, is_inlier);
+        for (size_t i = 1; i < order.size(); i++) {
+            const auto &a = problem.pairs[order[i - 1]].xy[0], &b = problem.pairs[order[i]].xy[0];
+            if (std::hypot(a[0] - b[0], a[1] - b[1]) > near) continue;
+            double product = residual[order[i - 1]] * residual[order[i]];
+            sum += product, square += product * product, count++;
+        }
+    }
+    return count && sum > 3.0 * std::sqrt(square) ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
+}
+
+// Residuals, noise and what they share, and every image's median.
+void describe_residuals(const Problem &problem, const Estimate &estimate, double noise, lensprof_fit_result &r) {
+    std::vector<double> chi2 = all_chi2(problem, estimate, noise), residual(problem.pairs.size());
+    std::vector<bool> is_inlier(problem.pairs.size());
+    for (size_t p = 0; p < chi2.size(); p++) is_inlier[p] = chi2[p] < inlier_limit(problem.channels);
+    r.noise_levels = 255.0 * noise;
+    r.inlier_share = static_cast<double>(std::count(is_inlier.begin(), is_inlier.end(), true))
+                     / static_cast<double>(problem.pairs.size());
+    std::vector<std::vector<double>> of_image(r.image_quality ? problem.image_count : 0);
+    for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
+        residual[p] = signed_residual(t, problem.channels);
+        if (of_image.empty()) return;
+        for (uint32_t image : problem.pairs[p].image)
+            for (int c = 0; c < problem.channels; c++)
+                for (double one : t.channel[static_cast<size_t>(c)].residual)
+                    of_image[image].push_back(255.0 * std::abs(one));
+    });
+    r.local_levels = local_residual(problem, residual, is_inlier);
+    for (size_t i = 0; i < of_image.size(); i++) r.image_quality[i].median_residual = quantile(of_image[i], 0.5);
+}
+
+void describe_images(const Problem &problem, const Gauge &gauge, const Estimate &estimate, const Covariance &found,
+                     lensprof_fit_result &r) {
+    if (!r.image_quality) return;
+    int measured = problem.measured_channel();
+    std::vector<std::vector<double>> greys(problem.image_count);
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        auto &q = r.image_quality[i];
+        const auto &a = estimate.log_exposure[i], &zero = estimate.log_exposure[problem.reference];
+        double gamma_sigma = std::max(gauge.sigma(), 0.0);
+        q.pairs = 0, q.radius = q.ev_sigma = q.known_ev_residual = 0.0;
+        q.component = problem.component[i];
+        auto sigma = [&](int unknown, double log_value) {  // of a logarithm: the data's and that of gamma
+            if (unknown < 0 || !found.is_determined) return 0.0;
+            return std::sqrt(std::max(0.0, found.images[unknown]) + std::pow(gamma_sigma * log_value, 2));
+        };
+        q.ev_sigma = sigma(problem.ev_unknown[i], a[measured] - zero[measured]) / kLn2;
+        for (int c = 0; c < 3; c++) {
+            int unknown = problem.channels == 3 ? problem.balance_unknown[i][c] : -1;
+            double balance = (a[c] - a[1]) - (zero[c] - zero[1]);
+            q.white_balance_sigma[c] = sigma(unknown, balance) * (unknown < 0 ? 0.0 : std::exp(a[c] - a[1]));
+        }
+        if (problem.images[i].known_ev_sigma > 0.0)
+            q.known_ev_residual =
+                (a[measured] - gauge.known_offset()) / kLn2 / gauge.slope() - problem.images[i].known_ev;
+    }
+    for (const auto &pair : problem.pairs)
+        for (int side = 0; side < 2; side++) {
+            auto &q = r.image_quality[pair.image[side]];
+            q.pairs++;
+            q.radius = std::max(q.radius, radius(problem, estimate.vignetting[0], pair, side));
+            for (int c = 0; c < problem.channels; c++) greys[pair.image[side]].push_back(pair.value[side][c]);
+        }
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        r.image_quality[i].grey_low = quantile(greys[i], 0.05);
+        r.image_quality[i].grey_high = quantile(greys[i], 0.95);
+    }
+}
+
+// The covariance of the data, gamma held, and that of gamma, which moves all parameters together.
+void describe_covariance(const Problem &problem, const Gauge &gauge, const Estimate &estimate,
+                         const Covariance &found, lensprof_fit_result &r) {
+    int modes = static_cast<int>(r.response.modes), curves = 3 * problem.vignettings, n = modes + curves + 2;
+    auto column = [&](int i) {
+        return i < modes ? i : i < modes + curves ? kFalloff + i - modes : kCenter + i - modes - curves;
+    };
+    r.covariance_size = found.is_determined ? static_cast<uint32_t>(n) : 0;
+    std::fill_n(r.gamma_direction, LENSPROF_COVARIANCE_MAX, 0.0);
+    if (!found.is_determined) return;
+    bool moves = gauge.sigma() > 0.0 && estimate.modes > 0;
+    Eigen::VectorXd direction = Eigen::VectorXd::Zero(kMaxShared);
+    if (moves) direction = Gauge::direction(problem, estimate);
+    for (int i = 0; i < n; i++)
+        if (found.shared(column(i), column(i)) > 0.0) r.gamma_direction[i] = direction[column(i)];
+    double variance = moves ? gauge.sigma() * gauge.sigma() : 0.0;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            r.covariance[i * n + j] =
+                found.shared(column(i), column(j)) + variance * (r.gamma_direction[i] * r.gamma_direction[j]);
+}
+
+}  // namespace
+
+std::vector<double> residual_levels(const Problem &problem, const Estimate &estimate) {
+    std::vector<double> values;
+    for_each_transfer(problem, estimate, [&](size_t, const PairTransfer &t) {
+        for (int c = 0; c < problem.channels; c++)
+            for (double r : t.channel[static_cast<size_t>(c)].residual) values.push_back(255.0 * std::abs(r));
+    });
+    return values;
+}
+
+Summary summarise(std::vector<double> values) {
+    Summary summary;
+    if (values.empty()) return summary;
+    double sum2 = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+    summary.rms = std::sqrt(sum2 / static_cast<double>(values.size()));
+    summary.median = quantile(values, 0.5);
+    return summary;
+}
+
+void describe_quality(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
+                      const Estimate &estimate, lensprof_fit_result &r) {
+    Loss final = loss;
+    final.noise = estimate_noise(problem, estimate, loss.noise);
+    Covariance found = covariance(problem, prior, gauge, final, estimate);
+    r.components = problem.component_count();
+    r.gamma_from = gauge.from();
+    r.gamma_sigma = gauge.sigma();
+    describe_residuals(problem, estimate, final.noise, r);
+    count_coverage(problem, estimate, r);
+    describe_images(problem, gauge, estimate, found, r);
+    describe_covariance(problem, gauge, estimate, found, r);
+}
+
+}  // namespace lensprof
