@@ -61,7 +61,7 @@ typedef struct lensprof_fit_image {
     uint32_t ev_of;             /* index of the image whose ev this one shares (links); own index = its own */
     uint32_t red_of, blue_of;   /* the same for the white balance factors */
     double known_ev;            /* exposure from elsewhere (EXIF), EV up to a common offset: a soft observation */
-    double known_ev_sigma;      /* its standard error, EV; 0 = not known. Rounded EXIF figures: about 0.1 */
+    double known_ev_sigma;      /* its standard error, 0.001..100 EV; 0 = not known. Rounded EXIF: about 0.1 */
 } lensprof_fit_image;
 
 /* Called now and then with a fraction 0..1; a non-zero return cancels the fit. */

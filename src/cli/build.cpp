@@ -192,7 +192,7 @@ lensprof_profile_key profile_key(const Options &o, const Project &project,
 /* Exposures by EXIF, where all of the lens's pictures were taken at one aperture (its own light loss is not EXIF's). */
 void add_known_exposures(const Options &o, const std::vector<PictureMetadata> &metadata,
                          std::vector<lensprof_fit_image> &images) {
-    if (o.exif_sigma == 0.0) return;
+    if (o.exif_sigma < 1e-3) return;
     for (size_t i = 0; i < images.size(); i++)
         if (metadata[i].exif_ev) {
             images[i].known_ev = *metadata[i].exif_ev;

@@ -15,9 +15,11 @@ public:
     /* Radiance of red, green and blue in a direction (radians, latitude positive down). */
     void radiance(double longitude, double latitude, double rgb[3]) const;
 
+    /* Sum of octaves of smooth noise at a point of space, the first with features of 1 / frequency; within +-1.1. */
+    double fractal(const double d[3], double frequency, int octaves) const;
+
 private:
     double noise(double x, double y, double z, uint32_t octave) const;
-    double fractal(const double d[3], double frequency, int octaves) const;
 
     uint32_t seed_;
 };

@@ -20,9 +20,10 @@ namespace {
 struct Options {
     std::string output, size = "800x600", response = "srgb", formats = "png";
     uint32_t images = 6, rows = 1, seed = 1, points = 0, test_points = 0;
-    double hfov = 50, overlap = 0.4, jitter = 1, ev = 1, wb = 0.15, noise = 2, outliers = 0, misalign = 0;
+    double hfov = 50, overlap = 0.4, jitter = 1, ev = 1, mean_ev = 0, wb = 0.15, noise = 2, outliers = 0, misalign = 0,
+           objects = 0, local_tone = 0, exif_rounding = 0;
     std::vector<double> vignetting{-0.30, 0.05, -0.15}, center{0.02, -0.015};
-    bool no_images = false;
+    bool no_images = false, exif = false;
 };
 
 void declare(CLI::App &app, Options &o) {
@@ -39,10 +40,20 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--vignetting", o.vignetting, "k1,k2,k3, or nine numbers for red, green, blue")->delimiter(',');
     app.add_option("--center", o.center, "x,y of the falloff's centre, half diagonals")->delimiter(',')->expected(2);
     app.add_option("--ev", o.ev, "exposures are uniform within +- this, EV")->check(in_range(0.0, 8.0));
+    app.add_option("--mean-ev", o.mean_ev, "about this; at 0 the brightest clouds are white")
+        ->check(in_range(-8.0, 8.0));
     app.add_option("--wb", o.wb, "white balance factors are uniform within 1 +- this")->check(in_range(0.0, 0.9));
     app.add_option("--noise", o.noise, "sigma, levels of 255")->check(in_range(0.0, 100.0));
     app.add_option("--outliers", o.outliers, "share of pixels (and of --points pairs) replaced by random numbers")
         ->check(in_range(0.0, 1.0));
+    app.add_option("--objects", o.objects, "share of every picture that moving objects cover; pairs with an end on one "
+                                           "see it")
+        ->check(in_range(0.0, 0.9));
+    app.add_option("--local-tone", o.local_tone, "local tone mapping after the response, strongest gain, EV")
+        ->check(in_range(0.0, 4.0));
+    app.add_flag("--exif", o.exif, "pictures tell exposure time and ISO too, true to the exposures");
+    app.add_option("--exif-rounding", o.exif_rounding, "sigma of the error of what they tell, EV")
+        ->check(in_range(0.0, 4.0));
     app.add_option("--format", o.formats, "png, png16, tiff, tiff16, tiff32, jpeg; several, with commas, take turns");
     app.add_option("--seed", o.seed, "another seed, another scene and camera");
     app.add_option("--points", o.points, "also write points.txt with this many noisy pairs")->check(in_range(0, 1e6));
@@ -119,6 +130,39 @@ Format format_of(const std::string &name) {
     throw Failure(ExitCode::usage, "--format " + name + ": use png, png16, tiff, tiff16, tiff32 or jpeg");
 }
 
+/* A wide aperture, which stays: falloff changes with it. */
+constexpr double kFNumber = 2.8;
+
+/* Exposure time and ISO that make up the exposure of every image, but for `rounding` (sigma, EV). */
+std::vector<Settings> exposure_settings(const Truth &truth, double rounding) {
+    Random random(truth.seed * 104729ull + 11);
+    std::vector<Settings> settings;
+    for (const auto &e : truth.exposures) {
+        double stated = e.ev + rounding * random.normal();
+        double iso = 100.0 * std::exp2(std::floor(random.uniform(0.0, 4.0)));
+        settings.push_back({std::exp2(stated) / iso, iso, kFNumber}); /* 1/100 s at ISO 100 for 0 EV */
+    }
+    return settings;
+}
+
+/* Asked for with --objects, --local-tone and --exif; random numbers of their own, so that the rest stays the same. */
+void add_disturbances(const Options &o, const Scene &scene, Truth &truth) {
+    Random random(o.seed * 15485863ull + 3);
+    truth.object_share = o.objects;
+    truth.local_tone = o.local_tone;
+    if (o.objects > 0.0)
+        for (const auto &camera : truth.cameras) truth.objects.push_back(random_blocks(camera, o.objects, random));
+    if (o.local_tone > 0.0)
+        for (uint32_t i = 0; i < truth.cameras.size(); i++) truth.tone.push_back(tone_map(truth, scene, i));
+    if (o.exif) truth.settings = exposure_settings(truth, o.exif_rounding);
+}
+
+void check_exif(const Options &o) {
+    if (o.exif && o.no_images)
+        throw Failure(ExitCode::usage, "--exif: there is no picture to write it into; leave out --no-images");
+    if (o.exif_rounding > 0.0 && !o.exif) throw Failure(ExitCode::usage, "--exif-rounding: needs --exif");
+}
+
 void place_cameras(const Options &o, Random &random, Truth &truth) {
     auto size = split(o.size, 'x');
     if (size.size() != 2) throw Failure(ExitCode::usage, "--size " + o.size + ": give WIDTHxHEIGHT");
@@ -165,7 +209,7 @@ Truth make_truth(const Options &o) {
     for (uint32_t i = 0; i < o.images; i++) {
         lensprof_exposure e;
         lensprof_exposure_init(&e);
-        double draws[3] = {random.uniform(-o.ev, o.ev), random.uniform(1 - o.wb, 1 + o.wb),
+        double draws[3] = {o.mean_ev + random.uniform(-o.ev, o.ev), random.uniform(1 - o.wb, 1 + o.wb),
                            random.uniform(1 - o.wb, 1 + o.wb)};
         e.ev = draws[0];
         if (i > 0) e.white_balance[0] = draws[1], e.white_balance[2] = draws[2];
@@ -187,8 +231,8 @@ Picture render(const Truth &truth, const Scene &scene, uint32_t i) {
     for (uint32_t y = 0; y < camera.height; y++) {
         auto *row = reinterpret_cast<float *>(&picture.pixels[y * picture.row_bytes]);
         for (uint32_t x = 0; x < camera.width; x++) {
-            double direction[2], rgb[3] = {0, 0, 0};
-            if (lensprof_camera_unproject(&camera, x, y, direction)) scene.radiance(direction[0], direction[1], rgb);
+            double rgb[3];
+            seen_radiance(truth, scene, i, x, y, rgb);
             for (int c = 0; c < 3; c++) row[3 * x + static_cast<uint32_t>(c)] = static_cast<float>(rgb[c]);
         }
     }
@@ -213,6 +257,18 @@ void expose(const Truth &truth, uint32_t i, Picture &picture) {
     check(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan), "simulate");
     lensprof_image view = picture.view();
     check(lensprof_apply(plan, &view, &view, 0, 0), "simulate");
+}
+
+void map_tones(const Truth &truth, uint32_t i, Picture &picture) {
+    for (uint32_t y = 0; y < picture.height; y++) {
+        auto *row = reinterpret_cast<float *>(&picture.pixels[y * picture.row_bytes]);
+        for (uint32_t x = 0; x < picture.width; x++) {
+            float *pixel = row + 3 * x;
+            double value[3] = {pixel[0], pixel[1], pixel[2]};
+            map_tone(tone_gain(truth, i, x, y), value);
+            for (int c = 0; c < 3; c++) pixel[c] = static_cast<float>(value[c]);
+        }
+    }
 }
 
 /* Noise, outliers and rounding. A saturated sample stays exactly white: clipping follows the noise in a camera. */
@@ -255,10 +311,12 @@ PictureMetadata metadata_of(const Truth &truth, uint32_t i) {
     set_text(m.key.lens, sizeof m.key.lens, "Simulated Lens");
     double half = truth.cameras[i].hfov_deg * std::acos(-1.0) / 360.0;
     m.key.focal_mm = std::round(180.0 / std::tan(half)) / 10.0;  /* on a sensor 36 mm wide */
-    m.key.aperture = 2.8;
-    m.f_number = 2.8;
-    m.iso = 100.0;
-    m.exposure_time_s = 0.01 * std::exp2(truth.exposures[i].ev);
+    m.key.aperture = kFNumber;
+    m.f_number = kFNumber;
+    if (!truth.settings.empty()) {
+        m.iso = truth.settings[i].iso;
+        m.exposure_time_s = truth.settings[i].time_s;
+    }
     return m;
 }
 
@@ -286,13 +344,24 @@ std::string project_text(const Options &o, const Truth &truth) {
     return text + "v\n";
 }
 
+Json image_json(const Truth &truth, size_t i) {
+    const auto &e = truth.exposures[i];
+    Json image = {
+        {"file", truth.files[i]}, {"ev", e.ev}, {"white_balance", {e.white_balance[0], 1.0, e.white_balance[2]}}};
+    if (!truth.settings.empty()) {
+        const auto &s = truth.settings[i];
+        image["exif_ev"] = std::log2(s.time_s * s.iso / 100.0 / (s.f_number * s.f_number));
+    }
+    if (!truth.objects.empty()) {
+        image["objects"] = Json::array();
+        for (const auto &b : truth.objects[i]) image["objects"].push_back({b.left, b.top, b.right, b.bottom});
+    }
+    return image;
+}
+
 Json truth_json(const Truth &truth) {
     Json json, images = Json::array(), k = Json::array();
-    for (size_t i = 0; i < truth.files.size(); i++) {
-        const auto &e = truth.exposures[i];
-        images.push_back(
-            {{"file", truth.files[i]}, {"ev", e.ev}, {"white_balance", {e.white_balance[0], 1.0, e.white_balance[2]}}});
-    }
+    for (size_t i = 0; i < truth.files.size(); i++) images.push_back(image_json(truth, i));
     for (uint32_t c = 0; c < truth.vignettings; c++)
         k.push_back({truth.vignetting[c].k[0], truth.vignetting[c].k[1], truth.vignetting[c].k[2]});
     json["schema"] = 1;
@@ -302,6 +371,8 @@ Json truth_json(const Truth &truth) {
         {"values", {std::vector<double>(truth.response.table, truth.response.table + LENSPROF_RESPONSE_SAMPLES)}}};
     json["noise"] = truth.noise_levels;
     json["outliers"] = truth.outlier_share;
+    json["objects"] = truth.object_share;
+    json["local_tone"] = truth.local_tone;
     return json;
 }
 
@@ -310,11 +381,14 @@ void write_pictures(const Options &o, const Truth &truth, const Scene &scene, Pr
     for_each_parallel(static_cast<uint32_t>(truth.files.size()), "rendering", progress, [&](uint32_t i) {
         Picture picture = render(truth, scene, i);
         expose(truth, i, picture);
+        if (!truth.tone.empty()) map_tones(truth, i, picture);
         digitise(truth, i, format_of(formats[i % formats.size()]).sample, picture);
         PictureMetadata metadata = metadata_of(truth, i);
         WriteOptions write;
         write.metadata = &metadata;
-        write_picture((std::filesystem::path(o.output) / truth.files[i]).string(), picture, write);
+        std::string path = (std::filesystem::path(o.output) / truth.files[i]).string();
+        if (!write_picture(path, picture, write) && o.exif)
+            throw Failure(ExitCode::failed, path + ": a TIFF of 4 GB cannot hold EXIF; use a smaller --size");
     });
 }
 
@@ -327,8 +401,10 @@ int run_simulate(const std::vector<std::string> &arguments, Streams &streams) {
     declare(app, o);
     if (!parse(app, arguments, streams)) return 0;
     for (const auto &name : split(o.formats, ',')) format_of(name);
+    check_exif(o);
     Truth truth = make_truth(o);
     Scene scene(o.seed);
+    add_disturbances(o, scene, truth);
     std::error_code error;
     std::filesystem::create_directories(o.output, error);
     if (error) throw Failure(ExitCode::failed, o.output + ": cannot be made: " + error.message());

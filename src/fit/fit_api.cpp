@@ -42,10 +42,10 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
             return fail(LENSPROF_ERROR_SIZE, error, "image %u: sizes must be 1..1048576", i);
         if (lensprof_exposure_validate(&image.exposure) != LENSPROF_OK)
             return fail(LENSPROF_ERROR_EXPOSURE, error, "image %u: exposure or white balance out of range", i);
-        if (!(image.known_ev_sigma >= 0.0 && image.known_ev_sigma <= 100.0)
-            || (image.known_ev_sigma > 0.0 && !(std::abs(image.known_ev) <= 64.0)))
-            return fail(LENSPROF_ERROR_EXPOSURE, error, "image %u: known exposure beyond 64 EV, or its sigma not 0..100",
-                        i);
+        if (image.known_ev_sigma != 0.0
+            && !(image.known_ev_sigma >= 1e-3 && image.known_ev_sigma <= 100.0 && std::abs(image.known_ev) <= 64.0))
+            return fail(LENSPROF_ERROR_EXPOSURE, error,
+                        "image %u: known exposure beyond 64 EV, or its sigma neither 0 nor 0.001..100", i);
         if (image.free & ~kImageFlags)
             return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: only EV, RED and BLUE can be free in an image", i);
         for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})

@@ -247,7 +247,8 @@ void Fit::write_exposures(const Estimate &estimate, lensprof_exposure *exposures
         size_t green = options_.channels == 3 ? 1 : 0;
         exposures[i] = given;
         if (all_.ev_unknown[i] >= 0)
-            exposures[i].ev = (a[green] - (green ? std::log(given.white_balance[1]) : 0.0)) / std::log(2.0);
+            exposures[i].ev = std::clamp(
+                (a[green] - (green ? std::log(given.white_balance[1]) : 0.0)) / std::log(2.0), -64.0, 64.0);
         for (size_t c : {0, 2})
             if (all_.balance_unknown[i][c] >= 0)
                 exposures[i].white_balance[c] =

@@ -10,17 +10,19 @@ import time
 import cases
 import real
 import report
+import scale
 import speed
 import tools
 
-PARTS = ("points", "pictures", "speed", "real")
+PARTS = ("points", "pictures", "refusals", "scale", "speed", "real")
 
 
 def parse():
     p = argparse.ArgumentParser(description="Measures lensprof beside Hugin's vig_optimize.", prog="run.sh")
-    p.add_argument("--quick", action="store_true", help="few cases, under two minutes")
+    p.add_argument("--quick", action="store_true", help="few cases, under three minutes")
     p.add_argument("--real", metavar="DIR", help="also cross-validate on every pano.pto below DIR")
-    p.add_argument("--only", default=",".join(PARTS), help="parts, with commas: points, pictures, speed, real")
+    p.add_argument("--only", default=",".join(PARTS), help="parts, with commas: " + ", ".join(PARTS))
+    p.add_argument("--match", metavar="TEXT", default="", help="only accuracy cases with TEXT in their row's name")
     p.add_argument("--repeat", type=int, default=5, help="turns of the speed measurement")
     p.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), help="cases at a time (accuracy only)")
     p.add_argument("--keep", action="store_true", help="keep the rendered pictures")
@@ -44,14 +46,18 @@ def main():
     tools.WORK.mkdir(parents=True, exist_ok=True)
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize is not installed (package hugin-tools); lensprof is alone"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
-               "points": [], "pictures": [], "speed": {}, "real": [], "skipped": skipped}
+               "points": [], "pictures": [], "refusals": [], "scale": [], "speed": {}, "real": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
     if "speed" in options.only:
         results["speed"] = speed.run_all(options.quick, options.repeat, say)
-    for part, of in (("points", cases.point_cases), ("pictures", cases.picture_cases)):
+    if "scale" in options.only:
+        results["scale"] = scale.run_all(options.quick, say)
+    for part, of in (("points", cases.point_cases), ("pictures", cases.picture_cases),
+                     ("refusals", cases.refusal_cases)):
         if part in options.only:
-            results[part] = cases.run_all(of(options.quick), options.jobs, options.keep, say)
+            chosen = of(options.quick, options.match)
+            results[part] = cases.run_all(chosen, options.match, options.jobs, options.keep, say)
     if options.real and "real" in options.only:
         results["real"] = real.run_all(options.real, options.jobs, say)
     results["seconds"] = time.time() - start

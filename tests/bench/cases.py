@@ -20,9 +20,12 @@ PICTURES = [
     ("film", "--response film"),
     ("EMoR curves", "--response EMOR"),
     ("linear", "--response linear"),
+    ("linear, 16 bit", "--response linear --format tiff16 --noise 0.5"),
     ("chromatic falloff", "--vignetting -0.30,0.05,-0.15,-0.25,0.03,-0.15,-0.36,0.08,-0.16"),
     ("10 % outlier pixels", "--outliers 0.1"),
     ("30 % outlier pixels", "--outliers 0.3"),
+    ("moving objects, 10 %", "--objects 0.1"),
+    ("moving objects, 25 %", "--objects 0.25"),
     ("JPEG", "--format jpeg"),
     ("16-bit TIFF", "--format tiff16 --noise 0.5"),
     ("float TIFF", "--format tiff32 --noise 0.5"),
@@ -32,9 +35,29 @@ PICTURES = [
     ("overlap 8 degrees", "--overlap 0.16"),
     ("2 images", "--images 2"),
     ("24 images, 2 rows", "--images 24 --rows 2"),
+    ("28 in a strip, one exposure", "--images 28 --rows 1 --hfov 16 --ev 0"),
+    ("EXIF tells exposures", "--exif"),
+    ("EXIF within 0.1 EV", "--exif --exif-rounding 0.1"),
     ("falloff of 4 stops", "--vignetting=-1.6,0.9,-0.2375"),
 ]
-QUICK_PICTURES = ("sRGB", "30 % outlier pixels", "JPEG", "fixed exposure", "2 images", "falloff of 4 stops")
+QUICK_PICTURES = ("sRGB", "30 % outlier pixels", "moving objects, 25 %", "JPEG", "fixed exposure", "2 images",
+                  "28 in a strip, one exposure", "falloff of 4 stops")
+
+# (case, figure, what it should stay below in every run or None); report.py prints them side by side.
+TARGETS = [
+    ("moving objects, 10 %", "ev_aligned", 0.01),
+    ("moving objects, 25 %", "ev_aligned", 0.03),
+    ("28 in a strip, one exposure", "ev_spread", None),
+    ("EXIF tells exposures", "ev_raw", None),
+    ("EXIF within 0.1 EV", "ev_raw", None),
+]
+
+# No one response makes these pictures: the right answer is that the result is not usable.
+REFUSALS = [
+    ("local tone mapping, 0.5 EV", "--local-tone 0.5"),
+    ("local tone mapping, 1 EV", "--local-tone 1"),
+    ("local tone mapping, 2 EV", "--local-tone 2"),
+]
 
 
 @dataclass
@@ -45,9 +68,10 @@ class Case:
     response: str
     arguments: list   # of `lensprof simulate`
     pictures: bool
+    peers: bool = True  # run beside them, and as the paper
 
 
-def point_cases(quick):
+def point_cases(quick, _=""):
     """Like d'Angelo's figure 1: error over the share of outliers (300 pairs) and over the number of pairs (10 %)."""
     jobs = [(300, share) for share in SHARES] + [(count, 10) for count in COUNTS if count != 300]
     for seed in range(1, (4 if quick else POINT_SEEDS) + 1):
@@ -59,16 +83,22 @@ def point_cases(quick):
                        ["--no-images", "--points", str(count), "--outliers", str(share / 100.0)], False)
 
 
-def picture_cases(quick):
-    for group, options in PICTURES:
-        if quick and group not in QUICK_PICTURES:
-            continue
+def picture_cases(quick, match=""):
+    return cases_of([p for p in PICTURES if match or not quick or p[0] in QUICK_PICTURES], quick, True)
+
+
+def refusal_cases(quick, _=""):
+    return cases_of(REFUSALS, quick, False)
+
+
+def cases_of(groups, quick, peers):
+    for group, options in groups:
         for seed in range(1, (1 if quick else PICTURE_SEEDS) + 1):
             words = options.replace("EMOR", EMOR[(seed - 1) % len(EMOR)]).split()
             named = "--response" in words
             response = words[words.index("--response") + 1] if named else PICTURE_RESPONSES[(seed - 1) % 3]
             name = "".join(c if c.isalnum() else "_" for c in "%s_%d" % (group, seed))
-            yield Case(name, [group], 100 + seed, response, words, True)
+            yield Case(name, [group], 100 + seed, response, words, True, peers)
 
 
 def make(case, folder):
@@ -83,6 +113,8 @@ def calls(case, folder):
     points = folder / ("pairs.txt" if case.pictures else "points.txt")
     given = ["--points-out", str(points)] if case.pictures else ["--points", str(points)]
     yield "lensprof", tools.run_lensprof, given
+    if not case.peers:
+        return
     yield "lensprof-paper", tools.run_lensprof, tools.PAPER + ([] if case.pictures else given)
     if tools.VIG_OPTIMIZE:
         yield "hugin", tools.run_hugin, ["-i", str(points)]
@@ -114,8 +146,8 @@ def run_case(case, keep):
     return records
 
 
-def run_all(cases, jobs, keep, say):
-    cases, done = list(cases), []
+def run_all(cases, match, jobs, keep, say):
+    cases, done = [c for c in cases if not match or any(match in group for group in c.groups)], []
     with ThreadPoolExecutor(jobs) as pool:
         for records in pool.map(lambda case: run_case(case, keep), cases):
             done.append(records)

@@ -2,7 +2,8 @@
 # The benchmark: accuracy, speed and robustness of build/lensprof beside Hugin's vig_optimize.
 # Tables in Markdown go to standard output and build/bench/benchmarks.md, every figure to build/bench/results.json.
 #
-#   tests/bench/run.sh [--quick] [--real DIR] [--only points,pictures,speed,real] [--repeat N] [--jobs N] [--keep]
+#   tests/bench/run.sh [--quick] [--real DIR] [--only PARTS] [--match TEXT] [--repeat N] [--jobs N] [--keep]
+#                      PARTS, with commas: points, pictures, refusals, scale, speed, real
 #   tests/bench/run.sh --self-test      the scorer against known errors; needs no program; exit 77: NumPy is missing
 #
 # LENSPROF=program measures another program than build/lensprof.

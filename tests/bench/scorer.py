@@ -152,14 +152,16 @@ def errors(truth, model, exponent, centred):
 
 
 def score(truth, model, pairs, sizes):
-    """All errors of a recovered model. pairs: noise-free correspondences that no tool has seen."""
+    """All errors of a recovered model. pairs: noise-free correspondences that no tool has seen. ev_spread: from the
+    lowest to the highest error of an exposure as stated; where exposures are all alike, their spread."""
     exponent = gauge_exponent(truth, model)
     result = {"exponent": exponent}
     for tag, values in (("raw", errors(truth, model, 1.0, False)), ("aligned", errors(truth, model, exponent, True))):
         result.update({"%s_%s" % (name, tag): v for name, v in zip(("ev", "wb", "falloff", "response"), values)})
     residual = transfer(model, pairs, sizes)
     result.update(center=float(np.hypot(*(model.center - truth.center))), clean_rms=rms(residual),
-                  clean_median=float(np.median(np.abs(residual))), monotone=bool(model.monotone))
+                  clean_median=float(np.median(np.abs(residual))), monotone=bool(model.monotone),
+                  ev_spread=float(np.ptp(model.ev - truth.ev)))
     if len(truth.ev) < 3:
         result["ev_aligned"] = None  # one difference of exposures: zero by construction
     result["failed"] = not result["clean_rms"] <= FAILURE_LEVELS

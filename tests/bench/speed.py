@@ -7,10 +7,14 @@ import subprocess
 import scorer
 import tools
 
-SOLVER = [("6 images, 300 pairs", "--images 6 --points 300 --no-images"),
-          ("20 images, 5000 pairs", "--images 20 --rows 2 --points 5000 --no-images")]
-COMMAND = [("6 JPEG of 0.5 MP", "--images 6 --size 816x612 --format jpeg"),
-           ("20 JPEG of 2 MP", "--images 20 --rows 2 --size 1632x1224 --format jpeg")]
+# Name, options of simulate, turns at most, whether a quick run has it.
+SOLVER = [("6 images, 300 pairs", "--images 6 --points 300 --no-images", 9, True),
+          ("20 images, 5000 pairs", "--images 20 --rows 2 --points 5000 --no-images", 9, True),
+          ("61 images, 300 pairs", "--images 61 --rows 4 --hfov 25 --mean-ev -1 --points 300 --no-images", 3, True),
+          ("61 images, 5000 pairs", "--images 61 --rows 4 --hfov 25 --mean-ev -1 --points 5000 --no-images", 1, False)]
+COMMAND = [("6 JPEG of 0.5 MP", "--images 6 --size 816x612 --format jpeg", 9, True),
+           ("20 JPEG of 2 MP", "--images 20 --rows 2 --size 1632x1224 --format jpeg", 9, False),
+           ("20 JPEG of 12 MP", "--images 20 --rows 2 --size 4000x3000 --format jpeg", 3, False)]
 COMMON = "--seed 1 --outliers 0.1 --test-points 2000"
 
 
@@ -31,11 +35,13 @@ def solver_runs(folder):
 
 
 def command_runs(folder):
-    """{tool: call}: the whole command from the pictures, with the threads that the tool takes by itself."""
+    """{tool: call}: the whole command from the pictures, with the threads that the tool takes by itself. Large pictures
+    meet vig_optimize -s 3 alone: without reduction it holds every one of them as floating point numbers."""
     project = str(folder / "pano.pto")
     yield "lensprof", lambda: tools.run_lensprof(project, str(folder / "lensprof"))
     if tools.VIG_OPTIMIZE:
-        for tool, extra in (("hugin-2000", ["-s", "0", "-p", "2000"]), ("hugin-default", [])):
+        small = (("hugin-2000", ["-s", "0", "-p", "2000"]), ("hugin-default", []))
+        for tool, extra in (("hugin-3", ["-s", "3"]),) if "12_MP" in folder.name else small:
             yield tool, lambda tool=tool, extra=extra: tools.run_hugin(project, str(folder / tool), extra, threads=None)
 
 
@@ -70,10 +76,9 @@ def measure(name, options, runs, turns):
 
 def run_all(quick, turns, say):
     solver, command = [], []
-    for name, options in SOLVER:
-        say("speed: " + name)
-        solver += measure(name, options, solver_runs, 1 if quick and "5000" in name else turns)
-    for name, options in COMMAND[:1] if quick else COMMAND:
-        say("speed: " + name)
-        command += measure(name, options, command_runs, turns)
+    for cases, runs, records in ((SOLVER, solver_runs, solver), (COMMAND, command_runs, command)):
+        for name, options, most, in_quick in cases:
+            if in_quick or not quick:
+                say("speed: " + name)
+                records += measure(name, options, runs, 1 if quick and not name.startswith("6 ") else min(turns, most))
     return {"solver": solver, "command": command}

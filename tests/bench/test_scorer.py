@@ -7,6 +7,7 @@ import unittest
 
 import numpy as np
 
+import cases
 import real
 import report
 import scorer
@@ -101,6 +102,12 @@ class Scorer(unittest.TestCase):
         found.center = found.center + np.array([0.03, 0.04])
         self.assertAlmostEqual(self.score(found)["center"], 0.05, 12)
 
+    def test_spread_of_exposures(self):
+        truth, found = camera(), camera()
+        truth.ev[:] = 0.0
+        found.ev = np.array([0.0, 0.03, -0.02, 0.01, 0.0])
+        self.assertAlmostEqual(scorer.score(truth, found, self.pairs, SIZES)["ev_spread"], 0.05)
+
     def test_useless_result_is_a_failure(self):
         result = self.score(scorer.identity(5))
         self.assertTrue(result["failed"])
@@ -183,6 +190,13 @@ class Tables(unittest.TestCase):
         theirs = [{"case": "a"}, {"case": "b", "clean_rms": 2.0}, {"case": "c", "clean_rms": 9.0}]
         self.assertEqual((report.wins(ours, theirs), report.wins(theirs, ours), report.wins(ours, None)),
                          ("1 of 3", "2 of 3", "–"))
+
+    def test_targets(self):
+        group, _, limit = cases.TARGETS[0]
+        runs = [{"tool": "lensprof", "groups": [group], "ev_aligned": limit * f} for f in (0.5, 1.0, 3.0)]
+        rows = report.targets(runs + [{"tool": "lensprof", "groups": [group]}])  # the last has no result
+        self.assertEqual(rows[-2], "| %s | exposure | 0.0100 | 0.0200 | – | 2 of 4 | – | 0 |" % group)
+        self.assertEqual(report.targets([{"tool": "lensprof", "groups": ["sRGB"]}]), [])
 
     def test_numbers(self):
         self.assertEqual([report.number(v) for v in (0.00123, 0.0123, 1.234, 12.34, 1234.5)],

@@ -22,7 +22,8 @@ LIMIT_S = 600
 
 PAPER = ["--modes", "5", "--loss", "huber", "--prior", "0", "--sampling", "paper"]
 LABELS = {"lensprof": "lensprof", "lensprof-paper": "lensprof as the paper", "hugin": "vig_optimize, same points",
-          "hugin-2000": "vig_optimize -s 0 -p 2000", "hugin-default": "vig_optimize, defaults"}
+          "hugin-2000": "vig_optimize -s 0 -p 2000", "hugin-3": "vig_optimize -s 3",
+          "hugin-default": "vig_optimize, defaults"}
 
 
 def measured(command, cwd, log, threads=None):
