@@ -12,7 +12,9 @@ namespace lensprof {
 namespace {
 
 constexpr double kLn2 = 0.6931471805599453;
-constexpr double kPinSigma = 1e-3;       // of ln gamma while it is held
+// How firmly gamma is held, as a standard error of ln gamma at kPinPairs pairs and the prior's own standard error. Modes
+// left out prefer some gamma by accident, the more the more pairs there are: the hold keeps up with them.
+constexpr double kPinSigma = 0.05, kLargestPinSigma = 0.1, kPinPairs = 2000.0;
 constexpr double kLargestStep = 1.2;     // of ln gamma in one move along the family
 constexpr double kDoubtful = 3.0;        // known exposures farther off, in standard errors, count for less
 
@@ -170,7 +172,10 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
         for (int l = 0; l < estimate.modes; l++)
             prior.pin[l] = -lp_curve_eval(lensprof_emor_table(static_cast<uint32_t>(l) + 1), x, nullptr) * slope
                            / (x * std::log(x));
-        prior.pin_precision = 1.0 / (kPinSigma * kPinSigma);
+        double pairs = static_cast<double>(std::max<size_t>(problem.pairs.size(), 1));
+        double hold = std::min(kLargestPinSigma, kPinSigma * std::sqrt(kPinPairs / pairs));
+        hold *= std::pow(sigma_ / prior_.sigma, 4);
+        prior.pin_precision = 1.0 / (hold * hold);
         prior.pin_value = prior.pin.dot(Eigen::Map<const Eigen::VectorXd>(estimate.emor.data(), kMaxModes)) - here;
     } else {
         compare_known(problem, estimate);

@@ -116,7 +116,9 @@ Estimate Fit::best_start(int modes) {
     Problem few = problem(split_.few.empty() ? split_.all : split_.few);
     few.vignettings = all_.vignettings;
     Control brief = control_;
-    brief.max_iterations = std::min(control_.max_iterations, 15);
+    brief.max_iterations = std::min(control_.max_iterations, 10);
+    brief.rounds = 1;
+    brief.flat = 1e-3;
     Gauge unheld = gauge_.unheld();
     Estimate best;
     double lowest = 0.0;
@@ -149,7 +151,8 @@ Candidate Fit::candidate(const Estimate &from, int modes) {
     result.estimate = from;
     set_modes(result.estimate, modes);
     Control brief = control_;
-    brief.rounds = 2;
+    brief.rounds = 1;
+    brief.flat = 1e-5;
     brief.max_iterations = std::min(control_.max_iterations, 12);
     Loss used = common_;
     solve(train_, prior_, gauge_, used, false, brief, result.estimate);
@@ -217,7 +220,9 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     done_ = 0.2;
     Loss used = loss();
     set_modes(best.estimate, modes);
-    solve(train_, prior_, gauge_, used, true, control_, best.estimate);
+    Control first = control_;
+    if (any_modes || any_curves) first.flat = 1e-5, first.rounds = 4;
+    solve(train_, prior_, gauge_, used, true, first, best.estimate);
     common_ = used;
     if (options_.loss != LENSPROF_LOSS_ROBUST) common_.noise = estimate_noise(train_, best.estimate, used.noise);
     if (any_modes) best = choose_modes(best.estimate);

@@ -51,9 +51,9 @@ Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_ima
 
 // A response table, with a guide that shortens the search of its inverse.
 struct Curve {
-    static constexpr int kGuide = 256;
+    static constexpr int kGuide = 1024;
     std::array<double, LENSPROF_RESPONSE_SAMPLES> table;
-    std::array<uint16_t, kGuide + 1> guide;  // largest sample below each k / 256
+    std::array<uint16_t, kGuide + 1> guide;  // largest sample below each k / 1024
 
     void renew_guide();
     double invert(double b, double *slope) const;

@@ -8,6 +8,7 @@
 
 #include "monotone.hpp"
 #include "normal_equations.hpp"
+#include "residual.hpp"
 
 namespace lensprof {
 namespace {
@@ -29,6 +30,15 @@ struct Stepper {
 
     std::unique_ptr<NormalEquations> model_at(const Estimate &estimate) const {
         return std::make_unique<NormalEquations>(problem, prior, loss, weights, estimate, modes);
+    }
+
+    double value_at(const Estimate &estimate) const {
+        double value = prior_cost(prior, problem, model->columns(), estimate);
+        for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
+            PairResiduals residuals = weighted_residuals(t, problem.channels, weights[p]);
+            value += 0.5 * pair_cost(residuals, problem.channels, loss, nullptr);
+        });
+        return value;
     }
 
     Estimate moved(const Estimate &from, const Eigen::VectorXd &d) const {
@@ -56,6 +66,8 @@ struct Stepper {
             if (!model->reduce(lambda)) continue;
             Eigen::VectorXd d = constrained_step(region, model->reduced_hessian(), model->reduced_gradient());
             Estimate candidate = moved(estimate, d);
+            // After a failure another is likely: the value alone is cheaper than a model.
+            if (attempt > 0 && !(value_at(candidate) < model->objective())) continue;
             auto next = model_at(candidate);
             if (!(next->objective() < model->objective())) continue;
             estimate = candidate;
@@ -92,7 +104,6 @@ double change(const Estimate &a, const Estimate &b) {
 Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &loss, bool refine_noise,
               const Control &control, Estimate &estimate) {
     constexpr double kStill = 1e-5;        // nothing a user sees moves by more in a step
-    constexpr double kFlat = 1e-8;         // a step gains less than this share of the objective
     constexpr int kNoiseRounds = 4;
     const ModeTable modes(std::max(estimate.modes, 0));
     Prior renewed = prior;
@@ -110,7 +121,7 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
             double last = outcome.cost;
             outcome.iterations++;
             bool improved = stepper.step(estimate, outcome.cost);
-            bool flat = stepper.steps > 1 && last - outcome.cost < kFlat * std::abs(last);
+            bool flat = stepper.steps > 1 && last - outcome.cost < control.flat * std::abs(last);
             outcome.converged = !improved || flat || change(previous, estimate) < kStill;
         }
         if (outcome.iterations >= control.max_iterations || change(before, estimate) < 10 * kStill) break;

@@ -14,6 +14,7 @@ namespace lensprof {
 struct Control {
     int max_iterations = 200;
     int rounds = 6;
+    double flat = 1e-8;  // a round ends when a step gains less than this share of the objective
     std::function<bool()> cancelled;  // asked once an iteration
 };
 
