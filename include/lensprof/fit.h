@@ -45,9 +45,6 @@ typedef struct lensprof_fit_image {
     uint32_t red_of, blue_of;   /* the same for the white balance factors */
 } lensprof_fit_image;
 
-/* Called now and then with a fraction 0..1; a non-zero return cancels the fit. */
-typedef int (*lensprof_progress)(double done, void *user);
-
 typedef struct lensprof_fit_options {
     uint32_t struct_size;
     uint32_t channels;      /* 1 or 3 */
