@@ -284,13 +284,12 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     auto pictures = read_pictures(project, o.max_side, progress);
     channels = channel_count(pictures);
     report.load_s = lap(clock);
-    progress.update("sampling", 0.0);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
     options.sampling = o.sampling == "paper" ? LENSPROF_SAMPLING_PAPER : LENSPROF_SAMPLING_BALANCED;
     options.pairs = o.pairs;
     options.seed = o.seed;
-    pairs = sample_pairs(project, pictures, options);
+    pairs = sample_pairs(project, pictures, options, progress);
     report.sample_s = lap(clock);
     return pairs;
 }

@@ -101,6 +101,8 @@ void RowSink::emit_row() {
     ++emitted_;
 }
 
+uint32_t dct_step(uint32_t reduction) { return reduction >= 8 ? 8 : reduction >= 4 ? 4 : reduction >= 2 ? 2 : 1; }
+
 uint64_t pixel_bytes(const Picture &picture) {
     return lensprof_layout_samples(picture.layout) * uint64_t(lensprof_sample_bytes(picture.sample));
 }
@@ -118,6 +120,8 @@ void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, co
     if (request.max_side > 0) {
         const uint32_t wanted = std::max(frame_width, frame_height) / request.max_side;
         picture.reduction = std::max(1u, std::min({wanted, frame_width, frame_height}));
+        if (picture.traits.format == FileFormat::jpeg)
+            picture.reduction -= picture.reduction % dct_step(picture.reduction);
     }
     picture.width = frame_width / picture.reduction;
     picture.height = frame_height / picture.reduction;

@@ -67,10 +67,11 @@ struct Picture {
 
 struct ReadOptions {
     /* 0 = full size. Otherwise every held pixel is the mean of a square of the frame, whose side is the largest whole
-     * number that leaves the longer side of the picture at or above max_side. Held pixel (x, y) covers the frame's
-     * pixels from (x, y) * reduction on; up to reduction - 1 columns and rows at the right and lower edge are left
-     * out. Means are exact for PNG and TIFF (all samples alike, alpha too) and of the coded values; for JPEG part of
-     * the averaging is done by the inverse DCT, which differs by a level or so. */
+     * number that leaves the longer side of the picture at or above max_side; for JPEG the largest of 1, 2, 4 and the
+     * multiples of 8. Held pixel (x, y) covers the frame's pixels from (x, y) * reduction on; up to reduction - 1
+     * columns and rows at the right and lower edge are left out. Means are exact for PNG and TIFF (all samples alike,
+     * alpha too) and of the coded values; for JPEG the averaging is done by the inverse DCT, which differs by a level
+     * or so. */
     uint32_t max_side = 0;
 };
 
@@ -137,6 +138,10 @@ void close_written(File &file, const std::string &path);
 
 /* Sets frame, reduction, size and row_bytes from the frame's size and max_side; sample and layout must be set. */
 void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, const ReadRequest &request);
+
+/* What the inverse DCT of a JPEG averages by, almost for nothing, when squares of `reduction` pixels are wanted: 8, 4, 2
+ * or 1. Any other reduction would make it do the whole frame. */
+uint32_t dct_step(uint32_t reduction);
 
 uint64_t pixel_bytes(const Picture &picture);
 

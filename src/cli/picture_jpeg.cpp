@@ -136,11 +136,6 @@ bool read_start(JpegReader &reader, Picture &picture) {
     });
 }
 
-/* The inverse DCT averages by 2, 4 or 8 almost for nothing; what remains of the reduction is done on pixels. */
-uint32_t dct_step(uint32_t reduction) {
-    return reduction % 8 == 0 ? 8 : reduction % 4 == 0 ? 4 : reduction % 2 == 0 ? 2 : 1;
-}
-
 bool start_decoding(JpegReader &reader, const Picture &picture) {
     return guarded(reader.state.jump, [&] {
         reader.info.scale_num = 1;

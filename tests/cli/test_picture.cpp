@@ -328,16 +328,37 @@ void test_reduced_lossless(void **) {
     }
 }
 
+/* The inverse DCT reduces by 2, 4 and 8 only: the reduction is the next one below, what remains of it by whole pixels. */
 void test_reduced_jpeg(void **) {
+    const uint32_t steps[][2] = {{1, 1}, {2, 2}, {3, 2}, {4, 4}, {5, 4}, {6, 4}, {8, 8}, {16, 16}, {25, 24}};
     for (uint32_t layout : {LENSPROF_LAYOUT_GREY, LENSPROF_LAYOUT_RGB}) {
         write_jpeg_file(in_folder("a.jpg"), make_smooth(203, 150, layout), JpegKind());
         const Picture full = read_picture(in_folder("a.jpg"));
-        for (uint32_t step : {2u, 3u, 4u, 5u, 6u, 8u, 16u, 24u}) {
+        for (const auto &step : steps) {
             ReadOptions options;
-            options.max_side = 203 / step;
-            assert_means(full, read_picture(in_folder("a.jpg"), options), 203 / options.max_side, step % 2 ? 0 : 2);
+            options.max_side = 203 / step[0];
+            assert_means(full, read_picture(in_folder("a.jpg"), options), step[1], step[1] == 1 ? 0 : 2);
+            assert_int_equal(read_header(in_folder("a.jpg"), options).width, 203 / step[1]);
         }
     }
+}
+
+/* Progressive files and halved chroma reduce in the same way. */
+void test_reduced_jpeg_kinds(void **) {
+    for (int chroma : {1, 2})
+        for (bool progressive : {false, true}) {
+            Picture picture = make_smooth(160, 120, LENSPROF_LAYOUT_RGB);
+            picture.traits.chroma_step_x = picture.traits.chroma_step_y = chroma;
+            picture.traits.progressive = progressive;
+            write_picture(in_folder("a.jpg"), picture);
+            const Picture full = read_picture(in_folder("a.jpg"));
+            assert_true(full.traits.progressive == progressive && full.traits.chroma_step_y == chroma);
+            for (uint32_t step : {2u, 4u, 8u}) {
+                ReadOptions options;
+                options.max_side = 160 / step;
+                assert_means(full, read_picture(in_folder("a.jpg"), options), step, 3);
+            }
+        }
 }
 
 /* A reduced picture says where it is in the frame; content counts, not the name. */
@@ -369,7 +390,7 @@ int main() {
         cmocka_unit_test(test_png_deep_interlaced),   cmocka_unit_test(test_tiff_kinds),
         cmocka_unit_test(test_tiff_min_is_white),     cmocka_unit_test(test_tiff_jpeg),
         cmocka_unit_test(test_reduced_lossless),      cmocka_unit_test(test_reduced_jpeg),
-        cmocka_unit_test(test_size),
+        cmocka_unit_test(test_reduced_jpeg_kinds),    cmocka_unit_test(test_size),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
