@@ -20,7 +20,8 @@ typedef struct lensprof_pair {
 } lensprof_pair;
 
 /* A picture to sample. The view may be a reduced picture: pixel (u, v) is then the mean of the square of frame
- * pixels from (u, v) * reduction on. Frozen value struct. */
+ * pixels from (u, v) * reduction on, or of some pixels of it whose places vary from square to square. Frozen value
+ * struct. */
 typedef struct lensprof_sample_image {
     lensprof_image view;    /* the frame, reduced or not; layouts with alpha: alpha below half = excluded */
     lensprof_camera camera; /* full frame */

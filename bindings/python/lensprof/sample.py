@@ -21,7 +21,7 @@ class SampleImage:
 
     array: (height, width) or (height, width, samples); layouts with alpha: alpha below half = excluded. camera: of
     the full frame. layout: RGB order when None. reduction: pixel (u, v) of the array is the mean of the square of
-    `reduction` frame pixels from (u, v) * reduction on. mask: (height, width) uint8 or bool, 0 = excluded. black,
+    `reduction` frame pixels from (u, v) * reduction on, or of some pixels of it. mask: (height, width) uint8 or bool, 0 = excluded. black,
     white: samples outside in any channel are not used; 0..1.
     """
 
