@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <new>
@@ -35,21 +34,21 @@ template <class Sample, class Sum> void reduce_blocks(uint8_t *rows, size_t row_
         }
 }
 
-/* Place, below `count`, of number x in a sequence whose neighbours are spread evenly. */
-uint32_t spread(double x, uint32_t count) {
-    return std::min(static_cast<uint32_t>((x - std::floor(x)) * count), count - 1);
-}
+/* Place below `count` of a fraction of 2^32. */
+uint32_t place(uint32_t fraction, uint32_t count) { return static_cast<uint32_t>(uint64_t(fraction) * count >> 32); }
 
 }  // namespace
 
 RowSink::RowSink(Picture &picture, uint32_t source_width, uint32_t done)
     : picture_(picture), halves_(picture.reduction > 1 && done == 1), blocks_(std::max(picture.reduction / 2, 1u)),
       pixel_bytes_(static_cast<size_t>(pixel_bytes(picture))), scratch_row_(source_width * pixel_bytes_),
-      direct_(picture.reduction == 1 && source_width == picture.width) {
+      direct_(!halves_ && blocks_ == 1 && source_width == picture.width) {
     picture_.pixels.clear();
     picture_.pixels.reserve(picture_.row_bytes * picture_.height);
-    if (!direct_)
-        scratch_.resize(scratch_row_ * (halves_ ? 2 : 1));
+    if (direct_)
+        return;
+    scratch_.resize(scratch_row_ * (halves_ ? 2 : 1));
+    picks_.resize(blocks_);
 }
 
 uint8_t *RowSink::row() {
@@ -86,17 +85,29 @@ void RowSink::halve_rows() {
         reduce_blocks<float, double>(scratch_.data(), row_samples, pixel, count);
 }
 
-/* Multiples of the plane's generalised golden ratio (Roberts' R2 sequence) choose the block, so that the blocks of any
- * few neighbouring pixels lie evenly about the middles of their squares. */
+/* Multiples of the plane's generalised golden ratio (Roberts' R2 sequence) and of the golden ratio, as fractions of 2^32,
+ * choose the block, so that the blocks of any few neighbouring pixels lie evenly about the middles of their squares. */
+void RowSink::choose_blocks() {
+    for (auto &picks : picks_)
+        picks.clear();
+    for (uint32_t x = 0; x < picture_.width; ++x) {
+        const uint32_t down = place(0xc13fa9a9u * x + 0x91e10da6u * emitted_, blocks_);
+        picks_[down].push_back({x, x * blocks_ + place(0x9e3779b9u * x + 0x80000000u * emitted_, blocks_)});
+    }
+}
+
 void RowSink::pick_from_row() {
-    if (block_row_ == 0)
+    if (block_row_ == 0) {
         picture_.pixels.resize((emitted_ + size_t(1)) * picture_.row_bytes);
+        choose_blocks();
+    }
     uint8_t *to = picture_.pixels.data() + emitted_ * picture_.row_bytes;
-    for (uint32_t x = 0; x < picture_.width; ++x, to += pixel_bytes_) {
-        if (spread(0.7548776662466927 * x + 0.5698402909980532 * emitted_, blocks_) != block_row_)
-            continue;
-        const size_t column = size_t(x) * blocks_ + spread(0.6180339887498949 * x + 0.5 * emitted_, blocks_);
-        std::memcpy(to, scratch_.data() + column * pixel_bytes_, pixel_bytes_);
+    const uint8_t *from = scratch_.data();
+    for (const Pick &pick : picks_[block_row_]) {
+        if (pixel_bytes_ == 3) /* the usual size, known to the compiler */
+            std::memcpy(to + pick.x * size_t(3), from + pick.column * size_t(3), 3);
+        else
+            std::memcpy(to + pick.x * pixel_bytes_, from + pick.column * pixel_bytes_, pixel_bytes_);
     }
     if (++block_row_ == blocks_) {
         block_row_ = 0;

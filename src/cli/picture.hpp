@@ -156,7 +156,12 @@ public:
     void accept();  /* it is there */
 
 private:
+    struct Pick {
+        uint32_t x, column; /* pixel of the picture, block that it takes */
+    };
+
     void halve_rows();
+    void choose_blocks();
     void pick_from_row();
 
     Picture &picture_;
@@ -168,6 +173,7 @@ private:
     uint32_t block_row_ = 0; /* rows of blocks since the last row of the picture */
     uint32_t emitted_ = 0;   /* rows of the picture */
     std::vector<uint8_t> scratch_;
+    std::vector<std::vector<Pick>> picks_; /* of the picture's next row, for every row of blocks */
 };
 
 /* Runs body() and says false when the C library it calls left it by longjmp(jump). The jump skips no destructor as
