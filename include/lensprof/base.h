@@ -68,6 +68,10 @@ typedef struct lensprof_error {
     char text[256];
 } lensprof_error;
 
+/* Called now and then by the thread that made the call, with a fraction 0..1; a non-zero return cancels the call,
+ * which then returns CANCELLED. */
+typedef int (*lensprof_progress)(double done, void *user);
+
 /* Name of a status, e.g. "LENSPROF_ERROR_SIZE"; "unknown status" for other numbers. Static storage. */
 LENSPROF_API const char *lensprof_status_name(lensprof_status status);
 

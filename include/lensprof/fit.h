@@ -64,9 +64,6 @@ typedef struct lensprof_fit_image {
     double known_ev_sigma;      /* its standard error, 0.001..100 EV; 0 = not known. Rounded EXIF: about 0.1 */
 } lensprof_fit_image;
 
-/* Called now and then with a fraction 0..1; a non-zero return cancels the fit. */
-typedef int (*lensprof_progress)(double done, void *user);
-
 typedef struct lensprof_fit_options {
     uint32_t struct_size;
     uint32_t channels;      /* 1 or 3 */

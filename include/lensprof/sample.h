@@ -1,6 +1,7 @@
 /* lensprof/sample.h - correspondences: the same scene point seen in two pictures.
  *
- * Threads: functions are independent of each other; the pictures are only read. */
+ * Threads: calls are independent of each other; the pictures are only read. One call uses as many threads as its options
+ * say, all gone when it returns; the pairs do not depend on their number: same input, same bytes. */
 #ifndef LENSPROF_SAMPLE_H
 #define LENSPROF_SAMPLE_H
 
@@ -19,7 +20,8 @@ typedef struct lensprof_pair {
 } lensprof_pair;
 
 /* A picture to sample. The view may be a reduced picture: pixel (u, v) is then the mean of the square of frame
- * pixels from (u, v) * reduction on. Frozen value struct. */
+ * pixels from (u, v) * reduction on, or of some pixels of it whose places vary from square to square. Frozen value
+ * struct. */
 typedef struct lensprof_sample_image {
     lensprof_image view;    /* the frame, reduced or not; layouts with alpha: alpha below half = excluded */
     lensprof_camera camera; /* full frame */
@@ -40,16 +42,20 @@ typedef struct lensprof_sample_options {
     uint32_t sampling; /* lensprof_sampling */
     uint32_t pairs;    /* wanted number; fewer come when the overlaps do not hold as many */
     uint32_t seed;     /* same seed, same pairs */
+    uint32_t threads;  /* at most so many, the caller's included; 0 = one a core */
+    uint32_t reserved; /* 0 */
+    lensprof_progress progress; /* or NULL; the fraction never falls */
+    void *progress_user;
 } lensprof_sample_options;
 
-/* Balanced, 0 pairs (= 300 per image, at least 2000), seed 1. */
+/* Balanced, 0 pairs (= 300 per image, at least 2000), seed 1, threads on all cores, no progress. */
 LENSPROF_API void lensprof_sample_options_init(lensprof_sample_options *options);
 
 /* Finds correspondences between `count` pictures. pairs[capacity] is the caller's; *found receives the number written.
  * With capacity 0, *found receives the number wanted, which is the capacity to give, and nothing is sampled; a smaller
  * one is refused with CAPACITY, whatever the overlaps hold. Errors: fewer than two images ARGUMENT; NaN in a float view
  * NOT_FINITE (the text names image and pixel); NO_OVERLAP; NO_SAMPLES when overlaps exist but every sample is masked,
- * black or saturated. */
+ * black or saturated; CANCELLED; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_sample_overlap(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
                         lensprof_pair *pairs, uint32_t capacity, uint32_t *found, lensprof_error *error);

@@ -20,8 +20,9 @@ struct Options {
                 sampling = "balanced", gamma_from = "auto", camera_kind = "any", falloff = "auto", reference, free, compare, maker, camera,
                 lens, processing;
     bool no_store = false, json = false, force = false, one_lens = false, progress = false;
-    double huber = 5.0, prior = 1.0, exif_sigma = 0.1, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN, distance = LENSPROF_UNKNOWN;
-    uint32_t seed = 1, pairs = 0, max_side = 1600;
+    double huber = 5.0, prior = 1.0, exif_sigma = 0.1, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN,
+           distance = LENSPROF_UNKNOWN;
+    uint32_t seed = 1, pairs = 0, max_side = 800;
 };
 
 void declare(CLI::App &app, Options &o) {
@@ -55,7 +56,7 @@ void declare(CLI::App &app, Options &o) {
         ->check(CLI::IsMember({"balanced", "paper"}));
     app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000")->check(in_range(0, 1 << 24));
     app.add_option("--seed", o.seed, "of the sampling");
-    app.add_option("--max-side", o.max_side, "sample pictures reduced to about this many pixels; 0 = full size");
+    app.add_option("--max-side", o.max_side, "sample pictures reduced to no less than this many pixels (800); 0 = full size");
     app.add_option("--maker", o.maker, "camera maker, instead of EXIF's");
     app.add_option("--camera", o.camera, "camera model");
     app.add_option("--lens", o.lens, "lens");
@@ -321,13 +322,12 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     auto pictures = read_pictures(project, o.max_side, progress);
     channels = channel_count(pictures);
     report.load_s = lap(clock);
-    progress.update("sampling", 0.0);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
     options.sampling = o.sampling == "paper" ? LENSPROF_SAMPLING_PAPER : LENSPROF_SAMPLING_BALANCED;
     options.pairs = o.pairs;
     options.seed = o.seed;
-    pairs = sample_pairs(project, pictures, options);
+    pairs = sample_pairs(project, pictures, options, progress);
     report.sample_s = lap(clock);
     return pairs;
 }

@@ -66,11 +66,13 @@ struct Picture {
 };
 
 struct ReadOptions {
-    /* 0 = full size. Otherwise every held pixel is the mean of a square of the frame, whose side is the largest whole
-     * number that leaves the longer side of the picture at or above max_side. Held pixel (x, y) covers the frame's
-     * pixels from (x, y) * reduction on; up to reduction - 1 columns and rows at the right and lower edge are left
-     * out. Means are exact for PNG and TIFF (all samples alike, alpha too) and of the coded values; for JPEG part of
-     * the averaging is done by the inverse DCT, which differs by a level or so. */
+    /* 0 = full size. Otherwise every held pixel stands for a square of the frame, whose side is 1 or the largest even
+     * number that leaves the longer side of the picture at or above max_side. Its value is that of one block of 2 x 2
+     * pixels in the square, in different places from square to square: the mean of the middle two of the four (PNG and
+     * TIFF, all samples alike, alpha too), or what the inverse DCT makes of them, which is near their mean (JPEG). In a
+     * mean of the whole square every wrong pixel would have a share, and no square would be without one; so most held
+     * pixels are good ones. Held pixel (x, y) covers the frame's pixels from (x, y) * reduction on; up to reduction - 1
+     * columns and rows at the right and lower edge are left out. */
     uint32_t max_side = 0;
 };
 
@@ -143,28 +145,35 @@ uint64_t pixel_bytes(const Picture &picture);
 /* Resolution in another unit; `none` stays as it is. */
 double convert_resolution(double value, PictureTraits::Unit from, PictureTraits::Unit to);
 
-/* Takes a picture row by row from the top and keeps it in picture.pixels: as it is (step 1) or as means of squares of
- * `step` pixels. Memory grows with the rows, so that a damaged header does not claim it. */
+/* Takes a picture row by row from the top and keeps it in picture.pixels, reduced as ReadOptions says. The rows may
+ * already be halved in both directions (`done` = 2). Memory grows with the rows, so that a damaged header does not claim
+ * it. */
 class RowSink {
 public:
-    RowSink(Picture &picture, uint32_t source_width, uint32_t step);
+    RowSink(Picture &picture, uint32_t source_width, uint32_t done = 1);
 
     uint8_t *row(); /* where the next row of the source is to be put, source_width pixels */
     void accept();  /* it is there */
 
 private:
-    void add_row();
-    void emit_row();
+    struct Pick {
+        uint32_t x, column; /* pixel of the picture, block that it takes */
+    };
+
+    void halve_rows();
+    void choose_blocks();
+    void pick_from_row();
 
     Picture &picture_;
-    uint32_t step_;
-    size_t samples_;       /* per pixel */
-    bool direct_;          /* rows are put straight into the picture */
-    uint32_t rows_ = 0;    /* of the source, summed since the last row of the picture */
-    uint32_t emitted_ = 0; /* rows of the picture */
+    bool halves_;     /* blocks of 2 x 2 pixels become one here */
+    uint32_t blocks_; /* along the side of a held pixel's square */
+    size_t pixel_bytes_, scratch_row_;
+    bool direct_;            /* rows are put straight into the picture */
+    bool lower_ = false;     /* the next row is the lower one of blocks */
+    uint32_t block_row_ = 0; /* rows of blocks since the last row of the picture */
+    uint32_t emitted_ = 0;   /* rows of the picture */
     std::vector<uint8_t> scratch_;
-    std::vector<uint64_t> sums_;
-    std::vector<double> float_sums_;
+    std::vector<std::vector<Pick>> picks_; /* of the picture's next row, for every row of blocks */
 };
 
 /* Runs body() and says false when the C library it calls left it by longjmp(jump). The jump skips no destructor as

@@ -136,15 +136,10 @@ bool read_start(JpegReader &reader, Picture &picture) {
     });
 }
 
-/* The inverse DCT averages by 2, 4 or 8 almost for nothing; what remains of the reduction is done on pixels. */
-uint32_t dct_step(uint32_t reduction) {
-    return reduction % 8 == 0 ? 8 : reduction % 4 == 0 ? 4 : reduction % 2 == 0 ? 2 : 1;
-}
-
 bool start_decoding(JpegReader &reader, const Picture &picture) {
     return guarded(reader.state.jump, [&] {
         reader.info.scale_num = 1;
-        reader.info.scale_denom = dct_step(picture.reduction);
+        reader.info.scale_denom = picture.reduction > 1 ? 2 : 1; /* the inverse DCT averages almost for nothing */
         reader.info.out_color_space = picture.layout == LENSPROF_LAYOUT_GREY ? JCS_GRAYSCALE : JCS_RGB;
         reader.info.dct_method = JDCT_ISLOW;
         jpeg_start_decompress(&reader.info);
@@ -239,7 +234,7 @@ Picture read_jpeg(const ReadRequest &request) {
         return picture;
     if (!start_decoding(reader, picture))
         fail_reading(request.path, reader.state);
-    RowSink sink(picture, reader.info.output_width, picture.reduction / dct_step(picture.reduction));
+    RowSink sink(picture, reader.info.output_width, picture.reduction > 1 ? 2 : 1);
     if (!read_rows(reader, sink))
         fail_reading(request.path, reader.state);
     return picture;

@@ -210,7 +210,7 @@ Picture read_png(const ReadRequest &request) {
         fail_damaged(request.path, reader.state.text);
     if (request.header_only)
         return picture;
-    RowSink sink(picture, picture.frame_width, picture.reduction);
+    RowSink sink(picture, picture.frame_width);
     const bool good = reader.interlaced ? read_interlaced(reader, picture, sink) : read_rows(reader, picture, sink);
     if (!good)
         fail_damaged(request.path, reader.state.text);

@@ -355,7 +355,7 @@ Picture read_tiff(const ReadRequest &request) {
     if (request.header_only)
         return picture;
     BandReader reader(tiff, request, picture);
-    RowSink sink(picture, picture.frame_width, picture.reduction);
+    RowSink sink(picture, picture.frame_width);
     reader.read(sink);
     return picture;
 }

@@ -1,9 +1,11 @@
 #include "project.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 
+#include "interrupt.hpp"
 #include "parallel.hpp"
 
 namespace lensprof {
@@ -41,10 +43,16 @@ SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
                       + std::to_string(camera.width) + " x " + std::to_string(camera.height)
                       + "; use the pictures that the project was made with");
     check_finite(p, file);
-    result.mask.resize(static_cast<size_t>(p.width) * p.height);
-    check(lensprof_pto_draw_mask(project.pto.get(), i, result.mask.data(), p.width, p.height,
+    std::vector<uint8_t> mask(static_cast<size_t>(p.width) * p.height);
+    check(lensprof_pto_draw_mask(project.pto.get(), i, mask.data(), p.width, p.height,
                                  static_cast<ptrdiff_t>(p.width)), file);
+    if (std::find(mask.begin(), mask.end(), 0) != mask.end()) result.mask = std::move(mask);
     return result;
+}
+
+int on_sampling(double done, void *progress) {
+    static_cast<Progress *>(progress)->update("sampling", done);
+    return interrupted();
 }
 
 }  // namespace
@@ -100,14 +108,14 @@ uint32_t channel_count(const std::vector<SamplePicture> &pictures) {
 }
 
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
-                                        const lensprof_sample_options &options) {
+                                        lensprof_sample_options options, Progress &progress) {
     std::vector<lensprof_sample_image> images;
     for (size_t i = 0; i < pictures.size(); i++) {
         lensprof_sample_image image{};
         image.view = pictures[i].picture.view();
         image.camera = project.images[i].camera;
         image.reduction = pictures[i].picture.reduction;
-        image.mask = pictures[i].mask.data();
+        image.mask = pictures[i].mask.empty() ? nullptr : pictures[i].mask.data();
         image.mask_row_bytes = static_cast<ptrdiff_t>(pictures[i].picture.width);
         image.black = darkest_value;
         image.white = brightest_value;
@@ -118,8 +126,12 @@ std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<Samp
     auto count = static_cast<uint32_t>(images.size());
     check(lensprof_sample_overlap(&options, images.data(), count, nullptr, 0, &found, &error), project.path, &error);
     std::vector<lensprof_pair> pairs(found);
-    check(lensprof_sample_overlap(&options, images.data(), count, pairs.data(), found, &found, &error), project.path,
-          &error);
+    options.progress = on_sampling;
+    options.progress_user = &progress;
+    lensprof_status status =
+        lensprof_sample_overlap(&options, images.data(), count, pairs.data(), found, &found, &error);
+    stop_if_interrupted();
+    check(status, project.path, &error);
     pairs.resize(found);
     return pairs;
 }

@@ -28,7 +28,7 @@ Project read_project(const std::string &path, bool one_lens);
 /* The image that a user means by a number or a file name of the project. */
 uint32_t image_of_word(const Project &project, const std::string &word);
 
-/* A picture reduced for sampling, with the mask of the project. */
+/* A picture reduced for sampling, with the mask of the project; no mask where nothing is excluded. */
 struct SamplePicture {
     Picture picture;
     std::vector<uint8_t> mask;
@@ -47,8 +47,9 @@ uint32_t channel_count(const std::vector<SamplePicture> &pictures);
 /* Grey values outside these are black or saturated: 2 and 250 of 255. */
 constexpr double darkest_value = 2.0 / 255.0, brightest_value = 250.0 / 255.0;
 
+/* The progress function of the options is set here. */
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
-                                        const lensprof_sample_options &options);
+                                        lensprof_sample_options options, Progress &progress);
 
 /* The pairs of a point file, which must be of images of the project. */
 std::vector<lensprof_pair> read_points(const std::string &path, const Project &project);

@@ -118,7 +118,7 @@ Estimate Fit::best_start(int modes) {
     Control brief = control_;
     brief.max_iterations = std::min(control_.max_iterations, 10);
     brief.rounds = 1;
-    brief.flat = 1e-3;
+    brief.flat = 1.0;
     Gauge unheld = gauge_.unheld();
     Estimate best;
     double lowest = 0.0;
@@ -152,7 +152,7 @@ Candidate Fit::candidate(const Estimate &from, int modes) {
     set_modes(result.estimate, modes);
     Control brief = control_;
     brief.rounds = 1;
-    brief.flat = 1e-5;
+    brief.flat = 0.05;
     brief.max_iterations = std::min(control_.max_iterations, 12);
     Loss used = common_;
     solve(train_, prior_, gauge_, used, false, brief, result.estimate);
@@ -197,12 +197,12 @@ Candidate Fit::choose_modes(const Estimate &start) {
     return tried[0];
 }
 
-// One falloff curve a channel when held-out pairs are clearly (two standard errors) better for it.
+// One falloff curve a channel when held-out pairs are clearly (three standard errors) better for it.
 void Fit::choose_vignettings(Candidate &best) {
     set_vignettings(3);
     Candidate chromatic = candidate(best.estimate, best.estimate.modes);
     double error, difference = loss_difference(chromatic, best, error);
-    if (difference < -2.0 * error) best = chromatic;
+    if (difference < -3.0 * error) best = chromatic;
     else set_vignettings(1);
 }
 
@@ -221,7 +221,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     Loss used = loss();
     set_modes(best.estimate, modes);
     Control first = control_;
-    if (any_modes || any_curves) first.flat = 1e-5, first.rounds = 4;
+    if (any_modes || any_curves) first.flat = 0.05, first.rounds = 3;
     solve(train_, prior_, gauge_, used, true, first, best.estimate);
     common_ = used;
     if (options_.loss != LENSPROF_LOSS_ROBUST) common_.noise = estimate_noise(train_, best.estimate, used.noise);

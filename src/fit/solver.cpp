@@ -103,7 +103,7 @@ double change(const Estimate &a, const Estimate &b) {
 
 Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &loss, bool refine_noise,
               const Control &control, Estimate &estimate) {
-    constexpr double kStill = 1e-5;        // nothing a user sees moves by more in a step
+    constexpr double kStill = 3e-5;        // nothing a user sees moves by more in a step
     constexpr int kNoiseRounds = 4;
     const ModeTable modes(std::max(estimate.modes, 0));
     Prior renewed = prior;
@@ -121,10 +121,10 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
             double last = outcome.cost;
             outcome.iterations++;
             bool improved = stepper.step(estimate, outcome.cost);
-            bool flat = stepper.steps > 1 && last - outcome.cost < control.flat * std::abs(last);
+            bool flat = stepper.steps > 1 && last - outcome.cost < control.flat;
             outcome.converged = !improved || flat || change(previous, estimate) < kStill;
         }
-        if (outcome.iterations >= control.max_iterations || change(before, estimate) < 10 * kStill) break;
+        if (outcome.iterations >= control.max_iterations || change(before, estimate) < 5 * kStill) break;
     }
     return outcome;
 }

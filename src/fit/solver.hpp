@@ -14,7 +14,7 @@ namespace lensprof {
 struct Control {
     int max_iterations = 200;
     int rounds = 6;
-    double flat = 1e-8;  // a round ends when a step gains less than this share of the objective
+    double flat = 1e-3;  // a round ends when a step gains less: half of chi-squared, 1/20 sigma of one parameter
     std::function<bool()> cancelled;  // asked once an iteration
 };
 

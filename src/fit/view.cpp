@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 namespace lensprof {
 namespace {
 
 constexpr int kReach = 2;                               // patches are (2 kReach + 1) pixels square
 constexpr int kSide = 2 * kReach + 1, kCount = kSide * kSide;
-constexpr double kSmallestSpread = 1.0 / 255.0;         // of a patch without noise
+constexpr float kSmallestSpread = 1.0f / 255.0f;        // of a patch without noise
 
 const uint8_t *pixel(const lensprof_image &view, int u, int v, uint32_t sample) {
     uint32_t bytes = lensprof_sample_bytes(view.sample);
@@ -31,46 +30,140 @@ double load(const lensprof_image &view, int u, int v, uint32_t sample) {
     return value;
 }
 
-double median(double *values, int count) {
-    std::nth_element(values, values + count / 2, values + count);
+// The channels of a patch's pixel side by side (the last lane is a copy), in one register: what follows does all of them
+// at once, without a branch.
+constexpr int kLanes = 4;
+typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float))));
+
+// Grey values of the bytes 0..255.
+struct ByteValues {
+    float at[256];
+    constexpr ByteValues() : at() {
+        for (int i = 0; i < 256; i++) at[i] = static_cast<float>(i / 255.0);
+    }
+};
+constexpr ByteValues kByteValues;
+
+float grey_value(uint8_t sample) { return kByteValues.at[sample]; }
+float grey_value(uint16_t sample) { return static_cast<float>(sample / 65535.0); }
+float grey_value(float sample) { return sample; }
+
+// The pixels about (u, v), row by row; `offset` has the place of every lane's sample in a pixel.
+template <class Sample> void gather(const lensprof_image &view, int u, int v, const int *offset, Lanes *out) {
+    const size_t samples = lensprof_layout_samples(view.layout);
+    for (int dv = -kReach; dv <= kReach; dv++) {
+        const auto *p = reinterpret_cast<const Sample *>(pixel(view, u - kReach, v + dv, 0));
+        for (int du = 0; du < kSide; du++, p += samples, out++)
+            *out = Lanes{grey_value(p[offset[0]]), grey_value(p[offset[1]]), grey_value(p[offset[2]]),
+                         grey_value(p[offset[3]])};
+    }
+}
+
+Lanes lower(Lanes a, Lanes b) { return a < b ? a : b; }
+Lanes higher(Lanes a, Lanes b) { return a > b ? a : b; }
+Lanes absolute(Lanes a) { return higher(a, -a); }
+
+void sort_two(Lanes &low, Lanes &high) {
+    const Lanes a = low, b = high;
+    low = lower(a, b);
+    high = higher(a, b);
+}
+
+// Value number count / 2 in order, of every lane; `count` is even. The largest ones are carried to the end, one a
+// round. Values change places.
+template <int count> Lanes upper_median(Lanes *values) {
+    for (int last = count - 1; last >= count / 2; last--)
+        for (int i = 0; i < last; i++) sort_two(values[i], values[i + 1]);
     return values[count / 2];
+}
+
+// Median of every lane; `count` is odd. Of any count / 2 + 2 values the least and the largest cannot be the median of
+// all: they make room, until one value is left. Values change places.
+template <int count> Lanes median(Lanes *values) {
+    constexpr int end = count / 2 + 2;
+    int first = 0;  // values[first..end) are looked at
+    for (int next = end;; next++) {
+        for (int i = first + 1; i < end; i++) sort_two(values[first], values[i]);
+        for (int i = first + 1; i < end - 1; i++) sort_two(values[i], values[end - 1]);
+        first++;
+        if (next == count) return values[first];
+        values[end - 1] = values[next];
+    }
 }
 
 // Mean of the values within 2.5 standard deviations of the centre, which starts at the median: nearly as exact as a
 // mean for plain noise, and hardly moved where a third of the pixels are wrong, even all on one side.
-double robust_mean(double *values, int count) {
-    double center = median(values, count), deviation[kCount];
-    for (int i = 0; i < count; i++) deviation[i] = std::abs(values[i] - center);
-    double spread = 1.4826 * median(deviation, count);
+Lanes robust_mean(const Lanes *values) {
+    Lanes scratch[kCount];
+    std::copy(values, values + kCount, scratch);
+    Lanes center = median<kCount>(scratch);
+    for (int i = 0; i < kCount; i++) scratch[i] = absolute(values[i] - center);
+    Lanes spread = 1.4826f * median<kCount>(scratch);
+    const Lanes none = {}, one = none + 1.0f;
     for (int round = 0; round < 3; round++) {
-        double limit = 2.5 * std::max(spread, kSmallestSpread), sum = 0.0, square = 0.0;
-        int kept = 0;
-        for (int i = 0; i < count; i++) {
-            if (std::abs(values[i] - center) > limit) continue;
-            sum += values[i];
-            square += (values[i] - center) * (values[i] - center);
-            kept++;
+        const Lanes limit = 2.5f * higher(spread, none + kSmallestSpread);
+        Lanes sum = none, square = none, kept = none;
+        for (int i = 0; i < kCount; i++) {
+            const Lanes distance = values[i] - center, used = absolute(distance) > limit ? none : distance;
+            kept += absolute(distance) > limit ? none : one;
+            sum += used;
+            square += used * used;
         }
-        if (!kept) break;
-        spread = std::min(spread, 1.1 * std::sqrt(square / kept));  // 1.1: what the cut takes away from plain noise
-        center = sum / kept;
+        const Lanes count = higher(kept, one);
+        Lanes deviation;
+        for (int c = 0; c < kLanes; c++) deviation[c] = std::sqrt(square[c] / count[c]);
+        // 1.1: what the cut takes away from plain noise
+        spread = kept > none ? lower(spread, 1.1f * deviation) : spread;
+        center += sum / count;
     }
     return center;
 }
 
+// A quick look before the work: in some channel, the middle and its four neighbours are all black or saturated.
+bool is_out_of_range(const Lanes *values, float black, float white) {
+    constexpr int middle = kCount / 2;
+    for (int c = 0; c < kLanes; c++) {
+        int bad = 0;
+        for (int i : {middle, middle - 1, middle + 1, middle - kSide, middle + kSide})
+            bad += !(values[i][c] >= black && values[i][c] <= white);
+        if (bad == 5) return true;
+    }
+    return false;
+}
+
+struct Slope {
+    Lanes across, down;  // a view pixel
+};
+
+// Medians of the halves keep single wrong pixels out; the halves' centres are kReach + 1 pixels apart.
+Slope slope_of(const Lanes *values) {
+    constexpr int half = kReach * kSide;
+    Lanes left[half], right[half], above[half], below[half];
+    std::copy(values, values + half, above);
+    std::copy(values + kCount - half, values + kCount, below);
+    for (int row = 0; row < kSide; row++) {
+        std::copy_n(values + row * kSide, kReach, left + row * kReach);
+        std::copy_n(values + row * kSide + kReach + 1, kReach, right + row * kReach);
+    }
+    constexpr float distance = kReach + 1;
+    return {(upper_median<half>(right) - upper_median<half>(left)) / distance,
+            (upper_median<half>(below) - upper_median<half>(above)) / distance};
+}
+
 }  // namespace
 
-int View::channels() const { return static_cast<int>(lensprof_layout_channels(image_.view.layout)); }
+View::View(const lensprof_sample_image &image)
+    : image_(image), channels_(static_cast<int>(lensprof_layout_channels(image.view.layout))),
+      reversed_(image.view.layout == LENSPROF_LAYOUT_BGR || image.view.layout == LENSPROF_LAYOUT_BGRA),
+      alpha_(lensprof_layout_samples(image.view.layout) != lensprof_layout_channels(image.view.layout)) {}
 
 double View::sample(int u, int v, int channel) const {
-    bool reversed = image_.view.layout == LENSPROF_LAYOUT_BGR || image_.view.layout == LENSPROF_LAYOUT_BGRA;
-    return load(image_.view, u, v, static_cast<uint32_t>(reversed ? 2 - channel : channel));
+    return load(image_.view, u, v, static_cast<uint32_t>(reversed_ ? 2 - channel : channel));
 }
 
 bool View::is_allowed(int u, int v) const {
     if (image_.mask && !image_.mask[static_cast<ptrdiff_t>(v) * image_.mask_row_bytes + u]) return false;
-    uint32_t colour = lensprof_layout_channels(image_.view.layout);
-    return lensprof_layout_samples(image_.view.layout) == colour || load(image_.view, u, v, colour) >= 0.5;
+    return !alpha_ || load(image_.view, u, v, static_cast<uint32_t>(channels_)) >= 0.5;
 }
 
 bool View::find_not_finite(uint32_t &x, uint32_t &y) const {
@@ -95,52 +188,35 @@ bool View::holds(double x, double y) const {
            && v <= image_.view.height - 1.0 - kReach;
 }
 
-bool View::in_range(const Patch &patch) const {
-    for (int c = 0; c < channels(); c++)
-        if (!(patch.value[c] >= image_.black && patch.value[c] <= image_.white)) return false;
+// Also repeats the value of a grey view in the other channels.
+bool View::in_range(Patch &patch) const {
+    for (int c = channels_; c < 3; c++) patch.value[c] = patch.value[0];
+    for (double value : patch.value)
+        if (!(value >= image_.black && value <= image_.white)) return false;
     return true;
-}
-
-// A quick look before the work: in some channel, the middle and its four neighbours are all black or saturated.
-bool View::is_out_of_range(int u, int v) const {
-    for (int c = 0; c < channels(); c++) {
-        int bad = 0;
-        for (auto [du, dv] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-            double value = sample(u + du, v + dv, c);
-            bad += !(value >= image_.black && value <= image_.white);
-        }
-        if (bad == 5) return true;
-    }
-    return false;
 }
 
 bool View::patch(double x, double y, Patch &out) const {
     double u, v;
     to_view(x, y, u, v);
-    int iu = static_cast<int>(std::lround(u)), iv = static_cast<int>(std::lround(v));
-    for (int dv = -kReach; dv <= kReach; dv++)
-        for (int du = -kReach; du <= kReach; du++)
-            if (!is_allowed(iu + du, iv + dv)) return false;
-    if (is_out_of_range(iu, iv)) return false;
+    const int iu = static_cast<int>(std::lround(u)), iv = static_cast<int>(std::lround(v));
+    for (int i = 0; (image_.mask || alpha_) && i < kCount; i++)
+        if (!is_allowed(iu + i % kSide - kReach, iv + i / kSide - kReach)) return false;
+    Lanes all[kCount];
+    const int colour[kLanes] = {reversed_ ? 2 : 0, 1, reversed_ ? 0 : 2, 1}, grey[kLanes] = {0, 0, 0, 0};
+    const int *offset = channels_ == 3 ? colour : grey;
+    if (image_.view.sample == LENSPROF_SAMPLE_U8) gather<uint8_t>(image_.view, iu, iv, offset, all);
+    else if (image_.view.sample == LENSPROF_SAMPLE_U16) gather<uint16_t>(image_.view, iu, iv, offset, all);
+    else gather<float>(image_.view, iu, iv, offset, all);
+    const auto black = static_cast<float>(image_.black), white = static_cast<float>(image_.white);
+    if (is_out_of_range(all, black, white)) return false;
+    const Slope slope = slope_of(all);
+    const Lanes mean = robust_mean(all);
     out.gradient = 0.0;
-    for (int c = 0; c < channels(); c++) {
-        double all[kCount], low[2][kReach * kSide], high[2][kReach * kSide];  // [0] columns, [1] rows
-        int n = 0, counts[4] = {0, 0, 0, 0};
-        for (int dv = -kReach; dv <= kReach; dv++)
-            for (int du = -kReach; du <= kReach; du++) {
-                double value = sample(iu + du, iv + dv, c);
-                all[n++] = value;
-                if (du < 0) low[0][counts[0]++] = value;
-                if (du > 0) high[0][counts[1]++] = value;
-                if (dv < 0) low[1][counts[2]++] = value;
-                if (dv > 0) high[1][counts[3]++] = value;
-            }
-        // The two halves' centres are kReach + 1 pixels apart; medians keep single wrong pixels out of the slope.
-        double gu = (median(high[0], kReach * kSide) - median(low[0], kReach * kSide)) / (kReach + 1);
-        double gv = (median(high[1], kReach * kSide) - median(low[1], kReach * kSide)) / (kReach + 1);
-        double value = robust_mean(all, kCount) + gu * (u - iu) + gv * (v - iv);
-        out.value[c] = std::clamp(value, 0.0, 1.0);
-        out.gradient += std::hypot(gu, gv);
+    for (int c = 0; c < 3; c++) {
+        const double gu = slope.across[c], gv = slope.down[c], value = mean[c];
+        if (c < channels_) out.gradient += std::hypot(gu, gv);
+        out.value[c] = std::clamp(value + gu * (u - iu) + gv * (v - iv), 0.0, 1.0);
     }
     return in_range(out);
 }
@@ -154,7 +230,7 @@ bool View::point(double x, double y, Patch &out) const {
     for (int dv = 0; dv < 2; dv++)
         for (int du = 0; du < 2; du++)
             if (!is_allowed(iu + du, iv + dv)) return false;
-    for (int c = 0; c < channels(); c++) {
+    for (int c = 0; c < channels_; c++) {
         double top = (1.0 - fu) * sample(iu, iv, c) + fu * sample(iu + 1, iv, c);
         double bottom = (1.0 - fu) * sample(iu, iv + 1, c) + fu * sample(iu + 1, iv + 1, c);
         out.value[c] = std::clamp((1.0 - fv) * top + fv * bottom, 0.0, 1.0);

@@ -7,16 +7,15 @@ namespace lensprof {
 
 // What a patch of the view says about one scene point.
 struct Patch {
-    double value[3];  // grey value 0..1 at the exact position
+    double value[3];  // grey value 0..1 at the exact position; grey views repeat theirs
     double gradient;  // grey values a view pixel, all channels
 };
 
 class View {
 public:
-    explicit View(const lensprof_sample_image &image) : image_(image) {}
+    explicit View(const lensprof_sample_image &image);
 
     const lensprof_sample_image &image() const { return image_; }
-    int channels() const;
 
     // First pixel with a sample that is not a number; false when there is none. Only float views can have one.
     bool find_not_finite(uint32_t &x, uint32_t &y) const;
@@ -35,10 +34,11 @@ private:
     void to_view(double x, double y, double &u, double &v) const;
     double sample(int u, int v, int channel) const;
     bool is_allowed(int u, int v) const;
-    bool in_range(const Patch &patch) const;
-    bool is_out_of_range(int u, int v) const;
+    bool in_range(Patch &patch) const;
 
     const lensprof_sample_image &image_;
+    int channels_;
+    bool reversed_, alpha_;
 };
 
 }  // namespace lensprof

@@ -40,6 +40,9 @@ struct PtoToken {
 // Splits a line behind its record letter.
 std::vector<PtoToken> split_pto_line(std::string_view line, size_t number);
 
+// The first text in quotes of that name, without them; empty when the line has none.
+std::string_view find_pto_text(const std::vector<PtoToken> &tokens, std::string_view name);
+
 // First token of that name (Hugin reads the first), or NULL.
 const PtoToken *find_pto_token(const std::vector<PtoToken> &tokens, std::string_view name);
 
@@ -51,6 +54,7 @@ struct PtoImage {
     std::bitset<kPtoParameters> asked;          // on `v` lines, for links that end here
     uint32_t vignetting_mode;                   // Vm: 1 radial, 2 flat field, 4 divide
     std::string name;
+    std::string renamed;  // the line with another name in it; empty when that of the text holds
     lensprof_pto_image result;
 };
 

@@ -87,6 +87,13 @@ std::vector<PtoToken> split_pto_line(std::string_view line, size_t number) {
     return tokens;
 }
 
+std::string_view find_pto_text(const std::vector<PtoToken> &tokens, std::string_view name) {
+    for (const PtoToken &token : tokens)
+        if (token.name == name && token.value.size() >= 2 && token.value.front() == '"')
+            return token.value.substr(1, token.value.find('"', 1) - 1);
+    return {};
+}
+
 const PtoToken *find_pto_token(const std::vector<PtoToken> &tokens, std::string_view name) {
     auto found = std::find_if(tokens.begin(), tokens.end(), [&](const PtoToken &t) { return t.name == name; });
     return found == tokens.end() ? nullptr : &*found;

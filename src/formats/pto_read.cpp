@@ -29,14 +29,6 @@ uint32_t whole_item(const std::vector<PtoToken> &tokens, std::string_view name, 
     return static_cast<uint32_t>(value);
 }
 
-// A text in quotes, without them; empty when the line has none.
-std::string_view text_item(const std::vector<PtoToken> &tokens, std::string_view name) {
-    for (const PtoToken &token : tokens)
-        if (token.name == name && token.value.size() >= 2 && token.value.front() == '"')
-            return token.value.substr(1, token.value.find('"', 1) - 1);
-    return {};
-}
-
 void read_parameter(const PtoToken &token, size_t parameter, const std::vector<PtoImage> &before, PtoImage &image) {
     if (token.value.empty() || token.value[0] != '=') {
         if (!read_number(token.value, image.value[parameter]))
@@ -171,7 +163,7 @@ PtoImage read_image(const LineReader &reader, const std::vector<PtoImage> &befor
     if (result.response_type > 1)
         fail_at_line(image.line, "response type Rt" + std::to_string(result.response_type) +
                                      " is not supported; use Rt0 (EMoR) or Rt1 (linear)", LENSPROF_ERROR_UNSUPPORTED);
-    image.name = text_item(tokens, "n");
+    image.name = find_pto_text(tokens, "n");
     fill_camera(image, result.camera);
     fill_photometry(image, self);
     read_crop(tokens, image.line, result);
@@ -223,7 +215,7 @@ PtoMask read_mask(const Line &line, const lensprof_pto &pto) {
     mask.line = line.number;
     mask.image = whole_item(tokens, "i", 0, last_image, -1, line.number);
     mask.type = whole_item(tokens, "t", 0, kMaskTypes - 1, 0, line.number);
-    std::string_view rest = text_item(tokens, "p");
+    std::string_view rest = find_pto_text(tokens, "p");
     for (;;) {
         std::array<double, 2> corner;
         std::string_view x = next_word(rest), y = next_word(rest);

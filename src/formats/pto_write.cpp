@@ -83,19 +83,30 @@ std::vector<Edit> model_edits(const std::array<double, kHuginModes> &modes, cons
     return edits;
 }
 
-// The project with edited `i` lines, parsed again, so that reading and writing cannot disagree.
-template <class EditsOf> lensprof_pto rewrite(const lensprof_pto &pto, const EditsOf &edits_of) {
+// The `i` line as it is now.
+std::string_view line_of(const lensprof_pto &pto, const PtoImage &image) {
+    return image.renamed.empty() ? std::string_view(pto.text).substr(image.begin, image.length)
+                                 : std::string_view(image.renamed);
+}
+
+// The text with line_text(i) in the place of every `i` line.
+template <class LineText> std::string replace_lines(const lensprof_pto &pto, const LineText &line_text) {
     std::string text;
     std::string_view old = pto.text;
     size_t done = 0;
     for (uint32_t i = 0; i < pto.images.size(); i++) {
         const PtoImage &image = pto.images[i];
-        text.append(old.substr(done, image.begin - done));
-        text.append(edit_line(old.substr(image.begin, image.length), image.line, edits_of(i)));
+        text.append(old.substr(done, image.begin - done)).append(line_text(i));
         done = image.begin + image.length;
     }
-    text.append(old.substr(done));
-    return parse_pto(std::move(text));
+    return text.append(old.substr(done));
+}
+
+// The project with edited `i` lines, parsed again, so that reading and writing cannot disagree.
+template <class EditsOf> lensprof_pto rewrite(const lensprof_pto &pto, const EditsOf &edits_of) {
+    return parse_pto(replace_lines(pto, [&](uint32_t i) {
+        return edit_line(line_of(pto, pto.images[i]), pto.images[i].line, edits_of(i));
+    }));
 }
 
 // A name that can stand between the quotes of a line.
@@ -132,14 +143,21 @@ lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_respon
 
 lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index, const char *name) {
     if (!pto || !name || index >= pto->images.size() || !is_name(name)) return LENSPROF_ERROR_ARGUMENT;
+    // Only this line is made and read again: a project may have thousands, all of which get a new name.
     return at_boundary(nullptr, [&] {
-        *pto = rewrite(*pto, [&](uint32_t i) {
-            return i == index ? std::vector<Edit>{{"n", '"' + std::string(name) + '"'}} : std::vector<Edit>{};
-        });
+        PtoImage &image = pto->images[index];
+        std::string line = edit_line(line_of(*pto, image), image.line, {{"n", '"' + std::string(name) + '"'}});
+        std::string written(find_pto_text(split_pto_line(line, image.line), "n"));
+        image.renamed = std::move(line);
+        image.name = std::move(written);
     });
 }
 
 lensprof_status lensprof_pto_write(const lensprof_pto *pto, char *text, size_t capacity, size_t *needed) {
     if (!pto || (!text && capacity)) return LENSPROF_ERROR_ARGUMENT;
-    return copy_text(pto->text, text, capacity, needed);
+    std::string all;
+    lensprof_status status = at_boundary(nullptr, [&] {
+        all = replace_lines(*pto, [&](uint32_t i) { return line_of(*pto, pto->images[i]); });
+    });
+    return status == LENSPROF_OK ? copy_text(all, text, capacity, needed) : status;
 }

@@ -224,15 +224,21 @@ void test_interrupted_build(void **) {
         }
 }
 
-/* More pictures than can be read, sampled and fitted before the signal comes. */
+/* More pictures than can be read, sampled and fitted before the signal comes; more pairs than these pictures hold. */
 void test_interrupted_with_pictures(void **) {
     must_exit(done, {"simulate", "-o", work("many"), "--images", "12", "--size", "320x240"});
     const Disk before = disk();
-    interrupt_at("reading pictures", {"build", work("many/pano.pto"), "--db", work("p.db"), "--progress", "--pairs",
-                                      "20000", "--pto-out", work("left.pto"), "--points-out", work("left.txt")});
-    const std::string changes = difference(before, disk());
-    if (!changes.empty())
-        fail_msg("after the interrupt:%s", changes.c_str());
+    for (const std::string stage : {"reading pictures", "sampling"}) {
+        const double seconds =
+            interrupt_at(stage, {"build", work("many/pano.pto"), "--db", work("p.db"), "--progress", "--pairs",
+                                 stage == "sampling" ? "1000000" : "20000", "--pto-out", work("left.pto"),
+                                 "--points-out", work("left.txt")});
+        const std::string changes = difference(before, disk());
+        if (!changes.empty())
+            fail_msg("after the interrupt:%s", changes.c_str());
+        if (seconds > 5)
+            fail_msg("%s: it took %.1f s to stop", stage.c_str(), seconds);
+    }
 }
 
 /* What is there is complete. */

@@ -1,6 +1,7 @@
 // Sampling: pairs show the same scene point, are spread as promised, and keep away from what must not be used.
 #include "simulated.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace {
@@ -161,6 +162,76 @@ void test_same_seed_same_pairs(void **) {
     assert_true(other.size() != a.size() || std::memcmp(a.data(), other.data(), a.size() * sizeof a[0]) != 0);
 }
 
+void test_any_number_of_threads_gives_the_same_pairs(void **) {
+    for (uint32_t count : {2u, 5u}) {
+        Pictures pictures(count, 160, 120, 20.0);
+        for (uint32_t sampling : {LENSPROF_SAMPLING_BALANCED, LENSPROF_SAMPLING_PAPER}) {
+            std::vector<lensprof_pair> one, pairs;
+            lensprof_sample_options options = options_of(sampling, 700);
+            options.threads = 1;
+            assert_ok(pictures.sample(options, one));
+            for (uint32_t threads : {2u, 5u, 0u}) {
+                options.threads = threads;
+                assert_ok(pictures.sample(options, pairs));
+                assert_int_equal(pairs.size(), one.size());
+                assert_memory_equal(pairs.data(), one.data(), one.size() * sizeof one[0]);
+            }
+        }
+    }
+}
+
+// What a progress function hears; it cancels at call number `last`.
+struct Heard {
+    std::vector<double> done;
+    size_t last = SIZE_MAX;
+};
+
+int hear(double done, void *user) {
+    auto *heard = static_cast<Heard *>(user);
+    heard->done.push_back(done);
+    return heard->done.size() >= heard->last;
+}
+
+void test_progress_rises_to_one(void **) {
+    Pictures pictures(4, 160, 120, 20.0);
+    for (uint32_t sampling : {LENSPROF_SAMPLING_BALANCED, LENSPROF_SAMPLING_PAPER})
+        for (uint32_t threads : {1u, 3u}) {
+            Heard heard;
+            lensprof_sample_options options = options_of(sampling, 2000);
+            options.threads = threads;
+            options.progress = hear;
+            options.progress_user = &heard;
+            std::vector<lensprof_pair> pairs;
+            assert_ok(pictures.sample(options, pairs));
+            assert_true(heard.done.size() > 3 && heard.done.front() >= 0.0 && heard.done.back() == 1.0);
+            assert_true(std::is_sorted(heard.done.begin(), heard.done.end()));
+        }
+}
+
+void test_progress_cancels(void **) {
+    Pictures pictures(4, 160, 120, 20.0);
+    for (uint32_t sampling : {LENSPROF_SAMPLING_BALANCED, LENSPROF_SAMPLING_PAPER})
+        for (size_t last : {1u, 5u, 20u}) {
+            Heard heard;
+            heard.last = last;
+            lensprof_sample_options options = options_of(sampling, 2000);
+            options.threads = 2;
+            options.progress = hear;
+            options.progress_user = &heard;
+            std::vector<lensprof_pair> pairs(2000);
+            uint32_t found = 77;
+            lensprof_error error;
+            lensprof_pair untouched = pairs[0];
+            assert_int_equal(lensprof_sample_overlap(&options, pictures.images.data(), 4, pairs.data(), 2000, &found,
+                                                     &error),
+                             LENSPROF_ERROR_CANCELLED);
+            assert_int_equal(heard.done.size(), last);  // not asked again
+            assert_int_equal(found, 77);
+            assert_memory_equal(&pairs[0], &untouched, sizeof untouched);
+            assert_non_null(strstr(error.text, "cancelled"));
+        }
+}
+
 void test_sample_types_and_layouts_agree(void **) {
     Pictures pictures(2, 160, 120, 20.0);
     std::vector<lensprof_pair> reference, pairs;
@@ -208,6 +279,10 @@ void test_refuses(void **) {
     assert_int_equal(bad.sample(options, pairs, &error), LENSPROF_ERROR_SIZE);
     bad.images[0].reduction = 1, bad.images[0].white = 0.01;
     assert_int_equal(bad.sample(options, pairs, &error), LENSPROF_ERROR_ARGUMENT);
+    options.reserved = 1;
+    bad.images[0].white = 0.98;
+    assert_int_equal(bad.sample(options, pairs, &error), LENSPROF_ERROR_ARGUMENT);
+    options.reserved = 0;
     bad.images.resize(1);
     assert_int_equal(bad.sample(options, pairs, &error), LENSPROF_ERROR_ARGUMENT);
     options.struct_size = 3;
@@ -223,6 +298,9 @@ int main() {
         cmocka_unit_test(test_masks_levels_and_alpha_are_kept_out),
         cmocka_unit_test(test_patches_shrug_off_hot_pixels),
         cmocka_unit_test(test_same_seed_same_pairs),
+        cmocka_unit_test(test_any_number_of_threads_gives_the_same_pairs),
+        cmocka_unit_test(test_progress_rises_to_one),
+        cmocka_unit_test(test_progress_cancels),
         cmocka_unit_test(test_sample_types_and_layouts_agree),
         cmocka_unit_test(test_refuses),
     };

@@ -245,11 +245,41 @@ static void test_set_name(void **state)
     assert_ok(lensprof_pto_set_name(pto, 0, "first picture.jpg"));
     char *text = write_pto(pto);
     assert_null(strstr(text, "other folder"));
+    lensprof_pto *again = read_pto(text);
+    assert_ok(lensprof_pto_get_name(again, 3, name, sizeof name, NULL));
+    assert_string_equal(name, "fourth.jpg");
+    lensprof_pto_destroy(again);
     free(text);
     assert_int_equal(lensprof_pto_set_name(pto, 0, ""), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_pto_set_name(pto, 0, "a\"b"), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_pto_set_name(pto, 4, "x"), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_pto_set_name(pto, 0, NULL), LENSPROF_ERROR_ARGUMENT);
+    lensprof_pto_destroy(pto);
+}
+
+/* A name that was set and a result that is put in afterwards are both in the text. */
+static void test_result_keeps_set_names(void **state)
+{
+    (void)state;
+    lensprof_pto *pto = read_pto("i w100 h80 f0 v50 Eev3 n\"a.jpg\"\ni w100 h80 f0 v=0 Eev4 n\"b.jpg\"\n");
+    lensprof_response *response = malloc(sizeof *response);
+    lensprof_response_set_linear(response);
+    lensprof_vignetting vignetting = {{0}, {0}};
+    lensprof_exposure exposures[2];
+    lensprof_exposure_init(&exposures[0]);
+    lensprof_exposure_init(&exposures[1]);
+    exposures[1].ev = 2;
+    char name[64];
+    assert_ok(lensprof_pto_set_name(pto, 1, "pictures/b.jpg"));
+    assert_ok(lensprof_pto_set_result(pto, response, &vignetting, exposures, 2, 0));
+    assert_ok(lensprof_pto_get_name(pto, 1, name, sizeof name, NULL));
+    assert_string_equal(name, "pictures/b.jpg");
+    assert_ok(lensprof_pto_set_name(pto, 0, "pictures/a.jpg"));
+    char *text = write_pto(pto);
+    assert_non_null(strstr(text, "Eev1 n\"pictures/b.jpg\""));
+    assert_non_null(strstr(text, "Eev3 n\"pictures/a.jpg\""));
+    free(text);
+    free(response);
     lensprof_pto_destroy(pto);
 }
 
@@ -265,6 +295,7 @@ int main(void)
         cmocka_unit_test(test_other_responses_are_projected),
         cmocka_unit_test(test_set_result_refuses),
         cmocka_unit_test(test_set_name),
+        cmocka_unit_test(test_result_keeps_set_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

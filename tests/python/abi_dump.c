@@ -162,6 +162,10 @@ static void print_sample_structs(void)
     FIELD(lensprof_sample_options, sampling);
     FIELD(lensprof_sample_options, pairs);
     FIELD(lensprof_sample_options, seed);
+    FIELD(lensprof_sample_options, threads);
+    FIELD(lensprof_sample_options, reserved);
+    FIELD(lensprof_sample_options, progress);
+    FIELD(lensprof_sample_options, progress_user);
     end_struct();
 }
 

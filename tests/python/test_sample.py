@@ -93,6 +93,24 @@ class Sampling(unittest.TestCase):
         np.testing.assert_allclose(pairs["value"][:, 0], pairs["value"][:, 1], atol=0.01)  # the scene itself
 
 
+class Threads(unittest.TestCase):
+    def test_any_number_gives_the_same_pairs(self):
+        images = sample_images(pictures())
+        one, five = (lp.sample_overlap(images, lp.SampleOptions(threads=threads)) for threads in (1, 5))
+        np.testing.assert_array_equal(one, five)
+
+    def test_progress(self):
+        seen = []
+        options = lp.SampleOptions(progress=seen.append)
+        lp.sample_overlap(sample_images(pictures()), options)
+        self.assertEqual((seen, seen[-1]), (sorted(seen), 1.0))
+        self.assertIsNone(lp.SampleOptions().progress)
+
+    def test_progress_cancels(self):
+        with refused(self, lp.Status.ERROR_CANCELLED):
+            lp.sample_overlap(sample_images(pictures()), lp.SampleOptions(progress=lambda done: True))
+
+
 class Refused(unittest.TestCase):
     def test_by_the_library(self):
         arrays = pictures()

@@ -253,17 +253,18 @@ class SampleImage(Structure):
                 ("mask", POINTER(c_uint8)), ("mask_row_bytes", c_ssize_t), ("black", c_double), ("white", c_double)]
 
 
+Progress = CFUNCTYPE(c_int, c_double, c_void_p)
+
+
 class SampleOptions(Structure):
-    _fields_ = [("struct_size", c_uint32), ("sampling", c_uint32), ("pairs", c_uint32), ("seed", c_uint32)]
+    _fields_ = [("struct_size", c_uint32), ("sampling", c_uint32), ("pairs", c_uint32), ("seed", c_uint32),
+                ("threads", c_uint32), ("reserved", c_uint32), ("progress", Progress), ("progress_user", c_void_p)]
 
 
 class FitImage(Structure):
     _fields_ = [("width", c_uint32), ("height", c_uint32), ("exposure", Exposure), ("free", c_uint32),
                 ("ev_of", c_uint32), ("red_of", c_uint32), ("blue_of", c_uint32), ("known_ev", c_double),
                 ("known_ev_sigma", c_double)]
-
-
-Progress = CFUNCTYPE(c_int, c_double, c_void_p)
 
 
 class FitOptions(Structure):

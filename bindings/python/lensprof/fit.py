@@ -1,17 +1,15 @@
 """Recovering response, vignetting, exposure and white balance from correspondences; see lensprof/fit.h."""
 from __future__ import annotations
 
-import contextlib
-import signal
-import threading
 from ctypes import byref, c_double
-from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
+from typing import Any, Iterable, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _abi, _arrays
 from ._abi import CameraKind, Free, GammaFrom, Loss
 from ._library import check, lib, version
+from ._progress import WithProgress, calling
 from ._struct import (Curves, Enumerated, Flag, Nested, OptionalReference, Struct, Text, Value, Vector, integer,
                       one_or_three)
 from .model import Exposure, Response, Vignetting
@@ -42,7 +40,7 @@ class FitImage(Value, _abi.FitImage):
         super().__init__(width=width, height=height, **{**own, **fields})
 
 
-class FitOptions(Struct, _abi.FitOptions):
+class FitOptions(WithProgress, Struct, _abi.FitOptions):
     """What is estimated, and how. By default 3 channels, reference 0, everything free, modes chosen by held-out error.
 
     channels: 1 or 3. reference: the image whose exposure stays as given. free: Free.RESPONSE .. CENTER. modes: EMoR
@@ -70,21 +68,6 @@ class FitOptions(Struct, _abi.FitOptions):
 
     def _set_defaults(self) -> None:
         lib.lensprof_fit_options_init(byref(self))
-        self._progress: Optional[Callable[[float], Optional[bool]]] = None
-
-    @classmethod
-    def _names(cls) -> list[str]:
-        return [name for name in super()._names() if name != "progress_user"]
-
-    @property
-    def progress(self) -> Optional[Callable[[float], Optional[bool]]]:
-        return self._progress
-
-    @progress.setter
-    def progress(self, function: Optional[Callable[[float], Optional[bool]]]) -> None:
-        if not (function is None or callable(function)):
-            raise TypeError("progress takes a function or None")
-        self._progress = function
 
 
 class FitResult(Struct, _abi.FitResult):
@@ -162,46 +145,14 @@ def _fit_images(images: Sequence[FitImage]) -> Any:
     return (_abi.FitImage * len(images))(*images)
 
 
-@contextlib.contextmanager
-def _interrupts() -> Iterator[list[int]]:
-    """Ctrl-C during a fit. Python would raise KeyboardInterrupt on the way into a callback from C, where nothing can
-    catch it; so the signal is only noted, the callback then cancels the fit, and KeyboardInterrupt is raised at the
-    end."""
-    noted: list[int] = []
-    usual = (threading.current_thread() is threading.main_thread()
-             and signal.getsignal(signal.SIGINT) is signal.default_int_handler)
-    if usual:
-        signal.signal(signal.SIGINT, lambda number, _frame: noted.append(number))
-    try:
-        yield noted
-    finally:
-        if usual:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
-    if noted:
-        raise KeyboardInterrupt
-
-
 def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional[FitOptions] = None) -> FitResult:
     """Fits pairs (PAIR_DTYPE) over at least two images. A fit that ran returns also when it is poor: see `usable`."""
     options, error, result = options or FitOptions(), _abi.ErrorText(), FitResult(len(images))
-    progress, raised = options.progress, []  # type: ignore[var-annotated]
-    call = _abi.FitOptions.from_buffer_copy(options)  # what it points to is kept alive by options
-
-    def on_progress(done: float, _user: Any) -> int:
-        try:
-            return 1 if interrupted or (progress and progress(done)) else 0
-        except BaseException as exception:  # must not cross C
-            raised.append(exception)
-            return 1
-
     out = _abi.FitResult.from_buffer(result)
     out.image_quality = _arrays.address(result.image_quality, _abi.FitImageQuality)
-    with _interrupts() as interrupted:
-        call.progress = _abi.Progress(on_progress)
+    with calling(options) as call:
         status = lib.lensprof_fit_overlap(byref(call), _fit_images(images), len(images), *_arrays.pairs(pairs),
                                           _arrays.address(result.exposures, _abi.Exposure), byref(result), byref(error))
-    if raised:
-        raise raised[0]
     check(status, "the fit failed", error)
     return result
 

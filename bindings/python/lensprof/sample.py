@@ -10,6 +10,7 @@ import numpy as np
 from . import _abi, _arrays
 from ._abi import Layout, Sampling
 from ._library import check, lib
+from ._progress import WithProgress, calling
 from ._struct import Enumerated, Struct, integer
 from .geometry import Camera
 
@@ -20,7 +21,7 @@ class SampleImage:
 
     array: (height, width) or (height, width, samples); layouts with alpha: alpha below half = excluded. camera: of
     the full frame. layout: RGB order when None. reduction: pixel (u, v) of the array is the mean of the square of
-    `reduction` frame pixels from (u, v) * reduction on. mask: (height, width) uint8 or bool, 0 = excluded. black,
+    `reduction` frame pixels from (u, v) * reduction on, or of some pixels of it. mask: (height, width) uint8 or bool, 0 = excluded. black,
     white: samples outside in any channel are not used; 0..1.
     """
 
@@ -40,12 +41,17 @@ class SampleImage:
                                 self.white)
 
 
-class SampleOptions(Struct, _abi.SampleOptions):
-    """How to sample. By default balanced, pairs 0 (= 300 per image, at least 2000), seed 1. Same seed, same pairs."""
+class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
+    """How to sample. By default balanced, pairs 0 (= 300 per image, at least 2000), seed 1, threads 0 (= one a core).
+
+    Same seed, same pairs, on any number of threads. progress: called now and then with a fraction 0..1; sampling is
+    cancelled when it returns True, and when it raises an exception, which then comes out of sample_overlap.
+    """
 
     sampling = Enumerated(Sampling)
     pairs: int
     seed: int
+    threads: int
 
     def _set_defaults(self) -> None:
         lib.lensprof_sample_options_init(byref(self))
@@ -62,6 +68,8 @@ def sample_overlap(images: Sequence[SampleImage], options: Optional[SampleOption
     check(lib.lensprof_sample_overlap(byref(options), views, len(views), None, 0, byref(room), byref(error)),
           "sampling failed", error)
     pairs = np.empty(room.value, dtype=_arrays.PAIR_DTYPE)
-    check(lib.lensprof_sample_overlap(byref(options), views, len(views), *_arrays.pairs(pairs), byref(found),
-                                      byref(error)), "sampling failed", error)
+    with calling(options) as call:
+        status = lib.lensprof_sample_overlap(byref(call), views, len(views), *_arrays.pairs(pairs), byref(found),
+                                             byref(error))
+    check(status, "sampling failed", error)
     return pairs[:found.value]

@@ -1,0 +1,73 @@
+"""Progress functions of long calls, and Ctrl-C during them."""
+from __future__ import annotations
+
+import contextlib
+import signal
+import threading
+from typing import Any, Callable, Iterator, Optional
+
+from . import _abi
+
+Function = Callable[[float], Optional[bool]]
+
+
+class WithProgress:
+    """Options with a field `progress`: called now and then with a fraction 0..1; the call is cancelled when it returns
+    True, and when it raises an exception, which then comes out of the call."""
+
+    _progress: Optional[Function] = None
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [name for name in super()._names() if name != "progress_user"]  # type: ignore[misc]
+
+    @property
+    def progress(self) -> Optional[Function]:
+        return self._progress
+
+    @progress.setter
+    def progress(self, function: Optional[Function]) -> None:
+        if not (function is None or callable(function)):
+            raise TypeError("progress takes a function or None")
+        self._progress = function
+
+
+@contextlib.contextmanager
+def _interrupts() -> Iterator[list[int]]:
+    """Ctrl-C during a call. Python would raise KeyboardInterrupt on the way into a callback from C, where nothing can
+    catch it; so the signal is only noted, the callback then cancels the call, and KeyboardInterrupt is raised at the
+    end."""
+    noted: list[int] = []
+    usual = (threading.current_thread() is threading.main_thread()
+             and signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+    if usual:
+        signal.signal(signal.SIGINT, lambda number, _frame: noted.append(number))
+    try:
+        yield noted
+    finally:
+        if usual:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+    if noted:
+        raise KeyboardInterrupt
+
+
+@contextlib.contextmanager
+def calling(options: Any) -> Iterator[Any]:
+    """The raw options for one call of the library, which lasts as long as the block; what they point to is kept alive
+    by `options`."""
+    raised: list[BaseException] = []
+    raw = next(base for base in type(options).__mro__ if "_fields_" in vars(base))
+    call = raw.from_buffer_copy(options)
+
+    def on_progress(done: float, _user: Any) -> int:
+        try:
+            return 1 if interrupted or (options.progress and options.progress(done)) else 0
+        except BaseException as exception:  # must not cross C
+            raised.append(exception)
+            return 1
+
+    with _interrupts() as interrupted:
+        call.progress = _abi.Progress(on_progress)
+        yield call
+    if raised:
+        raise raised[0]

@@ -1,0 +1,271 @@
+#include "sampler.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include "parallel.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr int kRadiusBins = 10, kGreyBins = 10;
+constexpr uint32_t kPiece = 32;       // places of one image that a thread looks at in one go
+constexpr uint32_t kPaperRound = 8192;
+
+double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+void unit_vector(const double direction[2], double v[3]) {
+    v[0] = std::cos(direction[1]) * std::sin(direction[0]);
+    v[1] = std::sin(direction[1]);
+    v[2] = std::cos(direction[1]) * std::cos(direction[0]);
+}
+
+double angle_between(const double a[3], const double b[3]) { return std::acos(std::clamp(dot(a, b), -1.0, 1.0)); }
+
+// Unit vector of a pixel's direction; false when it has none.
+bool direction_of(const lensprof_camera &camera, double x, double y, double v[3]) {
+    double direction[2];
+    if (!lensprof_camera_unproject(&camera, x, y, direction)) return false;
+    unit_vector(direction, v);
+    return true;
+}
+
+// Moves the lists, in order, behind each other.
+template <class T> void append(std::vector<std::vector<T>> &lists, std::vector<T> &all) {
+    for (auto &list : lists) {
+        all.insert(all.end(), list.begin(), list.end());
+        list = {};
+    }
+}
+
+}  // namespace
+
+Sampler::Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count)
+    : options_(options) {
+    for (uint32_t i = 0; i < count; i++) views_.emplace_back(images[i]);
+    find_neighbours();
+}
+
+// Cones do not tell anything about translated cameras or frames that reach beyond the projection.
+Sampler::Cone Sampler::cone_of(const lensprof_camera &camera) {
+    Cone cone{};
+    cone.known = !camera.translation[0] && !camera.translation[1] && !camera.translation[2]
+                 && direction_of(camera, 0.5 * (camera.width - 1.0), 0.5 * (camera.height - 1.0), cone.axis);
+    for (int k = 0; k < 16 && cone.known; k++) {
+        double x = (k % 4) / 3.0 * (camera.width - 1.0), y = (k / 4) / 3.0 * (camera.height - 1.0), v[3];
+        cone.known = direction_of(camera, x, y, v);
+        if (cone.known) cone.reach = std::max(cone.reach, 1.05 * angle_between(cone.axis, v));
+    }
+    cone.cosine = cone.known ? std::cos(std::min(cone.reach, std::acos(-1.0))) : -2.0;
+    return cone;
+}
+
+// Images whose view cones touch; an image without a cone is everybody's neighbour.
+void Sampler::find_neighbours() {
+    for (const View &view : views_) cones_.push_back(cone_of(view.image().camera));
+    neighbours_.resize(views_.size());
+    for (uint32_t i = 0; i < views_.size(); i++)
+        for (uint32_t j = i + 1; j < views_.size(); j++) {
+            const Cone &a = cones_[i], &b = cones_[j];
+            if (a.known && b.known && angle_between(a.axis, b.axis) > a.reach + b.reach) continue;
+            neighbours_[i].push_back(j);
+            neighbours_[j].push_back(i);
+        }
+    uint32_t edges = 0;
+    for (const auto &list : neighbours_) {
+        first_edge_.push_back(edges);
+        edges += static_cast<uint32_t>(list.size());
+    }
+}
+
+// Number of the pair of images, the same both ways round.
+uint32_t Sampler::edge_of(const Candidate &candidate) const {
+    auto [low, high] = std::minmax(candidate.image[0], candidate.image[1]);
+    const auto &list = neighbours_[low];
+    auto place = std::lower_bound(list.begin(), list.end(), high) - list.begin();
+    return first_edge_[low] + static_cast<uint32_t>(place);
+}
+
+// Work on all threads; the caller hears the fraction done() as long as it rises.
+void Sampler::each(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done) {
+    auto stop = [&] {
+        shown_ = std::max(shown_, std::min(done(), 1.0));
+        return options_.progress && options_.progress(shown_, options_.progress_user) != 0;
+    };
+    if (!for_each_parallel(count, options_.threads, work, stop)) throw Cancelled();
+}
+
+// Where image j sees a direction, of which `v` is the unit vector.
+bool Sampler::sees(uint32_t j, const double direction[2], const double v[3], double xy[2]) const {
+    return dot(cones_[j].axis, v) >= cones_[j].cosine
+        && lensprof_camera_project(&views_[j].image().camera, direction[0], direction[1], xy)
+        && views_[j].holds(xy[0], xy[1]);
+}
+
+bool Sampler::measure(uint32_t i, double x, double y, End &end) const {
+    const View &view = views_[i];
+    if (!(patches_ ? view.patch(x, y, end.patch) : view.point(x, y, end.patch))) return false;
+    const double mean = (end.patch.value[0] + end.patch.value[1] + end.patch.value[2]) / 3.0;
+    const lensprof_vignetting centred{};
+    const auto &camera = view.image().camera;
+    double r = std::sqrt(lensprof_vignetting_r2(&centred, camera.width, camera.height, x, y, nullptr));
+    end.radius = static_cast<uint8_t>(std::min(static_cast<int>(r * kRadiusBins), kRadiusBins - 1));
+    end.grey = static_cast<uint8_t>(std::min(static_cast<int>(mean * kGreyBins), kGreyBins - 1));
+    return true;
+}
+
+// The candidates between a place of image i and the other images that see it.
+void Sampler::look(uint32_t i, double x, double y, const uint32_t *others, size_t count,
+                   std::vector<Candidate> &found) {
+    double direction[2], v[3], xy[2];
+    if (!views_[i].holds(x, y) || !lensprof_camera_unproject(&views_[i].image().camera, x, y, direction)) return;
+    unit_vector(direction, v);
+    End own, other;
+    bool measured = false;
+    for (size_t n = 0; n < count; n++) {
+        const uint32_t j = others[n];
+        if (!sees(j, direction, v, xy)) continue;
+        if (!overlaps_) overlaps_ = true;
+        if (!measured && !measure(i, x, y, own)) return;
+        measured = true;
+        if (!measure(j, xy[0], xy[1], other)) continue;
+        found.push_back({x, y, {i, j}, static_cast<float>(own.patch.gradient + other.patch.gradient),
+                         {own.radius, other.radius}, {own.grey, other.grey}});
+    }
+}
+
+// Candidates spread evenly over every image (a low-discrepancy sequence), until there are enough or overlaps are used
+// up. The rounds end where they end on any number of threads.
+std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
+    std::vector<Candidate> all;
+    Random random{options_.seed};
+    const double shift[2] = {random.next(), random.next()};
+    size_t sights = 0;  // ways from image to image: a round looks `chunk` times along each
+    for (const auto &list : neighbours_) sights += list.size();
+    auto chunk = static_cast<uint32_t>(std::clamp<size_t>(4 * wanted / std::max<size_t>(sights, 1), 4, 256));
+    const uint32_t most = 102400 / chunk, hopeless = 2560 / chunk, pieces = (chunk + kPiece - 1) / kPiece;
+    for (uint32_t round = 0; round < most && all.size() < wanted && !(round > hopeless && all.empty()); round++) {
+        std::vector<std::vector<Candidate>> found(views_.size() * pieces);
+        std::atomic<size_t> count{all.size()};
+        auto work = [&](uint32_t n) {
+            const uint32_t i = n / pieces, first = n % pieces * kPiece, end = std::min(first + kPiece, chunk);
+            const auto &camera = views_[i].image().camera;
+            for (uint32_t k = round * chunk + first; k < round * chunk + end; k++) {
+                // Roberts' R2 sequence: the plane's generalised golden ratio.
+                double a = shift[0] + 0.7548776662466927 * (k + 1.0), b = shift[1] + 0.5698402909980532 * (k + 1.0);
+                double x = (a - std::floor(a)) * camera.width - 0.5, y = (b - std::floor(b)) * camera.height - 0.5;
+                look(i, x, y, neighbours_[i].data(), neighbours_[i].size(), found[n]);
+            }
+            count += found[n].size();
+        };
+        each(static_cast<uint32_t>(found.size()), work,
+             [&] { return 0.95 * static_cast<double>(count) / static_cast<double>(wanted); });
+        append(found, all);
+    }
+    return all;
+}
+
+std::vector<lensprof_pair> Sampler::pairs_of(const std::vector<Candidate> &chosen) {
+    std::vector<lensprof_pair> pairs(chosen.size());
+    const auto pieces = static_cast<uint32_t>((chosen.size() + kPiece - 1) / kPiece);
+    auto work = [&](uint32_t piece) {
+        for (size_t n = size_t{piece} * kPiece; n < std::min(chosen.size(), (size_t{piece} + 1) * kPiece); n++) {
+            const Candidate &c = chosen[n];
+            lensprof_pair &pair = pairs[n];
+            pair = {{c.image[0], c.image[1]}, {{c.x, c.y}, {0.0, 0.0}}, {}};
+            double direction[2];
+            End end{};
+            bool good = lensprof_camera_unproject(&views_[c.image[0]].image().camera, c.x, c.y, direction)
+                        && lensprof_camera_project(&views_[c.image[1]].image().camera, direction[0], direction[1],
+                                                   pair.xy[1]);
+            for (int side = 0; side < 2 && good; side++) {
+                good = measure(c.image[side], pair.xy[side][0], pair.xy[side][1], end);
+                std::copy(end.patch.value, end.patch.value + 3, pair.value[side]);
+            }
+        }
+    };
+    each(pieces, work, [] { return 0.97; });
+    each(1, [](uint32_t) {}, [] { return 1.0; });
+    return pairs;
+}
+
+// As long as no image pair, radius or grey level has had more than its share; the shares grow until enough are found.
+std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
+    patches_ = true;
+    std::vector<Candidate> all = candidates(8 * static_cast<size_t>(wanted));
+    std::vector<uint32_t> order(all.size()), edge(all.size()), chosen;
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        return all[a].gradient != all[b].gradient ? all[a].gradient < all[b].gradient : a < b;
+    });
+    std::vector<bool> seen(first_edge_.back() + neighbours_.back().size(), false), taken(all.size(), false);
+    for (size_t n = 0; n < all.size(); n++) seen[edge[n] = edge_of(all[n])] = true;
+    const auto edges = std::max<ptrdiff_t>(std::count(seen.begin(), seen.end(), true), 1);
+    std::vector<uint32_t> per_edge(seen.size(), 0), per_radius(kRadiusBins, 0), per_grey(kGreyBins, 0);
+    for (double share : {1.0, 1.5, 2.0, 3.0, 5.0, 1e9}) {
+        double edge_limit = share * wanted / static_cast<double>(edges);
+        double radius_limit = share * 2.0 * wanted / kRadiusBins, grey_limit = share * 2.0 * wanted / kGreyBins;
+        for (uint32_t index : order) {
+            if (chosen.size() >= wanted) break;
+            const Candidate &c = all[index];
+            if (taken[index] || per_edge[edge[index]] >= edge_limit || per_radius[c.radius[0]] >= radius_limit
+                || per_radius[c.radius[1]] >= radius_limit || per_grey[c.grey[0]] >= grey_limit
+                || per_grey[c.grey[1]] >= grey_limit)
+                continue;
+            taken[index] = true;
+            chosen.push_back(index);
+            per_edge[edge[index]]++;
+            for (int side = 0; side < 2; side++) per_radius[c.radius[side]]++, per_grey[c.grey[side]]++;
+        }
+    }
+    std::sort(chosen.begin(), chosen.end());
+    std::vector<Candidate> best;
+    for (uint32_t index : chosen) best.push_back(all[index]);
+    return pairs_of(best);
+}
+
+// A random place of a random image, and one of its neighbours; the image itself when it has none.
+Sampler::Look Sampler::draw(Random &random) const {
+    auto i = static_cast<uint32_t>(random.next() * static_cast<double>(views_.size()));
+    const auto &camera = views_[i].image().camera;
+    double x = random.next() * camera.width - 0.5, y = random.next() * camera.height - 0.5, pick = random.next();
+    const auto &list = neighbours_[i];
+    return {x, y, {i, list.empty() ? i : list[static_cast<size_t>(pick * static_cast<double>(list.size()))]}};
+}
+
+std::vector<lensprof_pair> Sampler::paper(uint32_t wanted) {
+    patches_ = false;
+    Random random{options_.seed};
+    std::vector<Candidate> all, best;
+    const size_t enough = 5 * static_cast<size_t>(wanted), most = 200 * static_cast<size_t>(wanted) + 10000;
+    for (size_t trials = 0; trials < most && all.size() < enough; trials += kPaperRound) {
+        std::vector<Look> looks(std::min<size_t>(kPaperRound, most - trials));
+        for (Look &l : looks) l = draw(random);
+        std::vector<std::vector<Candidate>> found((looks.size() + kPiece - 1) / kPiece);
+        auto work = [&](uint32_t n) {
+            for (size_t k = size_t{n} * kPiece; k < std::min(looks.size(), (size_t{n} + 1) * kPiece); k++) {
+                const Look &l = looks[k];
+                look(l.image[0], l.x, l.y, &l.image[1], l.image[1] == l.image[0] ? 0 : 1, found[n]);
+            }
+        };
+        double done = 0.95 * static_cast<double>(all.size()) / static_cast<double>(enough);
+        each(static_cast<uint32_t>(found.size()), work, [=] { return done; });
+        append(found, all);
+    }
+    all.resize(std::min(all.size(), enough));
+    for (uint8_t bin = 0; bin < kRadiusBins; bin++) {
+        std::vector<Candidate> own;
+        std::copy_if(all.begin(), all.end(), std::back_inserter(own),
+                     [=](const Candidate &c) { return c.radius[0] == bin; });
+        std::stable_sort(own.begin(), own.end(),
+                         [](const Candidate &a, const Candidate &b) { return a.gradient < b.gradient; });
+        own.resize(std::min<size_t>(own.size(), std::max(1u, wanted / kRadiusBins)));
+        own.resize(std::min(own.size(), wanted - best.size()));
+        best.insert(best.end(), own.begin(), own.end());
+    }
+    return pairs_of(best);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,75 @@
+// Finding correspondences: candidates from image to image through the geometry, then a choice among them.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "random.hpp"
+#include "view.hpp"
+
+namespace lensprof {
+
+// Thrown where the caller's progress function asks to stop.
+struct Cancelled {};
+
+class Sampler {
+public:
+    Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count);
+
+    // The quietest candidates first, balanced over image pairs, radius and grey level.
+    std::vector<lensprof_pair> balanced(uint32_t wanted);
+
+    // d'Angelo 5.1: 5n random points, binned by radius; from each of 10 bins the n/10 of lowest gradient.
+    std::vector<lensprof_pair> paper(uint32_t wanted);
+
+    bool overlaps() const { return overlaps_; }
+
+private:
+    // One end of a correspondence. Bins of radius and grey level count from 0.
+    struct End {
+        Patch patch;
+        uint8_t radius, grey;
+    };
+    // There may be millions: their grey values are measured again for those chosen.
+    struct Candidate {
+        double x, y;  // in image[0], px of the full frame
+        uint32_t image[2];
+        float gradient;  // both ends together
+        uint8_t radius[2], grey[2];
+    };
+    // A point of paper sampling: where to look, and in which other image.
+    struct Look {
+        double x, y;
+        uint32_t image[2];
+    };
+
+    // What an image sees lies within `reach` of its axis, radians (a little is added to it).
+    struct Cone {
+        double axis[3], reach;
+        double cosine;  // of reach; less than any where the cone is not known
+        bool known;
+    };
+
+    static Cone cone_of(const lensprof_camera &camera);
+    void find_neighbours();
+    bool sees(uint32_t j, const double direction[2], const double v[3], double xy[2]) const;
+    bool measure(uint32_t i, double x, double y, End &end) const;
+    void look(uint32_t i, double x, double y, const uint32_t *others, size_t count, std::vector<Candidate> &found);
+    Look draw(Random &random) const;
+    std::vector<Candidate> candidates(size_t wanted);
+    std::vector<lensprof_pair> pairs_of(const std::vector<Candidate> &chosen);
+    uint32_t edge_of(const Candidate &candidate) const;
+    void each(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done);
+
+    const lensprof_sample_options &options_;
+    std::vector<View> views_;
+    std::vector<Cone> cones_;
+    std::vector<std::vector<uint32_t>> neighbours_;  // ascending
+    std::vector<uint32_t> first_edge_;               // number of every image's first pair with a neighbour
+    bool patches_ = true;                            // else single points
+    std::atomic<bool> overlaps_{false};
+    double shown_ = 0.0;  // the last fraction that the caller saw
+};
+
+}  // namespace lensprof
