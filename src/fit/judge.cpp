@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <set>
 
 #include "quality.hpp"
 
@@ -22,7 +21,7 @@ constexpr double kOddImage = 5.0;              // levels of 255, and four times 
 
 // Pairs that tell something: different from each other, with both grey values of a channel between black and white.
 size_t count_informative(const Problem &problem) {
-    std::set<std::array<double, 10>> seen;
+    std::vector<std::array<double, 10>> seen;
     for (const auto &p : problem.pairs) {
         bool tells = false;
         for (int c = 0; c < problem.channels; c++)
@@ -30,10 +29,11 @@ size_t count_informative(const Problem &problem) {
                     || (std::min(p.value[0][c], p.value[1][c]) > kBlack
                         && std::max(p.value[0][c], p.value[1][c]) < 1.0 - kBlack);
         if (tells)
-            seen.insert({p.xy[0][0], p.xy[0][1], p.xy[1][0], p.xy[1][1], p.value[0][0], p.value[0][1], p.value[0][2],
+            seen.push_back({p.xy[0][0], p.xy[0][1], p.xy[1][0], p.xy[1][1], p.value[0][0], p.value[0][1], p.value[0][2],
                          p.value[1][0], p.value[1][1], p.value[1][2]});
     }
-    return seen.size();
+    std::sort(seen.begin(), seen.end());
+    return static_cast<size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
 }
 
 // From the darkest to the brightest grey value of all pairs, without a twentieth at either end.
@@ -41,8 +41,11 @@ double grey_range(const Problem &problem) {
     std::vector<double> values;
     for (const auto &p : problem.pairs)
         for (const auto &side : p.value) values.insert(values.end(), side, side + problem.channels);
-    std::sort(values.begin(), values.end());
-    return values[values.size() - 1 - values.size() / 20] - values[values.size() / 20];
+    auto low = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20), high = values.end() - 1 - (low - values.begin());
+    std::nth_element(values.begin(), low, values.end());
+    double darkest = *low;
+    std::nth_element(values.begin(), high, values.end());
+    return *high - darkest;
 }
 
 // Outer edge of the outermost ring that holds more than a few pair ends.

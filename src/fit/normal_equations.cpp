@@ -36,6 +36,13 @@ NormalEquations::NormalEquations(const Problem &problem, const Prior &prior, con
     map_images(prior, estimate);
 }
 
+void NormalEquations::by_lens(const Falloff &fall, int curve, int first, double *by) const {
+    for (size_t u = static_cast<size_t>(first); u < columns_.size(); u++) {
+        int column = columns_[u], k = column - kFalloff - 3 * curve;
+        by[u] = column >= kCenter ? fall.by_center[column - kCenter] : k >= 0 && k < 3 ? fall.by_k[k] : 0.0;
+    }
+}
+
 void NormalEquations::add_edge(const Edge &edge, Rows *rows, const Loss &loss, const NoiseWeights &weights,
                                const Estimate &estimate, const ModeTable &modes) {
     auto n = static_cast<Eigen::Index>(columns_.size());
@@ -43,31 +50,24 @@ void NormalEquations::add_edge(const Edge &edge, Rows *rows, const Loss &loss, c
     int emor = columns_.empty() || columns_[0] >= kMaxModes ? 0 : modes.modes();
     edge_weight_.push_back({0.0, 0.0, 0.0});
     PairTransfer t;
+    double lens[3][kMaxShared];  // d delta / d shared, behind the modes, of each falloff curve
     for (size_t p = edge.first; p < edge.last; p++) {
         evaluate_pair(problem_, estimate, problem_.pairs[p], ratio.data(), t);
-        PairResiduals factor;
-        objective_ += 0.5
-                      * pair_cost(weighted_residuals(t, problem_.channels, weights[p]), problem_.channels, loss,
-                                  &factor);
+        PairResiduals factor, residuals = weighted_residuals(t, problem_.channels, weights[p]);
+        objective_ += 0.5 * pair_cost(residuals, problem_.channels, loss, &factor);
+        for (int curve = 0; curve < problem_.vignettings; curve++)
+            by_lens(t.fall[static_cast<size_t>(curve)], curve, emor, lens[curve]);
         for (int c = 0; c < problem_.channels; c++) {
-            int curve = problem_.vignettings == 3 ? c : 0;
-            const Falloff &fall = t.fall[static_cast<size_t>(curve)];
+            const Transfer &one = t.channel[static_cast<size_t>(c)];
+            const double *by = lens[problem_.vignettings == 3 ? c : 0];
             for (int side = 0; side < 2; side++) {
-                const Transfer &one = t.channel[static_cast<size_t>(c)];
-                double by_delta = one.by_delta[side];
+                double by_delta = one.by_delta[side], root = weights[p][c][side] * std::sqrt(factor[c][side]);
                 if (by_delta == 0.0 && one.by_value[side] == 0.0) continue;  // saturated prediction
-                double root = weights[p][c][side] * std::sqrt(factor[c][side]);
                 double *row = rows[c].rows.col(rows[c].count).data();
-                if (emor) modes.transfer_by_emor(one, side, row);
-                for (Eigen::Index u = emor; u < n; u++) {
-                    int column = columns_[static_cast<size_t>(u)], k = column - kFalloff - 3 * curve;
-                    row[u] = column >= kCenter  ? by_delta * fall.by_center[column - kCenter]
-                             : k >= 0 && k < 3 ? by_delta * fall.by_k[k]
-                                               : 0.0;
-                }
-                row[n] = by_delta;
-                row[n + 1] = one.residual[side];
-                for (Eigen::Index u = 0; u < n + 2; u++) row[u] *= root;
+                if (emor) modes.transfer_by_emor(one, side, root, row);
+                for (Eigen::Index u = emor; u < n; u++) row[u] = root * by_delta * by[u];
+                row[n] = root * by_delta;
+                row[n + 1] = root * one.residual[side];
                 if (++rows[c].count == Rows::kCapacity) add_rows(edge, c, rows[c]);
             }
         }

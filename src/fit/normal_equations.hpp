@@ -37,6 +37,7 @@ public:
 
 private:
     struct Rows;  // residuals of one edge and channel
+    void by_lens(const Falloff &fall, int curve, int first, double *by) const;
     void add_edge(const Edge &edge, Rows *rows, const Loss &loss, const NoiseWeights &weights,
                   const Estimate &estimate, const ModeTable &modes);
     void add_rows(const Edge &edge, int channel, Rows &rows);

@@ -76,13 +76,13 @@ const double *ModeTable::at(double x, double &fraction) const {
     return rows_.data() + static_cast<size_t>(j) * static_cast<size_t>(modes_);
 }
 
-void ModeTable::transfer_by_emor(const Transfer &t, int side, double *by_emor) const {
+void ModeTable::transfer_by_emor(const Transfer &t, int side, double scale, double *by_emor) const {
     // prediction = f(y), y = factor * g(other):  h(y) + f'(y) * factor * dg/dalpha,  dg/dalpha = -h(x) / f'(x)
     double fy, fx, tau = t.by_value[side];
     const double *hy = at(t.y[side], fy), *hx = at(t.x[1 - side], fx);
-    double y0 = 1.0 - fy, x0 = tau * (1.0 - fx), x1 = tau * fx;
+    double y0 = scale * (1.0 - fy), y1 = scale * fy, x0 = scale * tau * (1.0 - fx), x1 = scale * tau * fx;
     for (int l = 0; l < modes_; l++)
-        by_emor[l] = y0 * hy[l] + fy * hy[l + modes_] - x0 * hx[l] - x1 * hx[l + modes_];
+        by_emor[l] = y0 * hy[l] + y1 * hy[l + modes_] - x0 * hx[l] - x1 * hx[l + modes_];
 }
 
 }  // namespace lensprof

@@ -65,8 +65,8 @@ public:
     explicit ModeTable(int modes);
     int modes() const { return modes_; }
 
-    // d prediction[side] / d emor[l] for all modes.
-    void transfer_by_emor(const Transfer &t, int side, double *by_emor) const;
+    // d prediction[side] / d emor[l] for all modes, times `scale`.
+    void transfer_by_emor(const Transfer &t, int side, double scale, double *by_emor) const;
 
 private:
     const double *at(double x, double &fraction) const;

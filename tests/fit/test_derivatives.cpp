@@ -72,7 +72,7 @@ void test_residual_by_response(void **) {
             for (int c = 0; c < 3; c++)
                 for (int side = 0; side < 2; side++) {
                     double by_emor[kMaxModes];
-                    modes.transfer_by_emor(t.channel[c], side, by_emor);
+                    modes.transfer_by_emor(t.channel[c], side, 1.0, by_emor);
                     analytic.push_back(-by_emor[l]);
                 }
         });
