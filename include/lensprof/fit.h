@@ -119,8 +119,10 @@ typedef struct lensprof_fit_result {
     double heldout_median;   /* median absolute value of the same */
     double noise_levels;     /* estimated noise of a sample, levels of 255 */
     double inlier_share;     /* pairs within 3 sigma of the noise */
-    double local_levels;     /* part of the residual that neighbouring pairs share, levels of 255: what no camera model
-                                explains (local tone mapping, flare); 0 for noise */
+    double frame_share;      /* share of the inliers' residual variance that follows one map over the frame: the
+                                falloff is not radial. 0 for noise */
+    double image_share;      /* share beyond that which follows a map of each image's own: no camera model explains it
+                                (local tone mapping, changing light). 0 for noise */
     double seconds;          /* time taken by the solver */
     uint32_t radius_ends[LENSPROF_COVERAGE_BINS]; /* pair ends in rings of r, each 1/10 half diagonal wide */
     uint32_t grey_ends[LENSPROF_COVERAGE_BINS];   /* pair ends in tenths of the grey range, all channels */

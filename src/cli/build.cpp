@@ -17,8 +17,8 @@ namespace {
 
 struct Options {
     std::string pto, points, points_out, pto_out, db, method = "transfer", modes = "auto", loss = "robust",
-                sampling = "balanced", gamma_from = "auto", camera_kind = "any", falloff = "auto", reference, free, compare, maker, camera,
-                lens, processing;
+                sampling = "balanced", gamma_from = "auto", camera_kind = "any", falloff = "auto", reference, free,
+                compare, maker, camera, lens, processing;
     bool no_store = false, json = false, force = false, one_lens = false, progress = false;
     double huber = 5.0, prior = 1.0, exif_sigma = 0.1, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN,
            distance = LENSPROF_UNKNOWN;
@@ -56,7 +56,8 @@ void declare(CLI::App &app, Options &o) {
         ->check(CLI::IsMember({"balanced", "paper"}));
     app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000")->check(in_range(0, 1 << 24));
     app.add_option("--seed", o.seed, "of the sampling");
-    app.add_option("--max-side", o.max_side, "sample pictures reduced to no less than this many pixels (800); 0 = full size");
+    app.add_option("--max-side", o.max_side,
+                   "sample pictures reduced to no less than this many pixels (800); 0 = full size");
     app.add_option("--maker", o.maker, "camera maker, instead of EXIF's");
     app.add_option("--camera", o.camera, "camera model");
     app.add_option("--lens", o.lens, "lens");

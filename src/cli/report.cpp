@@ -46,8 +46,9 @@ Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
 double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
 void print_vignetting(const lensprof_vignetting &v, const char *channel, std::ostream &out) {
-    out << "falloff" << channel << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1],
-                  v.k[2], v.center[0], v.center[1]);
+    out << "falloff" << channel
+        << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
+                  v.center[0], v.center[1]);
     out << format("          light at r = 0.5: %.1f %%, in the corner: %.1f %% (%.2f stops)\n",
                   100.0 * lensprof_vignetting_eval(&v, 0.25, nullptr), 100.0 * corner(v), -std::log2(corner(v)));
 }
@@ -166,7 +167,8 @@ Json build_json(const BuildReport &report) {
                         {"heldout_rms", number_or_null(fit.heldout_rms)},
                         {"heldout_median", number_or_null(fit.heldout_median)},
                         {"noise", fit.noise_levels},
-                        {"local", fit.local_levels},
+                        {"frame_share", fit.frame_share},
+                        {"image_share", fit.image_share},
                         {"inlier_share", fit.inlier_share}};
     json["gamma_from"] = gamma_name(fit.gamma_from);
     json["gamma"] = gamma_json(report);

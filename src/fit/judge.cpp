@@ -13,8 +13,9 @@ constexpr double kBlack = 0.004;               // one level of 255
 constexpr double kSmallestRange = 0.05;        // of grey values
 constexpr double kSmallestRadius = 0.6;        // half diagonals: beyond, k1..k3 extrapolate
 constexpr double kLargestNoise = 6.0;          // levels of 255: no camera's noise, but a model that does not fit
-constexpr double kLargestLocal = 2.5;          // levels of 255 that neighbouring pairs share, and
-constexpr double kLargestLocalShare = 0.6;     // their share of the noise
+constexpr double kLargestImageShare = 0.35;    // of residual variance that follows a map of each image's own,
+constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a word
+constexpr double kNotRadial = 0.3;             // share that follows one map over the frame
 constexpr double kLargestCornerSigma = 0.1;    // of M
 constexpr double kLargestEvSigma = 0.3;        // EV, gamma apart
 constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
@@ -41,7 +42,8 @@ double grey_range(const Problem &problem) {
     std::vector<double> values;
     for (const auto &p : problem.pairs)
         for (const auto &side : p.value) values.insert(values.end(), side, side + problem.channels);
-    auto low = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20), high = values.end() - 1 - (low - values.begin());
+    auto low = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
+    auto high = values.end() - 1 - (low - values.begin());
     std::nth_element(values.begin(), low, values.end());
     double darkest = *low;
     std::nth_element(values.begin(), high, values.end());
@@ -132,11 +134,12 @@ bool contradicts_model(const Problem &problem, lensprof_fit_result &r) {
     if (r.inlier_share < 0.3)
         return refuse(r, "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
                       100.0 * r.inlier_share);
-    if (is_free && r.local_levels > kLargestLocal && r.local_levels > kLargestLocalShare * r.noise_levels)
+    double pattern = r.noise_levels * std::sqrt(r.image_share);
+    if (is_free && r.image_share > kLargestImageShare && pattern > kSmallestPattern)
         return refuse(r,
-                      "neighbouring pairs share residuals of %.1f levels, which no response and falloff explain: the "
-                      "pictures were processed by their surroundings (local tone mapping, HDR), or light changed",
-                      r.local_levels);
+                      "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no response and "
+                      "falloff explain: local tone mapping (HDR), or light that changed between the pictures",
+                      100.0 * r.image_share, pattern);
     if (r.noise_levels > kLargestNoise)
         return refuse(r,
                       "the pairs scatter by %.1f levels about the best camera model; free more parameters, or check "
@@ -151,7 +154,8 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
         return refuse(r, "the pairs do not determine all parameters; fix some, or take pictures of more exposures");
     double corner = corner_sigma(problem, r);
     if (corner > kLargestCornerSigma)
-        return refuse(r, "the pairs leave the falloff in the corners uncertain by %.0f %%; sample more, or overlap more",
+        return refuse(r,
+                      "the pairs leave the falloff in the corners uncertain by %.0f %%; sample more, or overlap more",
                       100.0 * corner);
     int image = uncertain_image(problem, estimate, r);
     if (image >= 0)
@@ -167,11 +171,17 @@ void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result
     r.usable = 1;
     r.reason[0] = 0;
     int odd = odd_image(problem, r);
+    double pattern = r.noise_levels * std::sqrt(r.frame_share);
     if (odd >= 0)
         std::snprintf(r.reason, sizeof r.reason,
-                      "image %d disagrees with the images it overlaps (median residual %.1f levels): its exposure means "
-                      "nothing; check its place in the project",
+                      "most pairs of image %d disagree with the camera model (median residual %.1f levels): check its "
+                      "place in the project, or what moved there",
                       odd, r.image_quality[odd].median_residual);
+    else if (r.frame_share > kNotRadial && pattern > kSmallestPattern)
+        std::snprintf(r.reason, sizeof r.reason,
+                      "%.0f %% of the residual follows one pattern over the frame (%.1f levels): the falloff is not "
+                      "radial",
+                      100.0 * r.frame_share, pattern);
 }
 
 }  // namespace lensprof

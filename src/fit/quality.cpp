@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "pattern.hpp"
 #include "residual.hpp"
 
 namespace lensprof {
@@ -48,43 +49,7 @@ double signed_residual(const PairTransfer &t, int channels) {
     return sum / channels;
 }
 
-// The pairs of an edge along a winding path over the frame of its first image: neighbours there lie close together.
-std::vector<size_t> winding_order(const Problem &problem, const Edge &edge, const std::vector<bool> &is_inlier) {
-    std::vector<size_t> order;
-    for (size_t p = edge.first; p < edge.last; p++)
-        if (is_inlier[p]) order.push_back(p);
-    const auto &image = problem.images[edge.image[0]];
-    double band = std::sqrt(static_cast<double>(image.width) * image.height / std::max<size_t>(order.size(), 1));
-    auto row = [&](size_t p) { return static_cast<int>(problem.pairs[p].xy[0][1] / band); };
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-        if (row(a) != row(b)) return row(a) < row(b);
-        double xa = problem.pairs[a].xy[0][0], xb = problem.pairs[b].xy[0][0];
-        return xa != xb ? (row(a) % 2 ? xa > xb : xa < xb) : a < b;
-    });
-    return order;
-}
-
-// What neighbouring pairs share of their residuals (d'Angelo's model has none of it: noise is independent). The root
-// of the mean product of neighbours' residuals, where that is beyond chance.
-double local_residual(const Problem &problem, const std::vector<double> &residual,
-                      const std::vector<bool> &is_inlier) {
-    double sum = 0.0, square = 0.0;
-    size_t count = 0;
-    for (const Edge &edge : problem.edges) {
-        const auto &image = problem.images[edge.image[0]];
-        double near = 0.15 * std::hypot(image.width, image.height);
-        auto order = winding_order(problem, edge, is_inlier);
-        for (size_t i = 1; i < order.size(); i++) {
-            const auto &a = problem.pairs[order[i - 1]].xy[0], &b = problem.pairs[order[i]].xy[0];
-            if (std::hypot(a[0] - b[0], a[1] - b[1]) > near) continue;
-            double product = residual[order[i - 1]] * residual[order[i]];
-            sum += product, square += product * product, count++;
-        }
-    }
-    return count && sum > 3.0 * std::sqrt(square) ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
-}
-
-// Residuals, noise and what they share, and every image's median.
+// Residuals, noise and the patterns they follow, and every image's median.
 void describe_residuals(const Problem &problem, const Estimate &estimate, double noise, lensprof_fit_result &r) {
     std::vector<double> chi2 = all_chi2(problem, estimate, noise), residual(problem.pairs.size());
     std::vector<bool> is_inlier(problem.pairs.size());
@@ -101,7 +66,9 @@ void describe_residuals(const Problem &problem, const Estimate &estimate, double
                 for (double one : t.channel[static_cast<size_t>(c)].residual)
                     of_image[image].push_back(255.0 * std::abs(one));
     });
-    r.local_levels = local_residual(problem, residual, is_inlier);
+    PatternShares shares = pattern_shares(problem, residual, is_inlier);
+    r.frame_share = shares.frame;
+    r.image_share = shares.image;
     for (size_t i = 0; i < of_image.size(); i++) r.image_quality[i].median_residual = quantile(of_image[i], 0.5);
 }
 

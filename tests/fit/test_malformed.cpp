@@ -44,7 +44,7 @@ std::string fault_of_result(const Case &c) {
     for (size_t i = 0; i < c.exposures.size(); i++)
         if (lensprof_exposure_validate(&c.exposures[i]) != LENSPROF_OK)
             return "exposure " + std::to_string(i) + " is out of range: " + text_of(c.exposures[i]);
-    for (double v : {r.before_rms, r.noise_levels, r.inlier_share, r.local_levels, r.seconds})
+    for (double v : {r.before_rms, r.noise_levels, r.inlier_share, r.frame_share, r.image_share, r.seconds})
         if (!(v >= 0.0 && v < 1e9)) return "a figure of the residual is " + std::to_string(v);
     for (double v : {r.heldout_rms, r.heldout_median})
         if (!((v >= 0.0 && v <= 255.0) || v == LENSPROF_UNKNOWN)) return "a held-out figure is " + std::to_string(v);

@@ -230,7 +230,8 @@ static void print_fit_structs(void)
     FIELD(lensprof_fit_result, heldout_median);
     FIELD(lensprof_fit_result, noise_levels);
     FIELD(lensprof_fit_result, inlier_share);
-    FIELD(lensprof_fit_result, local_levels);
+    FIELD(lensprof_fit_result, frame_share);
+    FIELD(lensprof_fit_result, image_share);
     FIELD(lensprof_fit_result, seconds);
     FIELD(lensprof_fit_result, radius_ends);
     FIELD(lensprof_fit_result, grey_ends);

@@ -287,7 +287,7 @@ class FitResult(Structure):
                 ("components", c_uint32), ("iterations", c_uint32), ("converged", c_uint32), ("gamma_from", c_uint32),
                 ("gamma_sigma", c_double), ("before_rms", c_double), ("heldout_rms", c_double),
                 ("heldout_median", c_double), ("noise_levels", c_double), ("inlier_share", c_double),
-                ("local_levels", c_double), ("seconds", c_double), ("radius_ends", c_uint32 * COVERAGE_BINS),
+                ("frame_share", c_double), ("image_share", c_double), ("seconds", c_double), ("radius_ends", c_uint32 * COVERAGE_BINS),
                 ("grey_ends", c_uint32 * COVERAGE_BINS), ("covariance_size", c_uint32), ("reserved", c_uint32),
                 ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX)),
                 ("gamma_direction", c_double * COVARIANCE_MAX), ("image_quality", POINTER(FitImageQuality))]

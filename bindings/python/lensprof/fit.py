@@ -77,8 +77,8 @@ class FitResult(Struct, _abi.FitResult):
     vignetting: tuple of 1 (all channels) or 3. exposures: what every image got relative to the reference,
     EXPOSURE_DTYPE; image_quality: how well each is determined, IMAGE_QUALITY_DTYPE. pairs: used. components: connected
     groups of images. gamma_from: what settled the exponent gamma; gamma_sigma: standard error of ln gamma;
-    gamma_direction: change of each parameter per unit of it. before_rms, heldout_rms, heldout_median, noise_levels,
-    local_levels: levels of 255. inlier_share: 0..1. seconds: time taken. radius_ends, grey_ends: pair ends by tenths of
+    gamma_direction: change of each parameter per unit of it. before_rms, heldout_rms, heldout_median, noise_levels: levels of
+    255. frame_share, image_share: residual variance that follows a map over the frame, or of each image's own. inlier_share: 0..1. seconds: time taken. radius_ends, grey_ends: pair ends by tenths of
     the half diagonal and of the grey range. covariance: n x n as in Profile; parameters held fixed have zero rows.
     """
 
@@ -98,7 +98,8 @@ class FitResult(Struct, _abi.FitResult):
     heldout_median: float
     noise_levels: float
     inlier_share: float
-    local_levels: float
+    frame_share: float
+    image_share: float
     seconds: float
     radius_ends = Vector(writable=False)
     grey_ends = Vector(writable=False)
