@@ -39,7 +39,7 @@ typedef enum lensprof_loss {
 /* What settles the exponent gamma that pictures leave open: (f, M, e) and (f o x^(1/gamma), M^gamma, e^gamma) make the
  * same pictures. */
 typedef enum lensprof_gamma_from {
-    LENSPROF_GAMMA_AUTO = 0,      /* default: known exposures and the prior on the response, each by its standard error */
+    LENSPROF_GAMMA_AUTO = 0,      /* default: known exposures and the prior, each by its standard error */
     LENSPROF_GAMMA_PRIOR = 1,     /* the prior on the response alone */
     LENSPROF_GAMMA_EXPOSURES = 2, /* known_ev of the images alone; without differences there, the prior */
     LENSPROF_GAMMA_KNOWN = 3,     /* results only: parameters held fixed, be it response, falloff or exposures */

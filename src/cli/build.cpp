@@ -277,11 +277,18 @@ void check_outputs(const Options &o, const Project &project) {
     }
 }
 
+constexpr uint32_t project_modes = 5;  /* Ra..Re */
+
+/* A fit and the exposures that belong to it. */
+struct Fitted {
+    lensprof_fit_result result{};
+    std::vector<lensprof_exposure> exposures;  /* relative to the reference */
+};
+
 /* The text of the project with the result in it. */
-std::string project_text(const Options &o, Project &project, const BuildReport &report) {
-    check(lensprof_pto_set_result(project.pto.get(), &report.fit.response, &green_falloff(report.fit),
-                                  report.exposures.data(), static_cast<uint32_t>(report.exposures.size()),
-                                  report.reference),
+std::string project_text(const Options &o, Project &project, const Fitted &fitted, uint32_t reference) {
+    check(lensprof_pto_set_result(project.pto.get(), &fitted.result.response, &green_falloff(fitted.result),
+                                  fitted.exposures.data(), static_cast<uint32_t>(fitted.exposures.size()), reference),
           o.pto);
     // Names are relative to the project's folder, which may be another one now.
     auto folder = std::filesystem::absolute(o.pto_out).parent_path();
@@ -333,37 +340,70 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     return pairs;
 }
 
+/* What the pictures are fitted with. */
+struct FitInput {
+    lensprof_fit_options options;
+    lensprof_response fixed;
+    std::vector<lensprof_fit_image> images;
+    std::vector<lensprof_pair> pairs;
+};
+
+Fitted fit(const Options &o, const FitInput &input, uint32_t reference,
+           std::vector<lensprof_fit_image_quality> *quality) {
+    Fitted fitted;
+    auto count = static_cast<uint32_t>(input.images.size());
+    fitted.exposures.resize(count);
+    lensprof_fit_result_init(&fitted.result);
+    if (quality) {
+        quality->resize(count);
+        fitted.result.image_quality = quality->data();
+    }
+    lensprof_error error{};
+    lensprof_status status = lensprof_fit_overlap(&input.options, input.images.data(), count, input.pairs.data(),
+                                                  static_cast<uint32_t>(input.pairs.size()), fitted.exposures.data(),
+                                                  &fitted.result, &error);
+    stop_if_interrupted();
+    if (status == LENSPROF_ERROR_NO_UNKNOWNS)
+        throw Failure(ExitCode::usage,
+                      o.pto + ": asks for nothing on its v lines; add some in Hugin, or give --free all");
+    check(status, o.points.empty() ? o.pto : o.points, &error);
+    fitted.result.image_quality = nullptr;
+    fitted.exposures = relative_exposures(fitted.exposures, reference);
+    return fitted;
+}
+
+/* A project holds five modes and one falloff: what is best with these, not what is left of something better. */
+Fitted fit_for_project(const Options &o, FitInput &input, const Fitted &best, uint32_t reference) {
+    bool fits = best.result.response.modes <= project_modes && best.result.vignettings == 1;
+    if (fits || !(input.options.free & LENSPROF_FREE_RESPONSE)) return best;
+    input.options.modes = std::min<uint32_t>(best.result.response.modes, project_modes);
+    input.options.vignettings = 1;
+    return fit(o, input, reference, nullptr);
+}
+
 BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata, Outputs &outputs,
                   Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
     report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
-    lensprof_response fixed;
-    lensprof_fit_options options = fit_options(o, project, fixed);
-    report.camera_kind = options.camera_kind;
-    std::vector<lensprof_pair> pairs = get_pairs(o, project, progress, report, options.channels);
+    FitInput input;
+    input.options = fit_options(o, project, input.fixed);
+    report.camera_kind = input.options.camera_kind;
+    input.pairs = get_pairs(o, project, progress, report, input.options.channels);
     stop_if_interrupted();
-    options.progress = on_progress;
-    options.progress_user = &progress;
-    auto images = fit_images(project);
-    add_known_exposures(o, metadata, images);
-    report.exposures.resize(images.size());
-    report.quality.resize(images.size());
-    lensprof_fit_result_init(&report.fit);
-    report.fit.image_quality = report.quality.data();
-    lensprof_error error{};
-    lensprof_status status =
-        lensprof_fit_overlap(&options, images.data(), static_cast<uint32_t>(images.size()), pairs.data(),
-                             static_cast<uint32_t>(pairs.size()), report.exposures.data(), &report.fit, &error);
-    stop_if_interrupted();
-    if (status == LENSPROF_ERROR_NO_UNKNOWNS)
-        throw Failure(ExitCode::usage,
-                      o.pto + ": asks for nothing on its v lines; add some in Hugin, or give --free all");
-    check(status, o.points.empty() ? o.pto : o.points, &error);
-    report.fit.image_quality = nullptr;
-    report.exposures = relative_exposures(report.exposures, report.reference);
-    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(pairs, project));
+    input.options.progress = on_progress;
+    input.options.progress_user = &progress;
+    input.images = fit_images(project);
+    add_known_exposures(o, metadata, input.images);
+    Fitted best = fit(o, input, report.reference, &report.quality);
+    report.fit = best.result;
+    report.exposures = best.exposures;
+    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(input.pairs, project));
+    if (!o.pto_out.empty() && (report.fit.usable || o.force)) {
+        Fitted written = fit_for_project(o, input, best, report.reference);
+        outputs.add(o.pto_out, project_text(o, project, written, report.reference));
+    }
     progress.clear();
     if (report.fit.usable && *report.fit.reason)
         streams.err << "lensprof: warning: " << o.pto << ": " << report.fit.reason << "\n";
@@ -399,7 +439,6 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     Outputs outputs;
     BuildReport report = build(o, project, metadata, outputs, streams);
     bool good = report.fit.usable || o.force;
-    if (good && !o.pto_out.empty()) outputs.add(o.pto_out, project_text(o, project, report));
     stop_if_interrupted();
     if (good && !o.no_store) report.profile_id = store_profile(o, project, key, report.fit);
     outputs.commit();

@@ -1,7 +1,7 @@
 // The exponent gamma that a response has by measure of its shape.
 //
-// A response's family f(x^(1/gamma)) is one shape. Measured cameras of one shape have similar exponents: the position of a
-// curve within its family, the logarithm of ln g(0.35) / ln 0.08, follows from the curve's values at three irradiances
+// A response's family f(x^(1/gamma)) is one shape. Measured cameras of one shape have similar exponents: the position of
+// a curve within its family, the logarithm of ln g(0.35) / ln 0.08, follows from the curve's values at three irradiances
 // of the member with f(0.08) = 0.35, by a quadratic fitted to the DoRF database
 // (profiles/tools/make_gamma_prior.py).
 #pragma once

@@ -12,8 +12,8 @@ namespace lensprof {
 namespace {
 
 constexpr double kLn2 = 0.6931471805599453;
-// How firmly gamma is held, as a standard error of ln gamma at kPinPairs pairs and the prior's own standard error. Modes
-// left out prefer some gamma by accident, the more the more pairs there are: the hold keeps up with them.
+// How firmly gamma is held, as a standard error of ln gamma at kPinPairs pairs and the prior's own standard error.
+// Modes left out prefer some gamma by accident, the more the more pairs there are: the hold keeps up with them.
 constexpr double kPinSigma = 0.05, kLargestPinSigma = 0.1, kPinPairs = 2000.0;
 constexpr double kLargestStep = 1.2;     // of ln gamma in one move along the family
 constexpr double kDoubtful = 3.0;        // known exposures farther off, in standard errors, count for less

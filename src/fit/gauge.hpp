@@ -21,7 +21,7 @@ public:
     // The same knowledge, which nothing holds gamma to: for first fits, whose shape is to find its own optimum.
     Gauge unheld() const;
 
-    // Moves the estimate along its family to where gamma is settled, as well as its modes and falloff curves can follow.
+    // Moves the estimate along its family to where gamma is settled, as well as its modes and falloff can follow.
     void settle(const Problem &problem, Estimate &estimate);
 
     // Writes what holds gamma, and the known exposures, into the prior, linearised at the estimate.

@@ -137,8 +137,8 @@ bool contradicts_model(const Problem &problem, lensprof_fit_result &r) {
     double pattern = r.noise_levels * std::sqrt(r.image_share);
     if (is_free && r.image_share > kLargestImageShare && pattern > kSmallestPattern)
         return refuse(r,
-                      "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no response and "
-                      "falloff explain: local tone mapping (HDR), or light that changed between the pictures",
+                      "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no response "
+                      "and falloff explain: local tone mapping (HDR), or light that changed between the pictures",
                       100.0 * r.image_share, pattern);
     if (r.noise_levels > kLargestNoise)
         return refuse(r,
@@ -167,7 +167,8 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
 }  // namespace
 
 void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
-    if (lacks_data(problem, estimate, r) || contradicts_model(problem, r) || is_undetermined(problem, estimate, r)) return;
+    if (lacks_data(problem, estimate, r) || contradicts_model(problem, r) || is_undetermined(problem, estimate, r))
+        return;
     r.usable = 1;
     r.reason[0] = 0;
     int odd = odd_image(problem, r);

@@ -35,7 +35,8 @@ Split split_pairs(uint32_t count, uint32_t images) {
         split.all.push_back(p);
         (is_heldout(p) ? split.heldout : split.train).push_back(p);
     }
-    uint32_t step = std::max(1u, static_cast<uint32_t>(split.train.size()) / std::max(kStartPairs, kStartPairsPerImage * images));
+    uint32_t wanted = std::max(kStartPairs, kStartPairsPerImage * images);
+    uint32_t step = std::max(1u, static_cast<uint32_t>(split.train.size()) / wanted);
     for (size_t i = 0; i < split.train.size(); i += step) split.few.push_back(split.train[i]);
     return split;
 }
@@ -63,7 +64,8 @@ class Fit {
 public:
     Fit(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
         const lensprof_pair *pairs, uint32_t pair_count)
-        : options_(options), images_(images), image_count_(image_count), pairs_(pairs), split_(split_pairs(pair_count, image_count)),
+        : options_(options), images_(images), image_count_(image_count), pairs_(pairs),
+          split_(split_pairs(pair_count, image_count)),
           all_(problem(split_.all)), gauge_(options, all_) {
         has_heldout_ = split_.heldout.size() >= kSmallestHeldout;
         train_ = problem(has_heldout_ ? split_.train : split_.all);

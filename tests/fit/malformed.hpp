@@ -345,7 +345,8 @@ inline void known_exposures(Case &c) {
     uint32_t kind = c.below(3);
     for (size_t i = 0; i < c.s.fit_images.size(); i++) {
         auto &image = c.s.fit_images[i];
-        image.known_ev = kind == 0 && i < c.s.exposures.size() ? c.s.exposures[i].ev : kind == 1 ? 3.0 : 9.0 * c.uniform();
+        image.known_ev = kind == 1 ? 3.0 : 9.0 * c.uniform();
+        if (kind == 0 && i < c.s.exposures.size()) image.known_ev = c.s.exposures[i].ev;
         image.known_ev_sigma = c.chance(0.8) ? 0.1 : 100.0 * c.uniform();
     }
 }
@@ -444,7 +445,8 @@ const Mutation kMutations[] = {
     ROW(odd_chroma_of_grey, 2), ROW(grey, 4), ROW(odd_channels, 1), ROW(any_reference, 3), ROW(random_flags, 6),
     ROW(odd_flags, 1), ROW(any_modes, 4), ROW(automatic_modes, 2), ROW(any_loss, 2), ROW(any_huber, 3),
     ROW(no_prior, 6), ROW(any_prior, 3), ROW(paper, 3), ROW(odd_iterations, 1), ROW(many_iterations, 1),
-    ROW(odd_struct_size, 1), ROW(odd_choices, 1), ROW(any_choices, 4), ROW(known_exposures, 4), ROW(odd_known_exposure, 1),
+    ROW(odd_struct_size, 1), ROW(odd_choices, 1), ROW(any_choices, 4),
+    ROW(known_exposures, 4), ROW(odd_known_exposure, 1),
     ROW(any_vignetting, 4), ROW(odd_vignetting, 1),
     ROW(darkest_vignetting, 3), ROW(centre_outside, 3), ROW(nearly_flat_response, 3), ROW(step_response, 3),
     ROW(stairs_response, 3), ROW(odd_response, 1), ROW(cancelled, 2), ROW(null_pointer, 1),
