@@ -27,7 +27,7 @@ struct Options {
 
 void declare(CLI::App &app, Options &o) {
     app.add_option("PROJECT", o.pto, "Hugin project; its v lines choose what is estimated")->required();
-    app.add_option("--points", o.points, "use the pairs of this point file; the pictures need not exist");
+    app.add_option("--points", o.points, "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
     app.add_option("--points-out", o.points_out, "write the pairs used (Hugin's 16 columns)");
     app.add_option("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
     app.add_option("--db", o.db, "profile database; default the user's own");
@@ -156,13 +156,14 @@ bool is_grey(const std::vector<lensprof_pair> &pairs) {
     return true;
 }
 
-/* What the pictures say about themselves; unknown where they do not exist, as they need not beside given pairs. */
+/* What the pictures say about themselves. Beside given pairs they may be anything: only what the profile's key needs is
+ * read. */
 std::vector<PictureMetadata> picture_metadata(const Options &o, const Project &project) {
     std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
-    bool need_not_exist = !o.points.empty();  /* pictures beside given pairs may be anything */
-    for (size_t i = 0; i < metadata.size(); i++)
-        if (std::filesystem::exists(project.files[i]) && !(need_not_exist && o.no_store))
-            metadata[i] = read_metadata(project.files[i]);
+    for (uint32_t i = 0; i < metadata.size(); i++) {
+        bool needed = o.points.empty() || (i == project.reference && !o.no_store);
+        if (needed && std::filesystem::exists(project.files[i])) metadata[i] = read_metadata(project.files[i]);
+    }
     return metadata;
 }
 
@@ -191,14 +192,13 @@ lensprof_profile_key profile_key(const Options &o, const Project &project,
     return key;
 }
 
-/* Exposures by EXIF, where all of the lens's pictures were taken at one aperture (its own light loss is not EXIF's). */
+/* Exposures by EXIF, as soft observations. */
 void add_known_exposures(const Options &o, const std::vector<PictureMetadata> &metadata,
                          std::vector<lensprof_fit_image> &images) {
-    if (o.exif_sigma < 1e-3) return;
-    for (size_t i = 0; i < images.size(); i++)
+    for (size_t i = 0; i < images.size() && o.exif_sigma > 0.0 && o.points.empty(); i++)
         if (metadata[i].exif_ev) {
             images[i].known_ev = *metadata[i].exif_ev;
-            images[i].known_ev_sigma = o.exif_sigma;
+            images[i].known_ev_sigma = std::max(o.exif_sigma, 1e-3);
         }
 }
 
@@ -407,6 +407,8 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     progress.clear();
     if (report.fit.usable && *report.fit.reason)
         streams.err << "lensprof: warning: " << o.pto << ": " << report.fit.reason << "\n";
+    if (o.gamma_from == "exif" && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
+        streams.err << "lensprof: warning: " << o.pto << ": no EXIF exposures that differ: gamma rests on the prior\n";
     return report;
 }
 

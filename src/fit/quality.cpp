@@ -159,7 +159,7 @@ void describe_quality(const Problem &problem, const Prior &prior, Gauge &gauge, 
     Covariance found = covariance(problem, prior, gauge, final, estimate);
     r.components = problem.component_count();
     r.gamma_from = gauge.from();
-    r.gamma_sigma = gauge.sigma();
+    r.gamma_sigma = gauge.from() == LENSPROF_GAMMA_NONE ? LENSPROF_UNKNOWN : gauge.sigma();
     describe_residuals(problem, estimate, final.noise, r);
     count_coverage(problem, estimate, r);
     describe_images(problem, gauge, estimate, found, r);
