@@ -37,6 +37,7 @@ bool for_each_parallel(uint32_t count, uint32_t threads, const std::function<voi
     }
     run(0);
     for (auto &thread : others) thread.join();
+    if (!ended && stop()) stopped = true;  // also where the other threads did all of it
     for (const auto &failure : failures)
         if (failure) std::rethrow_exception(failure);
     return !stopped;

@@ -203,7 +203,7 @@ void test_progress_rises_to_one(void **) {
             options.progress_user = &heard;
             std::vector<lensprof_pair> pairs;
             assert_ok(pictures.sample(options, pairs));
-            assert_true(heard.done.size() > 3 && heard.done.front() >= 0.0 && heard.done.back() == 1.0);
+            assert_true(heard.done.size() >= 2 && heard.done.front() >= 0.0 && heard.done.back() == 1.0);
             assert_true(std::is_sorted(heard.done.begin(), heard.done.end()));
         }
 }
@@ -211,11 +211,11 @@ void test_progress_rises_to_one(void **) {
 void test_progress_cancels(void **) {
     Pictures pictures(4, 160, 120, 20.0);
     for (uint32_t sampling : {LENSPROF_SAMPLING_BALANCED, LENSPROF_SAMPLING_PAPER})
-        for (size_t last : {1u, 5u, 20u}) {
+        for (size_t last : {1u, 2u, 20u}) {
             Heard heard;
             heard.last = last;
             lensprof_sample_options options = options_of(sampling, 2000);
-            options.threads = 2;
+            options.threads = last < 3 ? 2 : 1;  // how often it is asked depends on who does the work
             options.progress = hear;
             options.progress_user = &heard;
             std::vector<lensprof_pair> pairs(2000);
