@@ -53,6 +53,11 @@ void print_vignetting(const lensprof_vignetting &v, const char *channel, std::os
                   100.0 * lensprof_vignetting_eval(&v, 0.25, nullptr), 100.0 * corner(v), -std::log2(corner(v)));
 }
 
+void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, std::ostream &out) {
+    static const char *const channels[3] = {" of red", " of green", " of blue"};
+    for (uint32_t c = 0; c < count; c++) print_vignetting(vignettings[c], count == 3 ? channels[c] : "", out);
+}
+
 void print_response(const lensprof_response &r, std::ostream &out) {
     static const char *const kinds[] = {"linear", "gamma", "EMoR", "table"};
     std::string kind = kinds[r.kind];
@@ -211,9 +216,7 @@ void print_gamma(const BuildReport &report, std::ostream &out) {
 void print_build(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_exposures(report, out);
-    static const char *const channels[3] = {" of red", " of green", " of blue"};
-    for (uint32_t c = 0; c < fit.vignettings; c++)
-        print_vignetting(fit.vignetting[c], fit.vignettings == 3 ? channels[c] : "", out);
+    print_vignettings(fit.vignetting, fit.vignettings, out);
     print_response(fit.response, out);
     print_gamma(report, out);
     std::string heldout = fit.heldout_rms == LENSPROF_UNKNOWN ? std::string("not measured (too few pairs)")
@@ -276,7 +279,7 @@ std::string describe_key(const lensprof_profile_key &key) {
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
     const auto &p = profile.provenance;
     out << "profile   " << id << ": " << describe_key(profile.key) << "\n";
-    for (uint32_t c = 0; c < profile.vignettings; c++) print_vignetting(profile.vignetting[c], "", out);
+    print_vignettings(profile.vignetting, profile.vignettings, out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
     out << "source    " << (*p.method ? p.method : "unknown method") << ", " << p.images << " images, " << p.pairs
         << " pairs";

@@ -12,11 +12,13 @@ namespace lensprof {
 namespace {
 
 constexpr double kLn2 = 0.6931471805599453;
+
 // How firmly gamma is held, as a standard error of ln gamma at kPinPairs pairs and the prior's own standard error.
 // Modes left out prefer some gamma by accident, the more the more pairs there are: the hold keeps up with them.
 constexpr double kPinSigma = 0.05, kLargestPinSigma = 0.1, kPinPairs = 2000.0;
-constexpr double kLargestStep = 1.2;     // of ln gamma in one move along the family
-constexpr double kDoubtful = 3.0;        // known exposures farther off, in standard errors, count for less
+constexpr double kLargestStep = 1.2;   // of ln gamma in one move along the family
+constexpr double kDoubtful = 3.0;      // known exposures farther off, in standard errors, count for less
+constexpr double kSmallestSlope = 0.1; // and its inverse: beyond, known exposures are of something else
 
 // Images whose exposure or white balance is held away from the reference's.
 bool has_fixed_exposure(const Problem &problem) {
@@ -116,7 +118,7 @@ void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
             xx += w * dx * dx, xy += w * dx * dy, yy += w * dy * dy;
         }
         double excess = yy > 0.0 ? std::max(0.0, 1.0 - own / yy) : 0.0;  // yy is chi-squared where exposures are equal
-        bool says = open_ && excess > 0.0 && xy > 0.0 && members.size() > 1;
+        bool says = open_ && excess > 0.0 && members.size() > 1 && xy > kSmallestSlope * xx && xy * kSmallestSlope < xx;
         per_known = says ? xy / xx : 1.0;
         slope_ = 1.0 / per_known;
         slope_sigma_ = says ? 1.0 / (per_known * std::sqrt(xx * excess)) : 0.0;
