@@ -14,7 +14,7 @@ Summary summarise(std::vector<double> values);
 // Absolute transfer residuals of all pairs, channels and directions, levels of 255.
 std::vector<double> residual_levels(const Problem &problem, const Estimate &estimate);
 
-// Fills noise, inlier share, local residuals, covariance, coverage and the images' quality.
+// Fills noise, inlier share, patterns, covariance, coverage and the images' quality.
 void describe_quality(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
                       const Estimate &estimate, lensprof_fit_result &result);
 

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kLargestLogExposure = 20.0 * 0.6931471805599453;  // |ev| <= 20
 constexpr double kLargestLogBalance = 12.0;                        // white balance factors stay valid, 1e-6..1e6
+constexpr double kHeldFirmly = 1e4;  // times as firmly as in the fit: gamma's own error is stated apart from the data's
 
 // One accepted Levenberg-Marquardt step; false when no damping finds an improvement. The model of the accepted point is
 // kept for the next step.
@@ -136,6 +137,7 @@ Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, 
     result.images = Eigen::VectorXd::Zero(problem.image_unknowns);
     Prior renewed = prior;
     gauge.renew(problem, estimate, renewed);
+    renewed.pin_precision *= kHeldFirmly;
     NormalEquations model(problem, renewed, loss, noise_weights(problem, estimate, loss), estimate,
                           ModeTable(std::max(estimate.modes, 0)));
     auto n = static_cast<Eigen::Index>(model.columns().size());

@@ -17,20 +17,26 @@ struct Simulation {
     uint32_t width = 800, height = 600, images = 6, channels = 3;
     lensprof_response response;
     lensprof_vignetting vignetting{{-0.30, 0.05, -0.15}, {0.02, -0.015}};
-    std::vector<lensprof_exposure> exposures;
+    std::vector<lensprof_vignetting> chromatic;  // one falloff curve a channel; empty = `vignetting` for all
+    double local_ev = 0.0;   // largest local tone error, EV: waves over the frame that start elsewhere in each image
+    double frame_ev = 0.0;   // the same at the same place of every image, EV
+    uint32_t reach = 1;      // images of a pair are up to this many apart
+    double shift = 0.0;      // from one frame to the next, widths: neighbours in one are so in the other; 0 = anywhere
+    std::vector<lensprof_exposure> exposures;  // drawn, unless given before make()
     std::vector<lensprof_fit_image> fit_images;
     std::vector<lensprof_pair> pairs;
 
     // Neighbouring images with random positions, uniform log radiance, normal noise in the grey value, 8 bit rounding.
     void make(uint32_t count, double noise_levels, double outliers, double ev_range, uint64_t seed) {
         uint64_t random = seed;
+        bool is_given = exposures.size() == images;
         for (uint32_t i = 0; i < images; i++) {
             lensprof_exposure e;
             lensprof_exposure_init(&e);
             double draws[3] = {lp_random(&random), lp_random(&random), lp_random(&random)};
             if (i > 0) e = {ev_range * (2 * draws[0] - 1), {0.85 + 0.3 * draws[1], 1.0, 0.85 + 0.3 * draws[2]}};
             if (channels == 1) e.white_balance[0] = e.white_balance[2] = 1.0;
-            exposures.push_back(e);
+            if (!is_given) exposures.push_back(e);
             lensprof_fit_image image{};
             image.width = width;
             image.height = height;
@@ -42,12 +48,18 @@ struct Simulation {
         while (pairs.size() < count) {
             lensprof_pair pair{};
             pair.image[0] = static_cast<uint32_t>(lp_random(&random) * (images - 1));
-            pair.image[1] = pair.image[0] + 1;
+            uint32_t apart = reach > 1 ? 1 + static_cast<uint32_t>(lp_random(&random) * reach) : 1;
+            pair.image[1] = std::min(pair.image[0] + apart, images - 1);
             double base = std::exp(-4.5 + 4.5 * lp_random(&random)), radiance[3];
             for (double &r : radiance) r = base * std::exp(0.6 * (lp_random(&random) - 0.5));
             for (int side = 0; side < 2; side++) {
                 pair.xy[side][0] = lp_random(&random) * (width - 1);
                 pair.xy[side][1] = lp_random(&random) * (height - 1);
+            }
+            if (shift > 0.0) {
+                pair.xy[1][0] = pair.xy[0][0] - shift * width * (pair.image[1] - pair.image[0]);
+                pair.xy[1][1] = pair.xy[0][1];
+                if (pair.xy[1][0] < 0.0) continue;
             }
             if (see(pair, radiance, noise_levels, random)) pairs.push_back(pair);
         }
@@ -59,8 +71,9 @@ struct Simulation {
     bool see(lensprof_pair &pair, const double radiance[3], double noise_levels, uint64_t &random) const {
         for (int side = 0; side < 2; side++) {
             double r2 = lensprof_vignetting_r2(&vignetting, width, height, pair.xy[side][0], pair.xy[side][1], nullptr);
-            double m = lensprof_vignetting_eval(&vignetting, r2, nullptr);
+            double local = local_factor(pair.image[side], pair.xy[side]);
             for (uint32_t c = 0; c < 3; c++) {
+                double m = lensprof_vignetting_eval(&falloff(c), r2, nullptr) * local;
                 double e = lensprof_exposure_factor(&exposures[pair.image[side]], c);
                 double b = lensprof_response_eval(&response, radiance[channels == 1 ? 0 : c] * m * e, nullptr);
                 if (b > 250.0 / 255.0 || b < 3.0 / 255.0) return false;
@@ -70,6 +83,18 @@ struct Simulation {
             }
         }
         return true;
+    }
+
+    const lensprof_vignetting &falloff(uint32_t channel) const {
+        return chromatic.empty() ? vignetting : chromatic[channel];
+    }
+
+    // Two waves over the width and one over the height: what local tone mapping does to light, or a lens not radial.
+    double local_factor(uint32_t image, const double xy[2]) const {
+        constexpr double kTurn = 6.283185307179586;
+        double phase = 2.4 * image, x = 2.0 * kTurn * xy[0] / width, y = kTurn * xy[1] / height;
+        return std::exp2(local_ev * std::sin(x + phase) * std::cos(y + 2.0 * phase)
+                         + frame_ev * std::sin(x) * std::cos(y));
     }
 
     // Exponent that pictures leave open: slope of recovered on true exposures.
@@ -90,30 +115,74 @@ struct Simulation {
         return worst;
     }
 
-    double falloff_error(const lensprof_vignetting &found, double g) const {
+    double falloff_error(const lensprof_vignetting &found, double g, uint32_t channel = 1) const {
         double worst = 0;
         for (int k = 0; k <= 20; k++) {
             double r2 = k * k / 400.0, m = std::max(lensprof_vignetting_eval(&found, r2, nullptr), 1e-6);
-            worst =
-                std::max(worst, std::abs(std::pow(m, 1.0 / g) - lensprof_vignetting_eval(&vignetting, r2, nullptr)));
+            double truth = lensprof_vignetting_eval(&falloff(channel), r2, nullptr);
+            worst = std::max(worst, std::abs(std::pow(m, 1.0 / g) - truth));
         }
         return worst;
     }
 };
 
-inline lensprof_response srgb_response() {
+template <class Curve>
+lensprof_response table_response(Curve &&curve) {
     std::vector<double> table;
-    for (int j = 0; j < 1024; j++) {
-        double x = j / 1023.0;
-        table.push_back(x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
-    }
+    for (int j = 0; j < 1024; j++) table.push_back(curve(j / 1023.0));
     lensprof_response response;
     assert_ok(lensprof_response_set_table(&response, table.data(), 1024));
     return response;
+}
+
+inline lensprof_response srgb_response() {
+    return table_response(
+        [](double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; });
+}
+
+inline lensprof_response linear_response() {
+    return table_response([](double x) { return x; });
+}
+
+inline lensprof_response gamma_response(double gamma) {
+    return table_response([=](double x) { return std::pow(x, 1.0 / gamma); });
+}
+
+// A toe and a long shoulder.
+inline lensprof_response film_response() {
+    return table_response([](double x) { return 1.15 * std::pow(x, 1.2) / (std::pow(x, 1.2) + 0.15); });
 }
 
 inline bool is_monotone(const lensprof_response &response) {
     for (int j = 0; j < 1023; j++)
         if (!(response.table[j + 1] > response.table[j])) return false;
     return true;
+}
+
+// A fit with all that it tells.
+struct FitRun {
+    std::vector<lensprof_exposure> exposures;
+    std::vector<lensprof_fit_image_quality> quality;
+    lensprof_fit_result result;
+};
+
+inline lensprof_fit_options default_fit() {
+    lensprof_fit_options options;
+    lensprof_fit_options_init(&options);
+    return options;
+}
+
+inline FitRun run_fit(const Simulation &s, const lensprof_fit_options &options = default_fit()) {
+    FitRun run;
+    run.exposures.resize(s.images);
+    run.quality.resize(s.images);
+    lensprof_fit_result_init(&run.result);
+    run.result.image_quality = run.quality.data();
+    lensprof_error error;
+    lensprof_status status =
+        lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
+                             static_cast<uint32_t>(s.pairs.size()), run.exposures.data(), &run.result, &error);
+    if (status != LENSPROF_OK) print_error("%s\n", error.text);
+    assert_ok(status);
+    return run;
 }

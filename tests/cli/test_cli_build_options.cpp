@@ -1,0 +1,133 @@
+/* What settles gamma, and how many falloff curves: options of build on pictures that tell their exposures. */
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+
+namespace {
+
+/* A linear camera, which no prior expects, with one falloff for all channels. */
+std::string linear_scene() {
+    const std::string path = work("linear");
+    must_exit(done, {"simulate", "-o", path, "--response", "linear", "--size", "320x240", "--images", "8", "--ev", "1.5",
+                     "--noise", "0.5", "--format", "tiff16", "--exif"});
+    return path;
+}
+
+Words build(const std::string &path, const Words &more) {
+    return Words{"build", path + "/pano.pto", "--no-store", "--json", "--pairs", "2000"} + more;
+}
+
+/* Slope of recovered on true exposures: gamma. */
+double slope(const Json &json, const std::string &path) {
+    const Json truth = Json::parse(text_of(path + "/truth.json"));
+    const size_t count = json["images"].size();
+    double mean = 0, true_mean = 0, cross = 0, square = 0;
+    for (size_t i = 0; i < count; ++i) {
+        mean += json["images"][i]["ev"].get<double>() / double(count);
+        true_mean += truth["images"][i]["ev"].get<double>() / double(count);
+    }
+    for (size_t i = 0; i < count; ++i) {
+        const double away = truth["images"][i]["ev"].get<double>() - true_mean;
+        cross += away * (json["images"][i]["ev"].get<double>() - mean);
+        square += away * away;
+    }
+    return cross / square;
+}
+
+void assert_gamma(const Json &json, const char *from) {
+    assert_string_equal(json["gamma"]["from"].get<std::string>().c_str(), from);
+    assert_string_equal(json["gamma_from"].get<std::string>().c_str(), from);
+}
+
+void test_gamma_from_exif(void **) {
+    const std::string path = linear_scene();
+    const Json json = json_of(build(path, {"--gamma-from", "exif"}));
+    assert_gamma(json, "exif");
+    assert_close(slope(json, path), 1.0, 0.05);
+    const double sigma = json["gamma"]["sigma"].get<double>();
+    assert_true(sigma > 0.0 && sigma < 0.1);
+    const Json wide = json_of(build(path, {"--gamma-from", "exif", "--exif-sigma", "0.2"}));
+    assert_close(wide["gamma"]["sigma"].get<double>() / sigma, 2.0, 0.2);
+}
+
+void test_gamma_from_the_prior(void **) {
+    const std::string path = linear_scene();
+    const Json json = json_of(build(path, {"--gamma-from", "prior"}));
+    assert_gamma(json, "prior");
+    assert_string_equal(json["gamma"]["camera_kind"].get<std::string>().c_str(), "any");
+    assert_true(std::fabs(slope(json, path) - 1.0) > 0.05);
+    /* Without exposures nothing else is left. */
+    const Json none = json_of(build(path, {"--gamma-from", "exif", "--exif-sigma", "0"}));
+    assert_gamma(none, "prior");
+    for (const Json &image : none["images"])
+        assert_close(image["known_ev_residual"].get<double>(), 0.0, 0.0);
+    const Json film = json_of(build(path, {"--gamma-from", "prior", "--camera-kind", "film"}));
+    assert_string_equal(film["gamma"]["camera_kind"].get<std::string>().c_str(), "film");
+    assert_true(film["gamma"]["sigma"] != json["gamma"]["sigma"]);
+}
+
+/* The project's own response is kept, and gamma with it: here one that was found by the exposures. */
+void test_gamma_known(void **) {
+    const std::string path = linear_scene(), pto = path + "/found.pto";
+    const Json found = json_of(build(path, {"--gamma-from", "exif", "--modes", "5", "--pto-out", pto}));
+    const Json json = json_of({"build", pto, "--no-store", "--json", "--pairs", "2000", "--gamma-from", "known",
+                               "--exif-sigma", "0"});
+    assert_gamma(json, "known");
+    assert_close(json["gamma"]["sigma"].get<double>(), 0.0, 0.0);
+    assert_close(slope(json, path), 1.0, 0.05);
+    for (size_t i = 0; i < 5; ++i)
+        assert_close(json["response"]["emor"][i].get<double>(), found["response"]["emor"][i].get<double>(), 1e-6);
+}
+
+void test_falloff_curves(void **) {
+    const std::string path = linear_scene();
+    for (const char *curves : {"auto", "1", "3"}) {
+        const Json json = json_of(build(path, {"--falloff-curves", curves}));
+        assert_int_equal(json["vignetting"]["k"].size(), curves[0] == '3' ? 3 : 1);
+    }
+}
+
+void test_coverage_and_errors_are_told(void **) {
+    const Json json = json_of(build(linear_scene(), {}));
+    for (const char *of : {"radius", "grey"}) {
+        uint32_t sum = 0;
+        for (const Json &bin : json["coverage"][of])
+            sum += bin.get<uint32_t>();
+        assert_int_equal(json["coverage"][of].size(), 10);
+        assert_int_equal(sum, (of[0] == 'g' ? 6 : 2) * json["pairs"].get<uint32_t>());
+    }
+    uint32_t ends = 0;
+    for (size_t i = 0; i < json["images"].size(); ++i) {
+        const Json &image = json["images"][i];
+        ends += image["pairs"].get<uint32_t>();
+        assert_true((image["ev_sigma"].get<double>() > 0.0) == (i != json["reference"].get<size_t>()));
+        assert_close(image["known_ev_residual"].get<double>(), 0.0, 0.1);
+    }
+    assert_int_equal(ends, 2 * json["pairs"].get<uint32_t>());
+    assert_int_equal(json["gamma"]["direction"].size(), json["gamma"]["correlation"].size());
+    for (const Json &one : json["gamma"]["correlation"])
+        assert_true(std::fabs(one.get<double>()) <= 1.0);
+}
+
+void test_refused_options(void **) {
+    const std::string path = linear_scene();
+    for (const Words &words :
+         {Words{"--gamma-from", "guess"}, Words{"--gamma-from", ""}, Words{"--exif-sigma", "-0.1"},
+          Words{"--exif-sigma", "nan"}, Words{"--exif-sigma", "11"}, Words{"--camera-kind", "phone"},
+          Words{"--falloff-curves", "2"}, Words{"--falloff-curves", "4"}})
+        assert_refused(usage, build(path, words), {words[0]});
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_gamma_from_exif),
+        CLI_TEST(test_gamma_from_the_prior),
+        CLI_TEST(test_gamma_known),
+        CLI_TEST(test_falloff_curves),
+        CLI_TEST(test_coverage_and_errors_are_told),
+        CLI_TEST(test_refused_options),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

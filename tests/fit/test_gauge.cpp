@@ -1,0 +1,316 @@
+// The exponent gamma that pictures leave open: what settles it, against simulated truth.
+#include "simulated.hpp"
+
+#include "fit/gauge.hpp"
+#include "fit/monotone.hpp"
+#include "fit/residual.hpp"
+
+using namespace lensprof;
+
+namespace {
+
+// The member of a curve's family: f(x^(1/gamma)).
+lensprof_response raised(const lensprof_response &f, double gamma) {
+    return table_response([&](double x) { return lensprof_response_eval(&f, std::pow(x, 1.0 / gamma), nullptr); });
+}
+
+struct Named {
+    const char *name;
+    lensprof_response response;
+};
+
+std::vector<Named> cameras() {
+    return {{"srgb", srgb_response()},
+            {"linear", linear_response()},
+            {"gamma 2.2", gamma_response(2.2)},
+            {"film", film_response()}};
+}
+
+void test_position_counts_the_exponent(void **) {
+    for (const Named &camera : cameras())
+        for (double gamma : {0.7, 0.9, 1.1, 1.5}) {
+            lensprof_response member = raised(camera.response, gamma);
+            // Interpolation between 1024 samples is coarse where a steep curve reaches the gauge's grey value early.
+            assert_close(gamma_position(member.table) - gamma_position(camera.response.table), std::log(gamma), 0.01);
+        }
+}
+
+// A prior on the shape cannot depend on where in its family a curve was found.
+void test_expected_position_is_of_the_family(void **) {
+    for (uint32_t kind : {LENSPROF_CAMERA_ANY, LENSPROF_CAMERA_FILM, LENSPROF_CAMERA_DIGITAL})
+        for (const Named &camera : cameras()) {
+            double expected = expected_position(gamma_prior(kind), camera.response.table);
+            assert_true(std::isfinite(expected));
+            for (double gamma : {0.7, 0.9, 1.1, 1.5}) {
+                lensprof_response member = raised(camera.response, gamma);
+                assert_close(expected_position(gamma_prior(kind), member.table), expected, 0.02);
+            }
+        }
+}
+
+lensprof_response mean_response() {
+    lensprof_response response;
+    assert_ok(lensprof_response_set_emor(&response, nullptr, 0));
+    return response;
+}
+
+// An estimate at the truth of a simulation, with 12 modes and a mild falloff.
+struct Setting {
+    Simulation simulation;
+    lensprof_fit_options options = default_fit();
+    Problem problem;
+    Estimate estimate;
+
+    explicit Setting(const lensprof_response &response, uint32_t reference = 0) {
+        simulation.response = response;
+        simulation.vignetting = {{-0.2, 0.03, -0.02}, {0.02, -0.015}};
+        simulation.make(400, 0.0, 0.0, 1.0, 11);
+        options.reference = reference;
+        std::vector<uint32_t> keep(400);
+        for (uint32_t p = 0; p < 400; p++) keep[p] = p;
+        problem = make_problem(options, simulation.fit_images.data(), simulation.images, simulation.pairs.data(), keep);
+        set_response(estimate, project_curve(simulation.response.table, 12).data(), 12);
+        estimate.vignetting.fill(simulation.vignetting);
+        for (const auto &e : simulation.exposures) {
+            double log_ev = e.ev * std::log(2.0);
+            estimate.log_exposure.push_back(
+                {log_ev + std::log(e.white_balance[0]), log_ev, log_ev + std::log(e.white_balance[2])});
+        }
+    }
+};
+
+std::vector<double> residuals(const Problem &problem, const Estimate &estimate) {
+    std::vector<double> values;
+    for_each_transfer(problem, estimate, [&](size_t, const PairTransfer &t) {
+        for (const auto &channel : t.channel)
+            for (double r : channel.residual) values.push_back(255.0 * r);
+    });
+    return values;
+}
+
+// Only members that 12 modes hold: sRGB at gamma 1.25 is none (0.38 levels rms, 2 at the worst), having a steep toe.
+void test_the_exponent_does_not_show_in_the_pictures(void **) {
+    for (const lensprof_response &response : {mean_response(), linear_response()})
+        for (double gamma : {0.8, 0.9, 1.1, 1.25}) {
+            Setting s(response, 2);
+            Estimate moved = with_exponent(s.problem, s.estimate, std::log(gamma));
+            std::vector<double> before = residuals(s.problem, s.estimate), after = residuals(s.problem, moved);
+            for (size_t i = 0; i < after.size(); i++) assert_close(after[i], before[i], 0.3);
+            for (size_t c = 0; c < 3; c++)
+                for (size_t i = 0; i < moved.log_exposure.size(); i++) {
+                    double from = s.estimate.log_exposure[i][c], zero = s.estimate.log_exposure[2][c];
+                    assert_close(moved.log_exposure[i][c], zero + gamma * (from - zero), 1e-12);
+                }
+            for (double r2 : {0.25, 1.0})
+                assert_close(lensprof_vignetting_eval(&moved.vignetting[1], r2, nullptr),
+                             std::pow(lensprof_vignetting_eval(&s.simulation.vignetting, r2, nullptr), gamma), 0.002);
+            assert_memory_equal(moved.vignetting[0].center, s.estimate.vignetting[0].center, 2 * sizeof(double));
+            assert_close(gamma_position(moved.curve.table.data()) - gamma_position(s.estimate.curve.table.data()),
+                         std::log(gamma), 0.02);
+        }
+}
+
+// Falloff held at 0 stays there.
+void test_parameters_held_do_not_move(void **) {
+    Setting s(mean_response());
+    s.problem.free &= ~(LENSPROF_FREE_K2 | LENSPROF_FREE_K3);
+    for (auto &v : s.estimate.vignetting) v.k[1] = v.k[2] = 0.0;
+    Estimate moved = with_exponent(s.problem, s.estimate, 0.2);
+    assert_close(moved.vignetting[0].k[1], 0.0, 0.0);
+    assert_close(moved.vignetting[0].k[2], 0.0, 0.0);
+    assert_true(moved.vignetting[0].k[0] < s.estimate.vignetting[0].k[0]);
+}
+
+void test_direction_is_the_derivative(void **) {
+    Setting s(mean_response());
+    Eigen::VectorXd direction = Gauge::direction(s.problem, s.estimate), here = shared_vector(s.estimate);
+    const double h = 0.03;  // another step than that of the code under test
+    Eigen::VectorXd up = shared_vector(with_exponent(s.problem, s.estimate, h));
+    Eigen::VectorXd down = shared_vector(with_exponent(s.problem, s.estimate, -h));
+    for (Eigen::Index i = 0; i < here.size(); i++)
+        assert_close(direction[i], (up[i] - down[i]) / (2 * h), 0.02 * (0.1 + direction.cwiseAbs().maxCoeff()));
+    // d M^gamma / d ln gamma = M ln M.
+    double m = lensprof_vignetting_eval(&s.simulation.vignetting, 1.0, nullptr);
+    for (int curve = 0; curve < 3; curve++)
+        assert_close(direction.segment(kFalloff + 3 * curve, 3).sum(), m * std::log(m), 0.005);
+    assert_close(direction[kCenter], 0.0, 0.0);
+    // The position moves by one.
+    Estimate moved = s.estimate;
+    Eigen::VectorXd emor = here + 0.02 * direction;
+    set_response(moved, emor.data(), 12);
+    assert_close(gamma_position(moved.curve.table.data()) - gamma_position(s.estimate.curve.table.data()), 0.02, 0.002);
+}
+
+Simulation simulate(const lensprof_response &response, uint64_t seed = 42) {
+    Simulation s;
+    s.response = response;
+    s.make(1000, 1.0, 0.0, 1.0, seed);
+    return s;
+}
+
+void assert_from(const FitRun &run, uint32_t from, double sigma) {
+    assert_int_equal(run.result.gamma_from, from);
+    assert_close(run.result.gamma_sigma, sigma, 0.0);
+}
+
+void test_what_closes_the_gauge(void **) {
+    Simulation s = simulate(srgb_response());
+    lensprof_fit_options options = default_fit();
+    FitRun prior = run_fit(s, options);
+    assert_from(prior, LENSPROF_GAMMA_PRIOR, gamma_prior(LENSPROF_CAMERA_ANY).sigma);
+    options.free &= ~LENSPROF_FREE_RESPONSE;
+    options.response = &s.response;
+    assert_from(run_fit(s, options), LENSPROF_GAMMA_KNOWN, 0.0);
+    options = default_fit();
+    options.modes = 0;
+    assert_from(run_fit(s, options), LENSPROF_GAMMA_KNOWN, 0.0);
+    options = default_fit();
+    options.free &= ~LENSPROF_FREE_K1;
+    assert_from(run_fit(s, options), LENSPROF_GAMMA_PRIOR, prior.result.gamma_sigma);  // k1 = 0 is 0 in all the family
+    options.vignetting = s.vignetting;
+    assert_from(run_fit(s, options), LENSPROF_GAMMA_KNOWN, 0.0);
+    Simulation fixed = s;
+    fixed.fit_images[3].free &= ~LENSPROF_FREE_EV;
+    assert_from(run_fit(fixed), LENSPROF_GAMMA_PRIOR, prior.result.gamma_sigma);  // as the reference's
+    fixed.fit_images[3].exposure.ev = s.exposures[3].ev;
+    assert_from(run_fit(fixed), LENSPROF_GAMMA_KNOWN, 0.0);
+}
+
+void test_without_a_prior_nothing_settles_gamma(void **) {
+    Simulation s = simulate(srgb_response());
+    lensprof_fit_options options = default_fit();
+    options.prior_weight = 0.0;
+    assert_int_equal(run_fit(s, options).result.gamma_from, LENSPROF_GAMMA_NONE);
+}
+
+// A bracket of two stops whose exposures are known to a tenth: what says more about gamma than the prior does. (Of
+// brackets of 0.7 EV they say no more than to 15 %, and the modes' own preference shows.)
+Simulation bracket(const lensprof_response &response, uint32_t images, uint64_t seed) {
+    const double ev[6] = {0.0, 1.0, -1.0, 0.5, -0.5, 0.8};
+    Simulation s;
+    s.response = response;
+    s.images = images;
+    for (uint32_t i = 0; i < images; i++) s.exposures.push_back({ev[i % 6], {1.0, 1.0, 1.0}});
+    s.make(1000, 1.0, 0.0, 1.0, seed);
+    for (uint32_t i = 0; i < images; i++) {
+        s.fit_images[i].known_ev = 7.0 + s.exposures[i].ev;
+        s.fit_images[i].known_ev_sigma = 0.1;
+    }
+    return s;
+}
+
+// For cameras near to and far from the prior, as absolute values show.
+void test_known_exposures_settle_gamma(void **) {
+    for (const Named &camera : cameras())
+        for (uint64_t seed = 1; seed <= 4; seed++) {
+            Simulation s = bracket(camera.response, 6, seed);
+            FitRun run = run_fit(s);
+            double slope = s.gamma(run.exposures);
+            if (!(std::abs(slope - 1.0) < 0.05)) print_error("%s: slope %.3f\n", camera.name, slope);
+            assert_int_equal(run.result.gamma_from, LENSPROF_GAMMA_EXPOSURES);
+            assert_true(run.result.gamma_sigma > 0.0 && run.result.gamma_sigma < gamma_prior(0).sigma);
+            assert_close(slope, 1.0, 0.05);
+            assert_true(s.falloff_error(run.result.vignetting[0], 1.0) <= 0.02);
+            for (const auto &q : run.quality) assert_close(q.known_ev_residual, 0.0, 0.05);
+        }
+}
+
+double log_gamma_between(const FitRun &a, const FitRun &b) {
+    return gamma_position(a.result.response.table) - gamma_position(b.result.response.table);
+}
+
+// With the number of modes given: to choose it is a step, which any pull may take, and other modes prefer another
+// gamma.
+lensprof_fit_options twelve_modes() {
+    lensprof_fit_options options = default_fit();
+    options.modes = 12;
+    return options;
+}
+
+// Rounded exposures of a sequence at equal settings, whose true exposures differ a little.
+void test_equal_known_exposures_pull_nothing(void **) {
+    for (uint64_t seed = 1; seed <= 8; seed++) {
+        Simulation s;
+        s.response = srgb_response();
+        uint64_t random = seed;
+        for (uint32_t i = 0; i < s.images; i++)
+            s.exposures.push_back({i ? 0.2 * lp_random(&random) - 0.1 : 0.0, {1.0, 1.0, 1.0}});
+        s.make(1000, 1.0, 0.0, 1.0, seed);
+        FitRun without = run_fit(s, twelve_modes());
+        for (auto &image : s.fit_images) image.known_ev = 9.0, image.known_ev_sigma = 0.1;
+        FitRun with = run_fit(s, twelve_modes());
+        assert_close(log_gamma_between(with, without), 0.0, 0.02);
+        assert_from(with, LENSPROF_GAMMA_PRIOR, without.result.gamma_sigma);
+        for (uint32_t i = 0; i < s.images; i++) assert_close(with.exposures[i].ev, without.exposures[i].ev, 0.01);
+    }
+}
+
+// One image's known exposure is 1 EV off: its residual tells, and it counts for little among twelve.
+void test_one_wrong_known_exposure(void **) {
+    for (uint64_t seed = 1; seed <= 3; seed++)
+        for (double wrong : {-1.0, 1.0}) {
+            Simulation s = bracket(srgb_response(), 12, seed);
+            s.fit_images[2].known_ev_sigma = 0.0;
+            FitRun without = run_fit(s, twelve_modes());
+            s.fit_images[2].known_ev_sigma = 0.1;
+            s.fit_images[2].known_ev += wrong;
+            FitRun with = run_fit(s, twelve_modes());
+            assert_close(log_gamma_between(with, without), 0.0, 0.06);
+            assert_close(with.quality[2].known_ev_residual, -wrong, 0.1);
+            for (uint32_t i = 0; i < s.images; i++)
+                if (i != 2) assert_close(with.quality[i].known_ev_residual, 0.0, 0.15);
+        }
+}
+
+void test_what_is_asked_for_settles_gamma(void **) {
+    Simulation s = bracket(linear_response(), 6, 1);
+    lensprof_fit_options options = twelve_modes();
+    options.gamma_from = LENSPROF_GAMMA_EXPOSURES;
+    FitRun exposures = run_fit(s, options);
+    options.gamma_from = LENSPROF_GAMMA_PRIOR;
+    FitRun prior = run_fit(s, options);
+    assert_from(prior, LENSPROF_GAMMA_PRIOR, gamma_prior(LENSPROF_CAMERA_ANY).sigma);
+    assert_int_equal(exposures.result.gamma_from, LENSPROF_GAMMA_EXPOSURES);
+    assert_close(s.gamma(exposures.exposures), 1.0, 0.005);
+    assert_true(std::abs(s.gamma(prior.exposures) - 1.0) > 0.1);  // a linear camera is none that the prior knows
+    for (auto &image : s.fit_images) image.known_ev_sigma = 0.0;
+    assert_close(log_gamma_between(prior, run_fit(s, options)), 0.0, 0.02);
+    options.gamma_from = LENSPROF_GAMMA_EXPOSURES;
+    assert_int_equal(run_fit(s, options).result.gamma_from, LENSPROF_GAMMA_PRIOR);  // nothing else is there
+}
+
+// Gamma moves as far as the priors of the kinds are apart for the curve that was found.
+void test_kinds_of_camera_differ(void **) {
+    Simulation s = simulate(gamma_response(2.2));
+    lensprof_fit_options options = twelve_modes();
+    FitRun any = run_fit(s, options);
+    for (uint32_t kind : {LENSPROF_CAMERA_FILM, LENSPROF_CAMERA_DIGITAL}) {
+        options.camera_kind = kind;
+        FitRun run = run_fit(s, options);
+        const double *table = s.response.table;
+        double apart = expected_position(gamma_prior(kind), table) - expected_position(gamma_prior(0), table);
+        assert_close(run.result.gamma_sigma, gamma_prior(kind).sigma, 0.0);
+        assert_close(log_gamma_between(run, any), apart, 0.1);
+        assert_true(std::abs(log_gamma_between(run, any)) > 0.01);
+    }
+}
+
+}  // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_position_counts_the_exponent),
+        cmocka_unit_test(test_expected_position_is_of_the_family),
+        cmocka_unit_test(test_the_exponent_does_not_show_in_the_pictures),
+        cmocka_unit_test(test_parameters_held_do_not_move),
+        cmocka_unit_test(test_direction_is_the_derivative),
+        cmocka_unit_test(test_what_closes_the_gauge),
+        cmocka_unit_test(test_without_a_prior_nothing_settles_gamma),
+        cmocka_unit_test(test_known_exposures_settle_gamma),
+        cmocka_unit_test(test_equal_known_exposures_pull_nothing),
+        cmocka_unit_test(test_one_wrong_known_exposure),
+        cmocka_unit_test(test_what_is_asked_for_settles_gamma),
+        cmocka_unit_test(test_kinds_of_camera_differ),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

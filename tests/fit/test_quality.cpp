@@ -1,0 +1,234 @@
+// What a result says of itself: coverage, every image's quality, local residuals, and the verdict in words.
+#include "simulated.hpp"
+
+#include <numeric>
+
+namespace {
+
+Simulation simulate(uint32_t pairs, double noise, double outliers, uint64_t seed = 42, uint32_t reach = 1) {
+    Simulation s;
+    s.response = srgb_response();
+    s.images = reach > 1 ? 8 : 6;
+    s.reach = reach;
+    s.make(pairs, noise, outliers, 1.0, seed);
+    return s;
+}
+
+template <class Condition>
+void drop(Simulation &s, Condition &&condition) {
+    s.pairs.erase(std::remove_if(s.pairs.begin(), s.pairs.end(), condition), s.pairs.end());
+}
+
+bool says(const FitRun &run, const char *words) {
+    bool found = strstr(run.result.reason, words) != nullptr;
+    if (!found) print_error("no \"%s\" in \"%s\"\n", words, run.result.reason);
+    return found;
+}
+
+void test_groups_are_told(void **) {
+    Simulation s = simulate(1500, 1.0, 0.0);
+    drop(s, [](const lensprof_pair &p) { return p.image[0] == 1 || p.image[0] == 3; });
+    FitRun run = run_fit(s);
+    assert_int_equal(run.result.usable, 0);
+    assert_int_equal(run.result.components, 3);
+    assert_true(says(run, "3 groups"));
+    const uint32_t component[6] = {0, 0, 2, 2, 4, 4};
+    for (uint32_t i = 0; i < 6; i++) assert_int_equal(run.quality[i].component, component[i]);
+}
+
+// Distance from the true centre, half diagonals.
+double radius(const Simulation &s, const lensprof_pair &pair, int side) {
+    double half = 0.5 * std::hypot(s.width, s.height);
+    double x = (pair.xy[side][0] - 0.5 * (s.width - 1)) / half - s.vignetting.center[0];
+    double y = (pair.xy[side][1] - 0.5 * (s.height - 1)) / half - s.vignetting.center[1];
+    return std::hypot(x, y);
+}
+
+void test_the_corners_must_be_covered(void **) {
+    Simulation s = simulate(9000, 1.0, 0.0);
+    drop(s, [&](const lensprof_pair &p) { return radius(s, p, 0) > 0.5 || radius(s, p, 1) > 0.5; });
+    assert_true(s.pairs.size() > 1000);
+    FitRun run = run_fit(s);
+    assert_int_equal(run.result.usable, 0);
+    assert_true(says(run, "falloff in the corners"));  // its radius or, where the centre is a little off, its error
+    // With the centre known the radius is that of the truth.
+    lensprof_fit_options options = default_fit();
+    options.free &= ~LENSPROF_FREE_CENTER;
+    std::copy(s.vignetting.center, s.vignetting.center + 2, options.vignetting.center);
+    run = run_fit(s, options);
+    assert_int_equal(run.result.usable, 0);
+    assert_true(says(run, "reach to 0.5 of the half diagonal only"));
+    for (const auto &q : run.quality) assert_true(q.radius > 0.45 && q.radius <= 0.5);
+    for (int bin = 5; bin < LENSPROF_COVERAGE_BINS; bin++) assert_int_equal(run.result.radius_ends[bin], 0);
+    // Without an unknown falloff that is no lack.
+    options.free = LENSPROF_FREE_RESPONSE;
+    options.vignetting = s.vignetting;
+    assert_int_equal(run_fit(s, options).result.usable, 1);
+}
+
+void test_the_greys_must_be_covered(void **) {
+    Simulation s;
+    s.response = srgb_response();
+    s.channels = 1;
+    s.exposures.assign(s.images, {0.0, {1.0, 1.0, 1.0}});
+    s.make(80000, 0.3, 0.0, 0.0, 42);
+    drop(s, [](const lensprof_pair &p) {
+        auto is_off = [](double v) { return v < 0.50 || v > 0.545; };
+        return is_off(p.value[0][0]) || is_off(p.value[1][0]);
+    });
+    assert_true(s.pairs.size() >= 100);
+    lensprof_fit_options options = default_fit();
+    options.channels = 1;
+    FitRun run = run_fit(s, options);
+    assert_int_equal(run.result.usable, 0);
+    assert_true(says(run, "grey levels only"));
+    for (const auto &q : run.quality)
+        assert_true(0.50 <= q.grey_low && q.grey_low < q.grey_high && q.grey_high <= 0.545);
+}
+
+// Ends are counted where the truth has them.
+void test_coverage_counts_every_end(void **) {
+    for (uint32_t channels : {1u, 3u}) {
+        Simulation s;
+        s.response = srgb_response();
+        s.channels = channels;
+        s.make(1200, 1.0, 0.0, 1.0, 5);
+        lensprof_fit_options options = default_fit();
+        options.channels = channels;
+        options.free &= ~LENSPROF_FREE_CENTER;
+        options.vignetting.center[0] = s.vignetting.center[0], options.vignetting.center[1] = s.vignetting.center[1];
+        FitRun run = run_fit(s, options);
+        uint32_t rings[LENSPROF_COVERAGE_BINS] = {0}, greys[LENSPROF_COVERAGE_BINS] = {0}, of_image[6] = {0};
+        for (const auto &p : s.pairs)
+            for (int side = 0; side < 2; side++) {
+                rings[std::min(9, static_cast<int>(10.0 * radius(s, p, side)))]++;
+                of_image[p.image[side]]++;
+                for (uint32_t c = 0; c < channels; c++) greys[std::min(9, static_cast<int>(10.0 * p.value[side][c]))]++;
+            }
+        assert_memory_equal(run.result.radius_ends, rings, sizeof rings);
+        assert_memory_equal(run.result.grey_ends, greys, sizeof greys);
+        assert_int_equal(std::accumulate(rings, rings + 10, 0u), 2 * run.result.pairs);
+        assert_int_equal(std::accumulate(run.result.grey_ends, run.result.grey_ends + 10, 0u),
+                         2 * run.result.pairs * channels);
+        for (uint32_t i = 0; i < s.images; i++) assert_int_equal(run.quality[i].pairs, of_image[i]);
+    }
+}
+
+// One image that is not where the project says: its values belong to other places.
+void test_a_misplaced_image_is_named(void **) {
+    Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
+    std::vector<double *> values;
+    for (auto &p : s.pairs)
+        for (int side = 0; side < 2; side++)
+            if (p.image[side] == 4) values.push_back(p.value[side]);
+    double first[3];
+    std::copy(values[0], values[0] + 3, first);
+    for (size_t i = 1; i < values.size(); i++) std::copy(values[i], values[i] + 3, values[i - 1]);
+    std::copy(first, first + 3, values.back());
+    FitRun run = run_fit(s);
+    assert_int_equal(run.result.usable, 1);
+    assert_true(says(run, "image 4 "));
+    for (uint32_t i = 0; i < s.images; i++)
+        if (i == 4) assert_true(run.quality[i].median_residual > 10.0);
+        else assert_true(run.quality[i].median_residual < 3.0);
+}
+
+// Overlaps as of a panorama: neighbours in one frame are so in the other.
+FitRun panorama(double local_ev, double frame_ev, double outliers = 0.0, uint64_t seed = 42) {
+    Simulation s;
+    s.response = srgb_response();
+    s.images = 8, s.reach = 3, s.shift = 0.25;
+    s.local_ev = local_ev, s.frame_ev = frame_ev;
+    s.make(2000, 1.0, outliers, 1.0, seed);
+    return run_fit(s);
+}
+
+// Each picture was brightened and darkened by its surroundings: the more, the more of the residual follows that.
+void test_local_processing_is_refused(void **) {
+    double last = 0.0;
+    for (double local_ev : {0.02, 0.05, 0.2, 0.5}) {
+        FitRun run = panorama(local_ev, 0.0);
+        print_message("local %.2f EV: image share %.2f\n", local_ev, run.result.image_share);
+        assert_true(run.result.image_share > last);
+        last = run.result.image_share;
+        assert_int_equal(run.result.usable, local_ev < 0.1);
+        if (!run.result.usable) assert_true(says(run, "patterns of each image's own"));
+    }
+    assert_true(last <= 1.0);
+}
+
+// One pattern in all pictures: no radial falloff, yet a camera's, so the result stands and the words say so.
+void test_a_falloff_that_is_not_radial_is_told(void **) {
+    FitRun run = panorama(0.0, 0.1);
+    print_message("frame 0.1 EV: frame share %.2f, image share %.2f\n", run.result.frame_share, run.result.image_share);
+    assert_true(run.result.frame_share > 0.3);
+    assert_true(run.result.image_share < 0.1);
+    assert_int_equal(run.result.usable, 1);
+    assert_true(says(run, "not radial"));
+}
+
+void test_noise_and_outliers_are_no_pattern(void **) {
+    for (uint64_t seed = 1; seed <= 10; seed++)
+        for (double outliers : {0.0, 0.3}) {
+            FitRun run = panorama(0.0, 0.0, outliers, seed);
+            assert_true(run.result.frame_share < 0.05);
+            assert_true(run.result.image_share < 0.1);
+            assert_int_equal(run.result.usable, 1);
+        }
+}
+
+Simulation chromatic(uint64_t seed) {
+    Simulation s;
+    s.response = srgb_response();
+    s.chromatic = {{{-0.24, 0.05, -0.12}, {0.02, -0.015}},
+                   {{-0.30, 0.05, -0.15}, {0.02, -0.015}},
+                   {{-0.36, 0.05, -0.17}, {0.02, -0.015}}};
+    s.make(2000, 1.0, 0.0, 1.0, seed);
+    return s;
+}
+
+void test_a_falloff_of_each_channel(void **) {
+    for (uint64_t seed = 1; seed <= 5; seed++) {
+        Simulation s = chromatic(seed);
+        FitRun run = run_fit(s);
+        double g = s.gamma(run.exposures);
+        assert_int_equal(run.result.vignettings, 3);
+        for (uint32_t c = 0; c < 3; c++) {
+            assert_true(s.falloff_error(run.result.vignetting[c], g, c) < 0.01);
+            assert_memory_equal(run.result.vignetting[c].center, run.result.vignetting[0].center, 2 * sizeof(double));
+        }
+        lensprof_fit_options options = default_fit();
+        options.vignettings = 1;
+        FitRun one = run_fit(s, options);
+        assert_int_equal(one.result.vignettings, 1);
+        assert_true(one.result.heldout_median > run.result.heldout_median);
+        assert_true(one.result.noise_levels > run.result.noise_levels);
+    }
+}
+
+void test_one_falloff_where_one_serves(void **) {
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        FitRun run = run_fit(simulate(800, 1.0, 0.0, seed));
+        assert_int_equal(run.result.vignettings, 1);
+        assert_memory_equal(&run.result.vignetting[1], &run.result.vignetting[0], sizeof run.result.vignetting[0]);
+        assert_memory_equal(&run.result.vignetting[2], &run.result.vignetting[0], sizeof run.result.vignetting[0]);
+    }
+}
+
+}  // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_groups_are_told),
+        cmocka_unit_test(test_the_corners_must_be_covered),
+        cmocka_unit_test(test_the_greys_must_be_covered),
+        cmocka_unit_test(test_coverage_counts_every_end),
+        cmocka_unit_test(test_a_misplaced_image_is_named),
+        cmocka_unit_test(test_local_processing_is_refused),
+        cmocka_unit_test(test_a_falloff_that_is_not_radial_is_told),
+        cmocka_unit_test(test_noise_and_outliers_are_no_pattern),
+        cmocka_unit_test(test_a_falloff_of_each_channel),
+        cmocka_unit_test(test_one_falloff_where_one_serves),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
