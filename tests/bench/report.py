@@ -209,11 +209,12 @@ def speed(results):
         cells = [number(r.get(k)) for k in ("solve_s", "cpu_s", "ratio_solve_to_cpu", "ratio_cpu_s", "clean_rms")]
         lines.append(row(r["case"], r["turns"], LABELS[r["tool"]], *cells))
     lines += ["", "Whole command, pictures with 10 % outlier pixels; each tool with its own number of threads.", ""]
-    lines += header("case", "turns", "tool", "wall, s", "CPU, s", "peak, MB", "lensprof / tool: wall", "CPU", "peak",
-                    "clean residual")
+    lines += header("case", "turns", "tool", "pairs used", "wall, s", "CPU, s", "peak, MB", "lensprof / tool: wall",
+                    "CPU", "peak", "clean residual")
     for r in results["command"]:
         keys = ("wall_s", "cpu_s", "peak_mb", "ratio_wall_s", "ratio_cpu_s", "ratio_peak_mb", "clean_rms")
-        lines.append(row(r["case"], r["turns"], LABELS[r["tool"]], *(number(r.get(k)) for k in keys)))
+        pairs = "%d" % r["pairs"] if "pairs" in r else "–"
+        lines.append(row(r["case"], r["turns"], LABELS[r["tool"]], pairs, *(number(r.get(k)) for k in keys)))
     same = all(r["identical"] for r in results["solver"] + results["command"] if r["tool"] == "lensprof")
     return lines + ["", "lensprof's output was %s to the byte over all turns, apart from `seconds`."
                     % ("identical" if same else "NOT IDENTICAL"), ""]

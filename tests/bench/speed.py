@@ -57,7 +57,7 @@ def measure(name, options, runs, turns):
     for tool, results in taken.items():
         used = [u for u, _ in results]
         record = {"case": name, "tool": tool, "turns": turns, "complete": all(model for _, model in results)}
-        for key in ("wall_s", "cpu_s", "peak_mb", "solve_s"):
+        for key in ("wall_s", "cpu_s", "peak_mb", "solve_s", "pairs"):
             if all(key in u for u in used):
                 record[key] = statistics.median(u[key] for u in used)
                 record[key + "_turns"] = [u[key] for u in used]

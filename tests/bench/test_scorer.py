@@ -143,6 +143,11 @@ class Files(unittest.TestCase):
         self.assertEqual([i["v"] for i in lines], [50.0] * 3)
         self.assertEqual(lines[0]["r"], 0.0)  # not the file's name
 
+    def test_pairs_drawn(self):
+        text = "extracting good points\nSelected 181 points\nVignetting Optimization\nIteration: 0, error: 14.76\n"
+        self.assertEqual(tools.pairs_drawn(text), {"pairs": 181})
+        self.assertEqual(tools.pairs_drawn("Vignetting Optimization\nIteration: 0, error: 14.76\n"), {})
+
     def test_pto_links_in_a_circle(self):
         with self.assertRaises(ValueError):
             tools.parse_pto('i w4 h3 Ra=1 n"a"\ni w4 h3 Ra=0 n"b"\n')

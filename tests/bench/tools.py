@@ -22,7 +22,7 @@ LIMIT_S = 600
 
 PAPER = ["--modes", "5", "--loss", "huber", "--prior", "0", "--sampling", "paper"]
 LABELS = {"lensprof": "lensprof", "lensprof-paper": "lensprof as the paper", "hugin": "vig_optimize, same points",
-          "hugin-2000": "vig_optimize -s 0 -p 2000", "hugin-3": "vig_optimize -s 3",
+          "hugin-2000": "vig_optimize -s 0 -p 2000", "hugin-3": "vig_optimize -s 3 (defaults)",
           "hugin-default": "vig_optimize, defaults"}
 
 
@@ -71,7 +71,14 @@ def run_hugin(project, log, extra=(), threads=1):
         return dict(used, lost=text[-300:]), None
     counts = re.findall(r"Iteration: (\d+)", text)
     used["iterations"] = int(counts[-1]) if counts else None
+    used.update(pairs_drawn(text))
     return used, model_of_pto(pathlib.Path(result).read_text(errors="replace"))
+
+
+def pairs_drawn(text):
+    """{"pairs": n} from the output of vig_optimize; {} where they were given."""
+    found = re.search(r"Selected (\d+) points", text)
+    return {"pairs": int(found.group(1))} if found else {}
 
 
 def parse_pto(text):
