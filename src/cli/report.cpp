@@ -128,6 +128,7 @@ Json images_json(const BuildReport &report) {
             image["median_residual"] = q.pairs ? Json(q.median_residual) : Json();
             image["known_ev_residual"] = q.known_ev_residual;
             image["pairs"] = q.pairs;
+            image["inliers"] = q.inliers;
             image["component"] = q.component;
             image["radius"] = q.radius;
             image["grey"] = {q.grey_low, q.grey_high};

@@ -18,6 +18,7 @@ constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a
 constexpr double kNotRadial = 0.3;             // share that follows one map over the frame
 constexpr double kLargestCornerSigma = 0.1;    // of M
 constexpr double kLargestEvSigma = 0.3;        // EV, gamma apart
+constexpr uint32_t kFewestInliers = 3;         // of an image: fewer agree by chance
 constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
 
 // Pairs that tell something: different from each other, with both grey values of a channel between black and white.
@@ -157,6 +158,12 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
         return refuse(r,
                       "the pairs leave the falloff in the corners uncertain by %.0f %%; sample more, or overlap more",
                       100.0 * corner);
+    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++)
+        if (const auto &q = r.image_quality[i]; problem.ev_unknown[i] >= 0 && q.inliers < kFewestInliers)
+            return refuse(r,
+                          "only %u of the %u pairs of image %u agree with the camera model, which does not show its "
+                          "exposure; overlap it more, or check its place in the project",
+                          q.inliers, q.pairs, i);
     int image = uncertain_image(problem, estimate, r);
     if (image >= 0)
         return refuse(r, "the pairs leave the exposure of image %d uncertain by %.1f EV; overlap it more", image,

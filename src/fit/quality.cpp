@@ -58,13 +58,16 @@ void describe_residuals(const Problem &problem, const Estimate &estimate, double
     r.inlier_share = static_cast<double>(std::count(is_inlier.begin(), is_inlier.end(), true))
                      / static_cast<double>(problem.pairs.size());
     std::vector<std::vector<double>> of_image(r.image_quality ? problem.image_count : 0);
+    for (size_t i = 0; i < of_image.size(); i++) r.image_quality[i].inliers = r.image_quality[i].reserved = 0;
     for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
         residual[p] = signed_residual(t, problem.channels);
         if (of_image.empty()) return;
-        for (uint32_t image : problem.pairs[p].image)
+        for (uint32_t image : problem.pairs[p].image) {
+            r.image_quality[image].inliers += is_inlier[p];
             for (int c = 0; c < problem.channels; c++)
                 for (double one : t.channel[static_cast<size_t>(c)].residual)
                     of_image[image].push_back(255.0 * std::abs(one));
+        }
     });
     PatternShares shares = pattern_shares(problem, residual, is_inlier);
     r.frame_share = shares.frame;

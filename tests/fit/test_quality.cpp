@@ -133,6 +133,30 @@ void test_a_misplaced_image_is_named(void **) {
         else assert_true(run.quality[i].median_residual < 3.0);
 }
 
+// The last image keeps seven pairs, of which five show something else: two agree on an exposure by chance.
+void test_an_exposure_must_rest_on_pairs(void **) {
+    Simulation s = simulate(2000, 1.0, 0.0, 42, 3);
+    uint32_t kept = 0, last = s.images - 1;
+    auto beyond = std::remove_if(s.pairs.begin(), s.pairs.end(), [&](const lensprof_pair &p) {
+        return (p.image[0] == last || p.image[1] == last) && kept++ >= 7;
+    });
+    s.pairs.erase(beyond, s.pairs.end());
+    assert_int_equal(run_fit(s).result.usable, 1);
+    uint32_t seen = 0;
+    for (auto &p : s.pairs)
+        if ((p.image[0] == last || p.image[1] == last) && seen++ < 5)
+            for (double &v : p.value[p.image[1] == last]) v = 0.15 * seen;
+    FitRun run = run_fit(s);
+    assert_int_equal(run.quality[last].pairs, 7);
+    assert_true(run.quality[last].inliers < 3);
+    assert_int_equal(run.result.usable, 0);
+    assert_true(says(run, "pairs of image 7 agree"));
+    // An exposure that is given need not show.
+    s.fit_images[last].free = 0;
+    s.fit_images[last].exposure = s.exposures[last];
+    assert_false(says(run_fit(s), "pairs of image 7 agree"));
+}
+
 // Overlaps as of a panorama: neighbours in one frame are so in the other.
 FitRun panorama(double local_ev, double frame_ev, double outliers = 0.0, uint64_t seed = 42) {
     Simulation s;
@@ -224,6 +248,7 @@ int main() {
         cmocka_unit_test(test_the_greys_must_be_covered),
         cmocka_unit_test(test_coverage_counts_every_end),
         cmocka_unit_test(test_a_misplaced_image_is_named),
+        cmocka_unit_test(test_an_exposure_must_rest_on_pairs),
         cmocka_unit_test(test_local_processing_is_refused),
         cmocka_unit_test(test_a_falloff_that_is_not_radial_is_told),
         cmocka_unit_test(test_noise_and_outliers_are_no_pattern),

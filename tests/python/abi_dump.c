@@ -209,7 +209,9 @@ static void print_fit_structs(void)
     FIELD(lensprof_fit_image_quality, grey_low);
     FIELD(lensprof_fit_image_quality, grey_high);
     FIELD(lensprof_fit_image_quality, pairs);
+    FIELD(lensprof_fit_image_quality, inliers);
     FIELD(lensprof_fit_image_quality, component);
+    FIELD(lensprof_fit_image_quality, reserved);
     end_struct();
 
     BEGIN(lensprof_fit_result);

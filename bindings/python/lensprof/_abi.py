@@ -278,7 +278,8 @@ class FitOptions(Structure):
 class FitImageQuality(Structure):
     _fields_ = [("ev_sigma", c_double), ("white_balance_sigma", c_double * 3), ("median_residual", c_double),
                 ("known_ev_residual", c_double), ("radius", c_double), ("grey_low", c_double),
-                ("grey_high", c_double), ("pairs", c_uint32), ("component", c_uint32)]
+                ("grey_high", c_double), ("pairs", c_uint32), ("inliers", c_uint32), ("component", c_uint32),
+                ("reserved", c_uint32)]
 
 
 class FitResult(Structure):

@@ -29,7 +29,7 @@ EXPOSURE_DTYPE = _dtype(_abi.Exposure)
 
 IMAGE_QUALITY_DTYPE = _dtype(_abi.FitImageQuality)
 """Layout of an image's quality: ev_sigma, white_balance_sigma[3], median_residual, known_ev_residual, radius, grey_low,
-grey_high, pairs, component."""
+grey_high, pairs, inliers, component."""
 
 _SAMPLE_TYPES = {np.dtype(np.uint8): SampleType.U8, np.dtype(np.uint16): SampleType.U16,
                  np.dtype(np.float32): SampleType.F32}
