@@ -179,6 +179,11 @@ std::vector<std::array<double, 3>> NormalEquations::image_step(const Eigen::Vect
     return step;
 }
 
+double NormalEquations::expected_gain(const Eigen::VectorXd &shared_step) const {
+    double images = problem_.image_unknowns ? 0.5 * image_only_.dot(gradient_q_) : 0.0;
+    return images + b_.dot(shared_step) - 0.5 * shared_step.dot(S_ * shared_step);
+}
+
 Eigen::VectorXd NormalEquations::image_variance(const Eigen::MatrixXd &shared) const {
     if (problem_.image_unknowns == 0) return {};
     return inverse_diagonal(factor_) + (eliminated_ * shared).cwiseProduct(eliminated_).rowwise().sum();

@@ -32,6 +32,9 @@ public:
     // The images' step that belongs to a shared step, as changes of a_ic.
     std::vector<std::array<double, 3>> image_step(const Eigen::VectorXd &shared_step) const;
 
+    // What the model expects the objective to fall by under a shared step and the images' that belongs to it.
+    double expected_gain(const Eigen::VectorXd &shared_step) const;
+
     // Variance of every unknown of the images, when `shared` is the covariance of the shared unknowns.
     Eigen::VectorXd image_variance(const Eigen::MatrixXd &shared) const;
 

@@ -25,6 +25,7 @@ struct Stepper {
     const Loss &loss;
     const NoiseWeights &weights;
     const ModeTable &modes;
+    double flat;  // a step that promises less is not worth its evaluation
     std::unique_ptr<NormalEquations> model;
     double lambda = 1e-4;
     int steps = 0;
@@ -66,6 +67,7 @@ struct Stepper {
         for (int attempt = 0; attempt < 12; attempt++, lambda *= 8.0) {
             if (!model->reduce(lambda)) continue;
             Eigen::VectorXd d = constrained_step(region, model->reduced_hessian(), model->reduced_gradient());
+            if (attempt == 0 && model->expected_gain(d) < flat) break;
             Estimate candidate = moved(estimate, d);
             // After a failure another is likely: the value alone is cheaper than a model.
             if (attempt > 0 && !(value_at(candidate) < model->objective())) continue;
@@ -114,7 +116,7 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
         if (refine_noise && round < kNoiseRounds) loss.noise = estimate_noise(problem, estimate, loss.noise);
         gauge.renew(problem, estimate, renewed);
         NoiseWeights weights = noise_weights(problem, estimate, loss);
-        Stepper stepper{problem, renewed, loss, weights, modes, nullptr};
+        Stepper stepper{problem, renewed, loss, weights, modes, control.flat, nullptr};
         outcome.converged = false;
         while (!outcome.converged && outcome.iterations < control.max_iterations) {
             if (control.cancelled && control.cancelled()) throw Cancelled();
