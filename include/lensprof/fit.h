@@ -4,8 +4,8 @@
  *     B1 - f( g(B2) s1/s2 )   and   B2 - f( g(B1) s2/s1 ),      s = M e w            (equations 5, 8, 10)
  * over one response f (EMoR), one vignetting M and the exposure and white balance of every image.
  *
- * Threads: calls are independent; one call uses one thread. The result does not depend on the order of time:
- * same input, same bytes.
+ * Threads: calls are independent. One call uses as many threads as its options say, all gone when it returns; progress
+ * is told on the caller's. The result does not depend on their number: same input, same bytes.
  */
 #ifndef LENSPROF_FIT_H
 #define LENSPROF_FIT_H
@@ -77,6 +77,8 @@ typedef struct lensprof_fit_options {
     uint32_t vignettings;   /* falloff curves: 1 for all channels, 3, or 0 = chosen by held-out error */
     uint32_t gamma_from;    /* lensprof_gamma_from */
     uint32_t camera_kind;   /* lensprof_camera_kind */
+    uint32_t threads;       /* at most so many, the caller's included; 0 = one a core. The result does not depend on it */
+    uint32_t reserved;      /* 0 */
     const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
     lensprof_vignetting vignetting;   /* the value where fixed */
     lensprof_progress progress;       /* or NULL */
@@ -84,7 +86,7 @@ typedef struct lensprof_fit_options {
 } lensprof_fit_options;
 
 /* 3 channels, reference 0, everything free, modes AUTO, loss ROBUST, Huber 5 levels, prior weight 1,
- * 200 iterations, vignettings and gamma AUTO, any camera. */
+ * 200 iterations, vignettings and gamma AUTO, any camera, threads on all cores. */
 LENSPROF_API void lensprof_fit_options_init(lensprof_fit_options *options);
 
 /* How well one image is determined. Frozen value struct. */

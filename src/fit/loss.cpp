@@ -23,8 +23,10 @@ PairWeights pair_weights(const PairTransfer &transfer, int channels) {
 NoiseWeights noise_weights(const Problem &problem, const Estimate &estimate, const Loss &loss) {
     NoiseWeights weights(problem.pairs.size(), {{{1.f, 1.f}, {1.f, 1.f}, {1.f, 1.f}}});
     if (loss.kind != LENSPROF_LOSS_ROBUST) return weights;
-    for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
-        weights[p] = pair_weights(t, problem.channels);
+    for_each_chunk(problem, [&](uint32_t k) {
+        for_each_transfer(problem, problem.chunks[k], estimate, [&](size_t p, const PairTransfer &t) {
+            weights[p] = pair_weights(t, problem.channels);
+        });
     });
     return weights;
 }
@@ -64,11 +66,12 @@ double pair_cost(const PairResiduals &residuals, int channels, const Loss &loss,
 }
 
 std::vector<double> all_chi2(const Problem &problem, const Estimate &estimate, double noise) {
-    std::vector<double> z;
-    z.reserve(problem.pairs.size());
-    for_each_transfer(problem, estimate, [&](size_t, const PairTransfer &t) {
-        PairResiduals residuals = weighted_residuals(t, problem.channels, pair_weights(t, problem.channels));
-        z.push_back(pair_chi2(residuals, problem.channels, noise));
+    std::vector<double> z(problem.pairs.size());
+    for_each_chunk(problem, [&](uint32_t k) {
+        for_each_transfer(problem, problem.chunks[k], estimate, [&](size_t p, const PairTransfer &t) {
+            PairResiduals residuals = weighted_residuals(t, problem.channels, pair_weights(t, problem.channels));
+            z[p] = pair_chi2(residuals, problem.channels, noise);
+        });
     });
     return z;
 }

@@ -10,7 +10,7 @@ namespace lensprof {
 // One row a residual, scaled by the root of its weight: d prediction / d shared, d prediction / d delta, residual. The
 // product of the rows with themselves holds everything that the edge adds to the model.
 struct NormalEquations::Rows {
-    static constexpr Eigen::Index kCapacity = 256;
+    static constexpr Eigen::Index kCapacity = 128;
     Eigen::MatrixXd rows;  // a column each
     Eigen::MatrixXd product;
     Eigen::Index count = 0;
@@ -18,22 +18,54 @@ struct NormalEquations::Rows {
     explicit Rows(Eigen::Index n) : rows(n + 2, kCapacity), product(n + 2, n + 2) {}
 };
 
+// What a chunk of pairs adds to the model.
+struct NormalEquations::Sums {
+    double objective = 0.0;
+    Eigen::MatrixXd shared, cross;
+    Eigen::VectorXd gradient, image_gradient;
+    std::vector<std::array<double, 3>> edge_weight;  // from the chunk's first edge on
+    std::vector<Rows> rows;                          // of each channel, while the chunk is read
+
+    Sums(const Problem &problem, Eigen::Index n)
+        : shared(Eigen::MatrixXd::Zero(n, n)), cross(Eigen::MatrixXd::Zero(n, 3 * problem.image_count)),
+          gradient(Eigen::VectorXd::Zero(n)), image_gradient(Eigen::VectorXd::Zero(3 * problem.image_count)) {}
+};
+
 NormalEquations::NormalEquations(const Problem &problem, const Prior &prior, const Loss &loss,
                                  const NoiseWeights &weights, const Estimate &estimate, const ModeTable &modes)
     : problem_(problem), columns_(free_columns(problem, estimate.modes)) {
     auto n = static_cast<Eigen::Index>(columns_.size());
-    auto images = static_cast<Eigen::Index>(3 * problem.image_count);
-    shared_ = Eigen::MatrixXd::Zero(n, n);
-    gradient_ = Eigen::VectorXd::Zero(n);
-    edge_weight_.reserve(problem.edges.size());
-    cross_ = Eigen::MatrixXd::Zero(n, images);
-    image_gradient_ = Eigen::VectorXd::Zero(images);
-    std::vector<Rows> rows(static_cast<size_t>(problem.channels), Rows(n));
-    for (const Edge &edge : problem.edges) add_edge(edge, rows.data(), loss, weights, estimate, modes);
-    shared_.triangularView<Eigen::StrictlyUpper>() = shared_.transpose();
+    Sums total(problem, n);
+    std::vector<Sums> sums(problem.chunks.size(), total);
+    for_each_chunk(problem,
+                   [&](uint32_t k) { add_chunk(problem.chunks[k], loss, weights, estimate, modes, sums[k]); });
+    edge_weight_.assign(problem.edges.size(), {0.0, 0.0, 0.0});
+    for (size_t k = 0; k < sums.size(); k++) {
+        objective_ += sums[k].objective;
+        total.shared += sums[k].shared;
+        total.cross += sums[k].cross;
+        total.gradient += sums[k].gradient;
+        total.image_gradient += sums[k].image_gradient;
+        for (size_t e = 0; e < sums[k].edge_weight.size(); e++)
+            for (size_t c = 0; c < 3; c++) edge_weight_[problem.chunks[k].first_edge + e][c] += sums[k].edge_weight[e][c];
+    }
+    shared_ = total.shared.selfadjointView<Eigen::Lower>();
+    gradient_ = total.gradient;
     objective_ += prior_cost(prior, problem, columns_, estimate);
     add_prior(prior, estimate);
-    map_images(prior, estimate);
+    map_images(total, prior, estimate);
+}
+
+void NormalEquations::add_chunk(const Chunk &chunk, const Loss &loss, const NoiseWeights &weights,
+                                const Estimate &estimate, const ModeTable &modes, Sums &sums) const {
+    sums.rows.assign(static_cast<size_t>(problem_.channels), Rows(sums.gradient.size()));
+    for (size_t p = chunk.first, e = chunk.first_edge; p < chunk.last; e++) {
+        Edge part = problem_.edges[e];
+        part.first = p;
+        p = part.last = std::min(part.last, chunk.last);
+        add_edge(part, loss, weights, estimate, modes, sums);
+    }
+    sums.rows.clear();
 }
 
 void NormalEquations::by_lens(const Falloff &fall, int curve, int first, double *by) const {
@@ -43,18 +75,18 @@ void NormalEquations::by_lens(const Falloff &fall, int curve, int first, double 
     }
 }
 
-void NormalEquations::add_edge(const Edge &edge, Rows *rows, const Loss &loss, const NoiseWeights &weights,
-                               const Estimate &estimate, const ModeTable &modes) {
+void NormalEquations::add_edge(const Edge &edge, const Loss &loss, const NoiseWeights &weights,
+                               const Estimate &estimate, const ModeTable &modes, Sums &sums) const {
     auto n = static_cast<Eigen::Index>(columns_.size());
     auto ratio = exposure_ratios(problem_, estimate, edge);
     int emor = columns_.empty() || columns_[0] >= kMaxModes ? 0 : modes.modes();
-    edge_weight_.push_back({0.0, 0.0, 0.0});
+    sums.edge_weight.push_back({0.0, 0.0, 0.0});
     PairTransfer t;
     double lens[3][kMaxShared];  // d delta / d shared, behind the modes, of each falloff curve
     for (size_t p = edge.first; p < edge.last; p++) {
         evaluate_pair(problem_, estimate, problem_.pairs[p], ratio.data(), t);
         PairResiduals factor, residuals = weighted_residuals(t, problem_.channels, weights[p]);
-        objective_ += 0.5 * pair_cost(residuals, problem_.channels, loss, &factor);
+        sums.objective += 0.5 * pair_cost(residuals, problem_.channels, loss, &factor);
         for (int curve = 0; curve < problem_.vignettings; curve++)
             by_lens(t.fall[static_cast<size_t>(curve)], curve, emor, lens[curve]);
         for (int c = 0; c < problem_.channels; c++) {
@@ -63,33 +95,35 @@ void NormalEquations::add_edge(const Edge &edge, Rows *rows, const Loss &loss, c
             for (int side = 0; side < 2; side++) {
                 double by_delta = one.by_delta[side], root = weights[p][c][side] * std::sqrt(factor[c][side]);
                 if (by_delta == 0.0 && one.by_value[side] == 0.0) continue;  // saturated prediction
-                double *row = rows[c].rows.col(rows[c].count).data();
+                Rows &rows = sums.rows[static_cast<size_t>(c)];
+                double *row = rows.rows.col(rows.count).data();
                 if (emor) modes.transfer_by_emor(one, side, root, row);
                 for (Eigen::Index u = emor; u < n; u++) row[u] = root * by_delta * by[u];
                 row[n] = root * by_delta;
                 row[n + 1] = root * one.residual[side];
-                if (++rows[c].count == Rows::kCapacity) add_rows(edge, c, rows[c]);
+                if (++rows.count == Rows::kCapacity) add_rows(edge, c, sums);
             }
         }
     }
-    for (int c = 0; c < problem_.channels; c++) add_rows(edge, c, rows[c]);
+    for (int c = 0; c < problem_.channels; c++) add_rows(edge, c, sums);
 }
 
-void NormalEquations::add_rows(const Edge &edge, int channel, Rows &rows) {
+void NormalEquations::add_rows(const Edge &edge, int channel, Sums &sums) {
+    Rows &rows = sums.rows[static_cast<size_t>(channel)];
     if (rows.count == 0) return;
-    auto n = static_cast<Eigen::Index>(columns_.size());
+    Eigen::Index n = sums.gradient.size();
     rows.product.setZero();
     rows.product.selfadjointView<Eigen::Lower>().rankUpdate(rows.rows.leftCols(rows.count));
     rows.count = 0;
     const auto &product = rows.product;
-    shared_.triangularView<Eigen::Lower>() += product.topLeftCorner(n, n);
-    gradient_ += product.row(n + 1).head(n).transpose();
-    edge_weight_.back()[static_cast<size_t>(channel)] += product(n, n);
+    sums.shared.triangularView<Eigen::Lower>() += product.topLeftCorner(n, n);
+    sums.gradient += product.row(n + 1).head(n).transpose();
+    sums.edge_weight.back()[static_cast<size_t>(channel)] += product(n, n);
     for (int end = 0; end < 2; end++) {
         Eigen::Index i = 3 * static_cast<Eigen::Index>(edge.image[end]) + channel;
         double sign = end == 0 ? 1.0 : -1.0;
-        cross_.col(i) += sign * product.row(n).head(n).transpose();
-        image_gradient_[i] += sign * product(n + 1, n);
+        sums.cross.col(i) += sign * product.row(n).head(n).transpose();
+        sums.image_gradient[i] += sign * product(n + 1, n);
     }
 }
 
@@ -110,7 +144,7 @@ void NormalEquations::add_prior(const Prior &prior, const Estimate &estimate) {
 }
 
 // From log exposures a_ic to the images' unknowns q.
-void NormalEquations::map_images(const Prior &prior, const Estimate &estimate) {
+void NormalEquations::map_images(const Sums &sums, const Prior &prior, const Estimate &estimate) {
     int count = problem_.image_unknowns;
     auto columns_of = [&](uint32_t i, int c) {
         return std::array<int, 2>{problem_.ev_unknown[i], problem_.balance_unknown[i][c]};
@@ -131,8 +165,8 @@ void NormalEquations::map_images(const Prior &prior, const Estimate &estimate) {
         for (int c = 0; c < problem_.channels; c++)
             for (int q : columns_of(i, c))
                 if (q >= 0) {
-                    cross_q_.row(q) += cross_.col(3 * static_cast<Eigen::Index>(i) + c).transpose();
-                    gradient_q_[q] += image_gradient_[3 * static_cast<Eigen::Index>(i) + c];
+                    cross_q_.row(q) += sums.cross.col(3 * static_cast<Eigen::Index>(i) + c).transpose();
+                    gradient_q_[q] += sums.image_gradient[3 * static_cast<Eigen::Index>(i) + c];
                 }
     for (size_t i = 0; i < prior.known.size(); i++) {
         int q = problem_.ev_unknown[i];

@@ -40,12 +40,15 @@ public:
 
 private:
     struct Rows;  // residuals of one edge and channel
+    struct Sums;
     void by_lens(const Falloff &fall, int curve, int first, double *by) const;
-    void add_edge(const Edge &edge, Rows *rows, const Loss &loss, const NoiseWeights &weights,
-                  const Estimate &estimate, const ModeTable &modes);
-    void add_rows(const Edge &edge, int channel, Rows &rows);
+    void add_chunk(const Chunk &chunk, const Loss &loss, const NoiseWeights &weights, const Estimate &estimate,
+                   const ModeTable &modes, Sums &sums) const;
+    void add_edge(const Edge &edge, const Loss &loss, const NoiseWeights &weights, const Estimate &estimate,
+                  const ModeTable &modes, Sums &sums) const;
+    static void add_rows(const Edge &edge, int channel, Sums &sums);
     void add_prior(const Prior &prior, const Estimate &estimate);
-    void map_images(const Prior &prior, const Estimate &estimate);
+    void map_images(const Sums &sums, const Prior &prior, const Estimate &estimate);
 
     const Problem &problem_;
     std::vector<int> columns_;
@@ -53,8 +56,6 @@ private:
     Eigen::MatrixXd shared_;                         // shared x shared
     Eigen::VectorXd gradient_;                       // shared, of -objective
     std::vector<std::array<double, 3>> edge_weight_; // Laplacian weight of each edge and channel
-    Eigen::MatrixXd cross_;                          // shared x (3 images), in a_ic
-    Eigen::VectorXd image_gradient_;                 // 3 images
     Eigen::SparseMatrix<double> images_;             // in q
     Eigen::MatrixXd cross_q_;
     Eigen::VectorXd gradient_q_;

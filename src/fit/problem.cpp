@@ -35,6 +35,17 @@ void find_edges(Problem &problem) {
     }
 }
 
+void find_chunks(Problem &problem) {
+    constexpr size_t kLargestCount = 16, kSmallestSize = 512;
+    size_t pairs = problem.pairs.size(), edge = 0;
+    size_t count = std::clamp<size_t>(pairs / kSmallestSize, 1, kLargestCount);
+    for (size_t k = 0; k < count && pairs; k++) {
+        size_t first = pairs * k / count, last = pairs * (k + 1) / count;
+        while (problem.edges[edge].last <= first) edge++;
+        problem.chunks.push_back({first, last, edge});
+    }
+}
+
 void find_components(Problem &problem) {
     std::vector<uint32_t> parent(problem.image_count);
     std::iota(parent.begin(), parent.end(), 0u);
@@ -92,7 +103,9 @@ Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_ima
     problem.image_count = image_count;
     problem.pairs.reserve(keep.size());
     for (uint32_t p : keep) problem.pairs.push_back(pairs[p]);
+    problem.threads = options.threads;
     find_edges(problem);
+    find_chunks(problem);
     find_components(problem);
     number_unknowns(problem);
     return problem;

@@ -24,6 +24,12 @@ struct Edge {
     size_t first, last;
 };
 
+// Pairs [first, last), from within edge `first_edge` on, that one thread takes at a time. Chunks follow from the pairs
+// alone and what they give is put together in their order: the same bytes whatever the number of threads.
+struct Chunk {
+    size_t first, last, first_edge;
+};
+
 struct Problem {
     int channels = 3;
     int vignettings = 1;  // falloff curves: 1, or one a channel
@@ -33,6 +39,8 @@ struct Problem {
     uint32_t image_count = 0;
     std::vector<lensprof_pair> pairs;  // by edge, the lower image first, otherwise in the order given
     std::vector<Edge> edges;           // sorted by image indices
+    std::vector<Chunk> chunks;
+    uint32_t threads = 1;              // at most; 0 = one a core
     std::vector<uint32_t> component;   // of each image: smallest image index of its connected group
 
     // Unknowns of the images. Log exposure of image i in channel c: a_ic = ev_i ln 2 + ln w_ic.

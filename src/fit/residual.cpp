@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/response.h"
+#include "parallel.hpp"
 
 namespace lensprof {
 namespace {
@@ -58,6 +59,10 @@ void evaluate_pair(const Problem &problem, const Estimate &estimate, const lensp
         double m = result.fall[problem.vignettings == 3 ? c : 0].ratio;
         result.channel[c] = transfer(estimate, pair.value[0][c], pair.value[1][c], m * exposure_ratio[c]);
     }
+}
+
+void for_each_chunk(const Problem &problem, const std::function<void(uint32_t)> &work) {
+    for_each_parallel(static_cast<uint32_t>(problem.chunks.size()), problem.threads, work, [] { return false; });
 }
 
 ModeTable::ModeTable(int modes) : modes_(modes) {

@@ -4,7 +4,9 @@
 //   t = s1/s2 = exp(delta),  delta = ln M(p1) + a1 - ln M(p2) - a2              (d'Angelo eq. 5, 8 and section 3)
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "problem.hpp"
 
@@ -46,18 +48,27 @@ inline std::array<double, 3> exposure_ratios(const Problem &problem, const Estim
     return ratio;
 }
 
-// visit(number of the pair, its transfer) for every pair in order.
+// visit(number of the pair, its transfer) for every pair of a chunk, in order.
 template <class Visit>
-void for_each_transfer(const Problem &problem, const Estimate &estimate, Visit visit) {
+void for_each_transfer(const Problem &problem, const Chunk &chunk, const Estimate &estimate, Visit visit) {
     PairTransfer transfer;
-    for (const Edge &edge : problem.edges) {
-        auto ratio = exposure_ratios(problem, estimate, edge);
-        for (size_t p = edge.first; p < edge.last; p++) {
+    for (size_t p = chunk.first, e = chunk.first_edge; p < chunk.last; e++) {
+        auto ratio = exposure_ratios(problem, estimate, problem.edges[e]);
+        for (size_t last = std::min(chunk.last, problem.edges[e].last); p < last; p++) {
             evaluate_pair(problem, estimate, problem.pairs[p], ratio.data(), transfer);
             visit(p, transfer);
         }
     }
 }
+
+// The same for all pairs, in order.
+template <class Visit>
+void for_each_transfer(const Problem &problem, const Estimate &estimate, Visit visit) {
+    for (const Chunk &chunk : problem.chunks) for_each_transfer(problem, chunk, estimate, visit);
+}
+
+// work(number of a chunk) for every chunk, on the problem's threads.
+void for_each_chunk(const Problem &problem, const std::function<void(uint32_t)> &work);
 
 // The EMoR modes in use, sample by sample: all modes at one irradiance lie together.
 class ModeTable {

@@ -195,6 +195,8 @@ static void print_fit_structs(void)
     FIELD(lensprof_fit_options, vignettings);
     FIELD(lensprof_fit_options, gamma_from);
     FIELD(lensprof_fit_options, camera_kind);
+    FIELD(lensprof_fit_options, threads);
+    FIELD(lensprof_fit_options, reserved);
     FIELD(lensprof_fit_options, response);
     FIELD(lensprof_fit_options, vignetting);
     FIELD(lensprof_fit_options, progress);

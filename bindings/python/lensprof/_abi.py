@@ -271,7 +271,7 @@ class FitOptions(Structure):
     _fields_ = [("struct_size", c_uint32), ("channels", c_uint32), ("reference", c_uint32), ("free", c_uint32),
                 ("modes", c_uint32), ("loss", c_uint32), ("huber_levels", c_double), ("prior_weight", c_double),
                 ("max_iterations", c_uint32), ("vignettings", c_uint32), ("gamma_from", c_uint32),
-                ("camera_kind", c_uint32), ("response", POINTER(Response)), ("vignetting", Vignetting),
+                ("camera_kind", c_uint32), ("threads", c_uint32), ("reserved", c_uint32), ("response", POINTER(Response)), ("vignetting", Vignetting),
                 ("progress", Progress), ("progress_user", c_void_p)]
 
 

@@ -47,6 +47,7 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     modes 0..25 or MODES_AUTO. huber_levels: levels of 255. prior_weight: 0 = none, as in the paper. response,
     vignetting: the values where fixed (None = EMoR mean). vignettings: falloff curves, 1, 3 or 0 = chosen by held-out
     error. gamma_from: GammaFrom.AUTO, PRIOR or EXPOSURES. camera_kind: whose responses the prior is of.
+    threads: at most so many, 0 = one a core; the result does not depend on it.
 
     progress: called now and then during a fit with a fraction 0..1; the fit is cancelled when it returns True, and
     when it raises an exception, which then comes out of fit_overlap.
@@ -63,6 +64,7 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     vignettings: int
     gamma_from = Enumerated(GammaFrom)
     camera_kind = Enumerated(CameraKind)
+    threads: int
     response = OptionalReference(Response)
     vignetting = Nested(Vignetting)
 
