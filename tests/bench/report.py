@@ -188,7 +188,7 @@ def scale(records):
     if not records:
         return []
     lines = ["## Scale", "", "Mosaics of a narrow lens, 100 pairs an image (10 % outliers), given as a point file; one"
-             " thread, one turn.", ""]
+             " turn.", ""]
     lines += header("images", "pairs", "solver, s", "process, s", "peak, MB", "usable", "exposure, EV",
                     "clean residual", "simulate, s")
     for r in records:
@@ -202,19 +202,19 @@ def scale(records):
 def speed(results):
     if not results:
         return []
-    lines = ["## Speed", "", "Solver alone: the pairs are given (10 % outliers); one thread.", ""]
+    lines = ["## Speed", "", "Solver alone: the pairs are given (10 % outliers). lensprof's on all cores, vig_optimize's on its one.", ""]
     lines += header("case", "turns", "tool", "solver, s", "CPU of the process, s", "lensprof's solver / CPU",
                     "lensprof's CPU / CPU", "clean residual")
     for r in results["solver"]:
         cells = [number(r.get(k)) for k in ("solve_s", "cpu_s", "ratio_solve_to_cpu", "ratio_cpu_s", "clean_rms")]
         lines.append(row(r["case"], r["turns"], LABELS[r["tool"]], *cells))
-    lines += ["", "Whole command, pictures with 10 % outlier pixels; each tool with its own number of threads.", ""]
-    lines += header("case", "turns", "tool", "pairs used", "wall, s", "CPU, s", "peak, MB", "lensprof / tool: wall",
+    lines += ["", "Whole command; each tool with its own number of threads. Outliers: 10 % of the pixels.", ""]
+    lines += header("case", "MB a file", "turns", "tool", "pairs used", "wall, s", "CPU, s", "peak, MB", "lensprof / tool: wall",
                     "CPU", "peak", "clean residual")
     for r in results["command"]:
         keys = ("wall_s", "cpu_s", "peak_mb", "ratio_wall_s", "ratio_cpu_s", "ratio_peak_mb", "clean_rms")
         pairs = "%d" % r["pairs"] if "pairs" in r else "–"
-        lines.append(row(r["case"], r["turns"], LABELS[r["tool"]], pairs, *(number(r.get(k)) for k in keys)))
+        lines.append(row(r["case"], number(r["file_mb"]), r["turns"], LABELS[r["tool"]], pairs, *(number(r.get(k)) for k in keys)))
     same = all(r["identical"] for r in results["solver"] + results["command"] if r["tool"] == "lensprof")
     return lines + ["", "lensprof's output was %s to the byte over all turns, apart from `seconds`."
                     % ("identical" if same else "NOT IDENTICAL"), ""]

@@ -8,14 +8,16 @@ import scorer
 import tools
 
 # Name, options of simulate, turns at most, whether a quick run has it.
-SOLVER = [("6 images, 300 pairs", "--images 6 --points 300 --no-images", 9, True),
-          ("20 images, 5000 pairs", "--images 20 --rows 2 --points 5000 --no-images", 9, True),
-          ("61 images, 300 pairs", "--images 61 --rows 4 --hfov 25 --mean-ev -1 --points 300 --no-images", 3, True),
-          ("61 images, 5000 pairs", "--images 61 --rows 4 --hfov 25 --mean-ev -1 --points 5000 --no-images", 1, False)]
+SOLVER = [("6 images, 300 pairs", "--images 6 --points 300", 9, True),
+          ("20 images, 5000 pairs", "--images 20 --rows 2 --points 5000", 9, True),
+          ("61 images, 300 pairs", "--images 61 --rows 4 --hfov 25 --mean-ev -1 --points 300", 3, True),
+          ("61 images, 5000 pairs", "--images 61 --rows 4 --hfov 25 --mean-ev -1 --points 5000", 1, False)]
+GIVEN = "--no-images --outliers 0.1 "
 COMMAND = [("6 JPEG of 0.5 MP", "--images 6 --size 816x612 --format jpeg", 9, True),
            ("20 JPEG of 2 MP", "--images 20 --rows 2 --size 1632x1224 --format jpeg", 9, False),
-           ("20 JPEG of 12 MP", "--images 20 --rows 2 --size 4000x3000 --format jpeg", 3, False)]
-COMMON = "--seed 1 --outliers 0.1 --test-points 2000"
+           ("20 JPEG of 12 MP", "--images 20 --rows 2 --size 4000x3000 --format jpeg", 3, False),
+           ("20 JPEG of 12 MP, outliers", "--images 20 --rows 2 --size 4000x3000 --format jpeg --outliers 0.1", 3, False)]
+COMMON = "--seed 1 --test-points 2000"
 
 
 def render(name, options):
@@ -26,8 +28,14 @@ def render(name, options):
     return folder
 
 
+def megabytes(folder):
+    """Mean size of a picture's file."""
+    sizes = [picture.stat().st_size for picture in folder.glob("img*")]
+    return statistics.mean(sizes) / 1e6 if sizes else None
+
+
 def solver_runs(folder):
-    """{tool: call}: the pairs are given, no picture is opened; one thread each."""
+    """{tool: call}: the pairs are given, no picture is opened. vig_optimize solves on one thread."""
     project, points = str(folder / "pano.pto"), str(folder / "points.txt")
     yield "lensprof", lambda: tools.run_lensprof(project, str(folder / "lensprof"), ["--points", points])
     if tools.VIG_OPTIMIZE:
@@ -56,7 +64,8 @@ def measure(name, options, runs, turns):
     records = []
     for tool, results in taken.items():
         used = [u for u, _ in results]
-        record = {"case": name, "tool": tool, "turns": turns, "complete": all(model for _, model in results)}
+        record = {"case": name, "tool": tool, "turns": turns, "file_mb": megabytes(folder),
+                  "complete": all(model for _, model in results)}
         for key in ("wall_s", "cpu_s", "peak_mb", "solve_s", "pairs"):
             if all(key in u for u in used):
                 record[key] = statistics.median(u[key] for u in used)
@@ -76,9 +85,9 @@ def measure(name, options, runs, turns):
 
 def run_all(quick, turns, say):
     solver, command = [], []
-    for cases, runs, records in ((SOLVER, solver_runs, solver), (COMMAND, command_runs, command)):
+    for cases, also, runs, records in ((SOLVER, GIVEN, solver_runs, solver), (COMMAND, "", command_runs, command)):
         for name, options, most, in_quick in cases:
             if in_quick or not quick:
                 say("speed: " + name)
-                records += measure(name, options, runs, 1 if quick and not name.startswith("6 ") else min(turns, most))
+                records += measure(name, also + options, runs, 1 if quick and not name.startswith("6 ") else min(turns, most))
     return {"solver": solver, "command": command}
