@@ -93,6 +93,7 @@ private:
         prior_ = make_prior(options_.prior_weight, count);
     }
     Estimate best_start(int modes);
+    void reconsider(const Loss &used, Estimate &estimate);
     Candidate candidate(const Estimate &from, int modes);
     Candidate choose_modes(const Estimate &start);
     void choose_vignettings(Candidate &best);
@@ -135,7 +136,7 @@ Estimate Fit::best_start(int modes) {
             first = false;
         }
     }
-    start_exposures(train_, best);  // images that had few pairs here get theirs
+    start_exposures(train_, kRoughWidth, best);  // images that had few pairs here get theirs
     gauge_.settle(train_, best);
     return best;
 }
@@ -167,6 +168,25 @@ Candidate Fit::candidate(const Estimate &from, int modes) {
                   / static_cast<double>(result.losses.size());
     done_ = std::min(0.75, done_ + 0.08);
     return result;
+}
+
+// Exposures anew from the response as fitted: where an image was drawn to pairs that agree by chance, the fit from there
+// costs less.
+void Fit::reconsider(const Loss &used, Estimate &estimate) {
+    constexpr double kAway = 0.15;  // natural logarithm
+    Estimate other = estimate;
+    start_exposures(train_, kFineWidth, other);
+    double away = 0.0;
+    for (size_t i = 0; i < other.log_exposure.size(); i++)
+        for (size_t c = 0; c < 3; c++)
+            away = std::max(away, std::abs(other.log_exposure[i][c] - estimate.log_exposure[i][c]));
+    if (away < kAway) return;
+    Control brief = control_;
+    brief.rounds = 1;
+    brief.flat = 0.05;
+    Loss fixed = used;
+    double cost = solve(train_, prior_, gauge_, fixed, false, brief, estimate).cost;
+    if (solve(train_, prior_, gauge_, fixed, false, brief, other).cost < cost) estimate = other;
 }
 
 // The smallest number of modes whose held-out loss is within one standard error (of the paired difference) of the best.
@@ -225,6 +245,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     Control first = control_;
     if (any_modes || any_curves) first.flat = 0.05, first.rounds = 3;
     solve(train_, prior_, gauge_, used, true, first, best.estimate);
+    reconsider(used, best.estimate);
     common_ = used;
     if (options_.loss != LENSPROF_LOSS_ROBUST) common_.noise = estimate_noise(train_, best.estimate, used.noise);
     if (any_modes) best = choose_modes(best.estimate);

@@ -13,36 +13,100 @@ namespace {
 
 constexpr double kDarkest = 0.03, kBrightest = 0.97;  // grey values whose ratio is worth something
 
-// Median over an edge's pairs of what the exposures must explain: ln g(B1)/M1 - ln g(B2)/M2.
+// What the exposures must explain over an edge: ln g(B1)/M1 - ln g(B2)/M2 where most of its pairs agree.
 struct EdgeRatio {
-    double median[3] = {0.0, 0.0, 0.0};
+    double mode[3] = {0.0, 0.0, 0.0};
     double weight[3] = {0.0, 0.0, 0.0};  // number of pairs
     double trust[3] = {1.0, 1.0, 1.0};
 };
 
-std::vector<EdgeRatio> edge_ratios(const Problem &problem, const Estimate &estimate) {
+using Ratios = std::array<double, 3>;
+
+struct Vote {
+    Ratios ratios{};
+    uint32_t colour = 0;  // of both ends, coarsely
+    double weight = 1.0;
+};
+
+// A colour has one vote, however many pairs have it: a thing of one colour before another agrees with itself alone.
+void weigh(std::vector<Vote> &votes) {
+    std::vector<uint32_t> colours;
+    for (const Vote &v : votes) colours.push_back(v.colour);
+    std::sort(colours.begin(), colours.end());
+    for (Vote &v : votes) {
+        auto range = std::equal_range(colours.begin(), colours.end(), v.colour);
+        v.weight = 1.0 / static_cast<double>(range.second - range.first);
+    }
+}
+
+uint32_t colour_of(const lensprof_pair &pair, int channels) {
+    uint32_t colour = 0;
+    for (const auto &side : pair.value)
+        for (int c = 0; c < channels; c++) colour = 16 * colour + static_cast<uint32_t>(15.99 * side[c]);
+    return colour;
+}
+
+// The vector about which most votes lie within about `width`, all channels together, then the mean of those: half and
+// more of the pairs may be wrong, as long as they do not agree with each other.
+Ratios mode_of(const std::vector<Vote> &all, int channels, double width) {
+    constexpr size_t kGuesses = 48, kVoters = 192;
+    auto closeness = [&](const Ratios &a, const Ratios &b) {
+        double distance2 = 0.0;
+        for (size_t c = 0; c < static_cast<size_t>(channels); c++) distance2 += (a[c] - b[c]) * (a[c] - b[c]);
+        double z = distance2 / (width * width);
+        return 1.0 / (1.0 + z * z);
+    };
+    auto every = [&](size_t count, auto &&visit) {
+        count = std::min(count, all.size());
+        for (size_t n = 0; n < count; n++) visit(all[n * all.size() / count]);
+    };
+    Ratios best{};
+    double most = -1.0;
+    every(kGuesses, [&](const Vote &guess) {
+        double votes = 0.0;
+        every(kVoters, [&](const Vote &one) { votes += one.weight * closeness(guess.ratios, one.ratios); });
+        if (votes > most) most = votes, best = guess.ratios;
+    });
+    for (int round = 0; round < 3; round++) {
+        double sum = 0.0;
+        Ratios mean{};
+        for (const Vote &one : all) {
+            double weight = one.weight * closeness(best, one.ratios);
+            sum += weight;
+            for (size_t c = 0; c < 3; c++) mean[c] += weight * one.ratios[c];
+        }
+        for (size_t c = 0; c < 3; c++) best[c] = mean[c] / sum;
+    }
+    return best;
+}
+
+std::vector<EdgeRatio> edge_ratios(const Problem &problem, const Estimate &estimate, double width) {
     std::vector<EdgeRatio> result(problem.edges.size());
-    std::array<std::vector<double>, 3> ratios;
+    std::vector<Vote> votes;
     for (size_t e = 0; e < problem.edges.size(); e++) {
         const Edge &edge = problem.edges[e];
-        for (auto &channel : ratios) channel.clear();
+        votes.clear();
         for (size_t p = edge.first; p < edge.last; p++) {
             const auto &pair = problem.pairs[p];
             double fall = falloff(problem, estimate.vignetting[0], pair).ratio;
+            Vote vote;
+            vote.colour = colour_of(pair, problem.channels);
+            bool good = true;
             for (int c = 0; c < problem.channels; c++) {
                 double b1 = pair.value[0][c], b2 = pair.value[1][c];
-                if (std::min(b1, b2) < kDarkest || std::max(b1, b2) > kBrightest) continue;
+                good = good && std::min(b1, b2) >= kDarkest && std::max(b1, b2) <= kBrightest;
+                if (!good) break;
                 Transfer t = transfer(estimate, b1, b2, 1.0);
-                ratios[static_cast<size_t>(c)].push_back(std::log(t.x[0] / t.x[1] / fall));
+                vote.ratios[static_cast<size_t>(c)] = std::log(t.x[0] / t.x[1] / fall);
             }
+            if (good) votes.push_back(vote);
         }
+        if (votes.empty()) continue;
+        weigh(votes);
+        Ratios mode = mode_of(votes, problem.channels, width);
         for (size_t c = 0; c < 3; c++) {
-            auto &values = ratios[c];
-            if (values.empty()) continue;
-            auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-            std::nth_element(values.begin(), middle, values.end());
-            result[e].median[c] = *middle;
-            result[e].weight[c] = static_cast<double>(values.size());
+            result[e].mode[c] = mode[c];
+            result[e].weight[c] = static_cast<double>(votes.size());
         }
     }
     return result;
@@ -56,11 +120,11 @@ bool add_exposures(const Problem &problem, const std::vector<EdgeRatio> &ratios,
     for (int q = 0; q < count; q++) entries.emplace_back(q, q, 1e-3);
     for (size_t e = 0; e < problem.edges.size(); e++)
         for (int c = 0; c < problem.channels; c++) {
-            // One equation: sum of the unknowns of image 1 minus those of image 2 = median minus what is fixed.
+            // One equation: sum of the unknowns of image 1 minus those of image 2 = mode minus what is fixed.
             uint32_t i = problem.edges[e].image[0], j = problem.edges[e].image[1];
             int q[4] = {problem.ev_unknown[i], problem.balance_unknown[i][c], problem.ev_unknown[j],
                         problem.balance_unknown[j][c]};
-            double target = ratios[e].median[c] - (estimate.log_exposure[i][c] - estimate.log_exposure[j][c]);
+            double target = ratios[e].mode[c] - (estimate.log_exposure[i][c] - estimate.log_exposure[j][c]);
             double weight = ratios[e].weight[c] * ratios[e].trust[c];
             for (int a = 0; a < 4; a++) {
                 if (q[a] < 0) continue;
@@ -86,16 +150,16 @@ bool add_exposures(const Problem &problem, const std::vector<EdgeRatio> &ratios,
 }  // namespace
 
 // Least squares over the edges, then again with less trust in those that disagree.
-void start_exposures(const Problem &problem, Estimate &estimate) {
-    constexpr double kSurprise = 0.3;  // natural logarithm by which an edge's median may be off
+void start_exposures(const Problem &problem, double width, Estimate &estimate) {
+    constexpr double kSurprise = 0.3;  // natural logarithm by which an edge's mode may be off
     if (problem.image_unknowns == 0) return;
-    auto ratios = edge_ratios(problem, estimate);
+    auto ratios = edge_ratios(problem, estimate, width);
     for (int round = 0; round < 4 && add_exposures(problem, ratios, estimate); round++)
         for (size_t e = 0; e < problem.edges.size(); e++)
             for (size_t c = 0; c < 3; c++) {
                 const auto &a = estimate.log_exposure[problem.edges[e].image[0]],
                            &b = estimate.log_exposure[problem.edges[e].image[1]];
-                double off = (ratios[e].median[c] - (a[c] - b[c])) / kSurprise;
+                double off = (ratios[e].mode[c] - (a[c] - b[c])) / kSurprise;
                 ratios[e].trust[c] = 1.0 / (1.0 + off * off);
             }
 }
@@ -117,7 +181,7 @@ std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit
     auto add = [&](const double *emor) {
         Estimate start = base;
         if (emor) set_response(start, emor, modes);
-        start_exposures(problem, start);
+        start_exposures(problem, kRoughWidth, start);
         starts.push_back(std::move(start));
     };
     if (!(options.free & LENSPROF_FREE_RESPONSE) || modes == 0) {

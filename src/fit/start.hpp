@@ -1,4 +1,5 @@
-// Start values: for a given response, the exposures that follow from the median grey value ratios of each image pair.
+// Start values: for a given response, the exposures that follow from the ratios of grey values on which most pairs of
+// two images agree.
 #pragma once
 
 #include "problem.hpp"
@@ -10,7 +11,9 @@ namespace lensprof {
 // kind.
 std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit_options &options, int modes);
 
-// Sets the free exposures of an estimate whose response and vignetting are set.
-void start_exposures(const Problem &problem, Estimate &estimate);
+// Sets the free exposures of an estimate whose response and vignetting are set. `width`: by how much the logarithms of
+// a pair's ratios may differ among pairs that agree; with a response that is only guessed they differ more.
+constexpr double kRoughWidth = 0.3, kFineWidth = 0.1;
+void start_exposures(const Problem &problem, double width, Estimate &estimate);
 
 }  // namespace lensprof
