@@ -46,8 +46,10 @@ NormalEquations::NormalEquations(const Problem &problem, const Prior &prior, con
         total.cross += sums[k].cross;
         total.gradient += sums[k].gradient;
         total.image_gradient += sums[k].image_gradient;
-        for (size_t e = 0; e < sums[k].edge_weight.size(); e++)
-            for (size_t c = 0; c < 3; c++) edge_weight_[problem.chunks[k].first_edge + e][c] += sums[k].edge_weight[e][c];
+        for (size_t e = 0; e < sums[k].edge_weight.size(); e++) {
+            auto &weight = edge_weight_[problem.chunks[k].first_edge + e];
+            for (size_t c = 0; c < 3; c++) weight[c] += sums[k].edge_weight[e][c];
+        }
     }
     shared_ = total.shared.selfadjointView<Eigen::Lower>();
     gradient_ = total.gradient;

@@ -13,6 +13,9 @@ namespace {
 constexpr int kRadiusBins = 10, kGreyBins = 10;
 constexpr uint32_t kPiece = 32;       // places of one image that a thread looks at in one go
 constexpr uint32_t kPaperRound = 8192;
+constexpr double kWidestCone = 1.5;   // radians: beyond, the border of a frame may be farther off than its samples
+constexpr double kSlack = 0.02;       // of the cosine to a cone's edge: projects may be off
+constexpr size_t kMostRefused = 4;    // pairs of places for one wanted candidate, before the search ends
 
 double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -58,6 +61,7 @@ Sampler::Cone Sampler::cone_of(const lensprof_camera &camera) {
         cone.known = direction_of(camera, x, y, v);
         if (cone.known) cone.reach = std::max(cone.reach, 1.05 * angle_between(cone.axis, v));
     }
+    cone.known = cone.known && cone.reach < kWidestCone;
     cone.cosine = cone.known ? std::cos(std::min(cone.reach, std::acos(-1.0))) : -2.0;
     return cone;
 }
@@ -81,8 +85,8 @@ void Sampler::find_neighbours() {
 }
 
 // Number of the pair of images, the same both ways round.
-uint32_t Sampler::edge_of(const Candidate &candidate) const {
-    auto [low, high] = std::minmax(candidate.image[0], candidate.image[1]);
+uint32_t Sampler::edge_of(uint32_t i, uint32_t j) const {
+    auto [low, high] = std::minmax(i, j);
     const auto &list = neighbours_[low];
     auto place = std::lower_bound(list.begin(), list.end(), high) - list.begin();
     return first_edge_[low] + static_cast<uint32_t>(place);
@@ -97,11 +101,38 @@ void Sampler::each(uint32_t count, const std::function<void(uint32_t)> &work, co
     if (!for_each_parallel(count, options_.threads, work, stop)) throw Cancelled();
 }
 
-// Where image j sees a direction, of which `v` is the unit vector.
-bool Sampler::sees(uint32_t j, const double direction[2], const double v[3], double xy[2]) const {
-    return dot(cones_[j].axis, v) >= cones_[j].cosine
-        && lensprof_camera_project(&views_[j].image().camera, direction[0], direction[1], xy)
+// Where the project is off between neighbours, as the pictures show.
+void Sampler::register_neighbours() {
+    grey_.resize(views_.size());
+    rotations_.assign(first_edge_.back() + neighbours_.back().size(), {});
+    const auto count = static_cast<uint32_t>(views_.size());
+    each(count, [&](uint32_t i) { grey_[i] = std::make_unique<GreyLevels>(views_[i]); }, [] { return 0.0; });
+    auto work = [&](uint32_t i) {
+        for (uint32_t j : neighbours_[i])
+            if (j > i)
+                rotations_[edge_of(i, j)] =
+                    registration(views_[i].image().camera, *grey_[i], views_[j].image().camera, *grey_[j]);
+    };
+    each(count, work, [] { return 0.0; });
+}
+
+const Rotation &Sampler::rotation(uint32_t i, uint32_t j) const {
+    static constexpr Rotation none{};
+    return patches_ ? rotations_[edge_of(i, j)] : none;
+}
+
+// Where image j sees what image i sees at (x, y); false when it does not.
+bool Sampler::correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const {
+    return place_of(views_[i].image().camera, views_[j].image().camera, rotation(i, j), i < j ? 1.0 : -1.0, x, y, xy)
         && views_[j].holds(xy[0], xy[1]);
+}
+
+// Whether both show the same there, as far as texture tells. Single points, as the paper samples them, are not asked.
+bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) const {
+    Sight at;
+    return !patches_
+        || (sight(views_[i].image().camera, views_[j].image().camera, rotation(i, j), i < j ? 1.0 : -1.0, x, y, at)
+            && show_the_same(*grey_[i], x, y, *grey_[j], at));
 }
 
 bool Sampler::measure(uint32_t i, double x, double y, End &end) const {
@@ -119,18 +150,21 @@ bool Sampler::measure(uint32_t i, double x, double y, End &end) const {
 // The candidates between a place of image i and the other images that see it.
 void Sampler::look(uint32_t i, double x, double y, const uint32_t *others, size_t count,
                    std::vector<Candidate> &found) {
-    double direction[2], v[3], xy[2];
-    if (!views_[i].holds(x, y) || !lensprof_camera_unproject(&views_[i].image().camera, x, y, direction)) return;
-    unit_vector(direction, v);
+    double v[3], xy[2];
+    if (!views_[i].holds(x, y) || !direction_of(views_[i].image().camera, x, y, v)) return;
     End own, other;
     bool measured = false;
     for (size_t n = 0; n < count; n++) {
         const uint32_t j = others[n];
-        if (!sees(j, direction, v, xy)) continue;
+        if (dot(cones_[j].axis, v) < cones_[j].cosine - kSlack || !correspond(i, j, x, y, xy)) continue;
         if (!overlaps_) overlaps_ = true;
         if (!measured && !measure(i, x, y, own)) return;
         measured = true;
         if (!measure(j, xy[0], xy[1], other)) continue;
+        if (!is_the_same(i, j, x, y)) {
+            refused_++;
+            continue;
+        }
         found.push_back({x, y, {i, j}, static_cast<float>(own.patch.gradient + other.patch.gradient),
                          {own.radius, other.radius}, {own.grey, other.grey}});
     }
@@ -146,7 +180,9 @@ std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
     for (const auto &list : neighbours_) sights += list.size();
     auto chunk = static_cast<uint32_t>(std::clamp<size_t>(4 * wanted / std::max<size_t>(sights, 1), 4, 256));
     const uint32_t most = 102400 / chunk, hopeless = 2560 / chunk, pieces = (chunk + kPiece - 1) / kPiece;
-    for (uint32_t round = 0; round < most && all.size() < wanted && !(round > hopeless && all.empty()); round++) {
+    for (uint32_t round = 0; round < most && all.size() < wanted && refused_ < kMostRefused * wanted
+                             && !(round > hopeless && all.empty());
+         round++) {
         std::vector<std::vector<Candidate>> found(views_.size() * pieces);
         std::atomic<size_t> count{all.size()};
         auto work = [&](uint32_t n) {
@@ -175,11 +211,8 @@ std::vector<lensprof_pair> Sampler::pairs_of(const std::vector<Candidate> &chose
             const Candidate &c = chosen[n];
             lensprof_pair &pair = pairs[n];
             pair = {{c.image[0], c.image[1]}, {{c.x, c.y}, {0.0, 0.0}}, {}};
-            double direction[2];
             End end{};
-            bool good = lensprof_camera_unproject(&views_[c.image[0]].image().camera, c.x, c.y, direction)
-                        && lensprof_camera_project(&views_[c.image[1]].image().camera, direction[0], direction[1],
-                                                   pair.xy[1]);
+            bool good = correspond(c.image[0], c.image[1], c.x, c.y, pair.xy[1]);
             for (int side = 0; side < 2 && good; side++) {
                 good = measure(c.image[side], pair.xy[side][0], pair.xy[side][1], end);
                 std::copy(end.patch.value, end.patch.value + 3, pair.value[side]);
@@ -194,6 +227,7 @@ std::vector<lensprof_pair> Sampler::pairs_of(const std::vector<Candidate> &chose
 // As long as no image pair, radius or grey level has had more than its share; the shares grow until enough are found.
 std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
     patches_ = true;
+    register_neighbours();
     std::vector<Candidate> all = candidates(8 * static_cast<size_t>(wanted));
     std::vector<uint32_t> order(all.size()), edge(all.size()), chosen;
     std::iota(order.begin(), order.end(), 0u);
@@ -201,7 +235,7 @@ std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
         return all[a].gradient != all[b].gradient ? all[a].gradient < all[b].gradient : a < b;
     });
     std::vector<bool> seen(first_edge_.back() + neighbours_.back().size(), false), taken(all.size(), false);
-    for (size_t n = 0; n < all.size(); n++) seen[edge[n] = edge_of(all[n])] = true;
+    for (size_t n = 0; n < all.size(); n++) seen[edge[n] = edge_of(all[n].image[0], all[n].image[1])] = true;
     const auto edges = std::max<ptrdiff_t>(std::count(seen.begin(), seen.end(), true), 1);
     std::vector<uint32_t> per_edge(seen.size(), 0), per_radius(kRadiusBins, 0), per_grey(kGreyBins, 0);
     for (double share : {1.0, 1.5, 2.0, 3.0, 5.0, 1e9}) {

@@ -3,9 +3,11 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "random.hpp"
+#include "registration.hpp"
 #include "view.hpp"
 
 namespace lensprof {
@@ -53,13 +55,16 @@ private:
 
     static Cone cone_of(const lensprof_camera &camera);
     void find_neighbours();
-    bool sees(uint32_t j, const double direction[2], const double v[3], double xy[2]) const;
+    void register_neighbours();
+    const Rotation &rotation(uint32_t i, uint32_t j) const;
+    bool correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const;
+    bool is_the_same(uint32_t i, uint32_t j, double x, double y) const;
     bool measure(uint32_t i, double x, double y, End &end) const;
     void look(uint32_t i, double x, double y, const uint32_t *others, size_t count, std::vector<Candidate> &found);
     Look draw(Random &random) const;
     std::vector<Candidate> candidates(size_t wanted);
     std::vector<lensprof_pair> pairs_of(const std::vector<Candidate> &chosen);
-    uint32_t edge_of(const Candidate &candidate) const;
+    uint32_t edge_of(uint32_t i, uint32_t j) const;
     void each(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done);
 
     const lensprof_sample_options &options_;
@@ -67,6 +72,9 @@ private:
     std::vector<Cone> cones_;
     std::vector<std::vector<uint32_t>> neighbours_;  // ascending
     std::vector<uint32_t> first_edge_;               // number of every image's first pair with a neighbour
+    std::vector<std::unique_ptr<GreyLevels>> grey_;  // of every view
+    std::vector<Rotation> rotations_;                // of every pair of neighbours, from the lower image to the other
+    std::atomic<size_t> refused_{0};                 // pairs of places that do not show the same
     bool patches_ = true;                            // else single points
     std::atomic<bool> overlaps_{false};
     double shown_ = 0.0;  // the last fraction that the caller saw

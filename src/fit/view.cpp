@@ -59,6 +59,13 @@ template <class Sample> void gather(const lensprof_image &view, int u, int v, co
     }
 }
 
+template <class Sample> void mean_row(const lensprof_image &view, int v, int channels, float *out) {
+    const auto *p = reinterpret_cast<const Sample *>(pixel(view, 0, v, 0));
+    const size_t samples = lensprof_layout_samples(view.layout);
+    for (uint32_t u = 0; u < view.width; u++, p += samples)
+        out[u] = channels == 1 ? grey_value(p[0]) : (grey_value(p[0]) + grey_value(p[1]) + grey_value(p[2])) / 3.0f;
+}
+
 Lanes lower(Lanes a, Lanes b) { return a < b ? a : b; }
 Lanes higher(Lanes a, Lanes b) { return a > b ? a : b; }
 Lanes absolute(Lanes a) { return higher(a, -a); }
@@ -159,6 +166,12 @@ View::View(const lensprof_sample_image &image)
 
 double View::sample(int u, int v, int channel) const {
     return load(image_.view, u, v, static_cast<uint32_t>(reversed_ ? 2 - channel : channel));
+}
+
+void View::grey_row(int v, float *out) const {
+    if (image_.view.sample == LENSPROF_SAMPLE_U8) mean_row<uint8_t>(image_.view, v, channels_, out);
+    else if (image_.view.sample == LENSPROF_SAMPLE_U16) mean_row<uint16_t>(image_.view, v, channels_, out);
+    else mean_row<float>(image_.view, v, channels_, out);
 }
 
 bool View::is_allowed(int u, int v) const {

@@ -20,6 +20,9 @@ public:
     // First pixel with a sample that is not a number; false when there is none. Only float views can have one.
     bool find_not_finite(uint32_t &x, uint32_t &y) const;
 
+    // Mean of the channels of every pixel of a row.
+    void grey_row(int v, float *out) const;
+
     // True when a full-frame position lies in the frame, far enough inside the view for a patch.
     bool holds(double x, double y) const;
 

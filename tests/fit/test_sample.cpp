@@ -7,8 +7,13 @@
 namespace {
 
 // A smooth panorama as a function of direction, grey value 0..1 (the encoded value itself: the tests need no camera).
+// Some tests need more than slow waves.
+double detail = 0.0;
+
 double scene(double longitude, double latitude, int c) {
-    return 0.5 + 0.2 * std::sin(9 * longitude + c) + 0.2 * std::cos(7 * latitude - 2.0 * c);
+    double x = 40 * longitude + 3 * std::sin(11 * latitude), y = 34 * latitude + 3 * std::sin(13 * longitude);
+    return 0.5 + 0.2 * std::sin(9 * longitude + c) + 0.2 * std::cos(7 * latitude - 2.0 * c)
+        + detail * std::sin(x) * std::cos(y);
 }
 
 struct Pictures {
@@ -147,6 +152,67 @@ void test_patches_shrug_off_hot_pixels(void **) {
     for (const auto &pair : pairs)
         for (int c = 0; c < 3; c++) sum += std::pow(pair.value[0][c] - pair.value[1][c], 2);
     assert_true(255 * std::sqrt(sum / (3 * pairs.size())) < 2.0);
+}
+
+// Pixels by which pairs are off from where the second picture really shows the place of the first: a share of them.
+double distance_of_pairs(const std::vector<lensprof_pair> &pairs, const lensprof_camera cameras[2], double share) {
+    std::vector<double> distances;
+    for (const auto &pair : pairs) {
+        double direction[2], xy[2];
+        const int side = pair.image[0] == 0 ? 0 : 1;
+        assert_true(lensprof_camera_unproject(&cameras[0], pair.xy[side][0], pair.xy[side][1], direction));
+        assert_true(lensprof_camera_project(&cameras[1], direction[0], direction[1], xy));
+        distances.push_back(std::hypot(xy[0] - pair.xy[1 - side][0], xy[1] - pair.xy[1 - side][1]));
+    }
+    std::sort(distances.begin(), distances.end());
+    return distances[static_cast<size_t>(share * static_cast<double>(distances.size() - 1))];
+}
+
+// The pictures were taken elsewhere than the project says, by up to 16 pixels: turned, tilted and rolled.
+void test_a_project_that_is_off_is_registered(void **) {
+    detail = 0.07;
+    Pictures pictures(2, 320, 240, 20.0);
+    detail = 0.0;
+    const lensprof_camera truth[2] = {pictures.images[0].camera, pictures.images[1].camera};
+    std::vector<lensprof_pair> pairs;
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 500), pairs));
+    assert_close(distance_of_pairs(pairs, truth, 1.0), 0.0, 1e-6);  // right as it is: nothing is moved
+    for (double yaw : {-2.5, 1.0})
+        for (double roll : {0.0, 0.5}) {
+            pictures.images[1].camera = truth[1];
+            pictures.images[1].camera.yaw_deg += yaw;
+            pictures.images[1].camera.pitch_deg += 0.7;
+            pictures.images[1].camera.roll_deg += roll;
+            assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 500), pairs));
+            assert_int_equal(pairs.size(), 500);
+            assert_true(distance_of_pairs(pairs, truth, 0.95) < 1.5);
+        }
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_PAPER, 500), pairs));
+    assert_true(distance_of_pairs(pairs, truth, 0.5) > 4.0);  // the paper trusts the project
+}
+
+// Something stands before the scene in one picture.
+void test_what_moved_is_left_out(void **) {
+    detail = 0.07;
+    Pictures pictures(2, 320, 240, 15.0);
+    detail = 0.0;
+    const uint32_t left = 60, right = 180, top = 60, bottom = 180, border = 12;
+    for (uint32_t v = top; v < bottom; v++)
+        for (uint32_t u = left; u < right; u++)
+            for (int c = 0; c < 3; c++) pictures.data[1][(v * 320 + u) * 3 + static_cast<uint32_t>(c)] = 0.6f;
+    std::vector<lensprof_pair> pairs;
+    auto share_inside = [&](uint32_t sampling) {
+        assert_ok(pictures.sample(options_of(sampling, 1000), pairs));
+        double inside = 0.0;
+        for (const auto &pair : pairs) {
+            const double *xy = pair.xy[pair.image[0] == 1 ? 0 : 1];
+            inside += xy[0] > left + border && xy[0] < right - border
+                && xy[1] > top + border && xy[1] < bottom - border;
+        }
+        return inside / static_cast<double>(pairs.size());
+    };
+    assert_true(share_inside(LENSPROF_SAMPLING_PAPER) > 0.1);
+    assert_true(share_inside(LENSPROF_SAMPLING_BALANCED) < 0.01);
 }
 
 void test_same_seed_same_pairs(void **) {
@@ -297,6 +363,8 @@ int main() {
         cmocka_unit_test(test_balanced_over_pairs_radius_and_grey),
         cmocka_unit_test(test_masks_levels_and_alpha_are_kept_out),
         cmocka_unit_test(test_patches_shrug_off_hot_pixels),
+        cmocka_unit_test(test_a_project_that_is_off_is_registered),
+        cmocka_unit_test(test_what_moved_is_left_out),
         cmocka_unit_test(test_same_seed_same_pairs),
         cmocka_unit_test(test_any_number_of_threads_gives_the_same_pairs),
         cmocka_unit_test(test_progress_rises_to_one),
