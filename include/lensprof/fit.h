@@ -61,7 +61,8 @@ typedef struct lensprof_fit_image {
     uint32_t ev_of;             /* index of the image whose ev this one shares (links); own index = its own */
     uint32_t red_of, blue_of;   /* the same for the white balance factors */
     double known_ev;            /* exposure from elsewhere (EXIF), EV up to a common offset: a soft observation */
-    double known_ev_sigma;      /* its standard error, 0.001..100 EV; 0 = not known. Rounded EXIF: about 0.1 */
+    double known_ev_sigma;      /* its standard error, 0.001..100 EV; 0 = not known. Rounded EXIF: about 0.1; below
+                                   0.02 counts as 0.02. One alone says nothing: only differences do */
 } lensprof_fit_image;
 
 typedef struct lensprof_fit_options {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <ctime>
 #include <filesystem>
+#include <regex>
 
 #include <unistd.h>
 
@@ -192,14 +193,34 @@ lensprof_profile_key profile_key(const Options &o, const Project &project,
     return key;
 }
 
+/* What the pictures are fitted with. */
+struct FitInput {
+    lensprof_fit_options options;
+    lensprof_response fixed;
+    std::vector<lensprof_fit_image> images;
+    std::vector<lensprof_pair> pairs;
+};
+
 /* Exposures by EXIF, as soft observations. */
-void add_known_exposures(const Options &o, const std::vector<PictureMetadata> &metadata,
-                         std::vector<lensprof_fit_image> &images) {
-    for (size_t i = 0; i < images.size() && o.exif_sigma > 0.0 && o.points.empty(); i++)
-        if (metadata[i].exif_ev) {
-            images[i].known_ev = *metadata[i].exif_ev;
-            images[i].known_ev_sigma = std::max(o.exif_sigma, 1e-3);
+void add_known_exposures(const Options &o, const Project &project, const std::vector<PictureMetadata> &metadata,
+                         std::vector<lensprof_fit_image> &images, Streams &streams) {
+    constexpr double farthest = 40.0; /* EV from 1 s, f/1, ISO 100: no picture was ever taken there */
+    for (size_t i = 0; i < images.size() && o.exif_sigma > 0.0 && o.points.empty(); i++) {
+        if (!metadata[i].exif_ev) continue;
+        if (!(std::fabs(*metadata[i].exif_ev) < farthest)) {
+            streams.err << "lensprof: warning: " << project.files[i]
+                        << ": time, aperture and ISO in its EXIF cannot be true and are not used\n";
+            continue;
         }
+        images[i].known_ev = *metadata[i].exif_ev;
+        images[i].known_ev_sigma = std::max(o.exif_sigma, 1e-3);
+    }
+}
+
+/* Another reference than the project's: it is held in that one's place, so that standard errors are relative to it. */
+void refer_to(uint32_t reference, FitInput &input) {
+    std::swap(input.images[input.options.reference].free, input.images[reference].free);
+    input.options.reference = reference;
 }
 
 /* A database that cannot be used shows before the work is done. */
@@ -242,7 +263,7 @@ int64_t store_profile(const Options &o, const Project &project, const lensprof_p
     profile->covariance_size = fit.covariance_size;
     std::copy(fit.covariance, fit.covariance + fit.covariance_size * fit.covariance_size, profile->covariance);
     auto &p = profile->provenance;
-    set_text(p.method, sizeof p.method, o.method);
+    set_text(p.method, sizeof p.method, o.method + (fit.usable ? "" : " (forced)"));
     set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
     set_text(p.source, sizeof p.source, std::filesystem::absolute(o.pto).string());
     p.created_unix_s = static_cast<int64_t>(std::time(nullptr));
@@ -340,14 +361,6 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     return pairs;
 }
 
-/* What the pictures are fitted with. */
-struct FitInput {
-    lensprof_fit_options options;
-    lensprof_response fixed;
-    std::vector<lensprof_fit_image> images;
-    std::vector<lensprof_pair> pairs;
-};
-
 Fitted fit(const Options &o, const FitInput &input, uint32_t reference,
            std::vector<lensprof_fit_image_quality> *quality) {
     Fitted fitted;
@@ -381,6 +394,15 @@ Fitted fit_for_project(const Options &o, FitInput &input, const Fitted &best, ui
     return fit(o, input, reference, nullptr);
 }
 
+/* The fit counts images; people know them by their files. */
+std::string with_names(const std::string &reason, const std::vector<std::string> &names) {
+    static const std::regex number("image ([0-9]+)");
+    std::smatch match;
+    if (!std::regex_search(reason, match, number)) return reason;
+    size_t i = std::stoul(match[1].str());
+    return i < names.size() ? match.prefix().str() + names[i] + match.suffix().str() : reason;
+}
+
 BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata, Outputs &outputs,
                   Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
@@ -395,9 +417,11 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     input.options.progress = on_progress;
     input.options.progress_user = &progress;
     input.images = fit_images(project);
-    add_known_exposures(o, metadata, input.images);
+    add_known_exposures(o, project, metadata, input.images, streams);
+    refer_to(report.reference, input);
     Fitted best = fit(o, input, report.reference, &report.quality);
     report.fit = best.result;
+    set_text(report.fit.reason, sizeof report.fit.reason, with_names(best.result.reason, project.names));
     report.exposures = best.exposures;
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(input.pairs, project));
     if (!o.pto_out.empty() && (report.fit.usable || o.force)) {
@@ -420,6 +444,10 @@ void print_no_fit(const std::vector<std::string> &names, const std::string &reas
     for (auto &e : report.exposures) lensprof_exposure_init(&e);
     lensprof_fit_result_init(&report.fit);
     report.fit.heldout_rms = report.fit.heldout_median = report.fit.before_rms = LENSPROF_UNKNOWN;
+    report.fit.gamma_from = LENSPROF_GAMMA_NONE;
+    report.fit.gamma_sigma = LENSPROF_UNKNOWN;
+    report.fit.vignettings = 1;
+    report.quality.resize(names.size());
     set_text(report.fit.reason, sizeof report.fit.reason, reason);
     print_json(build_json(report), streams.out);
 }
@@ -452,7 +480,9 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     if (!report.fit.usable)
         streams.err << "lensprof: " << o.pto << ": not usable: " << report.fit.reason
-                    << (good ? "" : "; nothing was stored (--force stores it all the same)") << "\n";
+                    << (good         ? ""
+                        : o.no_store ? "; no project was written (--force writes it all the same)"
+                                     : "; nothing was stored (--force stores it all the same)") << "\n";
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }
 
@@ -467,6 +497,8 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
         throw Failure(
             ExitCode::usage,
             "--max-side: pictures of less than 64 pixels hold too few samples; give more, or 0 for full size");
+    if (o.gamma_from == "exif" && o.exif_sigma == 0.0)
+        throw Failure(ExitCode::usage, "--gamma-from exif and --exif-sigma 0, which leaves EXIF out, contradict each other");
     if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
 
     std::vector<std::string> names;

@@ -198,18 +198,23 @@ void print_exposures(const BuildReport &report, std::ostream &out) {
     for (size_t i = 0; i < report.names.size(); i++) {
         const auto &e = report.exposures[i];
         double sigma = i < report.quality.size() ? report.quality[i].ev_sigma : 0.0;
-        out << format("%-*s  %+8.3f  %6.3f  %7.4f  %7.4f%s\n", static_cast<int>(width), report.names[i].c_str(), e.ev,
-                      sigma, e.white_balance[0], e.white_balance[2], i == report.reference ? "  reference" : "");
+        std::string error = sigma > 0.0 ? format("%.3f", sigma) : std::string("-");
+        out << format("%-*s  %+8.3f  %6s  %7.4f  %7.4f%s\n", static_cast<int>(width), report.names[i].c_str(), e.ev,
+                      error.c_str(), e.white_balance[0], e.white_balance[2],
+                      i == report.reference ? "  reference" : "");
     }
 }
 
 void print_gamma(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
-    if (fit.gamma_from == LENSPROF_GAMMA_KNOWN) return;
+    if (fit.gamma_from == LENSPROF_GAMMA_KNOWN) {
+        out << "gamma     known by what is held\n";
+        return;
+    }
     out << "gamma     from " << gamma_name(fit.gamma_from);
     if (fit.gamma_from == LENSPROF_GAMMA_PRIOR) out << " (" << camera_kind_name(report.camera_kind) << " camera)";
     if (fit.gamma_sigma > 0.0) out << format(", +- %.0f %%", 100.0 * fit.gamma_sigma);
-    out << ": pictures leave a common exponent of exposure, falloff and response open (docs/model.md)\n";
+    out << ": the common exponent of exposure, falloff and response, which pictures leave open (docs/model.md)\n";
 }
 
 }  // namespace

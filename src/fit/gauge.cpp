@@ -15,22 +15,24 @@ constexpr double kLn2 = 0.6931471805599453;
 
 // How firmly gamma is held, as a standard error of ln gamma at kPinPairs pairs and the prior's own standard error.
 // Modes left out prefer some gamma by accident, the more the more pairs there are: the hold keeps up with them.
-constexpr double kPinSigma = 0.05, kLargestPinSigma = 0.1, kPinPairs = 2000.0;
+constexpr double kPinSigma = 0.05, kSmallestPinSigma = 1e-3, kLargestPinSigma = 0.1, kPinPairs = 2000.0;
 constexpr double kLargestStep = 1.2;   // of ln gamma in one move along the family
 constexpr double kDoubtful = 3.0;      // known exposures farther off, in standard errors, count for less
 constexpr double kSmallestSlope = 0.1; // and its inverse: beyond, known exposures are of something else
 
+double known_sigma(const lensprof_fit_image &image) { return std::max(image.known_ev_sigma, kKnownSigma); }
+
 // Images whose exposure or white balance is held away from the reference's.
 bool has_fixed_exposure(const Problem &problem) {
-    const auto &reference = problem.images[problem.reference].exposure;
-    for (uint32_t i = 0; i < problem.image_count; i++) {
-        const auto &e = problem.images[i].exposure;
-        if (problem.ev_unknown[i] < 0 && e.ev != reference.ev) return true;
-        for (int c = 0; c < problem.channels; c += 2)
-            if (problem.channels == 3 && problem.balance_unknown[i][c] < 0
-                && e.white_balance[c] != reference.white_balance[c])
+    auto given = [&](uint32_t i, int c) {  // log exposure that the unknowns of channel c start from
+        lensprof_exposure e = given_exposure(problem.images, i);
+        return problem.channels == 1 ? e.ev * kLn2 : e.ev * kLn2 + std::log(e.white_balance[c]);
+    };
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        for (int c = 0; c < problem.channels; c++)
+            if (problem.ev_unknown[i] < 0 && problem.balance_unknown[i][c] < 0
+                && given(i, c) != given(problem.reference, c))
                 return true;
-    }
     return false;
 }
 
@@ -101,19 +103,21 @@ void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
     for (uint32_t i = 0; i < problem.image_count; i++)
         if (problem.images[i].known_ev_sigma > 0.0 && problem.component[i] == problem.component[problem.reference])
             members.push_back(i);
+    if (members.size() < 2) known_weight_.clear();  // only differences say something
+    if (known_weight_.empty()) return;
     for (uint32_t i : members) known_weight_[i] = 1.0;
     auto found = [&](uint32_t i) { return estimate.log_exposure[i][problem.measured_channel()] / kLn2; };
     double per_known = 1.0;  // known EV per found EV
     for (int round = 0; round < 8 && !members.empty(); round++) {
         double sum = 0, mean_found = 0, mean_known = 0, xx = 0, xy = 0, yy = 0, own = 0;
         for (uint32_t i : members) {
-            double w = known_weight_[i] / std::pow(problem.images[i].known_ev_sigma, 2);
+            double w = known_weight_[i] / std::pow(known_sigma(problem.images[i]), 2);
             sum += w, mean_found += w * found(i), mean_known += w * problem.images[i].known_ev;
             own += known_weight_[i];
         }
         mean_found /= sum, mean_known /= sum;
         for (uint32_t i : members) {
-            double w = known_weight_[i] / std::pow(problem.images[i].known_ev_sigma, 2);
+            double w = known_weight_[i] / std::pow(known_sigma(problem.images[i]), 2);
             double dx = found(i) - mean_found, dy = problem.images[i].known_ev - mean_known;
             xx += w * dx * dx, xy += w * dx * dy, yy += w * dy * dy;
         }
@@ -125,7 +129,7 @@ void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
         known_offset_ = kLn2 * (mean_found - slope_ * mean_known);
         for (uint32_t i : members) {
             double off = mean_known + per_known * (found(i) - mean_found) - problem.images[i].known_ev;
-            double z = off / (kDoubtful * problem.images[i].known_ev_sigma);
+            double z = off / (kDoubtful * known_sigma(problem.images[i]));
             known_weight_[i] = 1.0 / (1.0 + z * z);
         }
     }
@@ -139,7 +143,7 @@ double Gauge::distance(const Problem &problem, const Estimate &estimate) {
     bool says = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;
     double prior_precision = 1.0 / (prior_.sigma * prior_.sigma);
     if (says) {  // errors of the prior have heavy tails: where exposures contradict it, it counts for less
-        double z = (offset - std::log(slope_)) / prior_.sigma;
+        double z = (offset - std::log(slope_)) / std::hypot(prior_.sigma, slope_sigma_);
         prior_precision *= wanted_ == LENSPROF_GAMMA_EXPOSURES ? 0.0 : 1.0 / (1.0 + z * z);
     }
     double precision = says ? 1.0 / (slope_sigma_ * slope_sigma_) : 0.0;
@@ -176,7 +180,7 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
                            / (x * std::log(x));
         double pairs = static_cast<double>(std::max<size_t>(problem.pairs.size(), 1));
         double hold = std::min(kLargestPinSigma, kPinSigma * std::sqrt(kPinPairs / pairs));
-        hold *= std::pow(sigma_ / prior_.sigma, 4);
+        hold = std::max(hold * std::pow(sigma_ / prior_.sigma, 4), kSmallestPinSigma);
         prior.pin_precision = 1.0 / (hold * hold);
         prior.pin_value = prior.pin.dot(Eigen::Map<const Eigen::VectorXd>(estimate.emor.data(), kMaxModes)) - here;
     } else {
@@ -189,7 +193,7 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
         const auto &image = problem.images[i];
         if (!(image.known_ev_sigma > 0.0) || problem.component[i] != problem.component[problem.reference]) continue;
         prior.known[i].log_exposure = known_offset_ + slope_ * kLn2 * image.known_ev;
-        prior.known[i].precision = known_weight_[i] / std::pow(slope_ * kLn2 * image.known_ev_sigma, 2);
+        prior.known[i].precision = known_weight_[i] / std::pow(slope_ * kLn2 * known_sigma(image), 2);
     }
 }
 

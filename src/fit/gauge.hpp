@@ -11,6 +11,9 @@
 
 namespace lensprof {
 
+// Known exposures are not taken to be better than this, EV: shutters and apertures are not.
+constexpr double kKnownSigma = 0.02;
+
 class Gauge {
 public:
     Gauge(const lensprof_fit_options &options, const Problem &problem);

@@ -14,6 +14,8 @@ constexpr double kSmallestRange = 0.05;        // of grey values
 constexpr double kSmallestRadius = 0.6;        // half diagonals: beyond, k1..k3 extrapolate
 constexpr double kLargestNoise = 6.0;          // levels of 255: no camera's noise, but a model that does not fit
 constexpr double kLargestImageShare = 0.35;    // of residual variance that follows a map of each image's own,
+constexpr double kSuspiciousImageShare = 0.15; // and worth a word; noise and moving things stay below 0.1
+constexpr double kContradiction = 5.0;         // standard errors between an exposure and its known value
 constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a word
 constexpr double kNotRadial = 0.3;             // share that follows one map over the frame
 constexpr double kLargestCornerSigma = 0.1;    // of M
@@ -30,9 +32,10 @@ size_t count_informative(const Problem &problem) {
             tells = tells
                     || (std::min(p.value[0][c], p.value[1][c]) > kBlack
                         && std::max(p.value[0][c], p.value[1][c]) < 1.0 - kBlack);
-        if (tells)
-            seen.push_back({p.xy[0][0], p.xy[0][1], p.xy[1][0], p.xy[1][1], p.value[0][0], p.value[0][1], p.value[0][2],
-                         p.value[1][0], p.value[1][1], p.value[1][2]});
+        if (!tells) continue;
+        seen.push_back({p.xy[0][0], p.xy[0][1], p.xy[1][0], p.xy[1][1]});
+        for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++)
+            seen.back()[4 + c] = p.value[0][c], seen.back()[7 + c] = p.value[1][c];
     }
     std::sort(seen.begin(), seen.end());
     return static_cast<size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
@@ -91,7 +94,8 @@ int uncertain_image(const Problem &problem, const Estimate &estimate, const lens
     int worst = -1;
     double limit = kLargestEvSigma;
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
-        double away = estimate.log_exposure[i][1] - estimate.log_exposure[problem.reference][1];
+        auto measured = static_cast<size_t>(problem.measured_channel());
+        double away = estimate.log_exposure[i][measured] - estimate.log_exposure[problem.reference][measured];
         double of_gamma = std::max(r.gamma_sigma, 0.0) * away / std::log(2.0), sigma = r.image_quality[i].ev_sigma;
         double own = std::sqrt(std::max(0.0, sigma * sigma - of_gamma * of_gamma));
         if (own > limit) limit = own, worst = static_cast<int>(i);
@@ -100,9 +104,14 @@ int uncertain_image(const Problem &problem, const Estimate &estimate, const lens
 }
 
 template <class... Values>
+void say(lensprof_fit_result &r, const char *reason, Values... values) {
+    std::snprintf(r.reason, sizeof r.reason, reason, values...);
+}
+
+template <class... Values>
 bool refuse(lensprof_fit_result &r, const char *reason, Values... values) {
     r.usable = 0;
-    std::snprintf(r.reason, sizeof r.reason, reason, values...);
+    say(r, reason, values...);
     return true;
 }
 
@@ -110,7 +119,7 @@ bool refuse(lensprof_fit_result &r, const char *reason, Values... values) {
 bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     size_t unknowns = free_columns(problem, estimate.modes).size() + static_cast<size_t>(problem.image_unknowns);
     size_t informative = count_informative(problem);
-    if (r.components > 1)
+    if (r.components > 1 && problem.image_unknowns > 0)
         return refuse(r,
                       "the images fall into %u groups without usable overlap between them; add pictures that join them",
                       r.components);
@@ -136,10 +145,13 @@ bool contradicts_model(const Problem &problem, lensprof_fit_result &r) {
         return refuse(r, "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
                       100.0 * r.inlier_share);
     double pattern = r.noise_levels * std::sqrt(r.image_share);
-    if (is_free && r.image_share > kLargestImageShare && pattern > kSmallestPattern)
+    if (r.image_share > kLargestImageShare && pattern > kSmallestPattern)
         return refuse(r,
-                      "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no response "
-                      "and falloff explain: local tone mapping (HDR), or light that changed between the pictures",
+                      is_free ? "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no "
+                                "response and falloff explain: local tone mapping (HDR), or light that changed between "
+                                "the pictures"
+                              : "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which the "
+                                "response or falloff that are held do not explain; free them",
                       100.0 * r.image_share, pattern);
     if (r.noise_levels > kLargestNoise)
         return refuse(r,
@@ -158,17 +170,35 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
         return refuse(r,
                       "the pairs leave the falloff in the corners uncertain by %.0f %%; sample more, or overlap more",
                       100.0 * corner);
+    std::vector<uint32_t> inliers(static_cast<size_t>(problem.image_unknowns), 0u);
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++)
-        if (const auto &q = r.image_quality[i]; problem.ev_unknown[i] >= 0 && q.inliers < kFewestInliers)
+        if (problem.ev_unknown[i] >= 0) inliers[static_cast<size_t>(problem.ev_unknown[i])] += r.image_quality[i].inliers;
+    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
+        if (problem.ev_unknown[i] < 0) continue;
+        uint32_t behind = inliers[static_cast<size_t>(problem.ev_unknown[i])];
+        if (behind < kFewestInliers)
             return refuse(r,
-                          "only %u of the %u pairs of image %u agree with the camera model, which does not show its "
-                          "exposure; overlap it more, or check its place in the project",
-                          q.inliers, q.pairs, i);
+                          "the exposure of image %u rests on %u pairs that agree with the camera model; overlap it more, "
+                          "or check its place in the project",
+                          i, behind);
+    }
     int image = uncertain_image(problem, estimate, r);
     if (image >= 0)
         return refuse(r, "the pairs leave the exposure of image %d uncertain by %.1f EV; overlap it more", image,
                       r.image_quality[image].ev_sigma);
     return false;
+}
+
+// The image whose exposure is farthest from its known one, when it clearly is; else -1.
+int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
+    int odd = -1;
+    double limit = kContradiction;
+    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
+        double sigma = problem.images[i].known_ev_sigma;
+        double off = sigma > 0.0 ? std::abs(r.image_quality[i].known_ev_residual) / std::max(sigma, kKnownSigma) : 0.0;
+        if (off > limit) limit = off, odd = static_cast<int>(i);
+    }
+    return odd;
 }
 
 }  // namespace
@@ -178,18 +208,24 @@ void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result
         return;
     r.usable = 1;
     r.reason[0] = 0;
-    int odd = odd_image(problem, r);
-    double pattern = r.noise_levels * std::sqrt(r.frame_share);
+    int odd = odd_image(problem, r), contradicting = contradicting_image(problem, r);
     if (odd >= 0)
-        std::snprintf(r.reason, sizeof r.reason,
-                      "most pairs of image %d disagree with the camera model (median residual %.1f levels): check its "
-                      "place in the project, or what moved there",
-                      odd, r.image_quality[odd].median_residual);
-    else if (r.frame_share > kNotRadial && pattern > kSmallestPattern)
-        std::snprintf(r.reason, sizeof r.reason,
-                      "%.0f %% of the residual follows one pattern over the frame (%.1f levels): the falloff is not "
-                      "radial",
-                      100.0 * r.frame_share, pattern);
+        say(r,
+            "most pairs of image %d disagree with the camera model (median residual %.1f levels): check its place in "
+            "the project, or what moved there",
+            odd, r.image_quality[odd].median_residual);
+    else if (contradicting >= 0)
+        say(r,
+            "the exposure of image %d is %.1f EV away from its known one: one of the two is wrong, or its light changed",
+            contradicting, std::abs(r.image_quality[contradicting].known_ev_residual));
+    else if (r.image_share > kSuspiciousImageShare && r.noise_levels * std::sqrt(r.image_share) > kSmallestPattern)
+        say(r,
+            "%.0f %% of the residual follows patterns of each image's own (%.1f levels), as weak local tone mapping "
+            "(HDR) makes them: exposures may be farther off than stated",
+            100.0 * r.image_share, r.noise_levels * std::sqrt(r.image_share));
+    else if (r.frame_share > kNotRadial && r.noise_levels * std::sqrt(r.frame_share) > kSmallestPattern)
+        say(r, "%.0f %% of the residual follows one pattern over the frame (%.1f levels): the falloff is not radial",
+            100.0 * r.frame_share, r.noise_levels * std::sqrt(r.frame_share));
 }
 
 }  // namespace lensprof

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <nlopt.h>
@@ -207,9 +208,10 @@ bool is_feasible(const Estimate &estimate, int vignettings) {
 
 Eigen::VectorXd constrained_step(const Region &region, const Eigen::MatrixXd &S, const Eigen::VectorXd &b) {
     Eigen::LLT<Eigen::MatrixXd> factor(S);
-    if (factor.info() != Eigen::Success) return Eigen::VectorXd::Zero(b.size());
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    if (factor.info() != Eigen::Success) return Eigen::VectorXd::Constant(b.size(), kNone);
     Eigen::VectorXd d = factor.solve(b);
-    if (!d.allFinite()) return Eigen::VectorXd::Zero(b.size());
+    if (!d.allFinite()) return Eigen::VectorXd::Constant(b.size(), kNone);
     if (step_is_feasible(region, d, 1.0)) return d;
 
     Constraints all(region);

@@ -23,7 +23,7 @@ struct Region {
 };
 
 // Minimises  1/2 d'Sd - b'd  over steps d that keep the region's inequalities. S must be positive definite.
-// The unconstrained minimum is returned when it is feasible.
+// The unconstrained minimum is returned when it is feasible; NaN when S is not positive definite.
 Eigen::VectorXd constrained_step(const Region &region, const Eigen::MatrixXd &S, const Eigen::VectorXd &b);
 
 // The monotone member of the first `modes` modes nearest to a curve of 1024 samples.

@@ -271,7 +271,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
 void Fit::write_exposures(const Estimate &estimate, lensprof_exposure *exposures) const {
     for (uint32_t i = 0; i < image_count_; i++) {
         const auto &a = estimate.log_exposure[i];
-        const auto &given = images_[i].exposure;
+        const lensprof_exposure given = given_exposure(images_, i);
         size_t green = options_.channels == 3 ? 1 : 0;
         exposures[i] = given;
         if (all_.ev_unknown[i] >= 0)

@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace lensprof {
 
+constexpr uint32_t kMostThreads = 256;
+
 bool for_each_parallel(uint32_t count, uint32_t threads, const std::function<void(uint32_t)> &work,
                        const std::function<bool()> &stop) {
     const uint32_t wanted = threads ? threads : std::max(std::thread::hardware_concurrency(), 1u);
-    const uint32_t used = std::max(std::min(wanted, count), 1u);
+    const uint32_t used = std::max(std::min({wanted, count, kMostThreads}), 1u);
     std::atomic<uint32_t> next{0};
     std::atomic<bool> ended{false};
     std::vector<std::exception_ptr> failures(used);
@@ -32,7 +33,7 @@ bool for_each_parallel(uint32_t count, uint32_t threads, const std::function<voi
     try {
         others.reserve(used);
         for (uint32_t t = 1; t < used; t++) others.emplace_back(run, t);
-    } catch (const std::system_error &) {
+    } catch (const std::exception &) {
         // No more threads to be had: those there are do the work.
     }
     run(0);

@@ -93,6 +93,14 @@ uint32_t Problem::component_count() const {
     return count;
 }
 
+lensprof_exposure given_exposure(const lensprof_fit_image *images, uint32_t i) {
+    lensprof_exposure exposure = images[i].exposure;
+    exposure.ev = images[images[i].ev_of].exposure.ev;
+    exposure.white_balance[0] = images[images[i].red_of].exposure.white_balance[0];
+    exposure.white_balance[2] = images[images[i].blue_of].exposure.white_balance[2];
+    return exposure;
+}
+
 Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                      const lensprof_pair *pairs, const std::vector<uint32_t> &keep) {
     Problem problem;

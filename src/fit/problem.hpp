@@ -53,6 +53,9 @@ struct Problem {
     int measured_channel() const { return channels == 3 ? 1 : 0; }  // the one whose white balance factor is 1
 };
 
+// The exposure that is given for an image: each value by the image whose it shares.
+lensprof_exposure given_exposure(const lensprof_fit_image *images, uint32_t i);
+
 // Copies pairs[keep[...]] into a problem over the given images and numbers the unknowns.
 Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                      const lensprof_pair *pairs, const std::vector<uint32_t> &keep);

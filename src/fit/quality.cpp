@@ -87,7 +87,7 @@ void describe_images(const Problem &problem, const Gauge &gauge, const Estimate 
         q.pairs = 0, q.radius = q.ev_sigma = q.known_ev_residual = 0.0;
         q.component = problem.component[i];
         auto sigma = [&](int unknown, double log_value) {  // of a logarithm: the data's and that of gamma
-            if (unknown < 0 || !found.is_determined) return 0.0;
+            if (unknown < 0 || !found.is_determined || q.component != problem.component[problem.reference]) return 0.0;
             return std::sqrt(std::max(0.0, found.images[unknown]) + std::pow(gamma_sigma * log_value, 2));
         };
         q.ev_sigma = sigma(problem.ev_unknown[i], a[measured] - zero[measured]) / kLn2;
@@ -96,7 +96,7 @@ void describe_images(const Problem &problem, const Gauge &gauge, const Estimate 
             double balance = (a[c] - a[1]) - (zero[c] - zero[1]);
             q.white_balance_sigma[c] = sigma(unknown, balance) * (unknown < 0 ? 0.0 : std::exp(a[c] - a[1]));
         }
-        if (problem.images[i].known_ev_sigma > 0.0)
+        if (problem.images[i].known_ev_sigma > 0.0 && q.component == problem.component[problem.reference])
             q.known_ev_residual =
                 (a[measured] - gauge.known_offset()) / kLn2 / gauge.slope() - problem.images[i].known_ev;
     }

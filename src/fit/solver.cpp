@@ -13,7 +13,7 @@
 namespace lensprof {
 namespace {
 
-constexpr double kLargestLogExposure = 20.0 * 0.6931471805599453;  // |ev| <= 20
+constexpr double kLargestLogExposure = 20.0 * 0.6931471805599453;  // 20 EV beside the reference
 constexpr double kLargestLogBalance = 12.0;                        // white balance factors stay valid, 1e-6..1e6
 constexpr double kHeldFirmly = 1e4;  // times as firmly as in the fit: gamma's own error is stated apart from the data's
 
@@ -29,6 +29,7 @@ struct Stepper {
     std::unique_ptr<NormalEquations> model;
     double lambda = 1e-4;
     int steps = 0;
+    bool is_solved = false;  // some step could be formed
 
     std::unique_ptr<NormalEquations> model_at(const Estimate &estimate) const {
         return std::make_unique<NormalEquations>(problem, prior, loss, weights, estimate, modes);
@@ -50,10 +51,12 @@ struct Stepper {
             full[model->columns()[u]] += d[static_cast<Eigen::Index>(u)];
         set_shared(to, full, problem.vignettings);
         auto step = model->image_step(d);
+        const auto zero = from.log_exposure[problem.reference];
         for (size_t i = 0; i < step.size(); i++) {
             auto &a = to.log_exposure[i];
             for (size_t c = 0; c < 3; c++)
-                if (step[i][c] != 0.0) a[c] = std::clamp(a[c] + step[i][c], -kLargestLogExposure, kLargestLogExposure);
+                if (step[i][c] != 0.0)
+                    a[c] = std::clamp(a[c] + step[i][c], zero[c] - kLargestLogExposure, zero[c] + kLargestLogExposure);
             for (size_t c : {0, 2})
                 if (problem.balance_unknown[i][c] >= 0)
                     a[c] = std::clamp(a[c], a[1] - kLargestLogBalance, a[1] + kLargestLogBalance);
@@ -62,11 +65,14 @@ struct Stepper {
     }
 
     bool step(Estimate &estimate, double &cost) {
+        is_solved = false;
         if (!model) model = model_at(estimate);
         Region region{estimate.modes, problem.vignettings, model->columns(), shared_vector(estimate)};
         for (int attempt = 0; attempt < 12; attempt++, lambda *= 8.0) {
             if (!model->reduce(lambda)) continue;
             Eigen::VectorXd d = constrained_step(region, model->reduced_hessian(), model->reduced_gradient());
+            if (!d.allFinite()) continue;
+            is_solved = true;
             if (attempt == 0 && model->expected_gain(d) < flat) break;
             Estimate candidate = moved(estimate, d);
             // After a failure another is likely: the value alone is cheaper than a model.
@@ -125,6 +131,7 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
             outcome.iterations++;
             bool improved = stepper.step(estimate, outcome.cost);
             bool flat = stepper.steps > 1 && last - outcome.cost < control.flat;
+            if (!improved && !stepper.is_solved) return outcome;
             outcome.converged = !improved || flat || change(previous, estimate) < kStill;
         }
         if (outcome.iterations >= control.max_iterations || change(before, estimate) < 5 * kStill) break;

@@ -167,12 +167,13 @@ void start_exposures(const Problem &problem, double width, Estimate &estimate) {
 std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit_options &options, int modes) {
     Estimate base;
     base.vignetting.fill(options.vignetting);
+    const lensprof_exposure reference = given_exposure(problem.images, problem.reference);
     for (uint32_t i = 0; i < problem.image_count; i++) {
-        const auto &exposure = problem.images[i].exposure;
+        const lensprof_exposure exposure = given_exposure(problem.images, i);
         std::array<double, 3> a{};
         for (int c = 0; c < 3; c++) {
             bool grey = problem.channels == 1;
-            a[c] = (problem.ev_unknown[i] >= 0 ? 0.0 : exposure.ev * std::log(2.0))
+            a[c] = (problem.ev_unknown[i] >= 0 ? reference.ev : exposure.ev) * std::log(2.0)
                 + (grey || problem.balance_unknown[i][c] >= 0 ? 0.0 : std::log(exposure.white_balance[c]));
         }
         base.log_exposure.push_back(a);

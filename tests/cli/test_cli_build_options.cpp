@@ -57,7 +57,7 @@ void test_gamma_from_the_prior(void **) {
     assert_string_equal(json["gamma"]["camera_kind"].get<std::string>().c_str(), "any");
     assert_true(std::fabs(slope(json, path) - 1.0) > 0.05);
     /* Without exposures nothing else is left. */
-    const Json none = json_of(build(path, {"--gamma-from", "exif", "--exif-sigma", "0"}));
+    const Json none = json_of(build(path, {"--exif-sigma", "0"}));
     assert_gamma(none, "prior");
     for (const Json &image : none["images"])
         assert_close(image["known_ev_residual"].get<double>(), 0.0, 0.0);
@@ -109,12 +109,32 @@ void test_coverage_and_errors_are_told(void **) {
         assert_true(std::fabs(one.get<double>()) <= 1.0);
 }
 
+/* Standard errors are relative to the reference, whichever it is. */
+void test_another_reference(void **) {
+    const std::string path = linear_scene();
+    const Json first = json_of(build(path, {"--exif-sigma", "0"}));
+    const Json other = json_of(build(path, {"--exif-sigma", "0", "--reference", "3"}));
+    assert_int_equal(other["reference"].get<int>(), 3);
+    assert_close(other["images"][3]["ev"].get<double>(), 0.0, 0.0);
+    assert_close(other["images"][3]["ev_sigma"].get<double>(), 0.0, 0.0);
+    const size_t base = first["reference"].get<size_t>();
+    assert_close(other["images"][base]["ev"].get<double>(), -first["images"][3]["ev"].get<double>(), 0.02);
+    assert_close(other["images"][base]["ev_sigma"].get<double>(), first["images"][3]["ev_sigma"].get<double>(), 0.01);
+}
+
+/* What is held settles gamma; what a picture says that cannot be is not believed. */
+void test_known_is_said(void **) {
+    const std::string path = linear_scene();
+    const Outcome known = run_words({"build", path + "/pano.pto", "--no-store", "--gamma-from", "known"});
+    assert_true(contains(known.out, "gamma     known by what is held"));
+}
+
 void test_refused_options(void **) {
     const std::string path = linear_scene();
     for (const Words &words :
          {Words{"--gamma-from", "guess"}, Words{"--gamma-from", ""}, Words{"--exif-sigma", "-0.1"},
           Words{"--exif-sigma", "nan"}, Words{"--exif-sigma", "11"}, Words{"--camera-kind", "phone"},
-          Words{"--falloff-curves", "2"}, Words{"--falloff-curves", "4"}})
+          Words{"--gamma-from", "exif", "--exif-sigma", "0"}, Words{"--falloff-curves", "2"}, Words{"--falloff-curves", "4"}})
         assert_refused(usage, build(path, words), {words[0]});
 }
 
@@ -127,6 +147,8 @@ int main() {
         CLI_TEST(test_gamma_known),
         CLI_TEST(test_falloff_curves),
         CLI_TEST(test_coverage_and_errors_are_told),
+        CLI_TEST(test_another_reference),
+        CLI_TEST(test_known_is_said),
         CLI_TEST(test_refused_options),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

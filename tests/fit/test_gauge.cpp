@@ -295,6 +295,59 @@ void test_kinds_of_camera_differ(void **) {
     }
 }
 
+// Exposures known far better than any camera sets them: no harm to the solver's numbers.
+void test_tight_known_exposures(void **) {
+    for (double sigma : {0.1, 0.02, 0.003, 0.001}) {
+        Simulation s = simulate(srgb_response());
+        for (uint32_t i = 0; i < s.images; i++)
+            s.fit_images[i].known_ev = s.exposures[i].ev, s.fit_images[i].known_ev_sigma = sigma;
+        FitRun run = run_fit(s);
+        assert_int_equal(run.result.usable, 1);
+        assert_int_equal(run.result.gamma_from, LENSPROF_GAMMA_EXPOSURES);
+        assert_true(run.result.iterations < 40);
+        assert_close(s.gamma(run.exposures), 1.0, 0.03);
+    }
+}
+
+// One known exposure has nothing to be compared with.
+void test_one_known_exposure_says_nothing(void **) {
+    Simulation s = simulate(srgb_response());
+    FitRun without = run_fit(s);
+    s.fit_images[2].known_ev = 5.0, s.fit_images[2].known_ev_sigma = 0.001;
+    FitRun with = run_fit(s);
+    assert_memory_equal(without.exposures.data(), with.exposures.data(), s.images * sizeof with.exposures[0]);
+}
+
+// Weak knowledge that agrees with the prior adds to it.
+void test_weak_exposures_do_not_weaken_the_prior(void **) {
+    Simulation s = simulate(srgb_response());
+    double prior = run_fit(s).result.gamma_sigma;
+    for (uint32_t i = 0; i < s.images; i++)
+        s.fit_images[i].known_ev = s.exposures[i].ev, s.fit_images[i].known_ev_sigma = 0.5;
+    double both = run_fit(s).result.gamma_sigma;
+    assert_true(both <= 1.1 * prior);
+}
+
+// A reference far from 0 EV, and green that is held apart from it.
+void test_where_the_reference_stands_does_not_matter(void **) {
+    Simulation s = simulate(srgb_response());
+    FitRun near = run_fit(s);
+    s.fit_images[0].exposure.ev = 40.0;
+    FitRun far = run_fit(s);
+    assert_int_equal(far.result.usable, 1);
+    for (uint32_t i = 0; i < s.images; i++) assert_close(far.exposures[i].ev - 40.0, near.exposures[i].ev, 1e-3);
+    for (uint32_t i = 0; i < s.images; i++) {
+        s.fit_images[i].exposure = s.exposures[i];
+        s.fit_images[i].free = 0;
+        if (i % 2) {
+            s.fit_images[i].exposure.ev -= std::log2(3.0);
+            for (double &w : s.fit_images[i].exposure.white_balance) w *= 3.0;
+        }
+    }
+    FitRun held = run_fit(s);
+    assert_int_equal(held.result.gamma_from, LENSPROF_GAMMA_KNOWN);
+}
+
 }  // namespace
 
 int main() {
@@ -311,6 +364,10 @@ int main() {
         cmocka_unit_test(test_one_wrong_known_exposure),
         cmocka_unit_test(test_what_is_asked_for_settles_gamma),
         cmocka_unit_test(test_kinds_of_camera_differ),
+        cmocka_unit_test(test_tight_known_exposures),
+        cmocka_unit_test(test_one_known_exposure_says_nothing),
+        cmocka_unit_test(test_weak_exposures_do_not_weaken_the_prior),
+        cmocka_unit_test(test_where_the_reference_stands_does_not_matter),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -150,11 +150,40 @@ void test_an_exposure_must_rest_on_pairs(void **) {
     assert_int_equal(run.quality[last].pairs, 7);
     assert_true(run.quality[last].inliers < 3);
     assert_int_equal(run.result.usable, 0);
-    assert_true(says(run, "pairs of image 7 agree"));
+    assert_true(says(run, "exposure of image 7 rests on"));
     // An exposure that is given need not show.
     s.fit_images[last].free = 0;
     s.fit_images[last].exposure = s.exposures[last];
-    assert_false(says(run_fit(s), "pairs of image 7 agree"));
+    assert_false(says(run_fit(s), "exposure of image 7 rests on"));
+}
+
+// Exposures far apart hang on gamma; that is no reason to call them uncertain, in grey pictures neither.
+void test_gamma_is_no_doubt_of_an_exposure(void **) {
+    for (uint32_t channels : {1u, 3u}) {
+        Simulation s;
+        s.response = srgb_response();
+        s.channels = channels;
+        for (uint32_t i = 0; i < s.images; i++) s.exposures.push_back({0.5 * i, {1.0, 1.0, 1.0}});
+        s.make(4000, 1.0, 0.0, 1.0, 42);
+        lensprof_fit_options options = default_fit();
+        options.channels = channels;
+        FitRun run = run_fit(s, options);
+        assert_int_equal(run.result.usable, 1);
+        assert_true(run.quality[5].ev_sigma > 0.2);
+    }
+}
+
+// A link says what two pairs could not.
+void test_linked_images_share_their_pairs(void **) {
+    Simulation s = simulate(2000, 1.0, 0.0, 42, 3);
+    uint32_t kept = 0, last = s.images - 1;
+    auto beyond = std::remove_if(s.pairs.begin(), s.pairs.end(), [&](const lensprof_pair &p) {
+        return (p.image[0] == last || p.image[1] == last) && kept++ >= 2;
+    });
+    s.pairs.erase(beyond, s.pairs.end());
+    assert_true(says(run_fit(s), "exposure of image 7 rests on"));
+    s.fit_images[last].ev_of = s.fit_images[last].red_of = s.fit_images[last].blue_of = last - 1;
+    assert_false(says(run_fit(s), "exposure of image 7 rests on"));
 }
 
 // Overlaps as of a panorama: neighbours in one frame are so in the other.
@@ -249,6 +278,8 @@ int main() {
         cmocka_unit_test(test_coverage_counts_every_end),
         cmocka_unit_test(test_a_misplaced_image_is_named),
         cmocka_unit_test(test_an_exposure_must_rest_on_pairs),
+        cmocka_unit_test(test_gamma_is_no_doubt_of_an_exposure),
+        cmocka_unit_test(test_linked_images_share_their_pairs),
         cmocka_unit_test(test_local_processing_is_refused),
         cmocka_unit_test(test_a_falloff_that_is_not_radial_is_told),
         cmocka_unit_test(test_noise_and_outliers_are_no_pattern),
