@@ -28,7 +28,8 @@ struct Options {
 
 void declare(CLI::App &app, Options &o) {
     app.add_option("PROJECT", o.pto, "Hugin project; its v lines choose what is estimated")->required();
-    app.add_option("--points", o.points, "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
+    app.add_option("--points", o.points,
+                   "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
     app.add_option("--points-out", o.points_out, "write the pairs used (Hugin's 16 columns)");
     app.add_option("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
     app.add_option("--db", o.db, "profile database; default the user's own");
@@ -498,7 +499,8 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
             ExitCode::usage,
             "--max-side: pictures of less than 64 pixels hold too few samples; give more, or 0 for full size");
     if (o.gamma_from == "exif" && o.exif_sigma == 0.0)
-        throw Failure(ExitCode::usage, "--gamma-from exif and --exif-sigma 0, which leaves EXIF out, contradict each other");
+        throw Failure(ExitCode::usage,
+                      "--gamma-from exif and --exif-sigma 0, which leaves EXIF out, contradict each other");
     if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
 
     std::vector<std::string> names;

@@ -134,7 +134,8 @@ void test_refused_options(void **) {
     for (const Words &words :
          {Words{"--gamma-from", "guess"}, Words{"--gamma-from", ""}, Words{"--exif-sigma", "-0.1"},
           Words{"--exif-sigma", "nan"}, Words{"--exif-sigma", "11"}, Words{"--camera-kind", "phone"},
-          Words{"--gamma-from", "exif", "--exif-sigma", "0"}, Words{"--falloff-curves", "2"}, Words{"--falloff-curves", "4"}})
+          Words{"--gamma-from", "exif", "--exif-sigma", "0"}, Words{"--falloff-curves", "2"},
+          Words{"--falloff-curves", "4"}})
         assert_refused(usage, build(path, words), {words[0]});
 }
 
