@@ -161,6 +161,21 @@ bool contradicts_model(const Problem &problem, lensprof_fit_result &r) {
     return false;
 }
 
+// The first image whose exposure has fewer pairs behind it than could agree by chance. Images that share an exposure
+// count together; so do those that are held, the reference among them.
+bool has_few_inliers(const Problem &problem, const lensprof_fit_result &r, uint32_t &image, uint32_t &behind) {
+    if (problem.image_unknowns == 0 || !r.image_quality) return false;
+    auto held = static_cast<size_t>(problem.image_unknowns);
+    auto owner = [&](uint32_t i) {
+        return problem.ev_unknown[i] < 0 ? held : static_cast<size_t>(problem.ev_unknown[i]);
+    };
+    std::vector<uint32_t> inliers(held + 1, 0u);
+    for (uint32_t i = 0; i < problem.image_count; i++) inliers[owner(i)] += r.image_quality[i].inliers;
+    for (image = 0; image < problem.image_count; image++)
+        if ((behind = inliers[owner(image)]) < kFewestInliers) return true;
+    return false;
+}
+
 bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     if (!r.converged) return refuse(r, "the fit did not settle in %u iterations", r.iterations);
     if (r.covariance_size == 0 && !free_columns(problem, estimate.modes).empty())
@@ -170,22 +185,16 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
         return refuse(r,
                       "the pairs leave the falloff in the corners uncertain by %.0f %%; sample more, or overlap more",
                       100.0 * corner);
-    std::vector<uint32_t> inliers(static_cast<size_t>(problem.image_unknowns), 0u);
-    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++)
-        if (problem.ev_unknown[i] >= 0) inliers[static_cast<size_t>(problem.ev_unknown[i])] += r.image_quality[i].inliers;
-    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
-        if (problem.ev_unknown[i] < 0) continue;
-        uint32_t behind = inliers[static_cast<size_t>(problem.ev_unknown[i])];
-        if (behind < kFewestInliers)
-            return refuse(r,
-                          "the exposure of image %u rests on %u pairs that agree with the camera model; overlap it more, "
-                          "or check its place in the project",
-                          i, behind);
-    }
-    int image = uncertain_image(problem, estimate, r);
-    if (image >= 0)
-        return refuse(r, "the pairs leave the exposure of image %d uncertain by %.1f EV; overlap it more", image,
-                      r.image_quality[image].ev_sigma);
+    uint32_t image, behind;
+    if (has_few_inliers(problem, r, image, behind))
+        return refuse(r,
+                      "the exposure of image %u rests on %u pairs that agree with the camera model; overlap it more, or "
+                      "check its place in the project",
+                      image, behind);
+    int uncertain = uncertain_image(problem, estimate, r);
+    if (uncertain >= 0)
+        return refuse(r, "the pairs leave the exposure of image %d uncertain by %.1f EV; overlap it more",
+                      uncertain, r.image_quality[uncertain].ev_sigma);
     return false;
 }
 
