@@ -93,7 +93,7 @@ private:
         prior_ = make_prior(options_.prior_weight, count);
     }
     Estimate best_start(int modes);
-    void reconsider(const Loss &used, Estimate &estimate);
+    void reconsider(const Problem &problem, const Loss &used, Estimate &estimate);
     Candidate candidate(const Estimate &from, int modes);
     Candidate choose_modes(const Estimate &start);
     void choose_vignettings(Candidate &best);
@@ -136,7 +136,7 @@ Estimate Fit::best_start(int modes) {
             first = false;
         }
     }
-    start_exposures(train_, kRoughWidth, best);  // images that had few pairs here get theirs
+    start_exposures(all_, kRoughWidth, best);  // images that had few pairs here get theirs
     gauge_.settle(train_, best);
     return best;
 }
@@ -170,12 +170,12 @@ Candidate Fit::candidate(const Estimate &from, int modes) {
     return result;
 }
 
-// Exposures anew from the response as fitted: where an image was drawn to pairs that agree by chance, the fit from there
-// costs less.
-void Fit::reconsider(const Loss &used, Estimate &estimate) {
+// Exposures anew from the response as fitted and all pairs: where an image was drawn to pairs that agree by chance, the
+// fit of `problem` from there costs less.
+void Fit::reconsider(const Problem &problem, const Loss &used, Estimate &estimate) {
     constexpr double kAway = 0.15;  // natural logarithm
     Estimate other = estimate;
-    start_exposures(train_, kFineWidth, other);
+    start_exposures(all_, kFineWidth, other);
     double away = 0.0;
     for (size_t i = 0; i < other.log_exposure.size(); i++)
         for (size_t c = 0; c < 3; c++)
@@ -185,8 +185,8 @@ void Fit::reconsider(const Loss &used, Estimate &estimate) {
     brief.rounds = 1;
     brief.flat = 0.05;
     Loss fixed = used;
-    double cost = solve(train_, prior_, gauge_, fixed, false, brief, estimate).cost;
-    if (solve(train_, prior_, gauge_, fixed, false, brief, other).cost < cost) estimate = other;
+    double cost = solve(problem, prior_, gauge_, fixed, false, brief, estimate).cost;
+    if (solve(problem, prior_, gauge_, fixed, false, brief, other).cost < cost) estimate = other;
 }
 
 // The smallest number of modes whose held-out loss is within one standard error (of the paired difference) of the best.
@@ -245,7 +245,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     Control first = control_;
     if (any_modes || any_curves) first.flat = 0.05, first.rounds = 3;
     solve(train_, prior_, gauge_, used, true, first, best.estimate);
-    reconsider(used, best.estimate);
+    reconsider(train_, used, best.estimate);
     common_ = used;
     if (options_.loss != LENSPROF_LOSS_ROBUST) common_.noise = estimate_noise(train_, best.estimate, used.noise);
     if (any_modes) best = choose_modes(best.estimate);
@@ -254,6 +254,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     done_ = 0.8;
 
     Estimate estimate = best.estimate;
+    if (has_heldout_) reconsider(all_, used, estimate);
     Outcome outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
     lensprof_fit_result r = result;
     r.iterations = static_cast<uint32_t>(outcome.iterations);

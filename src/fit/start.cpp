@@ -13,14 +13,16 @@ namespace {
 
 constexpr double kDarkest = 0.03, kBrightest = 0.97;  // grey values whose ratio is worth something
 
-// What the exposures must explain over an edge: ln g(B1)/M1 - ln g(B2)/M2 where most of its pairs agree.
-struct EdgeRatio {
-    double mode[3] = {0.0, 0.0, 0.0};
-    double weight[3] = {0.0, 0.0, 0.0};  // number of pairs
-    double trust[3] = {1.0, 1.0, 1.0};
-};
-
 using Ratios = std::array<double, 3>;
+
+// What the exposures of two images must explain: ln g(B1)/M1 - ln g(B2)/M2, where most of an edge's pairs agree, or of
+// one pair where there are too few to tell.
+struct Tie {
+    uint32_t image[2];
+    Ratios ratios;
+    double pairs;
+    double trust = 1.0;
+};
 
 struct Vote {
     Ratios ratios{};
@@ -80,52 +82,56 @@ Ratios mode_of(const std::vector<Vote> &all, int channels, double width) {
     return best;
 }
 
-std::vector<EdgeRatio> edge_ratios(const Problem &problem, const Estimate &estimate, double width) {
-    std::vector<EdgeRatio> result(problem.edges.size());
+std::vector<Vote> votes_of(const Problem &problem, const Estimate &estimate, const Edge &edge) {
     std::vector<Vote> votes;
-    for (size_t e = 0; e < problem.edges.size(); e++) {
-        const Edge &edge = problem.edges[e];
-        votes.clear();
-        for (size_t p = edge.first; p < edge.last; p++) {
-            const auto &pair = problem.pairs[p];
-            double fall = falloff(problem, estimate.vignetting[0], pair).ratio;
-            Vote vote;
-            vote.colour = colour_of(pair, problem.channels);
-            bool good = true;
-            for (int c = 0; c < problem.channels; c++) {
-                double b1 = pair.value[0][c], b2 = pair.value[1][c];
-                good = good && std::min(b1, b2) >= kDarkest && std::max(b1, b2) <= kBrightest;
-                if (!good) break;
-                Transfer t = transfer(estimate, b1, b2, 1.0);
-                vote.ratios[static_cast<size_t>(c)] = std::log(t.x[0] / t.x[1] / fall);
-            }
-            if (good) votes.push_back(vote);
+    for (size_t p = edge.first; p < edge.last; p++) {
+        const auto &pair = problem.pairs[p];
+        double fall = falloff(problem, estimate.vignetting[0], pair).ratio;
+        Vote vote;
+        vote.colour = colour_of(pair, problem.channels);
+        bool good = true;
+        for (int c = 0; c < problem.channels && good; c++) {
+            double b1 = pair.value[0][c], b2 = pair.value[1][c];
+            good = std::min(b1, b2) >= kDarkest && std::max(b1, b2) <= kBrightest;
+            if (!good) break;
+            Transfer t = transfer(estimate, b1, b2, 1.0);
+            vote.ratios[static_cast<size_t>(c)] = std::log(t.x[0] / t.x[1] / fall);
         }
-        if (votes.empty()) continue;
-        weigh(votes);
-        Ratios mode = mode_of(votes, problem.channels, width);
-        for (size_t c = 0; c < 3; c++) {
-            result[e].mode[c] = mode[c];
-            result[e].weight[c] = static_cast<double>(votes.size());
-        }
+        if (good) votes.push_back(vote);
     }
-    return result;
+    return votes;
 }
 
-// One round of start_exposures with a trust in every edge and channel; false when it failed numerically.
-bool add_exposures(const Problem &problem, const std::vector<EdgeRatio> &ratios, Estimate &estimate) {
+std::vector<Tie> ties_of(const Problem &problem, const Estimate &estimate, double width) {
+    constexpr size_t kElectorate = 8;  // so many pairs can outvote the wrong ones among them
+    std::vector<Tie> ties;
+    for (const Edge &edge : problem.edges) {
+        std::vector<Vote> votes = votes_of(problem, estimate, edge);
+        if (votes.size() < kElectorate) {
+            for (const Vote &v : votes) ties.push_back({{edge.image[0], edge.image[1]}, v.ratios, 1.0});
+            continue;
+        }
+        weigh(votes);
+        ties.push_back({{edge.image[0], edge.image[1]}, mode_of(votes, problem.channels, width),
+                        static_cast<double>(votes.size())});
+    }
+    return ties;
+}
+
+// Least squares over the ties as trusted; false when it failed numerically.
+bool add_exposures(const Problem &problem, const std::vector<Tie> &ties, Estimate &estimate) {
     int count = problem.image_unknowns;
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
     for (int q = 0; q < count; q++) entries.emplace_back(q, q, 1e-3);
-    for (size_t e = 0; e < problem.edges.size(); e++)
-        for (int c = 0; c < problem.channels; c++) {
-            // One equation: sum of the unknowns of image 1 minus those of image 2 = mode minus what is fixed.
-            uint32_t i = problem.edges[e].image[0], j = problem.edges[e].image[1];
+    for (const Tie &tie : ties)
+        for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++) {
+            // One equation: sum of the unknowns of image 1 minus those of image 2 = ratio minus what is fixed.
+            uint32_t i = tie.image[0], j = tie.image[1];
             int q[4] = {problem.ev_unknown[i], problem.balance_unknown[i][c], problem.ev_unknown[j],
                         problem.balance_unknown[j][c]};
-            double target = ratios[e].mode[c] - (estimate.log_exposure[i][c] - estimate.log_exposure[j][c]);
-            double weight = ratios[e].weight[c] * ratios[e].trust[c];
+            double target = tie.ratios[c] - (estimate.log_exposure[i][c] - estimate.log_exposure[j][c]);
+            double weight = tie.pairs * tie.trust;
             for (int a = 0; a < 4; a++) {
                 if (q[a] < 0) continue;
                 double sign = a < 2 ? 1.0 : -1.0;
@@ -147,21 +153,31 @@ bool add_exposures(const Problem &problem, const std::vector<EdgeRatio> &ratios,
     return true;
 }
 
+// Distance of a tie from the exposures, over all channels, natural logarithm.
+double surprise_of(const Problem &problem, const Tie &tie, const Estimate &estimate) {
+    const auto &a = estimate.log_exposure[tie.image[0]], &b = estimate.log_exposure[tie.image[1]];
+    double off2 = 0.0;
+    for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++) {
+        double off = tie.ratios[c] - (a[c] - b[c]);
+        off2 += off * off;
+    }
+    return std::sqrt(off2);
+}
+
 }  // namespace
 
-// Least squares over the edges, then again with less trust in those that disagree.
+// Least sum of the distances (convex: the wrong ties are outvoted by the loops they are in, from any start), then
+// least squares over those that are near.
 void start_exposures(const Problem &problem, double width, Estimate &estimate) {
-    constexpr double kSurprise = 0.3;  // natural logarithm by which an edge's mode may be off
+    constexpr int kDistanceRounds = 8, kNearRounds = 4;
+    constexpr double kExact = 0.05, kNear = 0.3;  // natural logarithm by which a tie may be off
     if (problem.image_unknowns == 0) return;
-    auto ratios = edge_ratios(problem, estimate, width);
-    for (int round = 0; round < 4 && add_exposures(problem, ratios, estimate); round++)
-        for (size_t e = 0; e < problem.edges.size(); e++)
-            for (size_t c = 0; c < 3; c++) {
-                const auto &a = estimate.log_exposure[problem.edges[e].image[0]],
-                           &b = estimate.log_exposure[problem.edges[e].image[1]];
-                double off = (ratios[e].mode[c] - (a[c] - b[c])) / kSurprise;
-                ratios[e].trust[c] = 1.0 / (1.0 + off * off);
-            }
+    auto ties = ties_of(problem, estimate, width);
+    for (int round = 0; round <= kDistanceRounds + kNearRounds && add_exposures(problem, ties, estimate); round++)
+        for (Tie &tie : ties) {
+            double off = surprise_of(problem, tie, estimate), z = off / kNear;
+            tie.trust = round < kDistanceRounds ? 1.0 / std::hypot(off, kExact) : 1.0 / ((1.0 + z * z) * (1.0 + z * z));
+        }
 }
 
 std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit_options &options, int modes) {

@@ -87,6 +87,19 @@ void test_survives_outliers(void **) {
     }
 }
 
+// A mosaic with hardly more than one pair an edge, where no edge can tell by itself which of its pairs are wrong.
+void test_few_pairs_on_many_images(void **) {
+    for (uint64_t seed = 1; seed <= 12; seed++) {
+        Simulation s;
+        s.response = srgb_response();
+        s.images = 40;
+        s.reach = 4;
+        s.make(200, 2.0, 0.15, 1.0, seed);
+        Run run = fit(s, default_options());
+        assert_true(s.exposure_error(run.exposures, run.gamma) < 0.6);
+    }
+}
+
 void test_the_paper_s_variant(void **) {
     Simulation s = simulate(srgb_response(), 1000, 2.0, 0.1);
     lensprof_fit_options options = default_options();
@@ -234,6 +247,7 @@ int main() {
         cmocka_unit_test(test_recovers_an_srgb_camera),
         cmocka_unit_test(test_recovers_a_linear_camera),
         cmocka_unit_test(test_survives_outliers),
+        cmocka_unit_test(test_few_pairs_on_many_images),
         cmocka_unit_test(test_the_paper_s_variant),
         cmocka_unit_test(test_grey_pictures),
         cmocka_unit_test(test_known_response_gives_absolute_values),
