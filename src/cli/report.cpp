@@ -45,17 +45,35 @@ Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
 
 double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
-void print_vignetting(const lensprof_vignetting &v, const char *channel, std::ostream &out) {
-    out << "falloff" << channel
-        << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
-                  v.center[0], v.center[1]);
-    out << format("          light at r = 0.5: %.1f %%, in the corner: %.1f %% (%.2f stops)\n",
-                  100.0 * lensprof_vignetting_eval(&v, 0.25, nullptr), 100.0 * corner(v), -std::log2(corner(v)));
+/* What is known of the estimated parameters: their covariance, and the number of those before the first falloff curve. */
+struct Certainty {
+    const double *covariance;
+    uint32_t size, modes;
+};
+
+/* " +- ", the standard error of 100 M at r, or nothing where it is not known. dM/dk_n = r^(2n). */
+std::string falloff_error(const Certainty &c, uint32_t curve, double r2) {
+    const double slope[3] = {r2, r2 * r2, r2 * r2 * r2};
+    const uint32_t first = c.modes + 3 * curve;
+    double variance = 0.0;
+    for (uint32_t i = 0; i < 3 && first + 3 <= c.size; i++)
+        for (uint32_t j = 0; j < 3; j++)
+            variance += slope[i] * slope[j] * c.covariance[(first + i) * c.size + first + j];
+    return variance > 0.0 ? format(" +- %.1f", 100.0 * std::sqrt(variance)) : std::string();
 }
 
-void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, std::ostream &out) {
+void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, const Certainty &certainty,
+                       std::ostream &out) {
     static const char *const channels[3] = {" of red", " of green", " of blue"};
-    for (uint32_t c = 0; c < count; c++) print_vignetting(vignettings[c], count == 3 ? channels[c] : "", out);
+    for (uint32_t c = 0; c < count; c++) {
+        const lensprof_vignetting &v = vignettings[c];
+        out << "falloff" << (count == 3 ? channels[c] : "")
+            << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
+                      v.center[0], v.center[1]);
+        out << format("          light at r = 0.5: %.1f%s %%, in the corner: %.1f%s %% (%.2f stops)\n",
+                      100.0 * lensprof_vignetting_eval(&v, 0.25, nullptr), falloff_error(certainty, c, 0.25).c_str(),
+                      100.0 * corner(v), falloff_error(certainty, c, 1.0).c_str(), -std::log2(corner(v)));
+    }
 }
 
 void print_response(const lensprof_response &r, std::ostream &out) {
@@ -222,7 +240,7 @@ void print_gamma(const BuildReport &report, std::ostream &out) {
 void print_build(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_exposures(report, out);
-    print_vignettings(fit.vignetting, fit.vignettings, out);
+    print_vignettings(fit.vignetting, fit.vignettings, {fit.covariance, fit.covariance_size, fit.response.modes}, out);
     print_response(fit.response, out);
     print_gamma(report, out);
     std::string heldout = fit.heldout_rms == LENSPROF_UNKNOWN ? std::string("not measured (too few pairs)")
@@ -285,7 +303,8 @@ std::string describe_key(const lensprof_profile_key &key) {
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
     const auto &p = profile.provenance;
     out << "profile   " << id << ": " << describe_key(profile.key) << "\n";
-    print_vignettings(profile.vignetting, profile.vignettings, out);
+    print_vignettings(profile.vignetting, profile.vignettings,
+                      {profile.covariance, profile.covariance_size, profile.response[0].modes}, out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
     out << "source    " << (*p.method ? p.method : "unknown method") << ", " << p.images << " images, " << p.pairs
         << " pairs";

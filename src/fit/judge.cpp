@@ -115,14 +115,22 @@ bool refuse(lensprof_fit_result &r, const char *reason, Values... values) {
     return true;
 }
 
+// The first image that is not in the reference's group.
+uint32_t apart_image(const Problem &problem) {
+    const auto &group = problem.component;
+    auto apart = std::find_if(group.begin(), group.end(), [&](uint32_t g) { return g != group[problem.reference]; });
+    return static_cast<uint32_t>(apart - group.begin());
+}
+
 // Too few, too alike, or in places that tell nothing.
 bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     size_t unknowns = free_columns(problem, estimate.modes).size() + static_cast<size_t>(problem.image_unknowns);
     size_t informative = count_informative(problem);
     if (r.components > 1 && problem.image_unknowns > 0)
         return refuse(r,
-                      "the images fall into %u groups without usable overlap between them; add pictures that join them",
-                      r.components);
+                      "the images fall into %u groups: no usable overlap joins image %u to the reference, not even "
+                      "through others; add pictures that join them",
+                      r.components, apart_image(problem));
     if (informative * static_cast<size_t>(problem.channels) < 2 * unknowns)
         return refuse(r, "%zu different pairs between black and white are too few for %zu unknowns; sample more",
                       informative, unknowns);

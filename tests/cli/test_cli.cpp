@@ -129,6 +129,7 @@ void test_build_table(void **) {
     for (const char *part :
          {"img000.png", "img003.png", "reference", "falloff", "response", "residual", "largest error"})
         assert_true(contains(table, part));
+    assert_false(find_pattern("in the corner: [0-9.]+ \\+- [0-9.]+ %", table).empty());
     assert_false(contains(table, "NOT USABLE"));
 }
 

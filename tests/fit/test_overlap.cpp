@@ -207,7 +207,7 @@ void test_unconnected_images_are_not_usable(void **) {
     Run run = fit(s, default_options());
     assert_int_equal(run.result.usable, 0);
     assert_int_equal(run.result.components, 2);
-    assert_non_null(strstr(run.result.reason, "2 groups"));
+    assert_non_null(strstr(run.result.reason, "2 groups: no usable overlap joins image 3 "));
 }
 
 void test_too_few_pairs_are_not_usable(void **) {

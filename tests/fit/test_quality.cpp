@@ -31,7 +31,7 @@ void test_groups_are_told(void **) {
     FitRun run = run_fit(s);
     assert_int_equal(run.result.usable, 0);
     assert_int_equal(run.result.components, 3);
-    assert_true(says(run, "3 groups"));
+    assert_true(says(run, "3 groups") && says(run, "image 2 "));
     const uint32_t component[6] = {0, 0, 2, 2, 4, 4};
     for (uint32_t i = 0; i < 6; i++) assert_int_equal(run.quality[i].component, component[i]);
 }
