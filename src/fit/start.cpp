@@ -20,7 +20,7 @@ using Ratios = std::array<double, 3>;
 struct Tie {
     uint32_t image[2];
     Ratios ratios;
-    double pairs;
+    double votes;  // that agree on it
     double trust = 1.0;
 };
 
@@ -49,8 +49,8 @@ uint32_t colour_of(const lensprof_pair &pair, int channels) {
 }
 
 // The vector about which most votes lie within about `width`, all channels together, then the mean of those: half and
-// more of the pairs may be wrong, as long as they do not agree with each other.
-Ratios mode_of(const std::vector<Vote> &all, int channels, double width) {
+// more of the pairs may be wrong, as long as they do not agree with each other. `support`: the votes that lie there.
+Ratios mode_of(const std::vector<Vote> &all, int channels, double width, double &support) {
     constexpr size_t kGuesses = 48, kVoters = 192;
     auto closeness = [&](const Ratios &a, const Ratios &b) {
         double distance2 = 0.0;
@@ -78,6 +78,7 @@ Ratios mode_of(const std::vector<Vote> &all, int channels, double width) {
             for (size_t c = 0; c < 3; c++) mean[c] += weight * one.ratios[c];
         }
         for (size_t c = 0; c < 3; c++) best[c] = mean[c] / sum;
+        support = sum;
     }
     return best;
 }
@@ -112,8 +113,9 @@ std::vector<Tie> ties_of(const Problem &problem, const Estimate &estimate, doubl
             continue;
         }
         weigh(votes);
-        ties.push_back({{edge.image[0], edge.image[1]}, mode_of(votes, problem.channels, width),
-                        static_cast<double>(votes.size())});
+        double support = 0.0;
+        Ratios mode = mode_of(votes, problem.channels, width, support);
+        ties.push_back({{edge.image[0], edge.image[1]}, mode, support});
     }
     return ties;
 }
@@ -131,7 +133,7 @@ bool add_exposures(const Problem &problem, const std::vector<Tie> &ties, Estimat
             int q[4] = {problem.ev_unknown[i], problem.balance_unknown[i][c], problem.ev_unknown[j],
                         problem.balance_unknown[j][c]};
             double target = tie.ratios[c] - (estimate.log_exposure[i][c] - estimate.log_exposure[j][c]);
-            double weight = tie.pairs * tie.trust;
+            double weight = tie.votes * tie.trust;
             for (int a = 0; a < 4; a++) {
                 if (q[a] < 0) continue;
                 double sign = a < 2 ? 1.0 : -1.0;

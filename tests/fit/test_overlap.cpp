@@ -100,6 +100,30 @@ void test_few_pairs_on_many_images(void **) {
     }
 }
 
+// Most pairs of the last image are with the first, which the project has in the wrong place there: they do not agree
+// with each other.
+void test_a_large_edge_in_the_wrong_place(void **) {
+    for (uint64_t seed = 1; seed <= 8; seed++) {
+        Simulation s;
+        s.response = srgb_response();
+        s.images = 4;
+        s.reach = 3;
+        s.make(1500, 2.0, 0.0, 1.0, seed);
+        uint64_t random = seed;
+        uint32_t right = 0;
+        std::vector<lensprof_pair> pairs;
+        for (lensprof_pair p : s.pairs) {
+            if (p.image[1] == 3 && p.image[0] != 0 && ++right > 80) continue;
+            double darker = 0.1 + 0.8 * lp_random(&random);
+            for (int c = 0; c < 3 && p.image[0] == 0 && p.image[1] == 3; c++) p.value[1][c] = p.value[0][c] * darker;
+            pairs.push_back(p);
+        }
+        s.pairs = pairs;
+        Run run = fit(s, default_options());
+        assert_true(s.exposure_error(run.exposures, run.gamma) < 0.2);
+    }
+}
+
 void test_the_paper_s_variant(void **) {
     Simulation s = simulate(srgb_response(), 1000, 2.0, 0.1);
     lensprof_fit_options options = default_options();
@@ -248,6 +272,7 @@ int main() {
         cmocka_unit_test(test_recovers_a_linear_camera),
         cmocka_unit_test(test_survives_outliers),
         cmocka_unit_test(test_few_pairs_on_many_images),
+        cmocka_unit_test(test_a_large_edge_in_the_wrong_place),
         cmocka_unit_test(test_the_paper_s_variant),
         cmocka_unit_test(test_grey_pictures),
         cmocka_unit_test(test_known_response_gives_absolute_values),
