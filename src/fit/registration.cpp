@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -10,13 +11,15 @@ namespace lensprof {
 namespace {
 
 constexpr int kColumns = 24, kRows = 18;      // places of the first image that are looked at
-constexpr size_t kMost = 48, kFewest = 8;     // blocks that take part
+constexpr size_t kFewest = 8;                 // blocks that take part
+constexpr int kCell = 2;                      // places side by side, of which one takes part: no single thing decides
 constexpr int kFarthest = 12;                 // coarse pixels by which the project may be off
 constexpr int kSearch = 3;                    // level pixels about where a block is expected
 constexpr double kTexture = 0.015;            // standard deviation of a block, grey value 0..1: more than noise
-constexpr double kAlike = 0.5;                // correlation of blocks that show the same, at least
+constexpr double kMatch = 0.5;                // correlation of blocks that show the same, at least
 constexpr double kRight = 0.85;               // mean correlation of a project that is right
-constexpr double kBetter = 0.1;               // mean correlation by which a rotation must be better than the project
+constexpr double kBetter = 0.02;              // mean correlation by which a rotation must be better than the project
+constexpr double kPreferred = 0.05;           // difference of correlations that tells
 constexpr double kTrust = 0.01;               // radians: how far off a project is, for turns that blocks do not tell
 constexpr double kDerivativeStep = 1e-4;      // radians
 
@@ -57,6 +60,7 @@ constexpr double kUpright[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
 // A block of the first image, and where the project expects it in the second.
 struct Place {
     double x, y;
+    size_t cell;
     std::array<Block<4>, 2> block;  // of each level
 };
 
@@ -70,14 +74,17 @@ struct Matcher {
     double mean_correlation(size_t level, const Rotation &rotation, size_t &count) const;
     void common_shift(double shift[2]) const;
     bool refine(size_t level, const double *shift, Rotation &rotation) const;
+    bool most_prefer(size_t level, const Rotation &rotation) const;
     double median_shift(const Rotation &rotation) const;
 };
 
-// The blocks with most texture among places, spread over the first image, that the second sees too.
+// The block with most texture of every cell of the first image, where the second sees it too.
 void Matcher::find_places() {
     for (int row = 0; row < kRows; row++)
         for (int column = 0; column < kColumns; column++) {
-            Place p{(column + 0.5) / kColumns * first.width - 0.5, (row + 0.5) / kRows * first.height - 0.5, {}};
+            Place p{};
+            p.x = (column + 0.5) / kColumns * first.width - 0.5, p.y = (row + 0.5) / kRows * first.height - 0.5;
+            p.cell = static_cast<size_t>(row / kCell * (kColumns / kCell) + column / kCell);
             Sight at;
             bool good = sight(first, second, {}, 1.0, p.x, p.y, at);
             for (size_t n = 0; n < 2 && good; n++)
@@ -86,7 +93,9 @@ void Matcher::find_places() {
         }
     std::stable_sort(places.begin(), places.end(),
                      [](const Place &a, const Place &b) { return a.block[0].texture > b.block[0].texture; });
-    if (places.size() > kMost) places.resize(kMost);
+    std::array<bool, (kColumns / kCell) * (kRows / kCell)> taken{};
+    auto is_taken = [&](const Place &p) { return std::exchange(taken[p.cell], true); };
+    places.erase(std::remove_if(places.begin(), places.end(), is_taken), places.end());
 }
 
 // The second image's block, (du, dv) level pixels beside where it is expected.
@@ -153,7 +162,7 @@ bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
                     m.quality = p.block[n].correlation(other);
                     m.off = {(shift[0] + du) * pixel, (shift[1] + dv) * pixel};
                 }
-        bool good = m.quality > kAlike;
+        bool good = m.quality > kMatch;
         for (int d = 0; d < 3 && good; d++) {
             Rotation turned = rotation;
             turned[static_cast<size_t>(d)] += kDerivativeStep;
@@ -177,6 +186,23 @@ bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
     }
     for (int d = 0; d < 3; d++) rotation[static_cast<size_t>(d)] += change[d];
     return change.allFinite();
+}
+
+// Whether most blocks match better under the rotation than by the project: what moved alone prefers it, too, but not the
+// scene about it.
+bool Matcher::most_prefer(size_t n, const Rotation &rotation) const {
+    size_t better = 0, worse = 0;
+    Block<4> other;
+    Sight at;
+    for (const Place &p : places) {
+        auto match = [&](const Rotation &by) {
+            bool seen = sight(first, second, by, 1.0, p.x, p.y, at) && cut(n, at, 0.0, 0.0, other);
+            return seen ? p.block[n].correlation(other) : 0.0;
+        };
+        double gain = match(rotation) - match({});
+        better += gain > kPreferred, worse += gain < -kPreferred;
+    }
+    return better > 2 * worse;
 }
 
 double Matcher::median_shift(const Rotation &rotation) const {
@@ -223,7 +249,8 @@ void rotate(const Rotation &rotation, double sign, double direction[2]) {
     if (rotation[0] == 0.0 && rotation[1] == 0.0 && rotation[2] == 0.0) return;
     Eigen::Vector3d v{std::cos(direction[1]) * std::sin(direction[0]), std::sin(direction[1]),
                       std::cos(direction[1]) * std::cos(direction[0])};
-    v = (v + sign * Eigen::Vector3d(rotation.data()).cross(v)).normalized();
+    Eigen::Vector3d axis(rotation.data());
+    v = Eigen::AngleAxisd(sign * axis.norm(), axis.normalized()) * v;
     direction[0] = std::atan2(v[0], v[2]);
     direction[1] = std::asin(std::clamp(v[1], -1.0, 1.0));
 }
@@ -255,12 +282,14 @@ GreyLevels::GreyLevels(const View &view) {
     level[0] = halved(level[1]);
 }
 
-bool show_the_same(const GreyLevels &first, double x, double y, const GreyLevels &second, const Sight &sight) {
+std::optional<double> likeness(const GreyLevels &first, double x, double y, const GreyLevels &second,
+                               const Sight &sight) {
     Block<3> a, b;
     const double pixel = first.level[0].pixel;
-    if (!a.cut(first.level[0], x, y, pixel, kUpright) || !b.cut(second.level[0], sight.x, sight.y, pixel, sight.map))
-        return true;
-    return std::max(a.texture, b.texture) < kTexture || a.correlation(b) > kAlike;
+    if (!a.cut(first.level[0], x, y, pixel, kUpright) || !b.cut(second.level[0], sight.x, sight.y, pixel, sight.map)
+        || std::max(a.texture, b.texture) < kTexture)
+        return std::nullopt;
+    return a.correlation(b);
 }
 
 Rotation registration(const lensprof_camera &first, const GreyLevels &first_grey, const lensprof_camera &second,
@@ -279,8 +308,8 @@ Rotation registration(const lensprof_camera &first, const GreyLevels &first_grey
         if (!matcher.refine(1, none, rotation)) return {};
     double found = matcher.mean_correlation(1, rotation, found_in);
     double view_pixel = 0.5 * second_grey.level[1].pixel;
-    bool is_better = 2 * found_in > compared && found > kAlike && found > project + kBetter
-        && matcher.median_shift(rotation) > view_pixel;
+    bool is_better = 2 * found_in > compared && found > kMatch && found > project + kBetter
+        && matcher.most_prefer(1, rotation) && matcher.median_shift(rotation) > view_pixel;
     return is_better ? rotation : Rotation{};
 }
 

@@ -3,13 +3,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "view.hpp"
 
 namespace lensprof {
 
-// Axis times angle, radians: direction v of one image is at v + rotation x v of the other.
+// Axis times angle, radians: where direction v of one image is in the other; the other way round with sign -1.
 using Rotation = std::array<double, 3>;
 void rotate(const Rotation &rotation, double sign, double direction[2]);
 
@@ -40,8 +41,10 @@ public:
     std::array<Level, 2> level;  // the coarse one first
 };
 
-// False where one of the two has texture about the place that the other lacks: something moved, or stands in the way.
-bool show_the_same(const GreyLevels &first, double x, double y, const GreyLevels &second, const Sight &sight);
+// Correlation of the surroundings of a place; nothing where neither has texture. Low where something moved, stands in
+// the way, or the project is wrong.
+std::optional<double> likeness(const GreyLevels &first, double x, double y, const GreyLevels &second,
+                               const Sight &sight);
 
 // The small rotation under which blocks match, from coarse to fine. Zero where the project is right within a pixel of
 // the views, or the pictures do not tell.

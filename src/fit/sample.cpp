@@ -74,7 +74,8 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
             return fail(LENSPROF_ERROR_NO_OVERLAP, error, "no two images overlap; check the alignment of the project");
         if (pairs.empty())
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
-                        "the images overlap, but every sample there is masked, black or saturated");
+                        "the images overlap, but every sample there is masked, black or saturated, or does not show "
+                        "the same in both; check the alignment of the project");
         return LENSPROF_OK;
     } catch (const Cancelled &) {
         return fail(LENSPROF_ERROR_CANCELLED, error, "sample: cancelled");

@@ -15,6 +15,14 @@ constexpr uint32_t kPiece = 32;       // places of one image that a thread looks
 constexpr uint32_t kPaperRound = 8192;
 constexpr double kWidestCone = 1.5;   // radians: beyond, the border of a frame may be farther off than its samples
 constexpr double kSlack = 0.02;       // of the cosine to a cone's edge: projects may be off
+constexpr double kAlike = 0.5;          // correlation of places that may show the same,
+constexpr double kSurely = 0.8;         // and of those that clearly do: a share of 0 to .12 of the places with texture
+constexpr double kEnoughSurely = 0.13;  // where a project is wrong, and 0 to 2.4 times as many as by chance; where it is
+constexpr double kFewestSurely = 0.05;  // right, and things moved on 44 % of the places, .08 and more, and 3.2 times
+constexpr double kAboveChance = 2.8;
+constexpr double kBeside = 12.0;        // coarse pixels
+constexpr uint32_t kFewestTold = 20;
+constexpr size_t kMostNeighbours = 8;   // of an image that are registered, those with the largest overlap
 constexpr size_t kMostRefused = 4;    // pairs of places for one wanted candidate, before the search ends
 
 double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -33,6 +41,18 @@ bool direction_of(const lensprof_camera &camera, double x, double y, double v[3]
     if (!lensprof_camera_unproject(&camera, x, y, direction)) return false;
     unit_vector(direction, v);
     return true;
+}
+
+// How many of a few places of the first image the second sees.
+int overlap_of(const lensprof_camera &first, const lensprof_camera &second) {
+    constexpr int columns = 8, rows = 6;
+    int seen = 0;
+    double xy[2];
+    for (int k = 0; k < columns * rows; k++)
+        seen += place_of(first, second, {}, 1.0, (k % columns + 0.5) / columns * first.width - 0.5,
+                         (k / columns + 0.5) / rows * first.height - 0.5, xy)
+            && xy[0] >= 0.0 && xy[1] >= 0.0 && xy[0] < second.width && xy[1] < second.height;
+    return seen;
 }
 
 // Moves the lists, in order, behind each other.
@@ -103,17 +123,37 @@ void Sampler::each(uint32_t count, const std::function<void(uint32_t)> &work, co
 
 // Where the project is off between neighbours, as the pictures show.
 void Sampler::register_neighbours() {
-    grey_.resize(views_.size());
-    rotations_.assign(first_edge_.back() + neighbours_.back().size(), {});
-    const auto count = static_cast<uint32_t>(views_.size());
-    each(count, [&](uint32_t i) { grey_[i] = std::make_unique<GreyLevels>(views_[i]); }, [] { return 0.0; });
-    auto work = [&](uint32_t i) {
-        for (uint32_t j : neighbours_[i])
-            if (j > i)
-                rotations_[edge_of(i, j)] =
-                    registration(views_[i].image().camera, *grey_[i], views_[j].image().camera, *grey_[j]);
+    struct Edge {
+        uint32_t i, j;
+        int overlap;
     };
-    each(count, work, [] { return 0.0; });
+    const auto count = static_cast<uint32_t>(views_.size());
+    grey_.resize(count);
+    each(count, [&](uint32_t i) { grey_[i] = std::make_unique<GreyLevels>(views_[i]); }, [] { return 0.0; });
+    std::vector<Edge> edges;
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t j : neighbours_[i])
+            if (j > i) edges.push_back({i, j, 0});
+    auto size = static_cast<uint32_t>(edges.size());
+    auto camera = [&](uint32_t i) -> const lensprof_camera & { return views_[i].image().camera; };
+    each(size, [&](uint32_t e) { edges[e].overlap = overlap_of(camera(edges[e].i), camera(edges[e].j)); },
+         [] { return 0.0; });
+    std::stable_sort(edges.begin(), edges.end(), [](const Edge &a, const Edge &b) { return a.overlap > b.overlap; });
+    std::vector<size_t> registered(count, 0);
+    auto is_left_out = [&](const Edge &e) {
+        bool wanted = e.overlap > 0 && std::min(registered[e.i], registered[e.j]) < kMostNeighbours;
+        if (wanted) registered[e.i]++, registered[e.j]++;
+        return !wanted;
+    };
+    edges.erase(std::remove_if(edges.begin(), edges.end(), is_left_out), edges.end());
+    const size_t numbers = first_edge_.back() + neighbours_.back().size();
+    rotations_.assign(numbers, {});
+    likenesses_ = std::vector<Likenesses>(numbers);
+    auto work = [&](uint32_t e) {
+        auto [i, j, overlap] = edges[e];
+        rotations_[edge_of(i, j)] = registration(camera(i), *grey_[i], camera(j), *grey_[j]);
+    };
+    each(static_cast<uint32_t>(edges.size()), work, [] { return 0.0; });
 }
 
 const Rotation &Sampler::rotation(uint32_t i, uint32_t j) const {
@@ -128,11 +168,31 @@ bool Sampler::correspond(uint32_t i, uint32_t j, double x, double y, double xy[2
 }
 
 // Whether both show the same there, as far as texture tells. Single points, as the paper samples them, are not asked.
-bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) const {
+bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
     Sight at;
-    return !patches_
-        || (sight(views_[i].image().camera, views_[j].image().camera, rotation(i, j), i < j ? 1.0 : -1.0, x, y, at)
-            && show_the_same(*grey_[i], x, y, *grey_[j], at));
+    if (!patches_) return true;
+    if (!sight(views_[i].image().camera, views_[j].image().camera, rotation(i, j), i < j ? 1.0 : -1.0, x, y, at))
+        return false;
+    std::optional<double> told = likeness(*grey_[i], x, y, *grey_[j], at);
+    if (!told) return true;
+    Likenesses &edge = likenesses_[edge_of(i, j)];
+    edge.told++;
+    if (*told > kSurely) edge.surely++;
+    const auto side = static_cast<int>(std::abs(x) + std::abs(y));  // another one from place to place
+    (side % 2 ? at.x : at.y) += (side / 2 % 2 ? kBeside : -kBeside) * grey_[j]->level[0].pixel;
+    std::optional<double> beside = likeness(*grey_[i], x, y, *grey_[j], at);
+    if (beside) edge.beside++;
+    if (beside && *beside > kSurely) edge.chance++;
+    return *told > kAlike;
+}
+
+// Where hardly more places show the same than do beside where they should, the project has one of the two images
+// somewhere else: what agrees there agrees by chance.
+bool Sampler::is_in_place(uint32_t number) const {
+    const Likenesses &edge = likenesses_[number];
+    const double surely = edge.surely, told = edge.told, chance = edge.chance, beside = edge.beside;
+    if (told < kFewestTold || surely > kEnoughSurely * told) return true;
+    return surely > kFewestSurely * told && surely * beside > kAboveChance * chance * told;
 }
 
 bool Sampler::measure(uint32_t i, double x, double y, End &end) const {
@@ -229,6 +289,8 @@ std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
     patches_ = true;
     register_neighbours();
     std::vector<Candidate> all = candidates(8 * static_cast<size_t>(wanted));
+    auto out_of_place = [&](const Candidate &c) { return !is_in_place(edge_of(c.image[0], c.image[1])); };
+    all.erase(std::remove_if(all.begin(), all.end(), out_of_place), all.end());
     std::vector<uint32_t> order(all.size()), edge(all.size()), chosen;
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {

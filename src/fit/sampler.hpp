@@ -53,12 +53,19 @@ private:
         bool known;
     };
 
+    // Places of a pair of neighbours that have texture, and those of them that clearly show the same; the same numbers
+    // beside where the other image should show them.
+    struct Likenesses {
+        std::atomic<uint32_t> told{0}, surely{0}, beside{0}, chance{0};
+    };
+
     static Cone cone_of(const lensprof_camera &camera);
     void find_neighbours();
     void register_neighbours();
     const Rotation &rotation(uint32_t i, uint32_t j) const;
     bool correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const;
-    bool is_the_same(uint32_t i, uint32_t j, double x, double y) const;
+    bool is_the_same(uint32_t i, uint32_t j, double x, double y);
+    bool is_in_place(uint32_t number) const;
     bool measure(uint32_t i, double x, double y, End &end) const;
     void look(uint32_t i, double x, double y, const uint32_t *others, size_t count, std::vector<Candidate> &found);
     Look draw(Random &random) const;
@@ -74,6 +81,7 @@ private:
     std::vector<uint32_t> first_edge_;               // number of every image's first pair with a neighbour
     std::vector<std::unique_ptr<GreyLevels>> grey_;  // of every view
     std::vector<Rotation> rotations_;                // of every pair of neighbours, from the lower image to the other
+    std::vector<Likenesses> likenesses_;             // of every pair of neighbours
     std::atomic<size_t> refused_{0};                 // pairs of places that do not show the same
     bool patches_ = true;                            // else single points
     std::atomic<bool> overlaps_{false};

@@ -329,11 +329,11 @@ void test_own_database(void **) {
 
 void test_forced(void **) {
     const std::string copy = copy_of("scene"), db = work("p.db");
-    edit(copy + "/pano.pto", " y[-.0-9]+( .*img00[23])", " y180$1"); /* two groups */
+    edit(copy + "/pano.pto", " y[-.0-9]+( .*img00[23])", " y180$1"); /* over each other */
     const Words words = Words{"build", copy + "/pano.pto", "--db", db, "--json"} + quick;
     const Json json = json_of(words, not_usable);
     assert_false(json["usable"].get<bool>());
-    assert_true(contains(json["reason"].get<std::string>(), "2 groups"));
+    assert_true(contains(json["reason"].get<std::string>(), "3 groups"));
     assert_true(json["profile"].is_null());
     assert_false(fs::exists(db));
     assert_int_equal(json_of(words + Words{"--force"}, not_usable)["profile"].get<int>(), 1);

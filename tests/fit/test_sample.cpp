@@ -215,6 +215,48 @@ void test_what_moved_is_left_out(void **) {
     assert_true(share_inside(LENSPROF_SAMPLING_BALANCED) < 0.01);
 }
 
+// Squares of random grey values in a part of a picture.
+void fill_with_squares(std::vector<float> &data, uint32_t left, uint32_t top, uint32_t width, uint32_t height) {
+    for (uint32_t v = 0; v < height; v++)
+        for (uint32_t u = 0; u < width; u++) {
+            uint64_t random = 1000 * (v / 8) + u / 8 + 1;
+            lp_random(&random);
+            const float value = static_cast<float>(0.2 + 0.6 * lp_random(&random));
+            for (uint32_t c = 0; c < 3; c++) data[((top + v) * 320 + left + u) * 3 + c] = value;
+        }
+}
+
+// A thing with more texture than the scene has moved; the project is right, and stays so.
+void test_a_moving_thing_does_not_move_the_project(void **) {
+    detail = 0.04;
+    Pictures pictures(2, 320, 240, 15.0);
+    detail = 0.0;
+    const lensprof_camera truth[2] = {pictures.images[0].camera, pictures.images[1].camera};
+    fill_with_squares(pictures.data[0], 200, 70, 96, 96);  // 15 degrees are 92 px
+    fill_with_squares(pictures.data[1], 200 - 92 - 24, 70, 96, 96);
+    std::vector<lensprof_pair> pairs;
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 500), pairs));
+    assert_true(distance_of_pairs(pairs, truth, 0.95) < 1.0);
+}
+
+// The third picture is none of the places that the project says.
+void test_a_picture_in_the_wrong_place_has_no_pairs(void **) {
+    detail = 0.07;
+    Pictures pictures(3, 320, 240, 15.0);
+    detail = 0.0;
+    std::vector<lensprof_pair> pairs;
+    auto of_third = [&] {
+        return std::count_if(pairs.begin(), pairs.end(),
+                             [](const lensprof_pair &p) { return p.image[0] == 2 || p.image[1] == 2; });
+    };
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 600), pairs));
+    assert_true(of_third() > 100);
+    fill_with_squares(pictures.data[2], 0, 0, 320, 240);
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 600), pairs));
+    assert_int_equal(of_third(), 0);
+    assert_int_equal(pairs.size(), 600);
+}
+
 void test_same_seed_same_pairs(void **) {
     Pictures pictures(3, 160, 120, 20.0);
     std::vector<lensprof_pair> a, b, other;
@@ -365,6 +407,8 @@ int main() {
         cmocka_unit_test(test_patches_shrug_off_hot_pixels),
         cmocka_unit_test(test_a_project_that_is_off_is_registered),
         cmocka_unit_test(test_what_moved_is_left_out),
+        cmocka_unit_test(test_a_moving_thing_does_not_move_the_project),
+        cmocka_unit_test(test_a_picture_in_the_wrong_place_has_no_pairs),
         cmocka_unit_test(test_same_seed_same_pairs),
         cmocka_unit_test(test_any_number_of_threads_gives_the_same_pairs),
         cmocka_unit_test(test_progress_rises_to_one),
