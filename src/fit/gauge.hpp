@@ -33,6 +33,7 @@ public:
     lensprof_gamma_from from() const { return from_; }
     double sigma() const { return sigma_; }  // standard error of ln gamma; 0 when known
     double slope() const { return slope_; }  // of the estimate's exposures on the known ones
+    bool knows() const { return !known_weight_.empty(); }  // of exposures that can be compared
     double known_offset() const { return known_offset_; }  // common offset of the known exposures, natural logarithm
 
     // Change of the full shared vector per unit of ln gamma.
@@ -46,6 +47,7 @@ private:
     lensprof_gamma_from wanted_, from_ = LENSPROF_GAMMA_KNOWN;
     bool open_ = false;
     double sigma_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
+    double scatter_ = 1.0;  // of the known exposures about the estimate's, in their stated standard errors; 1 at least
     std::vector<double> known_weight_;  // trust in each known exposure, 0..1
 };
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "quality.hpp"
 
@@ -10,7 +11,7 @@ namespace lensprof {
 namespace {
 
 constexpr double kBlack = 0.004;               // one level of 255
-constexpr double kSmallestRange = 0.05;        // of grey values
+constexpr uint32_t kFewestGreys = 4, kEnoughGreys = 8;  // tenths of the grey values that hold more than a few
 constexpr double kSmallestRadius = 0.6;        // half diagonals: beyond, k1..k3 extrapolate
 constexpr double kLargestNoise = 6.0;          // levels of 255: no camera's noise, but a model that does not fit
 constexpr double kLargestImageShare = 0.2;     // of residual variance that follows a map of each image's own,
@@ -20,7 +21,9 @@ constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a
 constexpr double kNotRadial = 0.3;             // share that follows one map over the frame
 constexpr double kLargestCornerSigma = 0.1;    // of M
 constexpr double kLargestEvSigma = 0.3;        // EV, gamma apart
-constexpr uint32_t kFewestInliers = 3;         // of an image: fewer agree by chance
+constexpr uint32_t kFewestInliers = 3;         // of an image: fewer agree by chance,
+constexpr double kSmallestShare = 0.2;         // or a smaller share of its pairs
+constexpr double kFarCentre = 0.1;             // half diagonals: five standard errors of its prior
 constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
 
 // Pairs that tell something: different from each other, with both grey values of a channel between black and white.
@@ -41,17 +44,25 @@ size_t count_informative(const Problem &problem) {
     return static_cast<size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
 }
 
-// From the darkest to the brightest grey value of all pairs, without a twentieth at either end.
-double grey_range(const Problem &problem) {
-    std::vector<double> values;
-    for (const auto &p : problem.pairs)
-        for (const auto &side : p.value) values.insert(values.end(), side, side + problem.channels);
-    auto low = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
-    auto high = values.end() - 1 - (low - values.begin());
-    std::nth_element(values.begin(), low, values.end());
-    double darkest = *low;
-    std::nth_element(values.begin(), high, values.end());
-    return *high - darkest;
+// Whether a tenth of the grey values holds more than a few samples.
+bool is_covered(const Problem &problem, const lensprof_fit_result &r, int bin) {
+    return r.grey_ends[bin] > static_cast<uint32_t>(problem.channels) * (2 + r.pairs / 1000);
+}
+
+uint32_t covered_greys(const Problem &problem, const lensprof_fit_result &r) {
+    uint32_t covered = 0;
+    for (int bin = 0; bin < LENSPROF_COVERAGE_BINS; bin++) covered += is_covered(problem, r, bin);
+    return covered;
+}
+
+// The longest run of tenths without samples: [first, last).
+std::pair<int, int> missing_greys(const Problem &problem, const lensprof_fit_result &r) {
+    std::pair<int, int> longest{0, 0};
+    for (int bin = 0, first = 0; bin < LENSPROF_COVERAGE_BINS; bin++) {
+        if (is_covered(problem, r, bin)) first = bin + 1;
+        else if (bin + 1 - first > longest.second - longest.first) longest = {first, bin + 1};
+    }
+    return longest;
 }
 
 // Outer edge of the outermost ring that holds more than a few pair ends.
@@ -89,10 +100,10 @@ int odd_image(const Problem &problem, const lensprof_fit_result &r) {
     return odd;
 }
 
-// The image whose exposure the pairs leave most uncertain, when they do; else -1.
-int uncertain_image(const Problem &problem, const Estimate &estimate, const lensprof_fit_result &r) {
+// The image whose exposure the pairs leave most uncertain, when they do, and by how many EV (`limit`); else -1.
+int uncertain_image(const Problem &problem, const Estimate &estimate, const lensprof_fit_result &r, double &limit) {
     int worst = -1;
-    double limit = kLargestEvSigma;
+    limit = kLargestEvSigma;
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
         auto measured = static_cast<size_t>(problem.measured_channel());
         double away = estimate.log_exposure[i][measured] - estimate.log_exposure[problem.reference][measured];
@@ -129,14 +140,16 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
     if (r.components > 1 && problem.image_unknowns > 0)
         return refuse(r,
                       "the images fall into %u groups: no usable overlap joins image %u to the reference, not even "
-                      "through others; add pictures that join them",
+                      "through others; add pictures or pairs that join them, or check its place in the project",
                       r.components, apart_image(problem));
     if (informative * static_cast<size_t>(problem.channels) < 2 * unknowns)
         return refuse(r, "%zu different pairs between black and white are too few for %zu unknowns; sample more",
                       informative, unknowns);
-    if (grey_range(problem) < kSmallestRange)
-        return refuse(r, "the pairs cover %.0f grey levels only, which does not show a response",
-                      255.0 * grey_range(problem));
+    if (estimate.modes > 0 && covered_greys(problem, r) < kFewestGreys)
+        return refuse(r,
+                      "the pairs cover %u tenths of the grey values only, which does not show a response; take pictures "
+                      "of other exposures, or hold a response that is known",
+                      covered_greys(problem, r));
     bool falloff = problem.free & (LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3);
     if (falloff && covered_radius(r) < kSmallestRadius)
         return refuse(r,
@@ -146,9 +159,10 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
     return false;
 }
 
-bool contradicts_model(const Problem &problem, lensprof_fit_result &r) {
-    constexpr uint32_t lens = LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
-    bool is_free = (problem.free & lens) == lens;  // else it is what was held that does not fit
+bool contradicts_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+    // else it is what was held that does not fit
+    bool is_free = estimate.modes >= 0 && (problem.free & falloff) == falloff;
     if (r.inlier_share < 0.3)
         return refuse(r, "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
                       100.0 * r.inlier_share);
@@ -184,6 +198,13 @@ bool has_few_inliers(const Problem &problem, const lensprof_fit_result &r, uint3
     return false;
 }
 
+// The first image that hardly any of its pairs agrees with.
+bool disagrees(const Problem &problem, const lensprof_fit_result &r, uint32_t &image) {
+    for (image = 0; image < problem.image_count && r.image_quality; image++)
+        if (r.image_quality[image].inliers < kSmallestShare * r.image_quality[image].pairs) return true;
+    return false;
+}
+
 bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     if (!r.converged) return refuse(r, "the fit did not settle in %u iterations", r.iterations);
     if (r.covariance_size == 0 && !free_columns(problem, estimate.modes).empty())
@@ -199,10 +220,15 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
                       "the exposure of image %u rests on %u pairs that agree with the camera model; overlap it more, or "
                       "check its place in the project",
                       image, behind);
-    int uncertain = uncertain_image(problem, estimate, r);
+    if (disagrees(problem, r, image))
+        return refuse(r,
+                      "only %u of the %u pairs of image %u agree with the camera model; check its place in the project",
+                      r.image_quality[image].inliers, r.image_quality[image].pairs, image);
+    double uncertain_by;
+    int uncertain = uncertain_image(problem, estimate, r, uncertain_by);
     if (uncertain >= 0)
         return refuse(r, "the pairs leave the exposure of image %d uncertain by %.1f EV; overlap it more",
-                      uncertain, r.image_quality[uncertain].ev_sigma);
+                      uncertain, uncertain_by);
     return false;
 }
 
@@ -221,7 +247,7 @@ int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
 }  // namespace
 
 void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
-    if (lacks_data(problem, estimate, r) || contradicts_model(problem, r) || is_undetermined(problem, estimate, r))
+    if (lacks_data(problem, estimate, r) || contradicts_model(problem, estimate, r) || is_undetermined(problem, estimate, r))
         return;
     r.usable = 1;
     r.reason[0] = 0;
@@ -243,6 +269,19 @@ void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result
     else if (r.frame_share > kNotRadial && r.noise_levels * std::sqrt(r.frame_share) > kSmallestPattern)
         say(r, "%.0f %% of the residual follows one pattern over the frame (%.1f levels): the falloff is not radial",
             100.0 * r.frame_share, r.noise_levels * std::sqrt(r.frame_share));
+    else if (std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]) > kFarCentre
+             && (problem.free & LENSPROF_FREE_CENTER))
+        say(r,
+            "the centre of the falloff lies %.2f half diagonals from the middle of the frame: are the pictures cropped, "
+            "or in the wrong place of the project?",
+            std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]));
+    else if (estimate.modes > 0 && covered_greys(problem, r) < kEnoughGreys) {
+        auto [first, last] = missing_greys(problem, r);
+        say(r,
+            "hardly a pair has grey values from %.1f to %.1f (of 1): what is said of the response there, and of gamma, "
+            "rests on the prior",
+            0.1 * first, 0.1 * last);
+    }
 }
 
 }  // namespace lensprof

@@ -18,6 +18,8 @@ constexpr int kFalloff = kMaxModes;
 constexpr int kCenter = kFalloff + 9;
 constexpr int kMaxShared = kCenter + 2;
 
+constexpr double kLargestLogExposure = 20.0 * 0.6931471805599453;  // 20 EV beside the reference
+
 // Two images that share pairs, and these pairs: [first, last) of Problem::pairs.
 struct Edge {
     uint32_t image[2];

@@ -96,7 +96,8 @@ void describe_images(const Problem &problem, const Gauge &gauge, const Estimate 
             double balance = (a[c] - a[1]) - (zero[c] - zero[1]);
             q.white_balance_sigma[c] = sigma(unknown, balance) * (unknown < 0 ? 0.0 : std::exp(a[c] - a[1]));
         }
-        if (problem.images[i].known_ev_sigma > 0.0 && q.component == problem.component[problem.reference])
+        if (gauge.knows() && problem.images[i].known_ev_sigma > 0.0
+            && q.component == problem.component[problem.reference])
             q.known_ev_residual =
                 (a[measured] - gauge.known_offset()) / kLn2 / gauge.slope() - problem.images[i].known_ev;
     }

@@ -13,7 +13,6 @@
 namespace lensprof {
 namespace {
 
-constexpr double kLargestLogExposure = 20.0 * 0.6931471805599453;  // 20 EV beside the reference
 constexpr double kLargestLogBalance = 12.0;                        // white balance factors stay valid, 1e-6..1e6
 constexpr double kHeldFirmly = 1e4;  // times as firmly as in the fit: gamma's own error is stated apart from the data's
 

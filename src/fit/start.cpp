@@ -180,6 +180,12 @@ void start_exposures(const Problem &problem, double width, Estimate &estimate) {
             double off = surprise_of(problem, tie, estimate), z = off / kNear;
             tie.trust = round < kDistanceRounds ? 1.0 / std::hypot(off, kExact) : 1.0 / ((1.0 + z * z) * (1.0 + z * z));
         }
+    const auto zero = estimate.log_exposure[problem.reference];
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++)
+            if (problem.ev_unknown[i] >= 0)
+                estimate.log_exposure[i][c] = std::clamp(
+                    estimate.log_exposure[i][c], zero[c] - kLargestLogExposure, zero[c] + kLargestLogExposure);
 }
 
 std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit_options &options, int modes) {

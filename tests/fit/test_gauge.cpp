@@ -262,6 +262,21 @@ void test_one_wrong_known_exposure(void **) {
         }
 }
 
+// Known exposures that scatter by ten times what is stated are taken for what they are: they do not bend the fit.
+void test_known_exposures_that_scatter(void **) {
+    for (uint64_t seed = 1; seed <= 6; seed++) {
+        Simulation s = bracket(srgb_response(), 8, seed);
+        uint64_t random = seed + 50;
+        for (auto &image : s.fit_images) image.known_ev += lp_normal(&random);
+        FitRun run = run_fit(s);
+        double slope = s.gamma(run.exposures);
+        assert_true(s.exposure_error(run.exposures, slope) < 0.05);
+        assert_true(std::abs(std::log(slope)) < 0.5);
+        assert_true(run.result.gamma_sigma > 0.07);
+        assert_true(run.result.inlier_share > 0.9);
+    }
+}
+
 void test_what_is_asked_for_settles_gamma(void **) {
     Simulation s = bracket(linear_response(), 6, 1);
     lensprof_fit_options options = twelve_modes();
@@ -316,6 +331,8 @@ void test_one_known_exposure_says_nothing(void **) {
     s.fit_images[2].known_ev = 5.0, s.fit_images[2].known_ev_sigma = 0.001;
     FitRun with = run_fit(s);
     assert_memory_equal(without.exposures.data(), with.exposures.data(), s.images * sizeof with.exposures[0]);
+    assert_string_equal(with.result.reason, "");
+    for (const auto &q : with.quality) assert_close(q.known_ev_residual, 0.0, 0.0);
 }
 
 // Weak knowledge that agrees with the prior adds to it.
@@ -362,6 +379,7 @@ int main() {
         cmocka_unit_test(test_known_exposures_settle_gamma),
         cmocka_unit_test(test_equal_known_exposures_pull_nothing),
         cmocka_unit_test(test_one_wrong_known_exposure),
+        cmocka_unit_test(test_known_exposures_that_scatter),
         cmocka_unit_test(test_what_is_asked_for_settles_gamma),
         cmocka_unit_test(test_kinds_of_camera_differ),
         cmocka_unit_test(test_tight_known_exposures),
