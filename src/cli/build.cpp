@@ -30,7 +30,7 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("PROJECT", o.pto, "Hugin project; its v lines choose what is estimated")->required();
     app.add_option("--points", o.points,
                    "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
-    app.add_option("--points-out", o.points_out, "write the pairs used (Hugin's 16 columns)");
+    app.add_option("--points-out", o.points_out, "write the pairs used (Hugin's 16 columns), also of a fit that is not usable");
     app.add_option("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
     app.add_option("--db", o.db, "profile database; default the user's own");
     app.add_flag("--no-store", o.no_store, "do not store the profile");
@@ -186,8 +186,9 @@ lensprof_profile_key profile_key(const Options &o, const Project &project,
                       file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");
     for (size_t i = 0; i < project.files.size() && o.aperture == LENSPROF_UNKNOWN && o.points.empty(); i++) {
         const lensprof_profile_key &other = metadata[i].key;
+        auto differ = [](double a, double b) { return a != b && a != LENSPROF_UNKNOWN && b != LENSPROF_UNKNOWN; };
         if (std::filesystem::exists(project.files[i])
-            && (other.aperture != key.aperture || other.focal_mm != key.focal_mm))
+            && (differ(other.aperture, key.aperture) || differ(other.focal_mm, key.focal_mm)))
             streams.err << "lensprof: warning: " << project.files[i] << ": aperture or focal length differ from "
                         << file << "; one falloff is estimated for both\n";
     }
@@ -218,10 +219,18 @@ void add_known_exposures(const Options &o, const Project &project, const std::ve
     }
 }
 
-/* Another reference than the project's: it is held in that one's place, so that standard errors are relative to it. */
+/* Another reference than the project's: where nothing else is held, it is held in that one's place, so that standard
+ * errors are relative to it. Held exposures are relative to the project's own; there the result is moved afterwards. */
 void refer_to(uint32_t reference, FitInput &input) {
-    std::swap(input.images[input.options.reference].free, input.images[reference].free);
-    input.options.reference = reference;
+    uint32_t &own = input.options.reference, asked = 0;
+    for (const auto &image : input.images) asked |= image.free;
+    for (uint32_t i = 0; i < input.images.size(); i++) {
+        const auto &image = input.images[i];
+        bool linked = image.ev_of != i || image.red_of != i || image.blue_of != i;
+        if (linked || (i != own && image.free != asked)) return;
+    }
+    std::swap(input.images[own].free, input.images[reference].free);
+    own = reference;
 }
 
 /* A database that cannot be used shows before the work is done. */
@@ -433,7 +442,9 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     if (report.fit.usable && *report.fit.reason)
         streams.err << "lensprof: warning: " << o.pto << ": " << report.fit.reason << "\n";
     if (o.gamma_from == "exif" && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
-        streams.err << "lensprof: warning: " << o.pto << ": no EXIF exposures that differ: gamma rests on the prior\n";
+        streams.err << "lensprof: warning: " << o.pto
+                    << (o.points.empty() ? ": no EXIF exposures that differ" : ": EXIF is not read beside --points")
+                    << ": gamma rests on the prior\n";
     return report;
 }
 
@@ -481,9 +492,10 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     if (!report.fit.usable)
         streams.err << "lensprof: " << o.pto << ": not usable: " << report.fit.reason
-                    << (good         ? ""
-                        : o.no_store ? "; no project was written (--force writes it all the same)"
-                                     : "; nothing was stored (--force stores it all the same)") << "\n";
+                    << (good                   ? ""
+                        : !o.no_store          ? "; nothing was stored (--force stores it all the same)"
+                        : !o.pto_out.empty()   ? "; no project was written (--force writes it all the same)"
+                                               : "") << "\n";
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }
 
@@ -501,6 +513,8 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
     if (o.gamma_from == "exif" && o.exif_sigma == 0.0)
         throw Failure(ExitCode::usage,
                       "--gamma-from exif and --exif-sigma 0, which leaves EXIF out, contradict each other");
+    if (o.json && !o.compare.empty())
+        throw Failure(ExitCode::usage, "--compare prints a table, which --json leaves out; give one of the two");
     if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
 
     std::vector<std::string> names;

@@ -136,6 +136,24 @@ std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<Samp
     return pairs;
 }
 
+namespace {
+
+/* `number`: of the point in its file, from 1 on. */
+void check_point(const std::string &path, const Project &project, const lensprof_pair &pair, int side, size_t number) {
+    const uint32_t image = pair.image[side];
+    if (image >= project.images.size())
+        throw Failure(ExitCode::unreadable, path + ": names image " + std::to_string(image) + ", but " + project.path
+                                                + " has images 0 to " + std::to_string(project.images.size() - 1)
+                                                + "; give the points of this project");
+    const auto &camera = project.images[image].camera;
+    const double *xy = pair.xy[side];
+    if (!(xy[0] >= -1.0 && xy[1] >= -1.0 && xy[0] <= camera.width && xy[1] <= camera.height))
+        throw Failure(ExitCode::unreadable, path + ": point " + std::to_string(number)
+                                                + " is outside of " + project.names[image] + "; give the points of this project");
+}
+
+}  // namespace
+
 std::vector<lensprof_pair> read_points(const std::string &path, const Project &project) {
     std::string text = read_text(path);
     lensprof_error error{};
@@ -144,13 +162,8 @@ std::vector<lensprof_pair> read_points(const std::string &path, const Project &p
     std::vector<lensprof_pair> pairs(found);
     if (found == 0) throw Failure(ExitCode::unreadable, path + ": holds no points");
     check(lensprof_points_read(text.data(), text.size(), pairs.data(), found, &found, &error), path, &error);
-    for (const auto &pair : pairs)
-        for (uint32_t image : pair.image)
-            if (image >= project.images.size())
-                throw Failure(ExitCode::unreadable, path + ": names image " + std::to_string(image) + ", but "
-                                                        + project.path + " has images 0 to "
-                                                        + std::to_string(project.images.size() - 1)
-                                                        + "; give the points of this project");
+    for (size_t p = 0; p < pairs.size(); p++)
+        for (int side = 0; side < 2; side++) check_point(path, project, pairs[p], side, p + 1);
     return pairs;
 }
 

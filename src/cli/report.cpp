@@ -232,6 +232,7 @@ void print_gamma(const BuildReport &report, std::ostream &out) {
     out << "gamma     from " << gamma_name(fit.gamma_from);
     if (fit.gamma_from == LENSPROF_GAMMA_PRIOR) out << " (" << camera_kind_name(report.camera_kind) << " camera)";
     if (fit.gamma_sigma > 0.0) out << format(", +- %.0f %%", 100.0 * fit.gamma_sigma);
+    if (fit.gamma_from == LENSPROF_GAMMA_NONE) out << " (no prior; no +- here holds its error)";
     out << ": the common exponent of exposure, falloff and response, which pictures leave open (docs/model.md)\n";
 }
 
@@ -243,11 +244,11 @@ void print_build(const BuildReport &report, std::ostream &out) {
     print_vignettings(fit.vignetting, fit.vignettings, {fit.covariance, fit.covariance_size, fit.response.modes}, out);
     print_response(fit.response, out);
     print_gamma(report, out);
-    std::string heldout = fit.heldout_rms == LENSPROF_UNKNOWN ? std::string("not measured (too few pairs)")
-                                                              : format("%.2f", fit.heldout_rms);
-    out << format(
-        "residual  before %.2f, after %s levels of 255 on pairs left out of the fit; %.1f %% inliers of %u pairs\n",
-        fit.before_rms, heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
+    std::string heldout = "not measured: too few pairs";
+    if (fit.heldout_rms != LENSPROF_UNKNOWN)
+        heldout = format("%.2f (RMS; median %.2f) on pairs left out of the fit", fit.heldout_rms, fit.heldout_median);
+    out << format("residual  before %.2f, after %s, levels of 255; %.1f %% inliers of %u pairs\n", fit.before_rms,
+                  heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
     if (!fit.usable) out << "NOT USABLE: " << fit.reason << "\n";
     else if (*fit.reason) out << "mind      " << fit.reason << "\n";

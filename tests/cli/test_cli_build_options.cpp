@@ -122,7 +122,20 @@ void test_another_reference(void **) {
     assert_close(other["images"][base]["ev_sigma"].get<double>(), first["images"][3]["ev_sigma"].get<double>(), 0.01);
 }
 
-/* What is held settles gamma; what a picture says that cannot be is not believed. */
+/* Exposures that are held (wrongly, here) are relative to the project's own reference, whichever image is asked for. */
+void test_another_reference_beside_held_exposures(void **) {
+    const std::string pto = linear_scene() + "/pano.pto";
+    edit(pto, "\nv E[^\n]*", "");
+    edit(pto, "\nv ?\n", "\nv Eev1 Er1 Eb1\nv\n");
+    const Json first = json_of({"build", pto, "--no-store", "--json", "--exif-sigma", "0"}, not_usable);
+    const Json other =
+        json_of({"build", pto, "--no-store", "--json", "--exif-sigma", "0", "--reference", "1"}, not_usable);
+    const double moved = first["images"][1]["ev"].get<double>();
+    for (size_t i : {0u, 2u, 3u})
+        assert_close(other["images"][i]["ev"].get<double>(), first["images"][i]["ev"].get<double>() - moved, 1e-9);
+}
+
+/* What is held settles gamma. */
 void test_known_is_said(void **) {
     const std::string path = linear_scene();
     const Outcome known = run_words({"build", path + "/pano.pto", "--no-store", "--gamma-from", "known"});
@@ -149,6 +162,7 @@ int main() {
         CLI_TEST(test_falloff_curves),
         CLI_TEST(test_coverage_and_errors_are_told),
         CLI_TEST(test_another_reference),
+        CLI_TEST(test_another_reference_beside_held_exposures),
         CLI_TEST(test_known_is_said),
         CLI_TEST(test_refused_options),
     };
