@@ -53,11 +53,12 @@ LENSPROF_API void lensprof_sample_options_init(lensprof_sample_options *options)
 
 /* Finds correspondences between `count` pictures. Balanced sampling corrects the cameras first, between neighbours and
  * for its own use, where the pictures show that they are some pixels off, leaves out places whose surroundings differ in
- * the two, and all places of two pictures that hardly show the same anywhere. pairs[capacity] is the caller's; *found receives the number written.
- * With capacity 0, *found receives the number wanted, which is the capacity to give, and nothing is sampled; a smaller
- * one is refused with CAPACITY, whatever the overlaps hold. Errors: fewer than two images ARGUMENT; NaN in a float view
- * NOT_FINITE (the text names image and pixel); NO_OVERLAP; NO_SAMPLES when overlaps exist but every sample is masked,
- * black or saturated, or does not show the same; CANCELLED; MEMORY. */
+ * the two, and all places of two pictures that hardly show the same anywhere.
+ * pairs[capacity] is the caller's; *found receives the number written. With capacity 0, *found receives the number
+ * wanted, which is the capacity to give, and nothing is sampled; a smaller one is refused with CAPACITY, whatever the
+ * overlaps hold. Errors: fewer than two images ARGUMENT; NaN in a float view NOT_FINITE (the text names image and
+ * pixel); NO_OVERLAP; NO_SAMPLES when overlaps exist but every sample is masked, black or saturated, or does not show
+ * the same; CANCELLED; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_sample_overlap(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
                         lensprof_pair *pairs, uint32_t capacity, uint32_t *found, lensprof_error *error);

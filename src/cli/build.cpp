@@ -30,7 +30,8 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("PROJECT", o.pto, "Hugin project; its v lines choose what is estimated")->required();
     app.add_option("--points", o.points,
                    "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
-    app.add_option("--points-out", o.points_out, "write the pairs used (Hugin's 16 columns), also of a fit that is not usable");
+    app.add_option("--points-out", o.points_out,
+                   "write the pairs used (Hugin's 16 columns), also those of a fit that is not usable");
     app.add_option("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
     app.add_option("--db", o.db, "profile database; default the user's own");
     app.add_flag("--no-store", o.no_store, "do not store the profile");

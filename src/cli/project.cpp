@@ -148,8 +148,8 @@ void check_point(const std::string &path, const Project &project, const lensprof
     const auto &camera = project.images[image].camera;
     const double *xy = pair.xy[side];
     if (!(xy[0] >= -1.0 && xy[1] >= -1.0 && xy[0] <= camera.width && xy[1] <= camera.height))
-        throw Failure(ExitCode::unreadable, path + ": point " + std::to_string(number)
-                                                + " is outside of " + project.names[image] + "; give the points of this project");
+        throw Failure(ExitCode::unreadable, path + ": point " + std::to_string(number) + " is outside of "
+                                                + project.names[image] + "; give the points of this project");
 }
 
 }  // namespace

@@ -247,7 +247,8 @@ int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
 }  // namespace
 
 void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
-    if (lacks_data(problem, estimate, r) || contradicts_model(problem, estimate, r) || is_undetermined(problem, estimate, r))
+    if (lacks_data(problem, estimate, r) || contradicts_model(problem, estimate, r)
+        || is_undetermined(problem, estimate, r))
         return;
     r.usable = 1;
     r.reason[0] = 0;

@@ -188,8 +188,8 @@ bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
     return change.allFinite();
 }
 
-// Whether most blocks match better under the rotation than by the project: what moved alone prefers it, too, but not the
-// scene about it.
+// Whether most blocks match better under the rotation than by the project: what moved prefers it, too, but not the scene
+// about it.
 bool Matcher::most_prefer(size_t n, const Rotation &rotation) const {
     size_t better = 0, worse = 0;
     Block<4> other;

@@ -16,10 +16,10 @@ constexpr uint32_t kPaperRound = 8192;
 constexpr double kWidestCone = 1.5;   // radians: beyond, the border of a frame may be farther off than its samples
 constexpr double kSlack = 0.02;       // of the cosine to a cone's edge: projects may be off
 constexpr double kAlike = 0.5;          // correlation of places that may show the same,
-constexpr double kSurely = 0.8;         // and of those that clearly do: a share of 0 to .12 of the places with texture
-constexpr double kEnoughSurely = 0.13;  // where a project is wrong, and 0 to 2.4 times as many as by chance; where it is
-constexpr double kFewestSurely = 0.05;  // right, and things moved on 44 % of the places, .08 and more, and 3.2 times
-constexpr double kAboveChance = 2.8;
+constexpr double kSurely = 0.8;         // and of those that clearly do
+// Such places, as a share of those with texture: 0 to .12 where a project is wrong, 0 to 2.4 times the share beside; .08
+// and more, and 3.2 times, where it is right and things moved on 44 % of the places; .43 and more in real sequences.
+constexpr double kEnoughSurely = 0.13, kFewestSurely = 0.05, kAboveChance = 2.8;
 constexpr double kBeside = 12.0;        // coarse pixels
 constexpr uint32_t kFewestTold = 20;
 constexpr size_t kMostNeighbours = 8;   // of an image that are registered, those with the largest overlap

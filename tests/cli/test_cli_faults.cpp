@@ -206,6 +206,8 @@ void test_points_of_other_images(void **) {
     const std::string path = work("points.txt");
     save_text(path, "0 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n0 4 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n");
     assert_refused(unreadable, build_of(scene("pano.pto")) + Words{"--points", path}, {path, "4"});
+    save_text(path, "0 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n0 1 10 10 20 9e9 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n");
+    assert_refused(unreadable, build_of(scene("pano.pto")) + Words{"--points", path}, {path, "point 2", "img001.png"});
 }
 
 /* Where no fit can be made at all, --json still prints the object with the reason. */
@@ -252,6 +254,7 @@ void test_apply_without_a_result(void **) {
 void test_bad_truth(void **) {
     const Words words = build_of(scene("pano.pto")) + Words{"--compare", work("truth.json")};
     assert_refused(unreadable, words, {work("truth.json")});
+    assert_refused(usage, words + Words{"--json"}, {"--compare", "--json"});
     for (const char *text : {"{", "hello"}) {
         save_text(work("truth.json"), text);
         assert_refused(unreadable, words, {work("truth.json")});
