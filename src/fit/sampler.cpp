@@ -17,9 +17,10 @@ constexpr double kWidestCone = 1.5;   // radians: beyond, the border of a frame 
 constexpr double kSlack = 0.02;       // of the cosine to a cone's edge: projects may be off
 constexpr double kAlike = 0.5;          // correlation of places that may show the same,
 constexpr double kSurely = 0.8;         // and of those that clearly do
-// Such places, as a share of those with texture: 0 to .12 where a project is wrong, 0 to 2.4 times the share beside; .08
-// and more, and 3.2 times, where it is right and things moved on 44 % of the places; .43 and more in real sequences.
-constexpr double kEnoughSurely = 0.13, kFewestSurely = 0.05, kAboveChance = 2.8;
+// Shares of the places with texture. Alike: .05 to .31 where a project is wrong, .43 and more in real sequences and with
+// 30 % of random pixels. Where things moved on 44 % of the places it can be .22, too, but .08 and more are surely alike,
+// 3.2 times as many as beside; of a wrong project up to .1 are, 2.4 times.
+constexpr double kEnoughAlike = 0.4, kFewestSurely = 0.05, kAboveChance = 2.8;
 constexpr double kBeside = 12.0;        // coarse pixels
 constexpr uint32_t kFewestTold = 20;
 constexpr size_t kMostNeighbours = 8;   // of an image that are registered, those with the largest overlap
@@ -177,6 +178,7 @@ bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
     if (!told) return true;
     Likenesses &edge = likenesses_[edge_of(i, j)];
     edge.told++;
+    if (*told > kAlike) edge.alike++;
     if (*told > kSurely) edge.surely++;
     const auto side = static_cast<int>(std::abs(x) + std::abs(y));  // another one from place to place
     (side % 2 ? at.x : at.y) += (side / 2 % 2 ? kBeside : -kBeside) * grey_[j]->level[0].pixel;
@@ -191,7 +193,7 @@ bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
 bool Sampler::is_in_place(uint32_t number) const {
     const Likenesses &edge = likenesses_[number];
     const double surely = edge.surely, told = edge.told, chance = edge.chance, beside = edge.beside;
-    if (told < kFewestTold || surely > kEnoughSurely * told) return true;
+    if (told < kFewestTold || edge.alike > kEnoughAlike * told) return true;
     return surely > kFewestSurely * told && surely * beside > kAboveChance * chance * told;
 }
 

@@ -53,10 +53,10 @@ private:
         bool known;
     };
 
-    // Places of a pair of neighbours that have texture, and those of them that clearly show the same; the same numbers
-    // beside where the other image should show them.
+    // Places of a pair of neighbours that have texture, and those of them that may and that clearly do show the same;
+    // places beside where the other image should show them, and those that clearly do.
     struct Likenesses {
-        std::atomic<uint32_t> told{0}, surely{0}, beside{0}, chance{0};
+        std::atomic<uint32_t> told{0}, alike{0}, surely{0}, beside{0}, chance{0};
     };
 
     static Cone cone_of(const lensprof_camera &camera);
