@@ -44,9 +44,12 @@ size_t count_informative(const Problem &problem) {
     return static_cast<size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
 }
 
+// So many ends of pairs in a bin are no more than a few.
+uint32_t few(const lensprof_fit_result &r) { return 2 + r.pairs / 1000; }
+
 // Whether a tenth of the grey values holds more than a few samples.
 bool is_covered(const Problem &problem, const lensprof_fit_result &r, int bin) {
-    return r.grey_ends[bin] > static_cast<uint32_t>(problem.channels) * (2 + r.pairs / 1000);
+    return r.grey_ends[bin] > static_cast<uint32_t>(problem.channels) * few(r);
 }
 
 uint32_t covered_greys(const Problem &problem, const lensprof_fit_result &r) {
@@ -68,7 +71,7 @@ std::pair<int, int> missing_greys(const Problem &problem, const lensprof_fit_res
 // Outer edge of the outermost ring that holds more than a few pair ends.
 double covered_radius(const lensprof_fit_result &r) {
     for (int bin = LENSPROF_COVERAGE_BINS; bin > 0; bin--)
-        if (r.radius_ends[bin - 1] > 2 + r.pairs / 1000) return bin / static_cast<double>(LENSPROF_COVERAGE_BINS);
+        if (r.radius_ends[bin - 1] > few(r)) return bin / static_cast<double>(LENSPROF_COVERAGE_BINS);
     return 0.0;
 }
 
@@ -253,6 +256,7 @@ void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result
     r.usable = 1;
     r.reason[0] = 0;
     int odd = odd_image(problem, r), contradicting = contradicting_image(problem, r);
+    double off_centre = std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]);
     if (odd >= 0)
         say(r,
             "most pairs of image %d disagree with the camera model (median residual %.1f levels): check its place in "
@@ -270,12 +274,11 @@ void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result
     else if (r.frame_share > kNotRadial && r.noise_levels * std::sqrt(r.frame_share) > kSmallestPattern)
         say(r, "%.0f %% of the residual follows one pattern over the frame (%.1f levels): the falloff is not radial",
             100.0 * r.frame_share, r.noise_levels * std::sqrt(r.frame_share));
-    else if (std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]) > kFarCentre
-             && (problem.free & LENSPROF_FREE_CENTER))
+    else if (off_centre > kFarCentre && (problem.free & LENSPROF_FREE_CENTER))
         say(r,
             "the centre of the falloff lies %.2f half diagonals from the middle of the frame: are the pictures cropped, "
             "or in the wrong place of the project?",
-            std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]));
+            off_centre);
     else if (estimate.modes > 0 && covered_greys(problem, r) < kEnoughGreys) {
         auto [first, last] = missing_greys(problem, r);
         say(r,

@@ -71,10 +71,9 @@ struct Matcher {
 
     void find_places();
     bool cut(size_t level, const Sight &at, double du, double dv, Block<4> &out) const;
-    double mean_correlation(size_t level, const Rotation &rotation, size_t &count) const;
+    std::vector<std::optional<double>> correlations(size_t level, const Rotation &rotation) const;
     void common_shift(double shift[2]) const;
     bool refine(size_t level, const double *shift, Rotation &rotation) const;
-    bool most_prefer(size_t level, const Rotation &rotation) const;
     double median_shift(const Rotation &rotation) const;
 };
 
@@ -104,15 +103,15 @@ bool Matcher::cut(size_t n, const Sight &at, double du, double dv, Block<4> &out
     return out.cut(level, at.x + du * level.pixel, at.y + dv * level.pixel, first_grey.level[n].pixel, at.map);
 }
 
-double Matcher::mean_correlation(size_t n, const Rotation &rotation, size_t &count) const {
-    double sum = 0.0;
-    count = 0;
+std::vector<std::optional<double>> Matcher::correlations(size_t n, const Rotation &rotation) const {
+    std::vector<std::optional<double>> result;
     Block<4> other;
     Sight at;
-    for (const Place &p : places)
-        if (sight(first, second, rotation, 1.0, p.x, p.y, at) && cut(n, at, 0.0, 0.0, other))
-            sum += p.block[n].correlation(other), count++;
-    return count ? sum / static_cast<double>(count) : 0.0;
+    for (const Place &p : places) {
+        bool seen = sight(first, second, rotation, 1.0, p.x, p.y, at) && cut(n, at, 0.0, 0.0, other);
+        result.push_back(seen ? std::optional(p.block[n].correlation(other)) : std::nullopt);
+    }
+    return result;
 }
 
 // The shift, in coarse pixels of the second image, under which all blocks together match best.
@@ -188,23 +187,6 @@ bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
     return change.allFinite();
 }
 
-// Whether most blocks match better under the rotation than by the project: what moved prefers it, too, but not the scene
-// about it.
-bool Matcher::most_prefer(size_t n, const Rotation &rotation) const {
-    size_t better = 0, worse = 0;
-    Block<4> other;
-    Sight at;
-    for (const Place &p : places) {
-        auto match = [&](const Rotation &by) {
-            bool seen = sight(first, second, by, 1.0, p.x, p.y, at) && cut(n, at, 0.0, 0.0, other);
-            return seen ? p.block[n].correlation(other) : 0.0;
-        };
-        double gain = match(rotation) - match({});
-        better += gain > kPreferred, worse += gain < -kPreferred;
-    }
-    return better > 2 * worse;
-}
-
 double Matcher::median_shift(const Rotation &rotation) const {
     std::vector<double> shifts;
     for (const Place &p : places) {
@@ -216,6 +198,25 @@ double Matcher::median_shift(const Rotation &rotation) const {
     auto middle = shifts.begin() + static_cast<ptrdiff_t>(shifts.size() / 2);
     std::nth_element(shifts.begin(), middle, shifts.end());
     return *middle;
+}
+
+double mean_of(const std::vector<std::optional<double>> &correlations, size_t &count) {
+    double sum = 0.0;
+    count = 0;
+    for (const auto &one : correlations)
+        if (one) sum += *one, count++;
+    return count ? sum / static_cast<double>(count) : 0.0;
+}
+
+// Whether most blocks match better under the rotation than by the project: what moved prefers it, too, but not the scene
+// about it.
+bool most_prefer(const std::vector<std::optional<double>> &rotated, const std::vector<std::optional<double>> &project) {
+    size_t better = 0, worse = 0;
+    for (size_t p = 0; p < rotated.size(); p++) {
+        double gain = rotated[p].value_or(0.0) - project[p].value_or(0.0);
+        better += gain > kPreferred, worse += gain < -kPreferred;
+    }
+    return better > 2 * worse;
 }
 
 // Of every four pixels the mean of the middle two: one that is wrong does not count.
@@ -245,11 +246,16 @@ bool place_of(const lensprof_camera &first, const lensprof_camera &second, const
     return lensprof_camera_project(&second, direction[0], direction[1], xy);
 }
 
+void unit_vector(const double direction[2], double v[3]) {
+    v[0] = std::cos(direction[1]) * std::sin(direction[0]);
+    v[1] = std::sin(direction[1]);
+    v[2] = std::cos(direction[1]) * std::cos(direction[0]);
+}
+
 void rotate(const Rotation &rotation, double sign, double direction[2]) {
     if (rotation[0] == 0.0 && rotation[1] == 0.0 && rotation[2] == 0.0) return;
-    Eigen::Vector3d v{std::cos(direction[1]) * std::sin(direction[0]), std::sin(direction[1]),
-                      std::cos(direction[1]) * std::cos(direction[0])};
-    Eigen::Vector3d axis(rotation.data());
+    Eigen::Vector3d v, axis(rotation.data());
+    unit_vector(direction, v.data());
     v = Eigen::AngleAxisd(sign * axis.norm(), axis.normalized()) * v;
     direction[0] = std::atan2(v[0], v[2]);
     direction[1] = std::asin(std::clamp(v[1], -1.0, 1.0));
@@ -299,17 +305,19 @@ Rotation registration(const lensprof_camera &first, const GreyLevels &first_grey
     matcher.find_places();
     if (matcher.places.size() < kFewest) return {};
     size_t compared, found_in;
-    double project = matcher.mean_correlation(1, {}, compared), shift[2];
+    const auto by_project = matcher.correlations(1, {});
+    double project = mean_of(by_project, compared), shift[2];
     if (compared < kFewest || project > kRight) return {};
     matcher.common_shift(shift);
     Rotation rotation{};
     if (!matcher.refine(0, shift, rotation) || !matcher.refine(0, none, rotation)) return {};
     for (int round = 0; round < 2; round++)
         if (!matcher.refine(1, none, rotation)) return {};
-    double found = matcher.mean_correlation(1, rotation, found_in);
+    const auto by_rotation = matcher.correlations(1, rotation);
+    double found = mean_of(by_rotation, found_in);
     double view_pixel = 0.5 * second_grey.level[1].pixel;
     bool is_better = 2 * found_in > compared && found > kMatch && found > project + kBetter
-        && matcher.most_prefer(1, rotation) && matcher.median_shift(rotation) > view_pixel;
+        && most_prefer(by_rotation, by_project) && matcher.median_shift(rotation) > view_pixel;
     return is_better ? rotation : Rotation{};
 }
 

@@ -10,6 +10,9 @@
 
 namespace lensprof {
 
+// Of a direction in longitude and latitude, radians.
+void unit_vector(const double direction[2], double v[3]);
+
 // Axis times angle, radians: where direction v of one image is in the other; the other way round with sign -1.
 using Rotation = std::array<double, 3>;
 void rotate(const Rotation &rotation, double sign, double direction[2]);

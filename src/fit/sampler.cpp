@@ -28,12 +28,6 @@ constexpr size_t kMostRefused = 4;    // pairs of places for one wanted candidat
 
 double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-void unit_vector(const double direction[2], double v[3]) {
-    v[0] = std::cos(direction[1]) * std::sin(direction[0]);
-    v[1] = std::sin(direction[1]);
-    v[2] = std::cos(direction[1]) * std::cos(direction[0]);
-}
-
 double angle_between(const double a[3], const double b[3]) { return std::acos(std::clamp(dot(a, b), -1.0, 1.0)); }
 
 // Unit vector of a pixel's direction; false when it has none.
@@ -98,10 +92,9 @@ void Sampler::find_neighbours() {
             neighbours_[i].push_back(j);
             neighbours_[j].push_back(i);
         }
-    uint32_t edges = 0;
     for (const auto &list : neighbours_) {
-        first_edge_.push_back(edges);
-        edges += static_cast<uint32_t>(list.size());
+        first_edge_.push_back(edge_numbers_);
+        edge_numbers_ += static_cast<uint32_t>(list.size());
     }
 }
 
@@ -147,9 +140,8 @@ void Sampler::register_neighbours() {
         return !wanted;
     };
     edges.erase(std::remove_if(edges.begin(), edges.end(), is_left_out), edges.end());
-    const size_t numbers = first_edge_.back() + neighbours_.back().size();
-    rotations_.assign(numbers, {});
-    likenesses_ = std::vector<Likenesses>(numbers);
+    rotations_.assign(edge_numbers_, {});
+    likenesses_ = std::vector<Likenesses>(edge_numbers_);
     auto work = [&](uint32_t e) {
         auto [i, j, overlap] = edges[e];
         rotations_[edge_of(i, j)] = registration(camera(i), *grey_[i], camera(j), *grey_[j]);
@@ -298,7 +290,7 @@ std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         return all[a].gradient != all[b].gradient ? all[a].gradient < all[b].gradient : a < b;
     });
-    std::vector<bool> seen(first_edge_.back() + neighbours_.back().size(), false), taken(all.size(), false);
+    std::vector<bool> seen(edge_numbers_, false), taken(all.size(), false);
     for (size_t n = 0; n < all.size(); n++) seen[edge[n] = edge_of(all[n].image[0], all[n].image[1])] = true;
     const auto edges = std::max<ptrdiff_t>(std::count(seen.begin(), seen.end(), true), 1);
     std::vector<uint32_t> per_edge(seen.size(), 0), per_radius(kRadiusBins, 0), per_grey(kGreyBins, 0);

@@ -79,6 +79,7 @@ private:
     std::vector<Cone> cones_;
     std::vector<std::vector<uint32_t>> neighbours_;  // ascending
     std::vector<uint32_t> first_edge_;               // number of every image's first pair with a neighbour
+    uint32_t edge_numbers_ = 0;                      // edge_of() is less
     std::vector<std::unique_ptr<GreyLevels>> grey_;  // of every view
     std::vector<Rotation> rotations_;                // of every pair of neighbours, from the lower image to the other
     std::vector<Likenesses> likenesses_;             // of every pair of neighbours

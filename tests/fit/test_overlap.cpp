@@ -39,6 +39,16 @@ Simulation simulate(const lensprof_response &response, uint32_t pairs, double no
     return s;
 }
 
+// Noise of 2 levels; images of a pair are up to `reach` apart.
+Simulation mosaic(uint32_t images, uint32_t reach, uint32_t pairs, double outliers, uint64_t seed) {
+    Simulation s;
+    s.response = srgb_response();
+    s.images = images;
+    s.reach = reach;
+    s.make(pairs, 2.0, outliers, 1.0, seed);
+    return s;
+}
+
 // True transfer residual without noise: what a user of corrected pictures sees.
 double clean_rms(const Simulation &s, const Run &run) {
     Simulation clean = s;
@@ -90,11 +100,7 @@ void test_survives_outliers(void **) {
 // A mosaic with hardly more than one pair an edge, where no edge can tell by itself which of its pairs are wrong.
 void test_few_pairs_on_many_images(void **) {
     for (uint64_t seed = 1; seed <= 12; seed++) {
-        Simulation s;
-        s.response = srgb_response();
-        s.images = 40;
-        s.reach = 4;
-        s.make(200, 2.0, 0.15, 1.0, seed);
+        Simulation s = mosaic(40, 4, 200, 0.15, seed);
         Run run = fit(s, default_options());
         assert_true(s.exposure_error(run.exposures, run.gamma) < 0.6);
     }
@@ -104,11 +110,7 @@ void test_few_pairs_on_many_images(void **) {
 // with each other.
 void test_a_large_edge_in_the_wrong_place(void **) {
     for (uint64_t seed = 1; seed <= 8; seed++) {
-        Simulation s;
-        s.response = srgb_response();
-        s.images = 4;
-        s.reach = 3;
-        s.make(1500, 2.0, 0.0, 1.0, seed);
+        Simulation s = mosaic(4, 3, 1500, 0.0, seed);
         uint64_t random = seed;
         uint32_t right = 0;
         std::vector<lensprof_pair> pairs;

@@ -133,14 +133,17 @@ void test_a_misplaced_image_is_named(void **) {
         else assert_true(run.quality[i].median_residual < 3.0);
 }
 
+// Drops all pairs of the last image but so many.
+void keep_of_last(Simulation &s, uint32_t count) {
+    uint32_t kept = 0, last = s.images - 1;
+    drop(s, [&](const lensprof_pair &p) { return (p.image[0] == last || p.image[1] == last) && kept++ >= count; });
+}
+
 // The last image keeps seven pairs, of which five show something else: two agree on an exposure by chance.
 void test_an_exposure_must_rest_on_pairs(void **) {
     Simulation s = simulate(2000, 1.0, 0.0, 42, 3);
-    uint32_t kept = 0, last = s.images - 1;
-    auto beyond = std::remove_if(s.pairs.begin(), s.pairs.end(), [&](const lensprof_pair &p) {
-        return (p.image[0] == last || p.image[1] == last) && kept++ >= 7;
-    });
-    s.pairs.erase(beyond, s.pairs.end());
+    const uint32_t last = s.images - 1;
+    keep_of_last(s, 7);
     assert_int_equal(run_fit(s).result.usable, 1);
     uint32_t seen = 0;
     for (auto &p : s.pairs)
@@ -176,11 +179,8 @@ void test_gamma_is_no_doubt_of_an_exposure(void **) {
 // A link says what two pairs could not.
 void test_linked_images_share_their_pairs(void **) {
     Simulation s = simulate(2000, 1.0, 0.0, 42, 3);
-    uint32_t kept = 0, last = s.images - 1;
-    auto beyond = std::remove_if(s.pairs.begin(), s.pairs.end(), [&](const lensprof_pair &p) {
-        return (p.image[0] == last || p.image[1] == last) && kept++ >= 2;
-    });
-    s.pairs.erase(beyond, s.pairs.end());
+    const uint32_t last = s.images - 1;
+    keep_of_last(s, 2);
     assert_true(says(run_fit(s), "exposure of image 7 rests on"));
     s.fit_images[last].ev_of = s.fit_images[last].red_of = s.fit_images[last].blue_of = last - 1;
     assert_false(says(run_fit(s), "exposure of image 7 rests on"));
