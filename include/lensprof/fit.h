@@ -28,6 +28,13 @@ extern "C" {
 #define LENSPROF_FREE_RED 0x40u
 #define LENSPROF_FREE_BLUE 0x80u
 
+/* How the unknowns are told from the correspondences. All give the same kind of result. */
+typedef enum lensprof_fit_method {
+    LENSPROF_METHOD_TRANSFER = 0,         /* default: d'Angelo 2007, grey values transferred from one image to the other */
+    LENSPROF_METHOD_RADIANCE = 1,         /* Goldman & Chen 2005: with one radiance a scene point */
+    LENSPROF_METHOD_TRANSFER_FUNCTION = 2 /* Kim & Pollefeys 2004: by the transfer functions of image pairs */
+} lensprof_fit_method;
+
 typedef enum lensprof_loss {
     LENSPROF_LOSS_ROBUST = 0, /* default: noise-weighted, redescending, a pair is trusted as a whole */
     LENSPROF_LOSS_HUBER = 1,  /* the paper's, equation 11 */
@@ -79,7 +86,7 @@ typedef struct lensprof_fit_options {
     uint32_t gamma_from;    /* lensprof_gamma_from */
     uint32_t camera_kind;   /* lensprof_camera_kind */
     uint32_t threads;       /* at most so many, the caller's included; 0 = one a core. The result does not depend on it */
-    uint32_t reserved;      /* 0 */
+    uint32_t method;        /* lensprof_fit_method */
     const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
     lensprof_vignetting vignetting;   /* the value where fixed */
     lensprof_progress progress;       /* or NULL */
@@ -143,7 +150,7 @@ LENSPROF_API void lensprof_fit_result_init(lensprof_fit_result *result);
 /* Fits `pair_count` pairs over `image_count` images. exposures[image_count] receives what every image got,
  * relative to the reference. A fit that ran returns OK even when the result is poor: see `usable`.
  * Errors: indices, values outside 0..1, unusable options ARGUMENT; NaN NOT_FINITE; no pairs NO_SAMPLES;
- * nothing free NO_UNKNOWNS; CANCELLED; MEMORY. */
+ * nothing free NO_UNKNOWNS; a method that this version lacks UNSUPPORTED; CANCELLED; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_fit_overlap(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
                      const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,

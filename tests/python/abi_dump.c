@@ -196,7 +196,7 @@ static void print_fit_structs(void)
     FIELD(lensprof_fit_options, gamma_from);
     FIELD(lensprof_fit_options, camera_kind);
     FIELD(lensprof_fit_options, threads);
-    FIELD(lensprof_fit_options, reserved);
+    FIELD(lensprof_fit_options, method);
     FIELD(lensprof_fit_options, response);
     FIELD(lensprof_fit_options, vignetting);
     FIELD(lensprof_fit_options, progress);
@@ -354,6 +354,9 @@ static void print_enumerations(void)
     VALUE(LENSPROF_PROCESSING_CORRECTED);
     VALUE(LENSPROF_SAMPLING_BALANCED);
     VALUE(LENSPROF_SAMPLING_PAPER);
+    VALUE(LENSPROF_METHOD_TRANSFER);
+    VALUE(LENSPROF_METHOD_RADIANCE);
+    VALUE(LENSPROF_METHOD_TRANSFER_FUNCTION);
     VALUE(LENSPROF_LOSS_ROBUST);
     VALUE(LENSPROF_LOSS_HUBER);
     VALUE(LENSPROF_LOSS_SQUARED);

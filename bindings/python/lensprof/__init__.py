@@ -5,8 +5,8 @@ with a `status`; what it could not be asked (an array of a wrong type, shape or 
 ValueError.
 """
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, MODES_AUTO, RESPONSE_SAMPLES, UNKNOWN, CameraKind,
-                   Direction, Encoding, Free, GammaFrom, Layout, Loss, Processing, Projection, ResponseKind, SampleType,
-                   Sampling, Saturated, Status, StoreMode)
+                   Direction, Encoding, Free, GammaFrom, Layout, Loss, Method, Processing, Projection, ResponseKind,
+                   SampleType, Sampling, Saturated, Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import EXPOSURE_DTYPE, IMAGE_QUALITY_DTYPE, PAIR_DTYPE
 from ._library import Error, status_name, version
@@ -22,7 +22,7 @@ from .store import Store, StoreRow
 __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "Direction", "EMOR_MODES",
     "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FitImage", "FitOptions", "FitResult", "Free", "GammaFrom",
-    "IMAGE_QUALITY_DTYPE", "Layout", "Loss", "MODES_AUTO", "PAIR_DTYPE", "Plan", "Processing", "Profile",
+    "IMAGE_QUALITY_DTYPE", "Layout", "Loss", "MODES_AUTO", "Method", "PAIR_DTYPE", "Plan", "Processing", "Profile",
     "ProfileKey", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Response", "ResponseKind",
     "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreMode",
     "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_overlap", "layout_channels",

@@ -133,6 +133,13 @@ class Free(IntFlag):
     BLUE = 0x80
 
 
+class Method(IntEnum):
+    """d'Angelo 2007, Goldman & Chen 2005, Kim & Pollefeys 2004."""
+    TRANSFER = 0
+    RADIANCE = 1
+    TRANSFER_FUNCTION = 2
+
+
 class Loss(IntEnum):
     """Noise-weighted and redescending; the paper's equation 11; or least squares."""
     ROBUST = 0
@@ -176,6 +183,7 @@ ENUMS = {
     "LENSPROF_PROCESSING_": Processing,
     "LENSPROF_SAMPLING_": Sampling,
     "LENSPROF_FREE_": Free,
+    "LENSPROF_METHOD_": Method,
     "LENSPROF_LOSS_": Loss,
     "LENSPROF_GAMMA_": GammaFrom,
     "LENSPROF_CAMERA_": CameraKind,
@@ -271,7 +279,7 @@ class FitOptions(Structure):
     _fields_ = [("struct_size", c_uint32), ("channels", c_uint32), ("reference", c_uint32), ("free", c_uint32),
                 ("modes", c_uint32), ("loss", c_uint32), ("huber_levels", c_double), ("prior_weight", c_double),
                 ("max_iterations", c_uint32), ("vignettings", c_uint32), ("gamma_from", c_uint32),
-                ("camera_kind", c_uint32), ("threads", c_uint32), ("reserved", c_uint32), ("response", POINTER(Response)), ("vignetting", Vignetting),
+                ("camera_kind", c_uint32), ("threads", c_uint32), ("method", c_uint32), ("response", POINTER(Response)), ("vignetting", Vignetting),
                 ("progress", Progress), ("progress_user", c_void_p)]
 
 

@@ -7,7 +7,7 @@ from typing import Any, Iterable, Optional, Sequence, Union
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import CameraKind, Free, GammaFrom, Loss
+from ._abi import CameraKind, Free, GammaFrom, Loss, Method
 from ._library import check, lib, version
 from ._progress import WithProgress, calling
 from ._struct import (Curves, Enumerated, Flag, Nested, OptionalReference, Struct, Text, Value, Vector, integer,
@@ -46,7 +46,8 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     channels: 1 or 3. reference: the image whose exposure stays as given. free: Free.RESPONSE .. CENTER. modes: EMoR
     modes 0..25 or MODES_AUTO. huber_levels: levels of 255. prior_weight: 0 = none, as in the paper. response,
     vignetting: the values where fixed (None = EMoR mean). vignettings: falloff curves, 1, 3 or 0 = chosen by held-out
-    error. gamma_from: GammaFrom.AUTO, PRIOR or EXPOSURES. camera_kind: whose responses the prior is of.
+    error. gamma_from: GammaFrom.AUTO, PRIOR or EXPOSURES. camera_kind: whose responses the prior is of. method:
+    Method.TRANSFER, RADIANCE or TRANSFER_FUNCTION.
     threads: at most so many, 0 = one a core; the result does not depend on it.
 
     progress: called now and then during a fit with a fraction 0..1; the fit is cancelled when it returns True, and
@@ -65,6 +66,7 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     gamma_from = Enumerated(GammaFrom)
     camera_kind = Enumerated(CameraKind)
     threads: int
+    method = Enumerated(Method)
     response = OptionalReference(Response)
     vignetting = Nested(Vignetting)
 
