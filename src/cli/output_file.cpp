@@ -114,6 +114,15 @@ void OutputFile::write(const void *data, size_t bytes) {
         fail(path_, write_error != 0 ? write_error : errno);
 }
 
+void OutputFiles::add(const std::string &path, const std::string &text) {
+    files_.push_back(std::make_unique<OutputFile>(path));
+    files_.back()->write(text.data(), text.size());
+}
+
+void OutputFiles::commit() {
+    for (auto &file : files_) file->commit();
+}
+
 void write_file(const std::string &path, const void *data, size_t bytes) {
     OutputFile output(path);
     output.write(data, bytes);

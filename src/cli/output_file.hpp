@@ -3,7 +3,9 @@
 #define LENSPROF_CLI_OUTPUT_FILE_HPP
 
 #include <cstddef>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace lensprof {
 
@@ -32,6 +34,16 @@ private:
     std::string path_;    /* as given, for texts */
     std::string target_;  /* with symbolic links followed */
     std::string temporary_;
+};
+
+/* Files that are complete beside their final names until everything else has worked. */
+class OutputFiles {
+public:
+    void add(const std::string &path, const std::string &text);
+    void commit();
+
+private:
+    std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
 /* Writes the file `path` with these bytes, complete or not at all. */

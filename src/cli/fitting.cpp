@@ -1,0 +1,144 @@
+#include "fitting.hpp"
+
+#include <cmath>
+#include <regex>
+
+#include "interrupt.hpp"
+#include "project.hpp"
+
+namespace lensprof {
+namespace {
+
+uint32_t modes_of(const std::string &text) {
+    if (text == "auto") return LENSPROF_MODES_AUTO;
+    size_t used = 0;
+    int value = -1;
+    try {
+        value = std::stoi(text, &used);
+    } catch (const std::exception &) {
+    }
+    if (used != text.size() || value < 0 || value > LENSPROF_EMOR_MODES)
+        throw Failure(ExitCode::usage, "--modes " + text + ": give 0..25 or auto");
+    return static_cast<uint32_t>(value);
+}
+
+int on_progress(double done, void *progress) {
+    static_cast<Progress *>(progress)->update("fitting", done);
+    return interrupted();
+}
+
+}  // namespace
+
+void declare_fit(CLI::App &app, FitOptions &o) {
+    app.add_option("--method", o.method, "transfer (d'Angelo 2007)")->check(CLI::IsMember({"transfer"}));
+    app.add_option("--modes", o.modes, "EMoR modes of the response: 0..25 or auto (held-out error decides)");
+    app.add_option("--loss", o.loss, "robust, huber (the paper's) or squared")
+        ->check(CLI::IsMember({"robust", "huber", "squared"}));
+    app.add_option("--huber", o.huber, "sigma of the Huber loss, levels of 255")->check(in_range(0.01, 255.0));
+    app.add_option("--prior", o.prior, "weight of the priors; 0 = none, as in the paper")->check(in_range(0.0, 1e6));
+    app.add_option("--gamma-from", o.gamma_from,
+                   "what settles the common exponent of exposure, falloff and response: auto (EXIF exposures that "
+                   "differ, and the prior, each by its standard error), exif, prior, known (the project's response)")
+        ->check(CLI::IsMember({"auto", "exif", "prior", "known"}));
+    app.add_option("--exif-sigma", o.exif_sigma, "standard error of an EXIF exposure, EV; 0 = do not use them")
+        ->check(in_range(0.0, 10.0));
+    app.add_option("--camera-kind", o.camera_kind, "whose responses the prior is of: any, film or digital")
+        ->check(CLI::IsMember({"any", "film", "digital"}));
+}
+
+void check_fit_options(const FitOptions &o) {
+    if (o.gamma_from == "exif" && o.exif_sigma == 0.0)
+        throw Failure(ExitCode::usage,
+                      "--gamma-from exif and --exif-sigma 0, which leaves EXIF out, contradict each other");
+}
+
+lensprof_fit_options fit_options(const FitOptions &o) {
+    lensprof_fit_options options;
+    lensprof_fit_options_init(&options);
+    options.modes = modes_of(o.modes);
+    options.loss = o.loss == "huber"     ? LENSPROF_LOSS_HUBER
+                   : o.loss == "squared" ? LENSPROF_LOSS_SQUARED
+                                         : LENSPROF_LOSS_ROBUST;
+    options.gamma_from = o.gamma_from == "exif"    ? LENSPROF_GAMMA_EXPOSURES
+                         : o.gamma_from == "prior" ? LENSPROF_GAMMA_PRIOR
+                                                   : LENSPROF_GAMMA_AUTO;
+    if (o.gamma_from == "known") options.free &= ~LENSPROF_FREE_RESPONSE;
+    options.camera_kind = camera_kind_of_name(o.camera_kind);
+    options.huber_levels = o.huber;
+    options.prior_weight = o.prior;
+    return options;
+}
+
+void add_known_exposures(const FitOptions &o, const std::vector<std::string> &files,
+                         const std::vector<PictureMetadata> &metadata, std::vector<lensprof_fit_image> &images,
+                         Streams &streams) {
+    constexpr double farthest = 40.0; /* EV from 1 s, f/1, ISO 100: no picture was ever taken there */
+    for (size_t i = 0; i < images.size() && o.exif_sigma > 0.0; i++) {
+        if (!metadata[i].exif_ev) continue;
+        if (!(std::fabs(*metadata[i].exif_ev) < farthest)) {
+            streams.err << "lensprof: warning: " << files[i]
+                        << ": time, aperture and ISO in its EXIF cannot be true and are not used\n";
+            continue;
+        }
+        images[i].known_ev = *metadata[i].exif_ev;
+        images[i].known_ev_sigma = std::max(o.exif_sigma, 1e-3);
+    }
+}
+
+Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,
+           std::vector<lensprof_fit_image_quality> *quality) {
+    Fitted fitted;
+    auto count = static_cast<uint32_t>(input.images.size());
+    fitted.exposures.resize(count);
+    lensprof_fit_result_init(&fitted.result);
+    if (quality) {
+        quality->resize(count);
+        fitted.result.image_quality = quality->data();
+    }
+    input.options.progress = on_progress;
+    input.options.progress_user = &progress;
+    lensprof_error error{};
+    lensprof_status status = lensprof_fit_overlap(&input.options, input.images.data(), count, input.pairs.data(),
+                                                  static_cast<uint32_t>(input.pairs.size()), fitted.exposures.data(),
+                                                  &fitted.result, &error);
+    stop_if_interrupted();
+    if (status == LENSPROF_ERROR_NO_UNKNOWNS)
+        throw Failure(ExitCode::usage,
+                      item + ": asks for nothing on its v lines; add some in Hugin, or give --free all");
+    check(status, item, &error);
+    fitted.result.image_quality = nullptr;
+    fitted.exposures = relative_exposures(fitted.exposures, reference);
+    return fitted;
+}
+
+std::string with_names(const std::string &reason, const std::vector<std::string> &names) {
+    static const std::regex number("image ([0-9]+)");
+    std::smatch match;
+    if (!std::regex_search(reason, match, number)) return reason;
+    size_t i = std::stoul(match[1].str());
+    return i < names.size() ? match.prefix().str() + names[i] + match.suffix().str() : reason;
+}
+
+BuildReport no_fit(const std::vector<std::string> &names, const std::string &reason) {
+    BuildReport report;
+    report.names = names;
+    report.exposures.resize(names.size());
+    for (auto &e : report.exposures) lensprof_exposure_init(&e);
+    lensprof_fit_result_init(&report.fit);
+    report.fit.heldout_rms = report.fit.heldout_median = report.fit.before_rms = LENSPROF_UNKNOWN;
+    report.fit.gamma_from = LENSPROF_GAMMA_NONE;
+    report.fit.gamma_sigma = LENSPROF_UNKNOWN;
+    report.fit.vignettings = 1;
+    report.quality.resize(names.size());
+    set_text(report.fit.reason, sizeof report.fit.reason, reason);
+    return report;
+}
+
+double lap(std::chrono::steady_clock::time_point &since) {
+    auto now = std::chrono::steady_clock::now();
+    double seconds = std::chrono::duration<double>(now - since).count();
+    since = now;
+    return seconds;
+}
+
+}  // namespace lensprof

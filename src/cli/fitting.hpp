@@ -1,0 +1,67 @@
+/* fitting.hpp - what every command that fits has in common: its options, the call, what is said about the result. */
+#ifndef LENSPROF_CLI_FITTING_HPP
+#define LENSPROF_CLI_FITTING_HPP
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "library.hpp"
+#include "metadata.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "run.hpp"
+
+namespace lensprof {
+
+/* How to fit. */
+struct FitOptions {
+    std::string method = "transfer", modes = "auto", loss = "robust", gamma_from = "auto", camera_kind = "any";
+    double huber = 5.0, prior = 1.0, exif_sigma = 0.1;
+};
+
+void declare_fit(CLI::App &app, FitOptions &o);
+
+/* Failure (usage) for options that contradict each other. */
+void check_fit_options(const FitOptions &o);
+
+/* The library's options; everything shared is free. */
+lensprof_fit_options fit_options(const FitOptions &o);
+
+/* What is fitted. */
+struct FitInput {
+    lensprof_fit_options options;
+    lensprof_response fixed;
+    std::vector<lensprof_fit_image> images;
+    std::vector<lensprof_pair> pairs;
+};
+
+/* Exposures by EXIF, as soft observations of the images. */
+void add_known_exposures(const FitOptions &o, const std::vector<std::string> &files,
+                         const std::vector<PictureMetadata> &metadata, std::vector<lensprof_fit_image> &images,
+                         Streams &streams);
+
+/* A result and the exposures that belong to it. */
+struct Fitted {
+    lensprof_fit_result result{};
+    std::vector<lensprof_exposure> exposures; /* relative to the reference */
+};
+
+/* Fits, with `progress` shown. `item` names the input in a Failure. `quality` may be NULL. */
+Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,
+           std::vector<lensprof_fit_image_quality> *quality);
+
+/* The fit counts images; people know them by their files. */
+std::string with_names(const std::string &reason, const std::vector<std::string> &names);
+
+/* What is reported where no fit could be made: the same object, neutral, with the reason. */
+BuildReport no_fit(const std::vector<std::string> &names, const std::string &reason);
+
+/* Seconds since `since`, which becomes now. */
+double lap(std::chrono::steady_clock::time_point &since);
+
+}  // namespace lensprof
+
+#endif

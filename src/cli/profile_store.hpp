@@ -1,0 +1,43 @@
+/* profile_store.hpp - from a measurement to a profile in the database: its key, its provenance, the database itself. */
+#ifndef LENSPROF_CLI_PROFILE_STORE_HPP
+#define LENSPROF_CLI_PROFILE_STORE_HPP
+
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "library.hpp"
+
+namespace lensprof {
+
+/* The options of every command that stores a profile. */
+struct StoreOptions {
+    std::string db, maker, camera, lens, processing;
+    double focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN, distance = LENSPROF_UNKNOWN;
+    bool no_store = false, force = false;
+};
+
+void declare_store(CLI::App &app, StoreOptions &o);
+
+/* Failure (usage) for options that contradict each other. */
+void check_store_options(const StoreOptions &o);
+
+/* The key of a profile: that of a picture's EXIF, then what the command line says. Failure (usage) that names `file`
+ * when nothing says what camera it was and the profile is to be stored. */
+lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &o, const std::string &file);
+
+/* Failure (store) before the work is done when the database cannot be used. */
+void check_store(const StoreOptions &o);
+
+/* A profile of what a fit found, its key and provenance but the result's numbers still empty. */
+std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit);
+
+/* Completes the provenance (method, whether it was forced, this program, `source` as absolute path, time) and stores the
+ * profile. A new database that could not take it is not left behind. Returns its number. */
+int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const std::string &method, bool usable,
+                      const std::string &source);
+
+}  // namespace lensprof
+
+#endif
