@@ -26,7 +26,7 @@ typedef struct lensprof_sample_image {
     lensprof_image view;    /* the frame, reduced or not; layouts with alpha: alpha below half = excluded */
     lensprof_camera camera; /* full frame */
     uint32_t reduction;     /* side of that square, px; 1 = full size. view.width * reduction <= camera.width */
-    uint32_t reserved;      /* 0 */
+    uint32_t every_pixel;   /* 1: no pixel of a patch may be outside [black, white]; 0: its robust mean counts */
     const uint8_t *mask;    /* one byte a view pixel, 0 = excluded; NULL = all included */
     ptrdiff_t mask_row_bytes; /* at least the width of the view, or at most minus that; unused without a mask */
     double black, white;    /* samples outside [black, white] in any channel are not used; 0..1 */
@@ -34,7 +34,9 @@ typedef struct lensprof_sample_image {
 
 typedef enum lensprof_sampling {
     LENSPROF_SAMPLING_BALANCED = 0, /* balanced over image pairs, radius and grey level; quiet patches preferred */
-    LENSPROF_SAMPLING_PAPER = 1 /* d'Angelo 2007 section 5.1: 5n random points, 10 radius bins, n/10 lowest gradient */
+    LENSPROF_SAMPLING_PAPER = 1,  /* d'Angelo 2007 section 5.1: 5n random points, 10 radius bins, n/10 lowest gradient */
+    LENSPROF_SAMPLING_BRACKET = 2 /* balanced, without asking whether two places look alike: near black and white they
+                                     do not. For pictures by a camera that did not move */
 } lensprof_sampling;
 
 typedef struct lensprof_sample_options {

@@ -185,7 +185,7 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     options.sampling = o.sampling == "paper" ? LENSPROF_SAMPLING_PAPER : LENSPROF_SAMPLING_BALANCED;
     options.pairs = o.pairs;
     options.seed = o.seed;
-    pairs = sample_pairs(project, pictures, options, progress);
+    pairs = sample_pairs(project, pictures, options, {}, progress);
     report.sample_s = lap(clock);
     return pairs;
 }
@@ -200,8 +200,8 @@ Fitted fit_for_project(const Options &o, FitInput &input, const Fitted &best, ui
     return fit(input, reference, o.pto, progress, nullptr);
 }
 
-BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata, OutputFiles &outputs,
-                  Streams &streams) {
+BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
+                  OutputFiles &outputs, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
@@ -225,8 +225,6 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
         outputs.add(o.pto_out, project_text(o, project, written, report.reference));
     }
     progress.clear();
-    if (report.fit.usable && *report.fit.reason)
-        streams.err << "lensprof: warning: " << o.pto << ": " << report.fit.reason << "\n";
     if (o.fit.gamma_from == "exif" && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         streams.err << "lensprof: warning: " << o.pto
                     << (o.points.empty() ? ": no EXIF exposures that differ" : ": EXIF is not read beside --points")
@@ -250,28 +248,11 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     check_store(o.store);
     OutputFiles outputs;
     BuildReport report = build(o, project, metadata, outputs, streams);
-    bool good = report.fit.usable || o.store.force;
-    stop_if_interrupted();
-    if (good && !o.store.no_store) {
-        auto profile = profile_of(report.fit);
-        profile->key = key;
-        profile->provenance.images = static_cast<uint32_t>(project.images.size());
-        report.profile_id = store_profile(o.store, *profile, o.fit.method, report.fit.usable, o.pto);
-    }
-    outputs.commit();
-    if (o.json) print_json(build_json(report), streams.out);
-    else print_build(report, streams.out);
-    if (report.profile_id && !o.json)
-        streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
-                    << describe_key(key) << "\n";
+    int code = finish_fit(report, key, o.store, {o.fit.method, o.pto, o.json, &outputs}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
-    if (!report.fit.usable)
-        streams.err << "lensprof: " << o.pto << ": not usable: " << report.fit.reason
-                    << (good                 ? ""
-                        : !o.store.no_store  ? "; nothing was stored (--force stores it all the same)"
-                        : !o.pto_out.empty() ? "; no project was written (--force writes it all the same)"
-                                             : "") << "\n";
-    return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
+    if (!report.fit.usable && !o.pto_out.empty() && !o.store.force)
+        streams.err << "lensprof: " << o.pto_out << ": not written (--force writes it all the same)\n";
+    return code;
 }
 
 }  // namespace
@@ -281,10 +262,7 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
     CLI::App app("Recovers response, falloff, exposure and white balance from overlapping pictures.", "lensprof build");
     declare(app, o);
     if (!parse(app, arguments, streams)) return 0;
-    if (o.max_side != 0 && o.max_side < 64)
-        throw Failure(
-            ExitCode::usage,
-            "--max-side: pictures of less than 64 pixels hold too few samples; give more, or 0 for full size");
+    check_max_side(o.max_side);
     check_fit_options(o.fit);
     if (o.json && !o.compare.empty())
         throw Failure(ExitCode::usage, "--compare prints a table, which --json leaves out; give one of the two");

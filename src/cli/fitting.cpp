@@ -134,6 +134,37 @@ BuildReport no_fit(const std::vector<std::string> &names, const std::string &rea
     return report;
 }
 
+int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,
+               Streams &streams) {
+    bool good = report.fit.usable || store.force;
+    stop_if_interrupted();
+    if (good && !store.no_store) {
+        auto profile = profile_of(report.fit);
+        profile->key = key;
+        profile->provenance.images = static_cast<uint32_t>(report.names.size());
+        report.profile_id = store_profile(store, *profile, finish.method, report.fit.usable, finish.source);
+    }
+    if (finish.outputs) finish.outputs->commit();
+    if (finish.json) print_json(build_json(report), streams.out);
+    else print_build(report, streams.out);
+    if (report.profile_id && !finish.json)
+        streams.out << "stored    profile " << report.profile_id << " in " << store_path(store.db) << ": "
+                    << describe_key(key) << "\n";
+    if (report.fit.usable && *report.fit.reason)
+        streams.err << "lensprof: warning: " << finish.source << ": " << report.fit.reason << "\n";
+    if (!report.fit.usable)
+        streams.err << "lensprof: " << finish.source << ": not usable: " << report.fit.reason
+                    << (good || store.no_store ? "" : "; nothing was stored (--force stores it all the same)") << "\n";
+    return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
+}
+
+void check_max_side(uint32_t max_side) {
+    if (max_side != 0 && max_side < 64)
+        throw Failure(
+            ExitCode::usage,
+            "--max-side: pictures of less than 64 pixels hold too few samples; give more, or 0 for full size");
+}
+
 double lap(std::chrono::steady_clock::time_point &since) {
     auto now = std::chrono::steady_clock::now();
     double seconds = std::chrono::duration<double>(now - since).count();

@@ -10,6 +10,8 @@
 
 #include "library.hpp"
 #include "metadata.hpp"
+#include "output_file.hpp"
+#include "profile_store.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "run.hpp"
@@ -58,6 +60,22 @@ std::string with_names(const std::string &reason, const std::vector<std::string>
 
 /* What is reported where no fit could be made: the same object, neutral, with the reason. */
 BuildReport no_fit(const std::vector<std::string> &names, const std::string &reason);
+
+/* Where a result goes. */
+struct Finish {
+    std::string method;             /* for the provenance */
+    std::string source;             /* what it was made from */
+    bool json = false;
+    OutputFiles *outputs = nullptr; /* committed once the profile is stored; or NULL */
+};
+
+/* Stores a result that is usable or forced, prints it, says on standard error what is wrong with it. Returns the exit
+ * code. */
+int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,
+               Streams &streams);
+
+/* Failure (usage) for a longest side that holds too few samples. */
+void check_max_side(uint32_t max_side);
 
 /* Seconds since `since`, which becomes now. */
 double lap(std::chrono::steady_clock::time_point &since);

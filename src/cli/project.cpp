@@ -43,6 +43,7 @@ SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
                       + std::to_string(camera.width) + " x " + std::to_string(camera.height)
                       + "; use the pictures that the project was made with");
     check_finite(p, file);
+    if (!project.pto) return result;
     std::vector<uint8_t> mask(static_cast<size_t>(p.width) * p.height);
     check(lensprof_pto_draw_mask(project.pto.get(), i, mask.data(), p.width, p.height,
                                  static_cast<ptrdiff_t>(p.width)), file);
@@ -108,7 +109,8 @@ uint32_t channel_count(const std::vector<SamplePicture> &pictures) {
 }
 
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
-                                        lensprof_sample_options options, Progress &progress) {
+                                        lensprof_sample_options options, const GreyRange &range,
+                                        Progress &progress) {
     std::vector<lensprof_sample_image> images;
     for (size_t i = 0; i < pictures.size(); i++) {
         lensprof_sample_image image{};
@@ -117,8 +119,9 @@ std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<Samp
         image.reduction = pictures[i].picture.reduction;
         image.mask = pictures[i].mask.empty() ? nullptr : pictures[i].mask.data();
         image.mask_row_bytes = static_cast<ptrdiff_t>(pictures[i].picture.width);
-        image.black = darkest_value;
-        image.white = brightest_value;
+        image.black = range.black;
+        image.white = range.white;
+        image.every_pixel = range.every_pixel;
         images.push_back(image);
     }
     lensprof_error error{};

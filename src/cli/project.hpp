@@ -14,7 +14,7 @@ namespace lensprof {
 
 struct Project {
     std::string path;                       /* of the .pto */
-    Pto pto;
+    Pto pto;                                /* NULL where the project is not of a file */
     std::vector<lensprof_pto_image> images;
     std::vector<std::string> names;         /* as written in the project */
     std::vector<std::string> files;         /* path of each picture */
@@ -44,12 +44,16 @@ void check_finite(const Picture &picture, const std::string &file);
 /* 3, or 1 when every picture is grey. */
 uint32_t channel_count(const std::vector<SamplePicture> &pictures);
 
-/* Grey values outside these are black or saturated: 2 and 250 of 255. */
-constexpr double darkest_value = 2.0 / 255.0, brightest_value = 250.0 / 255.0;
+/* Grey values outside these are black or saturated. */
+struct GreyRange {
+    double black = 2.0 / 255.0, white = 250.0 / 255.0;
+    bool every_pixel = false; /* of a patch has to be within; else its mean */
+};
 
 /* The progress function of the options is set here. */
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
-                                        lensprof_sample_options options, Progress &progress);
+                                        lensprof_sample_options options, const GreyRange &range,
+                                        Progress &progress);
 
 /* The pairs of a point file, which must be of images of the project. */
 std::vector<lensprof_pair> read_points(const std::string &path, const Project &project);

@@ -138,7 +138,7 @@ Json images_json(const BuildReport &report) {
     Json images = Json::array();
     for (size_t i = 0; i < report.names.size(); i++) {
         const auto &e = report.exposures[i];
-        Json image = {{"file", report.names[i]}, {"ev", e.ev}, {"white_balance", numbers(e.white_balance, 3)}};
+        Json image = {{"file", report.names[i]}, {"ev", number_or_null(e.ev)}, {"white_balance", numbers(e.white_balance, 3)}};
         if (i < report.quality.size()) {
             const auto &q = report.quality[i];
             image["ev_sigma"] = q.ev_sigma;
@@ -185,7 +185,7 @@ Json build_json(const BuildReport &report) {
     json["reason"] = fit.reason;
     json["reference"] = report.reference;
     json["images"] = images_json(report);
-    json["vignetting"] = vignetting_json(fit.vignetting, fit.vignettings);
+    if (report.has_falloff) json["vignetting"] = vignetting_json(fit.vignetting, fit.vignettings);
     json["response"] = response_json(&fit.response, 1);
     json["residual"] = {{"before_rms", number_or_null(fit.before_rms)},
                         {"heldout_rms", number_or_null(fit.heldout_rms)},
@@ -217,6 +217,10 @@ void print_exposures(const BuildReport &report, std::ostream &out) {
         const auto &e = report.exposures[i];
         double sigma = i < report.quality.size() ? report.quality[i].ev_sigma : 0.0;
         std::string error = sigma > 0.0 ? format("%.3f", sigma) : std::string("-");
+        if (e.ev == LENSPROF_UNKNOWN) {
+            out << format("%-*s  %8s\n", static_cast<int>(width), report.names[i].c_str(), "unknown");
+            continue;
+        }
         out << format("%-*s  %+8.3f  %6s  %7.4f  %7.4f%s\n", static_cast<int>(width), report.names[i].c_str(), e.ev,
                       error.c_str(), e.white_balance[0], e.white_balance[2],
                       i == report.reference ? "  reference" : "");
@@ -241,7 +245,8 @@ void print_gamma(const BuildReport &report, std::ostream &out) {
 void print_build(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_exposures(report, out);
-    print_vignettings(fit.vignetting, fit.vignettings, {fit.covariance, fit.covariance_size, fit.response.modes}, out);
+    if (report.has_falloff)
+        print_vignettings(fit.vignetting, fit.vignettings, {fit.covariance, fit.covariance_size, fit.response.modes}, out);
     print_response(fit.response, out);
     print_gamma(report, out);
     std::string heldout = "not measured: too few pairs";

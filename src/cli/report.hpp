@@ -21,6 +21,7 @@ struct BuildReport {
     std::vector<lensprof_fit_image_quality> quality;
     lensprof_fit_result fit{};
     uint32_t reference = 0;
+    bool has_falloff = true; /* else it cancels in these pictures */
     double load_s = 0, sample_s = 0;
     uint32_t camera_kind = LENSPROF_CAMERA_ANY; /* whose prior settled gamma */
     int64_t profile_id = 0; /* 0 = not stored */

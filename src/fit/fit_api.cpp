@@ -22,11 +22,12 @@ lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_coun
         || !(o.huber_levels > 0.0 && o.huber_levels <= 255.0) || !(o.prior_weight >= 0.0 && o.prior_weight <= 1e6)
         || o.max_iterations == 0 || o.max_iterations > 1000000 || (o.free & ~kSharedFlags)
         || (o.vignettings > 1 && o.vignettings != 3) || o.gamma_from > LENSPROF_GAMMA_EXPOSURES
-        || o.camera_kind > LENSPROF_CAMERA_DIGITAL || o.method > LENSPROF_METHOD_TRANSFER_FUNCTION)
+        || o.camera_kind > LENSPROF_CAMERA_DIGITAL || o.method > LENSPROF_METHOD_TRANSFER_FUNCTION
+        || o.refine > 1 || o.reserved)
         return fail(LENSPROF_ERROR_ARGUMENT, error,
                     "fit options: channels 1 or 3, reference < images, modes 0..25 or automatic, Huber 0..255 levels, "
                     "prior weight >= 0, iterations 1..1000000, flags of the shared unknowns only, vignettings 0, 1 or "
-                    "3, gamma automatic or from prior or exposures, a known kind of camera and method");
+                    "3, gamma automatic or from prior or exposures, a known kind of camera and method, refine 0 or 1");
     if (o.method != LENSPROF_METHOD_TRANSFER)
         return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: this version fits by method TRANSFER only");
     lensprof_status status = lensprof_vignetting_validate(&o.vignetting);

@@ -79,7 +79,8 @@ Estimate with_exponent(const Problem &problem, const Estimate &estimate, double 
     double gamma = std::exp(log_gamma), curve[LENSPROF_RESPONSE_SAMPLES];
     for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++)
         curve[j] = lp_curve_eval(estimate.curve.table.data(), std::pow(j / 1023.0, 1.0 / gamma), nullptr);
-    set_response(moved, project_curve(curve, estimate.modes).data(), estimate.modes);
+    if (estimate.modes >= 0) set_response(moved, project_curve(curve, estimate.modes).data(), estimate.modes);
+    else if (estimate.is_refined) set_table(moved, curve);
     for (auto &v : moved.vignetting) raise_falloff(problem, gamma, v);
     const auto &reference = estimate.log_exposure[problem.reference];
     for (auto &a : moved.log_exposure)
@@ -88,7 +89,7 @@ Estimate with_exponent(const Problem &problem, const Estimate &estimate, double 
 }
 
 Gauge::Gauge(const lensprof_fit_options &options, const Problem &problem)
-    : prior_(gamma_prior(options.camera_kind)), wanted_(static_cast<lensprof_gamma_from>(options.gamma_from)) {
+    : prior_(&gamma_prior(options.camera_kind)), wanted_(static_cast<lensprof_gamma_from>(options.gamma_from)) {
     bool is_family = nothing_fixes_gamma(options, problem);
     open_ = is_family && options.prior_weight > 0.0;
     if (is_family && !open_) from_ = LENSPROF_GAMMA_NONE;
@@ -101,6 +102,12 @@ Gauge Gauge::unheld() const {
     Gauge other = *this;
     other.open_ = false;
     other.known_weight_.clear();
+    return other;
+}
+
+Gauge Gauge::by_prior() const {
+    Gauge other = *this;
+    other.wanted_ = LENSPROF_GAMMA_PRIOR;
     return other;
 }
 
@@ -155,11 +162,11 @@ void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
 double Gauge::distance(const Problem &problem, const Estimate &estimate) {
     compare_known(problem, estimate);
     const double *table = estimate.curve.table.data();
-    double offset = gamma_position(table) - expected_position(prior_, table);
+    double offset = gamma_position(table) - expected_position(*prior_, table);
     bool says = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;
-    double prior_precision = 1.0 / (prior_.sigma * prior_.sigma);
+    double prior_precision = 1.0 / (prior_->sigma * prior_->sigma);
     if (says) {  // errors of the prior have heavy tails: where exposures contradict it, it counts for less
-        double z = (offset - std::log(slope_)) / std::hypot(prior_.sigma, slope_sigma_);
+        double z = (offset - std::log(slope_)) / std::hypot(prior_->sigma, slope_sigma_);
         prior_precision *= wanted_ == LENSPROF_GAMMA_EXPOSURES ? 0.0 : 1.0 / (1.0 + z * z);
     }
     double precision = says ? 1.0 / (slope_sigma_ * slope_sigma_) : 0.0;
@@ -196,7 +203,7 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
                            / (x * std::log(x));
         double pairs = static_cast<double>(std::max<size_t>(problem.pairs.size(), 1));
         double hold = std::min(kLargestPinSigma, kPinSigma * std::sqrt(kPinPairs / pairs));
-        hold = std::max(hold * std::pow(sigma_ / prior_.sigma, 4), kSmallestPinSigma);
+        hold = std::max(hold * std::pow(sigma_ / prior_->sigma, 4), kSmallestPinSigma);
         prior.pin_precision = 1.0 / (hold * hold);
         prior.pin_value = prior.pin.dot(Eigen::Map<const Eigen::VectorXd>(estimate.emor.data(), kMaxModes)) - here;
     } else {

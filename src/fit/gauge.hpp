@@ -24,6 +24,10 @@ public:
     // The same knowledge, which nothing holds gamma to: for first fits, whose shape is to find its own optimum.
     Gauge unheld() const;
 
+    // The same knowledge, of which the prior alone settles gamma: few modes can follow to the gamma of most cameras without
+    // loss of shape, not to any that exposures may ask for. A refined response can.
+    Gauge by_prior() const;
+
     // Moves the estimate along its family to where gamma is settled, as well as its modes and falloff can follow.
     void settle(const Problem &problem, Estimate &estimate);
 
@@ -43,7 +47,7 @@ private:
     double distance(const Problem &problem, const Estimate &estimate);
     void compare_known(const Problem &problem, const Estimate &estimate);
 
-    const GammaPrior &prior_;
+    const GammaPrior *prior_;
     lensprof_gamma_from wanted_, from_ = LENSPROF_GAMMA_KNOWN;
     bool open_ = false;
     double sigma_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;

@@ -68,6 +68,8 @@ std::pair<int, int> missing_greys(const Problem &problem, const lensprof_fit_res
     return longest;
 }
 
+bool fits_response(const Estimate &estimate) { return estimate.modes > 0 || estimate.is_refined; }
+
 // Outer edge of the outermost ring that holds more than a few pair ends.
 double covered_radius(const lensprof_fit_result &r) {
     for (int bin = LENSPROF_COVERAGE_BINS; bin > 0; bin--)
@@ -148,7 +150,7 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
     if (informative * static_cast<size_t>(problem.channels) < 2 * unknowns)
         return refuse(r, "%zu different pairs between black and white are too few for %zu unknowns; sample more",
                       informative, unknowns);
-    if (estimate.modes > 0 && covered_greys(problem, r) < kFewestGreys)
+    if (fits_response(estimate) && covered_greys(problem, r) < kFewestGreys)
         return refuse(r,
                       "the pairs cover %u tenths of the grey values only, which does not show a response; take pictures "
                       "of other exposures, or hold a response that is known",
@@ -165,7 +167,7 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
 bool contradicts_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
     // else it is what was held that does not fit
-    bool is_free = estimate.modes >= 0 && (problem.free & falloff) == falloff;
+    bool is_free = (estimate.modes >= 0 || estimate.is_refined) && (problem.free & falloff) == falloff;
     if (r.inlier_share < 0.3)
         return refuse(r, "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
                       100.0 * r.inlier_share);
@@ -279,7 +281,7 @@ void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result
             "the centre of the falloff lies %.2f half diagonals from the middle of the frame: are the pictures cropped, "
             "or in the wrong place of the project?",
             off_centre);
-    else if (estimate.modes > 0 && covered_greys(problem, r) < kEnoughGreys) {
+    else if (fits_response(estimate) && covered_greys(problem, r) < kEnoughGreys) {
         auto [first, last] = missing_greys(problem, r);
         say(r,
             "hardly a pair has grey values from %.1f to %.1f (of 1): what is said of the response there, and of gamma, "

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "log_inverse.hpp"
 #include "monotone.hpp"
 #include "residual.hpp"
 #include "start.hpp"
@@ -95,6 +96,9 @@ private:
     Estimate best_start(int modes);
     void reconsider(const Problem &problem, const Loss &used, Estimate &estimate);
     Candidate candidate(const Estimate &from, int modes);
+    void measure(Candidate &candidate) const;
+    void refine(const Problem &problem, Loss &used, Estimate &estimate);
+    bool is_better_refined(const Candidate &best, const Loss &used, Candidate &refined);
     Candidate choose_modes(const Estimate &start);
     void choose_vignettings(Candidate &best);
     void describe(const Estimate &train, const Estimate &estimate, const Loss &used, lensprof_fit_result &result);
@@ -159,15 +163,42 @@ Candidate Fit::candidate(const Estimate &from, int modes) {
     brief.max_iterations = std::min(control_.max_iterations, 12);
     Loss used = common_;
     solve(train_, prior_, gauge_, used, false, brief, result.estimate);
-    NoiseWeights weights = noise_weights(heldout_, result.estimate, common_);
-    for_each_transfer(heldout_, result.estimate, [&](size_t p, const PairTransfer &t) {
-        PairResiduals residuals = weighted_residuals(t, heldout_.channels, weights[p]);
-        result.losses.push_back(pair_cost(residuals, heldout_.channels, common_, nullptr));
-    });
-    result.mean = std::accumulate(result.losses.begin(), result.losses.end(), 0.0)
-                  / static_cast<double>(result.losses.size());
+    measure(result);
     done_ = std::min(0.75, done_ + 0.08);
     return result;
+}
+
+// What the held-out pairs cost.
+void Fit::measure(Candidate &candidate) const {
+    NoiseWeights weights = noise_weights(heldout_, candidate.estimate, common_);
+    candidate.losses.clear();
+    for_each_transfer(heldout_, candidate.estimate, [&](size_t p, const PairTransfer &t) {
+        PairResiduals residuals = weighted_residuals(t, heldout_.channels, weights[p]);
+        candidate.losses.push_back(pair_cost(residuals, heldout_.channels, common_, nullptr));
+    });
+    candidate.mean = std::accumulate(candidate.losses.begin(), candidate.losses.end(), 0.0)
+                     / static_cast<double>(candidate.losses.size());
+}
+
+// Frees the response of its modes, once at the noise that they left and once at the noise that is left then.
+void Fit::refine(const Problem &problem, Loss &used, Estimate &estimate) {
+    const Estimate of_modes = estimate;
+    refine_response(problem, used, estimate);
+    used.noise = estimate_noise(problem, estimate, used.noise);
+    estimate = of_modes;
+    refine_response(problem, used, estimate);
+}
+
+// Whether held-out pairs are not worse by more than a standard error for a response free of its modes.
+bool Fit::is_better_refined(const Candidate &best, const Loss &used, Candidate &refined) {
+    Candidate modes{best.estimate, {}, 0.0};
+    measure(modes);
+    refined.estimate = best.estimate;
+    Loss own = used;
+    refine(train_, own, refined.estimate);
+    measure(refined);
+    double error, difference = loss_difference(refined, modes, error);
+    return difference < error;
 }
 
 // Exposures anew from the response as fitted and all pairs: where an image was drawn to pairs that agree by chance, the
@@ -236,6 +267,10 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     bool any_curves = options_.vignettings == 0 && options_.channels == 3 && (options_.free & falloff) && has_heldout_;
     int modes = options_.modes == LENSPROF_MODES_AUTO ? kStartModes : static_cast<int>(options_.modes);
 
+    bool refines = options_.refine && is_free && has_heldout_ && image_count_ <= kMostRefinedImages;
+    const Gauge asked = gauge_;
+    if (refines) gauge_ = gauge_.by_prior();
+
     set_vignettings(options_.vignettings == 3 && options_.channels == 3 ? 3 : 1);
     Candidate best;
     best.estimate = best_start(is_free ? std::min(std::max(modes, 1), kStartModes) : 0);
@@ -256,6 +291,17 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     Estimate estimate = best.estimate;
     if (has_heldout_) reconsider(all_, used, estimate);
     Outcome outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
+    if (refines) {
+        gauge_ = asked;
+        Candidate refined;
+        if (is_better_refined(best, used, refined)) {
+            refine(all_, used, estimate);
+            best = refined;
+            for (Estimate *one : {&estimate, &best.estimate}) gauge_.settle(all_, *one);  // where modes could not follow
+        } else {
+            outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
+        }
+    }
     lensprof_fit_result r = result;
     r.iterations = static_cast<uint32_t>(outcome.iterations);
     r.converged = outcome.converged;

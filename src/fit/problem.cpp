@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 #include "core/response.h"
+#include "monotone.hpp"
 
 namespace lensprof {
 namespace {
@@ -141,6 +143,19 @@ void set_response(Estimate &estimate, const double *emor, int modes) {
     estimate.emor = copy;
     lp_emor_curve(copy.data(), static_cast<uint32_t>(modes), estimate.curve.table.data());
     estimate.curve.renew_guide();
+}
+
+void set_table(Estimate &estimate, const double *curve) {
+    auto &f = estimate.curve.table;
+    std::copy(curve, curve + f.size(), f.begin());
+    f.front() = 0.0, f.back() = 1.0;
+    for (size_t j = 1; j < f.size(); j++) f[j] = std::max(f[j], f[j - 1] + kSmallestRise);
+    for (size_t j = f.size() - 1; j-- > 1;) f[j] = std::min(f[j], f[j + 1] - kSmallestRise);
+    estimate.curve.renew_guide();
+    estimate.modes = -1;
+    estimate.is_refined = true;
+    if (lensprof_response_set_table(&estimate.fixed, f.data(), LENSPROF_RESPONSE_SAMPLES) != LENSPROF_OK)
+        throw std::runtime_error("the refined response is not monotone");
 }
 
 Eigen::VectorXd shared_vector(const Estimate &estimate) {

@@ -74,16 +74,20 @@ struct Curve {
 
 // The current estimate.
 struct Estimate {
-    int modes = 0;                                    // EMoR modes in use; -1 where the response is fixed
+    int modes = 0;                                    // EMoR modes in use; -1 where the response is `fixed`
+    bool is_refined = false;                          // and that is an estimate, too (log_inverse.hpp)
     std::array<double, kMaxModes> emor{};
     Curve curve;                                      // f; follows emor
-    lensprof_response fixed;                          // modes == -1: the response
+    lensprof_response fixed;                          // modes == -1: the response, a table where refined
     std::array<lensprof_vignetting, 3> vignetting{};  // of the channels; the first alone when one curve serves all
     std::vector<std::array<double, 3>> log_exposure;  // a_ic
 };
 
 // Sets emor and curve.
 void set_response(Estimate &estimate, const double *emor, int modes);
+
+// Makes the response of an estimate a table of 1024 samples, as nearly `curve` as one that rises everywhere can be.
+void set_table(Estimate &estimate, const double *curve);
 
 // The full shared vector of an estimate, and back.
 Eigen::VectorXd shared_vector(const Estimate &estimate);

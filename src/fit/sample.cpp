@@ -19,7 +19,7 @@ lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, lens
     status = lensprof_camera_validate(&image.camera);
     if (status != LENSPROF_OK) return fail(status, error, "image %u: not a valid camera", i);
     const auto &view = image.view;
-    if (!image.reduction || image.reserved || static_cast<uint64_t>(view.width) * image.reduction > image.camera.width
+    if (!image.reduction || image.every_pixel > 1 || static_cast<uint64_t>(view.width) * image.reduction > image.camera.width
         || static_cast<uint64_t>(view.height) * image.reduction > image.camera.height)
         return fail(LENSPROF_ERROR_SIZE, error,
                     "image %u: a view of %u x %u reduced %u times does not fit a frame of %u x %u", i, view.width,
@@ -38,7 +38,7 @@ lensprof_status check_options(const lensprof_sample_options &options, uint32_t c
     if (options.struct_size != sizeof options)
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "sample options: call lensprof_sample_options_init first");
     if (count < 2) return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: at least two images are needed");
-    if (options.sampling > LENSPROF_SAMPLING_PAPER || options.pairs > kLargestCount || count > kLargestCount / 300
+    if (options.sampling > LENSPROF_SAMPLING_BRACKET || options.pairs > kLargestCount || count > kLargestCount / 300
         || options.reserved)
         return fail(LENSPROF_ERROR_ARGUMENT, error,
                     "sample: unknown sampling, reserved not 0, or too many images or pairs");

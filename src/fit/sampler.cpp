@@ -163,7 +163,7 @@ bool Sampler::correspond(uint32_t i, uint32_t j, double x, double y, double xy[2
 // Whether both show the same there, as far as texture tells. Single points, as the paper samples them, are not asked.
 bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
     Sight at;
-    if (!patches_) return true;
+    if (!patches_ || options_.sampling == LENSPROF_SAMPLING_BRACKET) return true;
     if (!sight(views_[i].image().camera, views_[j].image().camera, rotation(i, j), i < j ? 1.0 : -1.0, x, y, at))
         return false;
     std::optional<double> told = likeness(*grey_[i], x, y, *grey_[j], at);

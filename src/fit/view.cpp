@@ -138,6 +138,13 @@ bool is_out_of_range(const Lanes *values, float black, float white) {
     return false;
 }
 
+bool all_in_range(const Lanes *values, float black, float white) {
+    for (int i = 0; i < kCount; i++)
+        for (int c = 0; c < kLanes; c++)
+            if (!(values[i][c] >= black && values[i][c] <= white)) return false;
+    return true;
+}
+
 struct Slope {
     Lanes across, down;  // a view pixel
 };
@@ -223,6 +230,7 @@ bool View::patch(double x, double y, Patch &out) const {
     else gather<float>(image_.view, iu, iv, offset, all);
     const auto black = static_cast<float>(image_.black), white = static_cast<float>(image_.white);
     if (is_out_of_range(all, black, white)) return false;
+    if (image_.every_pixel && !all_in_range(all, black, white)) return false;
     const Slope slope = slope_of(all);
     const Lanes mean = robust_mean(all);
     out.gradient = 0.0;

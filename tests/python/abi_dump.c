@@ -151,7 +151,7 @@ static void print_sample_structs(void)
     FIELD(lensprof_sample_image, view);
     FIELD(lensprof_sample_image, camera);
     FIELD(lensprof_sample_image, reduction);
-    FIELD(lensprof_sample_image, reserved);
+    FIELD(lensprof_sample_image, every_pixel);
     FIELD(lensprof_sample_image, mask);
     FIELD(lensprof_sample_image, mask_row_bytes);
     FIELD(lensprof_sample_image, black);
@@ -197,6 +197,8 @@ static void print_fit_structs(void)
     FIELD(lensprof_fit_options, camera_kind);
     FIELD(lensprof_fit_options, threads);
     FIELD(lensprof_fit_options, method);
+    FIELD(lensprof_fit_options, refine);
+    FIELD(lensprof_fit_options, reserved);
     FIELD(lensprof_fit_options, response);
     FIELD(lensprof_fit_options, vignetting);
     FIELD(lensprof_fit_options, progress);
@@ -354,6 +356,7 @@ static void print_enumerations(void)
     VALUE(LENSPROF_PROCESSING_CORRECTED);
     VALUE(LENSPROF_SAMPLING_BALANCED);
     VALUE(LENSPROF_SAMPLING_PAPER);
+    VALUE(LENSPROF_SAMPLING_BRACKET);
     VALUE(LENSPROF_METHOD_TRANSFER);
     VALUE(LENSPROF_METHOD_RADIANCE);
     VALUE(LENSPROF_METHOD_TRANSFER_FUNCTION);

@@ -119,6 +119,7 @@ class Sampling(IntEnum):
     """Balanced over image pairs, radius and grey level; or as in d'Angelo 2007, section 5.1."""
     BALANCED = 0
     PAPER = 1
+    BRACKET = 2
 
 
 class Free(IntFlag):
@@ -257,7 +258,7 @@ class Pair(Structure):
 
 
 class SampleImage(Structure):
-    _fields_ = [("view", Image), ("camera", Camera), ("reduction", c_uint32), ("reserved", c_uint32),
+    _fields_ = [("view", Image), ("camera", Camera), ("reduction", c_uint32), ("every_pixel", c_uint32),
                 ("mask", POINTER(c_uint8)), ("mask_row_bytes", c_ssize_t), ("black", c_double), ("white", c_double)]
 
 
@@ -279,7 +280,8 @@ class FitOptions(Structure):
     _fields_ = [("struct_size", c_uint32), ("channels", c_uint32), ("reference", c_uint32), ("free", c_uint32),
                 ("modes", c_uint32), ("loss", c_uint32), ("huber_levels", c_double), ("prior_weight", c_double),
                 ("max_iterations", c_uint32), ("vignettings", c_uint32), ("gamma_from", c_uint32),
-                ("camera_kind", c_uint32), ("threads", c_uint32), ("method", c_uint32), ("response", POINTER(Response)), ("vignetting", Vignetting),
+                ("camera_kind", c_uint32), ("threads", c_uint32), ("method", c_uint32), ("refine", c_uint32),
+                ("reserved", c_uint32), ("response", POINTER(Response)), ("vignetting", Vignetting),
                 ("progress", Progress), ("progress_user", c_void_p)]
 
 

@@ -48,6 +48,7 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     vignetting: the values where fixed (None = EMoR mean). vignettings: falloff curves, 1, 3 or 0 = chosen by held-out
     error. gamma_from: GammaFrom.AUTO, PRIOR or EXPOSURES. camera_kind: whose responses the prior is of. method:
     Method.TRANSFER, RADIANCE or TRANSFER_FUNCTION.
+    refine: free the response of the EMoR modes where held-out pairs are clearly better for it.
     threads: at most so many, 0 = one a core; the result does not depend on it.
 
     progress: called now and then during a fit with a fraction 0..1; the fit is cancelled when it returns True, and
@@ -67,6 +68,7 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     camera_kind = Enumerated(CameraKind)
     threads: int
     method = Enumerated(Method)
+    refine = Flag()
     response = OptionalReference(Response)
     vignetting = Nested(Vignetting)
 

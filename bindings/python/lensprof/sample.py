@@ -22,7 +22,8 @@ class SampleImage:
     array: (height, width) or (height, width, samples); layouts with alpha: alpha below half = excluded. camera: of
     the full frame. layout: RGB order when None. reduction: pixel (u, v) of the array is the mean of the square of
     `reduction` frame pixels from (u, v) * reduction on, or of some pixels of it. mask: (height, width) uint8 or bool, 0 = excluded. black,
-    white: samples outside in any channel are not used; 0..1.
+    white: samples outside in any channel are not used; 0..1. every_pixel: no pixel of a patch may be outside, else its
+    mean counts.
     """
 
     array: np.ndarray
@@ -32,13 +33,14 @@ class SampleImage:
     mask: Optional[np.ndarray] = None
     black: float = 2.0 / 255.0
     white: float = 250.0 / 255.0
+    every_pixel: bool = False
 
     def _view(self, index: int) -> _abi.SampleImage:
         """Points into this object's arrays."""
         view = _arrays.image(self.array, self.layout, what=f"image {index}")
         mask, row_bytes = (None, 0) if self.mask is None else _arrays.mask(self.mask, self.array.shape[:2])
-        return _abi.SampleImage(view, self.camera, integer(self.reduction, "reduction"), 0, mask, row_bytes, self.black,
-                                self.white)
+        return _abi.SampleImage(view, self.camera, integer(self.reduction, "reduction"),
+                                int(bool(self.every_pixel)), mask, row_bytes, self.black, self.white)
 
 
 class SampleOptions(WithProgress, Struct, _abi.SampleOptions):

@@ -1,0 +1,262 @@
+/* `lensprof bracket`: pictures of one scene at several exposures -> the camera's response. */
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "fitting.hpp"
+#include "interrupt.hpp"
+#include "profile_store.hpp"
+#include "static_camera.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Options {
+    FitOptions fit;
+    StoreOptions store;
+    std::vector<std::string> files;
+    std::string ev, times, balance = "free", reference;
+    double ev_sigma = 0.05;
+    bool modes_only = false, json = false, progress = false;
+    uint32_t seed = 1, pairs = 0, max_side = 1600;
+};
+
+void declare(CLI::App &app, Options &o) {
+    app.add_option("FILES", o.files, "pictures of one scene by a camera that does not move")->required();
+    app.add_option("--ev", o.ev, "their exposures, EV, larger = brighter, with commas; default EXIF's, else unknown");
+    app.add_option("--times", o.times, "their exposure times instead, seconds, e.g. 1/8,1,8");
+    app.add_option("--ev-sigma", o.ev_sigma, "standard error of these, EV")->check(in_range(0.001, 10.0));
+    app.add_option("--white-balance", o.balance, "free or fixed from picture to picture")
+        ->check(CLI::IsMember({"free", "fixed"}));
+    declare_fit(app, o.fit);
+    app.add_flag("--modes-only", o.modes_only, "keep the response to EMoR modes, also where it is better without");
+    app.add_option("--reference", o.reference, "picture (number or name) whose exposure is 0 EV");
+    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 10000 a picture")->check(in_range(0, 1 << 24));
+    app.add_option("--seed", o.seed, "of the sampling");
+    app.add_option("--max-side", o.max_side,
+                   "sample pictures reduced to no less than this many pixels (1600); 0 = full size");
+    declare_store(app, o.store);
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
+}
+
+/* "1/8" or "0.125". */
+double number_of(const std::string &word, const std::string &option) {
+    std::istringstream text(word);
+    double value = 0.0, divisor = 1.0;
+    char slash = '/';
+    bool good = static_cast<bool>(text >> value);
+    if (good && text.peek() == '/') good = (text >> slash >> divisor) && divisor > 0.0;
+    if (!good || text.peek() != EOF || !std::isfinite(value / divisor))
+        throw Failure(ExitCode::usage, option + ": '" + word + "' is not a number; separate numbers with commas");
+    return value / divisor;
+}
+
+/* The numbers of a list with commas, one a picture. */
+std::vector<double> numbers_of(const std::string &list, const std::string &option, size_t count) {
+    std::vector<double> values;
+    std::istringstream text(list + ",");
+    for (std::string word; std::getline(text, word, ',');) values.push_back(number_of(word, option));
+    if (values.size() != count)
+        throw Failure(ExitCode::usage, option + ": " + std::to_string(values.size()) + " values for "
+                                           + std::to_string(count) + " pictures; give one a picture, in their order");
+    return values;
+}
+
+/* The exposures of the command line, EV; empty when it says nothing. */
+std::vector<double> given_exposures(const Options &o) {
+    if (!o.ev.empty()) {
+        auto ev = numbers_of(o.ev, "--ev", o.files.size());
+        for (double value : ev)
+            if (std::fabs(value) > 64.0) throw Failure(ExitCode::usage, "--ev: exposures lie within 64 EV");
+        return ev;
+    }
+    std::vector<double> ev;
+    if (o.times.empty()) return ev;
+    for (double time : numbers_of(o.times, "--times", o.files.size())) {
+        if (!(time > 1e-9 && time < 1e9)) throw Failure(ExitCode::usage, "--times: a time lies within 1e-9..1e9 s");
+        ev.push_back(std::log2(time));
+    }
+    return ev;
+}
+
+/* A response belongs to the camera, whatever lens, aperture and focus the pictures were taken with. */
+lensprof_profile_key camera_key(const Options &o, const PictureMetadata &metadata, const std::string &file) {
+    lensprof_profile_key key = metadata.key, unknown;
+    lensprof_profile_key_init(&unknown);
+    set_text(key.lens, sizeof key.lens, "");
+    key.focal_mm = unknown.focal_mm;
+    key.aperture = unknown.aperture;
+    key.distance_m = unknown.distance_m;
+    return override_key(key, o.store, file);
+}
+
+/* Values next to black and white count, too: the ends of a response are where its modes fail. */
+constexpr GreyRange every_grey{0.6 / 255.0, 254.4 / 255.0, true};
+
+std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, Progress &progress, BuildReport &report,
+                                     uint32_t &channels) {
+    auto clock = std::chrono::steady_clock::now();
+    auto pictures = read_pictures(project, o.max_side, progress);
+    channels = channel_count(pictures);
+    report.load_s = lap(clock);
+    lensprof_sample_options options;
+    lensprof_sample_options_init(&options);
+    options.sampling = LENSPROF_SAMPLING_BRACKET;
+    options.pairs = o.pairs ? o.pairs : 10000 * static_cast<uint32_t>(pictures.size());
+    options.seed = o.seed;
+    auto pairs = sample_pairs(project, pictures, options, every_grey, progress);
+    report.sample_s = lap(clock);
+    return pairs;
+}
+
+/* The pictures that pairs join, in order: the largest group, the earlier one of two. The others show hardly anything
+ * between black and white that another one shows, too. */
+std::vector<uint32_t> joined(const std::vector<lensprof_pair> &pairs, uint32_t count) {
+    std::vector<uint32_t> group(count), size(count, 0);
+    std::iota(group.begin(), group.end(), 0u);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const auto &pair : pairs) {
+            uint32_t &a = group[pair.image[0]], &b = group[pair.image[1]], low = std::min(a, b);
+            changed = changed || a != b;
+            a = b = low;
+        }
+    }
+    for (uint32_t g : group) size[g]++;
+    auto largest = static_cast<uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+    std::vector<uint32_t> members;
+    for (uint32_t i = 0; i < count; i++)
+        if (group[i] == largest) members.push_back(i);
+    return members;
+}
+
+/* The members of the input alone, numbered anew. */
+void keep_only(const std::vector<uint32_t> &members, FitInput &input) {
+    std::vector<uint32_t> number(input.images.size(), UINT32_MAX);
+    std::vector<lensprof_fit_image> images;
+    for (uint32_t i : members) {
+        number[i] = static_cast<uint32_t>(images.size());
+        images.push_back(input.images[i]);
+        images.back().ev_of = images.back().red_of = images.back().blue_of = number[i];
+    }
+    std::vector<lensprof_pair> pairs;
+    for (lensprof_pair pair : input.pairs) {
+        if (number[pair.image[0]] == UINT32_MAX || number[pair.image[1]] == UINT32_MAX) continue;
+        for (uint32_t &image : pair.image) image = number[image];
+        pairs.push_back(pair);
+    }
+    input.images = images;
+    input.pairs = pairs;
+}
+
+/* What was found for the members, in its places; of the others what is known beforehand, relative to the reference. */
+void report_members(const std::vector<uint32_t> &members, const std::vector<lensprof_fit_image> &images,
+                    const Fitted &fitted, BuildReport &report, Streams &streams) {
+    const auto &zero = images[report.reference];
+    std::vector<lensprof_fit_image_quality> quality(images.size());
+    for (uint32_t i = 0, m = 0; i < images.size(); i++) {
+        lensprof_exposure exposure;
+        lensprof_exposure_init(&exposure);
+        if (m < members.size() && members[m] == i) {
+            exposure = fitted.exposures[m];
+            quality[i] = report.quality[m++];
+            quality[i].component = members[quality[i].component];
+        } else {
+            bool known = images[i].known_ev_sigma > 0.0 && zero.known_ev_sigma > 0.0;
+            exposure.ev = known ? images[i].known_ev - zero.known_ev : LENSPROF_UNKNOWN;
+            quality[i].component = i;
+            streams.err << "lensprof: warning: " << report.names[i]
+                        << ": shows hardly anything between black and white that another picture shows, too; left out\n";
+        }
+        report.exposures.push_back(exposure);
+    }
+    report.quality = quality;
+}
+
+FitInput fit_input(const Options &o, const Project &project, const std::vector<PictureMetadata> &metadata,
+                   const std::vector<double> &ev, Streams &streams) {
+    FitInput input;
+    input.options = fit_options(o.fit);
+    input.options.free &= LENSPROF_FREE_RESPONSE;
+    input.options.vignettings = 1;
+    input.options.refine = !o.modes_only && o.fit.modes == "auto";
+    input.images = fit_images(project);
+    if (ev.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
+    for (size_t i = 0; i < ev.size(); i++) {
+        input.images[i].known_ev = ev[i];
+        input.images[i].known_ev_sigma = o.ev_sigma;
+    }
+    return input;
+}
+
+BuildReport fit_bracket(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
+                        const std::vector<double> &ev, Streams &streams) {
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    BuildReport report;
+    report.names = project.names;
+    report.has_falloff = false;
+    FitInput input = fit_input(o, project, metadata, ev, streams);
+    report.camera_kind = input.options.camera_kind;
+    if (!o.reference.empty()) report.reference = image_of_word(project, o.reference);
+    input.pairs = get_pairs(o, project, progress, report, input.options.channels);
+    stop_if_interrupted();
+    const auto images = input.images;
+    const auto members = joined(input.pairs, static_cast<uint32_t>(images.size()));
+    auto place = std::find(members.begin(), members.end(), report.reference);
+    if (place == members.end() && !o.reference.empty())
+        throw Failure(ExitCode::not_usable,
+                      o.reference + ": shows hardly anything between black and white that another picture shows, too; "
+                                    "choose another reference");
+    if (place == members.end()) place = members.begin();
+    report.reference = *place;
+    keep_only(members, input);
+    input.options.reference = static_cast<uint32_t>(place - members.begin());
+    Fitted best = fit(input, input.options.reference, project.path, progress, &report.quality);
+    progress.clear();
+    report.fit = best.result;
+    std::vector<std::string> names;
+    for (uint32_t i : members) names.push_back(project.names[i]);
+    set_text(report.fit.reason, sizeof report.fit.reason, with_names(best.result.reason, names));
+    report_members(members, images, best, report, streams);
+    return report;
+}
+
+int bracket_and_store(const Options &o, Streams &streams) {
+    std::vector<double> ev = given_exposures(o);
+    Project project = static_project(o.files, o.balance == "free");
+    std::vector<PictureMetadata> metadata;
+    for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
+    lensprof_profile_key key = camera_key(o, metadata[0], project.files[0]);
+    check_store(o.store);
+    BuildReport report = fit_bracket(o, project, metadata, ev, streams);
+    return finish_fit(report, key, o.store, {o.fit.method == "transfer" ? "bracket" : "bracket " + o.fit.method,
+                      project.path, o.json}, streams);
+}
+
+}  // namespace
+
+int run_bracket(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app("Recovers the response of a camera, and exposures, from pictures of one scene.", "lensprof bracket");
+    declare(app, o);
+    if (!parse(app, arguments, streams)) return 0;
+    check_max_side(o.max_side);
+    check_fit_options(o.fit);
+    check_store_options(o.store);
+    if (!o.ev.empty() && !o.times.empty())
+        throw Failure(ExitCode::usage, "--ev and --times say the same; give one of the two");
+    try {
+        return bracket_and_store(o, streams);
+    } catch (const Failure &failure) {
+        if (o.json && failure.code == ExitCode::not_usable) {
+            BuildReport report = no_fit(o.files, failure.what());
+            report.has_falloff = false;
+            print_json(build_json(report), streams.out);
+        }
+        throw;
+    }
+}
+
+}  // namespace lensprof

@@ -1,0 +1,43 @@
+#include "static_camera.hpp"
+
+namespace lensprof {
+namespace {
+
+lensprof_pto_image still_image(PictureSize size, uint32_t number, uint32_t free) {
+    lensprof_pto_image image{};
+    image.camera.projection = LENSPROF_PROJECTION_RECTILINEAR;
+    image.camera.width = size.width;
+    image.camera.height = size.height;
+    image.camera.hfov_deg = 50.0; /* any: all look in the same direction */
+    lensprof_exposure_init(&image.exposure);
+    image.free = free;
+    image.ev_of = image.red_of = image.blue_of = number;
+    return image;
+}
+
+}  // namespace
+
+Project static_project(const std::vector<std::string> &files, bool free_balance) {
+    if (files.size() < 2)
+        throw Failure(ExitCode::usage,
+                      "one picture shows no difference of exposure; give at least two of the same scene");
+    Project project;
+    project.path = files[0];
+    project.names = project.files = files;
+    const uint32_t balance = free_balance ? LENSPROF_FREE_RED | LENSPROF_FREE_BLUE : 0;
+    for (uint32_t i = 0; i < files.size(); i++) {
+        for (uint32_t j = 0; j < i; j++)
+            if (is_same_file(files[i], files[j])) throw Failure(ExitCode::usage, files[i] + ": is given twice");
+        PictureSize size = read_size(files[i]);
+        project.images.push_back(still_image(size, i, LENSPROF_FREE_RESPONSE | LENSPROF_FREE_EV | balance));
+        const auto &first = project.images[0].camera;
+        if (size.width != first.width || size.height != first.height)
+            throw Failure(ExitCode::unreadable,
+                          files[i] + ": is " + std::to_string(size.width) + " x " + std::to_string(size.height)
+                              + " pixels, but " + files[0] + " is " + std::to_string(first.width) + " x "
+                              + std::to_string(first.height) + "; give pictures of one camera that did not move");
+    }
+    return project;
+}
+
+}  // namespace lensprof

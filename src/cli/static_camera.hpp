@@ -1,0 +1,20 @@
+/* static_camera.hpp - pictures of one scene by a camera that does not move, as a project without a Hugin file. */
+#ifndef LENSPROF_CLI_STATIC_CAMERA_HPP
+#define LENSPROF_CLI_STATIC_CAMERA_HPP
+
+#include <string>
+#include <vector>
+
+#include "project.hpp"
+
+namespace lensprof {
+
+/* A project in which every picture has the same camera, so that equal pixels are the same place, and the falloff is
+ * held at none: it is the same for all and cancels. Exposures are free, white balances where `free_balance`; the first
+ * picture is the reference. Failure (usage) for fewer than two files, or one given twice; Failure (unreadable) that
+ * names a picture of another size than the first. */
+Project static_project(const std::vector<std::string> &files, bool free_balance);
+
+}  // namespace lensprof
+
+#endif

@@ -1,0 +1,19 @@
+// The response by its logarithmic inverse G = ln f^-1 at the grey levels 1..255 of 255, free at every level.
+//
+// Two grey values of one scene point obey  G(B1) - G(B2) = ln M1/M2 + a1 - a2  (Kim & Pollefeys 2004, eq. 3; Debevec &
+// Malik 1997, eq. 2, with the radiance eliminated): linear in G and in the exposures. What an EMoR basis cannot follow,
+// steep ends above all, is refined that way, as a smooth correction D = G - G0 of the fitted curve G0.
+#pragma once
+
+#include "gauge.hpp"
+#include "loss.hpp"
+
+namespace lensprof {
+
+constexpr uint32_t kMostRefinedImages = 256;  // their exposures are solved for densely
+
+// Refines the response and the exposures of an estimate that has an EMoR response: its response becomes a table.
+// `loss` has the noise. gamma, which no pair tells, stays where it is.
+void refine_response(const Problem &problem, const Loss &loss, Estimate &estimate);
+
+}  // namespace lensprof
