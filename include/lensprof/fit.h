@@ -1,5 +1,9 @@
 /* lensprof/fit.h - recover response, vignetting, exposure and white balance from correspondences.
  *
+ * Method `radiance` (Goldman & Chen 2005): minimise the error of every grey value,
+ *     B_xi - f( e_i w_i M(r_xi) L_x )                                             (equations 2, 3, 11, 12)
+ * over the same unknowns and the radiance L of every scene point x, which points of two and more images share.
+ *
  * Method `transfer` (d'Angelo 2007): minimise the symmetric grey value transfer error
  *     B1 - f( g(B2) s1/s2 )   and   B2 - f( g(B1) s2/s1 ),      s = M e w            (equations 5, 8, 10)
  * over one response f (EMoR), one vignetting M and the exposure and white balance of every image.
@@ -152,12 +156,22 @@ LENSPROF_API void lensprof_fit_result_init(lensprof_fit_result *result);
 
 /* Fits `pair_count` pairs over `image_count` images. exposures[image_count] receives what every image got,
  * relative to the reference. A fit that ran returns OK even when the result is poor: see `usable`.
+ * Method RADIANCE: pairs that have an end in common (image, position and values) are joined to a track.
  * Errors: indices, values outside 0..1, unusable options ARGUMENT; NaN NOT_FINITE; no pairs NO_SAMPLES;
  * nothing free NO_UNKNOWNS; a method that this version lacks UNSUPPORTED; CANCELLED; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_fit_overlap(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
                      const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
                      lensprof_fit_result *result, lensprof_error *error);
+
+/* Fits the tracks of `observation_count` observations, given in any order, by the method `radiance`; options, exposures
+ * and result as for lensprof_fit_overlap. Pairs in the result are neighbouring unsaturated observations of a track.
+ * Errors: as there; and a point with one observation, or with two of one image, ARGUMENT; no point with two observations
+ * that are neither black nor saturated NO_SAMPLES; another method UNSUPPORTED. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status
+lensprof_fit_radiance(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
+                      const lensprof_observation *observations, uint32_t observation_count,
+                      lensprof_exposure *exposures, lensprof_fit_result *result, lensprof_error *error);
 
 /* Root mean square of the symmetric transfer residual (levels of 255) and, when not NULL, its median absolute
  * value, of pairs under a given model (vignetting of the three channels): the figure that

@@ -19,6 +19,16 @@ typedef struct lensprof_pair {
     double value[2][3]; /* grey values 0..1: red, green, blue; grey pictures use [0] and repeat it */
 } lensprof_pair;
 
+/* One sight of a scene point. Observations of one `point` (any number, the same for all of them) are a track: two or
+ * more, at most one an image. Frozen value struct. */
+typedef struct lensprof_observation {
+    uint32_t point;  /* the scene point */
+    uint32_t image;  /* index */
+    double xy[2];    /* position, px of the full frame */
+    double value[3]; /* grey values 0..1: red, green, blue; with one channel [0]. Above 250/255 a value is taken for
+                        saturated: the sensor received at least as much. Below half a level of 255: at most that */
+} lensprof_observation;
+
 /* A picture to sample. The view may be a reduced picture: pixel (u, v) is then the mean of the square of frame
  * pixels from (u, v) * reduction on, or of some pixels of it whose places vary from square to square. Frozen value
  * struct. */

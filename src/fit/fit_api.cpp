@@ -5,6 +5,7 @@
 #include "fail.hpp"
 #include "overlap.hpp"
 #include "residual.hpp"
+#include "tracks.hpp"
 
 using namespace lensprof;
 
@@ -28,8 +29,8 @@ lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_coun
                     "fit options: channels 1 or 3, reference < images, modes 0..25 or automatic, Huber 0..255 levels, "
                     "prior weight >= 0, iterations 1..1000000, flags of the shared unknowns only, vignettings 0, 1 or "
                     "3, gamma automatic or from prior or exposures, a known kind of camera and method, refine 0 or 1");
-    if (o.method != LENSPROF_METHOD_TRANSFER)
-        return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: this version fits by method TRANSFER only");
+    if (o.method == LENSPROF_METHOD_TRANSFER_FUNCTION)
+        return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: this version has no method TRANSFER_FUNCTION");
     lensprof_status status = lensprof_vignetting_validate(&o.vignetting);
     if (status != LENSPROF_OK)
         return fail(status, error, "fit options: the given vignetting is not positive and finite");
@@ -61,6 +62,24 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
     return LENSPROF_OK;
 }
 
+// A position and grey values in an image; `what` and its number name them in the error.
+lensprof_status check_end(const double xy[2], const double value[3], const lensprof_fit_image &frame, uint32_t image,
+                          int channels, const char *what, uint32_t number, lensprof_error *error) {
+    double x = xy[0], y = xy[1];
+    if (!std::isfinite(x) || !std::isfinite(y))
+        return fail(LENSPROF_ERROR_NOT_FINITE, error, "%s %u: a position is not a number", what, number);
+    if (x < -1.0 || y < -1.0 || x > frame.width || y > frame.height)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "%s %u: position %g, %g is outside image %u", what, number, x, y,
+                    image);
+    for (int c = 0; c < channels; c++) {
+        if (!std::isfinite(value[c]))
+            return fail(LENSPROF_ERROR_NOT_FINITE, error, "%s %u: a grey value is not a number", what, number);
+        if (value[c] < 0.0 || value[c] > 1.0)
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "%s %u: grey values must be 0..1", what, number);
+    }
+    return LENSPROF_OK;
+}
+
 lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const lensprof_fit_image *images,
                             uint32_t image_count, int channels, lensprof_error *error) {
     for (uint32_t p = 0; p < count; p++) {
@@ -69,21 +88,40 @@ lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const le
             return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: images %u and %u of %u", p, pair.image[0],
                         pair.image[1], image_count);
         for (int side = 0; side < 2; side++) {
-            if (!std::isfinite(pair.xy[side][0]) || !std::isfinite(pair.xy[side][1]))
-                return fail(LENSPROF_ERROR_NOT_FINITE, error, "pair %u: a position is not a number", p);
-            const auto &frame = images[pair.image[side]];
-            double x = pair.xy[side][0], y = pair.xy[side][1];
-            if (x < -1.0 || y < -1.0 || x > frame.width || y > frame.height)
-                return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: position %g, %g is outside image %u", p, x, y,
-                            pair.image[side]);
-            for (int c = 0; c < channels; c++) {
-                double value = pair.value[side][c];
-                if (!std::isfinite(value))
-                    return fail(LENSPROF_ERROR_NOT_FINITE, error, "pair %u: a grey value is not a number", p);
-                if (value < 0.0 || value > 1.0)
-                    return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: grey values must be 0..1", p);
-            }
+            uint32_t image = pair.image[side];
+            lensprof_status status =
+                check_end(pair.xy[side], pair.value[side], images[image], image, channels, "pair", p, error);
+            if (status != LENSPROF_OK) return status;
         }
+    }
+    return LENSPROF_OK;
+}
+
+lensprof_status check_observations(const lensprof_observation *observations, uint32_t count,
+                                   const lensprof_fit_image *images, uint32_t image_count, int channels,
+                                   lensprof_error *error) {
+    for (uint32_t n = 0; n < count; n++) {
+        const auto &o = observations[n];
+        if (o.image >= image_count)
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "observation %u: image %u of %u", n, o.image, image_count);
+        lensprof_status status =
+            check_end(o.xy, o.value, images[o.image], o.image, channels, "observation", n, error);
+        if (status != LENSPROF_OK) return status;
+    }
+    return LENSPROF_OK;
+}
+
+lensprof_status check_tracks(const Tracks &tracks, lensprof_error *error) {
+    for (const Range &track : tracks.tracks) {
+        const auto &first = tracks.observations[track.first];
+        if (track.last - track.first < 2)
+            return fail(LENSPROF_ERROR_ARGUMENT, error,
+                        "point %u is observed in one image only; leave out points without a second observation",
+                        first.point);
+        for (size_t i = track.first + 1; i < track.last; i++)
+            if (tracks.observations[i].image == tracks.observations[i - 1].image)
+                return fail(LENSPROF_ERROR_ARGUMENT, error, "point %u is observed twice in image %u", first.point,
+                            tracks.observations[i].image);
     }
     return LENSPROF_OK;
 }
@@ -91,6 +129,52 @@ lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const le
 bool has_unknowns(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t count) {
     Problem problem = make_problem(options, images, count, nullptr, {});
     return problem.image_unknowns > 0 || !free_columns(problem, options.modes == 0 ? 0 : 1).empty();
+}
+
+// What both fits ask of everything but the pairs or observations.
+lensprof_status check_call(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
+                           bool has_data, const lensprof_exposure *exposures, const lensprof_fit_result *result,
+                           lensprof_error *error) {
+    if (error) error->text[0] = 0;
+    if (!options || !images || !exposures || !result || !has_data)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: a pointer is NULL");
+    if (image_count < 2) return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: at least two images are needed");
+    if (result->struct_size != sizeof *result)
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit result: call lensprof_fit_result_init first");
+    lensprof_status status = check_options(*options, image_count, error);
+    return status == LENSPROF_OK ? check_images(images, image_count, error) : status;
+}
+
+// The exception fence around a fit.
+template <class Fit>
+lensprof_status run(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                    lensprof_error *error, Fit fit) {
+    try {
+        if (!has_unknowns(options, images, image_count))
+            return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "fit: every parameter is fixed; free at least one");
+        return fit();
+    } catch (const Cancelled &) {
+        return fail(LENSPROF_ERROR_CANCELLED, error, "fit: cancelled");
+    } catch (const std::bad_alloc &) {
+        return fail(LENSPROF_ERROR_MEMORY, error, "fit: out of memory");
+    } catch (const std::exception &e) {
+        return fail(LENSPROF_ERROR_INTERNAL, error, "fit: %s", e.what());
+    } catch (...) {
+        return fail(LENSPROF_ERROR_INTERNAL, error, "fit: an unknown exception");
+    }
+}
+
+lensprof_status fit_tracks(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                           const lensprof_observation *observations, uint32_t count, lensprof_exposure *exposures,
+                           lensprof_fit_result &result, lensprof_error *error) {
+    Tracks tracks = tracks_of(observations, count);
+    lensprof_status status = check_tracks(tracks, error);
+    if (status != LENSPROF_OK) return status;
+    if (pairs_of(tracks, static_cast<int>(options.channels)).empty())
+        return fail(LENSPROF_ERROR_NO_SAMPLES, error,
+                    "fit: no point has two observations that are neither black nor saturated");
+    fit_radiance(options, images, image_count, tracks, exposures, result);
+    return LENSPROF_OK;
 }
 
 }  // namespace
@@ -118,32 +202,39 @@ void lensprof_fit_result_init(lensprof_fit_result *result) {
 lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const lensprof_fit_image *images,
                                      uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
                                      lensprof_exposure *exposures, lensprof_fit_result *result, lensprof_error *error) {
-    if (error) error->text[0] = 0;
-    if (!options || !images || !exposures || !result || (pair_count && !pairs))
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: a pointer is NULL");
-    if (image_count < 2) return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: at least two images are needed");
-    if (result->struct_size != sizeof *result)
-        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit result: call lensprof_fit_result_init first");
-    lensprof_status status = check_options(*options, image_count, error);
-    if (status == LENSPROF_OK) status = check_images(images, image_count, error);
+    lensprof_status status =
+        check_call(options, images, image_count, pairs || pair_count == 0, exposures, result, error);
     if (status == LENSPROF_OK)
         status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(options->channels), error);
     if (status != LENSPROF_OK) return status;
     if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
-    try {
-        if (!has_unknowns(*options, images, image_count))
-            return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "fit: every parameter is fixed; free at least one");
-        fit_overlap(*options, images, image_count, pairs, pair_count, exposures, *result);
-        return LENSPROF_OK;
-    } catch (const Cancelled &) {
-        return fail(LENSPROF_ERROR_CANCELLED, error, "fit: cancelled");
-    } catch (const std::bad_alloc &) {
-        return fail(LENSPROF_ERROR_MEMORY, error, "fit: out of memory");
-    } catch (const std::exception &e) {
-        return fail(LENSPROF_ERROR_INTERNAL, error, "fit: %s", e.what());
-    } catch (...) {
-        return fail(LENSPROF_ERROR_INTERNAL, error, "fit: an unknown exception");
-    }
+    return run(*options, images, image_count, error, [&] {
+        if (options->method == LENSPROF_METHOD_TRANSFER) {
+            fit_overlap(*options, images, image_count, pairs, pair_count, exposures, *result);
+            return LENSPROF_OK;
+        }
+        std::vector<lensprof_observation> observations = observations_of(pairs, pair_count);
+        return fit_tracks(*options, images, image_count, observations.data(),
+                          static_cast<uint32_t>(observations.size()), exposures, *result, error);
+    });
+}
+
+lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const lensprof_fit_image *images,
+                                      uint32_t image_count, const lensprof_observation *observations,
+                                      uint32_t observation_count, lensprof_exposure *exposures,
+                                      lensprof_fit_result *result, lensprof_error *error) {
+    lensprof_status status = check_call(options, images, image_count, observations || observation_count == 0, exposures,
+                                        result, error);
+    if (status == LENSPROF_OK && options->method != LENSPROF_METHOD_RADIANCE)
+        return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: tracks are for the method radiance");
+    if (status == LENSPROF_OK)
+        status = check_observations(observations, observation_count, images, image_count,
+                                    static_cast<int>(options->channels), error);
+    if (status != LENSPROF_OK) return status;
+    if (observation_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no observations were given");
+    return run(*options, images, image_count, error, [&] {
+        return fit_tracks(*options, images, image_count, observations, observation_count, exposures, *result, error);
+    });
 }
 
 lensprof_status lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting vignetting[3],

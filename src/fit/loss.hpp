@@ -21,6 +21,7 @@ struct Loss {
     double huber = 5.0 / 255.0;  // HUBER: sigma, grey value 0..1
     double noise = 2.0 / 255.0;  // sigma of one grey value
     double cutoff = 4.0;         // ROBUST: c, in sigmas of a pair's typical size
+    bool distrusts = false;      // ROBUST: does without single observations of a track (radiance.hpp)
 };
 
 // 1 / sqrt(1 + tau'^2) of every pair, [channel][direction], at one estimate; 1 for the unweighted losses. Held constant

@@ -3,130 +3,38 @@
 #include <algorithm>
 #include <cmath>
 
-#include "residual.hpp"
-
 namespace lensprof {
 
-// One row a residual, scaled by the root of its weight: d prediction / d shared, d prediction / d delta, residual. The
-// product of the rows with themselves holds everything that the edge adds to the model.
-struct NormalEquations::Rows {
-    static constexpr Eigen::Index kCapacity = 128;
-    Eigen::MatrixXd rows;  // a column each
-    Eigen::MatrixXd product;
-    Eigen::Index count = 0;
+NormalEquations::Sums::Sums(Eigen::Index n, uint32_t image_count)
+    : shared(Eigen::MatrixXd::Zero(n, n)), cross(Eigen::MatrixXd::Zero(n, 3 * image_count)),
+      gradient(Eigen::VectorXd::Zero(n)), image_gradient(Eigen::VectorXd::Zero(3 * image_count)) {}
 
-    explicit Rows(Eigen::Index n) : rows(n + 2, kCapacity), product(n + 2, n + 2) {}
-};
-
-// What a chunk of pairs adds to the model.
-struct NormalEquations::Sums {
-    double objective = 0.0;
-    Eigen::MatrixXd shared, cross;
-    Eigen::VectorXd gradient, image_gradient;
-    std::vector<std::array<double, 3>> edge_weight;  // from the chunk's first edge on
-    std::vector<Rows> rows;                          // of each channel, while the chunk is read
-
-    Sums(const Problem &problem, Eigen::Index n)
-        : shared(Eigen::MatrixXd::Zero(n, n)), cross(Eigen::MatrixXd::Zero(n, 3 * problem.image_count)),
-          gradient(Eigen::VectorXd::Zero(n)), image_gradient(Eigen::VectorXd::Zero(3 * problem.image_count)) {}
-};
-
-NormalEquations::NormalEquations(const Problem &problem, const Prior &prior, const Loss &loss,
-                                 const NoiseWeights &weights, const Estimate &estimate, const ModeTable &modes)
-    : problem_(problem), columns_(free_columns(problem, estimate.modes)) {
-    auto n = static_cast<Eigen::Index>(columns_.size());
-    Sums total(problem, n);
-    std::vector<Sums> sums(problem.chunks.size(), total);
-    for_each_chunk(problem,
-                   [&](uint32_t k) { add_chunk(problem.chunks[k], loss, weights, estimate, modes, sums[k]); });
-    edge_weight_.assign(problem.edges.size(), {0.0, 0.0, 0.0});
-    for (size_t k = 0; k < sums.size(); k++) {
-        objective_ += sums[k].objective;
-        total.shared += sums[k].shared;
-        total.cross += sums[k].cross;
-        total.gradient += sums[k].gradient;
-        total.image_gradient += sums[k].image_gradient;
-        for (size_t e = 0; e < sums[k].edge_weight.size(); e++) {
-            auto &weight = edge_weight_[problem.chunks[k].first_edge + e];
-            for (size_t c = 0; c < 3; c++) weight[c] += sums[k].edge_weight[e][c];
-        }
-    }
-    shared_ = total.shared.selfadjointView<Eigen::Lower>();
-    gradient_ = total.gradient;
-    objective_ += prior_cost(prior, problem, columns_, estimate);
-    add_prior(prior, estimate);
-    map_images(total, prior, estimate);
+void NormalEquations::Sums::add(const Sums &part) {
+    objective += part.objective;
+    shared += part.shared;
+    cross += part.cross;
+    gradient += part.gradient;
+    image_gradient += part.image_gradient;
 }
 
-void NormalEquations::add_chunk(const Chunk &chunk, const Loss &loss, const NoiseWeights &weights,
-                                const Estimate &estimate, const ModeTable &modes, Sums &sums) const {
-    sums.rows.assign(static_cast<size_t>(problem_.channels), Rows(sums.gradient.size()));
-    for (size_t p = chunk.first, e = chunk.first_edge; p < chunk.last; e++) {
-        Edge part = problem_.edges[e];
-        part.first = p;
-        p = part.last = std::min(part.last, chunk.last);
-        add_edge(part, loss, weights, estimate, modes, sums);
-    }
-    sums.rows.clear();
-}
+NormalEquations::NormalEquations(const Problem &problem, const Estimate &estimate)
+    : problem_(problem), columns_(free_columns(problem, estimate.modes)),
+      modes_(static_cast<size_t>(std::lower_bound(columns_.begin(), columns_.end(), kMaxModes) - columns_.begin())) {}
 
-void NormalEquations::by_lens(const Falloff &fall, int curve, int first, double *by) const {
-    for (size_t u = static_cast<size_t>(first); u < columns_.size(); u++) {
+void NormalEquations::by_lens(const double by_k[3], const double by_center[2], int curve, double *by) const {
+    for (size_t u = modes_; u < columns_.size(); u++) {
         int column = columns_[u], k = column - kFalloff - 3 * curve;
-        by[u] = column >= kCenter ? fall.by_center[column - kCenter] : k >= 0 && k < 3 ? fall.by_k[k] : 0.0;
+        by[u] = column >= kCenter ? by_center[column - kCenter] : k >= 0 && k < 3 ? by_k[k] : 0.0;
     }
 }
 
-void NormalEquations::add_edge(const Edge &edge, const Loss &loss, const NoiseWeights &weights,
-                               const Estimate &estimate, const ModeTable &modes, Sums &sums) const {
-    auto n = static_cast<Eigen::Index>(columns_.size());
-    auto ratio = exposure_ratios(problem_, estimate, edge);
-    int emor = columns_.empty() || columns_[0] >= kMaxModes ? 0 : modes.modes();
-    sums.edge_weight.push_back({0.0, 0.0, 0.0});
-    PairTransfer t;
-    double lens[3][kMaxShared];  // d delta / d shared, behind the modes, of each falloff curve
-    for (size_t p = edge.first; p < edge.last; p++) {
-        evaluate_pair(problem_, estimate, problem_.pairs[p], ratio.data(), t);
-        PairResiduals factor, residuals = weighted_residuals(t, problem_.channels, weights[p]);
-        sums.objective += 0.5 * pair_cost(residuals, problem_.channels, loss, &factor);
-        for (int curve = 0; curve < problem_.vignettings; curve++)
-            by_lens(t.fall[static_cast<size_t>(curve)], curve, emor, lens[curve]);
-        for (int c = 0; c < problem_.channels; c++) {
-            const Transfer &one = t.channel[static_cast<size_t>(c)];
-            const double *by = lens[problem_.vignettings == 3 ? c : 0];
-            for (int side = 0; side < 2; side++) {
-                double by_delta = one.by_delta[side], root = weights[p][c][side] * std::sqrt(factor[c][side]);
-                if (by_delta == 0.0 && one.by_value[side] == 0.0) continue;  // saturated prediction
-                Rows &rows = sums.rows[static_cast<size_t>(c)];
-                double *row = rows.rows.col(rows.count).data();
-                if (emor) modes.transfer_by_emor(one, side, root, row);
-                for (Eigen::Index u = emor; u < n; u++) row[u] = root * by_delta * by[u];
-                row[n] = root * by_delta;
-                row[n + 1] = root * one.residual[side];
-                if (++rows.count == Rows::kCapacity) add_rows(edge, c, sums);
-            }
-        }
-    }
-    for (int c = 0; c < problem_.channels; c++) add_rows(edge, c, sums);
-}
-
-void NormalEquations::add_rows(const Edge &edge, int channel, Sums &sums) {
-    Rows &rows = sums.rows[static_cast<size_t>(channel)];
-    if (rows.count == 0) return;
-    Eigen::Index n = sums.gradient.size();
-    rows.product.setZero();
-    rows.product.selfadjointView<Eigen::Lower>().rankUpdate(rows.rows.leftCols(rows.count));
-    rows.count = 0;
-    const auto &product = rows.product;
-    sums.shared.triangularView<Eigen::Lower>() += product.topLeftCorner(n, n);
-    sums.gradient += product.row(n + 1).head(n).transpose();
-    sums.edge_weight.back()[static_cast<size_t>(channel)] += product(n, n);
-    for (int end = 0; end < 2; end++) {
-        Eigen::Index i = 3 * static_cast<Eigen::Index>(edge.image[end]) + channel;
-        double sign = end == 0 ? 1.0 : -1.0;
-        sums.cross.col(i) += sign * product.row(n).head(n).transpose();
-        sums.image_gradient[i] += sign * product(n + 1, n);
-    }
+void NormalEquations::complete(const Sums &sums, const Prior &prior, const Estimate &estimate) {
+    objective_ = sums.objective;
+    shared_ = sums.shared.selfadjointView<Eigen::Lower>();
+    gradient_ = sums.gradient;
+    objective_ += prior_cost(prior, problem_, columns_, estimate);
+    add_prior(prior, estimate);
+    map_images(sums, prior, estimate);
 }
 
 void NormalEquations::add_prior(const Prior &prior, const Estimate &estimate) {
@@ -152,15 +60,15 @@ void NormalEquations::map_images(const Sums &sums, const Prior &prior, const Est
         return std::array<int, 2>{problem_.ev_unknown[i], problem_.balance_unknown[i][c]};
     };
     std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(8 * problem_.edges.size() * static_cast<size_t>(problem_.channels));
-    for (size_t e = 0; e < problem_.edges.size(); e++)
+    entries.reserve(8 * sums.links.size() * static_cast<size_t>(problem_.channels));
+    for (const Link &link : sums.links)
         for (int c = 0; c < problem_.channels; c++)
             for (int end = 0; end < 2; end++)
                 for (int other = 0; other < 2; other++)
-                    for (int q : columns_of(problem_.edges[e].image[end], c))
-                        for (int r : columns_of(problem_.edges[e].image[other], c))
+                    for (int q : columns_of(link.image[end], c))
+                        for (int r : columns_of(link.image[other], c))
                             if (q >= 0 && r >= 0)
-                                entries.emplace_back(q, r, (end == other ? 1.0 : -1.0) * edge_weight_[e][c]);
+                                entries.emplace_back(q, r, (end == other ? 1.0 : -1.0) * link.weight[c]);
     cross_q_ = Eigen::MatrixXd::Zero(count, static_cast<Eigen::Index>(columns_.size()));
     gradient_q_ = Eigen::VectorXd::Zero(count);
     for (uint32_t i = 0; i < problem_.image_count; i++)

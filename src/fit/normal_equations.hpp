@@ -1,15 +1,16 @@
 // The quadratic model of the objective about an estimate, with the images' unknowns eliminated (Schur complement).
 //
-// Shared unknowns s (response, falloff, centre) are dense and few. The images' log exposures a_ic enter every residual
-// only through a_ic - a_jc, so their Hessian is a sum over edges of image pairs: a weighted graph Laplacian for each
-// channel. Links and fixed values are a linear map a = T q. Cost is linear in pairs, and nearly so in images (sparse
+// Shared unknowns s (response, falloff, centre) are dense and few. The images' log exposures a_ic count only relative to
+// each other, so their Hessian is a sum over pairs of images: a weighted graph Laplacian for each channel. Links and fixed values are a linear map a = T q. Cost is linear in pairs, and nearly so in images (sparse
 // Cholesky).
 #pragma once
+
+#include <array>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/SparseCholesky>
 
-#include "loss.hpp"
 #include "prior.hpp"
 #include "problem.hpp"
 
@@ -17,11 +18,9 @@ namespace lensprof {
 
 class NormalEquations {
 public:
-    // Builds the model. `objective` receives the value at the estimate, priors included.
-    NormalEquations(const Problem &problem, const Prior &prior, const Loss &loss, const NoiseWeights &weights,
-                    const Estimate &estimate, const ModeTable &modes);
+    virtual ~NormalEquations() = default;
 
-    double objective() const { return objective_; }
+    double objective() const { return objective_; }  // at the estimate, priors included
     const std::vector<int> &columns() const { return columns_; }
 
     // Eliminates the images under damping `lambda`; false when that failed numerically.
@@ -38,24 +37,41 @@ public:
     // Variance of every unknown of the images, when `shared` is the covariance of the shared unknowns.
     Eigen::VectorXd image_variance(const Eigen::MatrixXd &shared) const;
 
+protected:
+    // Two images and the weight of the Laplacian between them, of each channel.
+    struct Link {
+        uint32_t image[2];
+        std::array<double, 3> weight;
+    };
+    // What the residuals add to the model, as derivatives by a_ic: before links, fixed values and priors.
+    struct Sums {
+        double objective = 0.0;
+        Eigen::MatrixXd shared, cross;  // shared: its lower half
+        Eigen::VectorXd gradient, image_gradient;
+        std::vector<Link> links;
+
+        Sums(Eigen::Index n, uint32_t image_count);
+        void add(const Sums &part);  // all but the links
+    };
+
+    NormalEquations(const Problem &problem, const Estimate &estimate);
+
+    // Derivatives by the lens, behind those by the modes, from those by k and centre of a falloff curve.
+    void by_lens(const double by_k[3], const double by_center[2], int curve, double *by) const;
+
+    void complete(const Sums &sums, const Prior &prior, const Estimate &estimate);
+
+    const Problem &problem_;
+    const std::vector<int> columns_;
+    const size_t modes_;  // of the columns, the first ones
+
 private:
-    struct Rows;  // residuals of one edge and channel
-    struct Sums;
-    void by_lens(const Falloff &fall, int curve, int first, double *by) const;
-    void add_chunk(const Chunk &chunk, const Loss &loss, const NoiseWeights &weights, const Estimate &estimate,
-                   const ModeTable &modes, Sums &sums) const;
-    void add_edge(const Edge &edge, const Loss &loss, const NoiseWeights &weights, const Estimate &estimate,
-                  const ModeTable &modes, Sums &sums) const;
-    static void add_rows(const Edge &edge, int channel, Sums &sums);
     void add_prior(const Prior &prior, const Estimate &estimate);
     void map_images(const Sums &sums, const Prior &prior, const Estimate &estimate);
 
-    const Problem &problem_;
-    std::vector<int> columns_;
     double objective_ = 0.0;
     Eigen::MatrixXd shared_;                         // shared x shared
     Eigen::VectorXd gradient_;                       // shared, of -objective
-    std::vector<std::array<double, 3>> edge_weight_; // Laplacian weight of each edge and channel
     Eigen::SparseMatrix<double> images_;             // in q
     Eigen::MatrixXd cross_q_;
     Eigen::VectorXd gradient_q_;

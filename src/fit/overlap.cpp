@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
 
 #include "log_inverse.hpp"
 #include "monotone.hpp"
-#include "residual.hpp"
+#include "objective.hpp"
 #include "start.hpp"
 
 namespace lensprof {
@@ -18,7 +19,7 @@ constexpr int kStartModes = 5;  // enough to tell the starts apart
 constexpr uint32_t kStartPairs = 800, kStartPairsPerImage = 10;
 constexpr uint32_t kSmallestHeldout = 20;
 
-// Every fifth pair is left out, by a hash of its number: independent of order along images, same every time.
+// Every fifth pair or track is left out, by a hash of its number: independent of order along images, same every time.
 bool is_heldout(uint32_t p) {
     uint64_t x = p + 0x9e3779b97f4a7c15ull;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -30,7 +31,7 @@ struct Split {
     std::vector<uint32_t> all, train, heldout, few;
 };
 
-Split split_pairs(uint32_t count, uint32_t images) {
+Split split_items(uint32_t count, uint32_t images) {
     Split split;
     for (uint32_t p = 0; p < count; p++) {
         split.all.push_back(p);
@@ -42,7 +43,8 @@ Split split_pairs(uint32_t count, uint32_t images) {
     return split;
 }
 
-// A fit to the training pairs, and what every held-out pair costs under it at a noise level common to all candidates.
+// A fit to the training data, and what every held-out pair or track costs under it at a noise level common to all
+// candidates.
 struct Candidate {
     Estimate estimate;
     std::vector<double> losses;
@@ -63,14 +65,17 @@ double loss_difference(const Candidate &a, const Candidate &b, double &standard_
 
 class Fit {
 public:
-    Fit(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-        const lensprof_pair *pairs, uint32_t pair_count)
-        : options_(options), images_(images), image_count_(image_count), pairs_(pairs),
-          split_(split_pairs(pair_count, image_count)),
-          all_(problem(split_.all)), gauge_(options, all_) {
-        has_heldout_ = split_.heldout.size() >= kSmallestHeldout;
-        train_ = problem(has_heldout_ ? split_.train : split_.all);
-        if (has_heldout_) heldout_ = problem(split_.heldout);
+    // make(keep): the problem of some of `count` pairs or tracks.
+    using Make = std::function<Problem(const std::vector<uint32_t> &keep)>;
+
+    Fit(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count, Make make,
+        uint32_t count)
+        : options_(options), images_(images), image_count_(image_count), problem_(std::move(make)),
+          split_(split_items(count, image_count)),
+          all_(problem_(split_.all)), gauge_(options, all_) {
+        if (split_.heldout.size() >= kSmallestHeldout) heldout_ = problem_(split_.heldout);
+        has_heldout_ = heldout_.pairs.size() >= kSmallestHeldout;
+        train_ = problem_(has_heldout_ ? split_.train : split_.all);
         control_.max_iterations = static_cast<int>(options.max_iterations);
         control_.cancelled = [this] {
             return options_.progress && options_.progress(done_, options_.progress_user) != 0;
@@ -80,9 +85,6 @@ public:
     void run(lensprof_exposure *exposures, lensprof_fit_result &result);
 
 private:
-    Problem problem(const std::vector<uint32_t> &keep) const {
-        return make_problem(options_, images_, image_count_, pairs_, keep);
-    }
     Loss loss() const {
         Loss l;
         l.kind = options_.loss;
@@ -91,7 +93,7 @@ private:
     }
     void set_vignettings(int count) {
         for (Problem *p : {&all_, &train_, &heldout_}) p->vignettings = count;
-        prior_ = make_prior(options_.prior_weight, count);
+        prior_ = make_prior(options_.prior_weight, count, all_.by_radiance);
     }
     Estimate best_start(int modes);
     void reconsider(const Problem &problem, const Loss &used, Estimate &estimate);
@@ -107,7 +109,7 @@ private:
     const lensprof_fit_options &options_;
     const lensprof_fit_image *images_;
     uint32_t image_count_;
-    const lensprof_pair *pairs_;
+    const Make problem_;
     Split split_;
     Problem all_, train_, heldout_;
     bool has_heldout_ = false;
@@ -120,7 +122,7 @@ private:
 
 // Short fits from every start at one fixed noise level, so that their costs compare; the best one, its gamma settled.
 Estimate Fit::best_start(int modes) {
-    Problem few = problem(split_.few.empty() ? split_.all : split_.few);
+    Problem few = problem_(split_.few.empty() ? split_.all : split_.few);
     few.vignettings = all_.vignettings;
     Control brief = control_;
     brief.max_iterations = std::min(control_.max_iterations, 10);
@@ -170,12 +172,7 @@ Candidate Fit::candidate(const Estimate &from, int modes) {
 
 // What the held-out pairs cost.
 void Fit::measure(Candidate &candidate) const {
-    NoiseWeights weights = noise_weights(heldout_, candidate.estimate, common_);
-    candidate.losses.clear();
-    for_each_transfer(heldout_, candidate.estimate, [&](size_t p, const PairTransfer &t) {
-        PairResiduals residuals = weighted_residuals(t, heldout_.channels, weights[p]);
-        candidate.losses.push_back(pair_cost(residuals, heldout_.channels, common_, nullptr));
-    });
+    candidate.losses = all_costs(heldout_, common_, candidate.estimate);
     candidate.mean = std::accumulate(candidate.losses.begin(), candidate.losses.end(), 0.0)
                      / static_cast<double>(candidate.losses.size());
 }
@@ -267,7 +264,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     bool any_curves = options_.vignettings == 0 && options_.channels == 3 && (options_.free & falloff) && has_heldout_;
     int modes = options_.modes == LENSPROF_MODES_AUTO ? kStartModes : static_cast<int>(options_.modes);
 
-    bool refines = options_.refine && is_free && has_heldout_ && image_count_ <= kMostRefinedImages;
+    bool refines = options_.refine && options_.method == LENSPROF_METHOD_TRANSFER && is_free && has_heldout_ && image_count_ <= kMostRefinedImages;
     const Gauge asked = gauge_;
     if (refines) gauge_ = gauge_.by_prior();
 
@@ -276,6 +273,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     best.estimate = best_start(is_free ? std::min(std::max(modes, 1), kStartModes) : 0);
     done_ = 0.2;
     Loss used = loss();
+    used.distrusts = true;
     set_modes(best.estimate, modes);
     Control first = control_;
     if (any_modes || any_curves) first.flat = 0.05, first.rounds = 3;
@@ -342,7 +340,7 @@ void Fit::describe(const Estimate &train, const Estimate &estimate, const Loss &
     set_result_response(estimate, r.response);
     r.vignettings = static_cast<uint32_t>(all_.vignettings);
     for (size_t c = 0; c < 3; c++) r.vignetting[c] = estimate.vignetting[all_.vignettings == 3 ? c : 0];
-    r.pairs = static_cast<uint32_t>(split_.all.size());
+    r.pairs = static_cast<uint32_t>(all_.pairs.size());
 
     const Problem &tested = has_heldout_ ? heldout_ : all_;
     Summary summary = summarise(residual_levels(tested, train));
@@ -361,7 +359,18 @@ void Fit::describe(const Estimate &train, const Estimate &estimate, const Loss &
 void fit_overlap(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                  const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
                  lensprof_fit_result &result) {
-    Fit(options, images, image_count, pairs, pair_count).run(exposures, result);
+    auto make = [&](const std::vector<uint32_t> &keep) {
+        return make_problem(options, images, image_count, pairs, keep);
+    };
+    Fit(options, images, image_count, make, pair_count).run(exposures, result);
+}
+
+void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                  const Tracks &tracks, lensprof_exposure *exposures, lensprof_fit_result &result) {
+    auto make = [&](const std::vector<uint32_t> &keep) {
+        return make_problem(options, images, image_count, tracks, keep);
+    };
+    Fit(options, images, image_count, make, static_cast<uint32_t>(tracks.tracks.size())).run(exposures, result);
 }
 
 Summary transfer_summary(const lensprof_response &response, const lensprof_vignetting vignetting[3],

@@ -1,4 +1,4 @@
-// The overlap fit from checked input to result: starts, gauge, number of modes and falloff curves, final fit.
+// The fit from checked input to result: starts, gauge, number of modes and falloff curves, final fit.
 #pragma once
 
 #include "quality.hpp"
@@ -8,6 +8,10 @@ namespace lensprof {
 void fit_overlap(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                  const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
                  lensprof_fit_result &result);
+
+// The same by method `radiance`; some track must have a pair.
+void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                  const Tracks &tracks, lensprof_exposure *exposures, lensprof_fit_result &result);
 
 // Transfer residual of pairs under a model.
 Summary transfer_summary(const lensprof_response &response, const lensprof_vignetting vignetting[3],

@@ -1,5 +1,6 @@
 #include "prior.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace lensprof {
@@ -23,8 +24,9 @@ constexpr double kChannelSigma = 0.1;
 
 }  // namespace
 
-Prior make_prior(double weight, int vignettings) {
+Prior make_prior(double weight, int vignettings, bool by_covariance) {
     Prior prior;
+    prior.covariance_weight = by_covariance ? weight : 0.0;
     prior.mean = Eigen::VectorXd::Zero(kMaxShared);
     prior.precision = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
     for (int l = 0; l < kMaxModes; l++) prior.precision(l, l) = weight / (kEmorSigma[l] * kEmorSigma[l]);
@@ -45,6 +47,19 @@ Prior make_prior(double weight, int vignettings) {
         }
     for (int d = 0; d < 2; d++) prior.precision(kCenter + d, kCenter + d) = weight / (kCenterSigma * kCenterSigma);
     return prior;
+}
+
+Prior prior_of(const Prior &prior, int modes) {
+    Prior result = prior;
+    if (prior.covariance_weight == 0.0 || modes <= 0) return result;
+    Eigen::MatrixXd covariance(modes, modes);
+    for (int l = 0; l < modes; l++)
+        for (int m = 0; m <= l; m++)
+            covariance(l, m) = covariance(m, l) =
+                kEmorSigma[l] * kEmorSigma[m] * (l == m ? 1.0 : kEmorCorrelation[l * (l - 1) / 2 + m]);
+    result.precision.topLeftCorner(modes, modes) =
+        prior.covariance_weight * covariance.llt().solve(Eigen::MatrixXd::Identity(modes, modes));
+    return result;
 }
 
 double prior_cost(const Prior &prior, const Problem &problem, const std::vector<int> &columns,

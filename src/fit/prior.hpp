@@ -11,10 +11,17 @@ namespace lensprof {
 // (profiles/tools/make_response_prior.py).
 extern const double kEmorSigma[kMaxModes];
 
+// Correlations of the same, below the diagonal, row by row.
+extern const double kEmorCorrelation[kMaxModes * (kMaxModes - 1) / 2];
+
 struct Prior {
     // Of the full shared vector: (s - mean)' precision (s - mean) / 2.
     Eigen::VectorXd mean;
     Eigen::MatrixXd precision;
+
+    // Weight of the Gaussian prior on the EMoR coefficients with their full covariance (Goldman & Chen eq. 12), which
+    // prior_of() puts into the precision; 0: the coefficients are taken as independent there.
+    double covariance_weight = 0.0;
 
     // The exponent gamma, held where it was settled (gauge.hpp): pin_precision (pin'emor - pin_value)^2 / 2.
     Eigen::VectorXd pin = Eigen::VectorXd::Zero(kMaxModes);
@@ -27,8 +34,11 @@ struct Prior {
     std::vector<KnownExposure> known;
 };
 
-// Response and falloff of measured cameras and lenses, times `weight`.
-Prior make_prior(double weight, int vignettings);
+// Response and falloff of measured cameras and lenses, times `weight`; `by_covariance` as above.
+Prior make_prior(double weight, int vignettings, bool by_covariance = false);
+
+// The prior where `modes` coefficients are estimated: what the others may be has no part in it.
+Prior prior_of(const Prior &prior, int modes);
 
 // Its share of the objective; of the shared unknowns those in `columns` alone.
 double prior_cost(const Prior &prior, const Problem &problem, const std::vector<int> &columns,

@@ -7,6 +7,7 @@
 
 #include "core/response.h"
 #include "monotone.hpp"
+#include "tracks.hpp"
 
 namespace lensprof {
 namespace {
@@ -37,15 +38,42 @@ void find_edges(Problem &problem) {
     }
 }
 
-void find_chunks(Problem &problem) {
+size_t chunk_count(size_t items) {
     constexpr size_t kLargestCount = 16, kSmallestSize = 512;
-    size_t pairs = problem.pairs.size(), edge = 0;
-    size_t count = std::clamp<size_t>(pairs / kSmallestSize, 1, kLargestCount);
+    return std::clamp<size_t>(items / kSmallestSize, 1, kLargestCount);
+}
+
+void find_chunks(Problem &problem) {
+    size_t pairs = problem.pairs.size(), edge = 0, count = chunk_count(pairs);
     for (size_t k = 0; k < count && pairs; k++) {
         size_t first = pairs * k / count, last = pairs * (k + 1) / count;
         while (problem.edges[edge].last <= first) edge++;
         problem.chunks.push_back({first, last, edge});
     }
+}
+
+void find_track_chunks(Problem &problem) {
+    size_t tracks = problem.tracks.tracks.size(), count = chunk_count(problem.tracks.observations.size());
+    for (size_t k = 0; k < count && tracks; k++)
+        problem.track_chunks.push_back({tracks * k / count, tracks * (k + 1) / count});
+}
+
+void find_links(Problem &problem) {
+    std::vector<std::vector<uint32_t>> above(problem.image_count);
+    const auto &observations = problem.tracks.observations;
+    for (const Range &track : problem.tracks.tracks)
+        for (size_t i = track.first; i < track.last; i++)
+            for (size_t j = i + 1; j < track.last; j++) {
+                auto &list = above[observations[i].image];
+                uint32_t high = observations[j].image;
+                auto place = std::lower_bound(list.begin(), list.end(), high);
+                if (place == list.end() || *place != high) list.insert(place, high);
+            }
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        problem.first_link.push_back(static_cast<uint32_t>(problem.links.size()));
+        for (uint32_t j : above[i]) problem.links.push_back({i, j});
+    }
+    problem.first_link.push_back(static_cast<uint32_t>(problem.links.size()));
 }
 
 void find_components(Problem &problem) {
@@ -87,7 +115,31 @@ void number_unknowns(Problem &problem) {
     }
 }
 
+Problem empty_problem(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count) {
+    Problem problem;
+    problem.channels = static_cast<int>(options.channels);
+    problem.reference = options.reference;
+    problem.free = options.free;
+    problem.images = images;
+    problem.image_count = image_count;
+    problem.threads = options.threads;
+    return problem;
+}
+
+// Everything that follows from the pairs.
+void complete(Problem &problem) {
+    find_edges(problem);
+    find_chunks(problem);
+    find_components(problem);
+    number_unknowns(problem);
+}
+
 }  // namespace
+
+uint32_t Problem::link_of(uint32_t low, uint32_t high) const {
+    auto first = links.begin() + first_link[low], last = links.begin() + first_link[low + 1];
+    return static_cast<uint32_t>(std::lower_bound(first, last, std::array<uint32_t, 2>{low, high}) - links.begin());
+}
 
 uint32_t Problem::component_count() const {
     uint32_t count = 0;
@@ -105,19 +157,28 @@ lensprof_exposure given_exposure(const lensprof_fit_image *images, uint32_t i) {
 
 Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                      const lensprof_pair *pairs, const std::vector<uint32_t> &keep) {
-    Problem problem;
-    problem.channels = static_cast<int>(options.channels);
-    problem.reference = options.reference;
-    problem.free = options.free;
-    problem.images = images;
-    problem.image_count = image_count;
+    Problem problem = empty_problem(options, images, image_count);
     problem.pairs.reserve(keep.size());
     for (uint32_t p : keep) problem.pairs.push_back(pairs[p]);
-    problem.threads = options.threads;
-    find_edges(problem);
-    find_chunks(problem);
-    find_components(problem);
-    number_unknowns(problem);
+    complete(problem);
+    return problem;
+}
+
+Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                     const Tracks &tracks, const std::vector<uint32_t> &keep) {
+    Problem problem = empty_problem(options, images, image_count);
+    problem.by_radiance = true;
+    auto &own = problem.tracks;
+    for (uint32_t t : keep) {
+        const Range &track = tracks.tracks[t];
+        size_t first = own.observations.size();
+        for (size_t i = track.first; i < track.last; i++) own.observations.push_back(tracks.observations[i]);
+        own.tracks.push_back({first, own.observations.size()});
+    }
+    problem.pairs = pairs_of(own, problem.channels);
+    find_track_chunks(problem);
+    find_links(problem);
+    complete(problem);
     return problem;
 }
 

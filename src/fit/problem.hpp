@@ -26,6 +26,17 @@ struct Edge {
     size_t first, last;
 };
 
+// Observations of a track, or tracks of a chunk: [first, last).
+struct Range {
+    size_t first, last;
+};
+
+// What a fit is given where scene points have tracks of observations.
+struct Tracks {
+    std::vector<lensprof_observation> observations;  // by point, then by image
+    std::vector<Range> tracks;                       // of observations; by point
+};
+
 // Pairs [first, last), from within edge `first_edge` on, that one thread takes at a time. Chunks follow from the pairs
 // alone and what they give is put together in their order: the same bytes whatever the number of threads.
 struct Chunk {
@@ -43,6 +54,14 @@ struct Problem {
     std::vector<Edge> edges;           // sorted by image indices
     std::vector<Chunk> chunks;
     uint32_t threads = 1;              // at most; 0 = one a core
+
+    // Method `radiance`: tracks in place of pairs as what is minimised; pairs are then what tracks have as pairs.
+    bool by_radiance = false;
+    Tracks tracks;
+    std::vector<Range> track_chunks;                 // of tracks; as chunks
+    std::vector<std::array<uint32_t, 2>> links;      // images with a track in common, sorted, the lower one first
+    std::vector<uint32_t> first_link;                // of each lower image, and the end
+
     std::vector<uint32_t> component;   // of each image: smallest image index of its connected group
 
     // Unknowns of the images. Log exposure of image i in channel c: a_ic = ev_i ln 2 + ln w_ic.
@@ -52,6 +71,7 @@ struct Problem {
     int image_unknowns = 0;
 
     uint32_t component_count() const;
+    uint32_t link_of(uint32_t low, uint32_t high) const;  // number of the link between two images
     int measured_channel() const { return channels == 3 ? 1 : 0; }  // the one whose white balance factor is 1
 };
 
@@ -61,6 +81,10 @@ lensprof_exposure given_exposure(const lensprof_fit_image *images, uint32_t i);
 // Copies pairs[keep[...]] into a problem over the given images and numbers the unknowns.
 Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                      const lensprof_pair *pairs, const std::vector<uint32_t> &keep);
+
+// The same over tracks[keep[...]].
+Problem make_problem(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                     const Tracks &tracks, const std::vector<uint32_t> &keep);
 
 // A response table, with a guide that shortens the search of its inverse.
 struct Curve {

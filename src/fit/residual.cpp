@@ -6,45 +6,48 @@
 #include "parallel.hpp"
 
 namespace lensprof {
-namespace {
 
-double eval(const Estimate &estimate, double x, double *slope) {
+double response_at(const Estimate &estimate, double x, double *slope) {
     return estimate.modes < 0 ? lensprof_response_eval(&estimate.fixed, x, slope)
                               : lp_curve_eval(estimate.curve.table.data(), x, slope);
 }
 
-double invert(const Estimate &estimate, double b, double *slope) {
+double irradiance_of(const Estimate &estimate, double b, double *slope) {
     return estimate.modes < 0 ? lensprof_response_invert(&estimate.fixed, b, slope) : estimate.curve.invert(b, slope);
 }
 
-}  // namespace
+Attenuation attenuation(const Problem &problem, const lensprof_vignetting &vignetting, uint32_t image,
+                        const double xy[2]) {
+    Attenuation result{};
+    const auto &frame = problem.images[image];
+    double gradient[2], slope;
+    double r2 = lensprof_vignetting_r2(&vignetting, frame.width, frame.height, xy[0], xy[1], gradient);
+    result.m = std::max(lensprof_vignetting_eval(&vignetting, r2, &slope), 1e-6);
+    double inverse = 1.0 / result.m, power = r2 * inverse;
+    for (int n = 0; n < 3; n++, power *= r2) result.by_k[n] = power;
+    for (int d = 0; d < 2; d++) result.by_center[d] = slope * gradient[d] * inverse;
+    return result;
+}
 
 Falloff falloff(const Problem &problem, const lensprof_vignetting &vignetting, const lensprof_pair &pair) {
+    const Attenuation first = attenuation(problem, vignetting, pair.image[0], pair.xy[0]);
+    const Attenuation second = attenuation(problem, vignetting, pair.image[1], pair.xy[1]);
     Falloff result{};
-    double m[2];
-    for (int side = 0; side < 2; side++) {
-        const auto &image = problem.images[pair.image[side]];
-        double gradient[2], slope;
-        double r2 = lensprof_vignetting_r2(&vignetting, image.width, image.height, pair.xy[side][0], pair.xy[side][1],
-                                           gradient);
-        m[side] = std::max(lensprof_vignetting_eval(&vignetting, r2, &slope), 1e-6);
-        double inverse = (side == 0 ? 1.0 : -1.0) / m[side], power = r2 * inverse;
-        for (int n = 0; n < 3; n++, power *= r2) result.by_k[n] += power;
-        for (int d = 0; d < 2; d++) result.by_center[d] += slope * gradient[d] * inverse;
-    }
-    result.ratio = m[0] / m[1];
+    result.ratio = first.m / second.m;
+    for (int n = 0; n < 3; n++) result.by_k[n] = first.by_k[n] - second.by_k[n];
+    for (int d = 0; d < 2; d++) result.by_center[d] = first.by_center[d] - second.by_center[d];
     return result;
 }
 
 Transfer transfer(const Estimate &estimate, double value1, double value2, double ratio) {
     Transfer t;
     double inverse_slope[2], value[2] = {value1, value2}, factor[2] = {ratio, 1.0 / ratio};
-    for (int side = 0; side < 2; side++) t.x[side] = invert(estimate, value[side], &inverse_slope[side]);
+    for (int side = 0; side < 2; side++) t.x[side] = irradiance_of(estimate, value[side], &inverse_slope[side]);
     for (int side = 0; side < 2; side++) {
         int other = 1 - side;
         double slope;
         t.y[side] = t.x[other] * factor[side];
-        t.residual[side] = value[side] - eval(estimate, t.y[side], &slope);
+        t.residual[side] = value[side] - response_at(estimate, t.y[side], &slope);
         t.by_delta[side] = (side == 0 ? slope : -slope) * t.y[side];
         t.by_value[side] = slope * factor[side] * inverse_slope[other];
     }
@@ -79,6 +82,13 @@ const double *ModeTable::at(double x, double &fraction) const {
     auto j = static_cast<int>(position);
     fraction = position - j;
     return rows_.data() + static_cast<size_t>(j) * static_cast<size_t>(modes_);
+}
+
+void ModeTable::response_by_emor(double x, double scale, double *by_emor) const {
+    double fraction;
+    const double *h = at(x, fraction);
+    for (int l = 0; l < modes_; l++)
+        by_emor[l] = scale * ((1.0 - fraction) * h[l] + fraction * h[l + modes_]);
 }
 
 void ModeTable::transfer_by_emor(const Transfer &t, int side, double scale, double *by_emor) const {

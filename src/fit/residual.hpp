@@ -20,6 +20,19 @@ struct Transfer {
     double x[2], y[2];    // irradiances behind the two values, and arguments of f in the two predictions
 };
 
+// f and g of an estimate; slopes as lensprof_response_eval and _invert.
+double response_at(const Estimate &estimate, double x, double *slope);
+double irradiance_of(const Estimate &estimate, double b, double *slope);
+
+// M at a place, and the derivatives of its logarithm: by_k[n], by_center[0..1].
+struct Attenuation {
+    double m;
+    double by_k[3];
+    double by_center[2];
+};
+Attenuation attenuation(const Problem &problem, const lensprof_vignetting &vignetting, uint32_t image,
+                        const double xy[2]);
+
 // M(p1) / M(p2) of a pair, and the derivatives of its logarithm: by_k[n], by_center[0..1].
 struct Falloff {
     double ratio;
@@ -75,6 +88,9 @@ class ModeTable {
 public:
     explicit ModeTable(int modes);
     int modes() const { return modes_; }
+
+    // h_l(x) of all modes, times `scale`.
+    void response_by_emor(double x, double scale, double *by_emor) const;
 
     // d prediction[side] / d emor[l] for all modes, times `scale`.
     void transfer_by_emor(const Transfer &t, int side, double scale, double *by_emor) const;

@@ -7,8 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "monotone.hpp"
-#include "normal_equations.hpp"
-#include "residual.hpp"
+#include "objective.hpp"
 
 namespace lensprof {
 namespace {
@@ -20,28 +19,12 @@ constexpr double kHeldFirmly = 1e4;  // times as firmly as in the fit: gamma's o
 // kept for the next step.
 struct Stepper {
     const Problem &problem;
-    const Prior &prior;
-    const Loss &loss;
-    const NoiseWeights &weights;
-    const ModeTable &modes;
+    const Objective &objective;
     double flat;  // a step that promises less is not worth its evaluation
     std::unique_ptr<NormalEquations> model;
     double lambda = 1e-4;
     int steps = 0;
     bool is_solved = false;  // some step could be formed
-
-    std::unique_ptr<NormalEquations> model_at(const Estimate &estimate) const {
-        return std::make_unique<NormalEquations>(problem, prior, loss, weights, estimate, modes);
-    }
-
-    double value_at(const Estimate &estimate) const {
-        double value = prior_cost(prior, problem, model->columns(), estimate);
-        for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
-            PairResiduals residuals = weighted_residuals(t, problem.channels, weights[p]);
-            value += 0.5 * pair_cost(residuals, problem.channels, loss, nullptr);
-        });
-        return value;
-    }
 
     Estimate moved(const Estimate &from, const Eigen::VectorXd &d) const {
         Estimate to = from;
@@ -65,7 +48,7 @@ struct Stepper {
 
     bool step(Estimate &estimate, double &cost) {
         is_solved = false;
-        if (!model) model = model_at(estimate);
+        if (!model) model = objective.model_at(estimate);
         Region region{estimate.modes, problem.vignettings, model->columns(), shared_vector(estimate)};
         for (int attempt = 0; attempt < 12; attempt++, lambda *= 8.0) {
             if (!model->reduce(lambda)) continue;
@@ -75,8 +58,8 @@ struct Stepper {
             if (attempt == 0 && model->expected_gain(d) < flat) break;
             Estimate candidate = moved(estimate, d);
             // After a failure another is likely: the value alone is cheaper than a model.
-            if (attempt > 0 && !(value_at(candidate) < model->objective())) continue;
-            auto next = model_at(candidate);
+            if (attempt > 0 && !(objective.value_at(candidate) < model->objective())) continue;
+            auto next = objective.model_at(candidate);
             if (!(next->objective() < model->objective())) continue;
             estimate = candidate;
             model = std::move(next);
@@ -113,15 +96,14 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
               const Control &control, Estimate &estimate) {
     constexpr double kStill = 3e-5;        // nothing a user sees moves by more in a step
     constexpr int kNoiseRounds = 4;
-    const ModeTable modes(std::max(estimate.modes, 0));
-    Prior renewed = prior;
+    Prior renewed = prior_of(prior, estimate.modes);
     Outcome outcome;
     for (int round = 0; round < control.rounds; round++) {
         Estimate before = estimate;
         if (refine_noise && round < kNoiseRounds) loss.noise = estimate_noise(problem, estimate, loss.noise);
         gauge.renew(problem, estimate, renewed);
-        NoiseWeights weights = noise_weights(problem, estimate, loss);
-        Stepper stepper{problem, renewed, loss, weights, modes, control.flat, nullptr};
+        std::unique_ptr<Objective> objective = make_objective(problem, renewed, loss, estimate);
+        Stepper stepper{problem, *objective, control.flat, nullptr};
         outcome.converged = false;
         while (!outcome.converged && outcome.iterations < control.max_iterations) {
             if (control.cancelled && control.cancelled()) throw Cancelled();
@@ -143,11 +125,12 @@ Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, 
     Covariance result;
     result.shared = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
     result.images = Eigen::VectorXd::Zero(problem.image_unknowns);
-    Prior renewed = prior;
+    Prior renewed = prior_of(prior, estimate.modes);
     gauge.renew(problem, estimate, renewed);
     renewed.pin_precision *= kHeldFirmly;
-    NormalEquations model(problem, renewed, loss, noise_weights(problem, estimate, loss), estimate,
-                          ModeTable(std::max(estimate.modes, 0)));
+    std::unique_ptr<NormalEquations> about =
+        make_objective(problem, renewed, loss, estimate)->model_at(estimate);
+    NormalEquations &model = *about;
     auto n = static_cast<Eigen::Index>(model.columns().size());
     if (!model.reduce(0.0)) return result;
     Eigen::MatrixXd inverse(n, n);

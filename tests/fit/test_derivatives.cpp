@@ -3,9 +3,9 @@
 
 #include <Eigen/Dense>
 
-#include "fit/normal_equations.hpp"
 #include "fit/prior.hpp"
 #include "fit/residual.hpp"
+#include "fit/transfer_equations.hpp"
 
 using namespace lensprof;
 
@@ -179,7 +179,7 @@ void test_objective_gradient(void **) {
             s.problem.vignettings = static_cast<int>(channels);
             Prior prior = full_prior(1.0, s.problem);
             NoiseWeights weights = noise_weights(s.problem, s.estimate, loss);
-            NormalEquations model(s.problem, prior, loss, weights, s.estimate, ModeTable(6));
+            TransferEquations model(s.problem, prior, loss, weights, s.estimate, ModeTable(6));
             assert_close(model.objective(), objective(s.problem, prior, loss, weights, s.estimate),
                          1e-9 * model.objective());
             assert_true(model.reduce(0.0));
@@ -214,7 +214,7 @@ void test_elimination_equals_full_solve(void **) {
     s.problem.vignettings = 3;
     Prior prior = full_prior(0.5, s.problem);
     NoiseWeights weights = noise_weights(s.problem, s.estimate, loss);
-    NormalEquations model(s.problem, prior, loss, weights, s.estimate, ModeTable(6));
+    TransferEquations model(s.problem, prior, loss, weights, s.estimate, ModeTable(6));
     assert_true(model.reduce(0.0));
     Eigen::VectorXd shared_step = model.reduced_hessian().ldlt().solve(model.reduced_gradient());
     auto image_step = model.image_step(shared_step);

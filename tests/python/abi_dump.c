@@ -147,6 +147,12 @@ static void print_sample_structs(void)
     FIELD(lensprof_pair, xy);
     FIELD(lensprof_pair, value);
     end_struct();
+    BEGIN(lensprof_observation);
+    FIELD(lensprof_observation, point);
+    FIELD(lensprof_observation, image);
+    FIELD(lensprof_observation, xy);
+    FIELD(lensprof_observation, value);
+    end_struct();
     BEGIN(lensprof_sample_image);
     FIELD(lensprof_sample_image, view);
     FIELD(lensprof_sample_image, camera);

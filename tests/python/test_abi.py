@@ -69,8 +69,9 @@ class Tables(unittest.TestCase):
                 self.assertEqual([f[0] for f in struct._fields_], list(layout["fields"]))
 
     def test_numpy_layouts(self):
-        from lensprof import EXPOSURE_DTYPE, PAIR_DTYPE
-        for name, dtype in {"lensprof_pair": PAIR_DTYPE, "lensprof_exposure": EXPOSURE_DTYPE}.items():
+        from lensprof import EXPOSURE_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE
+        for name, dtype in {"lensprof_pair": PAIR_DTYPE, "lensprof_observation": OBSERVATION_DTYPE,
+                            "lensprof_exposure": EXPOSURE_DTYPE}.items():
             self.assertEqual(dtype.itemsize, self.c["structs"][name]["size"])
             self.assertEqual({field: [offset, kind.itemsize] for field, (kind, offset) in dtype.fields.items()},
                              self.c["structs"][name]["fields"])

@@ -117,6 +117,40 @@ class Fits(unittest.TestCase):
         del junk
 
 
+class Tracks(unittest.TestCase):
+    """The radiance method, on the pairs of two images as tracks."""
+
+    def observations(self, gain=1.5):
+        pairs = simple_pairs(gain=gain)
+        tracks = np.zeros(2 * len(pairs), dtype=lp.OBSERVATION_DTYPE)
+        for side in (0, 1):
+            tracks["point"][side::2] = np.arange(len(pairs))
+            tracks["image"][side::2] = side
+            tracks["xy"][side::2] = pairs["xy"][:, side]
+            tracks["value"][side::2] = pairs["value"][:, side]
+        return tracks
+
+    def test_exposure_of_a_linear_pair(self):
+        options = linear_options(method=lp.Method.RADIANCE)
+        result = lp.fit_radiance(two_images(), self.observations(), options)
+        self.assertTrue(result.usable, result.reason)
+        self.assertAlmostEqual(result.exposures["ev"][1], np.log2(1.5), places=4)
+        self.assertEqual(result.profile(lp.ProfileKey(lens="test")).provenance.method, "radiance")
+        of_pairs = lp.fit_overlap(two_images(), simple_pairs(), options)
+        self.assertAlmostEqual(of_pairs.exposures["ev"][1], result.exposures["ev"][1], places=6)
+
+    def test_refused(self):
+        tracks = self.observations()
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            lp.fit_radiance(two_images(), tracks[:-1])
+        with refused(self, lp.Status.ERROR_UNSUPPORTED):
+            lp.fit_radiance(two_images(), tracks, lp.FitOptions())
+        with refused(self, lp.Status.ERROR_NO_SAMPLES):
+            lp.fit_radiance(two_images(), tracks[:0])
+        with self.assertRaises(TypeError):
+            lp.fit_radiance(two_images(), simple_pairs())
+
+
 class Options(unittest.TestCase):
     def test_defaults(self):
         options = lp.FitOptions()

@@ -8,10 +8,10 @@ from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, MODES_AUTO, RESPON
                    Direction, Encoding, Free, GammaFrom, Layout, Loss, Method, Processing, Projection, ResponseKind,
                    SampleType, Sampling, Saturated, Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
-from ._arrays import EXPOSURE_DTYPE, IMAGE_QUALITY_DTYPE, PAIR_DTYPE
+from ._arrays import EXPOSURE_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE
 from ._library import Error, status_name, version
 from .apply import ApplyOptions, Plan, correct, layout_channels, layout_samples, sample_bytes, simulate
-from .fit import FitImage, FitOptions, FitResult, fit_overlap, transfer_rms
+from .fit import FitImage, FitOptions, FitResult, fit_overlap, fit_radiance, transfer_rms
 from .formats import Pto, PtoImage, points_read, points_write
 from .geometry import Camera
 from .model import Exposure, Response, Vignetting, emor_table
@@ -22,10 +22,10 @@ from .store import Store, StoreRow
 __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "Direction", "EMOR_MODES",
     "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FitImage", "FitOptions", "FitResult", "Free", "GammaFrom",
-    "IMAGE_QUALITY_DTYPE", "Layout", "Loss", "MODES_AUTO", "Method", "PAIR_DTYPE", "Plan", "Processing", "Profile",
-    "ProfileKey", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Response", "ResponseKind",
-    "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreMode",
-    "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_overlap", "layout_channels",
-    "layout_samples", "points_read", "points_write", "sample_bytes", "sample_overlap", "simulate", "status_name",
+    "IMAGE_QUALITY_DTYPE", "Layout", "Loss", "MODES_AUTO", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Plan",
+    "Processing", "Profile", "ProfileKey", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES",
+    "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status",
+    "Store", "StoreMode", "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_overlap", "fit_radiance",
+    "layout_channels", "layout_samples", "points_read", "points_write", "sample_bytes", "sample_overlap", "simulate", "status_name",
     "transfer_rms", "version",
 ]

@@ -257,6 +257,10 @@ class Pair(Structure):
     _fields_ = [("image", c_uint32 * 2), ("xy", c_double * 2 * 2), ("value", c_double * 3 * 2)]
 
 
+class Observation(Structure):
+    _fields_ = [("point", c_uint32), ("image", c_uint32), ("xy", c_double * 2), ("value", c_double * 3)]
+
+
 class SampleImage(Structure):
     _fields_ = [("view", Image), ("camera", Camera), ("reduction", c_uint32), ("every_pixel", c_uint32),
                 ("mask", POINTER(c_uint8)), ("mask_row_bytes", c_ssize_t), ("black", c_double), ("white", c_double)]
@@ -335,6 +339,7 @@ STRUCTS = {
     "lensprof_provenance": Provenance,
     "lensprof_profile": Profile,
     "lensprof_pair": Pair,
+    "lensprof_observation": Observation,
     "lensprof_sample_image": SampleImage,
     "lensprof_sample_options": SampleOptions,
     "lensprof_fit_image": FitImage,
@@ -363,6 +368,7 @@ _image = POINTER(Image)
 _key = POINTER(ProfileKey)
 _profile = POINTER(Profile)
 _pairs = POINTER(Pair)
+_observations = POINTER(Observation)
 _fit_images = POINTER(FitImage)
 _plan = POINTER(Plan)
 _pto = POINTER(Pto)
@@ -415,6 +421,8 @@ FUNCTIONS = {
     "lensprof_fit_result_init": (None, [POINTER(FitResult)]),
     "lensprof_fit_overlap": (_status, [POINTER(FitOptions), _fit_images, c_uint32, _pairs, c_uint32, _exposures,
                                        POINTER(FitResult), _error]),
+    "lensprof_fit_radiance": (_status, [POINTER(FitOptions), _fit_images, c_uint32, _observations, c_uint32, _exposures,
+                                        POINTER(FitResult), _error]),
     "lensprof_transfer_rms": (_status, [_response, _vignetting, _fit_images, _exposures, c_uint32, _pairs, c_uint32,
                                         c_uint32, _doubles, _doubles]),
     # formats.h

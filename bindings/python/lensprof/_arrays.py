@@ -24,6 +24,9 @@ def _dtype(kind: type) -> np.dtype:
 PAIR_DTYPE = _dtype(_abi.Pair)
 """Layout of a correspondence: image[2], xy[2][2] (px of the full frame), value[2][3] (grey values 0..1)."""
 
+OBSERVATION_DTYPE = _dtype(_abi.Observation)
+"""Layout of a sight of a scene point: point, image, xy[2] (px of the full frame), value[3] (grey values 0..1)."""
+
 EXPOSURE_DTYPE = _dtype(_abi.Exposure)
 """Layout of an exposure: ev, white_balance[3]."""
 
@@ -129,6 +132,11 @@ def structured(array: np.ndarray, dtype: np.dtype, kind: type, what: str) -> tup
 def pairs(array: np.ndarray) -> tuple[Any, int]:
     """Pointer and length of an array of PAIR_DTYPE."""
     return structured(array, PAIR_DTYPE, _abi.Pair, "pairs")
+
+
+def observations(array: np.ndarray) -> tuple[Any, int]:
+    """Pointer and length of an array of OBSERVATION_DTYPE."""
+    return structured(array, OBSERVATION_DTYPE, _abi.Observation, "observations")
 
 
 def exposures(values: Union[np.ndarray, Iterable[Exposure]]) -> np.ndarray:

@@ -113,8 +113,9 @@ class FitResult(Struct, _abi.FitResult):
     covariance = Covariance()
     gamma_direction = Vector(writable=False)
 
-    def __init__(self, image_count: int):
+    def __init__(self, image_count: int, method: Method = Method.TRANSFER):
         super().__init__()
+        self._method = Method(method)
         self._exposures = np.zeros(image_count, dtype=_arrays.EXPOSURE_DTYPE)
         self._quality = np.zeros(image_count, dtype=_arrays.IMAGE_QUALITY_DTYPE)
 
@@ -140,7 +141,7 @@ class FitResult(Struct, _abi.FitResult):
     def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0) -> Profile:
         """A profile of this result, to be stored or applied. source: file that it was made from. Time 0 = unknown."""
         profile = Profile(key=key, response=self.response, vignetting=self.vignetting, covariance=self.covariance)
-        origin = {"method": "transfer", "software": f"lensprof {version()}", "source": source,
+        origin = {"method": self._method.name.lower(), "software": f"lensprof {version()}", "source": source,
                   "created_unix_s": created_unix_s, "images": len(self._exposures), "pairs": self.pairs,
                   "heldout_rms": self.heldout_rms, "inlier_share": self.inlier_share}
         for name, value in origin.items():
@@ -152,16 +153,27 @@ def _fit_images(images: Sequence[FitImage]) -> Any:
     return (_abi.FitImage * len(images))(*images)
 
 
-def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional[FitOptions] = None) -> FitResult:
-    """Fits pairs (PAIR_DTYPE) over at least two images. A fit that ran returns also when it is poor: see `usable`."""
-    options, error, result = options or FitOptions(), _abi.ErrorText(), FitResult(len(images))
+def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], options: FitOptions) -> FitResult:
+    error, result = _abi.ErrorText(), FitResult(len(images), options.method)
     out = _abi.FitResult.from_buffer(result)
     out.image_quality = _arrays.address(result.image_quality, _abi.FitImageQuality)
     with calling(options) as call:
-        status = lib.lensprof_fit_overlap(byref(call), _fit_images(images), len(images), *_arrays.pairs(pairs),
-                                          _arrays.address(result.exposures, _abi.Exposure), byref(result), byref(error))
+        status = function(byref(call), _fit_images(images), len(images), *data,
+                          _arrays.address(result.exposures, _abi.Exposure), byref(result), byref(error))
     check(status, "the fit failed", error)
     return result
+
+
+def fit_overlap(images: Sequence[FitImage], pairs: np.ndarray, options: Optional[FitOptions] = None) -> FitResult:
+    """Fits pairs (PAIR_DTYPE) over at least two images. A fit that ran returns also when it is poor: see `usable`."""
+    return _fit(lib.lensprof_fit_overlap, images, _arrays.pairs(pairs), options or FitOptions())
+
+
+def fit_radiance(images: Sequence[FitImage], observations: np.ndarray,
+                 options: Optional[FitOptions] = None) -> FitResult:
+    """Fits tracks of observations (OBSERVATION_DTYPE, in any order) over at least two images, by Method.RADIANCE."""
+    return _fit(lib.lensprof_fit_radiance, images, _arrays.observations(observations),
+                options or FitOptions(method=Method.RADIANCE))
 
 
 def transfer_rms(response: Response, vignetting: Union[Vignetting, Iterable[Vignetting]], images: Sequence[FitImage],

@@ -1,0 +1,99 @@
+// Simulated tracks with a known camera: scene points seen in several images, saturated where they are too bright.
+#pragma once
+
+#include "simulated.hpp"
+
+struct TrackSimulation : Simulation {
+    uint32_t shortest = 2, longest = 6;  // observations of a point
+    double brightest = 1.0;              // radiance; with 1 hardly anything is saturated at 0 EV
+    std::vector<lensprof_observation> observations;
+
+    // `points` scene points at random places of random images, uniform log radiance, normal noise, 8 bit rounding as in
+    // Simulation; `outliers` of the observations show something else. Points with fewer than two measured observations
+    // are drawn again.
+    void make_tracks(uint32_t points, double noise_levels, double outliers, double ev_range, uint64_t seed) {
+        make(0, noise_levels, 0.0, ev_range, seed);
+        uint64_t random = seed + 1000;
+        for (uint32_t point = 0; point < points; point++) {
+            std::vector<lensprof_observation> track;
+            while (measured(track) < 2) track = draw(point, noise_levels, random);
+            for (auto &o : track)
+                if (lp_random(&random) < outliers)
+                    for (double &v : o.value) v = lp_random(&random);
+            observations.insert(observations.end(), track.begin(), track.end());
+        }
+    }
+
+    static bool is_saturated(const lensprof_observation &o) {
+        return std::max({o.value[0], o.value[1], o.value[2]}) > 250.0 / 255.0;
+    }
+
+    // The same without saturated observations, and without the points that then have one observation.
+    std::vector<lensprof_observation> unsaturated() const {
+        std::vector<lensprof_observation> kept, track;
+        for (size_t i = 0; i < observations.size(); i++) {
+            if (!is_saturated(observations[i])) track.push_back(observations[i]);
+            if (i + 1 < observations.size() && observations[i + 1].point == observations[i].point) continue;
+            if (track.size() > 1) kept.insert(kept.end(), track.begin(), track.end());
+            track.clear();
+        }
+        return kept;
+    }
+
+private:
+    static size_t measured(const std::vector<lensprof_observation> &track) {
+        return track.size() - static_cast<size_t>(std::count_if(track.begin(), track.end(), is_saturated));
+    }
+
+    std::vector<lensprof_observation> draw(uint32_t point, double noise_levels, uint64_t &random) const {
+        std::vector<lensprof_observation> track;
+        double base = brightest * std::exp(4.5 * (lp_random(&random) - 1.0)), radiance[3];
+        for (double &r : radiance) r = base * std::exp(0.6 * (lp_random(&random) - 0.5));
+        uint32_t count = shortest + static_cast<uint32_t>(lp_random(&random) * (longest - shortest + 1));
+        uint32_t first = static_cast<uint32_t>(lp_random(&random) * images);
+        for (uint32_t n = 0; n < std::min(count, images); n++) {
+            lensprof_observation o{};
+            o.point = point;
+            o.image = (first + n) % images;
+            o.xy[0] = lp_random(&random) * (width - 1);
+            o.xy[1] = lp_random(&random) * (height - 1);
+            double r2 = lensprof_vignetting_r2(&vignetting, width, height, o.xy[0], o.xy[1], nullptr);
+            for (uint32_t c = 0; c < 3; c++) {
+                double m = lensprof_vignetting_eval(&falloff(c), r2, nullptr);
+                double e = lensprof_exposure_factor(&exposures[o.image], c);
+                double b = lensprof_response_eval(&response, radiance[channels == 1 ? 0 : c] * m * e, nullptr);
+                double noisy = b + noise_levels / 255.0 * (noise_levels > 0.0 ? lp_normal(&random) : 0.0);
+                o.value[c] = std::round(std::clamp(noisy, 0.0, 1.0) * 255.0 * 256.0) / (255.0 * 256.0);
+                if (channels == 1) o.value[c] = o.value[0];
+            }
+            track.push_back(o);
+        }
+        return track;
+    }
+};
+
+inline lensprof_fit_options radiance_fit() {
+    lensprof_fit_options options = default_fit();
+    options.method = LENSPROF_METHOD_RADIANCE;
+    return options;
+}
+
+inline FitRun run_radiance(const TrackSimulation &s, const std::vector<lensprof_observation> &observations,
+                           const lensprof_fit_options &options = radiance_fit()) {
+    FitRun run;
+    run.exposures.resize(s.images);
+    run.quality.resize(s.images);
+    lensprof_fit_result_init(&run.result);
+    run.result.image_quality = run.quality.data();
+    lensprof_error error;
+    lensprof_status status =
+        lensprof_fit_radiance(&options, s.fit_images.data(), s.images, observations.data(),
+                              static_cast<uint32_t>(observations.size()), run.exposures.data(), &run.result, &error);
+    if (status != LENSPROF_OK) print_error("%s\n", error.text);
+    assert_ok(status);
+    return run;
+}
+
+inline FitRun run_radiance(const TrackSimulation &s, const lensprof_fit_options &options = radiance_fit()) {
+    return run_radiance(s, s.observations, options);
+}
