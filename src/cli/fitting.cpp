@@ -30,7 +30,10 @@ int on_progress(double done, void *progress) {
 }  // namespace
 
 void declare_fit(CLI::App &app, FitOptions &o) {
-    app.add_option("--method", o.method, "transfer (d'Angelo 2007)")->check(CLI::IsMember({"transfer"}));
+    app.add_option("--method", o.method,
+                   "transfer (d'Angelo 2007) or radiance (Goldman & Chen 2005: one radiance a scene point, which any "
+                   "number of pictures may see, saturated ones among them)")
+        ->check(CLI::IsMember({"transfer", "radiance"}));
     app.add_option("--modes", o.modes, "EMoR modes of the response: 0..25 or auto (held-out error decides)");
     app.add_option("--loss", o.loss, "robust, huber (the paper's) or squared")
         ->check(CLI::IsMember({"robust", "huber", "squared"}));
@@ -55,6 +58,7 @@ void check_fit_options(const FitOptions &o) {
 lensprof_fit_options fit_options(const FitOptions &o) {
     lensprof_fit_options options;
     lensprof_fit_options_init(&options);
+    options.method = o.method == "radiance" ? LENSPROF_METHOD_RADIANCE : LENSPROF_METHOD_TRANSFER;
     options.modes = modes_of(o.modes);
     options.loss = o.loss == "huber"     ? LENSPROF_LOSS_HUBER
                    : o.loss == "squared" ? LENSPROF_LOSS_SQUARED
