@@ -52,7 +52,8 @@ typedef enum lensprof_sampling {
 typedef struct lensprof_sample_options {
     uint32_t struct_size;
     uint32_t sampling; /* lensprof_sampling */
-    uint32_t pairs;    /* wanted number; fewer come when the overlaps do not hold as many */
+    uint32_t pairs;    /* wanted number of pairs, or of points with tracks; fewer come when the overlaps do not hold as
+                          many */
     uint32_t seed;     /* same seed, same pairs */
     uint32_t threads;  /* at most so many, the caller's included; 0 = one a core */
     uint32_t reserved; /* 0 */
@@ -74,6 +75,18 @@ LENSPROF_API void lensprof_sample_options_init(lensprof_sample_options *options)
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_sample_overlap(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
                         lensprof_pair *pairs, uint32_t capacity, uint32_t *found, lensprof_error *error);
+
+/* Finds points that two pictures or more see, each in up to 16 of those that see it, for lensprof_fit_radiance.
+ * Balanced: spread evenly over what the pictures see, of those near each other the quietest, balanced over radius and
+ * grey level; with the same corrections as lensprof_sample_overlap. Paper (Goldman & Chen 2005, section 5): uniform in a
+ * cylindrical system, single points, the cameras as they are. A channel above white in all of a patch has the value 1:
+ * it is saturated, and that is kept; a patch partly above white is not used. Every point has an observation that is not
+ * saturated.
+ * observations[capacity] is the caller's, by point; *found receives the number written, with capacity 0 the capacity to
+ * give. Errors: as lensprof_sample_overlap. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status
+lensprof_sample_tracks(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
+                       lensprof_observation *observations, uint32_t capacity, uint32_t *found, lensprof_error *error);
 
 #ifdef __cplusplus
 }

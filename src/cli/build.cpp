@@ -34,7 +34,8 @@ void declare(CLI::App &app, Options &o) {
     app.add_flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
     app.add_option("--sampling", o.sampling, "balanced or paper (d'Angelo 5.1)")
         ->check(CLI::IsMember({"balanced", "paper"}));
-    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000")->check(in_range(0, 1 << 24));
+    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000; radiance: of points")
+        ->check(in_range(0, 1 << 24));
     app.add_option("--seed", o.seed, "of the sampling");
     app.add_option("--max-side", o.max_side,
                    "sample pictures reduced to no less than this many pixels (800); 0 = full size");
@@ -167,15 +168,15 @@ std::string project_text(const Options &o, Project &project, const Fitted &fitte
     return pto_text(*project.pto);
 }
 
-std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, Progress &progress, BuildReport &report,
-                                     uint32_t &channels) {
+/* The pairs or tracks that are fitted. */
+void get_points(const Options &o, const Project &project, Progress &progress, BuildReport &report, FitInput &input) {
     auto clock = std::chrono::steady_clock::now();
-    std::vector<lensprof_pair> pairs;
+    uint32_t &channels = input.options.channels;
     if (!o.points.empty()) {
-        pairs = read_points(o.points, project);
-        channels = is_grey(pairs) ? 1 : 3;
+        input.pairs = read_points(o.points, project);
+        channels = is_grey(input.pairs) ? 1 : 3;
         report.load_s = lap(clock);
-        return pairs;
+        return;
     }
     auto pictures = read_pictures(project, o.max_side, progress);
     channels = channel_count(pictures);
@@ -185,9 +186,13 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     options.sampling = o.sampling == "paper" ? LENSPROF_SAMPLING_PAPER : LENSPROF_SAMPLING_BALANCED;
     options.pairs = o.pairs;
     options.seed = o.seed;
-    pairs = sample_pairs(project, pictures, options, {}, progress);
+    if (o.fit.method == "radiance") {
+        input.observations = sample_tracks(project, pictures, options, progress);
+        input.pairs = pairs_of_tracks(input.observations);
+    } else {
+        input.pairs = sample_pairs(project, pictures, options, {}, progress);
+    }
     report.sample_s = lap(clock);
-    return pairs;
 }
 
 /* A project holds five modes and one falloff: what is best with these, not what is left of something better. */
@@ -209,7 +214,7 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     FitInput input;
     input.options = project_options(o, project, input.fixed);
     report.camera_kind = input.options.camera_kind;
-    input.pairs = get_pairs(o, project, progress, report, input.options.channels);
+    get_points(o, project, progress, report, input);
     stop_if_interrupted();
     input.images = fit_images(project);
     if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);

@@ -102,9 +102,13 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
     input.options.progress = on_progress;
     input.options.progress_user = &progress;
     lensprof_error error{};
-    lensprof_status status = lensprof_fit_overlap(&input.options, input.images.data(), count, input.pairs.data(),
-                                                  static_cast<uint32_t>(input.pairs.size()), fitted.exposures.data(),
-                                                  &fitted.result, &error);
+    const auto *images = input.images.data();
+    auto pairs = static_cast<uint32_t>(input.pairs.size()), tracked = static_cast<uint32_t>(input.observations.size());
+    lensprof_status status =
+        tracked ? lensprof_fit_radiance(&input.options, images, count, input.observations.data(), tracked,
+                                        fitted.exposures.data(), &fitted.result, &error)
+                : lensprof_fit_overlap(&input.options, images, count, input.pairs.data(), pairs,
+                                       fitted.exposures.data(), &fitted.result, &error);
     stop_if_interrupted();
     if (status == LENSPROF_ERROR_NO_UNKNOWNS)
         throw Failure(ExitCode::usage,

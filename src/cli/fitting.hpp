@@ -37,7 +37,8 @@ struct FitInput {
     lensprof_fit_options options;
     lensprof_response fixed;
     std::vector<lensprof_fit_image> images;
-    std::vector<lensprof_pair> pairs;
+    std::vector<lensprof_pair> pairs;               /* what is fitted where there are no observations */
+    std::vector<lensprof_observation> observations; /* tracks, for the method radiance */
 };
 
 /* Exposures by EXIF, as soft observations of the images. */

@@ -108,9 +108,12 @@ uint32_t channel_count(const std::vector<SamplePicture> &pictures) {
     return 1;
 }
 
-std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
-                                        lensprof_sample_options options, const GreyRange &range,
-                                        Progress &progress) {
+namespace {
+
+/* By lensprof_sample_overlap or lensprof_sample_tracks. */
+template <class Item, class Function>
+std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pictures, lensprof_sample_options options,
+                         const GreyRange &range, Progress &progress, Function function) {
     std::vector<lensprof_sample_image> images;
     for (size_t i = 0; i < pictures.size(); i++) {
         lensprof_sample_image image{};
@@ -127,15 +130,47 @@ std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<Samp
     lensprof_error error{};
     uint32_t found = 0;
     auto count = static_cast<uint32_t>(images.size());
-    check(lensprof_sample_overlap(&options, images.data(), count, nullptr, 0, &found, &error), project.path, &error);
-    std::vector<lensprof_pair> pairs(found);
+    check(function(&options, images.data(), count, nullptr, 0, &found, &error), project.path, &error);
+    std::vector<Item> items(found);
     options.progress = on_sampling;
     options.progress_user = &progress;
-    lensprof_status status =
-        lensprof_sample_overlap(&options, images.data(), count, pairs.data(), found, &found, &error);
+    lensprof_status status = function(&options, images.data(), count, items.data(), found, &found, &error);
     stop_if_interrupted();
     check(status, project.path, &error);
-    pairs.resize(found);
+    items.resize(found);
+    return items;
+}
+
+}  // namespace
+
+std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
+                                        lensprof_sample_options options, const GreyRange &range,
+                                        Progress &progress) {
+    return sample<lensprof_pair>(project, pictures, options, range, progress, lensprof_sample_overlap);
+}
+
+std::vector<lensprof_observation> sample_tracks(const Project &project, std::vector<SamplePicture> &pictures,
+                                                lensprof_sample_options options, Progress &progress) {
+    return sample<lensprof_observation>(project, pictures, options, {}, progress, lensprof_sample_tracks);
+}
+
+std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observation> &observations) {
+    std::vector<lensprof_pair> pairs;
+    const lensprof_observation *last = nullptr;
+    for (const auto &next : observations) {
+        if (*std::max_element(next.value, next.value + 3) > GreyRange{}.white) continue;
+        if (last && last->point == next.point) {
+            lensprof_pair pair{};
+            const lensprof_observation *ends[2] = {last, &next};
+            for (int side = 0; side < 2; side++) {
+                pair.image[side] = ends[side]->image;
+                std::copy(ends[side]->xy, ends[side]->xy + 2, pair.xy[side]);
+                std::copy(ends[side]->value, ends[side]->value + 3, pair.value[side]);
+            }
+            pairs.push_back(pair);
+        }
+        last = &next;
+    }
     return pairs;
 }
 

@@ -54,6 +54,11 @@ struct GreyRange {
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
                                         lensprof_sample_options options, const GreyRange &range,
                                         Progress &progress);
+std::vector<lensprof_observation> sample_tracks(const Project &project, std::vector<SamplePicture> &pictures,
+                                                lensprof_sample_options options, Progress &progress);
+
+/* Of every point those unsaturated observations as pairs that follow each other, as a fit by tracks counts them. */
+std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observation> &observations);
 
 /* The pairs of a point file, which must be of images of the project. */
 std::vector<lensprof_pair> read_points(const std::string &path, const Project &project);

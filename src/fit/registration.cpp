@@ -252,13 +252,17 @@ void unit_vector(const double direction[2], double v[3]) {
     v[2] = std::cos(direction[1]) * std::cos(direction[0]);
 }
 
+void direction_of_vector(const double v[3], double direction[2]) {
+    direction[0] = std::atan2(v[0], v[2]);
+    direction[1] = std::asin(std::clamp(v[1], -1.0, 1.0));
+}
+
 void rotate(const Rotation &rotation, double sign, double direction[2]) {
     if (rotation[0] == 0.0 && rotation[1] == 0.0 && rotation[2] == 0.0) return;
     Eigen::Vector3d v, axis(rotation.data());
     unit_vector(direction, v.data());
     v = Eigen::AngleAxisd(sign * axis.norm(), axis.normalized()) * v;
-    direction[0] = std::atan2(v[0], v[2]);
-    direction[1] = std::asin(std::clamp(v[1], -1.0, 1.0));
+    direction_of_vector(v.data(), direction);
 }
 
 bool sight(const lensprof_camera &first, const lensprof_camera &second, const Rotation &rotation, double sign,

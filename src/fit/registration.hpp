@@ -10,8 +10,9 @@
 
 namespace lensprof {
 
-// Of a direction in longitude and latitude, radians.
+// Of a direction in longitude and latitude, radians, and back.
 void unit_vector(const double direction[2], double v[3]);
+void direction_of_vector(const double v[3], double direction[2]);
 
 // Axis times angle, radians: where direction v of one image is in the other; the other way round with sign -1.
 using Rotation = std::array<double, 3>;

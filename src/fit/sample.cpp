@@ -63,16 +63,18 @@ lensprof_status check_finite(const lensprof_sample_options &options, const lensp
     return LENSPROF_OK;
 }
 
+// draw(sampler) -> what was found.
+template <class Item, class Draw>
 lensprof_status sample(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count,
-                       uint32_t wanted, std::vector<lensprof_pair> &pairs, lensprof_error *error) {
+                       Draw draw, std::vector<Item> &items, lensprof_error *error) {
     try {
         lensprof_status status = check_finite(options, images, count, error);
         if (status != LENSPROF_OK) return status;
         Sampler sampler(options, images, count);
-        pairs = options.sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper(wanted) : sampler.balanced(wanted);
+        items = draw(sampler);
         if (!sampler.overlaps())
             return fail(LENSPROF_ERROR_NO_OVERLAP, error, "no two images overlap; check the alignment of the project");
-        if (pairs.empty())
+        if (items.empty())
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
                         "the images overlap, but every sample there is masked, black or saturated, or does not show "
                         "the same in both; check the alignment of the project");
@@ -84,6 +86,28 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
     } catch (const std::exception &e) {
         return fail(LENSPROF_ERROR_INTERNAL, error, "sample: %s", e.what());
     }
+}
+
+// Both samplings: `room` for what is wanted, what `draw` finds into `items`.
+template <class Item, class Draw>
+lensprof_status sample_into(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
+                            uint64_t room, Item *items, uint32_t capacity, uint32_t *found, Draw draw,
+                            lensprof_error *error) {
+    if (capacity == 0) {
+        *found = static_cast<uint32_t>(room);
+        return LENSPROF_OK;
+    }
+    if (capacity < room)
+        return fail(LENSPROF_ERROR_CAPACITY, error, "sample: room for %u items is needed", static_cast<uint32_t>(room));
+    lensprof_status status = LENSPROF_OK;
+    for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = check_image(images[i], i, error);
+    if (status != LENSPROF_OK) return status;
+    std::vector<Item> result;
+    status = sample(*options, images, count, draw, result, error);
+    if (status != LENSPROF_OK) return status;
+    std::copy(result.begin(), result.end(), items);
+    *found = static_cast<uint32_t>(result.size());
+    return LENSPROF_OK;
 }
 
 }  // namespace
@@ -105,19 +129,27 @@ lensprof_status lensprof_sample_overlap(const lensprof_sample_options *options, 
     lensprof_status status = check_options(*options, count, error);
     if (status != LENSPROF_OK) return status;
     uint32_t wanted = options->pairs ? options->pairs : std::max(2000u, 300 * count);
-    if (capacity == 0) {
-        *found = wanted;
-        return LENSPROF_OK;
-    }
-    if (capacity < wanted) return fail(LENSPROF_ERROR_CAPACITY, error, "sample: room for %u pairs is needed", wanted);
-    for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = check_image(images[i], i, error);
+    auto draw = [&](Sampler &sampler) {
+        return options->sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper(wanted) : sampler.balanced(wanted);
+    };
+    return sample_into(options, images, count, wanted, pairs, capacity, found, draw, error);
+}
+
+lensprof_status lensprof_sample_tracks(const lensprof_sample_options *options, const lensprof_sample_image *images,
+                                       uint32_t count, lensprof_observation *observations, uint32_t capacity,
+                                       uint32_t *found, lensprof_error *error) {
+    if (error) error->text[0] = 0;
+    if (!options || !images || !found || (capacity && !observations))
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: a pointer is NULL");
+    lensprof_status status = check_options(*options, count, error);
     if (status != LENSPROF_OK) return status;
-    std::vector<lensprof_pair> result;
-    status = sample(*options, images, count, wanted, result, error);
-    if (status != LENSPROF_OK) return status;
-    std::copy(result.begin(), result.end(), pairs);
-    *found = static_cast<uint32_t>(result.size());
-    return LENSPROF_OK;
+    uint32_t wanted = options->pairs ? options->pairs : std::max(2000u, 300 * count);
+    auto draw = [&](Sampler &sampler) {
+        return options->sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper_tracks(wanted)
+                                                            : sampler.balanced_tracks(wanted);
+    };
+    uint64_t room = uint64_t{wanted} * std::min(count, kLongestTrack);
+    return sample_into(options, images, count, room, observations, capacity, found, draw, error);
 }
 
 }  // extern "C"

@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
+#include "balance.hpp"
 #include "parallel.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr int kRadiusBins = 10, kGreyBins = 10;
 constexpr uint32_t kPiece = 32;       // places of one image that a thread looks at in one go
 constexpr uint32_t kPaperRound = 8192;
 constexpr double kWidestCone = 1.5;   // radians: beyond, the border of a frame may be farther off than its samples
-constexpr double kSlack = 0.02;       // of the cosine to a cone's edge: projects may be off
 constexpr double kAlike = 0.5;          // correlation of places that may show the same,
 constexpr double kSurely = 0.8;         // and of those that clearly do
 // Shares of the places with texture. Alike: .05 to .31 where a project is wrong, .43 and more in real sequences and with
@@ -96,6 +94,10 @@ void Sampler::find_neighbours() {
         first_edge_.push_back(edge_numbers_);
         edge_numbers_ += static_cast<uint32_t>(list.size());
     }
+}
+
+bool Sampler::are_neighbours(uint32_t i, uint32_t j) const {
+    return std::binary_search(neighbours_[i].begin(), neighbours_[i].end(), j);
 }
 
 // Number of the pair of images, the same both ways round.
@@ -191,7 +193,7 @@ bool Sampler::is_in_place(uint32_t number) const {
 
 bool Sampler::measure(uint32_t i, double x, double y, End &end) const {
     const View &view = views_[i];
-    if (!(patches_ ? view.patch(x, y, end.patch) : view.point(x, y, end.patch))) return false;
+    if (!(patches_ ? view.patch(x, y, keep_white_, end.patch) : view.point(x, y, keep_white_, end.patch))) return false;
     const double mean = (end.patch.value[0] + end.patch.value[1] + end.patch.value[2]) / 3.0;
     const lensprof_vignetting centred{};
     const auto &camera = view.image().camera;
@@ -285,32 +287,12 @@ std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
     std::vector<Candidate> all = candidates(8 * static_cast<size_t>(wanted));
     auto out_of_place = [&](const Candidate &c) { return !is_in_place(edge_of(c.image[0], c.image[1])); };
     all.erase(std::remove_if(all.begin(), all.end(), out_of_place), all.end());
-    std::vector<uint32_t> order(all.size()), edge(all.size()), chosen;
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-        return all[a].gradient != all[b].gradient ? all[a].gradient < all[b].gradient : a < b;
-    });
-    std::vector<bool> seen(edge_numbers_, false), taken(all.size(), false);
-    for (size_t n = 0; n < all.size(); n++) seen[edge[n] = edge_of(all[n].image[0], all[n].image[1])] = true;
-    const auto edges = std::max<ptrdiff_t>(std::count(seen.begin(), seen.end(), true), 1);
-    std::vector<uint32_t> per_edge(seen.size(), 0), per_radius(kRadiusBins, 0), per_grey(kGreyBins, 0);
-    for (double share : {1.0, 1.5, 2.0, 3.0, 5.0, 1e9}) {
-        double edge_limit = share * wanted / static_cast<double>(edges);
-        double radius_limit = share * 2.0 * wanted / kRadiusBins, grey_limit = share * 2.0 * wanted / kGreyBins;
-        for (uint32_t index : order) {
-            if (chosen.size() >= wanted) break;
-            const Candidate &c = all[index];
-            if (taken[index] || per_edge[edge[index]] >= edge_limit || per_radius[c.radius[0]] >= radius_limit
-                || per_radius[c.radius[1]] >= radius_limit || per_grey[c.grey[0]] >= grey_limit
-                || per_grey[c.grey[1]] >= grey_limit)
-                continue;
-            taken[index] = true;
-            chosen.push_back(index);
-            per_edge[edge[index]]++;
-            for (int side = 0; side < 2; side++) per_radius[c.radius[side]]++, per_grey[c.grey[side]]++;
-        }
-    }
-    std::sort(chosen.begin(), chosen.end());
+    auto chosen = balance(
+        all.size(), wanted, 2.0 * wanted, edge_numbers_, [&](uint32_t i) { return all[i].gradient; },
+        [&](uint32_t i) { return edge_of(all[i].image[0], all[i].image[1]); },
+        [&](uint32_t i, auto use) {
+            for (int side = 0; side < 2; side++) use(all[i].radius[side], all[i].grey[side]);
+        });
     std::vector<Candidate> best;
     for (uint32_t index : chosen) best.push_back(all[index]);
     return pairs_of(best);

@@ -1,4 +1,5 @@
-// Finding correspondences: candidates from image to image through the geometry, then a choice among them.
+// Finding correspondences: candidates from image to image through the geometry, then a choice among them. What looks
+// for tracks stands in track_sampler.cpp.
 #pragma once
 
 #include <atomic>
@@ -15,6 +16,9 @@ namespace lensprof {
 // Thrown where the caller's progress function asks to stop.
 struct Cancelled {};
 
+constexpr uint32_t kLongestTrack = 16;
+constexpr double kSlack = 0.02;  // of the cosine to a cone's edge: projects may be off
+
 class Sampler {
 public:
     Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count);
@@ -24,6 +28,13 @@ public:
 
     // d'Angelo 5.1: 5n random points, binned by radius; from each of 10 bins the n/10 of lowest gradient.
     std::vector<lensprof_pair> paper(uint32_t wanted);
+
+    // Points spread evenly over what the pictures see, each in every picture that sees it (kLongestTrack at most),
+    // saturated channels with the value 1; of those near each other the quietest, balanced over radius and grey level.
+    std::vector<lensprof_observation> balanced_tracks(uint32_t wanted);
+
+    // Goldman & Chen, section 5: points uniform in a cylindrical system, as they come.
+    std::vector<lensprof_observation> paper_tracks(uint32_t wanted);
 
     bool overlaps() const { return overlaps_; }
 
@@ -44,6 +55,23 @@ private:
     struct Look {
         double x, y;
         uint32_t image[2];
+    };
+
+    // One image's part of a candidate for a track.
+    struct Visit {
+        double xy[2];
+        uint32_t image;
+        uint8_t radius, grey;
+    };
+    struct TrackCandidate {
+        std::vector<Visit> visits;  // the first is the anchor, from which the others were found
+        float gradient = 0.0f;      // mean of the visits
+        uint32_t cell = 0;          // candidates near each other have one
+    };
+    // Where to look for a track, and its cell.
+    struct Aim {
+        double direction[2];
+        uint32_t cell;
     };
 
     // What an image sees lies within `reach` of its axis, radians (a little is added to it).
@@ -71,7 +99,13 @@ private:
     Look draw(Random &random) const;
     std::vector<Candidate> candidates(size_t wanted);
     std::vector<lensprof_pair> pairs_of(const std::vector<Candidate> &chosen);
-    uint32_t edge_of(uint32_t i, uint32_t j) const;
+    bool are_neighbours(uint32_t i, uint32_t j) const;
+    uint32_t edge_of(uint32_t i, uint32_t j) const;  // of neighbours
+    Cone cone_of_all() const;
+    bool find_track(const Aim &aim, uint32_t number, TrackCandidate &found);
+    std::vector<TrackCandidate> track_candidates(size_t wanted, const std::function<Aim(uint32_t)> &aim);
+    std::vector<TrackCandidate> in_place(std::vector<TrackCandidate> all) const;
+    std::vector<lensprof_observation> observations_of(const std::vector<TrackCandidate> &chosen);
     void each(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done);
 
     const lensprof_sample_options &options_;
@@ -85,6 +119,7 @@ private:
     std::vector<Likenesses> likenesses_;             // of every pair of neighbours
     std::atomic<size_t> refused_{0};                 // pairs of places that do not show the same
     bool patches_ = true;                            // else single points
+    bool keep_white_ = false;                        // saturated channels are samples, too
     std::atomic<bool> overlaps_{false};
     double shown_ = 0.0;  // the last fraction that the caller saw
 };

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kReach = 2;                               // patches are (2 kReach + 1) pixels square
 constexpr int kSide = 2 * kReach + 1, kCount = kSide * kSide;
+constexpr double kAlmostWhite = 1.0 - 1e-9;             // 1 itself is a channel that is white in every pixel
 constexpr float kSmallestSpread = 1.0f / 255.0f;        // of a patch without noise
 
 const uint8_t *pixel(const lensprof_image &view, int u, int v, uint32_t sample) {
@@ -209,14 +210,14 @@ bool View::holds(double x, double y) const {
 }
 
 // Also repeats the value of a grey view in the other channels.
-bool View::in_range(Patch &patch) const {
+bool View::in_range(Patch &patch, bool keep_white) const {
     for (int c = channels_; c < 3; c++) patch.value[c] = patch.value[0];
     for (double value : patch.value)
-        if (!(value >= image_.black && value <= image_.white)) return false;
+        if (!(value >= image_.black && value <= image_.white) && !(keep_white && value == 1.0)) return false;
     return true;
 }
 
-bool View::patch(double x, double y, Patch &out) const {
+bool View::patch(double x, double y, bool keep_white, Patch &out) const {
     double u, v;
     to_view(x, y, u, v);
     const int iu = static_cast<int>(std::lround(u)), iv = static_cast<int>(std::lround(v));
@@ -229,8 +230,11 @@ bool View::patch(double x, double y, Patch &out) const {
     else if (image_.view.sample == LENSPROF_SAMPLE_U16) gather<uint16_t>(image_.view, iu, iv, offset, all);
     else gather<float>(image_.view, iu, iv, offset, all);
     const auto black = static_cast<float>(image_.black), white = static_cast<float>(image_.white);
-    if (is_out_of_range(all, black, white)) return false;
-    if (image_.every_pixel && !all_in_range(all, black, white)) return false;
+    bool is_white[3] = {false, false, false};
+    for (int c = 0; c < 3 && keep_white; c++)
+        is_white[c] = std::all_of(all, all + kCount, [=](const Lanes &pixel) { return pixel[c] > white; });
+    if (is_out_of_range(all, black, keep_white ? INFINITY : white)) return false;
+    if (image_.every_pixel && !all_in_range(all, black, keep_white ? INFINITY : white)) return false;
     const Slope slope = slope_of(all);
     const Lanes mean = robust_mean(all);
     out.gradient = 0.0;
@@ -238,11 +242,12 @@ bool View::patch(double x, double y, Patch &out) const {
         const double gu = slope.across[c], gv = slope.down[c], value = mean[c];
         if (c < channels_) out.gradient += std::hypot(gu, gv);
         out.value[c] = std::clamp(value + gu * (u - iu) + gv * (v - iv), 0.0, 1.0);
+        if (keep_white) out.value[c] = is_white[c] ? 1.0 : std::min(out.value[c], kAlmostWhite);
     }
-    return in_range(out);
+    return in_range(out, keep_white);
 }
 
-bool View::point(double x, double y, Patch &out) const {
+bool View::point(double x, double y, bool keep_white, Patch &out) const {
     double u, v;
     to_view(x, y, u, v);
     int iu = static_cast<int>(u), iv = static_cast<int>(v);
@@ -257,8 +262,9 @@ bool View::point(double x, double y, Patch &out) const {
         out.value[c] = std::clamp((1.0 - fv) * top + fv * bottom, 0.0, 1.0);
         out.gradient += std::hypot(0.5 * (sample(iu + 1, iv, c) - sample(iu - 1, iv, c)),
                                    0.5 * (sample(iu, iv + 1, c) - sample(iu, iv - 1, c)));
+        if (keep_white && out.value[c] > image_.white) out.value[c] = 1.0;
     }
-    return in_range(out);
+    return in_range(out, keep_white);
 }
 
 }  // namespace lensprof

@@ -27,17 +27,19 @@ public:
     bool holds(double x, double y) const;
 
     // Robust mean of 5 x 5 view pixels about a full-frame position, moved to the exact position along the patch's own
-    // gradient. False when a pixel of it is masked, or a channel's value is outside [black, white].
-    bool patch(double x, double y, Patch &out) const;
+    // gradient. False when a pixel of it is masked, or a channel's value is outside [black, white]; with `keep_white` a
+    // channel that is above white in every pixel has the value 1.
+    bool patch(double x, double y, bool keep_white, Patch &out) const;
 
-    // Bilinear value and central difference gradient, as simple samplers take them.
-    bool point(double x, double y, Patch &out) const;
+    // Bilinear value and central difference gradient, as simple samplers take them; with `keep_white` a channel above
+    // white has the value 1.
+    bool point(double x, double y, bool keep_white, Patch &out) const;
 
 private:
     void to_view(double x, double y, double &u, double &v) const;
     double sample(int u, int v, int channel) const;
     bool is_allowed(int u, int v) const;
-    bool in_range(Patch &patch) const;
+    bool in_range(Patch &patch, bool keep_white) const;
 
     const lensprof_sample_image &image_;
     int channels_;

@@ -258,11 +258,35 @@ void test_variants_of_the_fit(void **) {
     const std::string points = work("points.txt");
     must_exit(done, build_scene({"--points-out", points}));
     for (const Words &words : {Words{"--loss", "huber"}, Words{"--loss", "huber", "--huber", "2"},
-                               Words{"--loss", "squared"}, Words{"--prior", "0.5"}, Words{"--method", "transfer"}})
+                               Words{"--loss", "squared"}, Words{"--prior", "0.5"}, Words{"--method", "transfer"},
+                               Words{"--method", "radiance"}})
         json_of(build_scene(words + Words{"--points", points}));
     json_of(build_scene({"--sampling", "paper"}));
+    json_of(build_scene({"--method", "radiance", "--sampling", "paper"}));
     json_of(build_scene({"--max-side", "160"}));
     json_of(build_scene({"--max-side", "0"}));
+}
+
+/* Tracks instead of pairs: as good, the profile says so, and what --points-out writes makes the same tracks again, less
+ * what was saturated. */
+void test_method_radiance(void **) {
+    const std::string points = work("tracks.txt"), db = work("tracks.db");
+    const Words words = Words{"build", scene("pano.pto"), "--json", "--method", "radiance", "--db", db, "--points-out",
+                              points, "--pairs", "800"};
+    const Json built = json_of(words), transfer = json_of(build_scene({}));
+    assert_true(built["usable"].get<bool>());
+    for (size_t i = 0; i < 4; ++i)
+        assert_close(built["images"][i]["white_balance"][0].get<double>(),
+                     transfer["images"][i]["white_balance"][0].get<double>(), 0.03);
+    const Json shown = json_of({"profile", "show", "1", "--json", "--db", db});
+    assert_string_equal(shown["provenance"]["method"].get<std::string>().c_str(), "radiance");
+    const Json again = json_of({"build", scene("pano.pto"), "--json", "--no-store", "--method", "radiance", "--points",
+                                points});
+    assert_close(again["residual"]["heldout_median"].get<double>(),
+                 built["residual"]["heldout_median"].get<double>(), 0.3);
+    const Words tracks = {"--method", "radiance"};
+    assert_string_equal(timeless(must_exit(done, build_scene(tracks))).c_str(),
+                        timeless(must_exit(done, build_scene(tracks))).c_str());
 }
 
 /* The database. */
@@ -407,6 +431,7 @@ int main() {
         CLI_TEST(test_what_is_free),
         CLI_TEST(test_one_lens),
         CLI_TEST(test_variants_of_the_fit),
+        CLI_TEST(test_method_radiance),
         CLI_TEST(test_store_query_show_remove),
         CLI_TEST(test_key_from_the_command_line),
         CLI_TEST(test_own_database),

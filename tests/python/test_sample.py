@@ -4,7 +4,7 @@ import unittest
 import numpy as np
 
 import lensprof as lp
-from support import HEIGHT, WIDTH, cameras, pictures, radiance, refused, sample_images
+from support import HEIGHT, WIDTH, cameras, fit_images, pictures, radiance, refused, sample_images
 
 
 class Sampling(unittest.TestCase):
@@ -23,6 +23,22 @@ class Sampling(unittest.TestCase):
                     at = chosen["image"][:, 1 - side] == j
                     there = other.unproject(others[at, 0], others[at, 1])
                     np.testing.assert_allclose(here[at], there, atol=1e-9)
+
+    def test_tracks(self):
+        tracks = lp.sample_tracks(sample_images(pictures()), lp.SampleOptions(pairs=500))
+        self.assertEqual(tracks.dtype, lp.OBSERVATION_DTYPE)
+        points, count = np.unique(tracks["point"], return_counts=True)
+        self.assertGreater(len(points), 400)
+        self.assertEqual(set(count), {2, 3})
+        directions = np.zeros((len(tracks), 2))
+        for i, camera in enumerate(cameras()):
+            own = tracks["image"] == i
+            directions[own] = camera.unproject(tracks["xy"][own, 0], tracks["xy"][own, 1])
+        first = np.searchsorted(tracks["point"], tracks["point"])
+        np.testing.assert_allclose(directions, directions[first], atol=1e-9)
+        result = lp.fit_radiance(fit_images(), tracks)
+        self.assertTrue(result.usable, result.reason)
+        self.assertLess(result.heldout_rms, 1)
 
     def test_values_are_those_of_the_pictures(self):
         arrays = pictures()

@@ -416,6 +416,8 @@ FUNCTIONS = {
     "lensprof_sample_options_init": (None, [POINTER(SampleOptions)]),
     "lensprof_sample_overlap": (_status, [POINTER(SampleOptions), POINTER(SampleImage), c_uint32, _pairs, c_uint32,
                                           _u32_out, _error]),
+    "lensprof_sample_tracks": (_status, [POINTER(SampleOptions), POINTER(SampleImage), c_uint32, _observations,
+                                         c_uint32, _u32_out, _error]),
     # fit.h
     "lensprof_fit_options_init": (None, [POINTER(FitOptions)]),
     "lensprof_fit_result_init": (None, [POINTER(FitResult)]),

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from ctypes import byref, c_uint32
 from dataclasses import dataclass
-from typing import Optional, Sequence
+from typing import Any, Callable, Optional, Sequence
 
 import numpy as np
 
@@ -59,19 +59,30 @@ class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
         lib.lensprof_sample_options_init(byref(self))
 
 
+def _sample(function: Any, images: Sequence[SampleImage], options: Optional[SampleOptions], dtype: np.dtype,
+            data: Callable[[np.ndarray], tuple[Any, int]]) -> np.ndarray:
+    images, options, error = list(images), options or SampleOptions(), _abi.ErrorText()
+    views = (_abi.SampleImage * len(images))(*[image._view(i) for i, image in enumerate(images)])
+    room, found = c_uint32(), c_uint32()
+    check(function(byref(options), views, len(views), None, 0, byref(room), byref(error)), "sampling failed", error)
+    out = np.empty(room.value, dtype=dtype)
+    with calling(options) as call:
+        status = function(byref(call), views, len(views), *data(out), byref(found), byref(error))
+    check(status, "sampling failed", error)
+    return out[:found.value]
+
+
 def sample_overlap(images: Sequence[SampleImage], options: Optional[SampleOptions] = None) -> np.ndarray:
     """Finds correspondences between at least two overlapping pictures: an array of PAIR_DTYPE.
 
     There are at most as many as options.pairs, fewer when the overlaps do not hold more.
     """
-    images, options, error = list(images), options or SampleOptions(), _abi.ErrorText()
-    views = (_abi.SampleImage * len(images))(*[image._view(i) for i, image in enumerate(images)])
-    room, found = c_uint32(), c_uint32()
-    check(lib.lensprof_sample_overlap(byref(options), views, len(views), None, 0, byref(room), byref(error)),
-          "sampling failed", error)
-    pairs = np.empty(room.value, dtype=_arrays.PAIR_DTYPE)
-    with calling(options) as call:
-        status = lib.lensprof_sample_overlap(byref(call), views, len(views), *_arrays.pairs(pairs), byref(found),
-                                             byref(error))
-    check(status, "sampling failed", error)
-    return pairs[:found.value]
+    return _sample(lib.lensprof_sample_overlap, images, options, _arrays.PAIR_DTYPE, _arrays.pairs)
+
+
+def sample_tracks(images: Sequence[SampleImage], options: Optional[SampleOptions] = None) -> np.ndarray:
+    """Finds points that several pictures see, for fit_radiance: an array of OBSERVATION_DTYPE, by point.
+
+    There are at most options.pairs points (0 = 300 per image, at least 2000), each with up to 16 observations.
+    """
+    return _sample(lib.lensprof_sample_tracks, images, options, _arrays.OBSERVATION_DTYPE, _arrays.observations)
