@@ -61,7 +61,8 @@ typedef struct lensprof_sample_options {
     void *progress_user;
 } lensprof_sample_options;
 
-/* Balanced, 0 pairs (= 300 per image, at least 2000), seed 1, threads on all cores, no progress. */
+/* Balanced, 0 pairs (= 300 per image, or 150 points with tracks; at least 2000), seed 1, threads on all cores, no
+ * progress. */
 LENSPROF_API void lensprof_sample_options_init(lensprof_sample_options *options);
 
 /* Finds correspondences between `count` pictures. Balanced sampling corrects the cameras first, between neighbours and

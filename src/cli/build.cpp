@@ -34,7 +34,7 @@ void declare(CLI::App &app, Options &o) {
     app.add_flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
     app.add_option("--sampling", o.sampling, "balanced or paper (d'Angelo 5.1)")
         ->check(CLI::IsMember({"balanced", "paper"}));
-    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000; radiance: of points")
+    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000 (radiance: points, 150)")
         ->check(in_range(0, 1 << 24));
     app.add_option("--seed", o.seed, "of the sampling");
     app.add_option("--max-side", o.max_side,

@@ -143,7 +143,7 @@ lensprof_status lensprof_sample_tracks(const lensprof_sample_options *options, c
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: a pointer is NULL");
     lensprof_status status = check_options(*options, count, error);
     if (status != LENSPROF_OK) return status;
-    uint32_t wanted = options->pairs ? options->pairs : std::max(2000u, 300 * count);
+    uint32_t wanted = options->pairs ? options->pairs : std::max(2000u, 150 * count);
     auto draw = [&](Sampler &sampler) {
         return options->sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper_tracks(wanted)
                                                             : sampler.balanced_tracks(wanted);

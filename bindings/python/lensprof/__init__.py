@@ -26,6 +26,6 @@ __all__ = [
     "Processing", "Profile", "ProfileKey", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES",
     "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status",
     "Store", "StoreMode", "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_overlap", "fit_radiance",
-    "layout_channels", "layout_samples", "points_read", "points_write", "sample_bytes", "sample_overlap", "sample_tracks", "simulate",
-    "status_name", "transfer_rms", "version",
+    "layout_channels", "layout_samples", "points_read", "points_write", "sample_bytes", "sample_overlap",
+    "sample_tracks", "simulate", "status_name", "transfer_rms", "version",
 ]

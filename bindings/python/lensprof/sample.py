@@ -83,6 +83,6 @@ def sample_overlap(images: Sequence[SampleImage], options: Optional[SampleOption
 def sample_tracks(images: Sequence[SampleImage], options: Optional[SampleOptions] = None) -> np.ndarray:
     """Finds points that several pictures see, for fit_radiance: an array of OBSERVATION_DTYPE, by point.
 
-    There are at most options.pairs points (0 = 300 per image, at least 2000), each with up to 16 observations.
+    There are at most options.pairs points (0 = 150 per image, at least 2000), each with up to 16 observations.
     """
     return _sample(lib.lensprof_sample_tracks, images, options, _arrays.OBSERVATION_DTYPE, _arrays.observations)
