@@ -8,13 +8,14 @@ import sys
 import time
 
 import cases
+import radiance
 import real
 import report
 import scale
 import speed
 import tools
 
-PARTS = ("points", "pictures", "refusals", "scale", "speed", "real")
+PARTS = ("points", "pictures", "refusals", "scale", "speed", "radiance", "real")
 
 
 def parse():
@@ -46,11 +47,13 @@ def main():
     tools.WORK.mkdir(parents=True, exist_ok=True)
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize is not installed (package hugin-tools); lensprof is alone"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
-               "points": [], "pictures": [], "refusals": [], "scale": [], "speed": {}, "real": [], "skipped": skipped}
+               "points": [], "pictures": [], "refusals": [], "scale": [], "speed": {}, "radiance": {}, "real": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
     if "speed" in options.only:
         results["speed"] = speed.run_all(options.quick, options.repeat, say)
+    if "radiance" in options.only:
+        results["radiance"] = radiance.run_all(options.quick, say)
     if "scale" in options.only:
         results["scale"] = scale.run_all(options.quick, say)
     for part, of in (("points", cases.point_cases), ("pictures", cases.picture_cases),

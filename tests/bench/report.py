@@ -249,6 +249,29 @@ def real(records):
     return lines + [""]
 
 
+def radiance(results):
+    if not results:
+        return []
+    names = {"lensprof": "lensprof", "lensprof-5": "lensprof, 5 modes, squared", "paper": "alternation, Nelder-Mead"}
+    lines = ["## The method `radiance`", "", "12 images x 2000 points of 2 to 5 observations, three channels, noise of 2"
+             " levels, sRGB response unknown; medians over seeds. The paper's way stands in tests/bench/radiance.py.", ""]
+    lines += header("who", "s", "settled", "exposure, EV", "falloff, max")
+    for name, label in names.items():
+        records = [r[name] for r in results["paper"]]
+        settled = "%d of %d" % (count(records, lambda r: r["settled"]), len(records))
+        lines.append(row(label, *(number(median(records, key)) if key else settled for key in
+                                  ("seconds", None, "ev_aligned", "falloff_aligned"))))
+    lines += ["", "Beside `transfer`, from pictures.", ""]
+    lines += header("case", "method", "runs", "exposure, EV", "falloff, max", "response, levels", "clean residual",
+                    "solver, s", "usable")
+    for case, method in dict.fromkeys((r["case"], r["method"]) for r in results["transfer"]):
+        records = [r for r in results["transfer"] if (r["case"], r["method"]) == (case, method)]
+        figures = (number(median(records, key)) for key in
+                   ("ev_aligned", "falloff_aligned", "response_aligned", "clean_rms", "solve_s"))
+        lines.append(row(case, method, len(records), *figures, count(records, lambda r: r.get("usable"))))
+    return lines + [""]
+
+
 def document(results):
     lines = ["# Benchmark", "", results["machine"], ""]
     if results["skipped"]:
@@ -260,5 +283,5 @@ def document(results):
     lines += accuracy("From pictures", "6 pictures of 800 x 600, 50 degrees wide, 40 % overlap, exposures within 1 EV,"
                       " noise of 2 levels, unless the case says otherwise.", results["pictures"], COSTS)
     lines += targets(results["pictures"]) + refused(results["refusals"]) + scale(results["scale"])
-    lines += speed(results["speed"]) + real(results["real"])
+    lines += speed(results["speed"]) + radiance(results["radiance"]) + real(results["real"])
     return "\n".join(lines).rstrip() + "\n"
