@@ -19,6 +19,7 @@ extern "C" {
 
 #define LENSPROF_RESPONSE_SAMPLES 1024 /* samples of a response on the uniform irradiance grid 0..1 */
 #define LENSPROF_EMOR_MODES 25         /* modes of the empirical model of response (Grossberg & Nayar 2004) */
+#define LENSPROF_GRID_SIDE 32          /* most columns and rows of a gain grid */
 
 typedef enum lensprof_response_kind {
     LENSPROF_RESPONSE_LINEAR = 0, /* f(x) = x */
@@ -88,6 +89,30 @@ LENSPROF_API double lensprof_vignetting_r2(const lensprof_vignetting *vignetting
  * the corner farthest from it (in any frame shape: r <= 1 + |center|). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_vignetting_validate(const lensprof_vignetting *vignetting);
+
+/* Attenuation on a grid over the frame, multiplied to M: what a radial polynomial leaves (a tilted sensor, a hood, a
+ * fisheye's rim). Bilinear between nodes; node (0, 0) lies at the frame's first pixel, node (columns-1, rows-1) at its
+ * last, so that a grid does not depend on the resolution. Frozen value struct (12 kB). */
+typedef struct lensprof_gain_grid {
+    uint32_t columns, rows; /* 2..32 each; both 0 = no grid */
+    uint32_t channels;      /* 1 for all channels, or 3; 0 where there is no grid */
+    uint32_t reserved;      /* 0 */
+    /* [channel][row][column], without gaps: node (i, j) of channel c is attenuation[(c * rows + j) * columns + i];
+     * 0 beyond the last one */
+    float attenuation[3 * LENSPROF_GRID_SIDE * LENSPROF_GRID_SIDE];
+} lensprof_gain_grid;
+
+/* No grid: all zero. */
+LENSPROF_API void lensprof_gain_grid_init(lensprof_gain_grid *grid);
+
+/* LENSPROF_OK when there is no grid, or its attenuations are finite and within 0.001..1000. SIZE for sides, ARGUMENT for
+ * another number of channels or anything but 0 beyond the last node, NOT_FINITE, VIGNETTING for attenuations. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid);
+
+/* Attenuation of a valid grid at pixel (x, y), not necessarily a whole one, of a frame of width x height pixels, in
+ * channel 0, 1 or 2; beyond the first and last pixels' centres as at the nearest of them. 1 where there is no grid. */
+LENSPROF_API double lensprof_gain_grid_eval(const lensprof_gain_grid *grid, uint32_t width, uint32_t height, double x,
+                                            double y, uint32_t channel);
 
 /* What one picture received. Frozen value struct. */
 typedef struct lensprof_exposure {

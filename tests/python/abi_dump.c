@@ -50,6 +50,13 @@ static void print_model_structs(void)
     FIELD(lensprof_vignetting, k);
     FIELD(lensprof_vignetting, center);
     end_struct();
+    BEGIN(lensprof_gain_grid);
+    FIELD(lensprof_gain_grid, columns);
+    FIELD(lensprof_gain_grid, rows);
+    FIELD(lensprof_gain_grid, channels);
+    FIELD(lensprof_gain_grid, reserved);
+    FIELD(lensprof_gain_grid, attenuation);
+    end_struct();
     BEGIN(lensprof_exposure);
     FIELD(lensprof_exposure, ev);
     FIELD(lensprof_exposure, white_balance);
@@ -283,6 +290,7 @@ static void print_constants(void)
     VALUE(LENSPROF_VERSION_PATCH);
     VALUE(LENSPROF_RESPONSE_SAMPLES);
     VALUE(LENSPROF_EMOR_MODES);
+    VALUE(LENSPROF_GRID_SIDE);
     VALUE(LENSPROF_COVARIANCE_MAX);
     VALUE(LENSPROF_COVERAGE_BINS);
     VALUE(LENSPROF_UNKNOWN);

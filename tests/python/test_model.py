@@ -122,6 +122,52 @@ class Vignettings(unittest.TestCase):
             lp.Vignetting(k=(math.nan, 0, 0)).validate()
 
 
+class GainGrids(unittest.TestCase):
+    NODES = np.array([[1.0, 0.5, 0.25], [2.0, 1.5, 1.0]], dtype=np.float32)
+
+    def test_no_grid_is_the_default(self):
+        grid = lp.GainGrid()
+        grid.validate()
+        self.assertEqual((grid.columns, grid.rows, grid.channels, grid.attenuation.size), (0, 0, 0, 0))
+        self.assertEqual(grid.eval(640, 480, 10, 20), 1.0)
+
+    def test_bilinear(self):
+        grid = lp.GainGrid(self.NODES)
+        self.assertEqual((grid.columns, grid.rows, grid.channels), (3, 2, 1))
+        x, y = np.meshgrid([0, 10.5, 50, 75.25, 100], [0, 3, 20])
+        columns = [np.interp(x, [0, 50, 100], row) for row in self.NODES.astype(float)]
+        np.testing.assert_allclose(grid.eval(101, 21, x, y), columns[0] + y / 20 * (columns[1] - columns[0]), rtol=1e-12)
+        np.testing.assert_array_equal(grid.eval(101, 21, [-5, 300], [-5, 300]), [1, 1])
+
+    def test_channels(self):
+        grid = lp.GainGrid(np.stack([self.NODES, 2 * self.NODES, 3 * self.NODES]))
+        self.assertEqual([grid.eval(101, 21, 0, 20, c) for c in range(3)], [2, 4, 6])
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            grid.eval(101, 21, 0, 0, 3)
+
+    def test_a_smaller_grid_leaves_nothing_behind(self):
+        grid = lp.GainGrid(np.full((3, 32, 32), 0.5))
+        grid.attenuation = self.NODES
+        grid.validate()
+        self.assertEqual(bytes(grid), bytes(lp.GainGrid(self.NODES)))
+        grid.attenuation[0, 1, 2] = 7
+        self.assertEqual(grid.eval(11, 11, 10, 10), 7.0)
+        self.assertEqual(grid.copy(), grid)
+        grid.attenuation = grid.attenuation[:, ::-1]
+        self.assertEqual(grid.eval(11, 11, 10, 0), 7.0)
+
+    def test_refused(self):
+        for shape in ((2,), (1, 4), (4, 33), (2, 4, 4), (1, 1, 4, 4)):
+            with self.assertRaisesRegex(ValueError, "2..32"):
+                lp.GainGrid(np.ones(shape))
+        for value, status in ((0, lp.Status.ERROR_VIGNETTING), (1001, lp.Status.ERROR_VIGNETTING),
+                              (math.nan, lp.Status.ERROR_NOT_FINITE)):
+            grid = lp.GainGrid(self.NODES)
+            grid.attenuation[0, 0, 0] = value
+            with refused(self, status):
+                grid.validate()
+
+
 class Exposures(unittest.TestCase):
     def test_factor(self):
         exposure = lp.Exposure(ev=-2, white_balance=(1.5, 1, 0.5))

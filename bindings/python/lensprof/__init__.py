@@ -4,9 +4,9 @@ A thin layer over the C library lensprof on the memory of NumPy arrays. What the
 with a `status`; what it could not be asked (an array of a wrong type, shape or stride) raises TypeError or
 ValueError.
 """
-from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, MODES_AUTO, RESPONSE_SAMPLES, UNKNOWN, CameraKind,
-                   Direction, Encoding, Free, GammaFrom, Layout, Loss, Method, Processing, Projection, ResponseKind,
-                   SampleType, Sampling, Saturated, Status, StoreMode)
+from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, GRID_SIDE, MODES_AUTO, RESPONSE_SAMPLES, UNKNOWN,
+                   CameraKind, Direction, Encoding, Free, GammaFrom, Layout, Loss, Method, Processing, Projection,
+                   ResponseKind, SampleType, Sampling, Saturated, Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import EXPOSURE_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE
 from ._library import Error, status_name, version
@@ -14,18 +14,18 @@ from .apply import ApplyOptions, Plan, correct, layout_channels, layout_samples,
 from .fit import FitImage, FitOptions, FitResult, fit_overlap, fit_radiance, transfer_rms
 from .formats import Pto, PtoImage, points_read, points_write
 from .geometry import Camera
-from .model import Exposure, Response, Vignetting, emor_table
+from .model import Exposure, GainGrid, Response, Vignetting, emor_table
 from .profile import Profile, ProfileKey, Provenance
 from .sample import SampleImage, SampleOptions, sample_overlap, sample_tracks
 from .store import Store, StoreRow
 
 __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "Direction", "EMOR_MODES",
-    "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FitImage", "FitOptions", "FitResult", "Free", "GammaFrom",
-    "IMAGE_QUALITY_DTYPE", "Layout", "Loss", "MODES_AUTO", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Plan",
-    "Processing", "Profile", "ProfileKey", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES",
-    "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status",
-    "Store", "StoreMode", "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_overlap", "fit_radiance",
-    "layout_channels", "layout_samples", "points_read", "points_write", "sample_bytes", "sample_overlap",
-    "sample_tracks", "simulate", "status_name", "transfer_rms", "version",
+    "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FitImage", "FitOptions", "FitResult", "Free", "GRID_SIDE",
+    "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Layout", "Loss", "MODES_AUTO", "Method", "OBSERVATION_DTYPE",
+    "PAIR_DTYPE", "Plan", "Processing", "Profile", "ProfileKey", "Projection", "Provenance", "Pto", "PtoImage",
+    "RESPONSE_SAMPLES", "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType", "Sampling",
+    "Saturated", "Status", "Store", "StoreMode", "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table",
+    "fit_overlap", "fit_radiance", "layout_channels", "layout_samples", "points_read", "points_write",
+    "sample_bytes", "sample_overlap", "sample_tracks", "simulate", "status_name", "transfer_rms", "version",
 ]

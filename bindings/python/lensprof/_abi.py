@@ -6,7 +6,7 @@ subclasses of them in the modules by topic.
 """
 from __future__ import annotations
 
-from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t,
+from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_int64, c_size_t,
                     c_ssize_t, c_uint8, c_uint32, c_void_p)
 from enum import IntEnum, IntFlag
 
@@ -14,6 +14,7 @@ VERSION = "0.1.0"  # of the headers that these tables were written from
 
 RESPONSE_SAMPLES = 1024
 EMOR_MODES = 25
+GRID_SIDE = 32
 COVARIANCE_MAX = 36
 COVERAGE_BINS = 10
 UNKNOWN = -1.0
@@ -207,6 +208,11 @@ class Vignetting(Structure):
     _fields_ = [("k", c_double * 3), ("center", c_double * 2)]
 
 
+class GainGrid(Structure):
+    _fields_ = [("columns", c_uint32), ("rows", c_uint32), ("channels", c_uint32), ("reserved", c_uint32),
+                ("attenuation", c_float * (3 * GRID_SIDE * GRID_SIDE))]
+
+
 class Exposure(Structure):
     _fields_ = [("ev", c_double), ("white_balance", c_double * 3)]
 
@@ -331,6 +337,7 @@ STRUCTS = {
     "lensprof_error": ErrorText,
     "lensprof_response": Response,
     "lensprof_vignetting": Vignetting,
+    "lensprof_gain_grid": GainGrid,
     "lensprof_exposure": Exposure,
     "lensprof_camera": Camera,
     "lensprof_image": Image,
@@ -362,6 +369,7 @@ _size_out = POINTER(c_size_t)
 _error = POINTER(ErrorText)
 _response = POINTER(Response)
 _vignetting = POINTER(Vignetting)
+_gain_grid = POINTER(GainGrid)
 _exposures = POINTER(Exposure)
 _camera = POINTER(Camera)
 _image = POINTER(Image)
@@ -391,6 +399,9 @@ FUNCTIONS = {
     "lensprof_vignetting_eval": (c_double, [_vignetting, c_double, _doubles]),
     "lensprof_vignetting_r2": (c_double, [_vignetting, c_uint32, c_uint32, c_double, c_double, _doubles]),
     "lensprof_vignetting_validate": (_status, [_vignetting]),
+    "lensprof_gain_grid_init": (None, [_gain_grid]),
+    "lensprof_gain_grid_validate": (_status, [_gain_grid]),
+    "lensprof_gain_grid_eval": (c_double, [_gain_grid, c_uint32, c_uint32, c_double, c_double, c_uint32]),
     "lensprof_exposure_init": (None, [_exposures]),
     "lensprof_exposure_factor": (c_double, [_exposures, c_uint32]),
     "lensprof_exposure_validate": (_status, [_exposures]),

@@ -13,7 +13,7 @@ import numpy as np
 from . import _abi
 from ._abi import ResponseKind, Status
 from ._library import Error, check, lib
-from ._struct import Enumerated, Value, Vector, integer
+from ._struct import Enumerated, Value, Vector, _Field, integer
 
 Numbers = Union[float, np.ndarray]
 
@@ -173,6 +173,61 @@ class Vignetting(Value, _abi.Vignetting):
             lib.lensprof_vignetting_r2(this, *size, u, v, gradient)
             return tuple(gradient)
         return each(call, x, y, columns=2)
+
+
+class Attenuation(_Field):
+    """The nodes of a gain grid as a view of shape (channels, rows, columns); assigning sets the grid's size."""
+
+    def __get__(self, instance: Any, owner: type) -> np.ndarray:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        shape = (min(instance.channels, 3), min(instance.rows, _abi.GRID_SIDE), min(instance.columns, _abi.GRID_SIDE))
+        nodes = np.ctypeslib.as_array(self.raw.__get__(instance))
+        return nodes[:shape[0] * shape[1] * shape[2]].reshape(shape)
+
+    def __set__(self, instance: Any, values: Any) -> None:
+        array = np.array(values, dtype=np.float32)  # a copy: it may be a view of this very grid
+        array = array[np.newaxis] if array.ndim == 2 else array
+        if array.ndim != 3 or array.shape[0] not in (1, 3) or not all(2 <= n <= _abi.GRID_SIDE for n in array.shape[1:]):
+            raise ValueError(f"a gain grid of shape {array.shape} is not (rows, columns), (1, rows, columns) or "
+                             f"(3, rows, columns) with 2..{_abi.GRID_SIDE} of each")
+        nodes = np.ctypeslib.as_array(self.raw.__get__(instance))
+        nodes[:array.size], nodes[array.size:] = array.ravel(), 0.0
+        instance.channels, instance.rows, instance.columns = array.shape
+
+
+class GainGrid(Value, _abi.GainGrid):
+    """Attenuation on a grid over the frame, multiplied to the falloff: what a radial polynomial leaves. No grid by
+    default.
+
+    attenuation: (rows, columns) or (channels, rows, columns), 2..32 nodes a side, within 0.001..1000; its first node
+    lies at the frame's first pixel, its last at the last. Assigning it sets channels, rows and columns.
+    """
+
+    columns: int
+    rows: int
+    channels: int
+    attenuation = Attenuation()
+
+    def __init__(self, attenuation: Any = None) -> None:
+        super().__init__(**({} if attenuation is None else {"attenuation": attenuation}))
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_gain_grid_init(byref(self))
+
+    def validate(self) -> None:
+        """Raises lensprof.Error unless there is no grid or all its attenuations are within 0.001..1000."""
+        check(lib.lensprof_gain_grid_validate(byref(self)),
+              f"gain grid of {self.columns} x {self.rows} nodes, {self.channels} channels: give 2..{_abi.GRID_SIDE} "
+              "nodes a side, 1 or 3 channels, attenuations within 0.001..1000")
+
+    def eval(self, width: int, height: int, x: Numbers, y: Numbers, channel: int = 1) -> Numbers:
+        """Attenuation at pixel (x, y) of a frame of width x height px, bilinear; 1 where there is no grid."""
+        if channel not in (0, 1, 2):
+            raise Error(Status.ERROR_ARGUMENT, f"channel {channel}: give 0, 1 or 2")
+        self.validate()
+        this, size = byref(self), (integer(width, "width"), integer(height, "height"))
+        return each(lambda u, v: lib.lensprof_gain_grid_eval(this, *size, u, v, channel), x, y)
 
 
 class Exposure(Value, _abi.Exposure):
