@@ -1,4 +1,6 @@
 /* `lensprof profile list | show | remove`. */
+#include "chart.hpp"
+#include "key_filter.hpp"
 #include "library.hpp"
 #include "report.hpp"
 #include "run.hpp"
@@ -36,13 +38,71 @@ int list(const std::string &db, bool json, Streams &streams) {
     return 0;
 }
 
-int show(const std::string &db, int64_t id, bool json, Streams &streams) {
-    Store store = open_store(db, LENSPROF_STORE_READ);
-    auto profile = std::make_unique<lensprof_profile>();
-    lensprof_error error{};
-    check(lensprof_store_get(store.get(), id, profile.get(), &error), store_path(db), &error);
-    if (json) print_json(profile_json(id, *profile), streams.out);
-    else print_profile(id, *profile, streams.out);
+/* What `profile show` is asked for. */
+struct ShowOptions {
+    std::vector<int64_t> ids;
+    KeyFilter filter;
+    std::string db, chart_out, channel;
+    bool json = false, chart = false;
+};
+
+std::vector<StoredProfile> read_profiles(const ShowOptions &o) {
+    Store store = open_store(o.db, LENSPROF_STORE_READ);
+    std::vector<int64_t> ids = o.ids;
+    if (ids.empty())
+        for (const auto &row : o.filter.rows(store.get(), o.db)) ids.push_back(row.id);
+    if (ids.empty()) throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db));
+    std::vector<StoredProfile> profiles;
+    for (int64_t id : ids) {
+        auto profile = std::make_unique<lensprof_profile>();
+        lensprof_error error{};
+        check(lensprof_store_get(store.get(), id, profile.get(), &error), store_path(o.db), &error);
+        profiles.push_back({id, std::move(profile)});
+    }
+    return profiles;
+}
+
+/* One curve a profile where there are several, so that they can be compared. */
+int channel_of(const ShowOptions &o, size_t profiles) {
+    static const char *const names[] = {"red", "green", "blue"};
+    if (o.channel.empty()) return profiles > 1 ? 1 : -1;
+    for (int c = 0; c < 3; c++)
+        if (o.channel == names[c]) return c;
+    return -1;
+}
+
+void print_profiles(const std::vector<StoredProfile> &profiles, bool json, Streams &streams) {
+    if (!json) {
+        for (size_t i = 0; i < profiles.size(); i++) {
+            if (i) streams.out << "\n";
+            print_profile(profiles[i].id, *profiles[i].profile, streams.out);
+        }
+    } else if (profiles.size() == 1) {
+        print_json(profile_json(profiles[0].id, *profiles[0].profile), streams.out);
+    } else {
+        Json all = Json::array();
+        for (const StoredProfile &stored : profiles) all.push_back(profile_json(stored.id, *stored.profile));
+        print_json(Json{{"schema", 1}, {"profiles", all}}, streams.out);
+    }
+}
+
+int show(const ShowOptions &o, Streams &streams) {
+    if (o.ids.empty() == o.filter.is_empty())
+        throw Failure(ExitCode::usage, "profile show: give either ids that `lensprof profile list` shows, or --camera, "
+                                       "--lens and the like");
+    if (!o.chart_out.empty()) check_chart_name(o.chart_out);
+    if (is_same_file(o.chart_out, store_path(o.db)))
+        throw Failure(ExitCode::usage, o.chart_out + ": is the profile database; give --chart-out another name");
+    const std::vector<StoredProfile> profiles = read_profiles(o);
+    if (!o.chart && o.chart_out.empty()) {
+        print_profiles(profiles, o.json, streams);
+        return 0;
+    }
+    const Chart chart = make_chart(profiles, channel_of(o, profiles.size()));
+    if (!o.chart_out.empty()) draw_chart(chart, o.chart_out);
+    if (o.json) print_json(chart_json(chart), streams.out);
+    else if (o.chart) print_chart(chart, streams.out);
+    else streams.out << "wrote " << o.chart_out << "\n";
     return 0;
 }
 
@@ -55,21 +115,43 @@ int remove(const std::string &db, int64_t id, bool json, Streams &streams) {
     return 0;
 }
 
+/* Options that a verb would not look at are mistakes. */
+void check_verb(const std::string &verb, const ShowOptions &o) {
+    if (verb != "show" && (o.chart || !o.chart_out.empty() || !o.channel.empty()))
+        throw Failure(ExitCode::usage, "profile " + verb + ": --chart, --chart-out and --channel belong to show");
+    if (verb == "show" && !o.channel.empty() && !o.chart && o.chart_out.empty())
+        throw Failure(ExitCode::usage, "profile show: --channel belongs to --chart and --chart-out; add one of them");
+    if (verb != "show" && !o.filter.is_empty())
+        throw Failure(ExitCode::usage, "profile " + verb + ": --camera, --lens and the like belong to show");
+    if (verb == "list" && !o.ids.empty())
+        throw Failure(ExitCode::usage, "profile list: lists all profiles, without an id; `profile show` takes ids");
+    if (verb == "remove" && o.ids.size() != 1)
+        throw Failure(ExitCode::usage, "profile remove: give the id, one, that `lensprof profile list` shows");
+}
+
 }  // namespace
 
 int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
-    std::string db, verb;
-    int64_t id = 0;
-    bool json = false;
+    std::string verb;
+    ShowOptions o;
     CLI::App app("Lists, shows or removes profiles of the database.", "lensprof profile");
     app.add_option("VERB", verb, "list, show or remove")->required()->check(CLI::IsMember({"list", "show", "remove"}));
-    app.add_option("ID", id, "the profile, for show and remove")->check(CLI::PositiveNumber);
-    app.add_option("--db", db, "profile database; default the user's own");
-    app.add_flag("--json", json, "print one JSON object");
+    app.add_option("ID", o.ids, "profiles to show, or the one to remove")->check(CLI::PositiveNumber);
+    app.add_option("--db", o.db, "profile database; default the user's own");
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.add_flag("--chart", o.chart, "show: relative illuminance, M over r, as a chart and a table instead");
+    app.add_option("--chart-out", o.chart_out, "show: draw that chart into this .svg or .png");
+    app.add_option("--channel", o.channel,
+                   "in charts, of profiles with a falloff a channel: red, green, blue or all; default all for one "
+                   "profile, green for several")
+        ->check(CLI::IsMember({"red", "green", "blue", "all"}));
+    app.option_defaults()->group("What to show, instead of ids");
+    o.filter.add_options(app);
     if (!parse(app, arguments, streams)) return 0;
-    if (verb == "list") return list(db, json, streams);
-    if (id == 0) throw Failure(ExitCode::usage, "profile " + verb + ": give the id that `lensprof profile list` shows");
-    return verb == "show" ? show(db, id, json, streams) : remove(db, id, json, streams);
+    check_verb(verb, o);
+    o.filter.check_words();
+    if (verb == "list") return list(o.db, o.json, streams);
+    return verb == "show" ? show(o, streams) : remove(o.db, o.ids[0], o.json, streams);
 }
 
 }  // namespace lensprof

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdarg>
 
+#include "falloff.hpp"
 #include "library.hpp"
 
 namespace lensprof {
@@ -45,21 +46,10 @@ Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
 
 double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
-/* What is known of the estimated parameters: their covariance, and the number of those before the first falloff curve. */
-struct Certainty {
-    const double *covariance;
-    uint32_t size, modes;
-};
-
-/* " +- ", the standard error of 100 M at r, or nothing where it is not known. dM/dk_n = r^(2n). */
-std::string falloff_error(const Certainty &c, uint32_t curve, double r2) {
-    const double slope[3] = {r2, r2 * r2, r2 * r2 * r2};
-    const uint32_t first = c.modes + 3 * curve;
-    double variance = 0.0;
-    for (uint32_t i = 0; i < 3 && first + 3 <= c.size; i++)
-        for (uint32_t j = 0; j < 3; j++)
-            variance += slope[i] * slope[j] * c.covariance[(first + i) * c.size + first + j];
-    return variance > 0.0 ? format(" +- %.1f", 100.0 * std::sqrt(variance)) : std::string();
+/* " +- ", the standard error of 100 M at r^2, or nothing where it is not known. */
+std::string falloff_error(const Certainty &certainty, uint32_t curve, double r2) {
+    const double sigma = certainty.falloff_sigma(curve, r2);
+    return sigma > 0.0 ? format(" +- %.1f", 100.0 * sigma) : std::string();
 }
 
 void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, const Certainty &certainty,
@@ -292,25 +282,34 @@ Json profile_json(int64_t id, const lensprof_profile &profile) {
     return json;
 }
 
+KeyParts key_parts(const lensprof_profile_key &key) {
+    KeyParts parts;
+    parts[0] = std::string(key.camera_maker) + (*key.camera_maker && *key.camera_model ? " " : "") + key.camera_model;
+    parts[1] = key.lens;
+    if (key.focal_mm != LENSPROF_UNKNOWN) parts[2] = format("%g mm", key.focal_mm);
+    if (key.aperture != LENSPROF_UNKNOWN) parts[3] = format("f/%g", key.aperture);
+    if (std::isinf(key.distance_m)) parts[4] = "focus at infinity";
+    else if (key.distance_m != LENSPROF_UNKNOWN) parts[4] = format("focus at %g m", key.distance_m);
+    parts[5] = processing_name(key.processing);
+    return parts;
+}
+
+std::string spell_part(const KeyParts &parts, size_t part) {
+    static const char *const names[] = {"camera", "lens", "focal length", "aperture", "focus", "processing"};
+    return parts[part].empty() ? std::string(names[part]) + " unknown" : parts[part];
+}
+
 std::string describe_key(const lensprof_profile_key &key) {
-    auto or_unknown = [](const char *text, const char *what) {
-        return *text ? std::string(text) : std::string(what) + " unknown";
-    };
-    std::string text = *key.camera_maker ? std::string(key.camera_maker) + " " : std::string();
-    text += or_unknown(key.camera_model, "camera") + ", " + or_unknown(key.lens, "lens");
-    text += key.focal_mm == LENSPROF_UNKNOWN ? ", focal length unknown" : format(", %g mm", key.focal_mm);
-    text += key.aperture == LENSPROF_UNKNOWN ? ", aperture unknown" : format(", f/%g", key.aperture);
-    text += key.distance_m == LENSPROF_UNKNOWN ? ", focus unknown"
-        : std::isinf(key.distance_m)           ? std::string(", focus at infinity")
-                                               : format(", focus at %g m", key.distance_m);
-    return text + ", " + processing_name(key.processing);
+    const KeyParts parts = key_parts(key);
+    std::string text = spell_part(parts, 0);
+    for (size_t part = 1; part < parts.size(); part++) text += ", " + spell_part(parts, part);
+    return text;
 }
 
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
     const auto &p = profile.provenance;
     out << "profile   " << id << ": " << describe_key(profile.key) << "\n";
-    print_vignettings(profile.vignetting, profile.vignettings,
-                      {profile.covariance, profile.covariance_size, profile.response[0].modes}, out);
+    print_vignettings(profile.vignetting, profile.vignettings, certainty_of(profile), out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
     out << "source    " << (*p.method ? p.method : "unknown method") << ", " << p.images << " images, " << p.pairs
         << " pairs";

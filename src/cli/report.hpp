@@ -2,6 +2,7 @@
 #ifndef LENSPROF_CLI_REPORT_HPP
 #define LENSPROF_CLI_REPORT_HPP
 
+#include <array>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -54,6 +55,13 @@ Json key_json(const lensprof_profile_key &key);
 Json provenance_json(const lensprof_provenance &provenance);
 Json profile_json(int64_t id, const lensprof_profile &profile);
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out);
+
+/* Camera, lens, focal length, aperture, focus and processing in words; empty where not known. */
+using KeyParts = std::array<std::string, 6>;
+KeyParts key_parts(const lensprof_profile_key &key);
+
+/* A part of a key, "aperture unknown" where it is not known. */
+std::string spell_part(const KeyParts &parts, size_t part);
 
 /* "Canon EOS 5D, EF 50mm, 50 mm, f/1.8, focus unknown, jpeg". */
 std::string describe_key(const lensprof_profile_key &key);

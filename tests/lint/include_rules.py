@@ -81,7 +81,8 @@ LAYERS = {
         C_LIBRARY
         | CPP_LIBRARY
         | POSIX
-        | {"CLI/*", "exiv2/*", "jerror.h", "jpeglib.h", "nlohmann/*", "opencv2/*", "png.h", "tiffio.h"},
+        | {"CLI/*", "cairo-svg.h", "cairo.h", "exiv2/*", "jerror.h", "jpeglib.h", "nlohmann/*", "opencv2/*", "png.h",
+           "tiffio.h"},
     ),
     "examples": Layer(WHOLE_API, C_LIBRARY),
     "bindings": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | {"Python.h"}),

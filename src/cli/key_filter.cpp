@@ -1,0 +1,60 @@
+#include "key_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "library.hpp"
+#include "report.hpp"
+#include "run.hpp"
+
+namespace lensprof {
+
+void KeyFilter::add_options(CLI::App &app) {
+    app.add_option("--camera", camera_, "camera model");
+    app.add_option("--maker", maker_, "camera maker");
+    app.add_option("--lens", lens_, "lens");
+    app.add_option("--focal", focal_, "focal length, mm")->check(in_range(0.01, 1e5));
+    app.add_option("--aperture", aperture_, "f-number")->check(in_range(0.01, 1e4));
+    app.add_option("--distance", distance_, "focus distance, m")->check(in_range(1e-6, INFINITY));
+    app.add_option("--processing", processing_, "raw, jpeg or corrected");
+}
+
+void KeyFilter::check_words() const {
+    if (!processing_.empty()) processing_of_name(processing_);
+}
+
+bool KeyFilter::is_empty() const {
+    return maker_.empty() && !has_camera_or_lens() && processing_.empty() && focal_ == LENSPROF_UNKNOWN
+           && aperture_ == LENSPROF_UNKNOWN && distance_ == LENSPROF_UNKNOWN;
+}
+
+std::vector<lensprof_store_row> KeyFilter::rows(lensprof_store *store, const std::string &db) const {
+    lensprof_profile_key filter;
+    lensprof_profile_key_init(&filter);
+    set_text(filter.camera_maker, sizeof filter.camera_maker, maker_);
+    set_text(filter.camera_model, sizeof filter.camera_model, camera_);
+    set_text(filter.lens, sizeof filter.lens, lens_);
+    filter.focal_mm = focal_;
+    filter.aperture = aperture_;
+    filter.distance_m = distance_;
+    lensprof_error error{};
+    uint32_t found = 0;
+    check(lensprof_store_list(store, &filter, nullptr, 0, &found, &error), store_path(db), &error);
+    std::vector<lensprof_store_row> rows(found);
+    check(lensprof_store_list(store, &filter, rows.data(), found, &found, &error), store_path(db), &error);
+    rows.resize(std::min<size_t>(rows.size(), found));
+    if (processing_.empty()) return rows;
+    const uint32_t processing = processing_of_name(processing_);
+    rows.erase(std::remove_if(rows.begin(), rows.end(),
+                              [=](const lensprof_store_row &row) { return row.key.processing != processing; }),
+               rows.end());
+    return rows;
+}
+
+std::string KeyFilter::nothing_found(const std::string &db) const {
+    const std::string &name = !camera_.empty() ? camera_ : !lens_.empty() ? lens_ : maker_;
+    return "no profile" + (name.empty() ? std::string() : " for " + name) + " with this setting in " + store_path(db)
+           + "; `lensprof profile list` shows what there is";
+}
+
+}  // namespace lensprof

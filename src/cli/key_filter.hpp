@@ -1,0 +1,38 @@
+/* key_filter.hpp - options that choose profiles by what they are for. */
+#ifndef LENSPROF_CLI_KEY_FILTER_HPP
+#define LENSPROF_CLI_KEY_FILTER_HPP
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <lensprof/lensprof.h>
+
+namespace lensprof {
+
+/* Camera, lens and setting as asked for; what is not given may be anything. */
+class KeyFilter {
+public:
+    void add_options(CLI::App &app);
+
+    /* Failure (usage) for a word of --processing that is none, whatever is stored. */
+    void check_words() const;
+
+    bool is_empty() const;
+    bool has_camera_or_lens() const { return !camera_.empty() || !lens_.empty(); }
+
+    /* Rows of the profiles that match, in the order of lensprof_store_list; `db` as given, for texts. */
+    std::vector<lensprof_store_row> rows(lensprof_store *store, const std::string &db) const;
+
+    /* "no profile for CAMERA with this setting in FILE; what to do". */
+    std::string nothing_found(const std::string &db) const;
+
+private:
+    std::string maker_, camera_, lens_, processing_;
+    double focal_ = LENSPROF_UNKNOWN, aperture_ = LENSPROF_UNKNOWN, distance_ = LENSPROF_UNKNOWN;
+};
+
+}  // namespace lensprof
+
+#endif
