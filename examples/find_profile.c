@@ -4,7 +4,7 @@
 
 #include <lensprof/store.h>
 
-static lensprof_profile profile, found; /* 40 kB each: not for a small stack */
+static lensprof_profile profile, found; /* 50 kB each: not for a small stack */
 
 /* Prints what went wrong, when something did. */
 static int failed(lensprof_status status, const lensprof_error *error)

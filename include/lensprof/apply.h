@@ -3,7 +3,8 @@
  *   correct:  B' = f( g(B) / (M e w) * e' w' )                 Goldman & Chen 2005, equation 16
  *   simulate: B' = f( g(B) * M e w / (e' w') )                 the inverse, up to clipping
  *
- * e, w: the picture's own exposure and white balance; e', w': the wanted ones.
+ * M: the falloff, times the gain grid where there is one. e, w: the picture's own exposure and white balance; e', w': the
+ * wanted ones.
  * A plan is prepared once per picture in memory that the caller provides, then applied to any tile.
  * No heap, no I/O. Threads: a plan is immutable after init and may be used by several threads on different tiles. */
 #ifndef LENSPROF_APPLY_H
@@ -81,6 +82,7 @@ typedef struct lensprof_apply_options {
     const lensprof_vignetting *vignetting;  /* read during plan init only */
     lensprof_exposure source;               /* what the picture received */
     lensprof_exposure target;               /* what it shall look like; equal to source = keep */
+    const lensprof_gain_grid *grid;         /* multiplied to the vignetting; NULL = none; read during plan init only */
 } lensprof_apply_options;
 
 /* Correct, encoded in and out, u8 RGB in and out, exposures 0 EV; the rest zero, to be set by the caller. */

@@ -54,7 +54,7 @@ typedef struct lensprof_provenance {
     double inlier_share;    /* 0..1; LENSPROF_UNKNOWN */
 } lensprof_provenance;
 
-/* Frozen value struct (about 40 kB: keep it off small stacks). */
+/* Frozen value struct (about 50 kB: keep it off small stacks). */
 typedef struct lensprof_profile {
     lensprof_profile_key key;
     lensprof_provenance provenance;
@@ -62,15 +62,16 @@ typedef struct lensprof_profile {
     uint32_t vignettings; /* 1 for all channels, or 3 */
     lensprof_response response[3];
     lensprof_vignetting vignetting[3];
+    lensprof_gain_grid grid;  /* multiplied to the vignetting; 0 x 0 where there is none */
     uint32_t covariance_size; /* n, 0 = not known */
     uint32_t reserved;        /* 0 */
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* n x n, row major, in its first n*n */
 } lensprof_profile;
 
-/* Empty key, linear response, no falloff, no covariance, provenance unknown. */
+/* Empty key, linear response, no falloff, no gain grid, no covariance, provenance unknown. */
 LENSPROF_API void lensprof_profile_init(lensprof_profile *profile);
 
-/* LENSPROF_OK when key, provenance, responses, vignettings (which share one centre) and covariance (finite, symmetric,
+/* LENSPROF_OK when key, provenance, responses, vignettings (which share one centre), gain grid and covariance (finite, symmetric,
  * non-negative diagonal) are valid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
 

@@ -1,6 +1,7 @@
 /* lensprof/store.h - the profile database (SQLite).
  *
- * Every call is one transaction: it happens whole or not at all, also when the process is killed.
+ * Every call is one transaction: it happens whole or not at all, also when the process is killed. A file of an older
+ * layout is read as it is; the first call that writes brings it up to date, which older versions then refuse.
  * Threads: a handle belongs to one thread at a time; several processes may open the same file. */
 #ifndef LENSPROF_STORE_H
 #define LENSPROF_STORE_H

@@ -4,6 +4,8 @@
  * `forward` is the response on its 1024 grid. Pixels go  code -> irradiance -> times gain(x, y) -> code. */
 #include <lensprof/apply.h>
 
+#include "gain_grid.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -26,9 +28,17 @@ struct lensprof_plan {
     uint32_t channel_of_sample[4]; /* colour channel of each sample of a pixel */
     float center_px[2], per_rho;   /* pixel -> half diagonals */
     float k[3][3];                 /* vignetting of each channel */
+    uint32_t columns, rows;        /* of the gain grid; 0 = none */
+    const float *nodes[3];         /* of each channel */
     float factor[3];               /* target over source exposure */
     curve curves[3];
 };
+
+/* Where a pixel lies: for the falloff and in the gain grid. */
+typedef struct place {
+    float r2; /* half diagonals squared */
+    lp_grid_cell column, row;
+} place;
 
 /* ---- formats ---- */
 
@@ -84,12 +94,19 @@ static size_t codes_of(const lensprof_apply_options *options)
                                                            : 0;
 }
 
+static size_t nodes_of(const lensprof_apply_options *options)
+{
+    return options->grid ? (size_t)options->grid->channels * options->grid->rows * options->grid->columns : 0;
+}
+
 size_t lensprof_plan_bytes(const lensprof_apply_options *options)
 {
     if (!options || options->struct_size != sizeof *options) return 0;
     if (!lensprof_sample_bytes(options->source_sample) || (options->responses != 1 && options->responses != 3))
         return 0;
-    return sizeof(lensprof_plan) + options->responses * (LENSPROF_RESPONSE_SAMPLES + codes_of(options)) * sizeof(float);
+    if (options->grid && lensprof_gain_grid_validate(options->grid) != LENSPROF_OK) return 0;
+    size_t tables = options->responses * (LENSPROF_RESPONSE_SAMPLES + codes_of(options));
+    return sizeof(lensprof_plan) + (tables + nodes_of(options)) * sizeof(float);
 }
 
 static lensprof_status validate_options(const lensprof_apply_options *o)
@@ -117,6 +134,7 @@ static lensprof_status validate_options(const lensprof_apply_options *o)
                                       || o->vignetting[c].center[1] != o->vignetting[0].center[1]))
             status = LENSPROF_ERROR_VIGNETTING; /* one centre for all channels */
     }
+    if (status == LENSPROF_OK && o->grid) status = lensprof_gain_grid_validate(o->grid);
     return status;
 }
 
@@ -131,6 +149,17 @@ static float *prepare_curve(curve *c, const lensprof_response *response, size_t 
     for (size_t code = 0; code < codes; code++)
         *memory++ = (float)lensprof_response_invert(response, (double)code / (double)(codes - 1), NULL);
     return memory;
+}
+
+/* Copies the nodes of the gain grid to `memory`. */
+static void prepare_grid(lensprof_plan *plan, const lensprof_apply_options *options, float *memory)
+{
+    const lensprof_gain_grid *grid = options->grid;
+    if (!nodes_of(options)) return;
+    plan->columns = grid->columns;
+    plan->rows = grid->rows;
+    memcpy(memory, grid->attenuation, nodes_of(options) * sizeof *memory);
+    for (uint32_t c = 0; c < 3; c++) plan->nodes[c] = memory + (grid->channels == 3 ? c : 0) * grid->rows * grid->columns;
 }
 
 static void prepare_layout(lensprof_plan *plan, uint32_t layout)
@@ -177,16 +206,18 @@ lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_ap
             tables = prepare_curve(&plan->curves[c], &options->response[c], codes_of(options), tables);
         else plan->curves[c] = plan->curves[0];
     }
+    prepare_grid(plan, options, tables);
     *result = plan;
     return LENSPROF_OK;
 }
 
 /* ---- pixels ---- */
 
-static float gain_at(const lensprof_plan *plan, uint32_t channel, float r2)
+static float gain_at(const lensprof_plan *plan, uint32_t channel, const place *at)
 {
     const float *k = plan->k[channel];
-    float falloff = 1.0f + r2 * (k[0] + r2 * (k[1] + r2 * k[2]));
+    float r2 = at->r2, falloff = 1.0f + r2 * (k[0] + r2 * (k[1] + r2 * k[2]));
+    if (plan->columns) falloff *= (float)lp_grid_value(plan->nodes[channel], plan->columns, at->column, at->row);
     return plan->direction == LENSPROF_DIRECTION_CORRECT ? plan->factor[channel] / falloff
                                                          : falloff / plan->factor[channel];
 }
@@ -271,12 +302,12 @@ static float ramp(float value, float low)
 
 /* Gains of red, green and blue. Towards white they approach the largest one, gradually, as the brightest channel nears
  * saturation (from 0.9 on) and the darkest one follows (from 0.6 on): a clipped cloud, not a bright colour. */
-static void gains_at(const lensprof_plan *plan, const uint8_t *source, float r2, float gain[3])
+static void gains_at(const lensprof_plan *plan, const uint8_t *source, const place *at, float gain[3])
 {
     uint32_t bytes = lensprof_sample_bytes(plan->source_sample);
     float largest = 0.0f, brightest = 0.0f, darkest = 1.0f;
     for (uint32_t c = 0; c < 3; c++) {
-        gain[c] = gain_at(plan, c, r2);
+        gain[c] = gain_at(plan, c, at);
         if (gain[c] > largest) largest = gain[c];
     }
     if (!plan->neutral_white || lensprof_layout_channels(plan->layout) == 1) return;
@@ -289,14 +320,14 @@ static void gains_at(const lensprof_plan *plan, const uint8_t *source, float r2,
     for (uint32_t c = 0; c < 3; c++) gain[c] += t * (largest - gain[c]);
 }
 
-/* One pixel at r2 half diagonals squared. Samples beyond the colour channels are alpha. */
-static void apply_pixel(const lensprof_plan *plan, const uint8_t *source, uint8_t *target, float r2)
+/* One pixel. Samples beyond the colour channels are alpha. */
+static void apply_pixel(const lensprof_plan *plan, const uint8_t *source, uint8_t *target, const place *at)
 {
     uint32_t channels = lensprof_layout_channels(plan->layout), samples = lensprof_layout_samples(plan->layout);
     uint32_t source_bytes = lensprof_sample_bytes(plan->source_sample);
     uint32_t target_bytes = lensprof_sample_bytes(plan->target_sample);
     float gain[3];
-    gains_at(plan, source, r2, gain);
+    gains_at(plan, source, at, gain);
     for (uint32_t s = 0; s < samples; s++) {
         const uint8_t *from = source + s * source_bytes;
         uint8_t *to = target + s * target_bytes;
@@ -356,9 +387,13 @@ lensprof_status lensprof_apply(const lensprof_plan *plan, const lensprof_image *
         const uint8_t *from = (const uint8_t *)source->data + (ptrdiff_t)y * source->row_bytes;
         uint8_t *to = (uint8_t *)target->data + (ptrdiff_t)y * target->row_bytes;
         float dy = ((float)(y0 + y) - plan->center_px[1]) * plan->per_rho;
+        place at = {0.0f, {0, 0.0}, {0, 0.0}};
+        if (plan->columns) at.row = lp_grid_cell_at(y0 + y, plan->frame_height, plan->rows);
         for (uint32_t x = 0; x < source->width; x++, from += source_step, to += target_step) {
             float dx = ((float)(x0 + x) - plan->center_px[0]) * plan->per_rho;
-            apply_pixel(plan, from, to, dx * dx + dy * dy);
+            at.r2 = dx * dx + dy * dy;
+            if (plan->columns) at.column = lp_grid_cell_at(x0 + x, plan->frame_width, plan->columns);
+            apply_pixel(plan, from, to, &at);
         }
     }
     return LENSPROF_OK;

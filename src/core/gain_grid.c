@@ -1,5 +1,5 @@
 /* Attenuation on a grid over the frame: what a radial polynomial leaves. */
-#include <lensprof/model.h>
+#include "gain_grid.h"
 
 #include <math.h>
 #include <string.h>
@@ -34,25 +34,11 @@ lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid)
     return LENSPROF_OK;
 }
 
-/* The node before a position in 0..pixels-1, with a node behind it, and how far towards that one, 0..1. */
-static uint32_t cell(double position, uint32_t pixels, uint32_t nodes, double *fraction)
-{
-    double t = pixels > 1 ? position / (pixels - 1.0) : 0.0;
-    t = (nodes - 1.0) * (t > 0.0 ? (t < 1.0 ? t : 1.0) : 0.0);
-    uint32_t node = (uint32_t)t;
-    if (node > nodes - 2) node = nodes - 2;
-    *fraction = t - node;
-    return node;
-}
-
 double lensprof_gain_grid_eval(const lensprof_gain_grid *grid, uint32_t width, uint32_t height, double x, double y,
                                uint32_t channel)
 {
     if (!grid->columns) return 1.0;
-    double u, v;
-    uint32_t column = cell(x, width, grid->columns, &u), row = cell(y, height, grid->rows, &v);
-    uint32_t c = grid->channels == 3 ? channel : 0;
-    const float *above = grid->attenuation + (c * grid->rows + row) * grid->columns + column;
-    const float *below = above + grid->columns;
-    return (1.0 - v) * ((1.0 - u) * above[0] + u * above[1]) + v * ((1.0 - u) * below[0] + u * below[1]);
+    const float *nodes = grid->attenuation + (grid->channels == 3 ? channel : 0) * grid->rows * grid->columns;
+    return lp_grid_value(nodes, grid->columns, lp_grid_cell_at(x, width, grid->columns),
+                         lp_grid_cell_at(y, height, grid->rows));
 }

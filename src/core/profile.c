@@ -45,6 +45,7 @@ void lensprof_profile_init(lensprof_profile *profile)
     lensprof_profile_key_init(&profile->key);
     profile->provenance.heldout_rms = profile->provenance.inlier_share = LENSPROF_UNKNOWN;
     profile->responses = profile->vignettings = 1;
+    lensprof_gain_grid_init(&profile->grid);
     for (int c = 0; c < 3; c++) lensprof_response_set_linear(&profile->response[c]);
 }
 
@@ -94,6 +95,7 @@ lensprof_status lensprof_profile_validate(const lensprof_profile *profile)
         status = lensprof_response_validate(&profile->response[c]);
     for (uint32_t c = 0; c < profile->vignettings && status == LENSPROF_OK; c++)
         status = validate_falloff(&profile->vignetting[c], &profile->vignetting[0]);
+    if (status == LENSPROF_OK) status = lensprof_gain_grid_validate(&profile->grid);
     if (status == LENSPROF_OK) status = validate_covariance(profile->covariance, profile->covariance_size);
     return status;
 }

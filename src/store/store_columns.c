@@ -7,7 +7,7 @@
 const char *const lp_store_processings[LP_STORE_PROCESSINGS] = {"raw", "jpeg", "corrected"};
 const char *const lp_store_kinds[LP_STORE_KINDS] = {"linear", "gamma", "emor", "table"};
 
-#define LARGEST_BLOB (8 * LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX) /* bytes; a table needs 8192 */
+#define LARGEST_BLOB (4 * 3 * LENSPROF_GRID_SIDE * LENSPROF_GRID_SIDE) /* bytes: a gain grid; a covariance has 10368 */
 
 static void bound(lp_store_binder *binder, int rc)
 {
@@ -40,15 +40,38 @@ void lp_bind_text(lp_store_binder *binder, const char *text)
     bound(binder, sqlite3_bind_text(binder->statement, ++binder->column, text, -1, SQLITE_STATIC));
 }
 
+static void put_little_endian(uint64_t bits, uint32_t count, unsigned char *bytes)
+{
+    for (uint32_t b = 0; b < count; b++) bytes[b] = (unsigned char)(bits >> (8 * b));
+}
+
+static uint64_t get_little_endian(const unsigned char *bytes, uint32_t count)
+{
+    uint64_t bits = 0;
+    for (uint32_t b = 0; b < count; b++) bits |= (uint64_t)bytes[b] << (8 * b);
+    return bits;
+}
+
 void lp_bind_doubles(lp_store_binder *binder, const double *values, uint32_t count)
 {
     unsigned char bytes[LARGEST_BLOB];
     for (uint32_t i = 0; i < count; i++) {
         uint64_t bits;
         memcpy(&bits, &values[i], sizeof bits);
-        for (uint32_t b = 0; b < 8; b++) bytes[8 * i + b] = (unsigned char)(bits >> (8 * b));
+        put_little_endian(bits, 8, bytes + 8 * i);
     }
     bound(binder, sqlite3_bind_blob(binder->statement, ++binder->column, bytes, (int)(8 * count), SQLITE_TRANSIENT));
+}
+
+void lp_bind_floats(lp_store_binder *binder, const float *values, uint32_t count)
+{
+    unsigned char bytes[LARGEST_BLOB];
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        put_little_endian(bits, 4, bytes + 4 * i);
+    }
+    bound(binder, sqlite3_bind_blob(binder->statement, ++binder->column, bytes, (int)(4 * count), SQLITE_TRANSIENT));
 }
 
 static void bad(lp_store_reader *reader, int column)
@@ -112,19 +135,32 @@ void lp_read_text(lp_store_reader *reader, char *text, size_t capacity)
     bad(reader, column);
 }
 
-void lp_read_doubles(lp_store_reader *reader, double *values, uint32_t count)
+/* The blob of the next column when it has exactly this size, else NULL. */
+static const unsigned char *read_blob(lp_store_reader *reader, uint64_t size)
 {
     int column = reader->column++;
     const unsigned char *bytes = NULL;
     if (sqlite3_column_type(reader->statement, column) == SQLITE_BLOB)
         bytes = sqlite3_column_blob(reader->statement, column);
-    if (!bytes || (uint64_t)sqlite3_column_bytes(reader->statement, column) != 8 * (uint64_t)count) {
-        bad(reader, column);
-        return;
+    if (bytes && (uint64_t)sqlite3_column_bytes(reader->statement, column) == size) return bytes;
+    bad(reader, column);
+    return NULL;
+}
+
+void lp_read_doubles(lp_store_reader *reader, double *values, uint32_t count)
+{
+    const unsigned char *bytes = read_blob(reader, 8 * (uint64_t)count);
+    for (uint32_t i = 0; bytes && i < count; i++) {
+        uint64_t bits = get_little_endian(bytes + 8 * i, 8);
+        memcpy(&values[i], &bits, sizeof bits);
     }
-    for (uint32_t i = 0; i < count; i++) {
-        uint64_t bits = 0;
-        for (uint32_t b = 0; b < 8; b++) bits |= (uint64_t)bytes[8 * i + b] << (8 * b);
+}
+
+void lp_read_floats(lp_store_reader *reader, float *values, uint32_t count)
+{
+    const unsigned char *bytes = read_blob(reader, 4 * (uint64_t)count);
+    for (uint32_t i = 0; bytes && i < count; i++) {
+        uint32_t bits = (uint32_t)get_little_endian(bytes + 4 * i, 4);
         memcpy(&values[i], &bits, sizeof bits);
     }
 }

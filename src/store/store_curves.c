@@ -1,4 +1,4 @@
-/* The rows that hang on a profile: responses with their coefficients, and vignettings. */
+/* The rows that hang on a profile: responses with their coefficients, vignettings, and the gain grid. */
 #include "store_private.h"
 
 #include <string.h>
@@ -74,6 +74,28 @@ static lensprof_status put_vignetting(lensprof_store *store, int64_t id, uint32_
     return lp_store_run(store, &binder, error);
 }
 
+static uint32_t nodes_of(const lensprof_gain_grid *grid)
+{
+    return grid->channels * grid->rows * grid->columns;
+}
+
+static lensprof_status put_grid(lensprof_store *store, int64_t id, const lensprof_gain_grid *grid,
+                                lensprof_error *error)
+{
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    lensprof_status status = lp_store_prepare(
+        store,
+        "INSERT INTO gain_grids (profile_id, grid_columns, grid_rows, channels, attenuation) VALUES (?, ?, ?, ?, ?)",
+        &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_bind_integer(&binder, id);
+    lp_bind_integer(&binder, grid->columns);
+    lp_bind_integer(&binder, grid->rows);
+    lp_bind_integer(&binder, grid->channels);
+    lp_bind_floats(&binder, grid->attenuation, nodes_of(grid));
+    return lp_store_run(store, &binder, error);
+}
+
 lensprof_status lp_store_put_curves(lensprof_store *store, int64_t id, const lensprof_profile *profile,
                                     lensprof_error *error)
 {
@@ -82,6 +104,7 @@ lensprof_status lp_store_put_curves(lensprof_store *store, int64_t id, const len
         status = put_response(store, id, c, &profile->response[c], error);
     for (uint32_t c = 0; c < profile->vignettings && status == LENSPROF_OK; c++)
         status = put_vignetting(store, id, c, &profile->vignetting[c], error);
+    if (profile->grid.columns && status == LENSPROF_OK) status = put_grid(store, id, &profile->grid, error);
     return status;
 }
 
@@ -130,6 +153,15 @@ static void read_vignetting(lp_store_reader *reader, uint32_t index, void *targe
     for (int i = 0; i < 2; i++) vignetting->center[i] = lp_read_real(reader);
 }
 
+static void read_grid(lp_store_reader *reader, uint32_t index, void *target)
+{
+    lensprof_gain_grid *grid = (lensprof_gain_grid *)target + index;
+    grid->columns = (uint32_t)lp_read_integer(reader, 2, LENSPROF_GRID_SIDE);
+    grid->rows = (uint32_t)lp_read_integer(reader, 2, LENSPROF_GRID_SIDE);
+    grid->channels = (uint32_t)lp_read_integer(reader, 1, 3); /* lensprof_profile_validate refuses 2 */
+    lp_read_floats(reader, grid->attenuation, nodes_of(grid));
+}
+
 /* Only what describes the response; the rest follows from it in lp_store_rebuild. */
 static void read_response(lp_store_reader *reader, uint32_t index, void *target)
 {
@@ -160,7 +192,7 @@ static lensprof_status read_coefficients(lensprof_store *store, int64_t id, uint
     return response->kind == LENSPROF_RESPONSE_EMOR ? read_rows(store, id, &wanted, error) : LENSPROF_OK;
 }
 
-lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, lensprof_error *error)
+lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, uint32_t grids, lensprof_error *error)
 {
     lensprof_profile *profile = &store->scratch;
     rows responses = {"SELECT curve, kind, gamma, emor_modes, samples FROM responses WHERE profile_id = ?"
@@ -169,8 +201,11 @@ lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, lensprof
     rows vignettings = {"SELECT curve, k1, k2, k3, center_x, center_y FROM vignettings WHERE profile_id = ?"
                         " ORDER BY curve",
                         0, profile->vignettings, "count of vignettings", read_vignetting, profile->vignetting};
+    rows gain_grids = {"SELECT grid_columns, grid_rows, channels, attenuation FROM gain_grids WHERE profile_id = ?",
+                       0, grids, "count of gain_grids", read_grid, &profile->grid};
     lensprof_status status = read_rows(store, id, &responses, error);
     if (status == LENSPROF_OK) status = read_rows(store, id, &vignettings, error);
+    if (status == LENSPROF_OK && store->layout >= 2) status = read_rows(store, id, &gain_grids, error);
     for (uint32_t c = 0; c < profile->responses && status == LENSPROF_OK; c++) {
         lensprof_response rebuilt;
         status = read_coefficients(store, id, c, &profile->response[c], error);

@@ -8,7 +8,7 @@
 #error "lensprof needs SQLite 3.37 or newer (STRICT tables)"
 #endif
 
-#define LARGEST_VALUE (1 << 20) /* bytes; the largest blob is 10368, more is a crafted file */
+#define LARGEST_VALUE (1 << 20) /* bytes; the largest blob is 12288, more is a crafted file */
 
 /* The journal mode stays what it is in a new file, DELETE: one file that can be copied and mailed, readable from
  * read-only media. A write-ahead log would need two more files beside it and gains nothing for a few short writes. */
@@ -37,7 +37,7 @@ static int make_tables(sqlite3 *db)
     int64_t application_id = 0, tables = 0;
     int rc = lp_store_number(db, "PRAGMA application_id", &application_id);
     if (rc == SQLITE_OK) rc = lp_store_number(db, "SELECT count(*) FROM sqlite_master", &tables);
-    if (rc == SQLITE_OK && application_id == 0 && tables == 0) rc = sqlite3_exec(db, lp_schema_0001, NULL, NULL, NULL);
+    if (rc == SQLITE_OK && application_id == 0 && tables == 0) rc = lp_store_migrate(db, 0);
     return rc;
 }
 
@@ -60,8 +60,10 @@ static lensprof_status check_tables(lensprof_store *store, lensprof_error *error
     sqlite3_stmt *statement;
     lensprof_status status = lp_store_begin(store, false, error);
     if (status != LENSPROF_OK) return status;
-    status = lp_store_prepare(store, "SELECT 1 FROM profiles, responses, emor_coefficients, vignettings", &statement,
-                              error);
+    const char *sql = store->layout < 2
+        ? "SELECT 1 FROM profiles, responses, emor_coefficients, vignettings"
+        : "SELECT gain_grids.channels FROM profiles, responses, emor_coefficients, vignettings, gain_grids";
+    status = lp_store_prepare(store, sql, &statement, error);
     if (status == LENSPROF_OK) sqlite3_finalize(statement);
     lp_store_rollback(store);
     return status;
@@ -115,6 +117,7 @@ lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_
     if (made) {
         made->db = NULL;
         made->mode = mode;
+        made->layout = 0;
         memcpy(made->path, path, length + 1);
         status = connect(made, full, busy_ms, error);
     }

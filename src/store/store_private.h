@@ -7,17 +7,19 @@
 #include <stdbool.h>
 
 #define LP_STORE_APPLICATION_ID 0x4C505246 /* as in 0001_profiles.sql */
-#define LP_STORE_LAYOUT 1
+#define LP_STORE_LAYOUT 2 /* that of the newest schema */
 #define LP_STORE_BUSY_MS 5000
 
 struct lensprof_store {
     sqlite3 *db;
     uint32_t mode;
-    lensprof_profile scratch; /* 40 kB: a profile is read here first, so that on error outputs are untouched */
+    int layout;               /* of the file, as the transaction found or made it */
+    lensprof_profile scratch; /* 50 kB: a profile is read here first, so that on error outputs are untouched */
     char path[];              /* as the caller wrote it, for error texts */
 };
 
-extern const char lp_schema_0001[]; /* profiles/schema/0001_profiles.sql */
+/* profiles/schema: number n makes layout n of layout n - 1. */
+extern const char lp_schema_0001[], lp_schema_0002[];
 
 /* store_error.c: each sets `error` (may be NULL) to "path: what; next" and returns the status. */
 lensprof_status lp_store_fail(const char *path, lensprof_status status, const char *what, const char *next,
@@ -47,7 +49,9 @@ lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_
 
 /* store_transaction.c */
 int lp_store_number(sqlite3 *db, const char *sql, int64_t *value); /* result code; one integer from one row */
-/* Starts a transaction and checks that the file is (still) a database of this layout. */
+int lp_store_migrate(sqlite3 *db, int layout); /* result code; makes the tables of LP_STORE_LAYOUT of those of `layout` */
+/* Starts a transaction and checks that the file is (still) a database. One of an older layout is read as it is, and
+ * brought up to date by the first transaction that writes, as a part of it. */
 lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error *error);
 lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error); /* rolls back when it fails */
 void lp_store_rollback(lensprof_store *store);
@@ -65,7 +69,8 @@ void lp_bind_real(lp_store_binder *binder, double value);
 void lp_bind_known(lp_store_binder *binder, double value); /* LENSPROF_UNKNOWN becomes NULL */
 void lp_bind_null(lp_store_binder *binder);
 void lp_bind_text(lp_store_binder *binder, const char *text);
-void lp_bind_doubles(lp_store_binder *binder, const double *values, uint32_t count); /* little-endian blob */
+void lp_bind_doubles(lp_store_binder *binder, const double *values, uint32_t count); /* little-endian blobs */
+void lp_bind_floats(lp_store_binder *binder, const float *values, uint32_t count);
 
 /* Runs a statement that returns no row, and finalizes it. */
 lensprof_status lp_store_run(lensprof_store *store, lp_store_binder *binder, lensprof_error *error);
@@ -82,6 +87,7 @@ bool lp_read_null(lp_store_reader *reader);    /* true and past it when the next
 void lp_read_nothing(lp_store_reader *reader); /* NULL */
 void lp_read_text(lp_store_reader *reader, char *text, size_t capacity); /* zero-filled to capacity */
 void lp_read_doubles(lp_store_reader *reader, double *values, uint32_t count);
+void lp_read_floats(lp_store_reader *reader, float *values, uint32_t count);
 uint32_t lp_read_name(lp_store_reader *reader, const char *const *names, uint32_t count); /* index of the text */
 
 /* Words of the database for enum values; the position is the value. They are part of the layout. */
@@ -90,12 +96,12 @@ uint32_t lp_read_name(lp_store_reader *reader, const char *const *names, uint32_
 extern const char *const lp_store_processings[LP_STORE_PROCESSINGS];
 extern const char *const lp_store_kinds[LP_STORE_KINDS];
 
-/* store_curves.c: rows of responses, emor_coefficients and vignettings. */
+/* store_curves.c: rows of responses, emor_coefficients, vignettings and gain_grids. */
 /* The response that its kind, gamma, coefficients or table describe, from nothing else. */
 lensprof_status lp_store_rebuild(const lensprof_response *from, lensprof_response *response);
 lensprof_status lp_store_put_curves(lensprof_store *store, int64_t id, const lensprof_profile *profile,
                                     lensprof_error *error);
-/* Into store->scratch, which knows how many curves there are. */
-lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, lensprof_error *error);
+/* Into store->scratch, which knows how many curves there are; `grids` is the number of gain grids, 0 or 1. */
+lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, uint32_t grids, lensprof_error *error);
 
 #endif

@@ -66,31 +66,35 @@ static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *stateme
     if (profile->covariance_size)
         lp_read_doubles(&reader, profile->covariance, profile->covariance_size * profile->covariance_size);
     else lp_read_nothing(&reader);
+    uint32_t grids = (uint32_t)lp_read_integer(&reader, 0, 1);
     *id = sqlite3_column_int64(statement, 0);
     if (reader.bad) return lp_store_fail_profile(store, *id, reader.bad, error);
-    lensprof_status status = lp_store_read_curves(store, *id, error);
+    lensprof_status status = lp_store_read_curves(store, *id, grids, error);
     if (status != LENSPROF_OK) return status;
     status = lensprof_profile_validate(profile);
     return status == LENSPROF_OK ? LENSPROF_OK
                                  : lp_store_fail_profile(store, *id, lensprof_status_name(status), error);
 }
 
-#define SELECT_PROFILE \
-    "SELECT " ROW_COLUMNS ", response_curves, vignetting_curves, covariance_size, covariance FROM profiles WHERE "
+#define SELECT_PROFILE(grids) \
+    "SELECT " ROW_COLUMNS ", response_curves, vignetting_curves, covariance_size, covariance, " grids \
+    " FROM profiles WHERE "
+#define WITH_KEY \
+    SAME_TEXT("camera_maker", "?1") " AND " SAME_TEXT("camera_model", "?2") " AND " SAME_TEXT("lens", "?3") " AND " \
+    SAME_NUMBER("focal_mm", "?4") " AND " SAME_NUMBER("aperture", "?5") " AND " SAME_NUMBER("distance_m", "?6") \
+    " AND processing = ?7 ORDER BY id DESC LIMIT 1"
+#define NO_GRIDS "0 AS gain_grids" /* layout 1 */
 
-static const char find_sql[] = SELECT_PROFILE
-    SAME_TEXT("camera_maker", "?1") " AND " SAME_TEXT("camera_model", "?2") " AND " SAME_TEXT("lens", "?3") " AND "
-    SAME_NUMBER("focal_mm", "?4") " AND " SAME_NUMBER("aperture", "?5") " AND " SAME_NUMBER("distance_m", "?6")
-    " AND processing = ?7 ORDER BY id DESC LIMIT 1";
-
-static const char get_sql[] = SELECT_PROFILE "id = ?1";
+static const char *const find_sql[] = {SELECT_PROFILE(NO_GRIDS) WITH_KEY, SELECT_PROFILE("gain_grids") WITH_KEY};
+static const char *const get_sql[] = {SELECT_PROFILE(NO_GRIDS) "id = ?1", SELECT_PROFILE("gain_grids") "id = ?1"};
 
 /* Reads the profile with `key`, or with `*id` when key is NULL, into store->scratch. */
 static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *key, int64_t *id,
                              lensprof_error *error)
 {
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
-    lensprof_status status = lp_store_prepare(store, key ? find_sql : get_sql, &binder.statement, error);
+    const char *sql = (key ? find_sql : get_sql)[store->layout >= 2];
+    lensprof_status status = lp_store_prepare(store, sql, &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     if (key) {
         bind_key(&binder, key);

@@ -14,6 +14,15 @@ int lp_store_number(sqlite3 *db, const char *sql, int64_t *value)
     return finalized ? finalized : rc == SQLITE_ROW ? SQLITE_OK : SQLITE_CORRUPT;
 }
 
+int lp_store_migrate(sqlite3 *db, int layout)
+{
+    static const char *const schemas[LP_STORE_LAYOUT] = {lp_schema_0001, lp_schema_0002};
+    int rc = SQLITE_OK;
+    for (int next = layout; next < LP_STORE_LAYOUT && rc == SQLITE_OK; next++)
+        rc = sqlite3_exec(db, schemas[next], NULL, NULL, NULL);
+    return rc;
+}
+
 typedef struct layout {
     int64_t application_id, user_version, pages;
 } layout;
@@ -44,7 +53,7 @@ static lensprof_status check_layout(const lensprof_store *store, const layout *f
                  (long long)found->user_version, LP_STORE_LAYOUT);
         return lp_store_fail(store->path, LENSPROF_ERROR_LAYOUT, what, "update lensprof", error);
     }
-    if (found->user_version < LP_STORE_LAYOUT)
+    if (found->user_version < 1)
         return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "has no layout number", restore, error);
     return LENSPROF_OK;
 }
@@ -63,6 +72,15 @@ static void undo_cut_off_write(const lensprof_store *store)
     sqlite3_close(db);
 }
 
+/* Part of the transaction that writes: when that is not committed, the file keeps its layout. */
+static lensprof_status bring_up_to_date(lensprof_store *store, lensprof_error *error)
+{
+    int rc = lp_store_migrate(store->db, store->layout);
+    if (rc) return lp_store_fail_sql(store->path, store->db, rc, error);
+    store->layout = LP_STORE_LAYOUT;
+    return LENSPROF_OK;
+}
+
 lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error *error)
 {
     layout found = {0, 0, 0};
@@ -77,6 +95,8 @@ lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error
     }
     lensprof_status status = rc ? lp_store_fail_sql(store->path, store->db, rc, error)
                                 : check_layout(store, &found, error);
+    if (status == LENSPROF_OK) store->layout = (int)found.user_version;
+    if (status == LENSPROF_OK && write) status = bring_up_to_date(store, error);
     if (status != LENSPROF_OK) lp_store_rollback(store);
     return status;
 }

@@ -58,6 +58,7 @@ static void bind_profile(lp_store_binder *binder, const lensprof_profile *profil
     if (profile->covariance_size)
         lp_bind_doubles(binder, profile->covariance, profile->covariance_size * profile->covariance_size);
     else lp_bind_null(binder);
+    lp_bind_integer(binder, profile->grid.columns > 0);
 }
 
 static lensprof_status put_profile(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
@@ -68,8 +69,8 @@ static lensprof_status put_profile(lensprof_store *store, const lensprof_profile
         store,
         "INSERT INTO profiles (camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing,"
         " method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
-        " response_curves, vignetting_curves, covariance_size, covariance)"
-        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        " response_curves, vignetting_curves, covariance_size, covariance, gain_grids)"
+        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
         &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     bind_profile(&binder, profile);

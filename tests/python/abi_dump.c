@@ -104,6 +104,7 @@ static void print_apply_structs(void)
     FIELD(lensprof_apply_options, vignetting);
     FIELD(lensprof_apply_options, source);
     FIELD(lensprof_apply_options, target);
+    FIELD(lensprof_apply_options, grid);
     end_struct();
 }
 
@@ -136,6 +137,7 @@ static void print_profile_structs(void)
     FIELD(lensprof_profile, vignettings);
     FIELD(lensprof_profile, response);
     FIELD(lensprof_profile, vignetting);
+    FIELD(lensprof_profile, grid);
     FIELD(lensprof_profile, covariance_size);
     FIELD(lensprof_profile, reserved);
     FIELD(lensprof_profile, covariance);

@@ -50,6 +50,33 @@ class Values(unittest.TestCase):
                 error = np.abs(result.reshape(grey.shape) / white - corrected(grey)).max()
                 self.assertLess(error, 1e-6 if dtype is np.float32 else 0.51 / white, (dtype, shape))
 
+    def test_gain_grid(self):
+        nodes = np.random.default_rng(2).uniform(0.7, 1.3, (3, 4, 6))
+        with_grid, array = profile(), picture(np.float32, largest=0.5)
+        with_grid.grid = lp.GainGrid(nodes)
+        y, x = np.mgrid[0:30, 0:40]
+        grid = np.stack([with_grid.grid.eval(40, 30, x, y, c) for c in range(3)], axis=-1)
+        np.testing.assert_allclose(lp.correct(array, with_grid, saturated=lp.Saturated.AS_VALUE),
+                                   corrected(array, 1 / grid), atol=2e-6)
+        dark = lp.simulate(array, with_grid)
+        np.testing.assert_allclose(dark, (array**GAMMA * falloff(30, 40)[..., None] * grid) ** (1 / GAMMA), atol=2e-6)
+
+    def test_gain_grid_option(self):
+        fields = options(grid=lp.GainGrid([[0.5, 0.5], [0.5, 0.5]]), vignetting=lp.Vignetting(),
+                         response=lp.Response(), source_layout=lp.Layout.GREY)
+        self.assertEqual(fields.grid, lp.GainGrid(np.full((2, 2), 0.5)))
+        gc.collect()
+        self.assertEqual(lp.Plan(fields).apply(np.full((30, 40), 100, np.uint8)).tolist(), [[200] * 40] * 30)
+        fields.grid = None
+        self.assertIsNone(fields.grid)
+        self.assertEqual(lp.Plan(fields).apply(np.full((30, 40), 100, np.uint8)).tolist(), [[100] * 40] * 30)
+        bad = lp.GainGrid([[0.5, 0.5], [0.5, 0.5]])
+        bad.attenuation[0, 0, 0] = 0
+        with refused(self, lp.Status.ERROR_VIGNETTING):
+            lp.Plan(options(grid=bad))
+        with self.assertRaises(TypeError):
+            options(grid=np.ones((2, 2)))
+
     def test_exposure_and_white_balance(self):
         array = picture(np.float32, largest=0.3)
         source, target = lp.Exposure(ev=-1, white_balance=(2, 1, 0.5)), lp.Exposure(ev=0.5)

@@ -48,6 +48,18 @@ class Profiles(unittest.TestCase):
         self.assertEqual(profile.provenance, lp.Provenance())
         profile.validate()
 
+    def test_gain_grid(self):
+        profile = lp.Profile(grid=lp.GainGrid([[1, 0.9], [0.8, 0.7]]))
+        profile.validate()
+        profile.grid.attenuation[0, 0, 0] = 0.5
+        self.assertEqual(profile.grid, lp.GainGrid([[0.5, 0.9], [0.8, 0.7]]))
+        profile.grid.attenuation[0, 1, 1] = 0
+        with refused(self, lp.Status.ERROR_VIGNETTING):
+            profile.validate()
+        profile.grid = lp.GainGrid()
+        profile.validate()
+        self.assertEqual(profile, lp.Profile())
+
     def test_inner_values_share_memory(self):
         profile = lp.Profile()
         profile.key.lens = "50 mm"

@@ -19,7 +19,8 @@ def sample_profile(lens="Distagon 28 mm", **key):
                           distance_m=math.inf, processing=lp.Processing.RAW, **key),
         response=[lp.Response.from_gamma(2.2), lp.Response.from_emor([0.5, -0.25]),
                   lp.Response.from_table([0, 0.7, 1])],
-        vignetting=lp.Vignetting(k=(-0.3, 0.1, -0.05), center=(0.01, -0.02)), covariance=np.diag(np.arange(1.0, 8.0)))
+        vignetting=lp.Vignetting(k=(-0.3, 0.1, -0.05), center=(0.01, -0.02)), covariance=np.diag(np.arange(1.0, 8.0)),
+        grid=lp.GainGrid(np.linspace(0.8, 1.2, 3 * 32 * 31).reshape(3, 32, 31)))
     for name, value in {"method": "transfer", "software": "lensprof test", "source": "/tmp/a.pto",
                         "created_unix_s": 10**10, "images": 5, "pairs": 2000, "heldout_rms": 0.5,
                         "inlier_share": 0.97}.items():

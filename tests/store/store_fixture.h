@@ -145,6 +145,28 @@ static inline void assert_file(const char *path, const void *expected, size_t si
     free(bytes);
 }
 
+/* A file as lensprof made it before there were gain grids: layout 1, with these profiles, whose grids are left out. */
+static inline void make_layout_1(const char *path, const lensprof_profile *profiles, size_t count)
+{
+    char newer[300], sql[2000];
+    const char *columns = "id, camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing, method,"
+                          " software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
+                          " response_curves, vignetting_curves, covariance_size, covariance";
+    snprintf(newer, sizeof newer, "%s.newer", path);
+    lensprof_store *store = store_at(newer, LENSPROF_STORE_CREATE);
+    for (size_t i = 0; i < count; i++) put_at(store, &profiles[i]);
+    lensprof_store_close(store);
+    run_sql(path, lp_schema_0001);
+    snprintf(sql, sizeof sql,
+             "ATTACH '%s' AS newer; BEGIN; INSERT INTO main.profiles SELECT %s FROM newer.profiles;"
+             " INSERT INTO main.responses SELECT * FROM newer.responses;"
+             " INSERT INTO main.emor_coefficients SELECT * FROM newer.emor_coefficients;"
+             " INSERT INTO main.vignettings SELECT * FROM newer.vignettings; COMMIT",
+             newer, columns);
+    run_sql(path, sql);
+    unlink(newer);
+}
+
 static inline uint32_t count_at(lensprof_store *store)
 {
     uint32_t found = UINT32_MAX;
@@ -153,7 +175,15 @@ static inline uint32_t count_at(lensprof_store *store)
     return found;
 }
 
-/* A profile with something in every field: EMoR, one curve, covariance 10 x 10. */
+/* A gain grid of 3/n, which few decimal numbers are. */
+static inline void fill_grid(lensprof_gain_grid *grid, uint32_t columns, uint32_t rows, uint32_t channels)
+{
+    lensprof_gain_grid_init(grid);
+    grid->columns = columns, grid->rows = rows, grid->channels = channels;
+    for (uint32_t i = 0; i < columns * rows * channels; i++) grid->attenuation[i] = 3.0f / (float)(i % 1000 + 7);
+}
+
+/* A profile with something in every field: EMoR, one curve, gain grid, covariance 10 x 10. */
 static inline void fill_profile(lensprof_profile *profile)
 {
     static const double coefficients[] = {-0.625, 0.1, -0.05, 0.02, 1.0 / 30.0};
@@ -174,6 +204,7 @@ static inline void fill_profile(lensprof_profile *profile)
     profile->provenance.inlier_share = 0.93;
     assert_ok(lensprof_response_set_emor(&profile->response[0], coefficients, 5));
     profile->vignetting[0] = (lensprof_vignetting){{-0.3, 0.1, -0.1 / 3.0}, {0.01, -0.02}};
+    fill_grid(&profile->grid, 5, 4, 1);
     profile->covariance_size = 10;
     for (uint32_t i = 0; i < 10; i++)
         for (uint32_t j = 0; j < 10; j++) profile->covariance[10 * i + j] = i == j ? 1.0 / 7.0 : -1e-9 / (1.0 + i + j);
@@ -188,6 +219,7 @@ static inline void assert_same_profile(const lensprof_profile *a, const lensprof
     assert_int_equal(a->vignettings, b->vignettings);
     assert_memory_equal(a->response, b->response, a->responses * sizeof *a->response);
     assert_memory_equal(a->vignetting, b->vignetting, a->vignettings * sizeof *a->vignetting);
+    assert_memory_equal(&a->grid, &b->grid, sizeof a->grid);
     assert_int_equal(a->covariance_size, b->covariance_size);
     assert_memory_equal(a->covariance, b->covariance, a->covariance_size * a->covariance_size * sizeof(double));
 }

@@ -44,6 +44,7 @@ static void test_three_curves_round_trip(void **state)
     assert_ok(lensprof_response_set_emor(&profile->response[2], coefficients, LENSPROF_EMOR_MODES));
     for (int c = 0; c < 3; c++)
         profile->vignetting[c] = (lensprof_vignetting){{-0.1 / (c + 1), 1e-300 * c, 1.0 / 30}, {-1.0 / 3, 1.0}};
+    fill_grid(&profile->grid, LENSPROF_GRID_SIDE, LENSPROF_GRID_SIDE, 3);
     profile->covariance_size = LENSPROF_COVARIANCE_MAX;
     for (uint32_t i = 0; i < LENSPROF_COVARIANCE_MAX; i++)
         for (uint32_t j = 0; j <= i; j++)
@@ -142,6 +143,7 @@ static void test_blobs_are_little_endian(void **state)
 {
     const place *here = *state;
     static const unsigned char one[] = {0, 0, 0, 0, 0, 0, 0xf0, 0x3f}; /* 1.0, IEEE 754 */
+    static const unsigned char quarter[] = {0, 0, 0x80, 0x3e}; /* 3/12, node 5 */
     lensprof_profile *profile = malloc(sizeof *profile);
     sqlite3 *db;
     sqlite3_stmt *statement;
@@ -157,6 +159,11 @@ static void test_blobs_are_little_endian(void **state)
     assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
     assert_int_equal(sqlite3_column_bytes(statement, 0), 8 * LENSPROF_RESPONSE_SAMPLES);
     assert_memory_equal((const char *)sqlite3_column_blob(statement, 0) + 8 * 1023, one, 8);
+    sqlite3_finalize(statement);
+    assert_int_equal(sqlite3_prepare_v2(db, "SELECT attenuation FROM gain_grids", -1, &statement, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
+    assert_int_equal(sqlite3_column_bytes(statement, 0), 4 * 5 * 4);
+    assert_memory_equal((const char *)sqlite3_column_blob(statement, 0) + 4 * 5, quarter, 4);
     sqlite3_finalize(statement);
     sqlite3_close(db);
     free(profile);
@@ -370,7 +377,7 @@ static void test_long_list(void **state)
     run_sql(here->path, "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 1000)"
                         " INSERT INTO profiles SELECT i, camera_maker, camera_model, lens, i, aperture, distance_m,"
                         " processing, method, software, source, created_unix_s, images, pairs, heldout_rms,"
-                        " inlier_share, response_curves, vignetting_curves, covariance_size, covariance"
+                        " inlier_share, response_curves, vignetting_curves, covariance_size, covariance, 0"
                         " FROM profiles, n");
     assert_ok(lensprof_store_list(store, NULL, rows, COUNT, &found, NULL));
     assert_int_equal(found, COUNT);

@@ -137,6 +137,22 @@ static void test_impossible_curves(void **state)
         {"UPDATE vignettings SET k1 = -9e999 WHERE profile_id = 1", "k1"},
         {"UPDATE vignettings SET k1 = -5 WHERE profile_id = 1", "LENSPROF_ERROR_VIGNETTING"},
         {"UPDATE vignettings SET center_y = 1.1 WHERE profile_id = 1", "LENSPROF_ERROR_VIGNETTING"},
+        {"UPDATE profiles SET gain_grids = 0 WHERE id = 1", "count of gain_grids"},
+        {"UPDATE profiles SET gain_grids = 2 WHERE id = 1", "gain_grids"},
+        {"DELETE FROM gain_grids", "count of gain_grids"},
+        {"UPDATE gain_grids SET grid_columns = 1", "grid_columns"},
+        {"UPDATE gain_grids SET grid_columns = 33", "grid_columns"},
+        {"UPDATE gain_grids SET grid_rows = 1", "grid_rows"},
+        {"UPDATE gain_grids SET grid_rows = 4294967300", "grid_rows"},
+        {"UPDATE gain_grids SET grid_rows = 5", "attenuation"},
+        {"UPDATE gain_grids SET channels = 4", "channels"},
+        {"UPDATE gain_grids SET channels = 3", "attenuation"},
+        {"UPDATE gain_grids SET channels = 2, attenuation = CAST(attenuation || attenuation AS BLOB)",
+         "LENSPROF_ERROR_ARGUMENT"},
+        {"UPDATE gain_grids SET attenuation = zeroblob(80)", "LENSPROF_ERROR_VIGNETTING"},
+        {"UPDATE gain_grids SET attenuation = CAST(x'0000c07f' || substr(attenuation, 5) AS BLOB)",
+         "LENSPROF_ERROR_NOT_FINITE"},
+        {"UPDATE gain_grids SET attenuation = zeroblob(1000000)", "attenuation"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         assert_damaged(*state, cases[i][0], cases[i][1], false);
@@ -169,7 +185,8 @@ static void test_wrong_types(void **state)
         {"profiles", "created_unix_s", "'x'"}, {"profiles", "response_curves", "'one'"},
         {"profiles", "covariance", "printf('%.800c', 'x')"}, {"responses", "kind", "2"},
         {"responses", "emor_modes", "x'05'"}, {"responses", "samples", "1"}, {"vignettings", "k2", "'x'"},
-        {"emor_coefficients", "coefficient", "x'0000000000000000'"},
+        {"emor_coefficients", "coefficient", "x'0000000000000000'"}, {"gain_grids", "channels", "x'01'"},
+        {"gain_grids", "attenuation", "printf('%.80c', 'x')"},
     };
     char sql[600];
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -200,6 +217,7 @@ static void assert_not_opened(const place *here, const char *sql)
 static void test_other_tables(void **state)
 {
     assert_not_opened(*state, "DROP TABLE vignettings");
+    assert_not_opened(*state, "DROP TABLE gain_grids");
     assert_not_opened(*state, "ALTER TABLE emor_coefficients RENAME TO e");
     /* A view that never ends. */
     assert_not_opened(*state, "ALTER TABLE profiles RENAME TO p; CREATE VIEW profiles AS WITH RECURSIVE n(id) AS"

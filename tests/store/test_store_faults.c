@@ -102,8 +102,11 @@ static lensprof_status session(const char *path, const lensprof_profile *profile
     return status;
 }
 
+/* What a session begins with: the file as the one before left it, none, or one of layout 1, which it brings up to date. */
+typedef enum start { AS_LEFT, NO_FILE, LAYOUT_1 } start;
+
 /* Lets the n-th operation fail for growing n until a session is over before; returns that n. */
-static int fail_each(const place *here, int first, bool new_file, lensprof_status only)
+static int fail_each(const place *here, int first, start start_at, lensprof_status only)
 {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_error error;
@@ -113,8 +116,9 @@ static int fail_each(const place *here, int first, bool new_file, lensprof_statu
     bool done;
     fill_profile(profile);
     for (n = first; n < 100000; n += STEP) {
-        if (new_file) unlink(here->path);
-        if (new_file) stored = 0;
+        if (start_at != AS_LEFT) unlink(here->path);
+        if (start_at != AS_LEFT) stored = 0;
+        if (start_at == LAYOUT_1) make_layout_1(here->path, NULL, 0);
         error.text[0] = 0;
         sqlite3_int64 used = sqlite3_memory_used();
         countdown = n;
@@ -141,13 +145,13 @@ static int fail_each(const place *here, int first, bool new_file, lensprof_statu
 
 static void fail_each_way(void **state, int fault, lensprof_status only)
 {
-    for (int way = 0; way < 4; way++) {
+    for (int way = 0; way < 6; way++) {
         const place *here = *state;
         unlink(here->path);
         if (way < 2) lensprof_store_close(store_at(here->path, LENSPROF_STORE_CREATE));
         file_fault = fault;
         for_good = way % 2;
-        int n = fail_each(here, 1 + 5 * way % STEP, way >= 2, only);
+        int n = fail_each(here, 1 + 5 * way % STEP, (start)(way / 2), only);
         file_fault = 0;
         assert_true(n > 50); /* else the faults were not where they should be */
     }

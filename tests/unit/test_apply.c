@@ -9,6 +9,7 @@ static const double steps[3] = {255.0, 65535.0, 0.0};
 typedef struct fixture {
     lensprof_response response[3];
     lensprof_vignetting vignetting[3];
+    lensprof_gain_grid grid;
     lensprof_apply_options options;
     void *memory;
     const lensprof_plan *plan;
@@ -37,6 +38,17 @@ static void make_model(fixture *f, uint32_t kind, uint32_t curves)
     f->options.saturated = LENSPROF_SATURATED_AS_VALUE;
 }
 
+/* Attenuations 0.6..1.4 without any order. */
+static void make_grid(fixture *f, uint32_t columns, uint32_t rows, uint32_t channels)
+{
+    uint64_t random = columns + 100 * rows;
+    lensprof_gain_grid_init(&f->grid);
+    f->grid.columns = columns, f->grid.rows = rows, f->grid.channels = channels;
+    for (uint32_t i = 0; i < columns * rows * channels; i++)
+        f->grid.attenuation[i] = (float)(0.6 + 0.8 * lp_random(&random));
+    f->options.grid = &f->grid;
+}
+
 static void make_plan(fixture *f)
 {
     size_t bytes = lensprof_plan_bytes(&f->options);
@@ -53,6 +65,7 @@ static double reference(const fixture *f, double value, int channel, double x, d
     const lensprof_response *r = &f->response[one_r];
     double m = lensprof_vignetting_eval(&f->vignetting[one_v],
                                         lensprof_vignetting_r2(&f->vignetting[one_v], W, H, x, y, NULL), NULL);
+    if (o->grid) m *= lensprof_gain_grid_eval(o->grid, W, H, x, y, (uint32_t)c);
     double ratio =
         lensprof_exposure_factor(&o->target, (uint32_t)c) / lensprof_exposure_factor(&o->source, (uint32_t)c);
     double light = o->input == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(r, value, NULL);
@@ -139,11 +152,54 @@ static void test_every_format_follows_the_formula(void **state)
     }
 }
 
-static void test_tiles_in_place_and_bottom_up_give_the_whole(void **state)
+static void test_gain_grids_follow_the_formula(void **state)
 {
     (void)state;
+    static const uint32_t sides[][2] = {{2, 2}, {7, 5}, {32, 32}, {2, 32}};
+    for (uint32_t n = 0; n < 4 * 2 * 2 * 6 * 3; n++) {
+        fixture f;
+        uint32_t k = n, side = k % 4, channels = (k /= 4) % 2 ? 3 : 1, direction = (k /= 2) % 2, layout = (k /= 2) % 6;
+        make_model(&f, LENSPROF_RESPONSE_EMOR, n % 5 ? 1 : 3);
+        make_grid(&f, sides[side][0], sides[side][1], channels);
+        f.options.direction = direction;
+        f.options.source_layout = layout;
+        f.options.source_sample = f.options.target_sample = (k /= 6) % 3;
+        make_plan(&f);
+        memset(&f.grid.attenuation, 0, sizeof f.grid.attenuation); /* the plan has a copy */
+        lensprof_image source = make_image(k % 3, layout, n), target = make_image(k % 3, layout, 1);
+        assert_ok(lensprof_apply(f.plan, &source, &target, 0, 0));
+        make_grid(&f, sides[side][0], sides[side][1], channels);
+        compare(&f, &source, &target);
+        free(source.data), free(target.data), free(f.memory);
+    }
+}
+
+/* A grid of ones, no grid at all and NULL are the same. */
+static void test_no_gain_grid(void **state)
+{
+    (void)state;
+    lensprof_image source = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 3), target[3];
+    for (int n = 0; n < 3; n++) {
+        fixture f;
+        make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
+        f.options.source_sample = f.options.target_sample = LENSPROF_SAMPLE_U16;
+        if (n > 0) make_grid(&f, n == 1 ? 0 : 6, n == 1 ? 0 : 4, n == 1 ? 0 : 1);
+        for (int i = 0; n == 2 && i < 24; i++) f.grid.attenuation[i] = 1.0f;
+        make_plan(&f);
+        target[n] = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 1);
+        assert_ok(lensprof_apply(f.plan, &source, &target[n], 0, 0));
+        assert_memory_equal(target[n].data, target[0].data, (size_t)source.row_bytes * H);
+        free(f.memory);
+    }
+    for (int n = 0; n < 3; n++) free(target[n].data);
+    free(source.data);
+}
+
+static void tiles_give_the_whole(int has_grid)
+{
     fixture f;
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
+    if (has_grid) make_grid(&f, 9, 13, 3);
     f.options.source_sample = f.options.target_sample = LENSPROF_SAMPLE_U16;
     make_plan(&f);
     lensprof_image source = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 4),
@@ -168,6 +224,13 @@ static void test_tiles_in_place_and_bottom_up_give_the_whole(void **state)
         assert_memory_equal(flipped + (H - 1 - y) * source.row_bytes, (uint8_t *)whole.data + y * whole.row_bytes,
                             (size_t)source.row_bytes);
     free(source.data), free(whole.data), free(flipped), free(f.memory);
+}
+
+static void test_tiles_in_place_and_bottom_up_give_the_whole(void **state)
+{
+    (void)state;
+    tiles_give_the_whole(0);
+    tiles_give_the_whole(1);
 }
 
 /* Simulate, then correct: back to the start within rounding. */
@@ -259,6 +322,15 @@ static void test_plan_refuses(void **state)
     f.vignetting[0].k[0] = -0.4;
     REFUSED((f.options.vignettings = 3, f.vignetting[1].center[0] = 0.2), LENSPROF_ERROR_VIGNETTING);
     f.vignetting[1].center[0] = 0.03;
+    make_grid(&f, 4, 3, 1);
+    f.grid.attenuation[5] = 0.0f;
+    REFUSED(f.options.grid = &f.grid, LENSPROF_ERROR_VIGNETTING);
+    assert_int_equal(lensprof_plan_bytes(&f.options), 0);
+    f.grid.rows = 33;
+    REFUSED(f.options.grid = &f.grid, LENSPROF_ERROR_SIZE);
+    make_grid(&f, 4, 3, 1); /* needs memory of its own */
+    assert_int_equal(lensprof_plan_bytes(&f.options), bytes + 12 * sizeof(float));
+    REFUSED(f.options.grid = &f.grid, LENSPROF_ERROR_CAPACITY);
     REFUSED(f.response[0].table[3] = 0.0, LENSPROF_ERROR_RESPONSE);
 #undef REFUSED
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
@@ -314,6 +386,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_format_follows_the_formula),
+        cmocka_unit_test(test_gain_grids_follow_the_formula),
+        cmocka_unit_test(test_no_gain_grid),
         cmocka_unit_test(test_tiles_in_place_and_bottom_up_give_the_whole),
         cmocka_unit_test(test_correct_undoes_simulate),
         cmocka_unit_test(test_not_a_number_stays_in_its_sample),

@@ -50,6 +50,13 @@ static void test_profile_refuses(void **state)
     p->vignetting[2].k[0] = -1.5;
     assert_int_equal(lensprof_profile_validate(p), LENSPROF_ERROR_VIGNETTING);
     lensprof_profile_init(p);
+    p->grid.columns = p->grid.rows = 2, p->grid.channels = 1; /* all attenuations 0 */
+    assert_int_equal(lensprof_profile_validate(p), LENSPROF_ERROR_VIGNETTING);
+    for (int i = 0; i < 4; i++) p->grid.attenuation[i] = 0.5f;
+    assert_ok(lensprof_profile_validate(p));
+    p->grid.rows = 1;
+    assert_int_equal(lensprof_profile_validate(p), LENSPROF_ERROR_SIZE);
+    lensprof_profile_init(p);
     p->covariance_size = LENSPROF_COVARIANCE_MAX + 1;
     assert_int_equal(lensprof_profile_validate(p), LENSPROF_ERROR_SIZE);
     p->covariance_size = 2;

@@ -234,7 +234,8 @@ class ApplyOptions(Structure):
                 ("frame_width", c_uint32), ("frame_height", c_uint32), ("source_sample", c_uint32),
                 ("source_layout", c_uint32), ("target_sample", c_uint32), ("saturated", c_uint32),
                 ("responses", c_uint32), ("vignettings", c_uint32), ("response", POINTER(Response)),
-                ("vignetting", POINTER(Vignetting)), ("source", Exposure), ("target", Exposure)]
+                ("vignetting", POINTER(Vignetting)), ("source", Exposure), ("target", Exposure),
+                ("grid", POINTER(GainGrid))]
 
 
 class Plan(Structure):
@@ -255,8 +256,8 @@ class Provenance(Structure):
 
 class Profile(Structure):
     _fields_ = [("key", ProfileKey), ("provenance", Provenance), ("responses", c_uint32), ("vignettings", c_uint32),
-                ("response", Response * 3), ("vignetting", Vignetting * 3), ("covariance_size", c_uint32),
-                ("reserved", c_uint32), ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX))]
+                ("response", Response * 3), ("vignetting", Vignetting * 3), ("grid", GainGrid),
+                ("covariance_size", c_uint32), ("reserved", c_uint32), ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX))]
 
 
 class Pair(Structure):

@@ -14,8 +14,8 @@ import numpy as np
 from . import _abi, _arrays
 from ._abi import Direction, Encoding, Layout, SampleType, Saturated
 from ._library import check, lib
-from ._struct import Count, Enumerated, Nested, Referenced, Struct, integer
-from .model import Exposure, Response, Vignetting
+from ._struct import Count, Enumerated, Nested, OptionalReference, Referenced, Struct, integer
+from .model import Exposure, GainGrid, Response, Vignetting
 from .profile import Profile
 
 
@@ -39,7 +39,7 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     vignetting must be given.
 
     frame_width, frame_height: the full frame, px. response and vignetting: one for all channels, or three. source:
-    what the picture received. target: what it shall look like.
+    what the picture received. target: what it shall look like. grid: a GainGrid multiplied to the vignetting, or None.
     """
 
     direction = Enumerated(Direction)
@@ -57,6 +57,7 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     vignetting = Referenced(Vignetting, "vignettings")
     source = Nested(Exposure)
     target = Nested(Exposure)
+    grid = OptionalReference(GainGrid)
 
     def _set_defaults(self) -> None:
         lib.lensprof_apply_options_init(byref(self))
@@ -71,7 +72,7 @@ class Plan:
         self._plan = POINTER(_abi.Plan)()
         check(lib.lensprof_plan_init(self._memory.ctypes.data, self._memory.nbytes, byref(options), byref(self._plan)),
               "these options cannot be applied: give a frame of 1..1048576 px, a valid response, vignetting (one "
-              "centre for all channels), source and target")
+              "centre for all channels), gain grid, source and target")
         self._layout = options.source_layout
         self._target_dtype = _arrays.sample_dtype(options.target_sample)
 
@@ -96,7 +97,7 @@ def _apply(direction: Direction, array: np.ndarray, profile: Profile, out: Optio
     target = view.sample if out is None else _arrays.image(out, layout, writable=True, what="out").sample
     options = ApplyOptions(direction=direction, frame_width=view.width, frame_height=view.height,
                            source_sample=view.sample, source_layout=view.layout, target_sample=target,
-                           response=profile.response, vignetting=profile.vignetting,
+                           response=profile.response, vignetting=profile.vignetting, grid=profile.grid,
                            **{name: value for name, value in fields.items() if value is not None})
     return Plan(options).apply(array, out)
 
@@ -104,7 +105,7 @@ def _apply(direction: Direction, array: np.ndarray, profile: Profile, out: Optio
 def correct(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] = None,
             target: Optional[Exposure] = None, saturated: Optional[Saturated] = None,
             layout: Optional[Layout] = None, out: Optional[np.ndarray] = None) -> np.ndarray:
-    """Removes a profile's falloff from a full frame and brings its exposure and white balance from source to target.
+    """Removes a profile's falloff, its gain grid included, from a full frame and brings its exposure and white balance from source to target.
 
     source, target: 0 EV when None. layout: grey, RGB or RGBA by the number of samples when None. out: `array` itself to
     work in place, another array (its type is written), a new one when None. Returns out.

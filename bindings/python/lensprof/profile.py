@@ -10,7 +10,7 @@ from . import _abi
 from ._abi import Processing
 from ._library import check, lib
 from ._struct import Curves, Enumerated, Nested, Text, Value
-from .model import Response, Vignetting
+from .model import GainGrid, Response, Vignetting
 
 
 class ProfileKey(Value, _abi.ProfileKey):
@@ -82,7 +82,7 @@ class Covariance:
 class Profile(Value, _abi.Profile):
     """Response and vignetting of one camera, lens and setting: linear and without falloff by default.
 
-    response, vignetting: tuples of 1 (all channels) or 3; assign one or three. covariance: n x n, n = 0 when not
+    response, vignetting: tuples of 1 (all channels) or 3; assign one or three. grid: what the vignetting leaves. covariance: n x n, n = 0 when not
     known; in the order EMoR coefficients, k1, k2, k3 of each vignetting, centre x and y.
     """
 
@@ -92,6 +92,7 @@ class Profile(Value, _abi.Profile):
     vignettings: int
     response = Curves(Response, "responses")
     vignetting = Curves(Vignetting, "vignettings")
+    grid = Nested(GainGrid)
     covariance_size: int
     covariance = Covariance()
 
@@ -99,7 +100,7 @@ class Profile(Value, _abi.Profile):
         lib.lensprof_profile_init(byref(self))
 
     def validate(self) -> None:
-        """Raises lensprof.Error unless key, curves and covariance are valid."""
+        """Raises lensprof.Error unless key, curves, gain grid and covariance are valid."""
         check(lib.lensprof_profile_validate(byref(self)),
-              f"{self.key}: not a valid profile; see validate() of its key, response and vignetting, the covariance "
+              f"{self.key}: not a valid profile; see validate() of its key, response, vignetting and grid, the covariance "
               "must be finite and symmetric")

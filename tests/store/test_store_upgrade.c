@@ -1,0 +1,225 @@
+/* Databases of layout 1, made before there were gain grids: read as they are, brought up to date by the first write. */
+#include "store_fixture.h"
+
+#include <sys/wait.h>
+
+/* Two profiles as layout 1 can hold them, made once. */
+static lensprof_profile old[2], found;
+
+static void make_old(const char *path)
+{
+    for (int i = 0; i < 2; i++) {
+        fill_profile(&old[i]);
+        lensprof_gain_grid_init(&old[i].grid);
+    }
+    assert_ok(lensprof_response_set_gamma(&old[1].response[0], 2.2));
+    old[1].key.aperture = 8.0;
+    make_layout_1(path, old, 2);
+}
+
+static int64_t layout_of(const char *path)
+{
+    sqlite3 *db;
+    int64_t layout = -1;
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(lp_store_number(db, "PRAGMA user_version", &layout), SQLITE_OK);
+    sqlite3_close(db);
+    return layout;
+}
+
+/* Both profiles are there as they were. */
+static void assert_old_profiles(lensprof_store *store)
+{
+    lensprof_store_row rows[4];
+    uint32_t count;
+    int64_t id;
+    for (int i = 0; i < 2; i++) {
+        memset(&found, 0x55, sizeof found);
+        assert_ok(lensprof_store_get(store, i + 1, &found, NULL));
+        assert_same_profile(&found, &old[i]);
+    }
+    assert_ok(lensprof_store_find(store, &old[1].key, &found, &id, NULL));
+    assert_int_equal(id, 2);
+    assert_same_profile(&found, &old[1]);
+    assert_ok(lensprof_store_list(store, NULL, rows, 4, &count, NULL));
+    assert_true(count >= 2);
+}
+
+static void test_reading_changes_nothing(void **state)
+{
+    const place *here = *state;
+    lensprof_error error;
+    size_t size;
+    make_old(here->path);
+    assert_int_equal(layout_of(here->path), 1);
+    unsigned char *bytes = read_file(here->path, &size);
+    for (uint32_t mode = 0; mode < 3; mode++) { /* also in those that could write */
+        lensprof_store *store = store_at(here->path, mode);
+        assert_old_profiles(store);
+        if (mode == LENSPROF_STORE_READ)
+            assert_int_equal(lensprof_store_put(store, &old[0], NULL, &error), LENSPROF_ERROR_READ_ONLY);
+        lensprof_store_close(store);
+        assert_file(here->path, bytes, size);
+    }
+    free(bytes);
+}
+
+static void test_first_put_brings_up_to_date(void **state)
+{
+    const place *here = *state;
+    lensprof_profile *newer = malloc(sizeof *newer);
+    make_old(here->path);
+    fill_profile(newer);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_WRITE), *other = store_at(here->path, 0);
+    assert_int_equal(count_at(other), 2);
+    assert_int_equal(put_at(store, newer), 3);
+    for (int handle = 0; handle < 2; handle++) { /* the other one was opened before */
+        assert_old_profiles(handle ? other : store);
+        assert_ok(lensprof_store_get(handle ? other : store, 3, &found, NULL));
+        assert_same_profile(&found, newer);
+    }
+    assert_int_equal(put_at(store, &old[0]), 4);
+    lensprof_store_close(store);
+    lensprof_store_close(other);
+    assert_int_equal(layout_of(here->path), 2);
+    assert_integrity(here->path);
+    store = store_at(here->path, LENSPROF_STORE_READ);
+    assert_old_profiles(store);
+    lensprof_store_close(store);
+    free(newer);
+}
+
+static void test_first_remove_brings_up_to_date(void **state)
+{
+    const place *here = *state;
+    make_old(here->path);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_WRITE);
+    assert_ok(lensprof_store_remove(store, 1, NULL));
+    assert_int_equal(count_at(store), 1);
+    lensprof_store_close(store);
+    assert_int_equal(layout_of(here->path), 2);
+    assert_integrity(here->path);
+}
+
+/* A write that fails takes the new layout back with it. */
+static void test_failed_write_leaves_the_layout(void **state)
+{
+    const place *here = *state;
+    lensprof_error error;
+    char sql[60];
+    int64_t pages = 0;
+    size_t size;
+    make_old(here->path);
+    unsigned char *bytes = read_file(here->path, &size);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_WRITE);
+    assert_int_equal(lensprof_store_remove(store, 77, &error), LENSPROF_ERROR_NOT_FOUND);
+    assert_file(here->path, bytes, size);
+    assert_int_equal(lp_store_number(store->db, "PRAGMA page_count", &pages), SQLITE_OK);
+    snprintf(sql, sizeof sql, "PRAGMA max_page_count = %d", (int)pages);
+    assert_int_equal(sqlite3_exec(store->db, sql, NULL, NULL, NULL), SQLITE_OK);
+    assert_int_equal(lensprof_store_put(store, &old[0], NULL, &error), LENSPROF_ERROR_FULL);
+    assert_old_profiles(store);
+    assert_file(here->path, bytes, size);
+    assert_int_equal(sqlite3_exec(store->db, "PRAGMA max_page_count = 1000", NULL, NULL, NULL), SQLITE_OK);
+    assert_int_equal(put_at(store, &old[0]), 3); /* the same handle goes on */
+    lensprof_store_close(store);
+    free(bytes);
+}
+
+/* Text of every table and index, by name. */
+static void read_schema(const char *path, char *text, size_t capacity)
+{
+    sqlite3 *db;
+    sqlite3_stmt *statement;
+    size_t used = 0;
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, "SELECT sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY name", -1,
+                                        &statement, NULL), SQLITE_OK);
+    while (sqlite3_step(statement) == SQLITE_ROW)
+        used += (size_t)snprintf(text + used, capacity - used, "%s\n", sqlite3_column_text(statement, 0));
+    assert_true(used > 1000 && used < capacity);
+    sqlite3_finalize(statement);
+    sqlite3_close(db);
+}
+
+static void test_old_and_new_files_become_the_same(void **state)
+{
+    const place *here = *state;
+    static char schema[2][16384];
+    char path[300];
+    make_old(here->path);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_WRITE);
+    put_at(store, &old[0]);
+    lensprof_store_close(store);
+    snprintf(path, sizeof path, "%s/new.db", here->directory);
+    lensprof_store_close(store_at(path, LENSPROF_STORE_CREATE));
+    assert_int_equal(layout_of(path), 2);
+    read_schema(here->path, schema[0], sizeof schema[0]);
+    read_schema(path, schema[1], sizeof schema[1]);
+    assert_string_equal(schema[0], schema[1]);
+}
+
+/* All bring it up to date at once; one is the first, nobody fails. */
+static void test_several_processes(void **state)
+{
+    const place *here = *state;
+    enum { PROCESSES = 4 };
+    make_old(here->path);
+    fill_profile(&found);
+    strcpy(found.key.lens, "another");
+    for (int i = 0; i < PROCESSES; i++)
+        if (fork() == 0) {
+            lensprof_store *store = NULL;
+            lensprof_status status = lensprof_store_open(here->path, LENSPROF_STORE_WRITE, &store, NULL);
+            for (int k = 0; k < 3 && status == LENSPROF_OK; k++)
+                status = lensprof_store_put(store, &found, NULL, NULL);
+            _exit((int)status);
+        }
+    for (int i = 0; i < PROCESSES; i++) {
+        int status = 0;
+        assert_true(wait(&status) > 0);
+        assert_int_equal(status, 0);
+    }
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_READ);
+    assert_int_equal(count_at(store), 2 + 3 * PROCESSES);
+    assert_old_profiles(store);
+    lensprof_store_close(store);
+    assert_integrity(here->path);
+}
+
+/* Somebody's own table of that name, or a column: the write fails, reading goes on. */
+static void test_names_that_are_taken(void **state)
+{
+    const place *here = *state;
+    static const char *const taken[] = {"CREATE TABLE gain_grids (a)",
+                                        "ALTER TABLE profiles ADD COLUMN gain_grids INTEGER"};
+    lensprof_error error;
+    for (int i = 0; i < 2; i++) {
+        size_t size;
+        unlink(here->path);
+        make_old(here->path);
+        run_sql(here->path, taken[i]);
+        unsigned char *bytes = read_file(here->path, &size);
+        lensprof_store *store = store_at(here->path, LENSPROF_STORE_WRITE);
+        assert_int_equal(lensprof_store_put(store, &old[0], NULL, &error), LENSPROF_ERROR_CORRUPT);
+        assert_non_null(strstr(error.text, "profiles.db: "));
+        assert_old_profiles(store);
+        lensprof_store_close(store);
+        assert_file(here->path, bytes, size);
+        free(bytes);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        store_test(test_reading_changes_nothing),
+        store_test(test_first_put_brings_up_to_date),
+        store_test(test_first_remove_brings_up_to_date),
+        store_test(test_failed_write_leaves_the_layout),
+        store_test(test_old_and_new_files_become_the_same),
+        store_test(test_several_processes),
+        store_test(test_names_that_are_taken),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
