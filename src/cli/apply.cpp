@@ -211,6 +211,7 @@ Picture correct(Picture &source, const Job &job, const lensprof_exposure &target
     options.vignettings = job.model->vignettings;
     options.response = job.model->response;
     options.vignetting = job.model->vignetting;
+    options.grid = &job.model->grid;
     options.source = job.exposure;
     options.target = target;
     std::vector<uint64_t> memory(lensprof_plan_bytes(&options) / 8 + 1);

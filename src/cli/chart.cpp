@@ -50,6 +50,14 @@ std::vector<std::string> label_profiles(const std::vector<StoredProfile> &profil
     return labels;
 }
 
+/* Gain grids are no functions of the radius. */
+std::string note_of(const std::vector<StoredProfile> &profiles) {
+    std::string ids;
+    for (const StoredProfile &stored : profiles)
+        if (stored.profile->grid.columns) ids += (ids.empty() ? "" : ", ") + std::to_string(stored.id);
+    return ids.empty() ? ids : "without the gain grid of profile " + ids;
+}
+
 /* Text that any terminal and font renderer accepts: UTF-8 without control characters. */
 std::string printable(const std::string &text) {
     std::vector<char> field(text.size() + 1);
@@ -137,6 +145,7 @@ Chart make_chart(const std::vector<StoredProfile> &profiles, int channel) {
             if (curve.label.empty()) curve.label = "profile " + std::to_string(curve.id);
         }
     chart.title = printable(chart.title);
+    chart.note = note_of(profiles);
     if (chart.curves.size() > chart_max_curves)
         throw Failure(ExitCode::usage,
                       format("a chart of %zu curves cannot be read, %zu are the most; choose fewer profiles, by their "
@@ -164,6 +173,7 @@ void print_chart(const Chart &chart, std::ostream &out) {
     print_plot(chart, out);
     out << "\n";
     print_table(chart, out);
+    if (!chart.note.empty()) out << chart.note << "\n";
 }
 
 Json chart_json(const Chart &chart) {
@@ -185,7 +195,7 @@ Json chart_json(const Chart &chart) {
         json["ev"] = ev;
         curves.push_back(json);
     }
-    return {{"schema", 1}, {"title", chart.title}, {"curves", curves}};
+    return {{"schema", 1}, {"title", chart.title}, {"note", chart.note}, {"curves", curves}};
 }
 
 }  // namespace lensprof

@@ -26,6 +26,7 @@ struct ChartCurve {
 
 struct Chart {
     std::string title; /* what the curves share */
+    std::string note;  /* what they leave out; empty = nothing */
     std::vector<ChartCurve> curves;
 };
 

@@ -109,7 +109,9 @@ Layout lay_out(const Chart &chart, cairo_t *cr) {
     double labels = 0;
     for (const ChartCurve &curve : chart.curves) labels = std::max(labels, text_width(cr, curve.label));
     const double title = text_width(cr, chart.title) + 40;
-    const double key_height = key_line * double(chart.curves.size() + 1);
+    set_font(cr, small_size);
+    labels = std::max(labels, text_width(cr, chart.note) - key_width);
+    const double key_height = key_line * double(chart.curves.size() + 2);
     Layout layout{chart, chart_axis(chart), 0, 0};
     layout.width = std::ceil(std::max(left + plot_width + right_axis + key_width + labels + 24, title));
     layout.height = std::ceil(top + std::max(plot_height, key_height) + bottom);
@@ -199,10 +201,13 @@ void draw_key(cairo_t *cr, const Layout &layout) {
         set_grey(cr, 0.1);
         draw_text(cr, x + key_width, y + 4.5, curves[k].label, 0);
     }
-    if (std::none_of(curves.begin(), curves.end(), [](const ChartCurve &curve) { return curve.has_sigma; })) return;
     set_font(cr, small_size);
     set_grey(cr, 0.35);
-    draw_text(cr, x, top + 12 + key_line * double(curves.size()), "bands: 1 sigma", 0);
+    double y = top + 12 + key_line * double(curves.size());
+    const bool has_bands = std::any_of(curves.begin(), curves.end(), [](const ChartCurve &c) { return c.has_sigma; });
+    if (has_bands) draw_text(cr, x, y, "bands: 1 sigma", 0);
+    if (has_bands) y += key_line;
+    draw_text(cr, x, y, layout.chart.note, 0);
 }
 
 void draw(cairo_t *cr, const Layout &layout) {

@@ -44,6 +44,29 @@ Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
     return json;
 }
 
+/* Rows of every channel; null where there is no grid. */
+Json gain_grid_json(const lensprof_gain_grid &grid) {
+    if (!grid.columns) return Json();
+    Json channels = Json::array();
+    const float *node = grid.attenuation;
+    for (uint32_t c = 0; c < grid.channels; c++) {
+        Json rows = Json::array();
+        for (uint32_t j = 0; j < grid.rows; j++, node += grid.columns)
+            rows.push_back(std::vector<float>(node, node + grid.columns));
+        channels.push_back(rows);
+    }
+    return {{"columns", grid.columns}, {"rows", grid.rows}, {"attenuation", channels}};
+}
+
+void print_gain_grid(const lensprof_gain_grid &grid, std::ostream &out) {
+    if (!grid.columns) return;
+    const float *end = grid.attenuation + grid.channels * grid.rows * grid.columns;
+    const auto range = std::minmax_element(grid.attenuation, end);
+    out << format("gain grid %u x %u nodes, %s; multiplies the falloff by %.3f to %.3f\n", grid.columns, grid.rows,
+                  grid.channels == 3 ? "one grid a channel" : "all channels", double(*range.first),
+                  double(*range.second));
+}
+
 double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
 /* " +- ", the standard error of 100 M at r^2, or nothing where it is not known. */
@@ -276,6 +299,7 @@ Json profile_json(int64_t id, const lensprof_profile &profile) {
     json["id"] = id;
     json["key"] = key_json(profile.key);
     json["vignetting"] = vignetting_json(profile.vignetting, profile.vignettings);
+    json["gain_grid"] = gain_grid_json(profile.grid);
     json["response"] = response_json(profile.response, profile.responses);
     json["covariance"] = covariance_json(profile.covariance, profile.covariance_size);
     json["provenance"] = provenance_json(profile.provenance);
@@ -310,6 +334,7 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
     const auto &p = profile.provenance;
     out << "profile   " << id << ": " << describe_key(profile.key) << "\n";
     print_vignettings(profile.vignetting, profile.vignettings, certainty_of(profile), out);
+    print_gain_grid(profile.grid, out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
     out << "source    " << (*p.method ? p.method : "unknown method") << ", " << p.images << " images, " << p.pairs
         << " pairs";

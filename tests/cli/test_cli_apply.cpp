@@ -1,6 +1,8 @@
 /* `lensprof apply`: pixels against formulas written out here, and what is kept of a picture beside its pixels. */
 #include "cli_runs.hpp"
 
+#include <lensprof/store.h>
+
 using namespace cli_runs;
 
 namespace {
@@ -229,6 +231,37 @@ void test_profile_by_id_or_exif(void **) {
     assert_true(sum[1] > 1.1 * sum[0]);
 }
 
+/* The gain grid of a stored profile: undone, or made, in every pixel and channel. */
+void test_gain_grid_of_a_profile(void **) {
+    const double flat = 20000;
+    auto p = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(p.get());
+    p->grid.columns = 4, p->grid.rows = 3, p->grid.channels = 3;
+    for (int i = 0; i < 36; i++) p->grid.attenuation[i] = 0.7f + 0.05f * float(i * 7 % 13);
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(work("p.db").c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+
+    Picture picture = make_noise(61, 45, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+    std::fill_n(reinterpret_cast<uint16_t *>(picture.pixels.data()), 61 * 45 * 3, uint16_t(flat));
+    write_picture(work("flat.png"), picture);
+    const Words words = {"apply", "--profile", "1", "--db", work("p.db"), work("flat.png")};
+    must_exit(done, words + Words{"-o", work("corrected")});
+    must_exit(done, words + Words{"--simulate", "-o", work("simulated")});
+    const Picture corrected = read_picture(work("corrected/flat.png")), simulated = read_picture(work("simulated/flat.png"));
+    for (uint32_t y = 0; y < 45; y++)
+        for (uint32_t i = 0; i < 61 * 3; i++) {
+            const double gain = lensprof_gain_grid_eval(&p->grid, 61, 45, i / 3, y, i % 3);
+            const size_t at = y * corrected.row_bytes + 2 * i;
+            uint16_t light, dark;
+            std::memcpy(&light, &corrected.pixels[at], 2);
+            std::memcpy(&dark, &simulated.pixels[at], 2);
+            assert_close(light, flat / gain, 0.6);
+            assert_close(dark, flat * gain, 0.6);
+        }
+}
+
 void test_contact_sheet(void **) {
     const std::string sheet = work("sheet.png");
     const std::string said =
@@ -246,7 +279,8 @@ int main() {
         CLI_TEST(test_output_exposures),        CLI_TEST(test_linear_is_float),
         CLI_TEST(test_simulate_undoes_correct), CLI_TEST(test_some_pictures_of_a_project),
         CLI_TEST(test_overlaps_agree_better),   CLI_TEST(test_pictures_keep_their_nature),
-        CLI_TEST(test_profile_by_id_or_exif),   CLI_TEST(test_contact_sheet),
+        CLI_TEST(test_profile_by_id_or_exif),   CLI_TEST(test_gain_grid_of_a_profile),
+        CLI_TEST(test_contact_sheet),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -136,6 +136,39 @@ void test_several_without_chart(void **) {
     assert_int_equal(json_of({"profile", "show", "2", "--json", "--db", db})["id"].get<int>(), 2);
 }
 
+/* A gain grid is no function of the radius: it is shown, and named below the chart. */
+void test_gain_grid(void **) {
+    const std::string db = make_db({{"A", 28, 2.8, 1, true}, {"A", 28, 4, 1, false}});
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(db.c_str(), LENSPROF_STORE_WRITE, &store, nullptr));
+    auto p = std::make_unique<lensprof_profile>();
+    assert_ok(lensprof_store_get(store, 2, p.get(), nullptr));
+    p->grid.columns = 3, p->grid.rows = 2, p->grid.channels = 3;
+    for (int i = 0; i < 18; i++) p->grid.attenuation[i] = 1.0f + 0.125f * float(i % 7 - 3);
+    assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+
+    const std::string text = must_exit(done, {"profile", "show", "3", "--db", db});
+    assert_true(contains(text, "\ngain grid 3 x 2 nodes, one grid a channel; multiplies the falloff by 0.625 to 1.375\n"));
+    assert_false(contains(must_exit(done, {"profile", "show", "2", "--db", db}), "gain grid"));
+    const Json grid = json_of({"profile", "show", "3", "--json", "--db", db})["gain_grid"];
+    assert_int_equal(grid["columns"].get<int>(), 3);
+    assert_int_equal(grid["rows"].get<int>(), 2);
+    for (int i = 0; i < 18; i++)
+        assert_close(grid["attenuation"][size_t(i / 6)][size_t(i / 3 % 2)][size_t(i % 3)].get<double>(),
+                     1 + 0.125 * (i % 7 - 3), 0);
+    assert_true(json_of({"profile", "show", "2", "--json", "--db", db})["gain_grid"].is_null());
+
+    const std::string note = "without the gain grid of profile 3";
+    const Words chart = {"profile", "show", "1", "3", "--chart", "--db", db};
+    assert_true(contains(must_exit(done, chart), "\n" + note + "\n"));
+    assert_string_equal(json_of(chart + Words{"--json"})["note"].get<std::string>().c_str(), note.c_str());
+    assert_false(contains(must_exit(done, {"profile", "show", "1", "2", "--chart", "--db", db}), "without"));
+    must_exit(done, chart + Words{"--chart-out", work("a.svg")});
+    must_exit(done, {"profile", "show", "1", "2", "--chart-out", work("b.svg"), "--db", db});
+    assert_true(text_of(work("a.svg")).size() > text_of(work("b.svg")).size()); /* the note */
+}
+
 /* Tags of an XML document: every one that opens closes, in order. */
 void assert_well_formed(const std::string &xml) {
     assert_int_equal(xml.rfind("<?xml version=\"1.0\" encoding=\"UTF-8\"?>", 0), 0);
@@ -281,6 +314,7 @@ int main() {
         CLI_TEST(test_json),
         CLI_TEST(test_labels_and_channels),
         CLI_TEST(test_several_without_chart),
+        CLI_TEST(test_gain_grid),
         CLI_TEST(test_svg),
         CLI_TEST(test_png),
         CLI_TEST(test_usage),
