@@ -3,8 +3,8 @@
  *   correct:  B' = f( g(B) / (M e w) * e' w' )                 Goldman & Chen 2005, equation 16
  *   simulate: B' = f( g(B) * M e w / (e' w') )                 the inverse, up to clipping
  *
- * M: the falloff, times the gain grid where there is one. e, w: the picture's own exposure and white balance; e', w': the
- * wanted ones.
+ * M: the falloff, times the gain grid where there is one. e, w: the picture's own exposure and white balance; e', w':
+ * the wanted ones.
  * A plan is prepared once per picture in memory that the caller provides, then applied to any tile.
  * No heap, no I/O. Threads: a plan is immutable after init and may be used by several threads on different tiles. */
 #ifndef LENSPROF_APPLY_H

@@ -105,8 +105,8 @@ typedef struct lensprof_gain_grid {
 /* No grid: all zero. */
 LENSPROF_API void lensprof_gain_grid_init(lensprof_gain_grid *grid);
 
-/* LENSPROF_OK when there is no grid, or its attenuations are finite and within 0.001..1000. SIZE for sides, ARGUMENT for
- * another number of channels or anything but 0 beyond the last node, NOT_FINITE, VIGNETTING for attenuations. */
+/* LENSPROF_OK when there is no grid, or its attenuations are finite and within 0.001..1000. SIZE for sides, ARGUMENT
+ * for another number of channels or anything but 0 beyond the last node, NOT_FINITE, VIGNETTING for attenuations. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid);
 
 /* Attenuation of a valid grid at pixel (x, y), not necessarily a whole one, of a frame of width x height pixels, in

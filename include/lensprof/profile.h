@@ -71,8 +71,8 @@ typedef struct lensprof_profile {
 /* Empty key, linear response, no falloff, no gain grid, no covariance, provenance unknown. */
 LENSPROF_API void lensprof_profile_init(lensprof_profile *profile);
 
-/* LENSPROF_OK when key, provenance, responses, vignettings (which share one centre), gain grid and covariance (finite, symmetric,
- * non-negative diagonal) are valid. */
+/* LENSPROF_OK when key, provenance, responses, vignettings (which share one centre), gain grid and covariance (finite,
+ * symmetric, non-negative diagonal) are valid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
 
 #ifdef __cplusplus

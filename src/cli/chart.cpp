@@ -55,7 +55,9 @@ std::string note_of(const std::vector<StoredProfile> &profiles) {
     std::string ids;
     for (const StoredProfile &stored : profiles)
         if (stored.profile->grid.columns) ids += (ids.empty() ? "" : ", ") + std::to_string(stored.id);
-    return ids.empty() ? ids : "without the gain grid of profile " + ids;
+    if (ids.empty()) return ids;
+    const bool is_one = ids.find(',') == std::string::npos;
+    return (is_one ? "without the gain grid of profile " : "without the gain grids of profiles ") + ids;
 }
 
 /* Text that any terminal and font renderer accepts: UTF-8 without control characters. */
@@ -94,8 +96,8 @@ void print_plot(const Chart &chart, std::ostream &out) {
         }
     for (int row = 0; row <= rows; row++) {
         const bool is_tick = row % per_step == 0;
-        std::string line = is_tick ? format("%8g +", axis.tick(axis.steps - row / per_step)) : std::string(9, ' ') + "|";
-        print_line(line + plot[size_t(row)], out);
+        const std::string mark = is_tick ? format("%8g +", axis.tick(axis.steps - row / per_step)) : "         |";
+        print_line(mark + plot[size_t(row)], out);
     }
     std::string ruler(10 + columns + 1, '-'), labels(10 + columns + 5, ' ');
     ruler.replace(0, 10, "         +");

@@ -1,5 +1,5 @@
-/* chart.hpp - relative illuminance charts (Goldman & Chen 2005, figure 5): M over r of one or several profiles, M = 1 in
- * the centre of the falloff, r = 1 in the corner of the frame. */
+/* chart.hpp - relative illuminance charts (Goldman & Chen 2005, figure 5): M over r of one or several profiles, M = 1
+ * in the centre of the falloff, r = 1 in the corner of the frame. */
 #ifndef LENSPROF_CLI_CHART_HPP
 #define LENSPROF_CLI_CHART_HPP
 
@@ -51,8 +51,8 @@ void check_chart_name(const std::string &path);
 /* Draws the chart into an SVG or PNG file, complete or not at all. */
 void draw_chart(const Chart &chart, const std::string &path);
 
-/* The axis of M: from `low` to `high` in `steps` steps, round numbers; 0.5 to 1 unless curves reach higher or, with their
- * errors, lower, so that charts look alike. */
+/* The axis of M: from `low` to `high` in `steps` steps, round numbers; 0.5 to 1 unless curves reach higher or, with
+ * their errors, lower, so that charts look alike. */
 struct ChartAxis {
     double low, high;
     int steps;

@@ -6,7 +6,8 @@
 
 namespace lensprof {
 
-/* What is known of the estimated parameters: their covariance, and the number of those before the first falloff curve. */
+/* What is known of the estimated parameters: their covariance, and the number of those before the first falloff
+ * curve. */
 struct Certainty {
     const double *covariance;
     uint32_t size, modes;

@@ -159,7 +159,8 @@ static void prepare_grid(lensprof_plan *plan, const lensprof_apply_options *opti
     plan->columns = grid->columns;
     plan->rows = grid->rows;
     memcpy(memory, grid->attenuation, nodes_of(options) * sizeof *memory);
-    for (uint32_t c = 0; c < 3; c++) plan->nodes[c] = memory + (grid->channels == 3 ? c : 0) * grid->rows * grid->columns;
+    for (uint32_t c = 0; c < 3; c++)
+        plan->nodes[c] = memory + (grid->channels == 3 ? c : 0) * grid->rows * grid->columns;
 }
 
 static void prepare_layout(lensprof_plan *plan, uint32_t layout)

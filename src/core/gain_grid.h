@@ -1,5 +1,5 @@
-/* Where a position lies between the nodes of a gain grid, and the value there: for one position, and for the pixels of a
- * row, whose columns and rows are looked up apart. */
+/* Where a position lies between the nodes of a gain grid, and the value there: for one position, and for the pixels of
+ * a row, whose columns and rows are looked up apart. */
 #ifndef LENSPROF_CORE_GAIN_GRID_H
 #define LENSPROF_CORE_GAIN_GRID_H
 

@@ -49,7 +49,7 @@ lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_
 
 /* store_transaction.c */
 int lp_store_number(sqlite3 *db, const char *sql, int64_t *value); /* result code; one integer from one row */
-int lp_store_migrate(sqlite3 *db, int layout); /* result code; makes the tables of LP_STORE_LAYOUT of those of `layout` */
+int lp_store_migrate(sqlite3 *db, int layout); /* result code; from tables of `layout` to those of LP_STORE_LAYOUT */
 /* Starts a transaction and checks that the file is (still) a database. One of an older layout is read as it is, and
  * brought up to date by the first transaction that writes, as a part of it. */
 lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error *error);

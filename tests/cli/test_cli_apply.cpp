@@ -249,7 +249,8 @@ void test_gain_grid_of_a_profile(void **) {
     const Words words = {"apply", "--profile", "1", "--db", work("p.db"), work("flat.png")};
     must_exit(done, words + Words{"-o", work("corrected")});
     must_exit(done, words + Words{"--simulate", "-o", work("simulated")});
-    const Picture corrected = read_picture(work("corrected/flat.png")), simulated = read_picture(work("simulated/flat.png"));
+    const Picture corrected = read_picture(work("corrected/flat.png")),
+                  simulated = read_picture(work("simulated/flat.png"));
     for (uint32_t y = 0; y < 45; y++)
         for (uint32_t i = 0; i < 61 * 3; i++) {
             const double gain = lensprof_gain_grid_eval(&p->grid, 61, 45, i / 3, y, i % 3);

@@ -5,6 +5,10 @@
 
 using namespace cli_runs;
 
+/* What fontconfig keeps for the life of the process is no leak of ours; LeakSanitizer asks here. */
+extern "C" const char *__lsan_default_suppressions();
+extern "C" const char *__lsan_default_suppressions() { return "leak:libfontconfig"; }
+
 namespace {
 
 constexpr double steep[3] = {-0.35, 0.12, -0.17}; /* M(1) = 0.6 */
@@ -87,7 +91,8 @@ void test_terminal(void **) {
 
 void test_json(void **) {
     const std::string db = make_db({{"Camera", 28, 2.8, 1, true}, {"Camera", 28, 4, 3, false}});
-    const Json all = json_of({"profile", "show", "--lens", "lens", "--chart", "--channel", "all", "--json", "--db", db});
+    const Json all =
+        json_of({"profile", "show", "--lens", "lens", "--chart", "--channel", "all", "--json", "--db", db});
     assert_int_equal(all["curves"].size(), 4);
     const Json &first = all["curves"][0];
     assert_string_equal(first["label"].get<std::string>().c_str(), "f/2.8");
@@ -131,7 +136,8 @@ void test_labels_and_channels(void **) {
 void test_several_without_chart(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 1, false}, {"A", 28, 4, 1, false}});
     const std::string text = must_exit(done, {"profile", "show", "--camera", "A", "--db", db});
-    assert_true(contains(text, "profile   1: A, Lens, 28 mm, f/2.8") && contains(text, "profile   2: A, Lens, 28 mm, f/4"));
+    assert_true(contains(text, "profile   1: A, Lens, 28 mm, f/2.8"));
+    assert_true(contains(text, "profile   2: A, Lens, 28 mm, f/4"));
     assert_int_equal(json_of({"profile", "show", "1", "2", "--json", "--db", db})["profiles"].size(), 2);
     assert_int_equal(json_of({"profile", "show", "2", "--json", "--db", db})["id"].get<int>(), 2);
 }
@@ -149,7 +155,8 @@ void test_gain_grid(void **) {
     lensprof_store_close(store);
 
     const std::string text = must_exit(done, {"profile", "show", "3", "--db", db});
-    assert_true(contains(text, "\ngain grid 3 x 2 nodes, one grid a channel; multiplies the falloff by 0.625 to 1.375\n"));
+    const char *const shown = "\ngain grid 3 x 2 nodes, one grid a channel; multiplies the falloff by 0.625 to 1.375\n";
+    assert_true(contains(text, shown));
     assert_false(contains(must_exit(done, {"profile", "show", "2", "--db", db}), "gain grid"));
     const Json grid = json_of({"profile", "show", "3", "--json", "--db", db})["gain_grid"];
     assert_int_equal(grid["columns"].get<int>(), 3);
@@ -163,6 +170,8 @@ void test_gain_grid(void **) {
     const Words chart = {"profile", "show", "1", "3", "--chart", "--db", db};
     assert_true(contains(must_exit(done, chart), "\n" + note + "\n"));
     assert_string_equal(json_of(chart + Words{"--json"})["note"].get<std::string>().c_str(), note.c_str());
+    const std::string twice = must_exit(done, {"profile", "show", "3", "3", "--chart", "--db", db});
+    assert_true(contains(twice, "without the gain grids of profiles 3, 3\n"));
     assert_false(contains(must_exit(done, {"profile", "show", "1", "2", "--chart", "--db", db}), "without"));
     must_exit(done, chart + Words{"--chart-out", work("a.svg")});
     must_exit(done, {"profile", "show", "1", "2", "--chart-out", work("b.svg"), "--db", db});

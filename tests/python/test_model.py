@@ -136,7 +136,8 @@ class GainGrids(unittest.TestCase):
         self.assertEqual((grid.columns, grid.rows, grid.channels), (3, 2, 1))
         x, y = np.meshgrid([0, 10.5, 50, 75.25, 100], [0, 3, 20])
         columns = [np.interp(x, [0, 50, 100], row) for row in self.NODES.astype(float)]
-        np.testing.assert_allclose(grid.eval(101, 21, x, y), columns[0] + y / 20 * (columns[1] - columns[0]), rtol=1e-12)
+        expected = columns[0] + y / 20 * (columns[1] - columns[0])
+        np.testing.assert_allclose(grid.eval(101, 21, x, y), expected, rtol=1e-12)
         np.testing.assert_array_equal(grid.eval(101, 21, [-5, 300], [-5, 300]), [1, 1])
 
     def test_channels(self):

@@ -142,8 +142,7 @@ static void test_numbers_can_be_queried(void **state)
 static void test_blobs_are_little_endian(void **state)
 {
     const place *here = *state;
-    static const unsigned char one[] = {0, 0, 0, 0, 0, 0, 0xf0, 0x3f}; /* 1.0, IEEE 754 */
-    static const unsigned char quarter[] = {0, 0, 0x80, 0x3e}; /* 3/12, node 5 */
+    static const unsigned char one[] = {0, 0, 0, 0, 0, 0, 0xf0, 0x3f}, quarter[] = {0, 0, 0x80, 0x3e}; /* IEEE 754 */
     lensprof_profile *profile = malloc(sizeof *profile);
     sqlite3 *db;
     sqlite3_stmt *statement;

@@ -86,7 +86,8 @@ static void test_killed_at_random_moments(void **state)
     uint64_t seed = 7;
     uint32_t stored = 0;
     size_t done = 0;
-    for (int round = 0; round < ROUNDS || (done <= (size_t)ROUNDS && round < 10 * ROUNDS); round++) { /* a busy machine */
+    /* A busy machine needs more rounds to get so much done. */
+    for (int round = 0; round < ROUNDS || (done <= (size_t)ROUNDS && round < 10 * ROUNDS); round++) {
         size_t count = work_and_kill(here->path, (uint32_t)round * 1000000, 0.001 + 0.06 * lp_random(&seed), reports,
                                      CAPACITY);
         done += count;

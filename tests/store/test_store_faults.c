@@ -102,7 +102,7 @@ static lensprof_status session(const char *path, const lensprof_profile *profile
     return status;
 }
 
-/* What a session begins with: the file as the one before left it, none, or one of layout 1, which it brings up to date. */
+/* What a session begins with: the file as the one before left it, none, or one of layout 1 to bring up to date. */
 typedef enum start { AS_LEFT, NO_FILE, LAYOUT_1 } start;
 
 /* Lets the n-th operation fail for growing n until a session is over before; returns that n. */

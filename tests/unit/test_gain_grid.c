@@ -33,7 +33,8 @@ static void test_nodes_lie_from_first_to_last_pixel(void **state)
             for (uint32_t i = 0; i < 5; i++)
                 assert_close(lensprof_gain_grid_eval(&g, 401, 301, 100.0 * i, 100.0 * j, c),
                              g.attenuation[(c * 4 + j) * 5 + i], 1e-14);
-    assert_close(lensprof_gain_grid_eval(&g, 401, 301, -30.0, -1e9, 0), g.attenuation[0], 0.0); /* outside: the border */
+    /* Outside: as at the border. */
+    assert_close(lensprof_gain_grid_eval(&g, 401, 301, -30.0, -1e9, 0), g.attenuation[0], 0.0);
     assert_close(lensprof_gain_grid_eval(&g, 401, 301, 400.5, 1e300, 2), g.attenuation[59], 0.0);
     g.channels = 1;
     for (uint32_t c = 0; c < 3; c++)

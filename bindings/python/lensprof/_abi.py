@@ -6,8 +6,8 @@ subclasses of them in the modules by topic.
 """
 from __future__ import annotations
 
-from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_int64, c_size_t,
-                    c_ssize_t, c_uint8, c_uint32, c_void_p)
+from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_int64,
+                    c_size_t, c_ssize_t, c_uint8, c_uint32, c_void_p)
 from enum import IntEnum, IntFlag
 
 VERSION = "0.1.0"  # of the headers that these tables were written from
@@ -257,7 +257,8 @@ class Provenance(Structure):
 class Profile(Structure):
     _fields_ = [("key", ProfileKey), ("provenance", Provenance), ("responses", c_uint32), ("vignettings", c_uint32),
                 ("response", Response * 3), ("vignetting", Vignetting * 3), ("grid", GainGrid),
-                ("covariance_size", c_uint32), ("reserved", c_uint32), ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX))]
+                ("covariance_size", c_uint32), ("reserved", c_uint32),
+                ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX))]
 
 
 class Pair(Structure):

@@ -105,7 +105,8 @@ def _apply(direction: Direction, array: np.ndarray, profile: Profile, out: Optio
 def correct(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] = None,
             target: Optional[Exposure] = None, saturated: Optional[Saturated] = None,
             layout: Optional[Layout] = None, out: Optional[np.ndarray] = None) -> np.ndarray:
-    """Removes a profile's falloff, its gain grid included, from a full frame and brings its exposure and white balance from source to target.
+    """Removes a profile's falloff (and what its gain grid has) from a full frame, and brings exposure and white balance
+    from source to target.
 
     source, target: 0 EV when None. layout: grey, RGB or RGBA by the number of samples when None. out: `array` itself to
     work in place, another array (its type is written), a new one when None. Returns out.

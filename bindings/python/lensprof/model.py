@@ -188,7 +188,8 @@ class Attenuation(_Field):
     def __set__(self, instance: Any, values: Any) -> None:
         array = np.array(values, dtype=np.float32)  # a copy: it may be a view of this very grid
         array = array[np.newaxis] if array.ndim == 2 else array
-        if array.ndim != 3 or array.shape[0] not in (1, 3) or not all(2 <= n <= _abi.GRID_SIDE for n in array.shape[1:]):
+        is_grid = array.ndim == 3 and array.shape[0] in (1, 3)
+        if not (is_grid and all(2 <= side <= _abi.GRID_SIDE for side in array.shape[1:])):
             raise ValueError(f"a gain grid of shape {array.shape} is not (rows, columns), (1, rows, columns) or "
                              f"(3, rows, columns) with 2..{_abi.GRID_SIDE} of each")
         nodes = np.ctypeslib.as_array(self.raw.__get__(instance))

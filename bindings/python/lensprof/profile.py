@@ -82,8 +82,9 @@ class Covariance:
 class Profile(Value, _abi.Profile):
     """Response and vignetting of one camera, lens and setting: linear and without falloff by default.
 
-    response, vignetting: tuples of 1 (all channels) or 3; assign one or three. grid: what the vignetting leaves. covariance: n x n, n = 0 when not
-    known; in the order EMoR coefficients, k1, k2, k3 of each vignetting, centre x and y.
+    response, vignetting: tuples of 1 (all channels) or 3; assign one or three. grid: multiplied to the
+    vignetting. covariance: n x n, n = 0 when not known; in the order EMoR coefficients, k1, k2, k3 of each vignetting,
+    centre x and y.
     """
 
     key = Nested(ProfileKey)
@@ -102,5 +103,5 @@ class Profile(Value, _abi.Profile):
     def validate(self) -> None:
         """Raises lensprof.Error unless key, curves, gain grid and covariance are valid."""
         check(lib.lensprof_profile_validate(byref(self)),
-              f"{self.key}: not a valid profile; see validate() of its key, response, vignetting and grid, the covariance "
-              "must be finite and symmetric")
+              f"{self.key}: not a valid profile; see validate() of its key, response, vignetting and grid, the "
+              "covariance must be finite and symmetric")
