@@ -115,10 +115,16 @@ static int fail_each(const place *here, int first, start start_at, lensprof_stat
     int n = 0;
     bool done;
     fill_profile(profile);
+    unsigned char *layout_1 = NULL;
+    size_t size = 0;
+    if (start_at == LAYOUT_1) {
+        make_layout_1(here->path, NULL, 0);
+        layout_1 = read_file(here->path, &size);
+    }
     for (n = first; n < 100000; n += STEP) {
         if (start_at != AS_LEFT) unlink(here->path);
         if (start_at != AS_LEFT) stored = 0;
-        if (start_at == LAYOUT_1) make_layout_1(here->path, NULL, 0);
+        if (start_at == LAYOUT_1) write_file(here->path, layout_1, size);
         error.text[0] = 0;
         sqlite3_int64 used = sqlite3_memory_used();
         countdown = n;
@@ -139,6 +145,7 @@ static int fail_each(const place *here, int first, start start_at, lensprof_stat
     }
     assert_ok(status); /* the last session met no fault */
     assert_integrity(here->path);
+    free(layout_1);
     free(profile);
     return n;
 }
