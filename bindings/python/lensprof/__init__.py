@@ -7,8 +7,6 @@ ValueError.
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, GRID_SIDE, MODES_AUTO, RESPONSE_SAMPLES, UNKNOWN,
                    CameraKind, Direction, Encoding, Free, GammaFrom, Layout, Loss, Method, Processing, Projection,
                    ResponseKind, SampleType, Sampling, Saturated, Status, StoreMode)
-                   CameraKind, Direction, Encoding, Free, GammaFrom, Layout, Loss, Processing, Projection, ResponseKind,
-                   SampleType, Sampling, Saturated, Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import EXPOSURE_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE
 from ._library import Error, status_name, version
