@@ -5,6 +5,7 @@
 #include "apply.h"
 #include "base.h"
 #include "fit.h"
+#include "flat.h"
 #include "formats.h"
 #include "geometry.h"
 #include "model.h"

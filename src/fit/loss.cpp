@@ -45,14 +45,20 @@ double pair_chi2(const PairResiduals &residuals, int channels, double noise) {
     return 0.5 * sum / (noise * noise);  // half: both directions measure the same
 }
 
+double robust_cost(double z, double c2, double *divisor) {
+    double q = z / c2;
+    *divisor = 1.0 + q * q;
+    return c2 * std::atan(q);
+}
+
 double pair_cost(const PairResiduals &residuals, int channels, const Loss &loss, PairResiduals *weights) {
     double scale = 0.5 / (loss.noise * loss.noise);
     if (loss.kind == LENSPROF_LOSS_ROBUST) {
-        double c2 = loss.cutoff * loss.cutoff * channels, z = pair_chi2(residuals, channels, loss.noise), q = z / c2;
-        double weight = scale / (1.0 + q * q);
+        double c2 = loss.cutoff * loss.cutoff * channels, z = pair_chi2(residuals, channels, loss.noise), divisor;
+        double cost = robust_cost(z, c2, &divisor), weight = scale / divisor;
         if (weights)
             for (auto &channel : *weights) channel = {weight, weight};
-        return c2 * std::atan(q);
+        return cost;
     }
     double cost = 0.0;
     for (int c = 0; c < channels; c++)

@@ -37,6 +37,9 @@ PairResiduals weighted_residuals(const PairTransfer &transfer, int channels, con
 // The pair's z in units of the noise variance (chi-squared, one degree of freedom a channel).
 double pair_chi2(const PairResiduals &residuals, int channels, double noise);
 
+// rho(z) of the robust loss for a cut-off c^2; *divisor receives 1 / rho'(z).
+double robust_cost(double z, double c2, double *divisor);
+
 // The pair's share of the objective, and the factor of each squared residual in its quadratic model.
 double pair_cost(const PairResiduals &residuals, int channels, const Loss &loss, PairResiduals *weights);
 

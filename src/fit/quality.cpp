@@ -12,13 +12,6 @@ namespace {
 
 constexpr double kLn2 = 0.6931471805599453;
 
-double quantile(std::vector<double> &values, double share) {
-    if (values.empty()) return 0.0;
-    auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
 double radius(const Problem &problem, const lensprof_vignetting &vignetting, const lensprof_pair &pair, int side) {
     const auto &image = problem.images[pair.image[side]];
     return std::sqrt(
@@ -137,6 +130,13 @@ void describe_covariance(const Problem &problem, const Gauge &gauge, const Estim
 }
 
 }  // namespace
+
+double quantile(std::vector<double> &values, double share) {
+    if (values.empty()) return 0.0;
+    auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
 
 std::vector<double> residual_levels(const Problem &problem, const Estimate &estimate) {
     std::vector<double> values;

@@ -5,6 +5,9 @@
 
 namespace lensprof {
 
+// Value at a share 0..1 of the values in order, which change places; 0 of none.
+double quantile(std::vector<double> &values, double share);
+
 // Root mean square and median absolute value of transfer residuals, levels of 255.
 struct Summary {
     double rms = 0.0, median = 0.0;

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "fail.hpp"
-#include "parallel.hpp"
 #include "sampler.hpp"
 
 using namespace lensprof;
@@ -14,24 +13,9 @@ namespace {
 constexpr uint32_t kLargestCount = 1u << 24;
 
 lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, lensprof_error *error) {
-    lensprof_status status = lensprof_image_validate(&image.view);
-    if (status != LENSPROF_OK) return fail(status, error, "image %u: not a valid view of pixels", i);
-    status = lensprof_camera_validate(&image.camera);
+    lensprof_status status = lensprof_camera_validate(&image.camera);
     if (status != LENSPROF_OK) return fail(status, error, "image %u: not a valid camera", i);
-    const auto &view = image.view;
-    if (!image.reduction || image.every_pixel > 1 || static_cast<uint64_t>(view.width) * image.reduction > image.camera.width
-        || static_cast<uint64_t>(view.height) * image.reduction > image.camera.height)
-        return fail(LENSPROF_ERROR_SIZE, error,
-                    "image %u: a view of %u x %u reduced %u times does not fit a frame of %u x %u", i, view.width,
-                    view.height, image.reduction, image.camera.width, image.camera.height);
-    ptrdiff_t width = static_cast<ptrdiff_t>(view.width), row = image.mask_row_bytes;
-    if (image.mask && row < width && row > -width)
-        return fail(LENSPROF_ERROR_SIZE, error,
-                    "image %u: mask rows are %td bytes apart, less than the view's %td pixels", i, row, width);
-    if (!(image.black >= 0.0 && image.white <= 1.0 && image.black < image.white))
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: black and white must satisfy 0 <= black < white <= 1",
-                    i);
-    return LENSPROF_OK;
+    return check_view(image, i, error);
 }
 
 lensprof_status check_options(const lensprof_sample_options &options, uint32_t count, lensprof_error *error) {
@@ -45,30 +29,14 @@ lensprof_status check_options(const lensprof_sample_options &options, uint32_t c
     return LENSPROF_OK;
 }
 
-// Reads every sample of float views.
-lensprof_status check_finite(const lensprof_sample_options &options, const lensprof_sample_image *images,
-                             uint32_t count, lensprof_error *error) {
-    struct Place {
-        bool found;
-        uint32_t x, y;
-    };
-    std::vector<Place> places(count);
-    auto work = [&](uint32_t i) { places[i].found = View(images[i]).find_not_finite(places[i].x, places[i].y); };
-    auto stop = [&] { return options.progress && options.progress(0.0, options.progress_user) != 0; };
-    if (!for_each_parallel(count, options.threads, work, stop)) throw Cancelled();
-    for (uint32_t i = 0; i < count; i++)
-        if (places[i].found)
-            return fail(LENSPROF_ERROR_NOT_FINITE, error, "image %u: pixel %u, %u is not a finite number", i,
-                        places[i].x, places[i].y);
-    return LENSPROF_OK;
-}
-
 // draw(sampler) -> what was found.
 template <class Item, class Draw>
 lensprof_status sample(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count,
                        Draw draw, std::vector<Item> &items, lensprof_error *error) {
     try {
-        lensprof_status status = check_finite(options, images, count, error);
+        auto stop = [&] { return options.progress && options.progress(0.0, options.progress_user) != 0; };
+        auto image = [&](uint32_t i) { return images[i]; };
+        lensprof_status status = check_finite(image, count, options.threads, stop, error);
         if (status != LENSPROF_OK) return status;
         Sampler sampler(options, images, count);
         items = draw(sampler);

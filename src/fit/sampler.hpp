@@ -7,14 +7,12 @@
 #include <memory>
 #include <vector>
 
+#include "parallel.hpp"
 #include "random.hpp"
 #include "registration.hpp"
 #include "view.hpp"
 
 namespace lensprof {
-
-// Thrown where the caller's progress function asks to stop.
-struct Cancelled {};
 
 constexpr uint32_t kLongestTrack = 16;
 constexpr double kSlack = 0.02;  // of the cosine to a cone's edge: projects may be off

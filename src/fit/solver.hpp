@@ -6,6 +6,7 @@
 
 #include "gauge.hpp"
 #include "loss.hpp"
+#include "parallel.hpp"
 #include "prior.hpp"
 #include "problem.hpp"
 
@@ -23,8 +24,6 @@ struct Outcome {
     int iterations = 0;
     bool converged = false;
 };
-
-struct Cancelled {};
 
 // Improves `estimate` (feasible, `modes` modes) until it no longer moves. Between rounds the noise weights and what is
 // known of gamma and exposures are renewed, and with `refine_noise` in the first rounds the noise level too

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <vector>
+
+#include "fail.hpp"
+#include "parallel.hpp"
 
 namespace lensprof {
 namespace {
@@ -65,6 +69,13 @@ template <class Sample> void mean_row(const lensprof_image &view, int v, int cha
     const size_t samples = lensprof_layout_samples(view.layout);
     for (uint32_t u = 0; u < view.width; u++, p += samples)
         out[u] = channels == 1 ? grey_value(p[0]) : (grey_value(p[0]) + grey_value(p[1]) + grey_value(p[2])) / 3.0f;
+}
+
+template <class Sample> void colour_row(const lensprof_image &view, int v, const int offset[3], float *out) {
+    const auto *p = reinterpret_cast<const Sample *>(pixel(view, 0, v, 0));
+    const size_t samples = lensprof_layout_samples(view.layout);
+    for (uint32_t u = 0; u < view.width; u++, p += samples)
+        for (int c = 0; c < 3; c++) *out++ = grey_value(p[offset[c]]);
 }
 
 Lanes lower(Lanes a, Lanes b) { return a < b ? a : b; }
@@ -167,6 +178,45 @@ Slope slope_of(const Lanes *values) {
 
 }  // namespace
 
+lensprof_status check_view(const lensprof_sample_image &image, uint32_t i, lensprof_error *error) {
+    lensprof_status status = lensprof_image_validate(&image.view);
+    if (status != LENSPROF_OK) return fail(status, error, "image %u: not a valid view of pixels", i);
+    const auto &view = image.view;
+    if (!image.reduction || image.every_pixel > 1
+        || static_cast<uint64_t>(view.width) * image.reduction > image.camera.width
+        || static_cast<uint64_t>(view.height) * image.reduction > image.camera.height)
+        return fail(LENSPROF_ERROR_SIZE, error,
+                    "image %u: a view of %u x %u reduced %u times does not fit a frame of %u x %u", i, view.width,
+                    view.height, image.reduction, image.camera.width, image.camera.height);
+    ptrdiff_t width = static_cast<ptrdiff_t>(view.width), row = image.mask_row_bytes;
+    if (image.mask && row < width && row > -width)
+        return fail(LENSPROF_ERROR_SIZE, error,
+                    "image %u: mask rows are %td bytes apart, less than the view's %td pixels", i, row, width);
+    if (!(image.black >= 0.0 && image.white <= 1.0 && image.black < image.white))
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: black and white must satisfy 0 <= black < white <= 1",
+                    i);
+    return LENSPROF_OK;
+}
+
+lensprof_status check_finite(const std::function<lensprof_sample_image(uint32_t)> &image, uint32_t count,
+                             uint32_t threads, const std::function<bool()> &stop, lensprof_error *error) {
+    struct Place {
+        bool found;
+        uint32_t x, y;
+    };
+    std::vector<Place> places(count);
+    auto work = [&](uint32_t i) {
+        lensprof_sample_image own = image(i);
+        places[i].found = View(own).find_not_finite(places[i].x, places[i].y);
+    };
+    if (!for_each_parallel(count, threads, work, stop)) throw Cancelled();
+    for (uint32_t i = 0; i < count; i++)
+        if (places[i].found)
+            return fail(LENSPROF_ERROR_NOT_FINITE, error, "image %u: pixel %u, %u is not a finite number", i,
+                        places[i].x, places[i].y);
+    return LENSPROF_OK;
+}
+
 View::View(const lensprof_sample_image &image)
     : image_(image), channels_(static_cast<int>(lensprof_layout_channels(image.view.layout))),
       reversed_(image.view.layout == LENSPROF_LAYOUT_BGR || image.view.layout == LENSPROF_LAYOUT_BGRA),
@@ -174,6 +224,15 @@ View::View(const lensprof_sample_image &image)
 
 double View::sample(int u, int v, int channel) const {
     return load(image_.view, u, v, static_cast<uint32_t>(reversed_ ? 2 - channel : channel));
+}
+
+void View::row(int v, float *values, uint8_t *allowed) const {
+    const int colour[3] = {reversed_ ? 2 : 0, 1, reversed_ ? 0 : 2}, grey[3] = {0, 0, 0};
+    const int *offset = channels_ == 3 ? colour : grey;
+    if (image_.view.sample == LENSPROF_SAMPLE_U8) colour_row<uint8_t>(image_.view, v, offset, values);
+    else if (image_.view.sample == LENSPROF_SAMPLE_U16) colour_row<uint16_t>(image_.view, v, offset, values);
+    else colour_row<float>(image_.view, v, offset, values);
+    for (int u = 0; u < static_cast<int>(image_.view.width); u++) allowed[u] = is_allowed(u, v);
 }
 
 void View::grey_row(int v, float *out) const {

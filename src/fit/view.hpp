@@ -1,6 +1,8 @@
 // Reading grey values out of a picture to sample: patches, gradients, masks.
 #pragma once
 
+#include <functional>
+
 #include <lensprof/sample.h>
 
 namespace lensprof {
@@ -11,6 +13,15 @@ struct Patch {
     double gradient;  // grey values a view pixel, all channels
 };
 
+// Refuses what is no view of pixels that fits its frame (the camera's size), its mask or its limits. The rest of the
+// camera is not looked at.
+lensprof_status check_view(const lensprof_sample_image &image, uint32_t i, lensprof_error *error);
+
+// Reads every sample of float views, on several threads, and refuses those that hold one that is not finite. Throws
+// Cancelled when `stop` says so.
+lensprof_status check_finite(const std::function<lensprof_sample_image(uint32_t)> &image, uint32_t count,
+                             uint32_t threads, const std::function<bool()> &stop, lensprof_error *error);
+
 class View {
 public:
     explicit View(const lensprof_sample_image &image);
@@ -19,6 +30,10 @@ public:
 
     // First pixel with a sample that is not a number; false when there is none. Only float views can have one.
     bool find_not_finite(uint32_t &x, uint32_t &y) const;
+
+    // Red, green and blue of every pixel of a row, one after the other; grey views repeat theirs. allowed[u] is 0 where
+    // mask or alpha exclude the pixel.
+    void row(int v, float *values, uint8_t *allowed) const;
 
     // Mean of the channels of every pixel of a row.
     void grey_row(int v, float *out) const;

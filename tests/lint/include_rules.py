@@ -52,7 +52,7 @@ CPP_OUTSIDE = {
 }
 
 CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "profile.h"}
-FIT_API = CORE_API | {"sample.h", "fit.h"}
+FIT_API = CORE_API | {"sample.h", "fit.h", "flat.h"}
 FORMATS_API = FIT_API | {"formats.h"}
 STORE_API = CORE_API | {"store.h"}
 WHOLE_API = FORMATS_API | STORE_API | {"lensprof.h"}
@@ -97,6 +97,7 @@ PUBLIC = {
     "profile.h": CORE_API,
     "sample.h": FIT_API,
     "fit.h": FIT_API,
+    "flat.h": FIT_API,
     "formats.h": FORMATS_API,
     "store.h": STORE_API,
     "lensprof.h": WHOLE_API,

@@ -264,6 +264,92 @@ static void print_fit_structs(void)
     end_struct();
 }
 
+static void print_flat_structs(void)
+{
+    BEGIN(lensprof_flat_image);
+    FIELD(lensprof_flat_image, view);
+    FIELD(lensprof_flat_image, width);
+    FIELD(lensprof_flat_image, height);
+    FIELD(lensprof_flat_image, reduction);
+    FIELD(lensprof_flat_image, shot);
+    FIELD(lensprof_flat_image, mask);
+    FIELD(lensprof_flat_image, mask_row_bytes);
+    FIELD(lensprof_flat_image, black);
+    FIELD(lensprof_flat_image, white);
+    FIELD(lensprof_flat_image, ev);
+    FIELD(lensprof_flat_image, turn_deg);
+    end_struct();
+    BEGIN(lensprof_flat_options);
+    FIELD(lensprof_flat_options, struct_size);
+    FIELD(lensprof_flat_options, channels);
+    FIELD(lensprof_flat_options, free);
+    FIELD(lensprof_flat_options, vignettings);
+    FIELD(lensprof_flat_options, light);
+    FIELD(lensprof_flat_options, own_light);
+    FIELD(lensprof_flat_options, several);
+    FIELD(lensprof_flat_options, find_card);
+    FIELD(lensprof_flat_options, grid);
+    FIELD(lensprof_flat_options, responses);
+    FIELD(lensprof_flat_options, threads);
+    FIELD(lensprof_flat_options, reserved);
+    FIELD(lensprof_flat_options, ev_sigma);
+    FIELD(lensprof_flat_options, prior_weight);
+    FIELD(lensprof_flat_options, response);
+    FIELD(lensprof_flat_options, vignetting);
+    FIELD(lensprof_flat_options, progress);
+    FIELD(lensprof_flat_options, progress_user);
+    end_struct();
+    BEGIN(lensprof_flat_image_quality);
+    FIELD(lensprof_flat_image_quality, white_share);
+    FIELD(lensprof_flat_image_quality, black_share);
+    FIELD(lensprof_flat_image_quality, noise_levels);
+    FIELD(lensprof_flat_image_quality, ev_residual);
+    FIELD(lensprof_flat_image_quality, residual);
+    FIELD(lensprof_flat_image_quality, gradient);
+    FIELD(lensprof_flat_image_quality, radius);
+    FIELD(lensprof_flat_image_quality, card);
+    FIELD(lensprof_flat_image_quality, cells);
+    FIELD(lensprof_flat_image_quality, reserved);
+    end_struct();
+    BEGIN(lensprof_flat_spot);
+    FIELD(lensprof_flat_spot, x);
+    FIELD(lensprof_flat_spot, y);
+    FIELD(lensprof_flat_spot, radius);
+    FIELD(lensprof_flat_spot, depth);
+    FIELD(lensprof_flat_spot, shots);
+    FIELD(lensprof_flat_spot, reserved);
+    end_struct();
+    BEGIN(lensprof_flat_result);
+    FIELD(lensprof_flat_result, struct_size);
+    FIELD(lensprof_flat_result, usable);
+    FIELD(lensprof_flat_result, reason);
+    FIELD(lensprof_flat_result, vignetting);
+    FIELD(lensprof_flat_result, vignettings);
+    FIELD(lensprof_flat_result, light);
+    FIELD(lensprof_flat_result, shots);
+    FIELD(lensprof_flat_result, cells);
+    FIELD(lensprof_flat_result, separated);
+    FIELD(lensprof_flat_result, iterations);
+    FIELD(lensprof_flat_result, converged);
+    FIELD(lensprof_flat_result, spots);
+    FIELD(lensprof_flat_result, spot);
+    FIELD(lensprof_flat_result, radius);
+    FIELD(lensprof_flat_result, noise);
+    FIELD(lensprof_flat_result, residual);
+    FIELD(lensprof_flat_result, texture);
+    FIELD(lensprof_flat_result, frame_residual);
+    FIELD(lensprof_flat_result, shot_residual);
+    FIELD(lensprof_flat_result, inlier_share);
+    FIELD(lensprof_flat_result, corner_sigma);
+    FIELD(lensprof_flat_result, grid_residual);
+    FIELD(lensprof_flat_result, covariance_size);
+    FIELD(lensprof_flat_result, reserved);
+    FIELD(lensprof_flat_result, covariance);
+    FIELD(lensprof_flat_result, gain_grid);
+    FIELD(lensprof_flat_result, image_quality);
+    end_struct();
+}
+
 static void print_formats_structs(void)
 {
     BEGIN(lensprof_pto_image);
@@ -295,6 +381,8 @@ static void print_constants(void)
     VALUE(LENSPROF_GRID_SIDE);
     VALUE(LENSPROF_COVARIANCE_MAX);
     VALUE(LENSPROF_COVERAGE_BINS);
+    VALUE(LENSPROF_FLAT_IMAGES);
+    VALUE(LENSPROF_FLAT_SPOTS);
     VALUE(LENSPROF_UNKNOWN);
     VALUE(LENSPROF_MODES_AUTO);
     VALUE(LENSPROF_FREE_RESPONSE);
@@ -387,6 +475,13 @@ static void print_enumerations(void)
     VALUE(LENSPROF_CAMERA_ANY);
     VALUE(LENSPROF_CAMERA_FILM);
     VALUE(LENSPROF_CAMERA_DIGITAL);
+    VALUE(LENSPROF_FLAT_LIGHT_AUTO);
+    VALUE(LENSPROF_FLAT_LIGHT_EVEN);
+    VALUE(LENSPROF_FLAT_LIGHT_PLANE);
+    VALUE(LENSPROF_FLAT_LIGHT_QUADRATIC);
+    VALUE(LENSPROF_FLAT_GRID_AUTO);
+    VALUE(LENSPROF_FLAT_GRID_NONE);
+    VALUE(LENSPROF_FLAT_GRID_ALWAYS);
     VALUE(LENSPROF_STORE_READ);
     VALUE(LENSPROF_STORE_WRITE);
     VALUE(LENSPROF_STORE_CREATE);
@@ -400,6 +495,7 @@ int main(void)
     print_profile_structs();
     print_sample_structs();
     print_fit_structs();
+    print_flat_structs();
     print_formats_structs();
     separator = "";
     printf("},\n\"values\": {");

@@ -85,8 +85,8 @@ class Tables(unittest.TestCase):
     def test_values(self):
         ours = {prefix + member.name: member.value for prefix, enum in _abi.ENUMS.items() for member in enum}
         constants = {"LENSPROF_" + name: getattr(_abi, name) for name in
-                     ("RESPONSE_SAMPLES", "EMOR_MODES", "GRID_SIDE", "COVARIANCE_MAX", "COVERAGE_BINS", "UNKNOWN",
-                      "MODES_AUTO")}
+                     ("RESPONSE_SAMPLES", "EMOR_MODES", "GRID_SIDE", "COVARIANCE_MAX", "COVERAGE_BINS", "FLAT_IMAGES",
+                      "FLAT_SPOTS", "UNKNOWN", "MODES_AUTO")}
         version = dict(zip(("LENSPROF_VERSION_MAJOR", "LENSPROF_VERSION_MINOR", "LENSPROF_VERSION_PATCH"),
                            map(int, _abi.VERSION.split("."))))
         self.assertEqual({**ours, **constants, **version}, self.c["values"])

@@ -17,6 +17,8 @@ EMOR_MODES = 25
 GRID_SIDE = 32
 COVARIANCE_MAX = 36
 COVERAGE_BINS = 10
+FLAT_IMAGES = 128
+FLAT_SPOTS = 32
 UNKNOWN = -1.0
 MODES_AUTO = 0xFFFFFFFF
 
@@ -165,6 +167,21 @@ class CameraKind(IntEnum):
     DIGITAL = 2
 
 
+class FlatLight(IntEnum):
+    """How the light on a card may change over the scene."""
+    AUTO = 0
+    EVEN = 1
+    PLANE = 2
+    QUADRATIC = 3
+
+
+class FlatGrid(IntEnum):
+    """When a flat field fit adds a gain grid: where it is needed, never, always."""
+    AUTO = 0
+    NONE = 1
+    ALWAYS = 2
+
+
 class StoreMode(IntEnum):
     """Read an existing file; write to an existing file; write, and make the file when there is none."""
     READ = 0
@@ -189,6 +206,8 @@ ENUMS = {
     "LENSPROF_LOSS_": Loss,
     "LENSPROF_GAMMA_": GammaFrom,
     "LENSPROF_CAMERA_": CameraKind,
+    "LENSPROF_FLAT_LIGHT_": FlatLight,
+    "LENSPROF_FLAT_GRID_": FlatGrid,
     "LENSPROF_STORE_": StoreMode,
 }
 
@@ -316,6 +335,43 @@ class FitResult(Structure):
                 ("gamma_direction", c_double * COVARIANCE_MAX), ("image_quality", POINTER(FitImageQuality))]
 
 
+class FlatImage(Structure):
+    _fields_ = [("view", Image), ("width", c_uint32), ("height", c_uint32), ("reduction", c_uint32),
+                ("shot", c_uint32), ("mask", POINTER(c_uint8)), ("mask_row_bytes", c_ssize_t), ("black", c_double),
+                ("white", c_double), ("ev", c_double), ("turn_deg", c_double)]
+
+
+class FlatOptions(Structure):
+    _fields_ = [("struct_size", c_uint32), ("channels", c_uint32), ("free", c_uint32), ("vignettings", c_uint32),
+                ("light", c_uint32), ("own_light", c_uint32), ("several", c_uint32), ("find_card", c_uint32),
+                ("grid", c_uint32), ("responses", c_uint32), ("threads", c_uint32), ("reserved", c_uint32),
+                ("ev_sigma", c_double), ("prior_weight", c_double), ("response", POINTER(Response)),
+                ("vignetting", Vignetting), ("progress", Progress), ("progress_user", c_void_p)]
+
+
+class FlatImageQuality(Structure):
+    _fields_ = [("white_share", c_double), ("black_share", c_double), ("noise_levels", c_double),
+                ("ev_residual", c_double), ("residual", c_double), ("gradient", c_double * 2), ("radius", c_double),
+                ("card", c_uint32 * 4), ("cells", c_uint32), ("reserved", c_uint32)]
+
+
+class FlatSpot(Structure):
+    _fields_ = [("x", c_double), ("y", c_double), ("radius", c_double), ("depth", c_double), ("shots", c_uint32),
+                ("reserved", c_uint32)]
+
+
+class FlatResult(Structure):
+    _fields_ = [("struct_size", c_uint32), ("usable", c_uint32), ("reason", c_char * 256),
+                ("vignetting", Vignetting * 3), ("vignettings", c_uint32), ("light", c_uint32), ("shots", c_uint32),
+                ("cells", c_uint32), ("separated", c_uint32), ("iterations", c_uint32), ("converged", c_uint32),
+                ("spots", c_uint32), ("spot", FlatSpot * FLAT_SPOTS), ("radius", c_double), ("noise", c_double),
+                ("residual", c_double), ("texture", c_double), ("frame_residual", c_double),
+                ("shot_residual", c_double), ("inlier_share", c_double), ("corner_sigma", c_double),
+                ("grid_residual", c_double), ("covariance_size", c_uint32), ("reserved", c_uint32),
+                ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX)), ("gain_grid", GainGrid),
+                ("image_quality", POINTER(FlatImageQuality))]
+
+
 class Pto(Structure):
     """Opaque."""
 
@@ -355,6 +411,11 @@ STRUCTS = {
     "lensprof_fit_options": FitOptions,
     "lensprof_fit_image_quality": FitImageQuality,
     "lensprof_fit_result": FitResult,
+    "lensprof_flat_image": FlatImage,
+    "lensprof_flat_options": FlatOptions,
+    "lensprof_flat_image_quality": FlatImageQuality,
+    "lensprof_flat_spot": FlatSpot,
+    "lensprof_flat_result": FlatResult,
     "lensprof_pto_image": PtoImage,
     "lensprof_store_row": StoreRow,
 }
@@ -440,6 +501,10 @@ FUNCTIONS = {
                                         POINTER(FitResult), _error]),
     "lensprof_transfer_rms": (_status, [_response, _vignetting, _fit_images, _exposures, c_uint32, _pairs, c_uint32,
                                         c_uint32, _doubles, _doubles]),
+    # flat.h
+    "lensprof_flat_options_init": (None, [POINTER(FlatOptions)]),
+    "lensprof_flat_result_init": (None, [POINTER(FlatResult)]),
+    "lensprof_fit_flat": (_status, [POINTER(FlatOptions), POINTER(FlatImage), c_uint32, POINTER(FlatResult), _error]),
     # formats.h
     "lensprof_pto_read": (_status, [c_char_p, c_size_t, POINTER(_pto), _error]),
     "lensprof_pto_destroy": (None, [_pto]),

@@ -34,6 +34,12 @@ IMAGE_QUALITY_DTYPE = _dtype(_abi.FitImageQuality)
 """Layout of an image's quality: ev_sigma, white_balance_sigma[3], median_residual, known_ev_residual, radius, grey_low,
 grey_high, pairs, inliers, component."""
 
+FLAT_QUALITY_DTYPE = _dtype(_abi.FlatImageQuality)
+"""Layout of what one picture gave to a flat field fit; see lensprof/flat.h."""
+
+FLAT_SPOT_DTYPE = _dtype(_abi.FlatSpot)
+"""Layout of a spot of dust: x, y, radius (px), depth, shots."""
+
 _SAMPLE_TYPES = {np.dtype(np.uint8): SampleType.U8, np.dtype(np.uint16): SampleType.U16,
                  np.dtype(np.float32): SampleType.F32}
 _LAYOUTS = {1: Layout.GREY, 2: Layout.GREY_ALPHA, 3: Layout.RGB, 4: Layout.RGBA}

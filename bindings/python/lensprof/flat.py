@@ -1,0 +1,160 @@
+"""The falloff from pictures of a white card or another even light; see lensprof/flat.h."""
+from __future__ import annotations
+
+from ctypes import byref
+from dataclasses import dataclass
+from typing import Optional, Sequence
+
+import numpy as np
+
+from . import _abi, _arrays
+from ._abi import FlatGrid, FlatLight, Free, Layout
+from ._library import check, lib, version
+from ._progress import WithProgress, calling
+from ._struct import Count, Curves, Enumerated, Flag, Nested, Referenced, Struct, Text, integer
+from .model import GainGrid, Response, Vignetting
+from .profile import Covariance, Profile, ProfileKey
+
+
+@dataclass
+class FlatImage:
+    """A picture of a card; its arrays are read where they are.
+
+    array: (height, width) or (height, width, samples); layouts with alpha: alpha below half = excluded. width, height:
+    of the full frame, px; those of the array times reduction unless told. shot: pictures of one shot (same pose, other
+    exposure) carry one number. ev: known exposure, EV. turn_deg: camera turned about its axis, clockwise as seen from
+    behind it. layout, reduction, mask, black, white: as in SampleImage.
+    """
+
+    array: np.ndarray
+    shot: int = 0
+    ev: float = 0.0
+    turn_deg: float = 0.0
+    width: Optional[int] = None
+    height: Optional[int] = None
+    layout: Optional[Layout] = None
+    reduction: int = 1
+    mask: Optional[np.ndarray] = None
+    black: float = 2.0 / 255.0
+    white: float = 250.0 / 255.0
+
+    def _view(self, index: int) -> _abi.FlatImage:
+        """Points into this object's arrays."""
+        view = _arrays.image(self.array, self.layout, what=f"image {index}")
+        mask, row_bytes = (None, 0) if self.mask is None else _arrays.mask(self.mask, self.array.shape[:2])
+        reduction = integer(self.reduction, "reduction")
+        width = view.width * reduction if self.width is None else integer(self.width, "width")
+        height = view.height * reduction if self.height is None else integer(self.height, "height")
+        return _abi.FlatImage(view, integer(width, "width"), integer(height, "height"), reduction,
+                              integer(self.shot, "shot"), mask, row_bytes, self.black, self.white, self.ev,
+                              self.turn_deg)
+
+
+class FlatOptions(WithProgress, Struct, _abi.FlatOptions):
+    """How to fit a flat field. By default 3 channels, everything free, linear response, shots that fill the frame.
+
+    channels: 1 or 3. free: Free.K1, K2, K3, CENTER. vignettings: falloff curves, 1, 3 or 0 = 3 where they differ.
+    light: FlatLight; own_light: every shot has a light of its own. several: one card at several places of the frame, with
+    one brightness; find_card: look for the card in the frame. grid: FlatGrid. ev_sigma: standard error of an exposure,
+    EV (several). prior_weight: 0 = none. response: () = linear, else one or three. vignetting: the value where fixed.
+    threads: at most so many, 0 = one a core; the result does not depend on it. progress: as in FitOptions.
+    """
+
+    channels: int
+    free = Enumerated(Free)
+    vignettings: int
+    light = Enumerated(FlatLight)
+    own_light = Flag()
+    several = Flag()
+    find_card = Flag()
+    grid = Enumerated(FlatGrid)
+    responses = Count()
+    threads: int
+    ev_sigma: float
+    prior_weight: float
+    response = Referenced(Response, "responses")
+    vignetting = Nested(Vignetting)
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_flat_options_init(byref(self))
+
+
+class FlatResult(Struct, _abi.FlatResult):
+    """What a flat field fit found; shares are of the light.
+
+    usable: False with the `reason` in words; a usable result may have a reason to mind. vignetting: tuple of 1 (all
+    channels) or 3. separated: the pictures tell the light's gradient from the centre. spot: dust, FLAT_SPOT_DTYPE.
+    radius: largest r of a cell used. noise, residual, texture, frame_residual, shot_residual, grid_residual: of a cell.
+    corner_sigma: standard error of M at r = 1. gain_grid: what the polynomial leaves. covariance: n x n as in Profile.
+    image_quality: what every picture gave, FLAT_QUALITY_DTYPE.
+    """
+
+    usable = Flag()
+    reason = Text()
+    vignetting = Curves(Vignetting, "vignettings")
+    vignettings: int
+    light = Enumerated(FlatLight)
+    shots: int
+    cells: int
+    separated = Flag()
+    iterations: int
+    converged = Flag()
+    spots: int
+    radius: float
+    noise: float
+    residual: float
+    texture: float
+    frame_residual: float
+    shot_residual: float
+    inlier_share: float
+    corner_sigma: float
+    grid_residual: float
+    covariance_size: int
+    covariance = Covariance()
+    gain_grid = Nested(GainGrid)
+
+    def __init__(self, image_count: int):
+        super().__init__()
+        self._quality = np.zeros(image_count, dtype=_arrays.FLAT_QUALITY_DTYPE)
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [name for name in super()._names() if name != "image_quality"]
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_flat_result_init(byref(self))
+
+    @property
+    def spot(self) -> np.ndarray:
+        array = _abi.FlatResult.from_buffer(self).spot
+        return np.frombuffer(array, dtype=_arrays.FLAT_SPOT_DTYPE)[:min(self.spots, _abi.FLAT_SPOTS)]
+
+    @property
+    def image_quality(self) -> np.ndarray:
+        return self._quality
+
+    def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0,
+                response: Optional[Response] = None) -> Profile:
+        """A profile of this result with the response that it was made with. source: file that it was made from."""
+        profile = Profile(key=key, vignetting=self.vignetting, covariance=self.covariance)
+        if response is not None:
+            profile.response = response
+        origin = {"method": "flat", "software": f"lensprof {version()}", "source": source,
+                  "created_unix_s": created_unix_s, "images": len(self._quality), "pairs": self.cells,
+                  "inlier_share": self.inlier_share}
+        for name, value in origin.items():
+            setattr(profile.provenance, name, value)
+        return profile
+
+
+def fit_flat(images: Sequence[FlatImage], options: Optional[FlatOptions] = None) -> FlatResult:
+    """Fits the falloff to pictures of a card. A fit that ran returns also when it is poor: see `usable`."""
+    images, options, error = list(images), options or FlatOptions(), _abi.ErrorText()
+    views = (_abi.FlatImage * len(images))(*[image._view(i) for i, image in enumerate(images)])
+    result = FlatResult(len(images))
+    out = _abi.FlatResult.from_buffer(result)
+    out.image_quality = _arrays.address(result.image_quality, _abi.FlatImageQuality)
+    with calling(options) as call:
+        status = lib.lensprof_fit_flat(byref(call), views, len(views), byref(result), byref(error))
+    check(status, "the fit failed", error)
+    return result

@@ -1,0 +1,133 @@
+// Simulated pictures of an even light: the core's own model, a light with a gradient, noise and defects.
+#pragma once
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <vector>
+
+extern "C" {
+#include "support.h"
+}
+#undef fail
+
+#include <lensprof/flat.h>
+
+// What a picture shows beside falloff and light: a factor of its light at a pixel and channel.
+using Defect = std::function<double(double x, double y, uint32_t channel)>;
+
+// Normal numbers, drawn once.
+inline const std::vector<double> &normal_numbers() {
+    static const std::vector<double> numbers = [] {
+        std::vector<double> drawn(1 << 16);
+        uint64_t random = 11;
+        for (double &n : drawn) n = lp_normal(&random);
+        return drawn;
+    }();
+    return numbers;
+}
+
+struct FlatPictures {
+    uint32_t width = 600, height = 450, channels = 3;
+    uint32_t sample = LENSPROF_SAMPLE_U16;
+    lensprof_vignetting vignetting[3];
+    lensprof_response response;
+    double gradient[2] = {0.0, 0.0};   // of the light's logarithm, scene right and down, a half diagonal
+    double level = 0.5;                // light at the centre at 0 EV
+    double noise = 0.004;              // of a grey value
+    uint64_t seed = 1;
+    Defect defect;                     // or empty
+    std::vector<std::unique_ptr<std::vector<uint8_t>>> data;
+    std::vector<lensprof_flat_image> images;
+
+    FlatPictures() {
+        for (auto &v : vignetting) v = {{-0.45, 0.12, -0.06}, {0.0, 0.0}};
+        lensprof_response_set_linear(&response);
+    }
+
+    void set_center(double x, double y) {
+        for (auto &v : vignetting) v.center[0] = x, v.center[1] = y;
+    }
+
+    // The light that reaches a pixel, falloff included.
+    double light(double x, double y, uint32_t channel, double turn_deg) const {
+        double half = 0.5 * std::hypot(width, height), turn = turn_deg * 3.14159265358979 / 180.0;
+        double dx = (x - 0.5 * (width - 1.0)) / half, dy = (y - 0.5 * (height - 1.0)) / half;
+        double qx = std::cos(turn) * dx - std::sin(turn) * dy, qy = std::sin(turn) * dx + std::cos(turn) * dy;
+        double m = lensprof_vignetting_eval(&vignetting[channel],
+                                            lensprof_vignetting_r2(&vignetting[channel], width, height, x, y, nullptr),
+                                            nullptr);
+        return level * m * std::exp(gradient[0] * qx + gradient[1] * qy) * (defect ? defect(x, y, channel) : 1.0);
+    }
+
+    void put(uint8_t *at, double value) const {
+        if (sample == LENSPROF_SAMPLE_U8) {
+            *at = static_cast<uint8_t>(std::lround(255.0 * std::fmin(std::fmax(value, 0.0), 1.0)));
+        } else if (sample == LENSPROF_SAMPLE_U16) {
+            auto v = static_cast<uint16_t>(std::lround(65535.0 * std::fmin(std::fmax(value, 0.0), 1.0)));
+            std::memcpy(at, &v, sizeof v);
+        } else {
+            auto v = static_cast<float>(value);
+            std::memcpy(at, &v, sizeof v);
+        }
+    }
+
+    // Takes a picture; `shot` as lensprof_flat_image.
+    lensprof_flat_image &shoot(uint32_t shot, double ev = 0.0, double turn_deg = 0.0) {
+        const uint32_t bytes = lensprof_sample_bytes(sample);
+        data.push_back(std::make_unique<std::vector<uint8_t>>(static_cast<size_t>(width) * height * channels * bytes));
+        uint8_t *at = data.back()->data();
+        const std::vector<double> &normals = normal_numbers();
+        uint64_t random = seed * 1000003 + images.size() * 7919;
+        for (uint32_t y = 0; y < height; y++)
+            for (uint32_t x = 0; x < width; x++)
+                for (uint32_t c = 0; c < channels; c++, at += bytes) {
+                    double irradiance = light(x, y, c, turn_deg) * std::exp2(ev);
+                    random = random * 6364136223846793005ull + 1442695040888963407ull;
+                    put(at, lensprof_response_eval(&response, irradiance, nullptr) + noise * normals[random >> 48]);
+                }
+        lensprof_flat_image image{};
+        image.view = {data.back()->data(), static_cast<ptrdiff_t>(width) * channels * bytes, width, height, sample,
+                      channels == 3 ? LENSPROF_LAYOUT_RGB : LENSPROF_LAYOUT_GREY};
+        image.width = width, image.height = height, image.reduction = 1;
+        image.shot = shot, image.ev = ev, image.turn_deg = turn_deg;
+        image.black = 0.01, image.white = 0.98;
+        images.push_back(image);
+        return images.back();
+    }
+
+    lensprof_flat_options options() const {
+        lensprof_flat_options o;
+        lensprof_flat_options_init(&o);
+        o.channels = channels;
+        o.response = &response;
+        return o;
+    }
+
+    // The fit, which must run.
+    std::unique_ptr<lensprof_flat_result> fit(const lensprof_flat_options &o,
+                                              lensprof_flat_image_quality *quality = nullptr) const {
+        auto result = std::make_unique<lensprof_flat_result>();
+        lensprof_flat_result_init(result.get());
+        result->image_quality = quality;
+        lensprof_error error;
+        lensprof_status status = lensprof_fit_flat(&o, images.data(), static_cast<uint32_t>(images.size()),
+                                                   result.get(), &error);
+        if (status != LENSPROF_OK) print_error("%s: %s\n", lensprof_status_name(status), error.text);
+        assert_int_equal(status, LENSPROF_OK);
+        return result;
+    }
+};
+
+// Largest difference of two falloffs over the frame.
+inline double falloff_error(const lensprof_vignetting &a, const lensprof_vignetting &b, uint32_t width, uint32_t height) {
+    double worst = 0.0;
+    for (uint32_t i = 0; i < 400; i++) {
+        double x = (i % 20) * (width - 1.0) / 19.0, y = (i / 20) * (height - 1.0) / 19.0;
+        double ma = lensprof_vignetting_eval(&a, lensprof_vignetting_r2(&a, width, height, x, y, nullptr), nullptr);
+        double mb = lensprof_vignetting_eval(&b, lensprof_vignetting_r2(&b, width, height, x, y, nullptr), nullptr);
+        worst = std::fmax(worst, std::fabs(ma - mb));
+    }
+    return worst;
+}

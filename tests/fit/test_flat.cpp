@@ -1,0 +1,418 @@
+/* The flat field fit against simulated pictures of a known lens. */
+#include "flat_pictures.hpp"
+
+#include <fit/flat_fit.hpp>
+
+using namespace lensprof;
+
+static double error_of(const lensprof_flat_result &r, const FlatPictures &p)
+{
+    double worst = 0.0;
+    for (int c = 0; c < 3; c++)
+        worst = std::fmax(worst, falloff_error(r.vignetting[c], p.vignetting[c], p.width, p.height));
+    return worst;
+}
+
+static void derivatives_are_those_of_central_differences(void **)
+{
+    uint64_t random = 3;
+    for (int variant = 0; variant < 8; variant++) {
+        FlatModel model;
+        model.grid = {600, 400, 96, 64};
+        model.curves = variant & 1 ? 3 : 1;
+        model.own_light = (variant & 2) != 0;
+        model.several = (variant & 4) != 0;
+        model.light_terms = model.several ? 0 : 4;
+        model.shots = 3;
+        for (double turn : {0.0, 1.2, -2.0}) model.turn.push_back({std::cos(turn), std::sin(turn)});
+        Eigen::VectorXd u(model.unknowns());
+        for (Eigen::Index i = 0; i < u.size(); i++) u[i] = 0.2 * lp_normal(&random);
+        for (int shot = 0; shot < 3; shot++)
+            for (int channel = 0; channel < 3; channel++) {
+                double x = 600 * lp_random(&random), y = 400 * lp_random(&random);
+                Prediction p = predict(model, u, shot, channel, x, y);
+                Eigen::VectorXd by = Eigen::VectorXd::Zero(u.size());
+                for (size_t i = 0; i < static_cast<size_t>(p.count); i++) by[p.index[i]] += p.by[i];
+                for (Eigen::Index i = 0; i < u.size(); i++) {
+                    Eigen::VectorXd up = u, down = u;
+                    up[i] += 1e-5, down[i] -= 1e-5;
+                    double slope = (predict(model, up, shot, channel, x, y).value
+                                    - predict(model, down, shot, channel, x, y).value) / 2e-5;
+                    assert_close(by[i], slope, 1e-7 * (1.0 + std::fabs(slope)));
+                }
+            }
+    }
+}
+
+static void a_plain_card_gives_the_falloff(void **)
+{
+    for (uint32_t sample : {LENSPROF_SAMPLE_U8, LENSPROF_SAMPLE_U16, LENSPROF_SAMPLE_F32}) {
+        FlatPictures p;
+        p.sample = sample;
+        p.shoot(0);
+        auto r = p.fit(p.options());
+        assert_true(r->usable);
+        assert_int_equal(r->vignettings, 1);
+        assert_int_equal(r->spots, 0);
+        assert_int_equal(r->gain_grid.columns, 0);
+        assert_close(error_of(*r, p), 0.0, 0.002);
+        assert_true(r->corner_sigma > 5e-5 && r->corner_sigma < 5e-4);
+        assert_non_null(strstr(r->reason, "prior")); /* one shot cannot tell light from centre, and says so */
+        assert_int_equal(r->separated, 0);
+    }
+}
+
+static void a_grey_picture_has_one_curve(void **)
+{
+    FlatPictures p;
+    p.channels = 1;
+    p.shoot(0);
+    auto r = p.fit(p.options());
+    assert_true(r->usable);
+    assert_int_equal(r->vignettings, 1);
+    assert_close(error_of(*r, p), 0.0, 0.003);
+}
+
+static void turned_shots_tell_the_light_from_the_centre(void **)
+{
+    FlatPictures p;
+    for (auto &v : p.vignetting) v = {{-0.4, 0.0, 0.0}, {0.04, -0.03}}; /* r^2 alone: a plane is as good as a centre */
+    p.gradient[0] = 0.10, p.gradient[1] = -0.06;
+    p.shoot(0, 0.0, 0.0);
+    lensprof_flat_options o = p.options();
+    o.prior_weight = 0.0;
+    o.free &= ~(LENSPROF_FREE_K2 | LENSPROF_FREE_K3);
+    o.vignetting = {{0, 0, 0}, {0, 0}};
+    auto alone = p.fit(o);
+    size_t center = 3 * alone->vignettings, n = alone->covariance_size;
+    double alone_sigma = n ? std::sqrt(alone->covariance[center * n + center]) : 1.0;
+    p.shoot(1, 0.0, 90.0);
+    p.shoot(2, 0.3, 180.0);
+    lensprof_flat_image_quality quality[3];
+    auto r = p.fit(o, quality);
+    assert_true(r->usable);
+    assert_int_equal(r->separated, 1);
+    assert_close(r->vignetting[0].center[0], 0.04, 0.002);
+    assert_close(r->vignetting[0].center[1], -0.03, 0.002);
+    n = r->covariance_size;
+    double sigma = std::sqrt(r->covariance[center * n + center]);
+    assert_true(sigma < 0.001 && sigma * 8 < alone_sigma);
+    assert_close(quality[0].gradient[0], 0.10, 0.003);
+    assert_close(quality[0].gradient[1], -0.06, 0.003);
+    assert_close(quality[2].gradient[0], -0.10, 0.003); /* the camera is upside down */
+    assert_close(quality[1].gradient[0], -0.06, 0.003); /* its right is down in the scene */
+}
+
+static void wrong_angles_are_noticed(void **)
+{
+    FlatPictures p;
+    p.set_center(0.03, 0.0);
+    p.gradient[0] = 0.12;
+    p.shoot(0), p.shoot(1, 0.0, 90.0), p.shoot(2, 0.0, 180.0);
+    p.images[1].turn_deg = 270.0;
+    auto r = p.fit(p.options());
+    assert_false(r->usable);
+    assert_non_null(strstr(r->reason, "angles"));
+}
+
+static void exposures_of_one_shot_are_merged(void **)
+{
+    FlatPictures p;
+    assert_ok(lensprof_response_set_gamma(&p.response, 2.2));
+    p.sample = LENSPROF_SAMPLE_U8;
+    p.level = 1.6; /* white in the longest exposure, and nowhere well exposed in one alone */
+    for (auto &v : p.vignetting) v.k[0] = -0.8;
+    for (int ev = -4; ev <= 0; ev++) p.shoot(0, ev);
+    lensprof_flat_image_quality quality[5];
+    auto r = p.fit(p.options(), quality);
+    assert_true(r->usable);
+    assert_int_equal(r->shots, 1);
+    assert_close(error_of(*r, p), 0.0, 0.002);
+    assert_true(quality[4].white_share > 0.2 && quality[0].white_share == 0.0);
+    for (const auto &q : quality) assert_close(q.ev_residual, 0.0, 0.01);
+    assert_true(quality[0].noise_levels > 0.8 && quality[0].noise_levels < 1.3); /* 0.004 * 255, rounded to 8 bit */
+    FlatPictures alone = FlatPictures();
+    alone.vignetting[0] = alone.vignetting[1] = alone.vignetting[2] = p.vignetting[0];
+    alone.response = p.response, alone.sample = p.sample, alone.level = 0.1;
+    alone.shoot(0);
+    assert_true(alone.fit(alone.options())->corner_sigma > 1.5 * r->corner_sigma);
+}
+
+static void wrong_exposures_are_noticed(void **)
+{
+    FlatPictures p;
+    p.shoot(0, -1.0), p.shoot(0, 0.0);
+    p.images[0].ev = -1.5;
+    lensprof_flat_image_quality quality[2];
+    auto r = p.fit(p.options(), quality);
+    assert_false(r->usable);
+    assert_non_null(strstr(r->reason, "0.50 EV"));
+    assert_close(quality[0].ev_residual - quality[1].ev_residual, 1.0, 0.02); /* each against the other */
+}
+
+static void a_card_at_several_places_needs_no_even_light_over_the_frame(void **)
+{
+    FlatPictures p;
+    p.set_center(0.03, -0.02);
+    for (uint32_t place = 0; place < 9; place++) {
+        double x0 = place % 3 * 200.0, y0 = place / 3 * 150.0;
+        p.defect = [=](double x, double y, uint32_t) {
+            bool card = x >= x0 && x < x0 + 200.0 && y >= y0 && y < y0 + 150.0;
+            return card ? 1.0 : 0.15 + 0.1 * std::sin(0.05 * x + 0.02 * y);
+        };
+        p.shoot(place, place == 4 ? -0.5 : 0.0); /* exposures may differ when they are known */
+    }
+    lensprof_flat_options o = p.options();
+    o.several = o.find_card = 1;
+    lensprof_flat_image_quality quality[9];
+    auto r = p.fit(o, quality);
+    assert_true(r->usable);
+    assert_int_equal(r->separated, 1);
+    assert_close(error_of(*r, p), 0.0, 0.003);
+    assert_close(r->vignetting[0].center[0], 0.03, 0.003);
+    for (uint32_t place = 0; place < 9; place++) {
+        assert_close(quality[place].card[0], place % 3 * 200.0, 8.0);
+        assert_close(quality[place].card[2], 190.0, 12.0);
+        assert_close(quality[place].card[3], 136.0, 14.0);
+    }
+}
+
+static void a_card_that_does_not_reach_the_corners_is_said(void **)
+{
+    FlatPictures p;
+    std::vector<uint8_t> mask(600 * 450);
+    for (uint32_t y = 0; y < 450; y++)
+        for (uint32_t x = 0; x < 600; x++) mask[y * 600 + x] = x > 60 && x < 540 && y > 60 && y < 390;
+    auto &image = p.shoot(0);
+    image.mask = mask.data(), image.mask_row_bytes = 600;
+    auto r = p.fit(p.options());
+    assert_true(r->usable);
+    assert_close(r->radius, 0.75, 0.02);
+    assert_non_null(strstr(r->reason, "extrapolated"));
+    for (uint32_t y = 0; y < 450; y++)
+        for (uint32_t x = 0; x < 600; x++) mask[y * 600 + x] = x > 200 && x < 400 && y > 100 && y < 350;
+    r = p.fit(p.options());
+    assert_false(r->usable);
+    assert_non_null(strstr(r->reason, "corners"));
+}
+
+static void channels_get_curves_where_they_differ(void **)
+{
+    FlatPictures p;
+    p.vignetting[0].k[0] = -0.48, p.vignetting[2].k[0] = -0.43;
+    p.shoot(0);
+    auto r = p.fit(p.options());
+    assert_int_equal(r->vignettings, 3);
+    assert_close(error_of(*r, p), 0.0, 0.003);
+    assert_int_equal(r->covariance_size, 11);
+    lensprof_flat_options o = p.options();
+    o.vignettings = 1;
+    assert_int_equal(p.fit(o)->vignettings, 1);
+}
+
+static void dust_is_counted_placed_and_left_out(void **)
+{
+    FlatPictures clean, p;
+    p.defect = [](double x, double y, uint32_t) {
+        return std::hypot(x - 120, y - 90) < 8 ? 0.85 : std::hypot(x - 430, y - 310) < 4 ? 0.93 : 1.0;
+    };
+    for (uint32_t shot = 0; shot < 2; shot++) clean.shoot(shot, 0, 90 * shot), p.shoot(shot, 0, 90 * shot);
+    auto r = p.fit(p.options()), without = clean.fit(clean.options());
+    assert_true(r->usable);
+    assert_int_equal(without->spots, 0);
+    assert_int_equal(r->spots, 2);
+    assert_close(r->spot[0].x, 120, 4.0);
+    assert_close(r->spot[0].y, 90, 4.0);
+    assert_close(r->spot[0].depth, 0.15, 0.02);
+    assert_close(r->spot[1].x, 430, 6.0);
+    assert_int_equal(r->spot[0].shots, 2);
+    assert_true(r->cells < without->cells);
+    assert_close(error_of(*r, p), error_of(*without, clean), 2e-4);
+    assert_non_null(strstr(r->reason, "2 spots"));
+}
+
+struct Bad {
+    const char *word;
+    void (*spoil)(FlatPictures &);
+};
+
+static void what_is_wrong_is_said(void **)
+{
+    const Bad cases[] = {
+        {"white", [](FlatPictures &p) { p.level = 1.3; }},
+        {"black", [](FlatPictures &p) { p.level = 0.024; }},
+        {"texture", [](FlatPictures &p) {
+             p.defect = [](double x, double y, uint32_t) { return 1 + 0.04 * std::sin(0.3 * x) * std::sin(0.27 * y); };
+         }},
+        {"turned", [](FlatPictures &p) { p.gradient[0] = 0.3; }},
+        {"noisy", [](FlatPictures &p) { p.noise = 0.1, p.width = 150, p.height = 100; }},
+    };
+    for (const Bad &bad : cases) {
+        FlatPictures p;
+        bad.spoil(p);
+        p.shoot(0);
+        auto r = p.fit(p.options());
+        if (r->usable || !strstr(r->reason, bad.word)) print_error("%s: %s\n", bad.word, r->reason);
+        assert_false(r->usable);
+        assert_non_null(strstr(r->reason, bad.word));
+    }
+    FlatPictures none;
+    none.defect = [](double x, double y, uint32_t) { /* no even region anywhere */
+        return std::fmod(std::floor(x / 9) * 0.37 + std::floor(y / 7) * 0.61, 1.0);
+    };
+    none.shoot(0);
+    lensprof_flat_options o = none.options();
+    o.find_card = 1;
+    auto r = std::make_unique<lensprof_flat_result>();
+    lensprof_flat_result_init(r.get());
+    assert_int_equal(lensprof_fit_flat(&o, none.images.data(), 1, r.get(), nullptr), LENSPROF_ERROR_NO_SAMPLES);
+}
+
+static void light_that_changes_between_shots_is_noticed(void **)
+{
+    FlatPictures p;
+    p.shoot(0);
+    p.defect = [](double x, double, uint32_t) { return x < 250 ? 0.94 : 1.0; }; /* a shadow */
+    p.shoot(1);
+    auto r = p.fit(p.options());
+    assert_false(r->usable);
+    assert_non_null(strstr(r->reason, "shadow"));
+}
+
+/* The shape of a phone's colour shading: more in one corner, and not alike in the channels. */
+static double shading(double x, double y, uint32_t channel)
+{
+    double u = x / 300 - 1, v = y / 225 - 1;
+    return 1 - 0.03 * u * u * u * v - 0.02 * v * v * v + (channel == 0 ? 0.025 * u * v * v : 0.0);
+}
+
+static void what_is_not_radial_goes_into_a_grid(void **)
+{
+    FlatPictures p;
+    p.defect = shading;
+    for (uint32_t shot = 0; shot < 4; shot++) p.shoot(shot, 0.0, 90.0 * shot);
+    auto r = p.fit(p.options());
+    assert_true(r->usable);
+    assert_non_null(strstr(r->reason, "grid"));
+    assert_true(r->frame_residual > 0.004);
+    assert_true(r->grid_residual < 0.001);
+    assert_int_equal(r->gain_grid.columns, 24);
+    assert_int_equal(r->gain_grid.rows, 18);
+    assert_ok(lensprof_gain_grid_validate(&r->gain_grid));
+    double worst = 0.0, worst_without = 0.0; /* of all channels, relative to the frame's middle */
+    for (uint32_t i = 0; i < 300; i++)
+        for (uint32_t c = 0; c < 3; c++) {
+            double x = i % 20 * 599 / 19.0, y = i / 20 * 449 / 14.0;
+            auto value = [&](double px, double py, bool grid) {
+                double m = lensprof_vignetting_eval(
+                    &r->vignetting[c], lensprof_vignetting_r2(&r->vignetting[c], 600, 450, px, py, nullptr), nullptr);
+                return m * (grid ? lensprof_gain_grid_eval(&r->gain_grid, 600, 450, px, py, c) : 1.0);
+            };
+            double truth = p.light(x, y, c, 0) / p.light(299.5, 224.5, c, 0);
+            worst = std::fmax(worst, std::fabs(value(x, y, true) / value(299.5, 224.5, true) / truth - 1));
+            worst_without = std::fmax(worst_without, std::fabs(value(x, y, false) / value(299.5, 224.5, false) / truth - 1));
+        }
+    assert_true(worst < 0.008);
+    assert_true(worst_without > 4 * worst);
+    lensprof_flat_options o = p.options();
+    o.grid = LENSPROF_FLAT_GRID_NONE;
+    r = p.fit(o);
+    assert_int_equal(r->gain_grid.columns, 0);
+    assert_non_null(strstr(r->reason, "ask for a gain grid"));
+}
+
+static void a_grid_of_a_radial_lens_is_flat(void **)
+{
+    FlatPictures p;
+    p.shoot(0);
+    lensprof_flat_options o = p.options();
+    o.grid = LENSPROF_FLAT_GRID_ALWAYS;
+    auto r = p.fit(o);
+    assert_int_equal(r->gain_grid.columns, 24);
+    for (uint32_t i = 0; i < 3 * 24 * 18; i++) assert_close(r->gain_grid.attenuation[i], 1.0, 0.01);
+}
+
+static void reduced_views_and_layouts_are_the_same_picture(void **)
+{
+    FlatPictures p;
+    p.set_center(0.02, 0.0);
+    p.shoot(0);
+    auto full = p.fit(p.options());
+    auto small = p.images[0]; /* every second pixel: a view whose pixels stand for squares of 2 x 2 */
+    std::vector<uint16_t> pixels(300 * 225 * 3), flipped(300 * 225 * 4);
+    const auto *from = reinterpret_cast<const uint16_t *>(p.data[0]->data());
+    for (uint32_t y = 0; y < 225; y++)
+        for (uint32_t x = 0; x < 300; x++)
+            for (uint32_t c = 0; c < 3; c++) {
+                uint32_t sum = 0;
+                for (uint32_t k = 0; k < 4; k++) sum += from[((2 * y + k / 2) * 600 + 2 * x + k % 2) * 3 + c];
+                pixels[(y * 300 + x) * 3 + c] = static_cast<uint16_t>(sum / 4);
+                flipped[((224 - y) * 300 + x) * 4 + 2 - c] = static_cast<uint16_t>(sum / 4);
+                flipped[((224 - y) * 300 + x) * 4 + 3] = 65535;
+            }
+    small.view = {pixels.data(), 1800, 300, 225, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB};
+    small.reduction = 2;
+    p.images[0] = small;
+    auto reduced = p.fit(p.options());
+    assert_close(falloff_error(full->vignetting[0], reduced->vignetting[0], 600, 450), 0.0, 0.001);
+    assert_close(reduced->vignetting[0].center[0], 0.02, 0.003);
+    p.images[0].view = {flipped.data() + 224 * 1200, -2400, 300, 225, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_BGRA};
+    auto bottom_up = p.fit(p.options());
+    assert_memory_equal(bottom_up->vignetting, reduced->vignetting, sizeof reduced->vignetting);
+}
+
+static void held_values_stay_and_have_no_error(void **)
+{
+    FlatPictures p;
+    p.shoot(0);
+    lensprof_flat_options o = p.options();
+    o.free = LENSPROF_FREE_K1 | LENSPROF_FREE_K2;
+    o.vignetting = {{9.0, 9.0, -0.06}, {0.0, 0.0}};
+    o.vignetting.k[0] = o.vignetting.k[1] = 0.0;
+    auto r = p.fit(o);
+    assert_true(r->usable);
+    assert_true(r->vignetting[0].k[2] == -0.06 && r->vignetting[0].center[0] == 0.0);
+    assert_close(r->vignetting[0].k[0], -0.45, 0.002);
+    for (uint32_t i = 0; i < 5; i++)
+        assert_int_equal(r->covariance[i * 5 + i] > 0.0, i < 2);
+}
+
+static void the_result_does_not_depend_on_threads(void **)
+{
+    FlatPictures p;
+    p.defect = shading;
+    p.shoot(0), p.shoot(1, 0.0, 90.0);
+    lensprof_flat_options o = p.options();
+    o.threads = 1;
+    auto one = p.fit(o);
+    for (uint32_t threads : {2u, 5u, 0u}) {
+        o.threads = threads;
+        auto other = p.fit(o);
+        assert_memory_equal(one.get(), other.get(), sizeof *one);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(derivatives_are_those_of_central_differences),
+        cmocka_unit_test(a_plain_card_gives_the_falloff),
+        cmocka_unit_test(a_grey_picture_has_one_curve),
+        cmocka_unit_test(turned_shots_tell_the_light_from_the_centre),
+        cmocka_unit_test(wrong_angles_are_noticed),
+        cmocka_unit_test(exposures_of_one_shot_are_merged),
+        cmocka_unit_test(wrong_exposures_are_noticed),
+        cmocka_unit_test(a_card_at_several_places_needs_no_even_light_over_the_frame),
+        cmocka_unit_test(a_card_that_does_not_reach_the_corners_is_said),
+        cmocka_unit_test(channels_get_curves_where_they_differ),
+        cmocka_unit_test(dust_is_counted_placed_and_left_out),
+        cmocka_unit_test(what_is_wrong_is_said),
+        cmocka_unit_test(light_that_changes_between_shots_is_noticed),
+        cmocka_unit_test(what_is_not_radial_goes_into_a_grid),
+        cmocka_unit_test(a_grid_of_a_radial_lens_is_flat),
+        cmocka_unit_test(reduced_views_and_layouts_are_the_same_picture),
+        cmocka_unit_test(held_values_stay_and_have_no_error),
+        cmocka_unit_test(the_result_does_not_depend_on_threads),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
