@@ -17,6 +17,8 @@ Json distance_json(double distance_m) {
     return std::isinf(distance_m) ? Json("infinity") : number_or_null(distance_m);
 }
 
+}  // namespace
+
 Json covariance_json(const double *values, uint32_t n) {
     Json rows = Json::array();
     for (uint32_t i = 0; i < n; i++) rows.push_back(std::vector<double>(values + i * n, values + (i + 1) * n));
@@ -43,6 +45,8 @@ Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
     json["center"] = {vignettings[0].center[0], vignettings[0].center[1]};
     return json;
 }
+
+namespace {
 
 /* Rows of every channel; null where there is no grid. */
 Json gain_grid_json(const lensprof_gain_grid &grid) {
@@ -75,6 +79,8 @@ std::string falloff_error(const Certainty &certainty, uint32_t curve, double r2)
     return sigma > 0.0 ? format(" +- %.1f", 100.0 * sigma) : std::string();
 }
 
+}  // namespace
+
 void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, const Certainty &certainty,
                        std::ostream &out) {
     static const char *const channels[3] = {" of red", " of green", " of blue"};
@@ -99,8 +105,6 @@ void print_response(const lensprof_response &r, std::ostream &out) {
         out << format("  %g: %.1f", x, 255.0 * lensprof_response_eval(&r, x, nullptr));
     out << "\n";
 }
-
-}  // namespace
 
 std::string format(const char *pattern, ...) {
     char text[1024];

@@ -11,6 +11,8 @@
 
 #include <lensprof/lensprof.h>
 
+#include "falloff.hpp"
+
 namespace lensprof {
 
 using Json = nlohmann::ordered_json;
@@ -50,6 +52,15 @@ TrueValues read_truth(const std::string &path, size_t images);
 
 /* Recovered beside true values, raw and with the exponent gamma aligned (what pictures alone cannot tell). */
 void print_comparison(const BuildReport &report, const TrueValues &truth, std::ostream &out);
+
+/* Parts of such objects, and of tables. */
+Json covariance_json(const double *values, uint32_t n);
+Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count);
+Json response_json(const lensprof_response *responses, uint32_t count);
+
+void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, const Certainty &certainty,
+                       std::ostream &out);
+void print_response(const lensprof_response &r, std::ostream &out);
 
 Json key_json(const lensprof_profile_key &key);
 Json provenance_json(const lensprof_provenance &provenance);

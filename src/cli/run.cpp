@@ -23,6 +23,7 @@ int run_help(const std::vector<std::string> &arguments, Streams &streams);
 const Command commands[] = {
     {"build", "pictures of a Hugin project -> a lens profile in the database", run_build},
     {"bracket", "pictures of one scene at several exposures -> the camera's response", run_bracket},
+    {"flat", "pictures of a white card or another even light -> a lens profile in the database", run_flat},
     {"apply", "correct pictures with a profile or a project", run_apply},
     {"query", "look a profile up by camera, lens, focal length and aperture", run_query},
     {"profile", "list, show or remove profiles", run_profile},

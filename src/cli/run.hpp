@@ -27,6 +27,7 @@ struct Command {
 int run_apply(const std::vector<std::string> &arguments, Streams &streams);
 int run_bracket(const std::vector<std::string> &arguments, Streams &streams);
 int run_build(const std::vector<std::string> &arguments, Streams &streams);
+int run_flat(const std::vector<std::string> &arguments, Streams &streams);
 int run_profile(const std::vector<std::string> &arguments, Streams &streams);
 int run_query(const std::vector<std::string> &arguments, Streams &streams);
 int run_simulate(const std::vector<std::string> &arguments, Streams &streams);

@@ -102,7 +102,7 @@ bool contradicts_model(const FlatFit &fit, lensprof_flat_result &r) {
     Worst wrong = wrong_exposure(fit, r), steep = steepest(fit);
     if (wrong.value > kWrongEv)
         return say(r, false,
-                   "picture %u is %.2f EV away from the others of its shot: the exposures, or the response, are not "
+                   "image %u is %.2f EV away from the others of its shot: the exposures, or the response, are not "
                    "what was said, or the light changed",
                    wrong.shot, wrong.value);
     if (r.texture > kMuchTexture)
@@ -158,7 +158,7 @@ void mind(const FlatFit &fit, lensprof_flat_result &r) {
             white.value > black.value ? "white" : "black");
     else if (wrong.value > kDoubtfulEv)
         say(r, true,
-            "picture %u is %.2f EV away from the others of its shot: exposures or response are not quite what was said",
+            "image %u is %.2f EV away from the others of its shot: exposures or response are not quite what was said",
             wrong.shot, wrong.value);
     else if (r.shot_residual > kSomeOwn)
         say(r, true, "the shots differ by %.1f %% in ways that one lens and one light do not explain",

@@ -52,7 +52,7 @@ FlatResidual flat_residual(const FlatProblem &problem, const FlatEstimate &estim
 double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell);
 
 // Neighbouring cells whose residuals agree count as fewer: what all cells say weighs less, beside the prior and in the
-// covariance, by what their sums over blocks of 8 to 32 cells a side vary more than those of independent cells.
+// covariance, by what their sums over blocks of 4 to 32 cells a side vary more than those of independent cells.
 void solve_flat(const FlatProblem &problem, FlatEstimate &estimate);
 
 // Covariance of all unknowns, zero where held. Empty when the cells do not determine every free unknown.
