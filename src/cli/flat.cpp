@@ -130,6 +130,8 @@ int run_flat(const std::vector<std::string> &arguments, Streams &streams) {
     if (report.profile_id && !o.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(input.key) << "\n";
+    if (report.profile_id && report.fit.gain_grid.columns)
+        streams.err << "lensprof: warning: the gain grid is printed (--json) but not stored with the profile\n";
     if (report.fit.usable && *report.fit.reason)
         streams.err << "lensprof: warning: " << report.fit.reason << "\n";
     if (!report.fit.usable)

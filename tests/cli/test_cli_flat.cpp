@@ -1,0 +1,227 @@
+/* `lensprof flat` in process: cards of a known lens as picture files, what is printed and stored, what is refused. */
+#include "cli_runs.hpp"
+
+#include <lensprof/lensprof.h>
+
+#include "cli/library.hpp"
+#include "cli/picture.hpp"
+
+namespace {
+
+using namespace cli_runs;
+
+constexpr uint32_t width = 360, height = 270;
+const lensprof_vignetting lens{{-0.42, 0.10, -0.05}, {0.03, -0.02}};
+
+struct Card {
+    double ev = 0.0, turn_deg = 0.0, slant = 0.08, texture = 0.0, gamma = 1.0;
+    uint32_t layout = LENSPROF_LAYOUT_RGB;
+    double left = 0.0, right = 1.0; /* part of the width that is the card */
+    bool told = false;              /* EXIF tells exposure and camera */
+};
+
+std::string shoot(const std::string &name, const Card &card) {
+    Picture picture = make_noise(width, height, LENSPROF_SAMPLE_U16, card.layout);
+    const uint32_t samples = lensprof_layout_samples(card.layout);
+    const double half = 0.5 * std::hypot(width, height), turn = card.turn_deg * M_PI / 180.0;
+    lensprof_response response;
+    assert_int_equal(lensprof_response_set_gamma(&response, card.gamma), LENSPROF_OK);
+    uint64_t random = 77;
+    auto *at = reinterpret_cast<uint16_t *>(picture.pixels.data());
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            double dx = (x - 0.5 * (width - 1)) / half, dy = (y - 0.5 * (height - 1)) / half;
+            double m = lensprof_vignetting_eval(&lens, lensprof_vignetting_r2(&lens, width, height, x, y, nullptr),
+                                                nullptr);
+            double light = 0.4 * std::exp2(card.ev) * m * std::exp(card.slant * (std::cos(turn) * dx - std::sin(turn) * dy));
+            light *= 1.0 + card.texture * std::sin(0.35 * x) * std::sin(0.3 * y);
+            if (x < card.left * width || x >= card.right * width) light *= 0.1;
+            for (uint32_t c = 0; c < samples; c++) {
+                double grey = lensprof_response_eval(&response, light, nullptr) + 0.003 * lp_normal(&random);
+                *at++ = static_cast<uint16_t>(std::lround(65535.0 * std::min(std::max(grey, 0.0), 1.0)));
+            }
+        }
+    PictureMetadata metadata = unknown_metadata();
+    if (card.told) {
+        set_text(metadata.key.camera_model, sizeof metadata.key.camera_model, "Box 1");
+        metadata.key.aperture = 2.0;
+        metadata.f_number = 2.0, metadata.iso = 100.0, metadata.exposure_time_s = 0.01 * std::exp2(card.ev);
+    }
+    WriteOptions options;
+    options.metadata = card.told ? &metadata : nullptr;
+    const std::string path = in_folder(name);
+    write_picture(path, picture, options);
+    return path;
+}
+
+Words flat(const Words &words) { return Words{"flat"} + words; }
+
+double corner_error(const Json &json) {
+    lensprof_vignetting found{};
+    for (size_t i = 0; i < 3; i++) found.k[i] = json["vignetting"]["k"][0][i].get<double>();
+    return lensprof_vignetting_eval(&found, 1.0, nullptr) - lensprof_vignetting_eval(&lens, 1.0, nullptr);
+}
+
+void test_turned_shots_are_measured_and_stored(void **) {
+    Words files;
+    for (int turn : {0, 90, 180}) {
+        Card card;
+        card.turn_deg = turn;
+        files.push_back(shoot("turned" + std::to_string(turn) + ".tif", card));
+    }
+    const std::string db = in_folder("flat.db");
+    const Words words = flat(files) + Words{"--linear", "--turned", "0,90,180", "--camera", "Box", "--db", db};
+    const Json json = json_of(words + Words{"--json"});
+    assert_true(json["usable"].get<bool>());
+    assert_string_equal(json["method"].get<std::string>().c_str(), "flat");
+    assert_true(json["separated"].get<bool>());
+    assert_close(corner_error(json), 0.0, 0.002);
+    assert_close(json["vignetting"]["center"][0].get<double>(), 0.03, 0.003);
+    assert_close(json["images"][0]["gradient"][0].get<double>(), 0.08, 0.004);
+    assert_int_equal(json["covariance"].size(), 5);
+    assert_int_equal(json["profile"].get<int>(), 1);
+    const Json stored = json_of({"profile", "show", "1", "--json", "--db", db});
+    assert_string_equal(stored["provenance"]["method"].get<std::string>().c_str(), "flat");
+    assert_string_equal(stored["key"]["processing"].get<std::string>().c_str(), "raw");
+    assert_true(stored["vignetting"] == json["vignetting"]);
+    const std::string table = must_exit(done, words);
+    for (const char *part : {"falloff", "told from the lens", "stored    profile 2", "residual", "turned180.tif"})
+        assert_true(contains(table, part));
+}
+
+void test_exposures_come_from_exif_or_the_command_line(void **) {
+    Card card;
+    card.gamma = 2.2, card.told = true;
+    Words files;
+    for (double ev : {-2.0, -1.0, 0.5}) {
+        card.ev = ev;
+        files.push_back(shoot("ev" + std::to_string(files.size()) + ".tif", card));
+    }
+    const Words words = flat(files) + Words{"--gamma", "2.2", "--shots", "1,1,1", "--no-store", "--json"};
+    const Json json = json_of(words);
+    assert_int_equal(json["shots"].get<int>(), 1);
+    assert_close(corner_error(json), 0.0, 0.004);
+    assert_close(json["images"][2]["ev"].get<double>() - json["images"][0]["ev"].get<double>(), 2.5, 0.01);
+    for (const Json &image : json["images"]) assert_close(image["ev_residual"].get<double>(), 0.0, 0.02);
+    const Json given = json_of(words + Words{"--ev", "-2,-1,0.5"});
+    assert_close(corner_error(given), 0.0, 0.004);
+    const Json wrong = json_of(words + Words{"--ev", "-2,-1.6,0.5"}, not_usable);
+    assert_true(contains(wrong["reason"].get<std::string>(), "EV away"));
+    assert_true(contains(wrong["reason"].get<std::string>(), ".tif"));
+}
+
+void test_a_card_at_several_places(void **) {
+    Words files;
+    for (int i = 0; i < 3; i++) {
+        Card card;
+        card.slant = 0.0, card.left = i / 3.0, card.right = (i + 1) / 3.0;
+        files.push_back(shoot("place" + std::to_string(i) + ".tif", card));
+    }
+    const Words words = flat(files) + Words{"--linear", "--several", "--ev", "0,0,0", "--no-store", "--json"};
+    const Json found = json_of(words + Words{"--find-card"});
+    assert_close(corner_error(found), 0.0, 0.01);
+    assert_close(found["images"][1]["card"][0].get<double>(), 120, 12);
+    const Json given =
+        json_of(words + Words{"--card", "0,0,118,270", "--card", "122,0,116,270", "--card", "242,0,118,270"});
+    assert_close(corner_error(given), 0.0, 0.01);
+}
+
+void test_the_response_of_a_profile(void **) {
+    Card card;
+    const std::string linear = shoot("first.tif", card), db = in_folder("response.db");
+    must_exit(done, flat({linear, "--linear", "--camera", "Box", "--db", db}));
+    const Json json = json_of(flat({linear, "--profile", "1", "--camera", "Box", "--db", db, "--json"}));
+    assert_string_equal(json["response"]["kind"].get<std::string>().c_str(), "linear");
+    assert_refused(not_found, flat({linear, "--profile", "99", "--camera", "Box", "--db", db}), {"99"});
+}
+
+void test_what_is_not_usable_is_not_stored(void **) {
+    Card card;
+    card.texture = 0.06;
+    const std::string path = shoot("cloth.tif", card), db = in_folder("cloth.db");
+    const Words words = flat({path, "--linear", "--camera", "Box", "--db", db});
+    assert_refused(not_usable, words, {"texture", "nothing was stored"});
+    const Json json = json_of(words + Words{"--json", "--force"}, not_usable);
+    assert_false(json["usable"].get<bool>());
+    assert_int_equal(json["profile"].get<int>(), 1);
+    const Json stored = json_of({"profile", "show", "1", "--json", "--db", db});
+    assert_string_equal(stored["provenance"]["method"].get<std::string>().c_str(), "flat (forced)");
+}
+
+void test_grey_pictures_and_the_grid(void **) {
+    Card card;
+    card.layout = LENSPROF_LAYOUT_GREY;
+    const std::string path = shoot("grey.png", card);
+    const Json json = json_of(flat({path, "--linear", "--no-store", "--json", "--grid", "always", "--center", "fixed"}));
+    assert_int_equal(json["vignetting"]["k"].size(), 1);
+    assert_true(json["gain_grid"]["columns"].get<int>() > 4);
+    assert_int_equal(json["gain_grid"]["attenuation"].size(), 1);
+    assert_close(json["vignetting"]["center"][0].get<double>(), 0.0, 0.0);
+}
+
+void test_refused(void **) {
+    Card card;
+    const std::string path = shoot("card.tif", card), other = shoot("card2.tif", card);
+    card.layout = LENSPROF_LAYOUT_GREY;
+    const std::string grey = shoot("grey.tif", card), text = in_folder("text.tif"), db = in_folder("refused.db");
+    save(text, Bytes{'n', 'o'});
+    Picture tiny = make_smooth(40, 30, LENSPROF_LAYOUT_RGB), wide = make_smooth(400, 90, LENSPROF_LAYOUT_RGB);
+    write_picture(in_folder("tiny.png"), tiny);
+    write_picture(in_folder("wide.png"), wide);
+    const Words good{"--linear", "--camera", "Box", "--db", db};
+    struct Case {
+        int code;
+        Words words, named;
+    };
+    const Case cases[] = {
+        {usage, {}, {"FILES"}},
+        {usage, {path}, {"--linear", "--gamma", "--profile"}},
+        {usage, {path, "--linear", "--gamma", "2"}, {"one of"}},
+        {usage, {path, "--gamma", "11", "--no-store"}, {"--gamma"}},
+        {usage, {path, "--gamma", "nan", "--no-store"}, {"--gamma"}},
+        {usage, {path, "--linear"}, {"card.tif", "--camera"}},
+        {usage, Words{path, other, "--shots", "1,1"} + good, {"card.tif", "--ev"}},
+        {usage, Words{path, other, "--several"} + good, {"card.tif", "--ev"}},
+        {usage, Words{path, other, "--shots", "1"} + good, {"--shots"}},
+        {usage, Words{path, other, "--shots", "1,1.5"} + good, {"--shots"}},
+        {usage, Words{path, other, "--ev", "1,x"} + good, {"--ev"}},
+        {usage, Words{path, other, "--ev", "1,"} + good, {"--ev"}},
+        {usage, Words{path, other, "--ev", "1,99"} + good, {"card2.tif", "64 EV"}},
+        {usage, Words{path, other, "--turned", "0"} + good, {"--turned"}},
+        {usage, Words{path, other, "--turned", "0,400"} + good, {"--turned"}},
+        {usage, Words{path, "--light", "bright"} + good, {"--light"}},
+        {usage, Words{path, "--light", "plane", "--several"} + good, {"--several"}},
+        {usage, Words{path, "--card", "1,2,3"} + good, {"--card"}},
+        {usage, Words{path, "--card", "0,0,361,270"} + good, {"--card", "360 x 270", "card.tif"}},
+        {usage, Words{path, "--card", "0,0,10,10", "--find-card"} + good, {"--find-card"}},
+        {usage, Words{path, other, grey, "--card", "0,0,9,9", "--card", "0,0,9,9"} + good, {"2 --card"}},
+        {usage, Words{path, grey} + good, {"grey.tif"}},
+        {usage, Words{grey, "--falloff-curves", "3"} + good, {"grey"}},
+        {usage, Words{path, in_folder("wide.png")} + good, {"wide.png", "400 x 90"}},
+        {usage, Words{path, "--black", "0.9", "--white", "0.5"} + good, {"--black"}},
+        {usage, Words{path, "--max-side", "10"} + good, {"--max-side"}},
+        {usage, Words{path, "--no-store"} + good, {"--no-store"}},
+        {unreadable, Words{in_folder("nothing.tif")} + good, {"nothing.tif"}},
+        {unreadable, Words{text} + good, {"text.tif"}},
+        {not_usable, Words{in_folder("tiny.png")} + good, {"tiny.png"}},
+        {not_usable, Words{path, "--white", "0.02"} + good, {"black and white"}},
+        {store_failed, {path, "--linear", "--camera", "Box", "--db", text}, {"text.tif"}},
+        {store_failed, {path, "--linear", "--camera", "Box", "--db", in_folder("no/such.db")}, {"no/such.db"}},
+    };
+    for (const Case &one : cases) assert_refused(one.code, flat(one.words), one.named);
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_turned_shots_are_measured_and_stored),
+        CLI_TEST(test_exposures_come_from_exif_or_the_command_line),
+        CLI_TEST(test_a_card_at_several_places),
+        CLI_TEST(test_the_response_of_a_profile),
+        CLI_TEST(test_what_is_not_usable_is_not_stored),
+        CLI_TEST(test_grey_pictures_and_the_grid),
+        CLI_TEST(test_refused),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
