@@ -135,7 +135,14 @@ bool is_undetermined(const FlatFit &fit, lensprof_flat_result &r) {
         return say(r, false,
                    "the pictures do not determine all parameters: hold the centre, take the light as even, or add a "
                    "shot with the camera turned");
-    if (r.corner_sigma > kLargestCornerSigma)
+    // What is not radial makes the polynomial uncertain, but not what polynomial and grid are together.
+    const bool radial = r.frame_residual < kNotRadial;
+    if (r.corner_sigma > kLargestCornerSigma && !radial && !r.gain_grid.columns)
+        return say(r, false,
+                   "%.1f %% of the light is not radial, which leaves the falloff in the corners uncertain by %.1f %%; ask "
+                   "for a gain grid",
+                   100.0 * r.frame_residual, 100.0 * r.corner_sigma);
+    if (r.corner_sigma > kLargestCornerSigma && radial)
         return say(r, false,
                    "the falloff in the corners is uncertain by %.1f %%: too noisy, or the card is not seen there; "
                    "average more pictures, or add some with the card in the corners",

@@ -188,7 +188,9 @@ void describe_flat(const FlatFit &fit, lensprof_flat_result &r) {
     bool wanted = fit.options.grid == LENSPROF_FLAT_GRID_ALWAYS
                   || (fit.options.grid == LENSPROF_FLAT_GRID_AUTO && rest.frame > kGridNeeded);
     if (wanted && fit_gain_grid(fit, r.gain_grid)) {
-        r.grid_residual = split_residuals(fit, &r.gain_grid, noise.value()).frame;
+        Patterns left = split_residuals(fit, &r.gain_grid, noise.value());
+        r.grid_residual = left.frame;
+        r.texture = left.texture;  // a steep residual has some at the frame's border
         normalise_gain_grid(fit, r.gain_grid);
     }
     describe_images(fit, r);

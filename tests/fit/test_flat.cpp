@@ -321,6 +321,22 @@ static void what_is_not_radial_goes_into_a_grid(void **)
     assert_non_null(strstr(r->reason, "ask for a gain grid"));
 }
 
+static void what_is_far_from_radial_needs_a_grid(void **)
+{
+    FlatPictures p;
+    p.defect = [](double x, double y, uint32_t c) { return std::pow(shading(x, y, c), 5.0); };
+    for (uint32_t shot = 0; shot < 4; shot++) p.shoot(shot, 0.0, 90.0 * shot);
+    auto r = p.fit(p.options());
+    assert_true(r->usable);
+    assert_true(r->corner_sigma > 0.01); /* of the polynomial alone */
+    assert_true(r->frame_residual > 20 * r->grid_residual);
+    lensprof_flat_options o = p.options();
+    o.grid = LENSPROF_FLAT_GRID_NONE;
+    r = p.fit(o);
+    assert_false(r->usable);
+    assert_non_null(strstr(r->reason, "ask for a gain grid"));
+}
+
 static void a_grid_of_a_radial_lens_is_flat(void **)
 {
     FlatPictures p;
@@ -409,6 +425,7 @@ int main(void)
         cmocka_unit_test(what_is_wrong_is_said),
         cmocka_unit_test(light_that_changes_between_shots_is_noticed),
         cmocka_unit_test(what_is_not_radial_goes_into_a_grid),
+        cmocka_unit_test(what_is_far_from_radial_needs_a_grid),
         cmocka_unit_test(a_grid_of_a_radial_lens_is_flat),
         cmocka_unit_test(reduced_views_and_layouts_are_the_same_picture),
         cmocka_unit_test(held_values_stay_and_have_no_error),

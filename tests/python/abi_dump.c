@@ -264,41 +264,8 @@ static void print_fit_structs(void)
     end_struct();
 }
 
-static void print_flat_structs(void)
+static void print_flat_results(void)
 {
-    BEGIN(lensprof_flat_image);
-    FIELD(lensprof_flat_image, view);
-    FIELD(lensprof_flat_image, width);
-    FIELD(lensprof_flat_image, height);
-    FIELD(lensprof_flat_image, reduction);
-    FIELD(lensprof_flat_image, shot);
-    FIELD(lensprof_flat_image, mask);
-    FIELD(lensprof_flat_image, mask_row_bytes);
-    FIELD(lensprof_flat_image, black);
-    FIELD(lensprof_flat_image, white);
-    FIELD(lensprof_flat_image, ev);
-    FIELD(lensprof_flat_image, turn_deg);
-    end_struct();
-    BEGIN(lensprof_flat_options);
-    FIELD(lensprof_flat_options, struct_size);
-    FIELD(lensprof_flat_options, channels);
-    FIELD(lensprof_flat_options, free);
-    FIELD(lensprof_flat_options, vignettings);
-    FIELD(lensprof_flat_options, light);
-    FIELD(lensprof_flat_options, own_light);
-    FIELD(lensprof_flat_options, several);
-    FIELD(lensprof_flat_options, find_card);
-    FIELD(lensprof_flat_options, grid);
-    FIELD(lensprof_flat_options, responses);
-    FIELD(lensprof_flat_options, threads);
-    FIELD(lensprof_flat_options, reserved);
-    FIELD(lensprof_flat_options, ev_sigma);
-    FIELD(lensprof_flat_options, prior_weight);
-    FIELD(lensprof_flat_options, response);
-    FIELD(lensprof_flat_options, vignetting);
-    FIELD(lensprof_flat_options, progress);
-    FIELD(lensprof_flat_options, progress_user);
-    end_struct();
     BEGIN(lensprof_flat_image_quality);
     FIELD(lensprof_flat_image_quality, white_share);
     FIELD(lensprof_flat_image_quality, black_share);
@@ -348,6 +315,44 @@ static void print_flat_structs(void)
     FIELD(lensprof_flat_result, gain_grid);
     FIELD(lensprof_flat_result, image_quality);
     end_struct();
+}
+
+static void print_flat_structs(void)
+{
+    BEGIN(lensprof_flat_image);
+    FIELD(lensprof_flat_image, view);
+    FIELD(lensprof_flat_image, width);
+    FIELD(lensprof_flat_image, height);
+    FIELD(lensprof_flat_image, reduction);
+    FIELD(lensprof_flat_image, shot);
+    FIELD(lensprof_flat_image, mask);
+    FIELD(lensprof_flat_image, mask_row_bytes);
+    FIELD(lensprof_flat_image, black);
+    FIELD(lensprof_flat_image, white);
+    FIELD(lensprof_flat_image, ev);
+    FIELD(lensprof_flat_image, turn_deg);
+    end_struct();
+    BEGIN(lensprof_flat_options);
+    FIELD(lensprof_flat_options, struct_size);
+    FIELD(lensprof_flat_options, channels);
+    FIELD(lensprof_flat_options, free);
+    FIELD(lensprof_flat_options, vignettings);
+    FIELD(lensprof_flat_options, light);
+    FIELD(lensprof_flat_options, own_light);
+    FIELD(lensprof_flat_options, several);
+    FIELD(lensprof_flat_options, find_card);
+    FIELD(lensprof_flat_options, grid);
+    FIELD(lensprof_flat_options, responses);
+    FIELD(lensprof_flat_options, threads);
+    FIELD(lensprof_flat_options, reserved);
+    FIELD(lensprof_flat_options, ev_sigma);
+    FIELD(lensprof_flat_options, prior_weight);
+    FIELD(lensprof_flat_options, response);
+    FIELD(lensprof_flat_options, vignetting);
+    FIELD(lensprof_flat_options, progress);
+    FIELD(lensprof_flat_options, progress_user);
+    end_struct();
+    print_flat_results();
 }
 
 static void print_formats_structs(void)
