@@ -13,7 +13,7 @@ namespace lensprof {
 namespace {
 
 constexpr double kCutoff = 4.0;            // of the robust loss, sigmas of a cell's typical size
-constexpr int kRounds = 4;                 // of noise and fit in turn
+constexpr int kRounds = 12;                // of noise and fit in turn
 constexpr double kSettled = 1e-3;          // change of what measures the noise
 constexpr int kMostSteps = 60;
 constexpr double kSmallestGain = 1e-8;     // of the objective, at which a fit has settled
@@ -297,6 +297,15 @@ double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const
 
 void solve_flat(const FlatProblem &problem, FlatEstimate &estimate) {
     auto state = [&] { return Eigen::Vector3d(estimate.unevenness, estimate.scale, estimate.inflation); };
+    // First with the centre held and every cell counted as one: before the falloff is near, all cells err together, and
+    // the priors would hold what they should not.
+    FlatProblem held = problem;
+    const FlatModel &model = problem.model;
+    auto is_center = [&](int i) { return i >= model.center() && i < model.levels(); };
+    held.free.erase(std::remove_if(held.free.begin(), held.free.end(), is_center), held.free.end());
+    measure_noise(held, estimate);
+    estimate.inflation = 1.0;
+    descend(held, estimate);
     measure_noise(problem, estimate);
     for (int round = 0; round < kRounds; round++) {
         Eigen::Vector3d before = state();

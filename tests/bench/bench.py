@@ -8,6 +8,7 @@ import sys
 import time
 
 import cases
+import flat
 import radiance
 import real
 import report
@@ -15,7 +16,7 @@ import scale
 import speed
 import tools
 
-PARTS = ("points", "pictures", "refusals", "scale", "speed", "radiance", "real")
+PARTS = ("points", "pictures", "refusals", "flat", "scale", "speed", "radiance", "real")
 
 
 def parse():
@@ -47,7 +48,8 @@ def main():
     tools.WORK.mkdir(parents=True, exist_ok=True)
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize is not installed (package hugin-tools); lensprof is alone"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
-               "points": [], "pictures": [], "refusals": [], "scale": [], "speed": {}, "radiance": {}, "real": [], "skipped": skipped}
+               "points": [], "pictures": [], "refusals": [], "flat": [], "scale": [], "speed": {}, "radiance": {},
+               "real": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
     if "speed" in options.only:
@@ -61,6 +63,8 @@ def main():
         if part in options.only:
             chosen = of(options.quick, options.match)
             results[part] = cases.run_all(chosen, options.match, options.jobs, options.keep, say)
+    if "flat" in options.only:
+        results["flat"] = flat.run_all(options.quick, say)
     if options.real and "real" in options.only:
         results["real"] = real.run_all(options.real, options.jobs, say)
     results["seconds"] = time.time() - start

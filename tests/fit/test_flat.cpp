@@ -103,6 +103,25 @@ static void turned_shots_tell_the_light_from_the_centre(void **)
     assert_close(quality[1].gradient[0], -0.06, 0.003); /* its right is down in the scene */
 }
 
+/* A strong falloff, off centre, far from what the priors expect. */
+static void the_start_does_not_matter(void **)
+{
+    for (double k1 : {0.0, -0.3, -0.7, -1.2}) {
+        FlatPictures p;
+        for (auto &v : p.vignetting) v = {{k1, -0.5 * k1, 0.1 * k1}, {0.02, -0.015}};
+        p.gradient[0] = 0.08;
+        for (uint32_t shot = 0; shot < 3; shot++) p.shoot(shot, 0.0, 90.0 * shot);
+        for (uint32_t vignettings : {1u, 3u}) {
+            lensprof_flat_options o = p.options();
+            o.vignettings = vignettings;
+            auto r = p.fit(o);
+            assert_true(r->usable);
+            assert_close(error_of(*r, p), 0.0, 0.0015);
+            if (k1 != 0.0) assert_close(r->vignetting[0].center[0], 0.02, 0.001);
+        }
+    }
+}
+
 static void wrong_angles_are_noticed(void **)
 {
     FlatPictures p;
@@ -415,6 +434,7 @@ int main(void)
         cmocka_unit_test(a_plain_card_gives_the_falloff),
         cmocka_unit_test(a_grey_picture_has_one_curve),
         cmocka_unit_test(turned_shots_tell_the_light_from_the_centre),
+        cmocka_unit_test(the_start_does_not_matter),
         cmocka_unit_test(wrong_angles_are_noticed),
         cmocka_unit_test(exposures_of_one_shot_are_merged),
         cmocka_unit_test(wrong_exposures_are_noticed),
