@@ -131,3 +131,11 @@ inline double falloff_error(const lensprof_vignetting &a, const lensprof_vignett
     }
     return worst;
 }
+
+// The same of a result, the worst channel.
+inline double error_of(const lensprof_flat_result &r, const FlatPictures &p) {
+    double worst = 0.0;
+    for (int c = 0; c < 3; c++)
+        worst = std::fmax(worst, falloff_error(r.vignetting[c], p.vignetting[c], p.width, p.height));
+    return worst;
+}
