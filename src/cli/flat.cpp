@@ -101,6 +101,7 @@ int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &re
     std::copy(input.response.begin(), input.response.end(), profile->response);
     profile->vignettings = fit.vignettings;
     std::copy(fit.vignetting, fit.vignetting + 3, profile->vignetting);
+    profile->grid = fit.gain_grid;
     profile->covariance_size = fit.covariance_size;
     std::copy(fit.covariance, fit.covariance + fit.covariance_size * fit.covariance_size, profile->covariance);
     profile->provenance.images = static_cast<uint32_t>(input.images.size());
@@ -130,8 +131,6 @@ int run_flat(const std::vector<std::string> &arguments, Streams &streams) {
     if (report.profile_id && !o.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(input.key) << "\n";
-    if (report.profile_id && report.fit.gain_grid.columns)
-        streams.err << "lensprof: warning: the gain grid is printed (--json) but not stored with the profile\n";
     if (report.fit.usable && *report.fit.reason)
         streams.err << "lensprof: warning: " << report.fit.reason << "\n";
     if (!report.fit.usable)

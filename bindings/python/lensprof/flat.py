@@ -137,6 +137,7 @@ class FlatResult(Struct, _abi.FlatResult):
                 response: Optional[Response] = None) -> Profile:
         """A profile of this result with the response that it was made with. source: file that it was made from."""
         profile = Profile(key=key, vignetting=self.vignetting, covariance=self.covariance)
+        profile.grid = self.gain_grid
         if response is not None:
             profile.response = response
         origin = {"method": "flat", "software": f"lensprof {version()}", "source": source,
