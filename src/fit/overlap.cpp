@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "log_inverse.hpp"
+#include "refine.hpp"
 #include "monotone.hpp"
 #include "objective.hpp"
 #include "start.hpp"

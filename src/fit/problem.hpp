@@ -99,7 +99,7 @@ struct Curve {
 // The current estimate.
 struct Estimate {
     int modes = 0;                                    // EMoR modes in use; -1 where the response is `fixed`
-    bool is_refined = false;                          // and that is an estimate, too (log_inverse.hpp)
+    bool is_refined = false;                          // and that is an estimate, too (refine.hpp)
     std::array<double, kMaxModes> emor{};
     Curve curve;                                      // f; follows emor
     lensprof_response fixed;                          // modes == -1: the response, a table where refined

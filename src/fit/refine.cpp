@@ -1,4 +1,4 @@
-#include "log_inverse.hpp"
+#include "refine.hpp"
 
 #include <algorithm>
 #include <cmath>
