@@ -80,7 +80,7 @@ Estimate with_exponent(const Problem &problem, const Estimate &estimate, double 
     for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++)
         curve[j] = lp_curve_eval(estimate.curve.table.data(), std::pow(j / 1023.0, 1.0 / gamma), nullptr);
     if (estimate.modes >= 0) set_response(moved, project_curve(curve, estimate.modes).data(), estimate.modes);
-    else if (estimate.is_refined) set_table(moved, curve);
+    else set_table(moved, curve);
     for (auto &v : moved.vignetting) raise_falloff(problem, gamma, v);
     const auto &reference = estimate.log_exposure[problem.reference];
     for (auto &a : moved.log_exposure)

@@ -55,7 +55,7 @@ private:
     std::vector<double> known_weight_;  // trust in each known exposure, 0..1
 };
 
-// The same estimate with the exponent gamma = exp(log_gamma) put in.
+// The same estimate with the exponent gamma = exp(log_gamma) put in; a response without modes follows exactly.
 Estimate with_exponent(const Problem &problem, const Estimate &estimate, double log_gamma);
 
 }  // namespace lensprof

@@ -1,4 +1,4 @@
-// The shared step as a constrained least squares problem: NLopt (SLSQP) under linear inequalities.
+// The shared step as a constrained least squares problem: what keeps the response rising and the falloff positive.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,8 +22,7 @@ struct Region {
     Eigen::VectorXd value;
 };
 
-// Minimises  1/2 d'Sd - b'd  over steps d that keep the region's inequalities. S must be positive definite.
-// The unconstrained minimum is returned when it is feasible; NaN when S is not positive definite.
+// Minimises  1/2 d'Sd - b'd  over steps d that stay in the region, as constrained_step of inequality.hpp does.
 Eigen::VectorXd constrained_step(const Region &region, const Eigen::MatrixXd &S, const Eigen::VectorXd &b);
 
 // The monotone member of the first `modes` modes nearest to a curve of 1024 samples.

@@ -5,63 +5,22 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <stdexcept>
 
-#include "refine.hpp"
+#include "heldout.hpp"
 #include "monotone.hpp"
 #include "objective.hpp"
+#include "refine.hpp"
 #include "start.hpp"
 
 namespace lensprof {
 namespace {
 
 constexpr int kStartModes = 5;  // enough to tell the starts apart
-constexpr uint32_t kStartPairs = 800, kStartPairsPerImage = 10;
-constexpr uint32_t kSmallestHeldout = 20;
 
-// Every fifth pair or track is left out, by a hash of its number: independent of order along images, same every time.
-bool is_heldout(uint32_t p) {
-    uint64_t x = p + 0x9e3779b97f4a7c15ull;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-    return (x ^ (x >> 31)) % 5 == 0;
-}
-
-struct Split {
-    std::vector<uint32_t> all, train, heldout, few;
-};
-
-Split split_items(uint32_t count, uint32_t images) {
-    Split split;
-    for (uint32_t p = 0; p < count; p++) {
-        split.all.push_back(p);
-        (is_heldout(p) ? split.heldout : split.train).push_back(p);
-    }
-    uint32_t wanted = std::max(kStartPairs, kStartPairsPerImage * images);
-    uint32_t step = std::max(1u, static_cast<uint32_t>(split.train.size()) / wanted);
-    for (size_t i = 0; i < split.train.size(); i += step) split.few.push_back(split.train[i]);
-    return split;
-}
-
-// A fit to the training data, and what every held-out pair or track costs under it at a noise level common to all
-// candidates.
-struct Candidate {
+// A fit to the training data.
+struct Candidate : HeldoutLoss {
     Estimate estimate;
-    std::vector<double> losses;
-    double mean = 0.0;
 };
-
-// Mean and standard error of the difference of two candidates' held-out losses.
-double loss_difference(const Candidate &a, const Candidate &b, double &standard_error) {
-    double difference = a.mean - b.mean, sum2 = 0.0;
-    auto n = static_cast<double>(a.losses.size());
-    for (size_t p = 0; p < a.losses.size(); p++) {
-        double d = a.losses[p] - b.losses[p] - difference;
-        sum2 += d * d;
-    }
-    standard_error = std::sqrt(sum2 / (n * (n - 1.0)));
-    return difference;
-}
 
 class Fit {
 public:
@@ -71,10 +30,10 @@ public:
     Fit(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count, Make make,
         uint32_t count)
         : options_(options), images_(images), image_count_(image_count), problem_(std::move(make)),
-          split_(split_items(count, image_count)),
+          split_(split_pairs(count, image_count)),
           all_(problem_(split_.all)), gauge_(options, all_) {
-        if (split_.heldout.size() >= kSmallestHeldout) heldout_ = problem_(split_.heldout);
-        has_heldout_ = heldout_.pairs.size() >= kSmallestHeldout;
+        if (split_.has_heldout()) heldout_ = problem_(split_.heldout);
+        has_heldout_ = heldout_.pairs.size() >= kFewestHeldout;
         train_ = problem_(has_heldout_ ? split_.train : split_.all);
         control_.max_iterations = static_cast<int>(options.max_iterations);
         control_.cancelled = [this] {
@@ -98,13 +57,10 @@ private:
     Estimate best_start(int modes);
     void reconsider(const Problem &problem, const Loss &used, Estimate &estimate);
     Candidate candidate(const Estimate &from, int modes);
-    void measure(Candidate &candidate) const;
     void refine(const Problem &problem, Loss &used, Estimate &estimate);
     bool is_better_refined(const Candidate &best, const Loss &used, Candidate &refined);
     Candidate choose_modes(const Estimate &start);
     void choose_vignettings(Candidate &best);
-    void describe(const Estimate &train, const Estimate &estimate, const Loss &used, lensprof_fit_result &result);
-    void write_exposures(const Estimate &estimate, lensprof_exposure *exposures) const;
 
     const lensprof_fit_options &options_;
     const lensprof_fit_image *images_;
@@ -165,16 +121,9 @@ Candidate Fit::candidate(const Estimate &from, int modes) {
     brief.max_iterations = std::min(control_.max_iterations, 12);
     Loss used = common_;
     solve(train_, prior_, gauge_, used, false, brief, result.estimate);
-    measure(result);
+    static_cast<HeldoutLoss &>(result) = heldout_loss(heldout_, result.estimate, common_);
     done_ = std::min(0.75, done_ + 0.08);
     return result;
-}
-
-// What the held-out pairs cost.
-void Fit::measure(Candidate &candidate) const {
-    candidate.losses = all_costs(heldout_, common_, candidate.estimate);
-    candidate.mean = std::accumulate(candidate.losses.begin(), candidate.losses.end(), 0.0)
-                     / static_cast<double>(candidate.losses.size());
 }
 
 // Frees the response of its modes, once at the noise that they left and once at the noise that is left then.
@@ -188,12 +137,11 @@ void Fit::refine(const Problem &problem, Loss &used, Estimate &estimate) {
 
 // Whether held-out pairs are not worse by more than a standard error for a response free of its modes.
 bool Fit::is_better_refined(const Candidate &best, const Loss &used, Candidate &refined) {
-    Candidate modes{best.estimate, {}, 0.0};
-    measure(modes);
+    HeldoutLoss modes = heldout_loss(heldout_, best.estimate, common_);
     refined.estimate = best.estimate;
     Loss own = used;
     refine(train_, own, refined.estimate);
-    measure(refined);
+    static_cast<HeldoutLoss &>(refined) = heldout_loss(heldout_, refined.estimate, common_);
     double error, difference = loss_difference(refined, modes, error);
     return difference < error;
 }
@@ -305,53 +253,14 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     r.converged = outcome.converged;
     std::vector<lensprof_fit_image_quality> own(image_count_);
     if (!r.image_quality) r.image_quality = own.data();
-    describe(best.estimate, estimate, used, r);
+    describe_model(all_, estimate, r);
+    describe_heldout(has_heldout_ ? heldout_ : all_, best.estimate, has_heldout_, r);
+    describe_quality(all_, prior_, gauge_, used, estimate, r);
     judge(all_, estimate, r);
     r.image_quality = result.image_quality;
-    write_exposures(estimate, exposures);
+    write_exposures(all_, estimate, exposures);
     r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     result = r;
-}
-
-void Fit::write_exposures(const Estimate &estimate, lensprof_exposure *exposures) const {
-    for (uint32_t i = 0; i < image_count_; i++) {
-        const auto &a = estimate.log_exposure[i];
-        const lensprof_exposure given = given_exposure(images_, i);
-        size_t green = options_.channels == 3 ? 1 : 0;
-        exposures[i] = given;
-        if (all_.ev_unknown[i] >= 0)
-            exposures[i].ev = std::clamp(
-                (a[green] - (green ? std::log(given.white_balance[1]) : 0.0)) / std::log(2.0), -64.0, 64.0);
-        for (size_t c : {0, 2})
-            if (all_.balance_unknown[i][c] >= 0)
-                exposures[i].white_balance[c] =
-                    std::clamp(std::exp(a[c] - a[1]) * given.white_balance[1], 1e-6, 1e6);
-    }
-}
-
-void set_result_response(const Estimate &estimate, lensprof_response &response) {
-    if (estimate.modes < 0) response = estimate.fixed;
-    else if (lensprof_response_set_emor(&response, estimate.emor.data(), static_cast<uint32_t>(estimate.modes))
-             != LENSPROF_OK)
-        throw std::runtime_error("the fitted response is not monotone");
-}
-
-void Fit::describe(const Estimate &train, const Estimate &estimate, const Loss &used, lensprof_fit_result &r) {
-    set_result_response(estimate, r.response);
-    r.vignettings = static_cast<uint32_t>(all_.vignettings);
-    for (size_t c = 0; c < 3; c++) r.vignetting[c] = estimate.vignetting[all_.vignettings == 3 ? c : 0];
-    r.pairs = static_cast<uint32_t>(all_.pairs.size());
-
-    const Problem &tested = has_heldout_ ? heldout_ : all_;
-    Summary summary = summarise(residual_levels(tested, train));
-    r.heldout_rms = has_heldout_ ? summary.rms : LENSPROF_UNKNOWN;
-    r.heldout_median = has_heldout_ ? summary.median : LENSPROF_UNKNOWN;
-    std::vector<double> before;
-    for (const auto &pair : tested.pairs)
-        for (int c = 0; c < tested.channels; c++)
-            before.push_back(255.0 * std::abs(pair.value[0][c] - pair.value[1][c]));
-    r.before_rms = summarise(before).rms;
-    describe_quality(all_, prior_, gauge_, used, estimate, r);
 }
 
 }  // namespace

@@ -212,11 +212,22 @@ void set_table(Estimate &estimate, const double *curve) {
     f.front() = 0.0, f.back() = 1.0;
     for (size_t j = 1; j < f.size(); j++) f[j] = std::max(f[j], f[j - 1] + kSmallestRise);
     for (size_t j = f.size() - 1; j-- > 1;) f[j] = std::min(f[j], f[j + 1] - kSmallestRise);
-    estimate.curve.renew_guide();
-    estimate.modes = -1;
+    set_fixed(estimate, table_response(estimate));
     estimate.is_refined = true;
-    if (lensprof_response_set_table(&estimate.fixed, f.data(), LENSPROF_RESPONSE_SAMPLES) != LENSPROF_OK)
-        throw std::runtime_error("the refined response is not monotone");
+}
+
+void set_fixed(Estimate &estimate, const lensprof_response &response) {
+    estimate.modes = -1;
+    estimate.fixed = response;
+    std::copy(response.table, response.table + LENSPROF_RESPONSE_SAMPLES, estimate.curve.table.begin());
+    estimate.curve.renew_guide();
+}
+
+lensprof_response table_response(const Estimate &estimate) {
+    lensprof_response response;
+    if (lensprof_response_set_table(&response, estimate.curve.table.data(), LENSPROF_RESPONSE_SAMPLES) != LENSPROF_OK)
+        throw std::runtime_error("a curve that falls was to be a response");
+    return response;
 }
 
 Eigen::VectorXd shared_vector(const Estimate &estimate) {

@@ -113,6 +113,12 @@ void set_response(Estimate &estimate, const double *emor, int modes);
 // Makes the response of an estimate a table of 1024 samples, as nearly `curve` as one that rises everywhere can be.
 void set_table(Estimate &estimate, const double *curve);
 
+// Holds a response: modes is -1 then, and `curve` its table.
+void set_fixed(Estimate &estimate, const lensprof_response &response);
+
+// The curve of an estimate as a response of its own.
+lensprof_response table_response(const Estimate &estimate);
+
 // The full shared vector of an estimate, and back.
 Eigen::VectorXd shared_vector(const Estimate &estimate);
 void set_shared(Estimate &estimate, const Eigen::VectorXd &full, int vignettings);

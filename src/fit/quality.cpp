@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 #include "pattern.hpp"
 #include "residual.hpp"
@@ -156,18 +157,61 @@ Summary summarise(std::vector<double> values) {
     return summary;
 }
 
+void describe_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    if (estimate.modes < 0)
+        r.response = estimate.fixed;
+    else if (lensprof_response_set_emor(&r.response, estimate.emor.data(), static_cast<uint32_t>(estimate.modes))
+             != LENSPROF_OK)
+        throw std::runtime_error("the fitted response is not monotone");
+    r.vignettings = static_cast<uint32_t>(problem.vignettings);
+    for (size_t c = 0; c < 3; c++) r.vignetting[c] = estimate.vignetting[problem.vignettings == 3 ? c : 0];
+    r.pairs = static_cast<uint32_t>(problem.pairs.size());
+}
+
+void describe_heldout(const Problem &tested, const Estimate &train, bool is_heldout, lensprof_fit_result &r) {
+    Summary summary = summarise(residual_levels(tested, train));
+    r.heldout_rms = is_heldout ? summary.rms : LENSPROF_UNKNOWN;
+    r.heldout_median = is_heldout ? summary.median : LENSPROF_UNKNOWN;
+    std::vector<double> before;
+    for (const auto &pair : tested.pairs)
+        for (int c = 0; c < tested.channels; c++)
+            before.push_back(255.0 * std::abs(pair.value[0][c] - pair.value[1][c]));
+    r.before_rms = summarise(before).rms;
+}
+
 void describe_quality(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
                       const Estimate &estimate, lensprof_fit_result &r) {
     Loss final = loss;
     final.noise = estimate_noise(problem, estimate, loss.noise);
     Covariance found = covariance(problem, prior, gauge, final, estimate);
+    describe_quality(problem, gauge, final.noise, found, estimate, r);
+}
+
+void describe_quality(const Problem &problem, const Gauge &gauge, double noise, const Covariance &found,
+                      const Estimate &estimate, lensprof_fit_result &r) {
     r.components = problem.component_count();
     r.gamma_from = gauge.from();
     r.gamma_sigma = gauge.from() == LENSPROF_GAMMA_NONE ? LENSPROF_UNKNOWN : gauge.sigma();
-    describe_residuals(problem, estimate, final.noise, r);
+    describe_residuals(problem, estimate, noise, r);
     count_coverage(problem, estimate, r);
     describe_images(problem, gauge, estimate, found, r);
     describe_covariance(problem, gauge, estimate, found, r);
+}
+
+void write_exposures(const Problem &problem, const Estimate &estimate, lensprof_exposure *exposures) {
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        const auto &a = estimate.log_exposure[i];
+        const lensprof_exposure given = given_exposure(problem.images, i);
+        auto green = static_cast<size_t>(problem.measured_channel());
+        exposures[i] = given;
+        if (problem.ev_unknown[i] >= 0)
+            exposures[i].ev =
+                std::clamp((a[green] - (green ? std::log(given.white_balance[1]) : 0.0)) / kLn2, -64.0, 64.0);
+        for (size_t c : {0, 2})
+            if (problem.balance_unknown[i][c] >= 0)
+                exposures[i].white_balance[c] =
+                    std::clamp(std::exp(a[c] - a[1]) * given.white_balance[1], 1e-6, 1e6);
+    }
 }
 
 }  // namespace lensprof

@@ -73,8 +73,9 @@ struct Stepper {
     }
 };
 
-// Largest change of what a user sees: grey value of the response, falloff, log exposure.
-double change(const Estimate &a, const Estimate &b) {
+}  // namespace
+
+double largest_change(const Estimate &a, const Estimate &b) {
     double largest = 0.0;
     for (size_t j = 0; j < a.curve.table.size(); j += 31)
         largest = std::max(largest, std::abs(a.curve.table[j] - b.curve.table[j]));
@@ -89,8 +90,6 @@ double change(const Estimate &a, const Estimate &b) {
             largest = std::max(largest, std::abs(a.log_exposure[i][c] - b.log_exposure[i][c]));
     return largest;
 }
-
-}  // namespace
 
 Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &loss, bool refine_noise,
               const Control &control, Estimate &estimate) {
@@ -113,9 +112,9 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
             bool improved = stepper.step(estimate, outcome.cost);
             bool flat = stepper.steps > 1 && last - outcome.cost < control.flat;
             if (!improved && !stepper.is_solved) return outcome;
-            outcome.converged = !improved || flat || change(previous, estimate) < kStill;
+            outcome.converged = !improved || flat || largest_change(previous, estimate) < kStill;
         }
-        if (outcome.iterations >= control.max_iterations || change(before, estimate) < 5 * kStill) break;
+        if (outcome.iterations >= control.max_iterations || largest_change(before, estimate) < 5 * kStill) break;
     }
     return outcome;
 }

@@ -25,6 +25,9 @@ struct Outcome {
     bool converged = false;
 };
 
+// Largest change of what a user sees: grey value of the response, falloff, log exposure.
+double largest_change(const Estimate &a, const Estimate &b);
+
 // Improves `estimate` (feasible, `modes` modes) until it no longer moves. Between rounds the noise weights and what is
 // known of gamma and exposures are renewed, and with `refine_noise` in the first rounds the noise level too
 // (loss.noise): every round minimises one fixed objective.

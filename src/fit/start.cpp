@@ -210,11 +210,11 @@ std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit
         starts.push_back(std::move(start));
     };
     if (!(options.free & LENSPROF_FREE_RESPONSE) || modes == 0) {
-        base.modes = -1;
-        if (options.response) base.fixed = *options.response;
-        else if (lensprof_response_set_emor(&base.fixed, nullptr, 0) != LENSPROF_OK)
-            lensprof_response_set_linear(&base.fixed);
-        std::copy(base.fixed.table, base.fixed.table + LENSPROF_RESPONSE_SAMPLES, base.curve.table.begin());
+        lensprof_response held;
+        if (options.response) held = *options.response;
+        else if (lensprof_response_set_emor(&held, nullptr, 0) != LENSPROF_OK)
+            lensprof_response_set_linear(&held);
+        set_fixed(base, held);
         add(nullptr);
         return starts;
     }
