@@ -6,6 +6,7 @@
 #include "overlap.hpp"
 #include "residual.hpp"
 #include "tracks.hpp"
+#include "transfer_function.hpp"
 
 using namespace lensprof;
 
@@ -29,8 +30,6 @@ lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_coun
                     "fit options: channels 1 or 3, reference < images, modes 0..25 or automatic, Huber 0..255 levels, "
                     "prior weight >= 0, iterations 1..1000000, flags of the shared unknowns only, vignettings 0, 1 or "
                     "3, gamma automatic or from prior or exposures, a known kind of camera and method, refine 0 or 1");
-    if (o.method == LENSPROF_METHOD_TRANSFER_FUNCTION)
-        return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: this version has no method TRANSFER_FUNCTION");
     lensprof_status status = lensprof_vignetting_validate(&o.vignetting);
     if (status != LENSPROF_OK)
         return fail(status, error, "fit options: the given vignetting is not positive and finite");
@@ -211,6 +210,10 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
     return run(*options, images, image_count, error, [&] {
         if (options->method == LENSPROF_METHOD_TRANSFER) {
             fit_overlap(*options, images, image_count, pairs, pair_count, exposures, *result);
+            return LENSPROF_OK;
+        }
+        if (options->method == LENSPROF_METHOD_TRANSFER_FUNCTION) {
+            fit_transfer_functions(*options, images, image_count, pairs, pair_count, exposures, *result);
             return LENSPROF_OK;
         }
         std::vector<lensprof_observation> observations = observations_of(pairs, pair_count);

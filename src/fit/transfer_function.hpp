@@ -1,0 +1,13 @@
+// Response and exposures from the brightness transfer functions of image pairs (Kim & Pollefeys 2004), the falloff by
+// alternation: from checked input to result.
+#pragma once
+
+#include <lensprof/fit.h>
+
+namespace lensprof {
+
+void fit_transfer_functions(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                            const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
+                            lensprof_fit_result &result);
+
+}  // namespace lensprof
