@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 
 #include "heldout.hpp"
 #include "jackknife.hpp"
@@ -18,6 +19,7 @@ constexpr uint32_t kFalloff123 = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_
 constexpr int kFirstModes = 5;      // of the fits that look for falloff and gauge
 constexpr int kFirstRounds = 6, kCandidateRounds = 2, kAgainRounds = 4, kLastRounds = 20;
 constexpr double kStill = 1e-3;     // nothing a user sees moves by more in a round
+constexpr double kSmallestSpread = 0.15;  // EV between pictures that overlap, root mean square
 constexpr double kHalf = 128.0 / 255.0;
 const double kPaperGrey = std::log(0.5);  // g(128) where nothing settles gamma (section 2.4)
 
@@ -91,6 +93,7 @@ private:
     Candidate choose_modes(const State &start);
     void choose_vignettings(Candidate &best);
     Estimate in_emor(const State &state) const;
+    void judge_exposures(const State &state, lensprof_fit_result &result) const;
     Covariance scatter(const State &state);
 
     const lensprof_fit_options &options_;
@@ -246,6 +249,26 @@ Estimate Fit::in_emor(const State &state) const {
     return estimate;
 }
 
+// Transfer functions of pictures that are exposed alike are the identity, whatever the response.
+void Fit::judge_exposures(const State &state, lensprof_fit_result &r) const {
+    if ((!r.usable && r.converged) || !is_free_) return;  // alike, they do not settle either
+    double sum = 0.0, count = 0.0;
+    for (const Edge &edge : all_.edges)
+        for (size_t c = 0; c < static_cast<size_t>(all_.channels); c++) {
+            const auto &a = state.estimate.log_exposure;
+            auto pairs = static_cast<double>(edge.last - edge.first);
+            sum += pairs * std::pow(a[edge.image[0]][c] - a[edge.image[1]][c], 2);
+            count += pairs;
+        }
+    double usual = std::sqrt(sum / std::max(count, 1.0)) / std::log(2.0);
+    if (usual >= kSmallestSpread) return;
+    r.usable = 0;
+    std::snprintf(r.reason, sizeof r.reason,
+                  "the pictures that overlap differ by %.2f EV, which shows transfer functions no response; take "
+                  "pictures of other exposures, hold a response that is known, or use the method transfer",
+                  usual);
+}
+
 Covariance Fit::scatter(const State &state) {
     return jackknife(
         all_, pair_count_,
@@ -299,6 +322,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     describe_heldout(split_.has_heldout() ? heldout_ : all_, best.state.estimate, split_.has_heldout(), r);
     describe_quality(all_, gauge_, estimate_noise(all_, estimate, common_.noise), found, estimate, r);
     judge(all_, estimate, r);
+    judge_exposures(last, r);
     r.image_quality = result.image_quality;
     write_exposures(all_, estimate, exposures);
     r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

@@ -18,7 +18,7 @@ constexpr double kSmallestNoise = 0.25;  // levels: that of rounding
 constexpr double kEnds = 2.0;         // sigmas from black and white where the mean of what is left is off
 
 // Fewer and wider bins where pairs are sparse; deeper data than 8 bit fall into bins of 8 bit.
-int bins_for(size_t pairs) { return pairs >= 4000 ? kLevels : pairs >= 500 ? kLevels / 2 : kLevels / 4; }
+int bins_for(size_t pairs) { return pairs >= 4000 ? kLevels : pairs >= 500 ? kLevels / 2 : pairs >= 100 ? kLevels / 4 : kLevels / 8; }
 
 // Irradiance behind a grey value, of a response that is fixed for the moment.
 double evened(const Estimate &estimate, double value, double ratio) {
@@ -74,9 +74,10 @@ struct SmoothTransfer {
     }
 };
 
-// A pair beside the curve: its nearest point there, and its distance.
+// A pair beside the curve: how far along the curve its nearest point lies (both its levels added up: a steep curve is
+// then told as finely as a flat one), and its distance.
 struct Beside {
-    double foot;
+    double along;
     double distance;
 };
 
@@ -89,7 +90,7 @@ Beside beside(const SmoothTransfer &transfer, const LevelPair &pair) {
     }
     off = pair[1] - transfer.at(foot, slope);
     double distance = (off - slope * (pair[0] - foot)) / std::sqrt(1.0 + slope * slope);
-    return {foot, distance};
+    return {foot + transfer.at(foot, slope), distance};
 }
 
 double median(std::vector<double> values) {
@@ -98,8 +99,8 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-// Mean of the pairs whose nearest point of the path lies at each level, pairs off the curve left out: across the curve
-// and not along an axis, so that noise in both values does not tilt it. What lies by the ends of `range` is left out.
+// Mean of the pairs whose nearest points of the path lie together, pairs off the curve left out: across the curve and
+// not along an axis, so that noise in both values does not tilt it. What lies by the ends of `range` is left out.
 void add_means(const SmoothTransfer &transfer, const std::vector<LevelPair> &pairs, bool is_swapped, double reach,
                const double range[2], TransferCurve &curve) {
     std::vector<Beside> besides;
@@ -113,12 +114,12 @@ void add_means(const SmoothTransfer &transfer, const std::vector<LevelPair> &pai
     struct Sum {
         double weight = 0.0, level[2] = {0.0, 0.0};
     };
-    std::array<Sum, kLevels> sums;
+    std::array<Sum, 2 * kLevels> sums;
     for (size_t p = 0; p < pairs.size(); p++) {
         double z = besides[p].distance / (kNear * noise);
         if (std::abs(z) >= 1.0) continue;
         double weight = (1.0 - z * z) * (1.0 - z * z);
-        Sum &sum = sums[static_cast<size_t>(std::lround(besides[p].foot))];
+        Sum &sum = sums[static_cast<size_t>(std::clamp(std::lround(besides[p].along), 0l, 2l * kLevels - 1))];
         sum.weight += weight;
         for (size_t side = 0; side < 2; side++) sum.level[side] += weight * pairs[p][side];
     }
