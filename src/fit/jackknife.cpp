@@ -48,9 +48,11 @@ Covariance jackknife(const Problem &problem, uint32_t pair_count,
     }
     for (const Estimate &one : found) {
         Eigen::VectorXd off = shared_vector(one) - shared, own = image_vector(problem, one) - images;
-        result.shared += scale * off * off.transpose();
-        result.images += scale * own.cwiseAbs2();
+        result.shared += off * off.transpose();  // symmetric to the bit, which scale * off * off' is not
+        result.images += own.cwiseAbs2();
     }
+    result.shared *= scale;
+    result.images *= scale;
     result.is_determined = result.shared.allFinite() && result.images.allFinite();
     return result;
 }

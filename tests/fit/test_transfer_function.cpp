@@ -26,6 +26,10 @@ FitRun checked_fit(const Simulation &s, const lensprof_fit_options &options) {
     assert_true(is_monotone(run.result.response));
     assert_ok(lensprof_response_validate(&run.result.response));
     assert_ok(lensprof_vignetting_validate(&run.result.vignetting[0]));
+    uint32_t n = run.result.covariance_size;
+    for (uint32_t i = 0; i < n; i++)
+        for (uint32_t j = 0; j < i; j++)
+            assert_true(run.result.covariance[i * n + j] == run.result.covariance[j * n + i]);
     return run;
 }
 

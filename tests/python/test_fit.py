@@ -43,6 +43,14 @@ class WholeWay(unittest.TestCase):
         np.testing.assert_allclose(self.result.vignetting[0].eval(r2) ** (1 / self.gamma),
                                    true_profile().vignetting[0].eval(r2), atol=0.02)
 
+    def test_by_transfer_functions(self):
+        options = lp.FitOptions()
+        options.method = lp.Method.TRANSFER_FUNCTION
+        result = lp.fit_overlap(fit_images(), self.pairs, options)
+        self.assertTrue(result.usable, result.reason)
+        found, true = result.exposures["ev"], np.array(EXPOSURES)
+        np.testing.assert_allclose(found * ((true @ true) / (true @ found)), true, atol=0.05)
+
     def test_statistics(self):
         result = self.result
         self.assertGreater(result.before_rms, 10)
