@@ -8,6 +8,12 @@
  *     B1 - f( g(B2) s1/s2 )   and   B2 - f( g(B1) s2/s1 ),      s = M e w            (equations 5, 8, 10)
  * over one response f (EMoR), one vignetting M and the exposure and white balance of every image.
  *
+ * Method `transfer-function` (Kim & Pollefeys 2004): the most likely brightness transfer function of every image pair
+ * and channel, from its joint histogram; then linear least squares for ln f^-1 and the log exposures (equations 5 to
+ * 13), the vignetting by alternation. Here `modes` counts components of ln f^-1, and the result's response has all EMoR
+ * modes; SQUARED loss is the paper's variant, iterations are rounds. Pictures that differ by less than 0.15 EV are
+ * not usable.
+ *
  * Threads: calls are independent. One call uses as many threads as its options say, all gone when it returns; progress
  * is told on the caller's. The result does not depend on their number: same input, same bytes.
  */
