@@ -3,14 +3,9 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <set>
 
-#include "contact_sheet.hpp"
-#include "interrupt.hpp"
-#include "picture.hpp"
-#include "progress.hpp"
+#include "correction.hpp"
 #include "project.hpp"
-#include "report.hpp"
 #include "run.hpp"
 
 namespace lensprof {
@@ -42,14 +37,6 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("FILES", o.files, "pictures; with --pto default all of the project");
 }
 
-/* What is done to one picture. */
-struct Job {
-    std::string source, target;
-    std::shared_ptr<const lensprof_profile> model;
-    lensprof_exposure exposure;
-    int64_t profile_id = 0;
-};
-
 std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
     auto profile = std::make_shared<lensprof_profile>();
     lensprof_profile_init(profile.get());
@@ -66,7 +53,7 @@ uint32_t image_of_file(const Project &project, const std::string &file) {
                   file + ": is not a picture of " + project.path + "; leave it out or leave --pto out");
 }
 
-void look_up(lensprof_store *store, const Options &o, Job &job) {
+void look_up(lensprof_store *store, const Options &o, Correction &job) {
     auto profile = std::make_shared<lensprof_profile>();
     lensprof_error error{};
     job.profile_id = o.profile;
@@ -103,22 +90,6 @@ void check_shape(const Project &project, uint32_t image, const std::string &file
                                    camera.height));
 }
 
-void check_targets(const Options &o, const std::vector<Job> &jobs) {
-    std::set<std::string> seen;
-    for (const Job &job : jobs) {
-        read_header(job.source);  /* an unreadable picture shows before anything is written */
-        if (is_same_file(job.source, o.sheet) || job.target == o.sheet)
-            throw Failure(ExitCode::usage,
-                          o.sheet + ": the contact sheet would overwrite a picture; give it another name");
-        if (is_same_file(job.source, job.target))
-            throw Failure(ExitCode::usage,
-                          job.source + ": would be overwritten by its correction; give another folder with -o");
-        if (!seen.insert(job.target).second)
-            throw Failure(ExitCode::usage,
-                          job.target + ": two pictures would get this name; correct them one folder at a time");
-    }
-}
-
 /* One response and one falloff are applied to all images. */
 void check_one_result(const Project &project) {
     const auto &first = project.images[project.reference];
@@ -130,18 +101,6 @@ void check_one_result(const Project &project) {
             throw Failure(ExitCode::usage, project.path + ": image " + std::to_string(i) + " (" + project.names[i]
                           + ") has a response or falloff of its own; correct one lens at a time");
     }
-}
-
-/* Geometric mean of exposures and white balances: Goldman & Chen, equation 15. */
-lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures) {
-    lensprof_exposure mean{};
-    double logs[3] = {0, 0, 0}, share = 1.0 / static_cast<double>(exposures.size());
-    for (const auto &e : exposures) {
-        mean.ev += e.ev * share;
-        for (int c = 0; c < 3; c++) logs[c] += std::log(e.white_balance[c]) * share;
-    }
-    for (int c = 0; c < 3; c++) mean.white_balance[c] = std::exp(logs[c]);
-    return mean;
 }
 
 /* A project without a result would change nothing, which nobody asks for on purpose. */
@@ -157,7 +116,7 @@ void check_has_result(const Project &project) {
 }
 
 /* The pictures, and in `mean` what --output-exposure mean makes them like. */
-std::vector<Job> make_jobs(const Options &o, lensprof_exposure &mean) {
+std::vector<Correction> make_jobs(const Options &o, lensprof_exposure &mean) {
     if (o.profile && o.from_db) throw Failure(ExitCode::usage, "--profile and --from-db contradict each other");
     bool from_store = o.profile || o.from_db;
     if (!from_store && o.pto.empty())
@@ -177,55 +136,24 @@ std::vector<Job> make_jobs(const Options &o, lensprof_exposure &mean) {
     std::vector<std::string> files = o.files.empty() && project ? project->files : o.files;
     if (files.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
     Store store = from_store ? open_store(o.db, LENSPROF_STORE_READ) : Store();
-    std::vector<Job> jobs;
+    std::vector<Correction> jobs;
     for (const std::string &file : files) {
-        Job job{file, target_name(o, file), model, {}, 0};
-        lensprof_exposure_init(&job.exposure);
+        Correction job{file, target_name(o, file), model, {}, {}, 0};
+        lensprof_exposure_init(&job.own);
         if (project) {
             uint32_t image = image_of_file(*project, file);
             check_shape(*project, image, file);
-            job.exposure = exposures[image];
+            job.own = exposures[image];
         }
         if (from_store) look_up(store.get(), o, job);
         jobs.push_back(job);
     }
-    check_targets(o, jobs);
+    check_targets(jobs, o.sheet);
     if (model) {
         check_has_result(*project);
         check_one_result(*project);
     }
     return jobs;
-}
-
-Picture correct(Picture &source, const Job &job, const lensprof_exposure &target, const Options &o) {
-    lensprof_apply_options options;
-    lensprof_apply_options_init(&options);
-    options.direction = o.simulate ? LENSPROF_DIRECTION_SIMULATE : LENSPROF_DIRECTION_CORRECT;
-    options.output = o.linear ? LENSPROF_ENCODING_LINEAR : LENSPROF_ENCODING_RESPONSE;
-    options.frame_width = source.frame_width;
-    options.frame_height = source.frame_height;
-    options.source_sample = source.sample;
-    options.source_layout = source.layout;
-    options.target_sample = o.linear ? static_cast<uint32_t>(LENSPROF_SAMPLE_F32) : source.sample;
-    options.responses = job.model->responses;
-    options.vignettings = job.model->vignettings;
-    options.response = job.model->response;
-    options.vignetting = job.model->vignetting;
-    options.grid = &job.model->grid;
-    options.source = job.exposure;
-    options.target = target;
-    std::vector<uint64_t> memory(lensprof_plan_bytes(&options) / 8 + 1);
-    const lensprof_plan *plan = nullptr;
-    check(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan), job.source);
-
-    Picture result = source;
-    result.sample = options.target_sample;
-    result.row_bytes = static_cast<size_t>(result.width) * lensprof_layout_samples(result.layout)
-        * lensprof_sample_bytes(result.sample);
-    result.pixels.assign(result.row_bytes * result.height, 0);
-    lensprof_image from = source.view(), to = result.view();
-    check(lensprof_apply(plan, &from, &to, 0, 0), job.source);
-    return result;
 }
 
 }  // namespace
@@ -238,33 +166,14 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
     lensprof_exposure mean, reference;
     lensprof_exposure_init(&mean);
     lensprof_exposure_init(&reference);
-    std::vector<Job> jobs = make_jobs(o, mean);
+    std::vector<Correction> jobs = make_jobs(o, mean);
     if (o.exposure.empty()) o.exposure = o.pto.empty() ? "keep" : "mean";
-    std::error_code error;
-    std::filesystem::create_directories(o.output, error);
-    if (error) throw Failure(ExitCode::failed, o.output + ": cannot be made: " + error.message());
+    make_folder(o.output);
 
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;
-    Json written = Json::array();
-    for (size_t i = 0; i < jobs.size(); i++) {
-        stop_if_interrupted();
-        progress.update("correcting", static_cast<double>(i) / static_cast<double>(jobs.size()));
-        const Job &job = jobs[i];
-        Picture before = read_picture(job.source);
-        check_finite(before, job.source);
-        const auto &target = o.exposure == "keep" ? job.exposure : o.exposure == "mean" ? mean : reference;
-        Picture after = correct(before, job, target, o);
-        WriteOptions write;
-        write.metadata_from = job.source;
-        if (!write_picture(job.target, after, write))
-            streams.err << "lensprof: warning: " << job.target
-                        << ": written without EXIF, which this kind of file cannot hold here\n";
-        if (!o.sheet.empty()) sheet.add(before, after);
-        Json entry = {{"file", job.source}, {"output", job.target}};
-        if (job.profile_id) entry["profile"] = job.profile_id;
-        written.push_back(entry);
-    }
+    for (Correction &job : jobs) job.wanted = o.exposure == "keep" ? job.own : o.exposure == "mean" ? mean : reference;
+    Json written = write_corrected(jobs, {o.simulate, o.linear}, o.sheet.empty() ? nullptr : &sheet, progress, streams);
     progress.clear();
     if (!o.sheet.empty()) sheet.write(o.sheet);
     if (o.json) {

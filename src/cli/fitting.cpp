@@ -22,6 +22,12 @@ uint32_t modes_of(const std::string &text) {
     return static_cast<uint32_t>(value);
 }
 
+uint32_t method_of_name(const std::string &name) {
+    return name == "radiance"            ? LENSPROF_METHOD_RADIANCE
+           : name == "transfer-function" ? LENSPROF_METHOD_TRANSFER_FUNCTION
+                                         : LENSPROF_METHOD_TRANSFER;
+}
+
 int on_progress(double done, void *progress) {
     static_cast<Progress *>(progress)->update("fitting", done);
     return interrupted();
@@ -31,9 +37,9 @@ int on_progress(double done, void *progress) {
 
 void declare_fit(CLI::App &app, FitOptions &o) {
     app.add_option("--method", o.method,
-                   "transfer (d'Angelo 2007) or radiance (Goldman & Chen 2005: one radiance a scene point, which any "
-                   "number of pictures may see, saturated ones among them)")
-        ->check(CLI::IsMember({"transfer", "radiance"}));
+                   "transfer (d'Angelo 2007), radiance (Goldman & Chen 2005: one radiance a scene point, which any number "
+                   "of pictures may see, saturated ones among them) or transfer-function (Kim & Pollefeys 2004)")
+        ->check(CLI::IsMember({"transfer", "radiance", "transfer-function"}));
     app.add_option("--modes", o.modes, "EMoR modes of the response: 0..25 or auto (held-out error decides)");
     app.add_option("--loss", o.loss, "robust, huber (the paper's) or squared")
         ->check(CLI::IsMember({"robust", "huber", "squared"}));
@@ -58,7 +64,7 @@ void check_fit_options(const FitOptions &o) {
 lensprof_fit_options fit_options(const FitOptions &o) {
     lensprof_fit_options options;
     lensprof_fit_options_init(&options);
-    options.method = o.method == "radiance" ? LENSPROF_METHOD_RADIANCE : LENSPROF_METHOD_TRANSFER;
+    options.method = method_of_name(o.method);
     options.modes = modes_of(o.modes);
     options.loss = o.loss == "huber"     ? LENSPROF_LOSS_HUBER
                    : o.loss == "squared" ? LENSPROF_LOSS_SQUARED

@@ -25,6 +25,7 @@ const Command commands[] = {
     {"bracket", "pictures of one scene at several exposures -> the camera's response", run_bracket},
     {"flat", "pictures of a white card or another even light -> a lens profile in the database", run_flat},
     {"apply", "correct pictures with a profile or a project", run_apply},
+    {"align", "frames of a sequence -> all with one exposure and white balance", run_align},
     {"query", "look a profile up by camera, lens, focal length and aperture", run_query},
     {"profile", "list, show or remove profiles", run_profile},
     {"simulate", "render overlapping pictures with a known camera", run_simulate},

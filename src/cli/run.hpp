@@ -24,6 +24,7 @@ struct Command {
     int (*run)(const std::vector<std::string> &arguments, Streams &streams);
 };
 
+int run_align(const std::vector<std::string> &arguments, Streams &streams);
 int run_apply(const std::vector<std::string> &arguments, Streams &streams);
 int run_bracket(const std::vector<std::string> &arguments, Streams &streams);
 int run_build(const std::vector<std::string> &arguments, Streams &streams);
