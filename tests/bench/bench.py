@@ -14,9 +14,10 @@ import real
 import report
 import scale
 import speed
+import static
 import tools
 
-PARTS = ("points", "pictures", "refusals", "flat", "scale", "speed", "radiance", "real")
+PARTS = ("points", "pictures", "refusals", "flat", "static", "scale", "speed", "radiance", "real")
 
 
 def parse():
@@ -48,8 +49,8 @@ def main():
     tools.WORK.mkdir(parents=True, exist_ok=True)
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize is not installed (package hugin-tools); lensprof is alone"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
-               "points": [], "pictures": [], "refusals": [], "flat": [], "scale": [], "speed": {}, "radiance": {},
-               "real": [], "skipped": skipped}
+               "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "scale": [], "speed": {},
+               "radiance": {}, "real": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
     if "speed" in options.only:
@@ -58,6 +59,8 @@ def main():
         results["radiance"] = radiance.run_all(options.quick, say)
     if "scale" in options.only:
         results["scale"] = scale.run_all(options.quick, say)
+    if "static" in options.only:
+        results["static"] = static.run_all(options.quick, say)
     for part, of in (("points", cases.point_cases), ("pictures", cases.picture_cases),
                      ("refusals", cases.refusal_cases)):
         if part in options.only:

@@ -213,6 +213,21 @@ def scale(records):
     return lines + [""]
 
 
+def static(records):
+    if not records:
+        return []
+    lines = ["## Camera that stands still", "", "Four frames, exposures unknown, aligned to the brightest (Kim & Pollefeys"
+             " 2004, section 3.1): RMS difference summed over the channels, levels of 255, median over the seeds. The"
+             " true curve leaves rounding and noise; Debevec (OpenCV) is given the true exposures.", ""]
+    tools = [key for key in ("truth", "transfer", "transfer-function", "debevec") if key in records[0]]
+    lines += header("curve", "noise", "runs", *tools)
+    for curve, noise in sorted({(r["curve"], r["noise"]) for r in records}):
+        of = [r for r in records if (r["curve"], r["noise"]) == (curve, noise)]
+        values = [[r[key] if r[key] is not None else math.inf for r in of] for key in tools]
+        lines.append(row(curve, noise, len(of), *(number(statistics.median(v)) for v in values)))
+    return lines + [""]
+
+
 def speed(results):
     if not results:
         return []
@@ -297,5 +312,6 @@ def document(results):
     lines += accuracy("From pictures", "6 pictures of 800 x 600, 50 degrees wide, 40 % overlap, exposures within 1 EV,"
                       " noise of 2 levels, unless the case says otherwise.", results["pictures"], COSTS)
     lines += targets(results["pictures"]) + refused(results["refusals"]) + flat(results["flat"])
-    lines += scale(results["scale"]) + speed(results["speed"]) + radiance(results["radiance"]) + real(results["real"])
+    lines += static(results["static"]) + scale(results["scale"]) + speed(results["speed"])
+    lines += radiance(results["radiance"]) + real(results["real"])
     return "\n".join(lines).rstrip() + "\n"

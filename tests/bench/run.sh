@@ -3,7 +3,7 @@
 # Tables in Markdown go to standard output and build/bench/benchmarks.md, every figure to build/bench/results.json.
 #
 #   tests/bench/run.sh [--quick] [--real DIR] [--only PARTS] [--match TEXT] [--repeat N] [--jobs N] [--keep]
-#                      PARTS, with commas: points, pictures, refusals, scale, speed, radiance, real
+#                      PARTS, with commas: points, pictures, refusals, flat, static, scale, speed, radiance, real
 #   tests/bench/run.sh --self-test      the scorer against known errors; needs no program; exit 77: NumPy is missing
 #
 # LENSPROF=program measures another program than build/lensprof.
