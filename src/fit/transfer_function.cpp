@@ -19,6 +19,9 @@ constexpr uint32_t kFalloff123 = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_
 constexpr int kFirstModes = 5;      // of the fits that look for falloff and gauge
 constexpr int kFirstRounds = 6, kCandidateRounds = 2, kAgainRounds = 4, kLastRounds = 20;
 constexpr double kStill = 1e-3;     // nothing a user sees moves by more in a round
+// Paths that flip between two neighbours let the rounds cycle: a change this small that no longer falls is that.
+constexpr double kCycle = 0.03;
+constexpr int kFewestRounds = 4;
 constexpr double kSmallestSpread = 0.15;  // EV between pictures that overlap, root mean square
 constexpr double kHalf = 128.0 / 255.0;
 const double kPaperGrey = std::log(0.5);  // g(128) where nothing settles gamma (section 2.4)
@@ -194,6 +197,7 @@ int Fit::alternate(const Problem &problem, Gauge &gauge, bool settle, int rounds
                    const std::function<void()> &tell, bool &is_still) const {
     is_still = false;
     int round = 0;
+    double last = 0.0;
     while (round < rounds && !is_still) {
         tell();
         Estimate before = state.estimate;
@@ -203,7 +207,10 @@ int Fit::alternate(const Problem &problem, Gauge &gauge, bool settle, int rounds
         }
         round++;
         fit_falloff(problem, gauge, state);
-        is_still = largest_change(before, state.estimate) < kStill || (!has_falloff_ && round > 1);
+        double moved = largest_change(before, state.estimate);
+        bool cycles = round >= kFewestRounds && moved < kCycle && moved > 0.5 * last;
+        is_still = moved < kStill || cycles || (!has_falloff_ && round > 1);
+        last = moved;
     }
     return round;
 }
