@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <sstream>
 
 #include "fitting.hpp"
@@ -16,7 +17,8 @@ struct Options {
     FitOptions fit;
     StoreOptions store;
     std::vector<std::string> files;
-    std::string ev, times, balance = "free", reference;
+    std::optional<std::string> ev, times;
+    std::string balance = "free", reference;
     double ev_sigma = 0.05;
     bool modes_only = false, json = false, progress = false;
     uint32_t seed = 1, pairs = 0, max_side = 1600;
@@ -66,15 +68,15 @@ std::vector<double> numbers_of(const std::string &list, const std::string &optio
 
 /* The exposures of the command line, EV; empty when it says nothing. */
 std::vector<double> given_exposures(const Options &o) {
-    if (!o.ev.empty()) {
-        auto ev = numbers_of(o.ev, "--ev", o.files.size());
+    if (o.ev) {
+        auto ev = numbers_of(*o.ev, "--ev", o.files.size());
         for (double value : ev)
             if (std::fabs(value) > 64.0) throw Failure(ExitCode::usage, "--ev: exposures lie within 64 EV");
         return ev;
     }
     std::vector<double> ev;
-    if (o.times.empty()) return ev;
-    for (double time : numbers_of(o.times, "--times", o.files.size())) {
+    if (!o.times) return ev;
+    for (double time : numbers_of(*o.times, "--times", o.files.size())) {
         if (!(time > 1e-9 && time < 1e9)) throw Failure(ExitCode::usage, "--times: a time lies within 1e-9..1e9 s");
         ev.push_back(std::log2(time));
     }
@@ -207,7 +209,7 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     auto place = std::find(members.begin(), members.end(), report.reference);
     if (place == members.end() && !o.reference.empty())
         throw Failure(ExitCode::not_usable,
-                      o.reference + ": shows hardly anything between black and white that another picture shows, too; "
+                      project.names[report.reference] + ": shows hardly anything between black and white that another picture shows, too; "
                                     "choose another reference");
     if (place == members.end()) place = members.begin();
     report.reference = *place;
@@ -245,7 +247,7 @@ int run_bracket(const std::vector<std::string> &arguments, Streams &streams) {
     check_max_side(o.max_side);
     check_fit_options(o.fit);
     check_store_options(o.store);
-    if (!o.ev.empty() && !o.times.empty())
+    if (o.ev && o.times)
         throw Failure(ExitCode::usage, "--ev and --times say the same; give one of the two");
     try {
         return bracket_and_store(o, streams);

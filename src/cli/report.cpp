@@ -254,7 +254,8 @@ void print_gamma(const BuildReport &report, std::ostream &out) {
     if (fit.gamma_from == LENSPROF_GAMMA_PRIOR) out << " (" << camera_kind_name(report.camera_kind) << " camera)";
     if (fit.gamma_sigma > 0.0) out << format(", +- %.0f %%", 100.0 * fit.gamma_sigma);
     if (fit.gamma_from == LENSPROF_GAMMA_NONE) out << " (no prior; no +- here holds its error)";
-    out << ": the common exponent of exposure, falloff and response, which pictures leave open (docs/model.md)\n";
+    out << ": the common exponent of " << (report.has_falloff ? "exposure, falloff" : "exposure")
+        << " and response, which pictures leave open (docs/model.md)\n";
 }
 
 }  // namespace

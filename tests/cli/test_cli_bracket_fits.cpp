@@ -1,0 +1,106 @@
+/* lensprof bracket: what is recovered, on every kind of picture and knowledge of the exposures. */
+#include "bracket_runs.hpp"
+
+using namespace bracket_runs;
+
+namespace {
+
+void test_unknown_exposures(void **) {
+    const Json json = json_of(bracket(shots(five)));
+    assert_recovered(json, five, 1.5);
+    assert_string_equal(json["gamma_from"].get<std::string>().c_str(), "prior");
+}
+
+void test_exposures_of_exif(void **) {
+    const Words files = shots(five);
+    for (size_t i = 0; i < files.size(); ++i)
+        state_exposure(files[i], five[i] - 5.0);
+    const Json json = json_of(bracket(files));
+    assert_close(assert_recovered(json, five, 1.5), 1.0, 0.03);
+    assert_string_equal(json["gamma_from"].get<std::string>().c_str(), "exif");
+    const Json without = json_of(bracket(files, no_store + Words{"--exif-sigma", "0"}));
+    assert_string_equal(without["gamma_from"].get<std::string>().c_str(), "prior");
+}
+
+void test_white_balance_that_is_free_or_not(void **) {
+    const Words files = shots(three);
+    const Json fixed = json_of(bracket(files, no_store + Words{"--white-balance", "fixed"}));
+    const Json free = json_of(bracket(files, no_store + Words{"--white-balance", "free"}));
+    for (size_t i = 0; i < 3; ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            assert_close(fixed["images"][i]["white_balance"][c].get<double>(), 1.0, 0.0);
+            assert_close(free["images"][i]["white_balance"][c].get<double>(), 1.0, 0.02);
+        }
+}
+
+void test_kinds_of_pictures(void **) {
+    for (uint32_t layout : {LENSPROF_LAYOUT_GREY, LENSPROF_LAYOUT_RGB})
+        for (uint32_t sample : {LENSPROF_SAMPLE_U8, LENSPROF_SAMPLE_U16}) {
+            Shot like;
+            like.layout = layout, like.sample = sample;
+            const Json json = json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five)}));
+            assert_recovered(json, five, 1.5);
+        }
+}
+
+/* A linear camera, which the prior does not expect, and one whose curve no few modes follow. */
+void test_other_responses(void **) {
+    Shot like;
+    like.response = [](double x) { return x; };
+    like.sample = LENSPROF_SAMPLE_U16, like.noise = 0.3;
+    assert_recovered(json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five)})), five, 1.0,
+                     like.response);
+    const auto kink = [](double x) { return x < 0.5 ? 0.9 * srgb(x) / srgb(0.5) : 0.9 + 0.2 * (x - 0.5); };
+    like.response = kink;
+    const Json refined = json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five)}));
+    assert_recovered(refined, five, 1.5, kink);
+    assert_string_equal(refined["response"]["kind"].get<std::string>().c_str(), "table");
+    const Json modes =
+        json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five), "--modes-only"}));
+    assert_string_equal(modes["response"]["kind"].get<std::string>().c_str(), "emor");
+    assert_true(heldout(refined) < heldout(modes));
+}
+
+/* The camera changed its sensitivity and did not say so. */
+void test_wrong_metadata_is_said(void **) {
+    for (double wrong : {0.6, -1.0})
+        for (size_t count : {5u, 7u}) {
+            std::vector<double> truth, stated;
+            for (size_t i = 0; i < count; ++i)
+                truth.push_back(3.0 - 6.0 * double(i) / double(count - 1));
+            stated = truth;
+            const size_t which = count == 5 ? 1 : 4;
+            stated[which] += wrong;
+            const Words files = shots(truth);
+            const Json json = json_of(bracket(files, no_store + Words{"--ev", list_of(stated)}));
+            const std::string reason = json["reason"].get<std::string>();
+            if (!contains(reason, files[which]) || !contains(reason, std::to_string(std::fabs(wrong)).substr(0, 3)))
+                fail_msg("%zu pictures, %.1f EV: %s", count, wrong, reason.c_str());
+            assert_close(assert_recovered(json, truth, 1.5), 1.0, 0.05);
+        }
+}
+
+void test_exposures_of_three_pictures_contradict(void **) {
+    const Words files = shots(three);
+    for (const char *stated : {"2,0.6,-2", "3,0,-2", "2,0,-1.2"}) {
+        const Outcome outcome = run_words(bracket(files, no_store + Words{"--ev", stated}));
+        const std::string reason = Json::parse(outcome.out)["reason"].get<std::string>();
+        if (!contains(reason, "exposure"))
+            fail_msg("--ev %s: %s", stated, reason.c_str());
+    }
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_unknown_exposures),
+        CLI_TEST(test_exposures_of_exif),
+        CLI_TEST(test_white_balance_that_is_free_or_not),
+        CLI_TEST(test_kinds_of_pictures),
+        CLI_TEST(test_other_responses),
+        CLI_TEST(test_wrong_metadata_is_said),
+        CLI_TEST(test_exposures_of_three_pictures_contradict),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
