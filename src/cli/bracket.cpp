@@ -19,7 +19,7 @@ struct Options {
     std::vector<std::string> files;
     std::optional<std::string> ev, times;
     std::string balance = "free", reference;
-    double ev_sigma = 0.05;
+    double ev_sigma = 0.05, black = 0.0;
     bool modes_only = false, json = false, progress = false;
     uint32_t seed = 1, pairs = 0, max_side = 1600;
 };
@@ -34,6 +34,9 @@ void declare(CLI::App &app, Options &o) {
     declare_fit(app, o.fit);
     app.add_flag("--modes-only", o.modes_only, "keep the response to EMoR modes, also where it is better without");
     app.add_option("--reference", o.reference, "picture (number or name) whose exposure is 0 EV");
+    app.add_option("--black", o.black,
+                   "grey values up to this, levels of 255, are not used: black that is not 0, as in scanned film")
+        ->check(in_range(0.0, 200.0));
     app.add_option("--pairs", o.pairs, "number of pairs; 0 = 10000 a picture")->check(in_range(0, 1 << 24));
     app.add_option("--seed", o.seed, "of the sampling");
     app.add_option("--max-side", o.max_side,
@@ -95,7 +98,7 @@ lensprof_profile_key camera_key(const Options &o, const PictureMetadata &metadat
 }
 
 /* Values next to black and white count, too: the ends of a response are where its modes fail. */
-constexpr GreyRange every_grey{0.6 / 255.0, 254.4 / 255.0, true};
+constexpr double next_to_black = 0.6, next_to_white = 254.4; /* levels of 255 */
 
 std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, Progress &progress, BuildReport &report,
                                      uint32_t &channels) {
@@ -108,7 +111,8 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     options.sampling = LENSPROF_SAMPLING_BRACKET;
     options.pairs = o.pairs ? o.pairs : 10000 * static_cast<uint32_t>(pictures.size());
     options.seed = o.seed;
-    auto pairs = sample_pairs(project, pictures, options, every_grey, progress);
+    const GreyRange range{(o.black + next_to_black) / 255.0, next_to_white / 255.0, true};
+    auto pairs = sample_pairs(project, pictures, options, range, progress);
     report.sample_s = lap(clock);
     return pairs;
 }

@@ -17,7 +17,9 @@ constexpr double kLargestNoise = 6.0;          // levels of 255: no camera's noi
 constexpr double kLargestImageShare = 0.2;     // of residual variance that follows a map of each image's own,
 constexpr double kSuspiciousImageShare = 0.1;  // and worth a word; noise and moving things stay below
 constexpr double kContradiction = 5.0;         // standard errors between an exposure and its known value
+constexpr double kAmbiguous = 4.0;             // the same of three exposures, which have one test for all
 constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a word
+constexpr double kHarmfulPattern = 2.0;        // levels of 255 that are too much also where no falloff can be misled
 constexpr double kNotRadial = 0.3;             // share that follows one map over the frame
 constexpr double kLargestCornerSigma = 0.1;    // of M
 constexpr double kLargestEvSigma = 0.3;        // EV, gamma apart
@@ -164,6 +166,25 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
     return false;
 }
 
+// Pictures by a camera that did not move: every place is compared with itself, and the falloff cancels.
+bool is_static(const Problem &problem) {
+    return std::all_of(problem.pairs.begin(), problem.pairs.end(), [](const lensprof_pair &pair) {
+        constexpr double kSame = 0.01;  // px
+        return std::abs(pair.xy[0][0] - pair.xy[1][0]) < kSame && std::abs(pair.xy[0][1] - pair.xy[1][1]) < kSame;
+    });
+}
+
+const char *pattern_reason(bool is_static, bool is_free) {
+    if (is_static)
+        return "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no response explains: "
+               "the camera moved, the light changed between the pictures, or local tone mapping (HDR)";
+    return is_free ? "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no "
+                     "response and falloff explain: local tone mapping (HDR), or light that changed between "
+                     "the pictures"
+                   : "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which the "
+                     "response or falloff that are held do not explain; free them";
+}
+
 bool contradicts_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
     // else it is what was held that does not fit
@@ -172,14 +193,9 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
         return refuse(r, "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
                       100.0 * r.inlier_share);
     double pattern = r.noise_levels * std::sqrt(r.image_share);
-    if (r.image_share > kLargestImageShare && pattern > kSmallestPattern)
-        return refuse(r,
-                      is_free ? "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no "
-                                "response and falloff explain: local tone mapping (HDR), or light that changed between "
-                                "the pictures"
-                              : "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which the "
-                                "response or falloff that are held do not explain; free them",
-                      100.0 * r.image_share, pattern);
+    bool still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
+    if (r.image_share > kLargestImageShare && pattern > (still ? kHarmfulPattern : kSmallestPattern))
+        return refuse(r, pattern_reason(still, is_free), 100.0 * r.image_share, pattern);
     if (r.noise_levels > kLargestNoise)
         return refuse(r,
                       "the pairs scatter by %.1f levels about the best camera model; free more parameters, or check "
@@ -249,6 +265,22 @@ int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
     return odd;
 }
 
+// How far, EV, known exposures that contradict each other are at least from the truth, where there are just three: with
+// gamma open two of them agree always, so that each of the three may be the wrong one. Else 0.
+double ambiguous_contradiction(const Problem &problem, const lensprof_fit_result &r) {
+    bool is_open = r.gamma_from == LENSPROF_GAMMA_EXPOSURES || r.gamma_from == LENSPROF_GAMMA_PRIOR;
+    double chi2 = 0.0, largest = 0.0;
+    int known = 0;
+    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
+        double sigma = problem.images[i].known_ev_sigma, off = std::abs(r.image_quality[i].known_ev_residual);
+        if (!(sigma > 0.0) || problem.component[i] != problem.component[problem.reference]) continue;
+        known++;
+        chi2 += std::pow(off / std::max(sigma, kKnownSigma), 2);
+        largest = std::max(largest, off);
+    }
+    return is_open && known == 3 && chi2 > kAmbiguous * kAmbiguous ? largest : 0.0;
+}
+
 }  // namespace
 
 void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
@@ -258,12 +290,18 @@ void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result
     r.usable = 1;
     r.reason[0] = 0;
     int odd = odd_image(problem, r), contradicting = contradicting_image(problem, r);
+    double ambiguous = ambiguous_contradiction(problem, r);
     double off_centre = std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]);
     if (odd >= 0)
         say(r,
             "most pairs of image %d disagree with the camera model (median residual %.1f levels): check its place in "
             "the project, or what moved there",
             odd, r.image_quality[odd].median_residual);
+    else if (ambiguous > 0.0)
+        say(r,
+            "the known exposures contradict each other: one is wrong by more than %.1f EV, and three do not tell which; "
+            "gamma is as uncertain. Check them, or take more pictures",
+            ambiguous);
     else if (contradicting >= 0)
         say(r,
             "the exposure of image %d is %.1f EV away from its known one: one of the two is wrong, or its light changed",

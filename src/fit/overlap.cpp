@@ -212,7 +212,8 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     bool any_curves = options_.vignettings == 0 && options_.channels == 3 && (options_.free & falloff) && has_heldout_;
     int modes = options_.modes == LENSPROF_MODES_AUTO ? kStartModes : static_cast<int>(options_.modes);
 
-    bool refines = options_.refine && options_.method == LENSPROF_METHOD_TRANSFER && is_free && has_heldout_ && image_count_ <= kMostRefinedImages;
+    bool refines = options_.refine && options_.method == LENSPROF_METHOD_TRANSFER && is_free && has_heldout_
+                   && image_count_ <= kMostRefinedImages;
     const Gauge asked = gauge_;
     if (refines) gauge_ = gauge_.by_prior();
 

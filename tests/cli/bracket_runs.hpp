@@ -28,6 +28,7 @@ struct Shot {
     double noise = 1.0; /* levels of 255; white stays white */
     uint32_t width = frame_width, height = frame_height;
     std::function<double(double)> response = srgb;
+    double waves_ev = 0.0; /* of light that is elsewhere in every picture */
 };
 
 inline void save_shot(const std::string &path, const Shot &shot) {
@@ -49,7 +50,8 @@ inline void save_shot(const std::string &path, const Shot &shot) {
     for (uint32_t y = 0; y < shot.height; ++y)
         for (uint32_t x = 0; x < shot.width; ++x)
             for (uint32_t c = 0; c < channels; ++c) {
-                const double light = std::exp2(scene_ev(shot.scene, x, y, c) + shot.ev);
+                const double wave = shot.waves_ev * sin(x / 20.0 + 2.4 * shot.ev) * cos(y / 28.0 + 1.3 * shot.ev);
+                const double light = std::exp2(scene_ev(shot.scene, x, y, c) + shot.ev + wave);
                 const double grain = shot.noise / 255.0 * lp_normal(&random);
                 const double value = light >= 1.0 ? 1.0 : std::clamp(shot.response(light) + grain, 0.0, 1.0);
                 put((size_t(y) * shot.width + x) * channels + c, value);

@@ -114,7 +114,7 @@ void test_refused_options(void **) {
           Words{"--times", "1,2"}, Words{"--times", "1,2,0"}, Words{"--times", "1,2,-1"}, Words{"--times", "1,2,1/0"},
           Words{"--times", "1,2,1/-8"}, Words{"--times", "1,2,1/"}, Words{"--times", "1,2,1e-10"},
           Words{"--times", ""}, Words{"--ev-sigma", "0"}, Words{"--ev-sigma", "nan"},
-          Words{"--max-side", "10"}, Words{"--white-balance", "warm"}, Words{"--modes", "26"}, Words{"--modes", "x"},
+          Words{"--max-side", "10"}, Words{"--black", "-1"}, Words{"--black", "255"}, Words{"--white-balance", "warm"}, Words{"--modes", "26"}, Words{"--modes", "x"},
           Words{"--pairs", "-1"}, Words{"--seed", "x"}, Words{"--method", "guess"}, Words{"--gamma-from", "guess"}})
         assert_refused(usage, bracket(files, Words{"--db", work("p.db"), "--camera", "X"} + wrong), {wrong[0]});
     assert_refused(usage, bracket(files, {"--ev", "1,2,3", "--times", "1,2,3", "--no-store"}), {"--ev", "--times"});

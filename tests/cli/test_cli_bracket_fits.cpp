@@ -80,14 +80,47 @@ void test_wrong_metadata_is_said(void **) {
         }
 }
 
+/* Two of three always agree: the wrong one cannot be named, and the answer is not stated to be sure. */
 void test_exposures_of_three_pictures_contradict(void **) {
     const Words files = shots(three);
-    for (const char *stated : {"2,0.6,-2", "3,0,-2", "2,0,-1.2"}) {
-        const Outcome outcome = run_words(bracket(files, no_store + Words{"--ev", stated}));
-        const std::string reason = Json::parse(outcome.out)["reason"].get<std::string>();
-        if (!contains(reason, "exposure"))
+    for (const char *stated : {"2,0.6,-2", "2,-0.8,-2", "3,0,-2", "2.6,0,-2", "2,0,-1.2", "2,0,-2.8"}) {
+        const Json json = json_of(bracket(files, no_store + Words{"--ev", stated}));
+        const std::string reason = json["reason"].get<std::string>();
+        if (!contains(reason, "exposures contradict each other"))
             fail_msg("--ev %s: %s", stated, reason.c_str());
+        assert_true(json["gamma"]["sigma"].get<double>() > 0.05);
+        for (size_t i = 1; i < 3; ++i)
+            assert_true(std::fabs(found_ev(json, i) - (three[i] - three[0]))
+                        < 3.0 * json["images"][i]["ev_sigma"].get<double>());
     }
+    const Json right = json_of(bracket(files, no_store + Words{"--ev", "2,0.05,-2"}));
+    assert_string_equal(right["reason"].get<std::string>().c_str(), "");
+}
+
+/* Things that change from picture to picture in their own places: light, or tone mapping. */
+void test_changed_light_is_refused(void **) {
+    Shot like;
+    like.waves_ev = 0.4;
+    const Json json = json_of(bracket(shots(five, like)), not_usable);
+    const std::string reason = json["reason"].get<std::string>();
+    if (!contains(reason, "light changed") || contains(reason, "free them"))
+        fail_msg("%s", reason.c_str());
+}
+
+/* Scanned film: black is grey, and dark pictures show nothing else. */
+void test_black_that_is_not_0(void **) {
+    const auto film = [](double x) { return (16.0 + 239.0 * std::pow(x, 0.6)) / 255.0; };
+    Shot like;
+    like.response = [&](double x) { return std::max(film(x), 20.0 / 255.0); };
+    const std::vector<double> evs = {3.0, 1.5, 0.0, -1.5, -3.0, -12.0};
+    const Words files = shots(evs, like);
+    const Outcome outcome = run_words(bracket(files, no_store + Words{"--black", "24", "--ev", list_of(evs)}));
+    assert_int_equal(outcome.code, done);
+    assert_true(contains(outcome.err, files[5]) && contains(outcome.err, "left out"));
+    const Json json = Json::parse(outcome.out);
+    double worst;
+    assert_close(slope(json, five, worst), 1.0, 0.05);
+    assert_true(worst < 0.05);
 }
 
 }  // namespace
@@ -101,6 +134,8 @@ int main() {
         CLI_TEST(test_other_responses),
         CLI_TEST(test_wrong_metadata_is_said),
         CLI_TEST(test_exposures_of_three_pictures_contradict),
+        CLI_TEST(test_changed_light_is_refused),
+        CLI_TEST(test_black_that_is_not_0),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
