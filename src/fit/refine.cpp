@@ -12,7 +12,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kLevels = 255;         // unknown k - 1: the correction at grey level k of 255; the last is 0
-constexpr int kUnknown = kLevels - 1;
+constexpr int kUnknown = kCorrections;
 constexpr int kRounds = 8;           // Gauss-Newton,
 constexpr double kWorthwhile = 1.0;  // as long as a round lowers the cost by more
 constexpr double kBend = 0.002;       // levels: expected second difference of the correction from level to level,
@@ -65,6 +65,26 @@ std::array<double, LENSPROF_RESPONSE_SAMPLES> table_of(const Curve &base, const 
     return f;
 }
 
+// Columns of the unknowns: corrections, then those of the images; -1 is fixed at 0.
+int level_column(int level) { return level < kUnknown ? level : -1; }
+int image_column(int unknown) { return unknown < 0 ? -1 : kUnknown + unknown; }
+
+// D(B) - D(P) + d ln t as a sum over unknowns.
+struct Row {
+    static constexpr int kEntries = 8;
+    int column[kEntries];
+    double by[kEntries];
+};
+
+Row row_of(const Problem &problem, const lensprof_pair &pair, int c, int side, Place b, Place p) {
+    uint32_t i = pair.image[side], j = pair.image[1 - side];
+    const auto channel = static_cast<size_t>(c);
+    return {{level_column(b.low), level_column(b.low + 1), level_column(p.low), level_column(p.low + 1),
+             image_column(problem.ev_unknown[i]), image_column(problem.balance_unknown[i][channel]),
+             image_column(problem.ev_unknown[j]), image_column(problem.balance_unknown[j][channel])},
+            {1.0 - b.share, b.share, p.share - 1.0, -p.share, 1.0, 1.0, -1.0, -1.0}};
+}
+
 // The linear problem of one round: unknowns are the corrections and the changes of the images' log exposures, both from
 // where the refinement began.
 class Equations {
@@ -79,7 +99,6 @@ public:
     Eigen::VectorXd solve() const { return normal_.ldlt().solve(right_); }
 
 private:
-    static constexpr int kEntries = 8;
     void add_transfer(const lensprof_pair &pair, int c, int side, const Transfer &t, const Correction &d,
                       const Estimate &now, double weight);
 
@@ -92,8 +111,6 @@ private:
                 if (column[j] >= 0) normal_(column[i], column[j]) += weight * coefficient[i] * coefficient[j];
         }
     }
-    static int level_column(int level) { return level < kUnknown ? level : -1; }
-    static int image_column(int unknown) { return unknown < 0 ? -1 : kUnknown + unknown; }
 
     const Problem &problem_;
     const Estimate &first_;
@@ -110,17 +127,11 @@ void Equations::add_transfer(const lensprof_pair &pair, int c, int side, const T
     const double from = pair.value[1 - side][c], to = pair.value[side][c] - t.residual[side];
     const double slope = std::abs(t.by_delta[side]);
     if (slope == 0.0) return;  // saturated prediction
-    Place b = d.place_of(from), p = d.place_of(to);
     uint32_t i = pair.image[side], j = pair.image[1 - side];
-    const int column[kEntries] = {level_column(b.low), level_column(b.low + 1), level_column(p.low),
-                                  level_column(p.low + 1), image_column(problem_.ev_unknown[i]),
-                                  image_column(problem_.balance_unknown[i][channel]),
-                                  image_column(problem_.ev_unknown[j]),
-                                  image_column(problem_.balance_unknown[j][channel])};
-    const double by[kEntries] = {1.0 - b.share, b.share, p.share - 1.0, -p.share, 1.0, 1.0, -1.0, -1.0};
+    Row row = row_of(problem_, pair, c, side, d.place_of(from), d.place_of(to));
     double done = d.value(from) - d.value(to) + now.log_exposure[i][channel]
                   - first_.log_exposure[i][channel] - now.log_exposure[j][channel] + first_.log_exposure[j][channel];
-    add_row(column, by, kEntries, t.residual[side] / slope + done, weight * slope * slope);
+    add_row(row.column, row.by, Row::kEntries, t.residual[side] / slope + done, weight * slope * slope);
 }
 
 void Equations::add_pairs(const Loss &loss, const Correction &d, const Estimate &now) {
@@ -215,6 +226,35 @@ bool advance(const Problem &problem, const Loss &loss, const Estimate &first, co
 }
 
 }  // namespace
+
+Estimate corrected(const Problem &problem, const Estimate &first, const Eigen::VectorXd &by,
+                   const Eigen::VectorXd &changes) {
+    Refinement refinement{Correction(first.curve), changes};
+    std::copy(by.begin(), by.end(), refinement.d.at.begin());
+    return refined(problem, first, refinement);
+}
+
+std::vector<double> prediction_rates(const Problem &problem, const Estimate &first, const Eigen::VectorXd &by,
+                                     const Eigen::VectorXd &changes) {
+    Eigen::VectorXd unknowns(by.size() + changes.size());
+    unknowns << by, changes;
+    const Correction none(first.curve);
+    std::vector<double> rates;
+    for_each_transfer(problem, first, [&](size_t p, const PairTransfer &t) {
+        const lensprof_pair &pair = problem.pairs[p];
+        for (int c = 0; c < problem.channels; c++)
+            for (int side = 0; side < 2; side++) {
+                const Transfer &one = t.channel[static_cast<size_t>(c)];
+                Row row = row_of(problem, pair, c, side, none.place_of(pair.value[1 - side][c]),
+                                 none.place_of(pair.value[side][c] - one.residual[side]));
+                double sum = 0.0;
+                for (int k = 0; k < Row::kEntries; k++)
+                    if (row.column[k] >= 0) sum += row.by[k] * unknowns[row.column[k]];
+                rates.push_back(sum * std::abs(one.by_delta[side]));
+            }
+    });
+    return rates;
+}
 
 void refine_response(const Problem &problem, const Loss &loss, Estimate &estimate) {
     const Estimate first = estimate;

@@ -16,4 +16,15 @@ constexpr uint32_t kMostRefinedImages = 256;  // their exposures are solved for 
 // `loss` has the noise. gamma, which no pair tells, stays where it is.
 void refine_response(const Problem &problem, const Loss &loss, Estimate &estimate);
 
+// Its parts, for tests of the derivatives. D at levels 1..254 of 255, as `by`; changes of the images' log exposures.
+constexpr int kCorrections = 254;
+
+// The estimate with a corrected response, which becomes a table, and changed exposures.
+Estimate corrected(const Problem &problem, const Estimate &first, const Eigen::VectorXd &by,
+                   const Eigen::VectorXd &changes);
+
+// Derivatives at 0 of every pair's predictions ([channel][direction]) along `by` and `changes`.
+std::vector<double> prediction_rates(const Problem &problem, const Estimate &first, const Eigen::VectorXd &by,
+                                     const Eigen::VectorXd &changes);
+
 }  // namespace lensprof

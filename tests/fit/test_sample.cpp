@@ -191,6 +191,39 @@ void test_a_picture_in_the_wrong_place_has_no_pairs(void **) {
     assert_int_equal(pairs.size(), 600);
 }
 
+// A camera that did not move: equal places, and grey values next to black and white, where pictures do not look alike.
+void test_bracket_takes_what_does_not_look_alike(void **) {
+    Pictures pictures(2, 160, 120, 0.0);
+    for (float &value : pictures.data[1]) value = std::min(1.0f, 2.0f * value);  // much of it is white
+    for (auto &image : pictures.images) image.black = 0.002, image.white = 0.998;
+    std::vector<lensprof_pair> pairs;
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BRACKET, 400), pairs));
+    assert_true(pairs.size() > 50);
+    for (const auto &pair : pairs)
+        for (int c = 0; c < 3; c++) {
+            assert_close(pair.xy[0][0], pair.xy[1][0], 1e-6);
+            assert_close(pair.xy[0][1], pair.xy[1][1], 1e-6);
+            double bright = pair.value[pair.image[1] == 1][c], dark = pair.value[pair.image[1] != 1][c];
+            assert_true(bright < 0.998);
+            assert_close(bright, 2.0 * dark, 0.03);
+        }
+}
+
+// No pixel of a patch may be black or white, though its mean is neither.
+void test_every_pixel_of_a_patch(void **) {
+    Pictures pictures(2, 160, 120, 0.0);
+    for (auto &data : pictures.data)
+        for (size_t p = 0; p < data.size() / 3; p += 7)
+            for (size_t c = 0; c < 3; c++) data[3 * p + c] = 1.0f;  // a white one in every patch
+    std::vector<lensprof_pair> pairs;
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BRACKET, 400), pairs));
+    assert_true(pairs.size() > 50);
+    for (auto &image : pictures.images) image.every_pixel = 1;
+    assert_int_equal(pictures.sample(options_of(LENSPROF_SAMPLING_BRACKET, 400), pairs), LENSPROF_ERROR_NO_SAMPLES);
+    pictures.images[0].every_pixel = 2;
+    assert_int_equal(pictures.sample(options_of(LENSPROF_SAMPLING_BRACKET, 400), pairs), LENSPROF_ERROR_SIZE);
+}
+
 void test_same_seed_same_pairs(void **) {
     Pictures pictures(3, 160, 120, 20.0);
     std::vector<lensprof_pair> a, b, other;
@@ -343,6 +376,8 @@ int main() {
         cmocka_unit_test(test_what_moved_is_left_out),
         cmocka_unit_test(test_a_moving_thing_does_not_move_the_project),
         cmocka_unit_test(test_a_picture_in_the_wrong_place_has_no_pairs),
+        cmocka_unit_test(test_bracket_takes_what_does_not_look_alike),
+        cmocka_unit_test(test_every_pixel_of_a_patch),
         cmocka_unit_test(test_same_seed_same_pairs),
         cmocka_unit_test(test_any_number_of_threads_gives_the_same_pairs),
         cmocka_unit_test(test_progress_rises_to_one),
