@@ -14,6 +14,11 @@
  * modes; SQUARED loss is the paper's variant, iterations are rounds. Pictures that differ by less than 0.15 EV are
  * not usable.
  *
+ * Method `debevec` (Debevec & Malik 1997, equation 3), a reference: linear least squares for ln f^-1 at the grey levels
+ * 1..255, smooth by 10 prior_weight, from known exposures of all images (known_ev_sigma > 0), which are taken as exact;
+ * white balances and falloff are as given. The response, which alone is free, is a TABLE, made to rise at the end.
+ * modes, loss, vignettings, gamma_from, refine and max_iterations mean nothing; there is no covariance.
+ *
  * Threads: calls are independent. One call uses as many threads as its options say, all gone when it returns; progress
  * is told on the caller's. The result does not depend on their number: same input, same bytes.
  */
@@ -42,7 +47,8 @@ extern "C" {
 typedef enum lensprof_fit_method {
     LENSPROF_METHOD_TRANSFER = 0,         /* default: d'Angelo 2007, grey values transferred from one image to the other */
     LENSPROF_METHOD_RADIANCE = 1,         /* Goldman & Chen 2005: with one radiance a scene point */
-    LENSPROF_METHOD_TRANSFER_FUNCTION = 2 /* Kim & Pollefeys 2004: by the transfer functions of image pairs */
+    LENSPROF_METHOD_TRANSFER_FUNCTION = 2, /* Kim & Pollefeys 2004: by the transfer functions of image pairs */
+    LENSPROF_METHOD_DEBEVEC = 3            /* Debevec & Malik 1997: from known exposures; lensprof_fit_overlap only */
 } lensprof_fit_method;
 
 typedef enum lensprof_loss {
@@ -162,6 +168,7 @@ LENSPROF_API void lensprof_fit_result_init(lensprof_fit_result *result);
 
 /* Fits `pair_count` pairs over `image_count` images. exposures[image_count] receives what every image got,
  * relative to the reference. A fit that ran returns OK even when the result is poor: see `usable`.
+ * Method DEBEVEC: an image whose exposure is not known, a falloff that is free or a response that is not ARGUMENT.
  * Method RADIANCE: pairs that have an end in common (image, position and values) are joined to a track.
  * Errors: indices, values outside 0..1, unusable options ARGUMENT; NaN NOT_FINITE; no pairs NO_SAMPLES;
  * nothing free NO_UNKNOWNS; a method that this version lacks UNSUPPORTED; CANCELLED; MEMORY. */

@@ -31,7 +31,7 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--ev-sigma", o.ev_sigma, "standard error of these, EV")->check(in_range(0.001, 10.0));
     app.add_option("--white-balance", o.balance, "free or fixed from picture to picture")
         ->check(CLI::IsMember({"free", "fixed"}));
-    declare_fit(app, o.fit);
+    declare_fit(app, o.fit, true);
     app.add_flag("--modes-only", o.modes_only, "keep the response to EMoR modes, also where it is better without");
     app.add_option("--reference", o.reference, "picture (number or name) whose exposure is 0 EV");
     app.add_option("--black", o.black,
@@ -181,6 +181,31 @@ void report_members(const std::vector<uint32_t> &members, const std::vector<lens
     report.quality = quality;
 }
 
+bool is_debevec(const Options &o) { return o.fit.method == "debevec"; }
+
+/* Failure (usage) for what has no meaning to the method debevec. */
+void check_debevec_options(const Options &o) {
+    const std::pair<bool, const char *> without[] = {{o.fit.modes != "auto", "--modes"},
+                                                     {o.modes_only, "--modes-only"},
+                                                     {o.fit.loss != "robust", "--loss"},
+                                                     {o.fit.gamma_from == "prior", "--gamma-from prior"},
+                                                     {o.fit.gamma_from == "known", "--gamma-from known"}};
+    for (const auto &[is_given, option] : without)
+        if (is_given && is_debevec(o))
+            throw Failure(ExitCode::usage, std::string("--method debevec and ") + option
+                                               + " contradict each other: it finds the response at every grey level "
+                                                 "by least squares, from known exposures");
+}
+
+/* Failure (usage) where the exposure of a picture is not known that has to be. */
+void check_exposures_known(const Options &o, const std::vector<lensprof_fit_image> &images) {
+    for (size_t i = 0; i < images.size() && is_debevec(o); i++)
+        if (!(images[i].known_ev_sigma > 0.0))
+            throw Failure(ExitCode::usage, o.files[i] + ": --method debevec wants known exposures of all pictures, and "
+                                                        "EXIF does not tell this one; give --ev or --times, or use "
+                                                        "--method transfer");
+}
+
 FitInput fit_input(const Options &o, const Project &project, const std::vector<PictureMetadata> &metadata,
                    const std::vector<double> &ev, Streams &streams) {
     FitInput input;
@@ -194,6 +219,7 @@ FitInput fit_input(const Options &o, const Project &project, const std::vector<P
         input.images[i].known_ev = ev[i];
         input.images[i].known_ev_sigma = o.ev_sigma;
     }
+    check_exposures_known(o, input.images);
     return input;
 }
 
@@ -250,6 +276,7 @@ int run_bracket(const std::vector<std::string> &arguments, Streams &streams) {
     if (!parse(app, arguments, streams)) return 0;
     check_max_side(o.max_side);
     check_fit_options(o.fit);
+    check_debevec_options(o);
     check_store_options(o.store);
     if (o.ev && o.times)
         throw Failure(ExitCode::usage, "--ev and --times say the same; give one of the two");

@@ -25,6 +25,7 @@ uint32_t modes_of(const std::string &text) {
 uint32_t method_of_name(const std::string &name) {
     return name == "radiance"            ? LENSPROF_METHOD_RADIANCE
            : name == "transfer-function" ? LENSPROF_METHOD_TRANSFER_FUNCTION
+           : name == "debevec"           ? LENSPROF_METHOD_DEBEVEC
                                          : LENSPROF_METHOD_TRANSFER;
 }
 
@@ -35,11 +36,16 @@ int on_progress(double done, void *progress) {
 
 }  // namespace
 
-void declare_fit(CLI::App &app, FitOptions &o) {
-    app.add_option("--method", o.method,
-                   "transfer (d'Angelo 2007), radiance (Goldman & Chen 2005: one radiance a scene point, which any number "
-                   "of pictures may see, saturated ones among them) or transfer-function (Kim & Pollefeys 2004)")
-        ->check(CLI::IsMember({"transfer", "radiance", "transfer-function"}));
+void declare_fit(CLI::App &app, FitOptions &o, bool has_debevec) {
+    std::vector<std::string> methods = {"transfer", "radiance", "transfer-function"};
+    std::string about = "transfer (d'Angelo 2007), radiance (Goldman & Chen 2005: one radiance a scene point, which any "
+                        "number of pictures may see, saturated ones among them) or transfer-function (Kim & Pollefeys "
+                        "2004)";
+    if (has_debevec) {
+        methods.push_back("debevec");
+        about += "; debevec (Debevec & Malik 1997), a reference: known exposures taken as exact, white balances fixed";
+    }
+    app.add_option("--method", o.method, about)->check(CLI::IsMember(methods));
     app.add_option("--modes", o.modes, "EMoR modes of the response: 0..25 or auto (held-out error decides)");
     app.add_option("--loss", o.loss, "robust, huber (the paper's) or squared")
         ->check(CLI::IsMember({"robust", "huber", "squared"}));

@@ -24,7 +24,8 @@ struct FitOptions {
     double huber = 5.0, prior = 1.0, exif_sigma = 0.1;
 };
 
-void declare_fit(CLI::App &app, FitOptions &o);
+/* `has_debevec`: for pictures whose exposures are known. */
+void declare_fit(CLI::App &app, FitOptions &o, bool has_debevec = false);
 
 /* Failure (usage) for options that contradict each other. */
 void check_fit_options(const FitOptions &o);

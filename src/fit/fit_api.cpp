@@ -2,6 +2,7 @@
 #include <cmath>
 #include <new>
 
+#include "debevec.hpp"
 #include "fail.hpp"
 #include "overlap.hpp"
 #include "residual.hpp"
@@ -24,7 +25,7 @@ lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_coun
         || !(o.huber_levels > 0.0 && o.huber_levels <= 255.0) || !(o.prior_weight >= 0.0 && o.prior_weight <= 1e6)
         || o.max_iterations == 0 || o.max_iterations > 1000000 || (o.free & ~kSharedFlags)
         || (o.vignettings > 1 && o.vignettings != 3) || o.gamma_from > LENSPROF_GAMMA_EXPOSURES
-        || o.camera_kind > LENSPROF_CAMERA_DIGITAL || o.method > LENSPROF_METHOD_TRANSFER_FUNCTION
+        || o.camera_kind > LENSPROF_CAMERA_DIGITAL || o.method > LENSPROF_METHOD_DEBEVEC
         || o.refine > 1 || o.reserved)
         return fail(LENSPROF_ERROR_ARGUMENT, error,
                     "fit options: channels 1 or 3, reference < images, modes 0..25 or automatic, Huber 0..255 levels, "
@@ -125,7 +126,27 @@ lensprof_status check_tracks(const Tracks &tracks, lensprof_error *error) {
     return LENSPROF_OK;
 }
 
+// What the method `debevec` takes as known, and the one thing that it finds.
+lensprof_status check_debevec(const lensprof_fit_options &o, const lensprof_fit_image *images, uint32_t image_count,
+                              lensprof_error *error) {
+    if (o.free != LENSPROF_FREE_RESPONSE)
+        return fail(LENSPROF_ERROR_ARGUMENT, error,
+                    "fit options: the method debevec finds the response alone; free it, and hold falloff and centre");
+    for (uint32_t i = 0; i < image_count; i++)
+        if (!(images[i].known_ev_sigma > 0.0))
+            return fail(LENSPROF_ERROR_ARGUMENT, error,
+                        "image %u: the method debevec wants the known exposures of all images (known_ev, and a "
+                        "known_ev_sigma above 0); give it, or use the method transfer",
+                        i);
+    for (uint32_t i = 0; i < image_count; i++)
+        if (!(std::abs(known_exposure(images, o.reference, i)) <= 64.0))
+            return fail(LENSPROF_ERROR_EXPOSURE, error,
+                        "image %u: known exposure beyond 64 EV relative to the reference", i);
+    return LENSPROF_OK;
+}
+
 bool has_unknowns(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t count) {
+    if (options.method == LENSPROF_METHOD_DEBEVEC) return true;  // the response, by no modes
     Problem problem = make_problem(options, images, count, nullptr, {});
     return problem.image_unknowns > 0 || !free_columns(problem, options.modes == 0 ? 0 : 1).empty();
 }
@@ -205,6 +226,8 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
         check_call(options, images, image_count, pairs || pair_count == 0, exposures, result, error);
     if (status == LENSPROF_OK)
         status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(options->channels), error);
+    if (status == LENSPROF_OK && options->method == LENSPROF_METHOD_DEBEVEC)
+        status = check_debevec(*options, images, image_count, error);
     if (status != LENSPROF_OK) return status;
     if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
     return run(*options, images, image_count, error, [&] {
@@ -214,6 +237,10 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
         }
         if (options->method == LENSPROF_METHOD_TRANSFER_FUNCTION) {
             fit_transfer_functions(*options, images, image_count, pairs, pair_count, exposures, *result);
+            return LENSPROF_OK;
+        }
+        if (options->method == LENSPROF_METHOD_DEBEVEC) {
+            fit_debevec(*options, images, image_count, pairs, pair_count, exposures, *result);
             return LENSPROF_OK;
         }
         std::vector<lensprof_observation> observations = observations_of(pairs, pair_count);

@@ -198,6 +198,18 @@ void describe_quality(const Problem &problem, const Gauge &gauge, double noise, 
     describe_covariance(problem, gauge, estimate, found, r);
 }
 
+double exposure_spread(const Problem &problem, const Estimate &estimate) {
+    double sum = 0.0, count = 0.0;
+    for (const Edge &edge : problem.edges)
+        for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++) {
+            const auto &a = estimate.log_exposure;
+            auto pairs = static_cast<double>(edge.last - edge.first);
+            sum += pairs * std::pow(a[edge.image[0]][c] - a[edge.image[1]][c], 2);
+            count += pairs;
+        }
+    return std::sqrt(sum / std::max(count, 1.0)) / kLn2;
+}
+
 void write_exposures(const Problem &problem, const Estimate &estimate, lensprof_exposure *exposures) {
     for (uint32_t i = 0; i < problem.image_count; i++) {
         const auto &a = estimate.log_exposure[i];

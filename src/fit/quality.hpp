@@ -31,6 +31,11 @@ void describe_quality(const Problem &problem, const Prior &prior, Gauge &gauge, 
 void describe_quality(const Problem &problem, const Gauge &gauge, double noise, const Covariance &found,
                       const Estimate &estimate, lensprof_fit_result &result);
 
+// Root mean square difference, EV, of pictures that overlap, over pairs and channels. Below kSmallestSpread they show no
+// response without falloff: their transfer functions are the identity.
+constexpr double kSmallestSpread = 0.15;
+double exposure_spread(const Problem &problem, const Estimate &estimate);
+
 // What every image got, as far as it was free.
 void write_exposures(const Problem &problem, const Estimate &estimate, lensprof_exposure *exposures);
 

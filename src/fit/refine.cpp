@@ -5,27 +5,19 @@
 
 #include <Eigen/Cholesky>
 
-#include "core/response.h"
+#include "levels.hpp"
 #include "residual.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr int kLevels = 255;         // unknown k - 1: the correction at grey level k of 255; the last is 0
-constexpr int kUnknown = kCorrections;
+constexpr int kUnknown = kCorrections;  // unknown k - 1: the correction at grey level k of 255; the last is 0
 constexpr int kRounds = 8;           // Gauss-Newton,
 constexpr double kWorthwhile = 1.0;  // as long as a round lowers the cost by more
 constexpr double kBend = 0.002;       // levels: expected second difference of the correction from level to level,
 constexpr double kEndBend = 1.0;     // and at the ends, where responses are steep,
 constexpr double kEndReach = 6.0;    // levels from there
 constexpr double kLargestCorrection = 8.0;  // levels, one standard deviation: holds what no pair tells
-constexpr int kFine = 16;            // samples of the inverse between two levels
-
-// Levels of 255 about a grey value: the lower one's unknown and the share of the upper one.
-struct Place {
-    int low;
-    double share;
-};
 
 // D at every level. f is straight up to its first sample of irradiance, so that up to the grey value there, and up to
 // level 1, D is one number.
@@ -35,34 +27,13 @@ struct Correction {
 
     explicit Correction(const Curve &base) : first(std::clamp(255.0 * base.table[1], 1.0, 254.0)) {}
 
-    Place place_of(double b) const {
-        double level = std::clamp(b * 255.0, first, 255.0) - 1.0;
-        int low = std::min(static_cast<int>(level), kLevels - 2);
-        return {low, level - low};
-    }
-    double value(double b) const {
-        Place p = place_of(b);
-        auto low = static_cast<size_t>(p.low);
-        return (1.0 - p.share) * at[low] + p.share * at[low + 1];
-    }
+    Place place_of(double b) const { return lensprof::place_of(b, first); }
+    double value(double b) const { return value_at(at, place_of(b)); }
 };
 
 // f at the 1024 samples of irradiance from g = exp(G0 + D).
 std::array<double, LENSPROF_RESPONSE_SAMPLES> table_of(const Curve &base, const Correction &d) {
-    constexpr int count = 255 * kFine;
-    std::vector<double> x(count + 1, 0.0);
-    for (size_t i = 1; i < x.size(); i++) {
-        double b = static_cast<double>(i) / count;
-        x[i] = std::max(x[i - 1], base.invert(b, nullptr) * std::exp(d.value(b)));
-    }
-    std::array<double, LENSPROF_RESPONSE_SAMPLES> f{};
-    for (size_t j = 1, i = 0; j < LP_CURVE_LAST; j++) {
-        double at = x.back() * static_cast<double>(j) / LP_CURVE_LAST;
-        while (x[i + 1] < at) i++;
-        f[j] = (static_cast<double>(i) + (at - x[i]) / (x[i + 1] - x[i])) / count;
-    }
-    f.back() = 1.0;
-    return f;
+    return response_samples([&](double b) { return base.invert(b, nullptr) * std::exp(d.value(b)); });
 }
 
 // Columns of the unknowns: corrections, then those of the images; -1 is fixed at 0.
@@ -90,33 +61,21 @@ Row row_of(const Problem &problem, const lensprof_pair &pair, int c, int side, P
 class Equations {
 public:
     Equations(const Problem &problem, const Estimate &first)
-        : problem_(problem), first_(first), size_(kUnknown + problem.image_unknowns),
-          normal_(Eigen::MatrixXd::Zero(size_, size_)), right_(Eigen::VectorXd::Zero(size_)) {}
+        : problem_(problem), first_(first), size_(kUnknown + problem.image_unknowns), rows_(size_) {}
 
     void add_pairs(const Loss &loss, const Correction &d, const Estimate &now);
     void add_smoothness();
     void hold_gamma();
-    Eigen::VectorXd solve() const { return normal_.ldlt().solve(right_); }
+    Eigen::VectorXd solve() const { return rows_.normal.ldlt().solve(rows_.right); }
 
 private:
     void add_transfer(const lensprof_pair &pair, int c, int side, const Transfer &t, const Correction &d,
                       const Estimate &now, double weight);
 
-    // value = sum of coefficients times unknowns; those with column -1 are fixed at 0.
-    void add_row(const int *column, const double *coefficient, int count, double value, double weight) {
-        for (int i = 0; i < count; i++) {
-            if (column[i] < 0) continue;
-            right_[column[i]] += weight * coefficient[i] * value;
-            for (int j = 0; j < count; j++)
-                if (column[j] >= 0) normal_(column[i], column[j]) += weight * coefficient[i] * coefficient[j];
-        }
-    }
-
     const Problem &problem_;
     const Estimate &first_;
     Eigen::Index size_;
-    Eigen::MatrixXd normal_;
-    Eigen::VectorXd right_;
+    NormalRows rows_;
 };
 
 // A prediction P = f( g(B) t ) solves  G(P) + D(P) = G(B) + D(B) + ln t, so that
@@ -131,7 +90,7 @@ void Equations::add_transfer(const lensprof_pair &pair, int c, int side, const T
     Row row = row_of(problem_, pair, c, side, d.place_of(from), d.place_of(to));
     double done = d.value(from) - d.value(to) + now.log_exposure[i][channel]
                   - first_.log_exposure[i][channel] - now.log_exposure[j][channel] + first_.log_exposure[j][channel];
-    add_row(row.column, row.by, Row::kEntries, t.residual[side] / slope + done, weight * slope * slope);
+    rows_.add(row.column, row.by, Row::kEntries, t.residual[side] / slope + done, weight * slope * slope);
 }
 
 void Equations::add_pairs(const Loss &loss, const Correction &d, const Estimate &now) {
@@ -160,10 +119,10 @@ void Equations::add_smoothness() {
         double end = std::min(k, kLevels - 1 - k), bend = kBend + kEndBend * std::exp(-end / kEndReach);
         const int column[3] = {level_column(k - 1), level_column(k), level_column(k + 1)};
         const double small = in_levels(k);
-        add_row(column + 1, &small, 1, 0.0, 1.0 / (kLargestCorrection * kLargestCorrection));
+        rows_.add(column + 1, &small, 1, 0.0, 1.0 / (kLargestCorrection * kLargestCorrection));
         if (k == 0 || k + 1 == kLevels) continue;
         const double bent[3] = {in_levels(k - 1), -2.0 * in_levels(k), in_levels(k + 1)};
-        add_row(column, bent, 3, 0.0, 1.0 / (bend * bend));
+        rows_.add(column, bent, 3, 0.0, 1.0 / (bend * bend));
     }
 }
 
@@ -178,8 +137,8 @@ void Equations::hold_gamma() {
         if (ev >= 0) along[ev] = first_.log_exposure[i][measured] - zero[measured];
     }
     double length = along.norm();
-    if (length > 0.0) normal_ += firmly * along * along.transpose() / (length * length);
-    normal_.diagonal().tail(problem_.image_unknowns).array() += 1e-3;
+    if (length > 0.0) rows_.normal += firmly * along * along.transpose() / (length * length);
+    rows_.normal.diagonal().tail(problem_.image_unknowns).array() += 1e-3;
 }
 
 // The corrections and the changes of the images' unknowns.

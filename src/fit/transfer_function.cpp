@@ -22,7 +22,6 @@ constexpr double kStill = 1e-3;     // nothing a user sees moves by more in a ro
 // Paths that flip between two neighbours let the rounds cycle: a change this small that no longer falls is that.
 constexpr double kCycle = 0.03;
 constexpr int kFewestRounds = 4;
-constexpr double kSmallestSpread = 0.15;  // EV between pictures that overlap, root mean square
 constexpr double kHalf = 128.0 / 255.0;
 const double kPaperGrey = std::log(0.5);  // g(128) where nothing settles gamma (section 2.4)
 
@@ -259,15 +258,7 @@ Estimate Fit::in_emor(const State &state) const {
 // Transfer functions of pictures that are exposed alike are the identity, whatever the response.
 void Fit::judge_exposures(const State &state, lensprof_fit_result &r) const {
     if ((!r.usable && r.converged) || !is_free_) return;  // alike, they do not settle either
-    double sum = 0.0, count = 0.0;
-    for (const Edge &edge : all_.edges)
-        for (size_t c = 0; c < static_cast<size_t>(all_.channels); c++) {
-            const auto &a = state.estimate.log_exposure;
-            auto pairs = static_cast<double>(edge.last - edge.first);
-            sum += pairs * std::pow(a[edge.image[0]][c] - a[edge.image[1]][c], 2);
-            count += pairs;
-        }
-    double usual = std::sqrt(sum / std::max(count, 1.0)) / std::log(2.0);
+    double usual = exposure_spread(all_, state.estimate);
     if (usual >= kSmallestSpread) return;
     r.usable = 0;
     std::snprintf(r.reason, sizeof r.reason,

@@ -88,6 +88,32 @@ void test_profile_of_the_camera_alone(void **) {
     assert_true(found["id"] == stored["id"]);
 }
 
+/* The reference variant: from known exposures alone, which it takes as they are. */
+void test_debevec(void **) {
+    const Words files = shots(five);
+    const Words debevec = no_store + Words{"--method", "debevec"};
+    const Json json = json_of(bracket(files, debevec + Words{"--ev", list_of(five)}));
+    assert_close(assert_recovered(json, five, 1.5), 1.0, 1e-9);
+    assert_string_equal(json["gamma_from"].get<std::string>().c_str(), "known");
+    const Outcome reversed = run_words(bracket(files, debevec + Words{"--ev", "-3,-1.5,0,1.5,3"}));
+    assert_int_equal(reversed.code, not_usable);
+    assert_true(contains(reversed.err, "falls"));
+    assert_refused(usage, bracket(files, debevec), {files[0], "--ev", "--times"});
+    for (const Words &wrong : {Words{"--modes", "5"}, Words{"--modes-only"}, Words{"--loss", "huber"},
+                               Words{"--gamma-from", "prior"}, Words{"--gamma-from", "known"}})
+        assert_refused(usage, bracket(files, debevec + Words{"--ev", list_of(five)} + wrong), {wrong[0], "debevec"});
+    for (size_t i = 0; i + 1 < files.size(); ++i)
+        state_exposure(files[i], five[i]);
+    assert_refused(usage, bracket(files, debevec), {files[4]});
+    state_exposure(files[4], five[4]);
+    const std::string db = work("p.db");
+    const Json stored = json_of(bracket(files, {"--db", db, "--json", "--pairs", "4000", "--method", "debevec"}));
+    const Json shown = json_of({"profile", "show", std::to_string(stored["profile"].get<int>()), "--db", db, "--json"});
+    assert_string_equal(shown["provenance"]["method"].get<std::string>().c_str(), "bracket debevec");
+    for (const char *command : {"build", "align"})
+        assert_refused(usage, Words{command} + files + Words{"--method", "debevec"}, {"--method", "debevec"});
+}
+
 void test_runs_repeat(void **) {
     const Words files = shots(three);
     const auto text = [&](const Words &more) {
@@ -184,6 +210,7 @@ int main() {
         CLI_TEST(test_reference),
         CLI_TEST(test_an_overexposed_picture_is_left_out),
         CLI_TEST(test_profile_of_the_camera_alone),
+        CLI_TEST(test_debevec),
         CLI_TEST(test_runs_repeat),
         CLI_TEST(test_refused_options),
         CLI_TEST(test_refused_pictures),

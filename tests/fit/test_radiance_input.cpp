@@ -50,6 +50,7 @@ void test_refuses(void **) {
     REFUSED(call.result.struct_size = 1, LENSPROF_ERROR_STRUCT_SIZE);
     REFUSED(call.options.method = LENSPROF_METHOD_TRANSFER, LENSPROF_ERROR_UNSUPPORTED);
     REFUSED(call.options.method = LENSPROF_METHOD_TRANSFER_FUNCTION, LENSPROF_ERROR_UNSUPPORTED);
+    REFUSED(call.options.method = LENSPROF_METHOD_DEBEVEC, LENSPROF_ERROR_UNSUPPORTED);
     REFUSED(call.options.method = 3, LENSPROF_ERROR_ARGUMENT);
     REFUSED(call.options.channels = 2, LENSPROF_ERROR_ARGUMENT);
     REFUSED(call.options.reference = 6, LENSPROF_ERROR_ARGUMENT);

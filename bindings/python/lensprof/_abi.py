@@ -138,10 +138,11 @@ class Free(IntFlag):
 
 
 class Method(IntEnum):
-    """d'Angelo 2007, Goldman & Chen 2005, Kim & Pollefeys 2004."""
+    """d'Angelo 2007, Goldman & Chen 2005, Kim & Pollefeys 2004, Debevec & Malik 1997."""
     TRANSFER = 0
     RADIANCE = 1
     TRANSFER_FUNCTION = 2
+    DEBEVEC = 3
 
 
 class Loss(IntEnum):

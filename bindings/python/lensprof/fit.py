@@ -47,7 +47,7 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     modes 0..25 or MODES_AUTO. huber_levels: levels of 255. prior_weight: 0 = none, as in the paper. response,
     vignetting: the values where fixed (None = EMoR mean). vignettings: falloff curves, 1, 3 or 0 = chosen by held-out
     error. gamma_from: GammaFrom.AUTO, PRIOR or EXPOSURES. camera_kind: whose responses the prior is of. method:
-    Method.TRANSFER, RADIANCE or TRANSFER_FUNCTION.
+    Method.TRANSFER, RADIANCE, TRANSFER_FUNCTION, or DEBEVEC: the response alone, from known exposures of all images.
     refine: free the response of the EMoR modes where held-out pairs are clearly better for it.
     threads: at most so many, 0 = one a core; the result does not depend on it.
 
