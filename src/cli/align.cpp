@@ -30,7 +30,7 @@ void declare(CLI::App &app, Options &o) {
                    "Hugin project that says where the camera looked; the falloff is then found and evened out, too. "
                    "Without it the camera stood still");
     declare_fit(app, o.fit);
-    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 a frame, at least 2000")->check(in_range(0, 1 << 24));
+    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 a frame, at least 2000; without --project 10000 a frame")->check(in_range(0, 1 << 24));
     app.add_option("--seed", o.seed, "of the sampling");
     app.add_option("--max-side", o.max_side,
                    "sample frames reduced to no less than this many pixels (800); 0 = full size");
@@ -86,7 +86,9 @@ Fitted fit_sequence(const Options &o, const Project &project, Progress &progress
     lensprof_sample_options_init(&sampling);
     sampling.pairs = o.pairs;
     sampling.seed = o.seed;
-    input.pairs = sample_pairs(project, pictures, sampling, {}, progress);
+    input.pairs = project.pto ? sample_pairs(project, pictures, sampling, {}, progress)
+                              : sample_still(project, pictures, sampling, 0.0, progress);
+    input.options.refine = !project.pto && o.fit.modes == "auto";
     input.images = fit_images(project);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));

@@ -97,9 +97,6 @@ lensprof_profile_key camera_key(const Options &o, const PictureMetadata &metadat
     return override_key(key, o.store, file);
 }
 
-/* Values next to black and white count, too: the ends of a response are where its modes fail. */
-constexpr double next_to_black = 0.6, next_to_white = 254.4; /* levels of 255 */
-
 std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, Progress &progress, BuildReport &report,
                                      uint32_t &channels) {
     auto clock = std::chrono::steady_clock::now();
@@ -108,11 +105,9 @@ std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, P
     report.load_s = lap(clock);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
-    options.sampling = LENSPROF_SAMPLING_BRACKET;
-    options.pairs = o.pairs ? o.pairs : 10000 * static_cast<uint32_t>(pictures.size());
+    options.pairs = o.pairs;
     options.seed = o.seed;
-    const GreyRange range{(o.black + next_to_black) / 255.0, next_to_white / 255.0, true};
-    auto pairs = sample_pairs(project, pictures, options, range, progress);
+    auto pairs = sample_still(project, pictures, options, o.black, progress);
     report.sample_s = lap(clock);
     return pairs;
 }

@@ -40,4 +40,14 @@ Project static_project(const std::vector<std::string> &files, bool free_balance)
     return project;
 }
 
+std::vector<lensprof_pair> sample_still(const Project &project, std::vector<SamplePicture> &pictures,
+                                        lensprof_sample_options options, double black, Progress &progress) {
+    constexpr double next_to_black = 0.6, next_to_white = 254.4; /* levels of 255 */
+    constexpr uint32_t pairs_a_picture = 10000;
+    options.sampling = LENSPROF_SAMPLING_BRACKET;
+    if (!options.pairs) options.pairs = pairs_a_picture * static_cast<uint32_t>(pictures.size());
+    const GreyRange range{(black + next_to_black) / 255.0, next_to_white / 255.0, true};
+    return sample_pairs(project, pictures, options, range, progress);
+}
+
 }  // namespace lensprof

@@ -15,6 +15,11 @@ namespace lensprof {
  * names a picture of another size than the first. */
 Project static_project(const std::vector<std::string> &files, bool free_balance);
 
+/* Pairs of such pictures, `options.pairs` or 10000 a picture: values next to black and white count, too, for the ends of
+ * a response are where its modes fail. Up to the grey level `black` of 255 there is nothing. */
+std::vector<lensprof_pair> sample_still(const Project &project, std::vector<SamplePicture> &pictures,
+                                        lensprof_sample_options options, double black, Progress &progress);
+
 }  // namespace lensprof
 
 #endif

@@ -27,9 +27,8 @@ public:
     // make(keep): the problem of some of `count` pairs or tracks.
     using Make = std::function<Problem(const std::vector<uint32_t> &keep)>;
 
-    Fit(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count, Make make,
-        uint32_t count)
-        : options_(options), images_(images), image_count_(image_count), problem_(std::move(make)),
+    Fit(const lensprof_fit_options &options, uint32_t image_count, Make make, uint32_t count)
+        : options_(options), image_count_(image_count), problem_(std::move(make)),
           split_(split_pairs(count, image_count)),
           all_(problem_(split_.all)), gauge_(options, all_) {
         if (split_.has_heldout()) heldout_ = problem_(split_.heldout);
@@ -61,14 +60,16 @@ private:
     bool is_better_refined(const Candidate &best, const Loss &used, Candidate &refined);
     Candidate choose_modes(const Estimate &start);
     void choose_vignettings(Candidate &best);
+    Candidate choose(Loss &used);
+    void try_refined(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome);
 
     const lensprof_fit_options &options_;
-    const lensprof_fit_image *images_;
     uint32_t image_count_;
     const Make problem_;
     Split split_;
     Problem all_, train_, heldout_;
     bool has_heldout_ = false;
+    const bool is_free_ = (options_.free & LENSPROF_FREE_RESPONSE) && options_.modes != 0;  // the response
     Gauge gauge_;
     Prior prior_;
     Loss common_;  // of the candidates: what held-out losses are measured with
@@ -204,25 +205,17 @@ void Fit::choose_vignettings(Candidate &best) {
     else set_vignettings(1);
 }
 
-void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
-    auto began = std::chrono::steady_clock::now();
+// Start, modes and falloff curves.
+Candidate Fit::choose(Loss &used) {
     constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
-    bool is_free = (options_.free & LENSPROF_FREE_RESPONSE) && options_.modes != 0;
-    bool any_modes = is_free && options_.modes == LENSPROF_MODES_AUTO && has_heldout_;
+    bool any_modes = is_free_ && options_.modes == LENSPROF_MODES_AUTO && has_heldout_;
     bool any_curves = options_.vignettings == 0 && options_.channels == 3 && (options_.free & falloff) && has_heldout_;
     int modes = options_.modes == LENSPROF_MODES_AUTO ? kStartModes : static_cast<int>(options_.modes);
 
-    bool refines = options_.refine && options_.method == LENSPROF_METHOD_TRANSFER && is_free && has_heldout_
-                   && image_count_ <= kMostRefinedImages;
-    const Gauge asked = gauge_;
-    if (refines) gauge_ = gauge_.by_prior();
-
     set_vignettings(options_.vignettings == 3 && options_.channels == 3 ? 3 : 1);
     Candidate best;
-    best.estimate = best_start(is_free ? std::min(std::max(modes, 1), kStartModes) : 0);
+    best.estimate = best_start(is_free_ ? std::min(std::max(modes, 1), kStartModes) : 0);
     done_ = 0.2;
-    Loss used = loss();
-    used.distrusts = true;
     set_modes(best.estimate, modes);
     Control first = control_;
     if (any_modes || any_curves) first.flat = 0.05, first.rounds = 3;
@@ -234,21 +227,36 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     else if (any_curves) best = candidate(best.estimate, modes);
     if (any_curves) choose_vignettings(best);
     done_ = 0.8;
+    return best;
+}
 
+// The response freed of its modes where that is better; then gamma, which these could not follow everywhere.
+void Fit::try_refined(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome) {
+    gauge_ = asked;
+    Candidate refined;
+    if (!is_better_refined(best, used, refined)) {
+        outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
+        return;
+    }
+    best = refined;
+    refine(all_, used, estimate);
+    for (Estimate *one : {&estimate, &best.estimate}) gauge_.settle(all_, *one);
+}
+
+void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
+    auto began = std::chrono::steady_clock::now();
+    bool refines = options_.refine && options_.method == LENSPROF_METHOD_TRANSFER && is_free_ && has_heldout_
+                   && image_count_ <= kMostRefinedImages;
+    const Gauge asked = gauge_;
+    if (refines) gauge_ = gauge_.by_prior();
+    Loss used = loss();
+    used.distrusts = true;
+    Candidate best = choose(used);
     Estimate estimate = best.estimate;
     if (has_heldout_) reconsider(all_, used, estimate);
     Outcome outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
-    if (refines) {
-        gauge_ = asked;
-        Candidate refined;
-        if (is_better_refined(best, used, refined)) {
-            refine(all_, used, estimate);
-            best = refined;
-            for (Estimate *one : {&estimate, &best.estimate}) gauge_.settle(all_, *one);  // where modes could not follow
-        } else {
-            outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
-        }
-    }
+    if (refines) try_refined(asked, used, best, estimate, outcome);
+
     lensprof_fit_result r = result;
     r.iterations = static_cast<uint32_t>(outcome.iterations);
     r.converged = outcome.converged;
@@ -272,7 +280,7 @@ void fit_overlap(const lensprof_fit_options &options, const lensprof_fit_image *
     auto make = [&](const std::vector<uint32_t> &keep) {
         return make_problem(options, images, image_count, pairs, keep);
     };
-    Fit(options, images, image_count, make, pair_count).run(exposures, result);
+    Fit(options, image_count, make, pair_count).run(exposures, result);
 }
 
 void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
@@ -280,7 +288,7 @@ void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image 
     auto make = [&](const std::vector<uint32_t> &keep) {
         return make_problem(options, images, image_count, tracks, keep);
     };
-    Fit(options, images, image_count, make, static_cast<uint32_t>(tracks.tracks.size())).run(exposures, result);
+    Fit(options, image_count, make, static_cast<uint32_t>(tracks.tracks.size())).run(exposures, result);
 }
 
 Summary transfer_summary(const lensprof_response &response, const lensprof_vignetting vignetting[3],
