@@ -174,6 +174,12 @@ bool is_static(const Problem &problem) {
     });
 }
 
+// What to look at where pairs of an image disagree with all others.
+const char *next_step(const Problem &problem) {
+    return is_static(problem) ? "something moved, its light changed, or its black is raised (bracket --black)"
+                              : "check its place in the project";
+}
+
 const char *pattern_reason(bool is_static, bool is_free) {
     if (is_static)
         return "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no response explains: "
@@ -239,12 +245,12 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
     if (has_few_inliers(problem, r, image, behind))
         return refuse(r,
                       "the exposure of image %u rests on %u pairs that agree with the camera model; overlap it more, or "
-                      "check its place in the project",
-                      image, behind);
+                      "%s",
+                      image, behind, next_step(problem));
     if (disagrees(problem, r, image))
         return refuse(r,
-                      "only %u of the %u pairs of image %u agree with the camera model; check its place in the project",
-                      r.image_quality[image].inliers, r.image_quality[image].pairs, image);
+                      "only %u of the %u pairs of image %u agree with the camera model; %s",
+                      r.image_quality[image].inliers, r.image_quality[image].pairs, image, next_step(problem));
     double uncertain_by;
     int uncertain = uncertain_image(problem, estimate, r, uncertain_by);
     if (uncertain >= 0)
@@ -294,9 +300,9 @@ void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result
     double off_centre = std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]);
     if (odd >= 0)
         say(r,
-            "most pairs of image %d disagree with the camera model (median residual %.1f levels): check its place in "
-            "the project, or what moved there",
-            odd, r.image_quality[odd].median_residual);
+            "most pairs of image %d disagree with the camera model (median residual %.1f levels): %s, or what moved "
+            "there",
+            odd, r.image_quality[odd].median_residual, next_step(problem));
     else if (ambiguous > 0.0)
         say(r,
             "the known exposures contradict each other: one is wrong by more than %.1f EV, and three do not tell which; "
