@@ -103,8 +103,9 @@ typedef struct lensprof_fit_options {
     uint32_t camera_kind;   /* lensprof_camera_kind */
     uint32_t threads;       /* at most so many, the caller's included; 0 = one a core. The result does not depend on it */
     uint32_t method;        /* lensprof_fit_method */
-    uint32_t refine;        /* 1: where held-out pairs are better for it, the response is freed of the EMoR modes
-                               at every grey level and becomes a TABLE; wants pairs of all greys. 0 = EMoR alone */
+    uint32_t refine;        /* 1: the response is freed of the EMoR modes at every grey level, and becomes a TABLE, where
+                               held-out pairs are not clearly worse for it. Wants pairs of all greys; for TRANSFER with
+                               at most 256 images and 100 pairs or more, else without effect. 0 = EMoR alone */
     uint32_t reserved;      /* 0 */
     const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
     lensprof_vignetting vignetting;   /* the value where fixed */

@@ -111,7 +111,7 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
         std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
         jobs.push_back({project.files[i], (std::filesystem::path(o.output) / name).string(), nullptr, {}, {}, 0});
     }
-    check_targets(jobs, "");
+    check_targets(jobs, project.files, "");
     return jobs;
 }
 

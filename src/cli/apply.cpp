@@ -148,7 +148,7 @@ std::vector<Correction> make_jobs(const Options &o, lensprof_exposure &mean) {
         if (from_store) look_up(store.get(), o, job);
         jobs.push_back(job);
     }
-    check_targets(jobs, o.sheet);
+    check_targets(jobs, project ? project->files : files, o.sheet);
     if (model) {
         check_has_result(*project);
         check_one_result(*project);

@@ -166,7 +166,7 @@ void report_members(const std::vector<uint32_t> &members, const std::vector<lens
             quality[i].component = members[quality[i].component];
         } else {
             bool known = images[i].known_ev_sigma > 0.0 && zero.known_ev_sigma > 0.0;
-            exposure.ev = known ? images[i].known_ev - zero.known_ev : LENSPROF_UNKNOWN;
+            exposure.ev = known ? images[i].known_ev - zero.known_ev : NAN;
             quality[i].component = i;
             streams.err << "lensprof: warning: " << report.names[i]
                         << ": shows hardly anything between black and white that another picture shows, too; left out\n";

@@ -55,20 +55,38 @@ lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures)
     return mean;
 }
 
-void check_targets(const std::vector<Correction> &jobs, const std::string &sheet) {
-    std::set<std::string> seen;
+namespace {
+
+/* One name for every way to write a path, whether or not there is a file. */
+std::string one_name(const std::string &path) {
+    std::error_code error;
+    auto name = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
+    return (error ? std::filesystem::absolute(path).lexically_normal() : name).string();
+}
+
+}  // namespace
+
+void check_targets(const std::vector<Correction> &jobs, const std::vector<std::string> &inputs,
+                   const std::string &sheet) {
+    std::set<std::string> read, written;
+    for (const std::string &file : inputs) read.insert(one_name(file));
+    for (const Correction &job : jobs) read.insert(one_name(job.source));
     for (const Correction &job : jobs) {
         read_header(job.source);  /* an unreadable picture shows before anything is written */
-        if (is_same_file(job.source, sheet) || job.target == sheet)
-            throw Failure(ExitCode::usage,
-                          sheet + ": the contact sheet would overwrite a picture; give it another name");
-        if (is_same_file(job.source, job.target))
+        const std::string target = one_name(job.target);
+        if (target == one_name(job.source) || is_same_file(job.source, job.target))
             throw Failure(ExitCode::usage,
                           job.source + ": would be overwritten by its correction; give another folder with -o");
-        if (!seen.insert(job.target).second)
+        if (read.count(target))
+            throw Failure(ExitCode::usage,
+                          job.target + ": would overwrite a picture of the same call; give another folder with -o");
+        if (!written.insert(target).second)
             throw Failure(ExitCode::usage,
                           job.target + ": two pictures would get this name; correct them one folder at a time");
     }
+    if (!sheet.empty() && (read.count(one_name(sheet)) || written.count(one_name(sheet))))
+        throw Failure(ExitCode::usage,
+                      sheet + ": the contact sheet would overwrite a picture; give it another name");
 }
 
 void make_folder(const std::string &folder) {

@@ -31,8 +31,10 @@ struct CorrectionKind {
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures);
 
 /* Failure for a picture that cannot be read (unreadable), and for an output or contact sheet (path or empty) that would
- * take the place of a picture or of another output (usage): before anything is written. */
-void check_targets(const std::vector<Correction> &jobs, const std::string &sheet);
+ * take the place of a picture that is corrected, of another of the `inputs` or of another output (usage): before anything
+ * is written. */
+void check_targets(const std::vector<Correction> &jobs, const std::vector<std::string> &inputs,
+                   const std::string &sheet);
 
 /* The folder, made where there is none. */
 void make_folder(const std::string &folder);

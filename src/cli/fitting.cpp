@@ -132,7 +132,7 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
 }
 
 std::string with_names(const std::string &reason, const std::vector<std::string> &names) {
-    static const std::regex number("image ([0-9]+)");
+    static const std::regex number("image ([0-9]{1,9})");
     std::smatch match;
     if (!std::regex_search(reason, match, number)) return reason;
     size_t i = std::stoul(match[1].str());

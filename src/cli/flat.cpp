@@ -53,14 +53,13 @@ int on_progress(double done, void *progress) {
 
 /* The library counts images and shots; people know them by their files. */
 std::string with_files(const std::string &reason, const FlatReport &report) {
-    static const std::regex number("shot ([0-9]+)");
-    std::string text = with_names(reason, report.names);
+    static const std::regex number("shot ([0-9]{1,9})");
     std::smatch match;
-    if (!std::regex_search(text, match, number)) return text;
+    if (!std::regex_search(reason, match, number)) return with_names(reason, report.names);
     const auto shot = std::stoul(match[1].str());
     for (size_t i = 0; i < report.shots.size(); i++)
         if (report.shots[i] == shot) return match.prefix().str() + "the shot of " + report.names[i] + match.suffix().str();
-    return text;
+    return reason;
 }
 
 FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress) {

@@ -91,7 +91,8 @@ std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit) {
 int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const std::string &method, bool usable,
                       const std::string &source) {
     auto &p = profile.provenance;
-    set_text(p.method, sizeof p.method, method + (usable ? "" : " (forced)"));
+    const std::string forced = usable ? "" : " (forced)";
+    set_text(p.method, sizeof p.method, method.substr(0, sizeof p.method - 1 - forced.size()) + forced);
     set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
     set_text(p.source, sizeof p.source, std::filesystem::absolute(source).string());
     p.created_unix_s = static_cast<int64_t>(std::time(nullptr));

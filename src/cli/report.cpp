@@ -155,7 +155,7 @@ Json images_json(const BuildReport &report) {
     Json images = Json::array();
     for (size_t i = 0; i < report.names.size(); i++) {
         const auto &e = report.exposures[i];
-        Json image = {{"file", report.names[i]}, {"ev", number_or_null(e.ev)}, {"white_balance", numbers(e.white_balance, 3)}};
+        Json image = {{"file", report.names[i]}, {"ev", std::isnan(e.ev) ? Json() : Json(e.ev)}, {"white_balance", numbers(e.white_balance, 3)}};
         if (i < report.quality.size()) {
             const auto &q = report.quality[i];
             image["ev_sigma"] = q.ev_sigma;
@@ -234,7 +234,7 @@ void print_exposures(const BuildReport &report, std::ostream &out) {
         const auto &e = report.exposures[i];
         double sigma = i < report.quality.size() ? report.quality[i].ev_sigma : 0.0;
         std::string error = sigma > 0.0 ? format("%.3f", sigma) : std::string("-");
-        if (e.ev == LENSPROF_UNKNOWN) {
+        if (std::isnan(e.ev)) {
             out << format("%-*s  %8s\n", static_cast<int>(width), report.names[i].c_str(), "unknown");
             continue;
         }

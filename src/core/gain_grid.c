@@ -37,7 +37,7 @@ lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid)
 double lensprof_gain_grid_eval(const lensprof_gain_grid *grid, uint32_t width, uint32_t height, double x, double y,
                                uint32_t channel)
 {
-    if (!grid->columns) return 1.0;
+    if (!grid->columns || channel > 2) return 1.0;
     const float *nodes = grid->attenuation + (grid->channels == 3 ? channel : 0) * grid->rows * grid->columns;
     return lp_grid_value(nodes, grid->columns, lp_grid_cell_at(x, width, grid->columns),
                          lp_grid_cell_at(y, height, grid->rows));

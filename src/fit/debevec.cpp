@@ -182,7 +182,9 @@ void fit_debevec(const lensprof_fit_options &options, const lensprof_fit_image *
                  lensprof_fit_result &result) {
     std::vector<lensprof_fit_image> held(images, images + image_count);
     for (uint32_t i = 0; i < image_count; i++) {
-        held[i].exposure.ev = known_exposure(images, options.reference, i);
+        held[i].exposure.ev = images[images[i].ev_of].free & LENSPROF_FREE_EV
+                                  ? known_exposure(images, options.reference, i)
+                                  : given_exposure(images, i).ev;  // held by the caller
         held[i].free = 0;
     }
     Fit(options, std::move(held), pairs, pair_count).run(exposures, result);

@@ -243,7 +243,7 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
             fit_debevec(*options, images, image_count, pairs, pair_count, exposures, *result);
             return LENSPROF_OK;
         }
-        std::vector<lensprof_observation> observations = observations_of(pairs, pair_count);
+        std::vector<lensprof_observation> observations = observations_of(pairs, pair_count, static_cast<int>(options->channels));
         return fit_tracks(*options, images, image_count, observations.data(),
                           static_cast<uint32_t>(observations.size()), exposures, *result, error);
     });

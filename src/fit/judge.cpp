@@ -25,6 +25,7 @@ constexpr double kLargestCornerSigma = 0.1;    // of M
 constexpr double kLargestEvSigma = 0.3;        // EV, gamma apart
 constexpr uint32_t kFewestInliers = 3;         // of an image: fewer agree by chance,
 constexpr double kSmallestShare = 0.2;         // or a smaller share of its pairs
+constexpr double kSmallestStillShare = 0.7;    // of all pairs, where equal places are compared
 constexpr double kFarCentre = 0.1;             // half diagonals: five standard errors of its prior
 constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
 
@@ -195,11 +196,14 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
     constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
     // else it is what was held that does not fit
     bool is_free = (estimate.modes >= 0 || estimate.is_refined) && (problem.free & falloff) == falloff;
+    bool still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
+    if (still && r.inlier_share < kSmallestStillShare)
+        return refuse(r, "only %.0f %% of the pairs agree with one response; are the pictures of one scene, by a camera "
+                         "that did not move?", 100.0 * r.inlier_share);
     if (r.inlier_share < 0.3)
         return refuse(r, "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
                       100.0 * r.inlier_share);
     double pattern = r.noise_levels * std::sqrt(r.image_share);
-    bool still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
     if (r.image_share > kLargestImageShare && pattern > (still ? kHarmfulPattern : kSmallestPattern))
         return refuse(r, pattern_reason(still, is_free), 100.0 * r.image_share, pattern);
     if (r.noise_levels > kLargestNoise)

@@ -16,6 +16,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kStartModes = 5;  // enough to tell the starts apart
+constexpr uint32_t kEnoughForModes = 20000;  // pairs, where more are there to refine the response
 
 // A fit to the training data.
 struct Candidate : HeldoutLoss {
@@ -29,11 +30,11 @@ public:
 
     Fit(const lensprof_fit_options &options, uint32_t image_count, Make make, uint32_t count)
         : options_(options), image_count_(image_count), problem_(std::move(make)),
-          split_(split_pairs(count, image_count)),
-          all_(problem_(split_.all)), gauge_(options, all_) {
-        if (split_.has_heldout()) heldout_ = problem_(split_.heldout);
+          split_(split_pairs(count, image_count)), step_(options.refine ? 1 + count / kEnoughForModes : 1),
+          all_(problem_(thinned(split_.all))), gauge_(options, all_) {
+        if (split_.has_heldout()) heldout_ = problem_(thinned(split_.heldout));
         has_heldout_ = heldout_.pairs.size() >= kFewestHeldout;
-        train_ = problem_(has_heldout_ ? split_.train : split_.all);
+        train_ = problem_(thinned(has_heldout_ ? split_.train : split_.all));
         control_.max_iterations = static_cast<int>(options.max_iterations);
         control_.cancelled = [this] {
             return options_.progress && options_.progress(done_, options_.progress_user) != 0;
@@ -49,6 +50,12 @@ private:
         l.huber = options_.huber_levels / 255.0;
         return l;
     }
+    std::vector<uint32_t> thinned(const std::vector<uint32_t> &items) const {
+        std::vector<uint32_t> some;
+        for (size_t i = 0; i < items.size(); i += step_) some.push_back(items[i]);
+        return some;
+    }
+    void take_all();
     void set_vignettings(int count) {
         for (Problem *p : {&all_, &train_, &heldout_}) p->vignettings = count;
         prior_ = make_prior(options_.prior_weight, count, all_.by_radiance);
@@ -57,7 +64,7 @@ private:
     void reconsider(const Problem &problem, const Loss &used, Estimate &estimate);
     Candidate candidate(const Estimate &from, int modes);
     void refine(const Problem &problem, Loss &used, Estimate &estimate);
-    bool is_better_refined(const Candidate &best, const Loss &used, Candidate &refined);
+    bool is_as_good_refined(const Candidate &best, const Loss &used, Candidate &refined);
     Candidate choose_modes(const Estimate &start);
     void choose_vignettings(Candidate &best);
     Candidate choose(Loss &used);
@@ -67,6 +74,7 @@ private:
     uint32_t image_count_;
     const Make problem_;
     Split split_;
+    size_t step_;  // of the pairs, every so manieth is taken until the response is refined
     Problem all_, train_, heldout_;
     bool has_heldout_ = false;
     const bool is_free_ = (options_.free & LENSPROF_FREE_RESPONSE) && options_.modes != 0;  // the response
@@ -137,7 +145,7 @@ void Fit::refine(const Problem &problem, Loss &used, Estimate &estimate) {
 }
 
 // Whether held-out pairs are not worse by more than a standard error for a response free of its modes.
-bool Fit::is_better_refined(const Candidate &best, const Loss &used, Candidate &refined) {
+bool Fit::is_as_good_refined(const Candidate &best, const Loss &used, Candidate &refined) {
     HeldoutLoss modes = heldout_loss(heldout_, best.estimate, common_);
     refined.estimate = best.estimate;
     Loss own = used;
@@ -230,11 +238,22 @@ Candidate Fit::choose(Loss &used) {
     return best;
 }
 
+void Fit::take_all() {
+    if (step_ == 1) return;
+    step_ = 1;
+    const int vignettings = all_.vignettings;
+    all_ = problem_(split_.all);
+    train_ = problem_(split_.train);
+    heldout_ = problem_(split_.heldout);
+    set_vignettings(vignettings);
+}
+
 // The response freed of its modes where that is better; then gamma, which these could not follow everywhere.
 void Fit::try_refined(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome) {
     gauge_ = asked;
+    take_all();
     Candidate refined;
-    if (!is_better_refined(best, used, refined)) {
+    if (!is_as_good_refined(best, used, refined)) {
         outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
         return;
     }
@@ -256,6 +275,7 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     if (has_heldout_) reconsider(all_, used, estimate);
     Outcome outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
     if (refines) try_refined(asked, used, best, estimate, outcome);
+    else take_all();
 
     lensprof_fit_result r = result;
     r.iterations = static_cast<uint32_t>(outcome.iterations);

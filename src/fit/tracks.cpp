@@ -14,11 +14,11 @@ bool is_measured(const lensprof_observation &o, int channels) {
     return true;
 }
 
-lensprof_observation end_of(const lensprof_pair &pair, int side) {
+lensprof_observation end_of(const lensprof_pair &pair, int side, int channels) {
     lensprof_observation o{};
     o.image = pair.image[side];
     std::copy(pair.xy[side], pair.xy[side] + 2, o.xy);
-    std::copy(pair.value[side], pair.value[side] + 3, o.value);
+    std::copy(pair.value[side], pair.value[side] + channels, o.value);  // the others may be anything
     return o;
 }
 
@@ -96,10 +96,10 @@ Tracks tracks_of(const lensprof_observation *observations, uint32_t count) {
     return result;
 }
 
-std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, uint32_t count) {
+std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, uint32_t count, int channels) {
     std::vector<lensprof_observation> ends, result;
     for (uint32_t p = 0; p < count; p++)
-        for (int side = 0; side < 2; side++) ends.push_back(end_of(pairs[p], side));
+        for (int side = 0; side < 2; side++) ends.push_back(end_of(pairs[p], side, channels));
     std::vector<uint32_t> number = number_ends(ends);
     Joiner joiner(ends);
     for (uint32_t p = 0; p < count; p++) joiner.join(number[2 * p], number[2 * p + 1]);

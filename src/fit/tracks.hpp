@@ -14,7 +14,7 @@ Tracks tracks_of(const lensprof_observation *observations, uint32_t count);
 
 // Observations of pairs: pairs that have an end in common (image, position, values) are of one point, unless that one
 // would then be at two places of one image.
-std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, uint32_t count);
+std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, uint32_t count, int channels);
 
 // The pairs of tracks: neighbours among the observations of which no channel is one-sided.
 std::vector<lensprof_pair> pairs_of(const Tracks &tracks, int channels);

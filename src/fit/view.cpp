@@ -189,7 +189,8 @@ lensprof_status check_view(const lensprof_sample_image &image, uint32_t i, lensp
                     "image %u: a view of %u x %u reduced %u times does not fit a frame of %u x %u", i, view.width,
                     view.height, image.reduction, image.camera.width, image.camera.height);
     ptrdiff_t width = static_cast<ptrdiff_t>(view.width), row = image.mask_row_bytes;
-    if (image.mask && row < width && row > -width)
+    constexpr ptrdiff_t kLongestRow = ptrdiff_t{1} << 28;
+    if (image.mask && ((row < width && row > -width) || row > kLongestRow || row < -kLongestRow))
         return fail(LENSPROF_ERROR_SIZE, error,
                     "image %u: mask rows are %td bytes apart, less than the view's %td pixels", i, row, width);
     if (!(image.black >= 0.0 && image.white <= 1.0 && image.black < image.white))

@@ -274,7 +274,7 @@ void test_pairs_become_tracks(void **) {
                                    pair(0, 10, 1, 20),                                          // said twice
                                    pair(0, 11, 2, 30),                                          // image 0 has it at 10
                                    pair(0, 50, 1, 60), pair(2, 70, 3, 80), pair(1, 60, 2, 70)}; // joined by the last
-    auto observations = observations_of(pairs, 8);
+    auto observations = observations_of(pairs, 8, 3);
     Tracks tracks = tracks_of(observations.data(), static_cast<uint32_t>(observations.size()));
     std::vector<size_t> lengths;
     for (const Range &track : tracks.tracks) lengths.push_back(track.last - track.first);
