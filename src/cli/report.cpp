@@ -155,7 +155,9 @@ Json images_json(const BuildReport &report) {
     Json images = Json::array();
     for (size_t i = 0; i < report.names.size(); i++) {
         const auto &e = report.exposures[i];
-        Json image = {{"file", report.names[i]}, {"ev", std::isnan(e.ev) ? Json() : Json(e.ev)}, {"white_balance", numbers(e.white_balance, 3)}};
+        Json image = {{"file", report.names[i]},
+                      {"ev", std::isnan(e.ev) ? Json() : Json(e.ev)},
+                      {"white_balance", numbers(e.white_balance, 3)}};
         if (i < report.quality.size()) {
             const auto &q = report.quality[i];
             image["ev_sigma"] = q.ev_sigma;
