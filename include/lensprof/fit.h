@@ -11,7 +11,7 @@
  * Method `transfer-function` (Kim & Pollefeys 2004): the most likely brightness transfer function of every image pair
  * and channel, from its joint histogram; then linear least squares for ln f^-1 and the log exposures (equations 5 to
  * 13), the vignetting by alternation. Here `modes` counts components of ln f^-1, and the result's response has all EMoR
- * modes; SQUARED loss is the paper's variant, iterations are rounds. Pictures that differ by less than 0.15 EV are
+ * modes; SQUARED loss is the paper's variant, iterations are rounds, 20 at most. Pictures that differ by less than 0.15 EV are
  * not usable.
  *
  * Method `debevec` (Debevec & Malik 1997, equation 3), a reference: linear least squares for ln f^-1 at the grey levels

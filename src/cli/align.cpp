@@ -29,8 +29,9 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--project", o.pto,
                    "Hugin project that says where the camera looked; the falloff is then found and evened out, too. "
                    "Without it the camera stood still");
-    declare_fit(app, o.fit);
-    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 a frame, at least 2000; without --project 10000 a frame")->check(in_range(0, 1 << 24));
+    declare_fit(app, o.fit, {false, false});
+    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 a frame, at least 2000; without --project 10000 a frame")
+        ->check(in_range(0, 1 << 24));
     app.add_option("--seed", o.seed, "of the sampling");
     app.add_option("--max-side", o.max_side,
                    "sample frames reduced to no less than this many pixels (800); 0 = full size");
@@ -134,6 +135,7 @@ int align(const Options &o, Streams &streams) {
     Project project = sequence(o);
     std::vector<uint32_t> frames = frames_of(o, project);
     std::vector<Correction> jobs = make_jobs(o, project, frames);
+    check_folder(o.output, o.output, ExitCode::failed);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     Fitted fitted = fit_sequence(o, project, progress, streams);
     std::string reason = with_names(fitted.result.reason, project.names);
@@ -171,8 +173,6 @@ int run_align(const std::vector<std::string> &arguments, Streams &streams) {
     declare(app, o);
     if (!parse(app, arguments, streams)) return 0;
     check_fit_options(o.fit);
-    if (o.fit.gamma_from == "known")
-        throw Failure(ExitCode::usage, "--gamma-from known: a sequence comes without a response that is known");
     if (o.max_side != 0 && o.max_side < 64)
         throw Failure(
             ExitCode::usage,

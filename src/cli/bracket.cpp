@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <sstream>
 
 #include "fitting.hpp"
 #include "interrupt.hpp"
+#include "numbers.hpp"
 #include "profile_store.hpp"
 #include "static_camera.hpp"
 
@@ -31,7 +31,7 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--ev-sigma", o.ev_sigma, "standard error of these, EV")->check(in_range(0.001, 10.0));
     app.add_option("--white-balance", o.balance, "free or fixed from picture to picture")
         ->check(CLI::IsMember({"free", "fixed"}));
-    declare_fit(app, o.fit, true);
+    declare_fit(app, o.fit, {true, false});
     app.add_flag("--modes-only", o.modes_only, "keep the response to EMoR modes, also where it is better without");
     app.add_option("--reference", o.reference, "picture (number or name) whose exposure is 0 EV");
     app.add_option("--black", o.black,
@@ -46,40 +46,17 @@ void declare(CLI::App &app, Options &o) {
     app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
 }
 
-/* "1/8" or "0.125". */
-double number_of(const std::string &word, const std::string &option) {
-    std::istringstream text(word);
-    double value = 0.0, divisor = 1.0;
-    char slash = '/';
-    bool good = static_cast<bool>(text >> value);
-    if (good && text.peek() == '/') good = (text >> slash >> divisor) && divisor > 0.0;
-    if (!good || text.peek() != EOF || !std::isfinite(value / divisor))
-        throw Failure(ExitCode::usage, option + ": '" + word + "' is not a number; separate numbers with commas");
-    return value / divisor;
-}
-
-/* The numbers of a list with commas, one a picture. */
-std::vector<double> numbers_of(const std::string &list, const std::string &option, size_t count) {
-    std::vector<double> values;
-    std::istringstream text(list + ",");
-    for (std::string word; std::getline(text, word, ',');) values.push_back(number_of(word, option));
-    if (values.size() != count)
-        throw Failure(ExitCode::usage, option + ": " + std::to_string(values.size()) + " values for "
-                                           + std::to_string(count) + " pictures; give one a picture, in their order");
-    return values;
-}
-
 /* The exposures of the command line, EV; empty when it says nothing. */
 std::vector<double> given_exposures(const Options &o) {
     if (o.ev) {
-        auto ev = numbers_of(*o.ev, "--ev", o.files.size());
+        auto ev = numbers_of(*o.ev, "--ev", o.files.size(), "pictures");
         for (double value : ev)
             if (std::fabs(value) > 64.0) throw Failure(ExitCode::usage, "--ev: exposures lie within 64 EV");
         return ev;
     }
     std::vector<double> ev;
     if (!o.times) return ev;
-    for (double time : numbers_of(*o.times, "--times", o.files.size())) {
+    for (double time : numbers_of(*o.times, "--times", o.files.size(), "pictures")) {
         if (!(time > 1e-9 && time < 1e9)) throw Failure(ExitCode::usage, "--times: a time lies within 1e-9..1e9 s");
         ev.push_back(std::log2(time));
     }
@@ -183,8 +160,7 @@ void check_debevec_options(const Options &o) {
     const std::pair<bool, const char *> without[] = {{o.fit.modes != "auto", "--modes"},
                                                      {o.modes_only, "--modes-only"},
                                                      {o.fit.loss != "robust", "--loss"},
-                                                     {o.fit.gamma_from == "prior", "--gamma-from prior"},
-                                                     {o.fit.gamma_from == "known", "--gamma-from known"}};
+                                                     {o.fit.gamma_from == "prior", "--gamma-from prior"}};
     for (const auto &[is_given, option] : without)
         if (is_given && is_debevec(o))
             throw Failure(ExitCode::usage, std::string("--method debevec and ") + option

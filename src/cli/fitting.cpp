@@ -36,14 +36,21 @@ int on_progress(double done, void *progress) {
 
 }  // namespace
 
-void declare_fit(CLI::App &app, FitOptions &o, bool has_debevec) {
+void declare_fit(CLI::App &app, FitOptions &o, FitChoices choices) {
     std::vector<std::string> methods = {"transfer", "radiance", "transfer-function"};
+    std::vector<std::string> gamma = {"auto", "exif", "prior"};
     std::string about = "transfer (d'Angelo 2007), radiance (Goldman & Chen 2005: one radiance a scene point, which any "
                         "number of pictures may see, saturated ones among them) or transfer-function (Kim & Pollefeys "
                         "2004)";
-    if (has_debevec) {
+    if (choices.debevec) {
         methods.push_back("debevec");
         about += "; debevec (Debevec & Malik 1997), a reference: known exposures taken as exact, white balances fixed";
+    }
+    std::string settles = "what settles the common exponent of exposure, falloff and response: auto (EXIF exposures that "
+                          "differ, and the prior, each by its standard error), exif, prior";
+    if (choices.known_response) {
+        gamma.push_back("known");
+        settles += ", known (the project's response)";
     }
     app.add_option("--method", o.method, about)->check(CLI::IsMember(methods));
     app.add_option("--modes", o.modes, "EMoR modes of the response: 0..25 or auto (held-out error decides)");
@@ -51,10 +58,7 @@ void declare_fit(CLI::App &app, FitOptions &o, bool has_debevec) {
         ->check(CLI::IsMember({"robust", "huber", "squared"}));
     app.add_option("--huber", o.huber, "sigma of the Huber loss, levels of 255")->check(in_range(0.01, 255.0));
     app.add_option("--prior", o.prior, "weight of the priors; 0 = none, as in the paper")->check(in_range(0.0, 1e6));
-    app.add_option("--gamma-from", o.gamma_from,
-                   "what settles the common exponent of exposure, falloff and response: auto (EXIF exposures that "
-                   "differ, and the prior, each by its standard error), exif, prior, known (the project's response)")
-        ->check(CLI::IsMember({"auto", "exif", "prior", "known"}));
+    app.add_option("--gamma-from", o.gamma_from, settles)->check(CLI::IsMember(gamma));
     app.add_option("--exif-sigma", o.exif_sigma, "standard error of an EXIF exposure, EV; 0 = do not use them")
         ->check(in_range(0.0, 10.0));
     app.add_option("--camera-kind", o.camera_kind, "whose responses the prior is of: any, film or digital")

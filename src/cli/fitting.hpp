@@ -24,8 +24,12 @@ struct FitOptions {
     double huber = 5.0, prior = 1.0, exif_sigma = 0.1;
 };
 
-/* `has_debevec`: for pictures whose exposures are known. */
-void declare_fit(CLI::App &app, FitOptions &o, bool has_debevec = false);
+/* What not every command has to offer. */
+struct FitChoices {
+    bool debevec = false;        /* the pictures' exposures may be known */
+    bool known_response = true;  /* a project says a response that may be held */
+};
+void declare_fit(CLI::App &app, FitOptions &o, FitChoices choices = {});
 
 /* Failure (usage) for options that contradict each other. */
 void check_fit_options(const FitOptions &o);

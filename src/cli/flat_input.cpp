@@ -1,11 +1,11 @@
 /* What `lensprof flat` works on: pictures, and what is known about their exposure, turn, card and response. */
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <set>
 
 #include "flat.hpp"
 #include "metadata.hpp"
+#include "numbers.hpp"
 #include "parallel.hpp"
 
 namespace lensprof {
@@ -14,37 +14,13 @@ namespace {
 constexpr double farthest_ev = 64.0;
 constexpr uint32_t smallest_side = 64;
 
-/* Numbers between commas. Failure (usage) names the option and the word. */
-std::vector<double> numbers_of(const std::string &option, const std::string &list) {
-    std::vector<double> numbers;
-    for (size_t start = 0; start <= list.size();) {
-        size_t end = std::min(list.find(',', start), list.size());
-        std::string word = list.substr(start, end - start);
-        char *rest = nullptr;
-        double number = std::strtod(word.c_str(), &rest);
-        if (word.empty() || *rest || !std::isfinite(number))
-            throw Failure(ExitCode::usage, option + " " + list + ": give numbers with commas between them");
-        numbers.push_back(number);
-        start = end + 1;
-    }
-    return numbers;
-}
-
-std::vector<double> one_each(const std::string &option, const std::string &list, size_t count, const char *what) {
-    std::vector<double> numbers = numbers_of(option, list);
-    if (numbers.size() != count)
-        throw Failure(ExitCode::usage, option + " " + list + ": has " + std::to_string(numbers.size())
-                                           + " numbers; give one for each of the " + std::to_string(count) + " " + what);
-    return numbers;
-}
-
 std::vector<uint32_t> shots_of(const FlatCommand &o) {
     std::vector<uint32_t> shots;
     if (o.shots.empty()) {
         for (uint32_t i = 0; i < o.files.size(); i++) shots.push_back(i + 1);
         return shots;
     }
-    for (double number : one_each("--shots", o.shots, o.files.size(), "pictures")) {
+    for (double number : numbers_of(o.shots, "--shots", o.files.size(), "pictures")) {
         if (number != std::floor(number) || number < 0.0 || number > 1e6)
             throw Failure(ExitCode::usage, "--shots " + o.shots + ": give whole numbers");
         shots.push_back(static_cast<uint32_t>(number));
@@ -59,7 +35,7 @@ std::vector<double> turns_of(const FlatCommand &o, const std::vector<uint32_t> &
         if (std::find(order.begin(), order.end(), shot) == order.end()) order.push_back(shot);
     std::vector<double> turns(shots.size(), 0.0);
     if (o.turned.empty()) return turns;
-    std::vector<double> given = one_each("--turned", o.turned, order.size(), "shots");
+    std::vector<double> given = numbers_of(o.turned, "--turned", order.size(), "shots");
     for (size_t i = 0; i < shots.size(); i++)
         turns[i] = given[static_cast<size_t>(std::find(order.begin(), order.end(), shots[i]) - order.begin())];
     for (double turn : given)
@@ -76,7 +52,7 @@ bool needs_ev(const FlatCommand &o, const std::vector<uint32_t> &shots, size_t i
 std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_t> &shots,
                                  const std::vector<PictureMetadata> &metadata) {
     std::vector<double> ev(shots.size(), 0.0);
-    if (!o.ev.empty()) ev = one_each("--ev", o.ev, o.files.size(), "pictures");
+    if (!o.ev.empty()) ev = numbers_of(o.ev, "--ev", o.files.size(), "pictures");
     for (size_t i = 0; i < ev.size(); i++) {
         if (o.ev.empty() && needs_ev(o, shots, i)) {
             if (!metadata[i].exif_ev)
@@ -107,7 +83,7 @@ std::vector<lensprof_response> response_of(const FlatCommand &o) {
 
 /* The card's rectangle as a mask of the held pixels. */
 std::vector<uint8_t> mask_of(const std::string &card, const Picture &picture, const std::string &file) {
-    std::vector<double> r = numbers_of("--card", card);
+    std::vector<double> r = numbers_of(card, "--card");
     if (r.size() != 4 || !(r[0] >= 0 && r[1] >= 0 && r[2] > 0 && r[3] > 0)
         || r[0] + r[2] > picture.frame_width || r[1] + r[3] > picture.frame_height)
         throw Failure(ExitCode::usage, "--card " + card + ": not a rectangle X,Y,WIDTH,HEIGHT in the "

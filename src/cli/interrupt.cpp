@@ -19,6 +19,7 @@ void on_signal(int number) {
 void catch_interrupts() {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+    std::signal(SIGXFSZ, SIG_IGN);  /* a file beyond `ulimit -f` is an error of the write, as a full disk is */
 }
 
 bool interrupted() { return flag != 0; }

@@ -4,7 +4,8 @@
 
 namespace lensprof {
 
-/* From now on SIGINT and SIGTERM only set a flag (a second one ends the process at once). Call once, from main. */
+/* From now on SIGINT and SIGTERM only set a flag (a second one ends the process at once),
+ * and a file beyond the limit of its size fails as any write does. Call once, from main. */
 void catch_interrupts();
 
 bool interrupted();

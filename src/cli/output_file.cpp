@@ -5,14 +5,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <system_error>
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include "error.hpp"
 
 namespace lensprof {
 
@@ -67,6 +66,17 @@ int sync_path(const std::string &path, int flags) {
 }
 
 }  // namespace
+
+void check_folder(const std::string &folder, const std::string &item, ExitCode code) {
+    std::error_code ignored;
+    std::filesystem::path place = std::filesystem::absolute(folder);
+    while (!std::filesystem::exists(place, ignored) && place.has_relative_path()) place = place.parent_path();
+    if (!std::filesystem::is_directory(place, ignored))
+        throw Failure(code, item + ": " + place.string() + " is not a folder; give another name");
+    if (access(place.c_str(), W_OK | X_OK) != 0)
+        throw Failure(code, item + ": cannot write in " + place.string() + ": " + system_text(errno)
+                                + "; check its permissions, or give another folder");
+}
 
 std::string system_text(int error_number) {
     return std::generic_category().message(error_number);

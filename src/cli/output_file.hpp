@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "error.hpp"
+
 namespace lensprof {
 
 /* A file that is being written. The bytes go to a temporary file in the same folder (a rename is atomic only within
@@ -48,6 +50,10 @@ private:
 
 /* Writes the file `path` with these bytes, complete or not at all. */
 void write_file(const std::string &path, const void *data, size_t bytes);
+
+/* Failure, with this code and about `item`, where `folder` neither is one that can be written to nor can be made: to be
+ * known before work that takes long. */
+void check_folder(const std::string &folder, const std::string &item, ExitCode code);
 
 /* "No space left on device" for ENOSPC, and so on; the same text in every locale of the C++ library. */
 std::string system_text(int error_number);

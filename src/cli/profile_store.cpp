@@ -3,8 +3,7 @@
 #include <ctime>
 #include <filesystem>
 
-#include <unistd.h>
-
+#include "output_file.hpp"
 #include "report.hpp"
 #include "run.hpp"
 
@@ -50,12 +49,8 @@ void check_store(const StoreOptions &o) {
     else if (!o.db.empty() && !std::filesystem::is_directory(folder))
         throw Failure(ExitCode::store,
                       o.db + ": there is no folder " + folder.string() + " for the database; make it first");
-    else if (o.db.empty()) {
-        while (!std::filesystem::exists(folder) && folder.has_relative_path()) folder = folder.parent_path();
-        if (access(folder.c_str(), W_OK) != 0)
-            throw Failure(ExitCode::store, file.string() + ": cannot be made in " + folder.string()
-                                               + "; name a database with --db FILE");
-    }
+    else
+        check_folder(folder.string(), file.string(), ExitCode::store);
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "numbers.hpp"
 #include "output_file.hpp"
 #include "parallel.hpp"
 #include "picture.hpp"
@@ -68,18 +69,6 @@ std::vector<std::string> split(const std::string &text, char separator) {
         if (c == separator) parts.emplace_back();
         else parts.back() += c;
     return parts;
-}
-
-double number_of(const std::string &text, const char *option) {
-    size_t used = 0;
-    double value = NAN;
-    try {
-        value = std::stod(text, &used);
-    } catch (const std::exception &) {
-    }
-    if (used != text.size() || text.empty() || !std::isfinite(value))
-        throw Failure(ExitCode::usage, std::string(option) + ": " + text + " is not a number");
-    return value;
 }
 
 double srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; }

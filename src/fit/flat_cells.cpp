@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "parallel.hpp"
-#include "quality.hpp"
+#include "quantile.hpp"
 
 namespace lensprof {
 namespace {
@@ -22,12 +22,6 @@ constexpr size_t kNoiseLevels = 8;          // grey levels of a noise curve
 // One step of the samples: what two neighbours differ by at least when they differ.
 float quantum(uint32_t sample) {
     return sample == LENSPROF_SAMPLE_U8 ? 1.0f / 255.0f : sample == LENSPROF_SAMPLE_U16 ? 1.0f / 65535.0f : 1e-7f;
-}
-
-float median(std::vector<float> &values) {
-    auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // Standard deviation of a pixel from differences of neighbours (which change places), those of edges left out.
@@ -157,8 +151,8 @@ NoiseCurve noise_curve(const std::vector<Cell> &cells, size_t channel) {
             grey.push_back(seen[i].first);
             variance.push_back(static_cast<double>(seen[i].second) * seen[i].second);
         }
-        curve.grey.push_back(quantile(grey, 0.5));
-        curve.variance.push_back(quantile(variance, 0.5));
+        curve.grey.push_back(median(grey));
+        curve.variance.push_back(median(variance));
     }
     return curve;
 }

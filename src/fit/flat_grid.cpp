@@ -4,6 +4,7 @@
 
 #include <Eigen/SparseCholesky>
 
+#include "core/gain_grid.h"
 #include "flat_fit.hpp"
 
 namespace lensprof {
@@ -26,15 +27,11 @@ struct Bilinear {
 
 // The shares with which lensprof_gain_grid_eval takes the nodes about a cell.
 Bilinear bilinear(const lensprof_gain_grid &gain, const CellGrid &grid, const FlatCell &cell) {
-    auto place = [](double position, uint32_t pixels, uint32_t nodes, int &first) {
-        double t = pixels > 1 ? std::clamp(position / (pixels - 1.0), 0.0, 1.0) * (nodes - 1.0) : 0.0;
-        first = std::min(static_cast<int>(t), static_cast<int>(nodes) - 2);
-        return t - first;
-    };
-    int column, row, columns = static_cast<int>(gain.columns);
-    double u = place(cell.x, grid.width, gain.columns, column);
-    double v = place(cell.y, grid.height, gain.rows, row);
-    int first = row * columns + column;
+    const lp_grid_cell column = lp_grid_cell_at(cell.x, grid.width, gain.columns);
+    const lp_grid_cell row = lp_grid_cell_at(cell.y, grid.height, gain.rows);
+    const double u = column.fraction, v = row.fraction;
+    const int columns = static_cast<int>(gain.columns), first = static_cast<int>(row.node) * columns
+                                                               + static_cast<int>(column.node);
     return {{first, first + 1, first + columns, first + columns + 1},
             {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "flat_fit.hpp"
+#include "quantile.hpp"
 
 namespace lensprof {
 namespace {
@@ -18,6 +19,7 @@ constexpr double kSteepTurned = 0.5;                           // its square is 
 constexpr double kMuchOwn = 0.015, kSomeOwn = 0.004;           // of the light
 constexpr double kNotRadial = 0.003;                           // of the light
 constexpr double kWrongEv = 0.3, kDoubtfulEv = 0.1;            // EV, within a shot
+constexpr double kSteepest = 0.05, kFlattest = 20.0;           // d ln E / d ln B; of cameras .2 to 10
 constexpr double kFewInliers = 0.5;
 constexpr double kFarCentre = 0.1;                             // half diagonals, as for the overlap fit
 
@@ -72,6 +74,33 @@ Worst wrong_exposure(const FlatFit &fit, const lensprof_flat_result &r) {
     for (uint32_t i = 0; i < fit.count && r.image_quality; i++)
         worst.take(std::abs(r.image_quality[i].ev_residual), i);
     return worst;
+}
+
+// By how much a picture's light changes with its grey values, d ln E / d ln B: median over cells and channels.
+double contrast_of_light(const FlatFit &fit, uint32_t image) {
+    Responses responses(fit.options);
+    std::vector<double> contrasts;
+    for (const Cell &cell : fit.pictures[image].cells) {
+        for (uint32_t c = 0; cell.state == CellState::used && c < fit.options.channels; c++) {
+            double grey = static_cast<double>(cell.value[c]), slope = 0.0;
+            double light = responses.invert(static_cast<int>(c), grey, &slope);
+            if (light > 0.0) contrasts.push_back(slope * grey / light);
+        }
+    }
+    return contrasts.empty() ? 1.0 : median(contrasts);
+}
+
+// The response says next to nothing about light where the picture's grey values lie.
+bool has_no_gradation(const FlatFit &fit, lensprof_flat_result &r) {
+    for (uint32_t i = 0; i < fit.count; i++) {
+        double contrast = contrast_of_light(fit, i);
+        if (contrast < kSteepest || contrast > kFlattest)
+            return say(r, false,
+                       "the response given is %s where the grey values of image %u lie, so that these do not tell the "
+                       "light; give the camera's own response, or another exposure",
+                       contrast < kSteepest ? "a step" : "flat", i);
+    }
+    return false;
 }
 
 bool lacks_light(const FlatFit &fit, lensprof_flat_result &r) {
@@ -194,7 +223,7 @@ void mind(const FlatFit &fit, lensprof_flat_result &r) {
 }  // namespace
 
 void judge_flat(const FlatFit &fit, lensprof_flat_result &r) {
-    if (lacks_light(fit, r) || contradicts_model(fit, r) || is_undetermined(fit, r)) return;
+    if (lacks_light(fit, r) || has_no_gradation(fit, r) || contradicts_model(fit, r) || is_undetermined(fit, r)) return;
     r.usable = 1;
     r.reason[0] = 0;
     mind(fit, r);

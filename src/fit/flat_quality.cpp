@@ -5,7 +5,7 @@
 
 #include "flat_fit.hpp"
 #include "loss.hpp"
-#include "quality.hpp"
+#include "quantile.hpp"
 
 namespace lensprof {
 namespace {
@@ -106,7 +106,7 @@ void describe_picture(const FlatFit &fit, const Shot &shot, uint32_t image, lens
     }
     q.white_share = white.value();
     q.black_share = black.value();
-    q.noise_levels = quantile(noise, 0.5);
+    q.noise_levels = median(noise);
     for (int d = 0; d < 2 && white.count > 0.0; d++) {
         double side = d == 0 ? fit.grid.cell_width() : fit.grid.cell_height();
         q.card[d] = static_cast<uint32_t>(std::lround(first[d] * side));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "quality.hpp"
+#include "quantile.hpp"
 
 namespace lensprof {
 namespace {
@@ -150,7 +150,7 @@ std::vector<double> exposure_residuals(const lensprof_flat_options &options, con
                 if (shot.card[cell] && mine.weight > 0.0 && weight > 0.0)
                     away.push_back(std::log2(mine.light * weight / sum));
             }
-        residuals.push_back(quantile(away, 0.5));
+        residuals.push_back(median(away));
     }
     return residuals;
 }
@@ -179,7 +179,7 @@ void mark_card(const CellGrid &grid, bool find, int channels, Shot &shot) {
         if (static_cast<double>(group.size()) < kSmallestCard * grid.count()) continue;
         std::vector<double> values;
         for (int cell : group) values.push_back(bright[static_cast<size_t>(cell)]);
-        regions.push_back({group, quantile(values, 0.5)});
+        regions.push_back({group, median(values)});
         brightest = std::max(brightest, regions.back().bright);
     }
     shot.card.assign(seen.size(), false);

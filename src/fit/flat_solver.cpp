@@ -7,7 +7,7 @@
 
 #include "loss.hpp"
 #include "prior.hpp"
-#include "quality.hpp"
+#include "quantile.hpp"
 
 namespace lensprof {
 namespace {
@@ -183,7 +183,7 @@ double unevenness(const FlatProblem &problem, const std::vector<std::array<doubl
             squares.push_back(r * r);
             noises.push_back(problem.cells[i].variance[c] / (p * p));
         }
-    double beyond = quantile(squares, 0.5) / kMedianChi2 - quantile(noises, 0.5);
+    double beyond = median(squares) / kMedianChi2 - median(noises);
     return std::sqrt(std::max(beyond, 0.0));
 }
 
@@ -191,7 +191,7 @@ double unevenness(const FlatProblem &problem, const std::vector<std::array<doubl
 double residual_variance(const FlatProblem &problem, const std::vector<double> &chi2) {
     std::vector<double> order = chi2;
     const int channels = problem.model.channels;
-    double variance = std::max(quantile(order, 0.5) / (channels == 3 ? kMedianChi2Of3 : kMedianChi2), 1e-12);
+    double variance = std::max(median(order) / (channels == 3 ? kMedianChi2Of3 : kMedianChi2), 1e-12);
     for (int round = 0; round < 10; round++) {
         double sum = 0.0, count = 0.0;
         for (double value : chi2)
@@ -271,7 +271,7 @@ Eigen::VectorXd flat_start(const FlatProblem &problem, const lensprof_vignetting
                     double p = predict_cell(problem, u, cell, c).falloff;
                     values.push_back(std::log(cell.value[static_cast<size_t>(c)] / p));
                 }
-            u[model.level(shot, c)] = quantile(values, 0.5);
+            u[model.level(shot, c)] = median(values);
         }
     return u;
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "flat_fit.hpp"
-#include "quality.hpp"
+#include "quantile.hpp"
 
 namespace lensprof {
 namespace {
@@ -58,10 +58,10 @@ SpotMap spots_of_shot(const FlatFit &fit, int shot) {
                 double value = residual[static_cast<size_t>(y * grid.columns + x)];
                 if (!std::isnan(value)) near.push_back(value);
             }
-        map.below[i] = residual[i] - quantile(near, 0.5);
+        map.below[i] = residual[i] - median(near);
         size.push_back(std::abs(map.below[i]) / noise[i]);
     }
-    const double sigma = std::max(1.4826 * quantile(size, 0.5), 1.0);
+    const double sigma = std::max(1.4826 * median(size), 1.0);
     for (size_t i = 0; i < count; i++)
         map.dark[i] = map.below[i] < -std::max(kFar * sigma * noise[i], kSmallestDepth)
                       || (!std::isnan(residual[i])

@@ -66,7 +66,7 @@ void describe_residuals(const Problem &problem, const Estimate &estimate, double
     PatternShares shares = pattern_shares(problem, residual, is_inlier);
     r.frame_share = shares.frame;
     r.image_share = shares.image;
-    for (size_t i = 0; i < of_image.size(); i++) r.image_quality[i].median_residual = quantile(of_image[i], 0.5);
+    for (size_t i = 0; i < of_image.size(); i++) r.image_quality[i].median_residual = median(of_image[i]);
 }
 
 void describe_images(const Problem &problem, const Gauge &gauge, const Estimate &estimate, const Covariance &found,
@@ -132,13 +132,6 @@ void describe_covariance(const Problem &problem, const Gauge &gauge, const Estim
 
 }  // namespace
 
-double quantile(std::vector<double> &values, double share) {
-    if (values.empty()) return 0.0;
-    auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
 std::vector<double> residual_levels(const Problem &problem, const Estimate &estimate) {
     std::vector<double> values;
     for_each_transfer(problem, estimate, [&](size_t, const PairTransfer &t) {
@@ -153,7 +146,7 @@ Summary summarise(std::vector<double> values) {
     if (values.empty()) return summary;
     double sum2 = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
     summary.rms = std::sqrt(sum2 / static_cast<double>(values.size()));
-    summary.median = quantile(values, 0.5);
+    summary.median = median(values);
     return summary;
 }
 

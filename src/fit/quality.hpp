@@ -1,12 +1,10 @@
 // What a result is worth: residuals, covariance, coverage, and in plain words why it is not usable.
 #pragma once
 
+#include "quantile.hpp"
 #include "solver.hpp"
 
 namespace lensprof {
-
-// Value at a share 0..1 of the values in order, which change places; 0 of none.
-double quantile(std::vector<double> &values, double share);
 
 // Root mean square and median absolute value of transfer residuals, levels of 255.
 struct Summary {

@@ -40,6 +40,10 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
         if (status != LENSPROF_OK) return status;
         Sampler sampler(options, images, count);
         items = draw(sampler);
+        if (items.empty() && options.sampling == LENSPROF_SAMPLING_BRACKET)
+            return fail(LENSPROF_ERROR_NO_SAMPLES, error,
+                        "no two images show the same place between black and white: they may be of different scenes, "
+                        "too far apart in exposure, masked, or one may be all black or white");
         if (!sampler.overlaps())
             return fail(LENSPROF_ERROR_NO_OVERLAP, error, "no two images overlap; check the alignment of the project");
         if (items.empty())

@@ -5,6 +5,7 @@
 
 #include "joint_histogram.hpp"
 #include "parallel.hpp"
+#include "quantile.hpp"
 #include "residual.hpp"
 
 namespace lensprof {
@@ -91,12 +92,6 @@ Beside beside(const SmoothTransfer &transfer, const LevelPair &pair) {
     off = pair[1] - transfer.at(foot, slope);
     double distance = (off - slope * (pair[0] - foot)) / std::sqrt(1.0 + slope * slope);
     return {foot + transfer.at(foot, slope), distance};
-}
-
-double median(std::vector<double> values) {
-    auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // Mean of the pairs whose nearest points of the path lie together, pairs off the curve left out: across the curve and

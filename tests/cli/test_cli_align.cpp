@@ -143,9 +143,32 @@ void test_refusals(void **) {
     refuse(usage, Words{frames[0], frames[0]} + out, "twice");
     refuse(usage, two + out + Words{"--to", "darkest"}, "--to");
     refuse(usage, two + out + Words{"--method", "magic"}, "--method");
-    refuse(usage, two + out + Words{"--gamma-from", "known"}, "known");
+    refuse(usage, two + out + Words{"--gamma-from", "known"}, "--gamma-from");
     refuse(usage, two + out + Words{"--max-side", "32"}, "--max-side");
     refuse(unreadable, Words{"--project", work("in/none.pto")} + out, "none.pto");
+    refuse(failed, two + Words{"-o", work("in/text.png")}, "text.png is not a folder");
+    refuse(failed, two + Words{"-o", work("in/text.png/deeper")}, "text.png is not a folder");
+}
+
+/* No picture of the call may be written over, however its name is written. */
+void test_inputs_stay(void **) {
+    const Words frames = make_frames();
+    fs::create_directories(work("other"));
+    fs::create_directory_symlink(work("in"), work("link"));
+    fs::copy(frames[1], work("other/f0.png"));
+    fs::copy(frames[1], work("other/f1.png"));
+    auto refuse = [&](const Words &words, const char *said) { assert_refused(usage, Words{"align"} + words, {said}); };
+    refuse({frames[0], frames[1], "-o", work("other/../in")}, "overwritten");
+    refuse({frames[0], frames[1], "-o", work("link")}, "overwritten");
+    refuse({frames[0], work("other/f1.png"), "-o", work("other")}, "overwritten");
+    refuse({frames[0], work("other/f0.png"), "-o", work("out")}, "two pictures");
+    must_exit(done, {"simulate", "-o", work("pano"), "--images", "3", "--size", "160x120", "--format", "png"});
+    fs::create_directories(work("far"));
+    fs::copy(work("pano/img000.png"), work("far/img001.png")); /* a picture of the project under another one's name */
+    std::string pto = text_of(work("pano/pano.pto"));
+    pto.replace(pto.find("img000.png"), 10, "../far/img001.png");
+    save_text(work("pano/far.pto"), pto);
+    refuse({"--project", work("pano/far.pto"), work("far/img001.png"), "-o", work("pano")}, "of the same call");
 }
 
 void test_build_by_transfer_functions(void **) {
@@ -164,7 +187,7 @@ void test_build_by_transfer_functions(void **) {
 int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_static_sequence), CLI_TEST(test_mean_and_json), CLI_TEST(test_moving_camera),
-        CLI_TEST(test_refusals),        CLI_TEST(test_build_by_transfer_functions),
+        CLI_TEST(test_refusals), CLI_TEST(test_inputs_stay),        CLI_TEST(test_build_by_transfer_functions),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -71,6 +71,37 @@ void test_an_overexposed_picture_is_left_out(void **) {
     assert_true(contains(words.out, "unknown"));
 }
 
+/* -1 is an exposure like any other. */
+void test_an_exposure_of_minus_one(void **) {
+    const std::vector<double> evs = {0.0, -1.0, 1.0};
+    const Words files = shots(evs);
+    const Json json = json_of(bracket(files, no_store + Words{"--ev", "0,-1,1", "--method", "debevec"}));
+    assert_close(found_ev(json, 1), -1.0, 0.0);
+    const Outcome text =
+        run_words(bracket(files, {"--no-store", "--pairs", "4000", "--method", "debevec", "--ev", "0,-1,1"}));
+    assert_true(contains(text.out, "-1.000") && !contains(text.out, "unknown"));
+}
+
+/* A reason names files, whatever these are called. */
+void test_names_that_look_like_numbers(void **) {
+    Shot like;
+    like.noise = 0.0;
+    const Words files = shots({20.0, -20.0}, like);
+    const Words odd = {work("image 99999999999999999999.png"), work("shot 1 image 0.png")};
+    for (size_t i = 0; i < 2; ++i)
+        fs::rename(files[i], odd[i]);
+    assert_refused(not_usable, bracket(odd, no_store), {odd[0]});
+}
+
+/* A forced result says so, whatever the method's name takes of its field. */
+void test_forced(void **) {
+    const Words files = shots(five);
+    must_exit(not_usable, bracket(files, {"--db", work("p.db"), "--camera", "X", "--pairs", "4000", "--method",
+                                          "debevec", "--force", "--ev", "-3,-1.5,0,1.5,3"}));
+    const Json shown = json_of({"profile", "show", "1", "--db", work("p.db"), "--json"});
+    assert_string_equal(shown["provenance"]["method"].get<std::string>().c_str(), "bracket debevec (forced)");
+}
+
 void test_profile_of_the_camera_alone(void **) {
     const Words files = shots(three);
     for (size_t i = 0; i < 3; ++i)
@@ -100,7 +131,7 @@ void test_debevec(void **) {
     assert_true(contains(reversed.err, "falls"));
     assert_refused(usage, bracket(files, debevec), {files[0], "--ev", "--times"});
     for (const Words &wrong : {Words{"--modes", "5"}, Words{"--modes-only"}, Words{"--loss", "huber"},
-                               Words{"--gamma-from", "prior"}, Words{"--gamma-from", "known"}})
+                               Words{"--gamma-from", "prior"}})
         assert_refused(usage, bracket(files, debevec + Words{"--ev", list_of(five)} + wrong), {wrong[0], "debevec"});
     for (size_t i = 0; i + 1 < files.size(); ++i)
         state_exposure(files[i], five[i]);
@@ -140,8 +171,10 @@ void test_refused_options(void **) {
           Words{"--times", "1,2"}, Words{"--times", "1,2,0"}, Words{"--times", "1,2,-1"}, Words{"--times", "1,2,1/0"},
           Words{"--times", "1,2,1/-8"}, Words{"--times", "1,2,1/"}, Words{"--times", "1,2,1e-10"},
           Words{"--times", ""}, Words{"--ev-sigma", "0"}, Words{"--ev-sigma", "nan"},
-          Words{"--max-side", "10"}, Words{"--black", "-1"}, Words{"--black", "255"}, Words{"--white-balance", "warm"}, Words{"--modes", "26"}, Words{"--modes", "x"},
-          Words{"--pairs", "-1"}, Words{"--seed", "x"}, Words{"--method", "guess"}, Words{"--gamma-from", "guess"}})
+          Words{"--max-side", "10"}, Words{"--black", "-1"}, Words{"--black", "255"},
+          Words{"--white-balance", "warm"}, Words{"--modes", "26"}, Words{"--modes", "x"},
+          Words{"--pairs", "-1"}, Words{"--seed", "x"}, Words{"--method", "guess"}, Words{"--gamma-from", "guess"},
+          Words{"--gamma-from", "known"}})
         assert_refused(usage, bracket(files, Words{"--db", work("p.db"), "--camera", "X"} + wrong), {wrong[0]});
     assert_refused(usage, bracket(files, {"--ev", "1,2,3", "--times", "1,2,3", "--no-store"}), {"--ev", "--times"});
     assert_refused(usage, bracket(files, {"--db", work("p.db"), "--no-store"}), {"--db", "--no-store"});
@@ -191,6 +224,7 @@ void test_pictures_that_show_no_response(void **) {
     for (double ev : {-40.0, 40.0})
         assert_shows_nothing(shots({ev, ev + 1.0, ev - 1.0}, like));
     assert_shows_nothing(shots({30.0, -30.0}, like));
+    assert_refused(not_usable, bracket(shots({0.0, -30.0}, like), no_store), {"all black or white"});
     like.noise = 1.0;
     Words files = shots(three);
     for (uint32_t i = 0; i < 3; ++i) {
@@ -209,6 +243,9 @@ int main() {
         CLI_TEST(test_object),
         CLI_TEST(test_reference),
         CLI_TEST(test_an_overexposed_picture_is_left_out),
+        CLI_TEST(test_an_exposure_of_minus_one),
+        CLI_TEST(test_names_that_look_like_numbers),
+        CLI_TEST(test_forced),
         CLI_TEST(test_profile_of_the_camera_alone),
         CLI_TEST(test_debevec),
         CLI_TEST(test_runs_repeat),

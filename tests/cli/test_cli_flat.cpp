@@ -207,6 +207,7 @@ void test_refused(void **) {
         {not_usable, Words{path, "--white", "0.02"} + good, {"black and white"}},
         {store_failed, {path, "--linear", "--camera", "Box", "--db", text}, {"text.tif"}},
         {store_failed, {path, "--linear", "--camera", "Box", "--db", in_folder("no/such.db")}, {"no/such.db"}},
+        {store_failed, {path, "--linear", "--camera", "Box", "--db", "/proc/lensprof/p.db"}, {"/proc/lensprof"}},
     };
     for (const Case &one : cases) assert_refused(one.code, flat(one.words), one.named);
 }

@@ -292,6 +292,25 @@ void test_full_standard_output(void **) {
     assert_int_equal(WEXITSTATUS(status), failed);
 }
 
+/* `ulimit -f`: the system's signal for it does not end the process. */
+void test_file_size_limit(void **) {
+    const pid_t child = fork();
+    if (child == 0) {
+        const rlimit limit = {100, 100};
+        setrlimit(RLIMIT_FSIZE, &limit);
+        signal(SIGXFSZ, SIG_DFL);
+        dup2(open("/dev/null", O_WRONLY), 2);
+        execl(LENSPROF_PROGRAM, LENSPROF_PROGRAM, "simulate", "-o", work("limited").c_str(), "--images", "2", "--size",
+              "80x60", nullptr);
+        _exit(127);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), failed);
+    assert_true(fs::is_empty(work("limited")));
+}
+
 void test_program_is_the_function(void **) {
     for (const Words &words :
          {Words{"version"}, Words{"frobnicate"}, Words{"profile", "list", "--db", work("none.db")}}) {
@@ -315,6 +334,7 @@ int main() {
         CLI_TEST(test_interrupted_apply),
         CLI_TEST(test_interrupted_simulate),
         CLI_TEST(test_full_standard_output),
+        CLI_TEST(test_file_size_limit),
         CLI_TEST(test_program_is_the_function),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);

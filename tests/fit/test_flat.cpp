@@ -221,6 +221,41 @@ static void what_is_wrong_is_said(void **)
     assert_int_equal(lensprof_fit_flat(&o, none.images.data(), 1, r.get(), nullptr), LENSPROF_ERROR_NO_SAMPLES);
 }
 
+// A response from (0, 0) over two points to (1, 1).
+static lensprof_response bent(double x0, double y0, double x1, double y1)
+{
+    std::vector<double> table;
+    for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) {
+        const double x = j / (LENSPROF_RESPONSE_SAMPLES - 1.0);
+        table.push_back(x < x0   ? y0 * x / x0
+                        : x < x1 ? y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+                                 : y1 + (1.0 - y1) * (x - x1) / (1.0 - x1));
+    }
+    lensprof_response response;
+    assert_int_equal(lensprof_response_set_table(&response, table.data(), static_cast<uint32_t>(table.size())),
+                     LENSPROF_OK);
+    return response;
+}
+
+// All grey values of the card are those of nearly the same light, or hardly differ for any light.
+static void a_response_without_gradation_is_refused(void **)
+{
+    const struct {
+        lensprof_response response;
+        const char *word;
+    } cases[] = {{bent(0.49, 0.02, 0.51, 0.98), "step"}, {bent(0.02, 0.49, 0.98, 0.51), "flat"}};
+    for (const auto &one : cases) {
+        FlatPictures p;
+        for (auto &v : p.vignetting) v = {{0.0, 0.0, 0.0}, {0.0, 0.0}};
+        p.shoot(0);
+        p.response = one.response;
+        auto r = p.fit(p.options());
+        if (r->usable || !strstr(r->reason, one.word)) print_error("%s: %s\n", one.word, r->reason);
+        assert_false(r->usable);
+        assert_non_null(strstr(r->reason, one.word));
+    }
+}
+
 static void light_that_changes_between_shots_is_noticed(void **)
 {
     FlatPictures p;
@@ -301,6 +336,7 @@ int main(void)
         cmocka_unit_test(channels_get_curves_where_they_differ),
         cmocka_unit_test(dust_is_counted_placed_and_left_out),
         cmocka_unit_test(what_is_wrong_is_said),
+        cmocka_unit_test(a_response_without_gradation_is_refused),
         cmocka_unit_test(light_that_changes_between_shots_is_noticed),
         cmocka_unit_test(a_grid_of_a_radial_lens_is_flat),
         cmocka_unit_test(reduced_views_and_layouts_are_the_same_picture),

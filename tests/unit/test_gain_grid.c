@@ -39,6 +39,8 @@ static void test_nodes_lie_from_first_to_last_pixel(void **state)
     g.channels = 1;
     for (uint32_t c = 0; c < 3; c++)
         assert_close(lensprof_gain_grid_eval(&g, 401, 301, 400.0, 300.0, c), g.attenuation[19], 1e-14);
+    g.channels = 3; /* alpha has no nodes */
+    assert_close(lensprof_gain_grid_eval(&g, 401, 301, 400.0, 300.0, 3), 1.0, 0.0);
 }
 
 /* a + b x + c y + d x y is bilinear in every cell, so that a grid holds it to the precision of its floats. */
