@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "quantile.hpp"
+
 namespace lensprof {
 namespace {
 
@@ -61,7 +63,7 @@ std::vector<std::vector<double>> point_weights(const Problem &problem, const std
                                                const LogWeights &weights, const LogModel &model,
                                                const Estimate &estimate) {
     std::vector<std::vector<double>> all;
-    std::vector<double> distances, z;
+    std::vector<double> z;
     for (const TransferCurve &curve : curves) {
         all.emplace_back();
         for (const TransferPoint &point : curve.points) {
@@ -77,10 +79,8 @@ std::vector<std::vector<double>> point_weights(const Problem &problem, const std
         }
     }
     if (weights.as_paper || z.empty()) return all;
-    distances = z;
-    auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    double usual = kDoubtful * std::max(1.0, 1.4826 * *middle);
+    std::vector<double> distances = z;
+    double usual = kDoubtful * std::max(1.0, 1.4826 * median(distances));
     size_t p = 0;
     for (auto &curve : all)
         for (double &weight : curve) {

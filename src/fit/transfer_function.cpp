@@ -154,11 +154,7 @@ bool Fit::fit_response(const Problem &problem, Gauge &gauge, bool settle, State 
         if (curve.noise > 0.0) noise.push_back(curve.noise);
     LogWeights weights;
     weights.as_paper = as_paper_;
-    if (!noise.empty()) {
-        auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);
-        std::nth_element(noise.begin(), middle, noise.end());
-        weights.noise = *middle;
-    }
+    if (!noise.empty()) weights.noise = median(noise);
     Prior known;
     gauge.renew(problem, state.estimate, known);
     for (int round = 0; round < kRounds; round++) {

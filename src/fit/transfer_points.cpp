@@ -19,7 +19,9 @@ constexpr double kSmallestNoise = 0.25;  // levels: that of rounding
 constexpr double kEnds = 2.0;         // sigmas from black and white where the mean of what is left is off
 
 // Fewer and wider bins where pairs are sparse; deeper data than 8 bit fall into bins of 8 bit.
-int bins_for(size_t pairs) { return pairs >= 4000 ? kLevels : pairs >= 500 ? kLevels / 2 : pairs >= 100 ? kLevels / 4 : kLevels / 8; }
+int bins_for(size_t pairs) {
+    return pairs >= 4000 ? kLevels : pairs >= 500 ? kLevels / 2 : pairs >= 100 ? kLevels / 4 : kLevels / 8;
+}
 
 // Irradiance behind a grey value, of a response that is fixed for the moment.
 double evened(const Estimate &estimate, double value, double ratio) {
