@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "clipping.hpp"
 #include "correction.hpp"
 #include "fitting.hpp"
 #include "profile_store.hpp"
@@ -76,7 +77,8 @@ std::vector<uint32_t> frames_of(const Options &o, const Project &project) {
     return frames;
 }
 
-Fitted fit_sequence(const Options &o, const Project &project, Progress &progress, Streams &streams) {
+Fitted fit_sequence(const Options &o, const Project &project, std::vector<double> &white_shares, Progress &progress,
+                    Streams &streams) {
     FitInput input;
     input.options = fit_options(o.fit);
     input.options.free &= project.images[0].free;
@@ -94,6 +96,7 @@ Fitted fit_sequence(const Options &o, const Project &project, Progress &progress
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
     add_known_exposures(o.fit, project.files, metadata, input.images, streams);
+    for (const SamplePicture &picture : pictures) white_shares.push_back(white_share(picture.picture));
     return fit(input, project.reference, o.pto.empty() ? project.files[0] : o.pto, progress, nullptr);
 }
 
@@ -137,7 +140,8 @@ int align(const Options &o, Streams &streams) {
     std::vector<Correction> jobs = make_jobs(o, project, frames);
     check_folder(o.output, o.output, ExitCode::failed);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
-    Fitted fitted = fit_sequence(o, project, progress, streams);
+    std::vector<double> white_shares; /* of the project's pictures */
+    Fitted fitted = fit_sequence(o, project, white_shares, progress, streams);
     std::string reason = with_names(fitted.result.reason, project.names);
     set_text(fitted.result.reason, sizeof fitted.result.reason, reason);
     std::vector<lensprof_exposure> exposures;
@@ -149,12 +153,14 @@ int align(const Options &o, Streams &streams) {
             jobs[i].model = model;
             jobs[i].own = exposures[i];
             jobs[i].wanted = wanted_exposure(o, exposures);
+            warn_of_limits(jobs[i].source, jobs[i].own.ev, jobs[i].wanted.ev, white_shares[frames[i]], streams);
         }
         make_folder(o.output);
         written = write_corrected(jobs, {}, nullptr, progress, streams);
     }
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;
+    if (!fitted.result.usable && o.pto.empty()) reason += "; frames of a camera that moved need --project";
     if (!reason.empty())
         streams.err << "lensprof: " << (fitted.result.usable ? "warning: " + item + ": " : item + ": not usable: ")
                     << reason << (fitted.result.usable ? "" : "; nothing was written") << "\n";

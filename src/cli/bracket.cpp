@@ -71,6 +71,8 @@ lensprof_profile_key camera_key(const Options &o, const PictureMetadata &metadat
     key.focal_mm = unknown.focal_mm;
     key.aperture = unknown.aperture;
     key.distance_m = unknown.distance_m;
+    if (!*key.camera_model && o.store.camera.empty() && o.store.lens.empty() && !o.store.no_store)
+        throw Failure(ExitCode::usage, file + ": no EXIF says which camera it was; give --camera, or --no-store");
     return override_key(key, o.store, file);
 }
 
@@ -200,6 +202,7 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     BuildReport report;
     report.names = project.names;
     report.has_falloff = false;
+    report.exposures_given = !ev.empty();
     FitInput input = fit_input(o, project, metadata, ev, streams);
     report.camera_kind = input.options.camera_kind;
     if (!o.reference.empty()) report.reference = image_of_word(project, o.reference);

@@ -19,6 +19,9 @@ struct Certainty {
     double falloff_sigma(uint32_t curve, double r2) const;
 };
 
+/* False where all is light as the centre is: a falloff held at none, or not measured, as by `bracket`. */
+inline bool has_falloff(const lensprof_vignetting &v) { return v.k[0] != 0.0 || v.k[1] != 0.0 || v.k[2] != 0.0; }
+
 inline Certainty certainty_of(const lensprof_profile &profile) {
     return {profile.covariance, profile.covariance_size, profile.response[0].modes};
 }

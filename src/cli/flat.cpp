@@ -62,9 +62,24 @@ std::string with_files(const std::string &reason, const FlatReport &report) {
     return reason;
 }
 
-FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress) {
+/* JPEG rounds colours over blocks of 16 pixels, which no mean over pixels evens out: channels do not get curves of their
+ * own from that. */
+void mind_jpeg(const FlatCommand &o, FlatInput &input, Streams &streams) {
+    for (size_t i = 0; i < input.pictures.size(); i++) {
+        if (input.pictures[i].traits.format != FileFormat::jpeg) continue;
+        if (o.falloff == "auto") input.options.vignettings = 1;
+        streams.err << "lensprof: warning: " << o.files[i]
+                    << ": JPEG rounds grey values and colours over blocks of pixels, so that the falloff may be farther off "
+                       "than stated (by half a level of the card's grey); RAW, or TIFF or PNG of 16 bit, is better\n";
+        return;
+    }
+}
+
+FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, Streams &streams) {
     auto clock = std::chrono::steady_clock::now();
     read_flat(o, progress, input);
+    progress.clear();
+    mind_jpeg(o, input, streams);
     stop_if_interrupted();
     FlatReport report;
     report.load_s = lap(clock);
@@ -85,7 +100,7 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress) {
                                                static_cast<uint32_t>(input.images.size()), &report.fit, &error);
     progress.clear();
     if (*error.text) set_text(error.text, sizeof error.text, with_names(error.text, input.names));
-    check(status, "flat", &error);
+    check(status, input.names.size() == 1 ? input.names[0] : input.names[0] + " and the others", &error);
     report.solve_s = lap(clock);
     set_text(report.fit.reason, sizeof report.fit.reason, with_files(report.fit.reason, report));
     return report;
@@ -121,7 +136,7 @@ int run_flat(const std::vector<std::string> &arguments, Streams &streams) {
     FlatInput input = prepare_flat(o);
     check_store(o.store);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
-    FlatReport report = measure(o, input, progress);
+    FlatReport report = measure(o, input, progress, streams);
     const bool good = report.fit.usable || o.store.force;
     stop_if_interrupted();
     if (good && !o.store.no_store) report.profile_id = store(o, input, report);
@@ -131,9 +146,9 @@ int run_flat(const std::vector<std::string> &arguments, Streams &streams) {
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(input.key) << "\n";
     if (report.fit.usable && *report.fit.reason)
-        streams.err << "lensprof: warning: " << report.fit.reason << "\n";
+        streams.err << "lensprof: warning: " << o.files.front() << ": " << report.fit.reason << "\n";
     if (!report.fit.usable)
-        streams.err << "lensprof: not usable: " << report.fit.reason
+        streams.err << "lensprof: " << o.files.front() << ": not usable: " << report.fit.reason
                     << (good || o.store.no_store ? "" : "; nothing was stored (--force stores it all the same)") << "\n";
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }

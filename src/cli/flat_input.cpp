@@ -58,7 +58,7 @@ std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_
             if (!metadata[i].exif_ev)
                 throw Failure(ExitCode::usage, o.files[i]
                                                    + ": no EXIF says how it was exposed (time, aperture, ISO); give the "
-                                                     "exposures of all pictures with --ev");
+                                                     "exposures of all pictures with --ev, as 0,0,0 where they are alike");
             ev[i] = *metadata[i].exif_ev;
         }
         if (!(std::fabs(ev[i]) <= farthest_ev))
@@ -105,7 +105,8 @@ uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictu
     for (size_t i = 0; i < pictures.size(); i++) {
         const Picture &p = pictures[i];
         if (p.frame_width != first.frame_width || p.frame_height != first.frame_height)
-            throw Failure(ExitCode::usage, format("%s: has %u x %u px, not %u x %u as %s; give pictures of one camera",
+            throw Failure(ExitCode::unreadable,
+                          format("%s: has %u x %u px, not %u x %u as %s; give pictures of one camera, none of them turned",
                                                   o.files[i].c_str(), p.frame_width, p.frame_height, first.frame_width,
                                                   first.frame_height, o.files.front().c_str()));
         if (lensprof_layout_channels(p.layout) != channels)
@@ -125,6 +126,9 @@ void check_flat_options(const FlatCommand &o) {
     if (o.files.size() > LENSPROF_FLAT_IMAGES)
         throw Failure(ExitCode::usage, std::to_string(o.files.size()) + " pictures; give at most "
                                            + std::to_string(LENSPROF_FLAT_IMAGES));
+    for (size_t i = 0; i < o.files.size(); i++)
+        for (size_t j = 0; j < i; j++)
+            if (is_same_file(o.files[i], o.files[j])) throw Failure(ExitCode::usage, o.files[i] + ": is given twice");
     if (!(o.black < o.white)) throw Failure(ExitCode::usage, "--black must be less than --white");
     if (o.max_side != 0 && o.max_side < smallest_side)
         throw Failure(ExitCode::usage, "--max-side: less than 64 pixels are too few cells; give more, or 0 for full size");

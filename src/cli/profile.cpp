@@ -1,5 +1,8 @@
 /* `lensprof profile list | show | remove`. */
+#include <algorithm>
+
 #include "chart.hpp"
+#include "falloff.hpp"
 #include "key_filter.hpp"
 #include "library.hpp"
 #include "report.hpp"
@@ -86,6 +89,19 @@ void print_profiles(const std::vector<StoredProfile> &profiles, bool json, Strea
     }
 }
 
+/* A chart shows no curve of what was not measured, as by `bracket`. */
+void keep_with_falloff(std::vector<StoredProfile> &profiles) {
+    const int64_t first = profiles.front().id;
+    const auto lacks = [](const StoredProfile &stored) {
+        return stored.profile->vignettings == 1 && !has_falloff(stored.profile->vignetting[0]);
+    };
+    profiles.erase(std::remove_if(profiles.begin(), profiles.end(), lacks), profiles.end());
+    if (profiles.empty())
+        throw Failure(ExitCode::not_found, "profile " + std::to_string(first)
+                                               + " has no falloff that a chart could show; measure it with `lensprof flat` "
+                                                 "or `lensprof build`");
+}
+
 int show(const ShowOptions &o, Streams &streams) {
     if (o.ids.empty() == o.filter.is_empty())
         throw Failure(ExitCode::usage, "profile show: give either ids that `lensprof profile list` shows, or --camera, "
@@ -93,11 +109,12 @@ int show(const ShowOptions &o, Streams &streams) {
     if (!o.chart_out.empty()) check_chart_name(o.chart_out);
     if (is_same_file(o.chart_out, store_path(o.db)))
         throw Failure(ExitCode::usage, o.chart_out + ": is the profile database; give --chart-out another name");
-    const std::vector<StoredProfile> profiles = read_profiles(o);
+    std::vector<StoredProfile> profiles = read_profiles(o);
     if (!o.chart && o.chart_out.empty()) {
         print_profiles(profiles, o.json, streams);
         return 0;
     }
+    keep_with_falloff(profiles);
     const Chart chart = make_chart(profiles, channel_of(o, profiles.size()));
     if (!o.chart_out.empty()) draw_chart(chart, o.chart_out);
     if (o.json) print_json(chart_json(chart), streams.out);

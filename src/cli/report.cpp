@@ -86,6 +86,10 @@ void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, c
     static const char *const channels[3] = {" of red", " of green", " of blue"};
     for (uint32_t c = 0; c < count; c++) {
         const lensprof_vignetting &v = vignettings[c];
+        if (!has_falloff(v)) {
+            out << "falloff" << (count == 3 ? channels[c] : "") << "   none: not measured, or held at none\n";
+            continue;
+        }
         out << "falloff" << (count == 3 ? channels[c] : "")
             << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
                       v.center[0], v.center[1]);
@@ -252,7 +256,8 @@ void print_gamma(const BuildReport &report, std::ostream &out) {
         out << "gamma     known by what is held\n";
         return;
     }
-    out << "gamma     from " << gamma_name(fit.gamma_from);
+    const bool is_given = report.exposures_given && fit.gamma_from == LENSPROF_GAMMA_EXPOSURES;
+    out << "gamma     from " << (is_given ? "the exposures given" : gamma_name(fit.gamma_from));
     if (fit.gamma_from == LENSPROF_GAMMA_PRIOR) out << " (" << camera_kind_name(report.camera_kind) << " camera)";
     if (fit.gamma_sigma > 0.0) out << format(", +- %.0f %%", 100.0 * fit.gamma_sigma);
     if (fit.gamma_from == LENSPROF_GAMMA_NONE) out << " (no prior; no +- here holds its error)";

@@ -25,6 +25,7 @@ struct BuildReport {
     lensprof_fit_result fit{};
     uint32_t reference = 0;
     bool has_falloff = true; /* else it cancels in these pictures */
+    bool exposures_given = false; /* on the command line, and not by EXIF */
     double load_s = 0, sample_s = 0;
     uint32_t camera_kind = LENSPROF_CAMERA_ANY; /* whose prior settled gamma */
     int64_t profile_id = 0; /* 0 = not stored */

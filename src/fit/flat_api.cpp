@@ -97,7 +97,7 @@ lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const le
         auto found = std::make_unique<lensprof_flat_result>(*result);
         if (!fit_flat(*options, images, count, *found))
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
-                        "flat: no part of a card lies between black and white; check exposures, limits and masks");
+                        "no part of a card lies between black and white; check exposures, limits, and where the card is");
         *result = *found;
         return LENSPROF_OK;
     } catch (const Cancelled &) {

@@ -108,6 +108,7 @@ Gauge Gauge::unheld() const {
 Gauge Gauge::by_prior() const {
     Gauge other = *this;
     other.wanted_ = LENSPROF_GAMMA_PRIOR;
+    other.known_weight_.clear();
     return other;
 }
 
@@ -158,9 +159,10 @@ void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
     }
 }
 
-// ln gamma by which the estimate is away from where prior and known exposures, each by its standard error, want it.
+// From where prior and known exposures, each by its standard error, want it.
 double Gauge::distance(const Problem &problem, const Estimate &estimate) {
     compare_known(problem, estimate);
+    if (!open_) return 0.0;
     const double *table = estimate.curve.table.data();
     double offset = gamma_position(table) - expected_position(*prior_, table);
     bool says = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;

@@ -24,8 +24,8 @@ public:
     // The same knowledge, which nothing holds gamma to: for first fits, whose shape is to find its own optimum.
     Gauge unheld() const;
 
-    // The same knowledge, of which the prior alone settles gamma: few modes can follow to the gamma of most cameras without
-    // loss of shape, not to any that exposures may ask for. A refined response can.
+    // The prior alone: few modes can follow to the gamma of most cameras without loss of shape, not to any that known
+    // exposures may ask for, which would draw the pictures' exposures along. A refined response can.
     Gauge by_prior() const;
 
     // Moves the estimate along its family to where gamma is settled, as well as its modes and falloff can follow.
@@ -43,8 +43,10 @@ public:
     // Change of the full shared vector per unit of ln gamma.
     static Eigen::VectorXd direction(const Problem &problem, const Estimate &estimate);
 
-private:
+    // ln gamma by which an estimate is away from where it is to be; 0 where nothing is open.
     double distance(const Problem &problem, const Estimate &estimate);
+
+private:
     void compare_known(const Problem &problem, const Estimate &estimate);
 
     const GammaPrior *prior_;

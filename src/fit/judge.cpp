@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "known_exposures.hpp"
 #include "quality.hpp"
 
 namespace lensprof {
@@ -17,15 +18,18 @@ constexpr double kLargestNoise = 6.0;          // levels of 255: no camera's noi
 constexpr double kLargestImageShare = 0.2;     // of residual variance that follows a map of each image's own,
 constexpr double kSuspiciousImageShare = 0.1;  // and worth a word; noise and moving things stay below
 constexpr double kContradiction = 5.0;         // standard errors between an exposure and its known value
-constexpr double kAmbiguous = 4.0;             // the same of three exposures, which have one test for all
+constexpr int kMany = 12;                      // known exposures
+constexpr double kUnfollowed = 0.05;           // of ln gamma
 constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a word
-constexpr double kHarmfulPattern = 2.0;        // levels of 255 that are too much also where no falloff can be misled
+constexpr double kStillPattern = 1.0;          // where no falloff can be misled: what JPEG does is less,
+constexpr double kHarmfulPattern = 2.0;        // and this is too much
 constexpr double kNotRadial = 0.3;             // share that follows one map over the frame
 constexpr double kLargestCornerSigma = 0.1;    // of M
 constexpr double kLargestEvSigma = 0.3;        // EV, gamma apart
 constexpr uint32_t kFewestInliers = 3;         // of an image: fewer agree by chance,
 constexpr double kSmallestShare = 0.2;         // or a smaller share of its pairs
-constexpr double kSmallestStillShare = 0.7;    // of all pairs, where equal places are compared
+constexpr double kSmallestStillShare = 0.7;    // of all pairs, where equal places are compared,
+constexpr double kStillMedian = 1.5;           // and levels of 255 that half of them are farther off than
 constexpr double kFarCentre = 0.1;             // half diagonals: five standard errors of its prior
 constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
 
@@ -197,9 +201,10 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
     // else it is what was held that does not fit
     bool is_free = (estimate.modes >= 0 || estimate.is_refined) && (problem.free & falloff) == falloff;
     bool still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
-    if (still && r.inlier_share < kSmallestStillShare)
+    bool is_far = r.heldout_median == LENSPROF_UNKNOWN || r.heldout_median > kStillMedian;
+    if (still && r.inlier_share < kSmallestStillShare && is_far)
         return refuse(r, "only %.0f %% of the pairs agree with one response; are the pictures of one scene, by a camera "
-                         "that did not move?", 100.0 * r.inlier_share);
+                         "that did not move, and is their black 0 (bracket --black)?", 100.0 * r.inlier_share);
     if (r.inlier_share < 0.3)
         return refuse(r, "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
                       100.0 * r.inlier_share);
@@ -275,20 +280,42 @@ int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
     return odd;
 }
 
-// How far, EV, known exposures that contradict each other are at least from the truth, where there are just three: with
-// gamma open two of them agree always, so that each of the three may be the wrong one. Else 0.
-double ambiguous_contradiction(const Problem &problem, const lensprof_fit_result &r) {
-    bool is_open = r.gamma_from == LENSPROF_GAMMA_EXPOSURES || r.gamma_from == LENSPROF_GAMMA_PRIOR;
-    double chi2 = 0.0, largest = 0.0;
-    int known = 0;
-    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
-        double sigma = problem.images[i].known_ev_sigma, off = std::abs(r.image_quality[i].known_ev_residual);
-        if (!(sigma > 0.0) || problem.component[i] != problem.component[problem.reference]) continue;
-        known++;
-        chi2 += std::pow(off / std::max(sigma, kKnownSigma), 2);
-        largest = std::max(largest, off);
-    }
-    return is_open && known == 3 && chi2 > kAmbiguous * kAmbiguous ? largest : 0.0;
+// Says how known exposures contradict each other, or the exponent of the result, if they do. Of many, whose errors are
+// known from their scatter, only single ones are told (contradicting_image).
+bool minds_known_exposures(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    using Explanation = KnownExposures::Explanation;
+    bool open = r.gamma_from == LENSPROF_GAMMA_EXPOSURES || r.gamma_from == LENSPROF_GAMMA_PRIOR;
+    KnownExposures known = compare_known(problem, estimate, open);
+    if (known.count > kMany) return false;
+    const int image = static_cast<int>(known.image);
+    double away = std::abs(std::log(std::max(known.slope, 1e-3)));
+    if (known.explanation == Explanation::order)
+        say(r,
+            "the known exposures do not follow the pictures, which differ by %.1f EV: are they in another order, or of "
+            "other pictures?",
+            known.off_ev);
+    else if (known.explanation == Explanation::one)
+        say(r,
+            "the exposure of image %d is %.1f EV away from its known one: one of the two is wrong, or its light changed",
+            image, std::abs(known.off_ev));
+    else if (known.explanation == Explanation::step)
+        say(r,
+            "from image %d on the known exposures are %.1f EV %s than the pictures: ISO, aperture or the light changed "
+            "there unnoticed",
+            image, std::abs(known.off_ev), known.off_ev > 0.0 ? "more" : "less");
+    else if (known.explanation == Explanation::any)
+        say(r,
+            "the known exposures contradict each other: one is wrong by more than %.1f EV, and they do not tell which; "
+            "gamma is as uncertain. Check them, or take more pictures",
+            known.off_ev);
+    else if (r.gamma_from == LENSPROF_GAMMA_EXPOSURES && away > std::max(kUnfollowed, 3.0 * r.gamma_sigma))
+        say(r,
+            "the known exposures want all exposures %.2f times as large: the modes of the response cannot follow there; "
+            "exposures, falloff and response have another exponent than what is known",
+            1.0 / known.slope);
+    else
+        return false;
+    return true;
 }
 
 }  // namespace
@@ -300,23 +327,21 @@ void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result
     r.usable = 1;
     r.reason[0] = 0;
     int odd = odd_image(problem, r), contradicting = contradicting_image(problem, r);
-    double ambiguous = ambiguous_contradiction(problem, r);
+    bool is_still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
     double off_centre = std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]);
     if (odd >= 0)
         say(r,
             "most pairs of image %d disagree with the camera model (median residual %.1f levels): %s, or what moved "
             "there",
             odd, r.image_quality[odd].median_residual, next_step(problem));
-    else if (ambiguous > 0.0)
-        say(r,
-            "the known exposures contradict each other: one is wrong by more than %.1f EV, and three do not tell which; "
-            "gamma is as uncertain. Check them, or take more pictures",
-            ambiguous);
+    else if (minds_known_exposures(problem, estimate, r))
+        return;
     else if (contradicting >= 0)
         say(r,
             "the exposure of image %d is %.1f EV away from its known one: one of the two is wrong, or its light changed",
             contradicting, std::abs(r.image_quality[contradicting].known_ev_residual));
-    else if (r.image_share > kSuspiciousImageShare && r.noise_levels * std::sqrt(r.image_share) > kSmallestPattern)
+    else if (r.image_share > kSuspiciousImageShare
+             && r.noise_levels * std::sqrt(r.image_share) > (is_still ? kStillPattern : kSmallestPattern))
         say(r,
             "%.0f %% of the residual follows patterns of each image's own (%.1f levels), as weak local tone mapping "
             "(HDR) makes them: exposures may be farther off than stated",

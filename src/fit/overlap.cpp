@@ -16,6 +16,7 @@ namespace lensprof {
 namespace {
 
 constexpr int kStartModes = 5;  // enough to tell the starts apart
+constexpr double kFollows = 0.02;  // of ln gamma, that modes may be away from where it is asked to be
 constexpr uint32_t kEnoughForModes = 20000;  // pairs, where more are there to refine the response
 
 // A fit to the training data.
@@ -68,7 +69,8 @@ private:
     Candidate choose_modes(const Estimate &start);
     void choose_vignettings(Candidate &best);
     Candidate choose(Loss &used);
-    void try_refined(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome);
+    bool follows(const Loss &used, Estimate &estimate, Outcome &outcome);
+    void free_response(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome);
 
     const lensprof_fit_options &options_;
     uint32_t image_count_;
@@ -248,33 +250,47 @@ void Fit::take_all() {
     set_vignettings(vignettings);
 }
 
-// The response freed of its modes where that is better; then gamma, which these could not follow everywhere.
-void Fit::try_refined(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome) {
-    gauge_ = asked;
+// Whether modes can follow to the gamma that is asked: the estimate is then that of a fit which holds it.
+bool Fit::follows(const Loss &used, Estimate &estimate, Outcome &outcome) {
+    Estimate there = estimate;
+    Loss own = used;
+    Outcome result = solve(all_, prior_, gauge_, own, true, control_, there);
+    HeldoutLoss before = heldout_loss(heldout_, estimate, common_), after = heldout_loss(heldout_, there, common_);
+    double error, difference = loss_difference(after, before, error);
+    if (difference > error || std::abs(gauge_.distance(all_, there)) > kFollows) return false;
+    estimate = there, outcome = result;
+    return true;
+}
+
+// The response freed of its modes where that is better, or where these cannot follow to the gamma that is asked. What was
+// fitted until here has the gamma of most cameras.
+void Fit::free_response(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome) {
+    const bool was_thinned = step_ > 1;
     take_all();
     Candidate refined;
-    if (!is_as_good_refined(best, used, refined)) {
-        outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
-        return;
+    const bool is_refined = options_.method == LENSPROF_METHOD_TRANSFER && is_as_good_refined(best, used, refined);
+    if (is_refined) best = refined, refine(all_, used, estimate);
+    else if (was_thinned) outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
+    gauge_ = asked;
+    if (!is_refined && follows(used, estimate, outcome)) return;
+    for (Estimate *one : {&estimate, &best.estimate}) {
+        if (!one->is_refined) set_table(*one, one->curve.table.data());
+        gauge_.settle(all_, *one);
     }
-    best = refined;
-    refine(all_, used, estimate);
-    for (Estimate *one : {&estimate, &best.estimate}) gauge_.settle(all_, *one);
 }
 
 void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     auto began = std::chrono::steady_clock::now();
-    bool refines = options_.refine && options_.method == LENSPROF_METHOD_TRANSFER && is_free_ && has_heldout_
-                   && image_count_ <= kMostRefinedImages;
+    bool frees = options_.refine && is_free_ && has_heldout_ && image_count_ <= kMostRefinedImages;
     const Gauge asked = gauge_;
-    if (refines) gauge_ = gauge_.by_prior();
+    if (frees) gauge_ = gauge_.by_prior();
     Loss used = loss();
     used.distrusts = true;
     Candidate best = choose(used);
     Estimate estimate = best.estimate;
     if (has_heldout_) reconsider(all_, used, estimate);
     Outcome outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
-    if (refines) try_refined(asked, used, best, estimate, outcome);
+    if (frees) free_response(asked, used, best, estimate, outcome);
     else take_all();
 
     lensprof_fit_result r = result;

@@ -117,8 +117,12 @@ void Sampler::each(uint32_t count, const std::function<void(uint32_t)> &work, co
     if (!for_each_parallel(count, options_.threads, work, stop)) throw Cancelled();
 }
 
-// Where the project is off between neighbours, as the pictures show.
+// Where the project is off between neighbours, as the pictures show. A camera that stands still is not off: pictures that
+// are mostly white, or mostly black, would only seem to be.
 void Sampler::register_neighbours() {
+    rotations_.assign(edge_numbers_, {});
+    likenesses_ = std::vector<Likenesses>(edge_numbers_);
+    if (options_.sampling == LENSPROF_SAMPLING_BRACKET) return;
     struct Edge {
         uint32_t i, j;
         int overlap;
@@ -142,8 +146,6 @@ void Sampler::register_neighbours() {
         return !wanted;
     };
     edges.erase(std::remove_if(edges.begin(), edges.end(), is_left_out), edges.end());
-    rotations_.assign(edge_numbers_, {});
-    likenesses_ = std::vector<Likenesses>(edge_numbers_);
     auto work = [&](uint32_t e) {
         auto [i, j, overlap] = edges[e];
         rotations_[edge_of(i, j)] = registration(camera(i), *grey_[i], camera(j), *grey_[j]);

@@ -22,7 +22,7 @@ constexpr double kStill = 1e-3;     // nothing a user sees moves by more in a ro
 // Paths that flip between two neighbours let the rounds cycle: a change this small that no longer falls is that.
 constexpr double kCycle = 0.03;
 constexpr int kFewestRounds = 4;
-constexpr double kHalf = 128.0 / 255.0;
+constexpr double kHalf = 128.0 / 255.0, kLn2 = 0.6931471805599453;
 const double kPaperGrey = std::log(0.5);  // g(128) where nothing settles gamma (section 2.4)
 
 // What the rounds improve.
@@ -96,6 +96,7 @@ private:
     void choose_vignettings(Candidate &best);
     Estimate in_emor(const State &state) const;
     void judge_exposures(const State &state, lensprof_fit_result &result) const;
+    double log_exponent(const Estimate &estimate, const Estimate &other) const;
     Covariance scatter(const State &state);
 
     const lensprof_fit_options &options_;
@@ -263,6 +264,21 @@ void Fit::judge_exposures(const State &state, lensprof_fit_result &r) const {
                   usual);
 }
 
+// ln of the exponent that takes the exposures of an estimate to those of another, as near as one exponent can; 0 where they
+// hardly differ and show none.
+double Fit::log_exponent(const Estimate &estimate, const Estimate &other) const {
+    double own = 0.0, both = 0.0;
+    for (uint32_t i = 0; i < image_count_; i++)
+        for (size_t c = 0; c < static_cast<size_t>(all_.channels); c++) {
+            double x = estimate.log_exposure[i][c] - estimate.log_exposure[all_.reference][c];
+            own += x * x;
+            both += x * (other.log_exposure[i][c] - other.log_exposure[all_.reference][c]);
+        }
+    const double spread = kSmallestSpread * kLn2, terms = static_cast<double>(image_count_) * all_.channels;
+    return own > spread * spread * terms && both > 0.0 ? std::log(both / own) : 0.0;
+}
+
+// Along the family nothing scatters: gamma has an error of its own (Gauge::sigma).
 Covariance Fit::scatter(const State &state) {
     return jackknife(
         all_, pair_count_,
@@ -274,7 +290,9 @@ Covariance Fit::scatter(const State &state) {
             State own = state;
             bool is_still;
             alternate(part, gauge, false, kAgainRounds, own, [] {}, is_still);
-            return own.is_solved ? in_emor(own) : Estimate();
+            if (!own.is_solved) return Estimate();
+            if (holds_grey()) own.estimate = with_exponent(part, own.estimate, log_exponent(own.estimate, state.estimate));
+            return in_emor(own);
         },
         [this] { return is_cancelled(); });
 }

@@ -123,6 +123,20 @@ void test_moving_camera(void **) {
     assert_int_equal(std::distance(fs::directory_iterator(work("one")), fs::directory_iterator()), 1);
 }
 
+/* What is white stays without what it was, and dark frames are noise: said of the frames they are true of. */
+void test_limits_are_said(void **) {
+    Words frames = make_frames();
+    const Outcome first = run_words(Words{"align", "--to", "last", "-o", work("dark")} + frames);
+    assert_int_equal(first.code, done);
+    assert_true(contains(first.err, frames[2] + ": ") && contains(first.err, "--to brightest keeps white"));
+    const Outcome brightest = run_words(Words{"align", "--to", "brightest", "-o", work("bright")} + frames);
+    assert_int_equal(brightest.code, done);
+    assert_false(contains(brightest.err, "keeps white"));
+    fs::create_directories(work("pano"));
+    must_exit(done, {"simulate", "-o", work("pano"), "--images", "3", "--size", "160x120", "--format", "png"});
+    assert_refused(not_usable, {"align", work("pano/img000.png"), work("pano/img001.png"), "-o", work("out")}, {"--project"});
+}
+
 void test_refusals(void **) {
     const Words frames = make_frames();
     const Words two = {frames[0], frames[1]};
@@ -187,7 +201,7 @@ void test_build_by_transfer_functions(void **) {
 int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_static_sequence), CLI_TEST(test_mean_and_json), CLI_TEST(test_moving_camera),
-        CLI_TEST(test_refusals), CLI_TEST(test_inputs_stay),        CLI_TEST(test_build_by_transfer_functions),
+        CLI_TEST(test_limits_are_said), CLI_TEST(test_refusals), CLI_TEST(test_inputs_stay),        CLI_TEST(test_build_by_transfer_functions),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -115,6 +115,9 @@ void test_profile_of_the_camera_alone(void **) {
         assert_true(stored["key"][field].is_null());
     assert_string_equal(stored["provenance"]["method"].get<std::string>().c_str(), "bracket");
     assert_true(stored["response"]["values"] == json["response"]["values"]);
+    const std::string text = must_exit(done, {"profile", "show", "1", "--db", db});
+    assert_true(contains(text, "not measured"));
+    assert_refused(not_found, {"profile", "show", "1", "--chart", "--db", db}, {"profile 1", "lensprof flat"});
     const Json found = json_of({"query", "--camera", "Camera", "--db", db, "--json"});
     assert_true(found["id"] == stored["id"]);
 }
@@ -178,7 +181,7 @@ void test_refused_options(void **) {
         assert_refused(usage, bracket(files, Words{"--db", work("p.db"), "--camera", "X"} + wrong), {wrong[0]});
     assert_refused(usage, bracket(files, {"--ev", "1,2,3", "--times", "1,2,3", "--no-store"}), {"--ev", "--times"});
     assert_refused(usage, bracket(files, {"--db", work("p.db"), "--no-store"}), {"--db", "--no-store"});
-    assert_refused(usage, bracket(files, {"--db", work("p.db")}), {files[0], "--camera"});
+    assert_refused(usage, bracket(files, {"--db", work("p.db")}), {files[0], "give --camera"});
     assert_refused(store_failed, bracket(files, {"--db", work("none/p.db"), "--camera", "X"}), {work("none")});
     assert_refused(usage, {"bracket"}, {"FILES"});
 }

@@ -80,6 +80,59 @@ void test_wrong_metadata_is_said(void **) {
         }
 }
 
+/* A step, an exposure at the end, the wrong order: what is not one exposure in the middle. */
+void test_other_wrong_metadata(void **) {
+    struct Case {
+        std::vector<double> truth, stated;
+        size_t named; /* a picture in the reason, or `none` */
+        const char *word;
+    };
+    constexpr size_t none = 99;
+    const Case cases[] = {
+        {{-3.0, -1.0, 1.0, 3.0}, {-3.0, -1.0, 1.6, 3.0}, none, "known"},
+        {{-3.0, -1.5, 0.0, 2.3, 3.8}, {-3.0, -1.5, 0.0, 1.5, 3.0}, 3, "0.8 EV less"},
+        {{-3.0, -1.5, 0.0, 1.5, 3.0}, {-3.0, -1.5, 0.0, 1.5, 3.8}, none, "known"},
+        {{-3, -2, -1, 0, 1, 2, 3}, {-3, -2, -1, -0.4, 0, 0.4, 1}, none, "known exposures contradict"},
+        {{-2.0, 0.0, 2.0}, {-2.0, 0.0, 2.8}, none, "known exposures contradict"},
+        {{-2.0, 0.0, 2.0}, {2.0, 0.0, -2.0}, none, "another order"},
+        {{-2.0, 0.0, 2.0}, {0.0, 0.0, 0.0}, none, "do not follow"},
+    };
+    for (const Case &one : cases)
+        for (const char *method : {"transfer", "radiance", "transfer-function"}) {
+            const Words files = shots(one.truth);
+            const Words words = bracket(files, no_store + Words{"--method", method, "--ev-sigma", "0.1", "--ev", list_of(one.stated)});
+            const std::string reason = json_of(words)["reason"].get<std::string>();
+            if (!contains(reason, one.word) || (one.named != none && !contains(reason, files[one.named])))
+                fail_msg("%s of %s: %s", method, list_of(one.stated).c_str(), reason.c_str());
+        }
+}
+
+/* Whatever the response: exposures that are known settle gamma, and the result keeps to it. Modes alone cannot always, and
+ * say so. */
+void test_known_exposures_hold_gamma(void **) {
+    const auto tone = [](double x) { double y = srgb(x); return y + 0.6 * y * (1.0 - y) * (y - 0.35); };
+    const auto root = [](double x) { return std::sqrt(x); };
+    const auto line = [](double x) { return x; };
+    const std::vector<double> evs = {-3.0, -1.5, 0.0, 1.5, 3.0};
+    for (const std::function<double(double)> &response : {std::function<double(double)>(tone), {root}, {line}}) {
+        Shot like;
+        like.response = response;
+        const Words files = shots(evs, like);
+        for (const char *method : {"transfer", "radiance", "transfer-function"}) {
+            const Json json = json_of(bracket(files, no_store + Words{"--method", method, "--ev", list_of(evs)}));
+            for (size_t i = 0; i < evs.size(); ++i) {
+                const double off = std::fabs(found_ev(json, i) - found_ev(json, 0) - (evs[i] - evs[0]));
+                const double sigma = json["images"][i]["ev_sigma"].get<double>();
+                if (off > 3.0 * sigma + 1e-3)
+                    fail_msg("%s: picture %zu is %.3f EV off, stated %.3f", method, i, off, sigma);
+            }
+        }
+        const Json modes = json_of(bracket(files, no_store + Words{"--modes-only", "--ev", list_of(evs)}));
+        if (std::fabs(found_ev(modes, 4) - found_ev(modes, 0) - 6.0) > 0.6)
+            assert_true(contains(modes["reason"].get<std::string>(), "modes of the response cannot follow"));
+    }
+}
+
 /* Two of three always agree: the wrong one cannot be named, and the answer is not stated to be sure. */
 void test_exposures_of_three_pictures_contradict(void **) {
     const Words files = shots(three);
@@ -133,6 +186,8 @@ int main() {
         CLI_TEST(test_kinds_of_pictures),
         CLI_TEST(test_other_responses),
         CLI_TEST(test_wrong_metadata_is_said),
+        CLI_TEST(test_other_wrong_metadata),
+        CLI_TEST(test_known_exposures_hold_gamma),
         CLI_TEST(test_exposures_of_three_pictures_contradict),
         CLI_TEST(test_changed_light_is_refused),
         CLI_TEST(test_black_that_is_not_0),
