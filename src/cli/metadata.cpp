@@ -12,9 +12,9 @@
 
 #include <exiv2/exiv2.hpp>
 
+#include "codec.hpp"
 #include "error.hpp"
 #include "output_file.hpp"
-#include "picture.hpp"
 
 namespace lensprof {
 

@@ -67,6 +67,23 @@ int sync_path(const std::string &path, int flags) {
 
 }  // namespace
 
+int open_nameless(const std::string &beside) {
+#ifdef O_TMPFILE
+    const std::string folder = folder_of(beside);
+    const int nameless = open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (nameless >= 0)
+        return nameless;
+#endif
+    std::string name; /* not every file system has files without one */
+    const int created = create_beside(beside, 0600, name);
+    if (created < 0)
+        return -1;
+    close(created);
+    const int file = open(name.c_str(), O_RDWR | O_CLOEXEC);
+    unlink(name.c_str());
+    return file;
+}
+
 void check_folder(const std::string &folder, const std::string &item, ExitCode code) {
     std::error_code ignored;
     std::filesystem::path place = std::filesystem::absolute(folder);
@@ -101,10 +118,16 @@ OutputFile::~OutputFile() {
         unlink(temporary_.c_str());
 }
 
-void OutputFile::commit() {
+void OutputFile::sync() {
     const int error_number = sync_path(temporary_, O_RDONLY);
     if (error_number != 0)
         fail(path_, error_number);
+    synced_ = true;
+}
+
+void OutputFile::commit() {
+    if (!synced_)
+        sync();
     if (rename(temporary_.c_str(), target_.c_str()) != 0)
         fail(path_, errno);
     temporary_.clear();

@@ -30,9 +30,14 @@ public:
     /* Writes these bytes, and nothing else, to the temporary file. */
     void write(const void *data, size_t bytes);
 
+    /* What the temporary file holds is on the disk, whatever happens. Part of commit(), for who wants to do it before;
+     * the file must not be changed afterwards. */
+    void sync();
+
     void commit();
 
 private:
+    bool synced_ = false;
     std::string path_;    /* as given, for texts */
     std::string target_;  /* with symbolic links followed */
     std::string temporary_;
@@ -50,6 +55,10 @@ private:
 
 /* Writes the file `path` with these bytes, complete or not at all. */
 void write_file(const std::string &path, const void *data, size_t bytes);
+
+/* Opens a file for reading and writing that has no name, in the folder of `beside`: it is gone when it is closed. -1 and
+ * errno where there is none to be had. */
+int open_nameless(const std::string &beside);
 
 /* Failure, with this code and about `item`, where `folder` neither is one that can be written to nor can be made: to be
  * known before work that takes long. */

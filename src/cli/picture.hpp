@@ -8,10 +8,8 @@
 #define LENSPROF_CLI_PICTURE_HPP
 
 #include <array>
-#include <csetjmp>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +17,7 @@
 #include <lensprof/apply.h>
 
 #include "metadata.hpp"
+#include "output_file.hpp"
 
 namespace lensprof {
 
@@ -86,6 +85,10 @@ struct WriteOptions {
 constexpr uint32_t picture_max_side = 1u << 20;
 constexpr uint64_t picture_max_bytes = uint64_t(8) << 30;
 
+/* Most bytes of coefficients that are held in memory while a JPEG is written: of 16 million pixels, with half of the
+ * chroma twice as many. */
+constexpr uint64_t jpeg_memory_bytes = uint64_t(96) << 20;
+
 /* Reads PNG (all kinds; palette, 1, 2 and 4 bits and transparent colours are expanded), TIFF (8 and 16 bit unsigned,
  * 32 bit float; grey or RGB, at most one extra sample; first page) or JPEG (grey, YCbCr, RGB), by content whatever the
  * name. 0 = black, also for min-is-white files. NaN and infinity in float files are kept. */
@@ -101,6 +104,31 @@ struct PictureSize {
 /* Size of the full frame. */
 PictureSize read_size(const std::string &path);
 
+namespace codec {
+class RowSource;
+class RowSink;
+}  // namespace codec
+
+/* A picture read from the top in strips of whole rows, full size. Held in memory is what the format's smallest unit asks
+ * for, whatever the picture's height: a row of PNG, of JPEG those of a block, a strip of TIFF (compressed) or a row of its
+ * tiles. An interlaced PNG is decoded as a whole, and of a progressive JPEG all coefficients are. */
+class PictureReader {
+public:
+    explicit PictureReader(const std::string &path);
+    ~PictureReader();
+
+    const Picture &header() const; /* without pixels */
+
+    /* The next rows.height rows into `rows`, of the header's width, sample and layout. With the last one the rest of the file is
+     * checked. */
+    void read(const lensprof_image &rows);
+
+private:
+    std::string path_;
+    std::unique_ptr<codec::RowSource> source_;
+    uint32_t done_ = 0;
+};
+
 /* The format that a file name asks for: .png, .tif, .tiff, .jpg, .jpeg in any case; otherwise Failure (usage). */
 FileFormat format_of_name(const std::string &path);
 
@@ -110,83 +138,30 @@ FileFormat format_of_name(const std::string &path);
  * False when the picture is complete but without the metadata, because one of the files is a BigTIFF. */
 bool write_picture(const std::string &path, const Picture &picture, const WriteOptions &options = {});
 
-/* What the readers and writers share: private to picture*.cpp and metadata.cpp. */
-namespace codec {
-
-struct ReadRequest {
-    std::string path;
-    uint32_t max_side = 0;
-    bool header_only = false;
-};
-
-Picture read_png(const ReadRequest &request);
-Picture read_tiff(const ReadRequest &request);
-Picture read_jpeg(const ReadRequest &request);
-void write_png(const std::string &path, const Picture &picture);
-void write_tiff(const std::string &path, const Picture &picture);
-void write_jpeg(const std::string &path, const Picture &picture, int quality);
-
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE *)>;
-
-File open_for_reading(const std::string &path);
-File open_for_writing(const std::string &path);
-void close_written(File &file, const std::string &path);
-
-[[noreturn]] void fail_damaged(const std::string &path, const std::string &detail);
-[[noreturn]] void fail_unsupported(const std::string &path, const std::string &kind_and_next_step);
-[[noreturn]] void fail_to_write(const std::string &path, const std::string &detail, int error_number);
-[[noreturn]] void fail_to_hold(const std::string &path, const std::string &kind_and_next_step);
-
-/* Sets frame, reduction, size and row_bytes from the frame's size and max_side; sample and layout must be set. */
-void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, const ReadRequest &request);
-
-uint64_t pixel_bytes(const Picture &picture);
-
-/* Resolution in another unit; `none` stays as it is. */
-double convert_resolution(double value, PictureTraits::Unit from, PictureTraits::Unit to);
-
-/* Takes a picture row by row from the top and keeps it in picture.pixels, reduced as ReadOptions says. The rows may
- * already be halved in both directions (`done` = 2). Memory grows with the rows, so that a damaged header does not claim
- * it. */
-class RowSink {
+/* The same in strips of whole rows from the top. Nothing is at `path` before commit(). A JPEG's coefficients, of which the best
+ * Huffman tables need all, are in memory up to jpeg_memory_bytes, and beyond in a file without a name in the same folder. */
+class PictureWriter {
 public:
-    RowSink(Picture &picture, uint32_t source_width, uint32_t done = 1);
+    /* Of `header` sizes, sample, layout, profile and traits count, not the pixels. */
+    PictureWriter(const std::string &path, const Picture &header, const WriteOptions &options = {});
+    ~PictureWriter();
 
-    uint8_t *row(); /* where the next row of the source is to be put, source_width pixels */
-    void accept();  /* it is there */
+    /* The next rows.height rows. */
+    void write(const lensprof_image &rows);
+
+    /* All rows were given: completes the file beside its final name and makes it durable. False as write_picture. */
+    bool finish();
+
+    void commit(); /* gives the finished file its name */
 
 private:
-    struct Pick {
-        uint32_t x, column; /* pixel of the picture, block that it takes */
-    };
+    template <class Call> auto named(const Call &call) -> decltype(call());
 
-    void halve_rows();
-    void choose_blocks();
-    void pick_from_row();
-
-    Picture &picture_;
-    bool halves_;     /* blocks of 2 x 2 pixels become one here */
-    uint32_t blocks_; /* along the side of a held pixel's square */
-    size_t pixel_bytes_, scratch_row_;
-    bool direct_;            /* rows are put straight into the picture */
-    bool lower_ = false;     /* the next row is the lower one of blocks */
-    uint32_t block_row_ = 0; /* rows of blocks since the last row of the picture */
-    uint32_t emitted_ = 0;   /* rows of the picture */
-    std::vector<uint8_t> scratch_;
-    std::vector<std::vector<Pick>> picks_; /* of the picture's next row, for every row of blocks */
+    std::string path_;
+    WriteOptions options_;
+    std::unique_ptr<OutputFile> output_;
+    std::unique_ptr<codec::RowSink> sink_;
 };
-
-/* Runs body() and says false when the C library it calls left it by longjmp(jump). The jump skips no destructor as
- * long as body owns no object that has one while it is inside the library: such objects belong to the caller. GCC and
- * clang never inline a function that calls setjmp, so no variable of the caller can be lost. */
-template <class Body> bool guarded(std::jmp_buf &jump, const Body &body) {
-    if (setjmp(jump) != 0)
-        return false;
-    body();
-    return true;
-}
-
-}  // namespace codec
 
 }  // namespace lensprof
 

@@ -1,5 +1,5 @@
 /* JPEG through libjpeg-turbo. Its errors leave by longjmp: see codec::guarded. */
-#include "picture.hpp"
+#include "codec.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,6 +11,9 @@
 #include <jpeglib.h>
 
 #include <jerror.h>
+
+#include "coefficient_file.hpp"
+#include "interrupt.hpp"
 
 namespace lensprof {
 
@@ -27,6 +30,7 @@ struct JpegState {
     std::jmp_buf jump;
     char text[JMSG_LENGTH_MAX] = "";
     int error_number = 0;
+    jpeg_progress_mgr progress = {};
 };
 
 [[noreturn]] void on_error(j_common_ptr info) {
@@ -46,6 +50,18 @@ void on_message(j_common_ptr info, int level) {
 }
 
 void on_output(j_common_ptr) {}
+
+/* Within a call that goes through the whole picture; the caller then finds the interrupt itself. */
+void on_progress(j_common_ptr info) {
+    if (interrupted())
+        std::longjmp(reinterpret_cast<JpegState *>(info->err)->jump, 1);
+}
+
+/* After the object was created, which clears it. */
+void watch_interrupts(j_common_ptr info, JpegState &state) {
+    state.progress.progress_monitor = on_progress;
+    info->progress = &state.progress;
+}
 
 jpeg_error_mgr *set_handlers(JpegState &state) {
     jpeg_std_error(&state.manager);
@@ -78,6 +94,7 @@ struct JpegWriter {
 };
 
 [[noreturn]] void fail_reading(const std::string &path, const JpegState &state) {
+    stop_if_interrupted();
     static const int unsupported[] = {JERR_BAD_PRECISION,    JERR_SOF_UNSUPPORTED,   JERR_NOT_COMPILED,
                                       JERR_ARITH_NOTIMPL,    JERR_CONVERSION_NOTIMPL, JERR_CCIR601_NOTIMPL,
                                       JERR_FRACT_SAMPLE_NOTIMPL};
@@ -120,41 +137,73 @@ void read_traits(const jpeg_decompress_struct &info, PictureTraits &traits) {
     }
 }
 
-bool read_start(JpegReader &reader, Picture &picture) {
-    return guarded(reader.state.jump, [&] {
-        jpeg_create_decompress(&reader.info);
-        jpeg_stdio_src(&reader.info, reader.file.get());
-        jpeg_save_markers(&reader.info, profile_marker, 0xffff);
-        jpeg_read_header(&reader.info, TRUE);
-        read_traits(reader.info, picture.traits);
-        JOCTET *profile = nullptr;
-        unsigned bytes = 0;
-        if (jpeg_read_icc_profile(&reader.info, &profile, &bytes)) {
-            std::unique_ptr<JOCTET, void (*)(void *)> owner(profile, std::free);
-            picture.icc.assign(profile, profile + bytes);
+void read_start(JpegReader &reader, Picture &picture) {
+    jpeg_create_decompress(&reader.info);
+    watch_interrupts(reinterpret_cast<j_common_ptr>(&reader.info), reader.state);
+    jpeg_stdio_src(&reader.info, reader.file.get());
+    jpeg_save_markers(&reader.info, profile_marker, 0xffff);
+    jpeg_read_header(&reader.info, TRUE);
+    read_traits(reader.info, picture.traits);
+    JOCTET *profile = nullptr;
+    unsigned bytes = 0;
+    if (jpeg_read_icc_profile(&reader.info, &profile, &bytes)) {
+        std::unique_ptr<JOCTET, void (*)(void *)> owner(profile, std::free);
+        picture.icc.assign(profile, profile + bytes);
+    }
+}
+
+void set_decoding(JpegReader &reader, const Picture &picture) {
+    reader.info.scale_num = 1;
+    reader.info.scale_denom = picture.reduction > 1 ? 2 : 1; /* the inverse DCT averages almost for nothing */
+    reader.info.out_color_space = picture.layout == LENSPROF_LAYOUT_GREY ? JCS_GRAYSCALE : JCS_RGB;
+    reader.info.dct_method = JDCT_ISLOW;
+    jpeg_calc_output_dimensions(&reader.info);
+}
+
+class JpegSource final : public RowSource {
+public:
+    explicit JpegSource(const ReadRequest &request);
+    uint32_t halved() const override { return header_.reduction > 1 ? 2 : 1; }
+    uint32_t row_count() const override { return reader_.info.output_height; }
+    uint32_t row_width() const override { return reader_.info.output_width; }
+    void read(uint8_t *row) override;
+    void finish() override;
+
+private:
+    template <class Body> void run(const Body &body) {
+        if (!guarded(reader_.state.jump, body))
+            fail_reading(path_, reader_.state);
+    }
+
+    std::string path_;
+    JpegReader reader_;
+    bool started_ = false;
+};
+
+JpegSource::JpegSource(const ReadRequest &request) : path_(request.path), reader_(request.path) {
+    header_.traits.format = FileFormat::jpeg;
+    run([&] { read_start(reader_, header_); });
+    const int components = reader_.info.num_components;
+    if ((components != 1 && components != 3) || reader_.info.jpeg_color_space == JCS_UNKNOWN)
+        fail_unsupported(path_, "CMYK or unknown kind of colour; convert it to RGB first");
+    header_.sample = LENSPROF_SAMPLE_U8;
+    header_.layout = components == 1 ? LENSPROF_LAYOUT_GREY : LENSPROF_LAYOUT_RGB;
+    set_frame(header_, reader_.info.image_width, reader_.info.image_height, request);
+    run([&] { set_decoding(reader_, header_); });
+}
+
+void JpegSource::read(uint8_t *row) {
+    run([&] {
+        if (!started_) {
+            started_ = true;
+            jpeg_start_decompress(&reader_.info);
         }
+        jpeg_read_scanlines(&reader_.info, &row, 1);
     });
 }
 
-bool start_decoding(JpegReader &reader, const Picture &picture) {
-    return guarded(reader.state.jump, [&] {
-        reader.info.scale_num = 1;
-        reader.info.scale_denom = picture.reduction > 1 ? 2 : 1; /* the inverse DCT averages almost for nothing */
-        reader.info.out_color_space = picture.layout == LENSPROF_LAYOUT_GREY ? JCS_GRAYSCALE : JCS_RGB;
-        reader.info.dct_method = JDCT_ISLOW;
-        jpeg_start_decompress(&reader.info);
-    });
-}
-
-bool read_rows(JpegReader &reader, RowSink &sink) {
-    return guarded(reader.state.jump, [&] {
-        while (reader.info.output_scanline < reader.info.output_height) {
-            JSAMPROW row = sink.row();
-            jpeg_read_scanlines(&reader.info, &row, 1);
-            sink.accept();
-        }
-        jpeg_finish_decompress(&reader.info);
-    });
+void JpegSource::finish() {
+    run([&] { jpeg_finish_decompress(&reader_.info); });
 }
 
 void set_tables(jpeg_compress_struct &info, const PictureTraits &traits, int quality) {
@@ -184,10 +233,11 @@ void set_density(jpeg_compress_struct &info, const PictureTraits &traits) {
     info.Y_density = static_cast<UINT16>(std::lround(y));
 }
 
-void start_encoding(JpegWriter &writer, const Picture &picture, int quality) {
+void start_encoding(JpegWriter &writer, CoefficientFile &coefficients, const Picture &picture, int quality) {
     jpeg_compress_struct &info = writer.info;
     const bool grey = picture.layout == LENSPROF_LAYOUT_GREY;
     jpeg_create_compress(&info);
+    watch_interrupts(reinterpret_cast<j_common_ptr>(&info), writer.state);
     jpeg_stdio_dest(&info, writer.file.get());
     info.image_width = picture.width;
     info.image_height = picture.height;
@@ -202,53 +252,52 @@ void start_encoding(JpegWriter &writer, const Picture &picture, int quality) {
     info.dct_method = JDCT_ISLOW;
     if (picture.traits.progressive)
         jpeg_simple_progression(&info);
+    coefficients.attach(info);
     jpeg_start_compress(&info, TRUE);
     if (!picture.icc.empty())
         jpeg_write_icc_profile(&info, picture.icc.data(), static_cast<unsigned>(picture.icc.size()));
 }
 
-void write_all(JpegWriter &writer, const Picture &picture, int quality) {
-    start_encoding(writer, picture, quality);
-    for (uint32_t y = 0; y < picture.height; ++y) {
-        JSAMPROW row = const_cast<JSAMPROW>(picture.pixels.data() + y * picture.row_bytes);
-        jpeg_write_scanlines(&writer.info, &row, 1);
+class JpegSink final : public RowSink {
+public:
+    JpegSink(const std::string &path, const Picture &header, int quality)
+        : path_(path), coefficients_(path), writer_(path) {
+        run([&] { start_encoding(writer_, coefficients_, header, quality); });
     }
-    jpeg_finish_compress(&writer.info);
-}
+
+    void write(const uint8_t *row) override {
+        JSAMPROW rows[] = {const_cast<JSAMPROW>(row)};
+        run([&] { jpeg_write_scanlines(&writer_.info, rows, 1); });
+    }
+
+    void finish() override {
+        run([&] { jpeg_finish_compress(&writer_.info); });
+        close_written(writer_.file, path_);
+    }
+
+private:
+    template <class Body> void run(const Body &body) {
+        if (guarded(writer_.state.jump, body))
+            return;
+        stop_if_interrupted();
+        fail_to_write(path_, writer_.state.text, writer_.state.error_number);
+    }
+
+    std::string path_;
+    CoefficientFile coefficients_;
+    JpegWriter writer_;
+};
 
 }  // namespace
 
-Picture read_jpeg(const ReadRequest &request) {
-    JpegReader reader(request.path);
-    Picture picture;
-    picture.traits.format = FileFormat::jpeg;
-    if (!read_start(reader, picture))
-        fail_reading(request.path, reader.state);
-    const int components = reader.info.num_components;
-    if ((components != 1 && components != 3) || reader.info.jpeg_color_space == JCS_UNKNOWN)
-        fail_unsupported(request.path, "CMYK or unknown kind of colour; convert it to RGB first");
-    picture.sample = LENSPROF_SAMPLE_U8;
-    picture.layout = components == 1 ? LENSPROF_LAYOUT_GREY : LENSPROF_LAYOUT_RGB;
-    set_frame(picture, reader.info.image_width, reader.info.image_height, request);
-    if (request.header_only)
-        return picture;
-    if (!start_decoding(reader, picture))
-        fail_reading(request.path, reader.state);
-    RowSink sink(picture, reader.info.output_width, picture.reduction > 1 ? 2 : 1);
-    if (!read_rows(reader, sink))
-        fail_reading(request.path, reader.state);
-    return picture;
-}
+std::unique_ptr<RowSource> open_jpeg(const ReadRequest &request) { return std::make_unique<JpegSource>(request); }
 
-void write_jpeg(const std::string &path, const Picture &picture, int quality) {
-    if (picture.sample != LENSPROF_SAMPLE_U8)
+std::unique_ptr<RowSink> create_jpeg(const std::string &path, const Picture &header, int quality) {
+    if (header.sample != LENSPROF_SAMPLE_U8)
         fail_to_hold(path, "JPEG holds 8 bit samples; write a .tif or .png file");
-    if (picture.layout != LENSPROF_LAYOUT_GREY && picture.layout != LENSPROF_LAYOUT_RGB)
+    if (header.layout != LENSPROF_LAYOUT_GREY && header.layout != LENSPROF_LAYOUT_RGB)
         fail_to_hold(path, "JPEG does not hold alpha; write a .tif or .png file");
-    JpegWriter writer(path);
-    if (!guarded(writer.state.jump, [&] { write_all(writer, picture, quality); }))
-        fail_to_write(path, writer.state.text, writer.state.error_number);
-    close_written(writer.file, path);
+    return std::make_unique<JpegSink>(path, header, quality);
 }
 
 }  // namespace codec

@@ -1,5 +1,5 @@
 /* PNG through libpng. Its errors leave by longjmp: see codec::guarded. */
-#include "picture.hpp"
+#include "codec.hpp"
 
 #include <cerrno>
 #include <cmath>
@@ -7,6 +7,8 @@
 #include <new>
 
 #include <png.h>
+
+#include "interrupt.hpp"
 
 namespace lensprof {
 
@@ -63,7 +65,7 @@ struct PngReader {
     File file;
     png_structp png = nullptr;
     png_infop info = nullptr;
-    bool interlaced = false;
+    int passes = 1; /* 7 when interlaced */
 };
 
 struct PngWriter {
@@ -118,39 +120,65 @@ void read_start(PngReader &reader, Picture &picture, const ReadRequest &request)
     png_set_expand(png);
     if (little_endian())
         png_set_swap(png);
-    reader.interlaced = png_set_interlace_handling(png) > 1;
+    reader.passes = png_set_interlace_handling(png);
     png_read_update_info(png, reader.info);
     picture.sample = png_get_bit_depth(png, reader.info) == 16 ? LENSPROF_SAMPLE_U16 : LENSPROF_SAMPLE_U8;
     picture.layout = png_get_channels(png, reader.info) - 1u; /* the layouts are in that order */
     set_frame(picture, png_get_image_width(png, reader.info), png_get_image_height(png, reader.info), request);
 }
 
-bool read_rows(PngReader &reader, const Picture &picture, RowSink &sink) {
-    return guarded(reader.state.jump, [&] {
-        for (uint32_t y = 0; y < picture.frame_height; ++y) {
-            png_read_row(reader.png, sink.row(), nullptr);
-            sink.accept();
-        }
-        png_read_end(reader.png, nullptr);
-    });
+class PngSource final : public RowSource {
+public:
+    explicit PngSource(const ReadRequest &request);
+    void read(uint8_t *row) override;
+    void finish() override;
+
+private:
+    void read_interlaced();
+    void check(bool good) const;
+
+    std::string path_;
+    PngReader reader_;
+    std::vector<uint8_t> frame_; /* of an interlaced file */
+    uint32_t next_ = 0;
+};
+
+PngSource::PngSource(const ReadRequest &request) : path_(request.path), reader_(request.path) {
+    header_.traits.format = FileFormat::png;
+    check(guarded(reader_.state.jump, [&] { read_start(reader_, header_, request); }));
+}
+
+void PngSource::check(bool good) const {
+    if (!good)
+        fail_damaged(path_, reader_.state.text);
+}
+
+void PngSource::read(uint8_t *row) {
+    if (reader_.passes == 1) {
+        check(guarded(reader_.state.jump, [&] { png_read_row(reader_.png, row, nullptr); }));
+        return;
+    }
+    if (next_ == 0)
+        read_interlaced();
+    const size_t row_bytes = frame_.size() / header_.frame_height;
+    std::memcpy(row, frame_.data() + next_++ * row_bytes, row_bytes);
 }
 
 /* An interlaced file has the whole frame seven times over, ever finer: it cannot be read row by row. */
-bool read_interlaced(PngReader &reader, const Picture &picture, RowSink &sink) {
-    const size_t row_bytes = static_cast<size_t>(pixel_bytes(picture) * picture.frame_width);
-    std::vector<uint8_t> frame(row_bytes * picture.frame_height);
-    std::vector<png_bytep> rows(picture.frame_height);
-    for (size_t y = 0; y < rows.size(); ++y)
-        rows[y] = frame.data() + y * row_bytes;
-    const bool good = guarded(reader.state.jump, [&] {
-        png_read_image(reader.png, rows.data());
-        png_read_end(reader.png, nullptr);
-    });
-    for (size_t y = 0; good && y < rows.size(); ++y) {
-        std::memcpy(sink.row(), rows[y], row_bytes);
-        sink.accept();
+void PngSource::read_interlaced() {
+    const size_t row_bytes = static_cast<size_t>(pixel_bytes(header_) * header_.frame_width);
+    frame_.resize(row_bytes * header_.frame_height);
+    for (int pass = 0; pass < reader_.passes; ++pass) {
+        stop_if_interrupted();
+        check(guarded(reader_.state.jump, [&] {
+            for (uint32_t y = 0; y < header_.frame_height; ++y)
+                png_read_row(reader_.png, frame_.data() + y * row_bytes, nullptr);
+        }));
     }
-    return good;
+}
+
+void PngSource::finish() {
+    check(guarded(reader_.state.jump, [&] { png_read_end(reader_.png, nullptr); }));
 }
 
 void set_colour(const PngWriter &writer, const Picture &picture) {
@@ -179,7 +207,8 @@ void set_resolution(const PngWriter &writer, const PictureTraits &traits) {
                      traits.resolution_unit == Unit::none ? PNG_RESOLUTION_UNKNOWN : PNG_RESOLUTION_METER);
 }
 
-void write_all(const PngWriter &writer, const Picture &picture) {
+/* Everything before the pixels. */
+void write_start(const PngWriter &writer, const Picture &picture) {
     static const int colour_types[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
                                        PNG_COLOR_TYPE_RGB_ALPHA};
     const bool deep = picture.sample == LENSPROF_SAMPLE_U16;
@@ -195,38 +224,44 @@ void write_all(const PngWriter &writer, const Picture &picture) {
     png_write_info(writer.png, writer.info);
     if (deep && little_endian())
         png_set_swap(writer.png);
-    for (uint32_t y = 0; y < picture.height; ++y)
-        png_write_row(writer.png, picture.pixels.data() + y * picture.row_bytes);
-    png_write_end(writer.png, writer.info);
 }
+
+class PngSink final : public RowSink {
+public:
+    PngSink(const std::string &path, const Picture &header) : path_(path), writer_(path) {
+        check(guarded(writer_.state.jump, [&] { write_start(writer_, header); }));
+    }
+
+    void write(const uint8_t *row) override {
+        check(guarded(writer_.state.jump, [&] { png_write_row(writer_.png, row); }));
+    }
+
+    void finish() override {
+        check(guarded(writer_.state.jump, [&] { png_write_end(writer_.png, writer_.info); }));
+        close_written(writer_.file, path_);
+    }
+
+private:
+    void check(bool good) const {
+        if (!good)
+            fail_to_write(path_, writer_.state.text, writer_.state.error_number);
+    }
+
+    std::string path_;
+    PngWriter writer_;
+};
 
 }  // namespace
 
-Picture read_png(const ReadRequest &request) {
-    PngReader reader(request.path);
-    Picture picture;
-    picture.traits.format = FileFormat::png;
-    if (!guarded(reader.state.jump, [&] { read_start(reader, picture, request); }))
-        fail_damaged(request.path, reader.state.text);
-    if (request.header_only)
-        return picture;
-    RowSink sink(picture, picture.frame_width);
-    const bool good = reader.interlaced ? read_interlaced(reader, picture, sink) : read_rows(reader, picture, sink);
-    if (!good)
-        fail_damaged(request.path, reader.state.text);
-    return picture;
-}
+std::unique_ptr<RowSource> open_png(const ReadRequest &request) { return std::make_unique<PngSource>(request); }
 
-void write_png(const std::string &path, const Picture &picture) {
-    const bool alpha = picture.layout == LENSPROF_LAYOUT_GREY_ALPHA || picture.layout == LENSPROF_LAYOUT_RGBA;
-    if (picture.sample == LENSPROF_SAMPLE_F32)
+std::unique_ptr<RowSink> create_png(const std::string &path, const Picture &header) {
+    const bool alpha = header.layout == LENSPROF_LAYOUT_GREY_ALPHA || header.layout == LENSPROF_LAYOUT_RGBA;
+    if (header.sample == LENSPROF_SAMPLE_F32)
         fail_to_hold(path, "PNG holds 8 or 16 bit samples, not float; write a .tif file");
-    if (alpha && picture.traits.alpha == PictureTraits::Alpha::associated)
+    if (alpha && header.traits.alpha == PictureTraits::Alpha::associated)
         fail_to_hold(path, "PNG does not hold colour premultiplied with alpha; write a .tif file");
-    PngWriter writer(path);
-    if (!guarded(writer.state.jump, [&] { write_all(writer, picture); }))
-        fail_to_write(path, writer.state.text, writer.state.error_number);
-    close_written(writer.file, path);
+    return std::make_unique<PngSink>(path, header);
 }
 
 }  // namespace codec

@@ -1,5 +1,5 @@
 /* TIFF through libtiff. Its errors are return values; what it has to say arrives in a handler of each open file. */
-#include "picture.hpp"
+#include "codec.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -169,8 +169,8 @@ void invert_row(const Picture &picture, uint8_t *row) {
  * or the strips of all planes. */
 class BandReader {
 public:
-    BandReader(const Tiff &tiff, const ReadRequest &request, const Picture &picture);
-    void read(RowSink &sink);
+    BandReader(const Tiff &tiff, const std::string &path, const Picture &picture);
+    void read(uint8_t *row); /* the next one */
 
 private:
     void read_band(uint32_t y, uint32_t rows);
@@ -178,20 +178,20 @@ private:
     [[noreturn]] void fail() const;
 
     const Tiff &tiff_;
-    const ReadRequest &request_;
+    const std::string &path_;
     const Picture &picture_;
     const bool tiled_, by_row_, inverted_;
     const size_t sample_bytes_, pixel_bytes_, row_bytes_; /* of the frame */
     const uint16_t planes_;
     const size_t block_pixel_bytes_;
-    uint32_t block_width_ = 0, block_height_ = 0;
+    uint32_t block_width_ = 0, block_height_ = 0, next_ = 0;
     std::vector<uint8_t> band_;
     std::unique_ptr<uint8_t[]> block_; /* not cleared: a damaged header may ask for much */
     size_t block_bytes_ = 0;
 };
 
-BandReader::BandReader(const Tiff &tiff, const ReadRequest &request, const Picture &picture)
-    : tiff_(tiff), request_(request), picture_(picture), tiled_(TIFFIsTiled(tiff.handle) != 0),
+BandReader::BandReader(const Tiff &tiff, const std::string &path, const Picture &picture)
+    : tiff_(tiff), path_(path), picture_(picture), tiled_(TIFFIsTiled(tiff.handle) != 0),
       by_row_(!tiled_ && tiff.field<uint16_t>(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_CONTIG),
       inverted_(tiff.field<uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE),
       sample_bytes_(lensprof_sample_bytes(picture.sample)), pixel_bytes_(static_cast<size_t>(pixel_bytes(picture))),
@@ -218,26 +218,21 @@ BandReader::BandReader(const Tiff &tiff, const ReadRequest &request, const Pictu
 }
 
 void BandReader::fail() const {
-    fail_damaged(request_.path, tiff_.message.text[0] ? tiff_.message.text : "impossible size of a strip or tile");
+    fail_damaged(path_, tiff_.message.text[0] ? tiff_.message.text : "impossible size of a strip or tile");
 }
 
-void BandReader::read(RowSink &sink) {
-    const uint32_t height = picture_.frame_height;
-    for (uint32_t y = 0; y < height;) {
-        const uint32_t rows = by_row_ ? 1 : std::min(block_height_, height - y);
-        if (!by_row_)
-            read_band(y, rows);
-        for (uint32_t i = 0; i < rows; ++i, ++y) {
-            uint8_t *row = sink.row();
-            if (!by_row_)
-                std::memcpy(row, band_.data() + i * row_bytes_, row_bytes_);
-            else if (TIFFReadScanline(tiff_.handle, row, y, 0) != 1 || tiff_.failed())
-                fail();
-            if (inverted_)
-                invert_row(picture_, row);
-            sink.accept();
-        }
+void BandReader::read(uint8_t *row) {
+    const uint32_t y = next_++;
+    if (by_row_) {
+        if (TIFFReadScanline(tiff_.handle, row, y, 0) != 1 || tiff_.failed())
+            fail();
+    } else {
+        if (y % block_height_ == 0)
+            read_band(y, std::min(block_height_, picture_.frame_height - y));
+        std::memcpy(row, band_.data() + y % block_height_ * row_bytes_, row_bytes_);
     }
+    if (inverted_)
+        invert_row(picture_, row);
 }
 
 void BandReader::read_band(uint32_t y, uint32_t rows) {
@@ -268,6 +263,38 @@ void BandReader::read_block(uint32_t x, uint32_t y, uint32_t rows, uint16_t plan
         for (size_t c = 0; c < columns; ++c, from += sample_bytes_, to += pixel_bytes_)
             std::memcpy(to, from, sample_bytes_);
     }
+}
+
+class TiffSource final : public RowSource {
+public:
+    explicit TiffSource(const ReadRequest &request);
+
+    void read(uint8_t *row) override {
+        if (!reader_)
+            reader_ = std::make_unique<BandReader>(tiff_, path_, header_);
+        reader_->read(row);
+    }
+
+private:
+    std::string path_;
+    Tiff tiff_;
+    std::unique_ptr<BandReader> reader_;
+};
+
+/* m: no memory map, which would end the process when the file is cut while being read. */
+TiffSource::TiffSource(const ReadRequest &request) : path_(request.path), tiff_(request.path, "rm") {
+    if (!tiff_.handle)
+        fail_damaged(path_, tiff_.message.text);
+    tiff_.message = Message(); /* errors in tags that are not needed */
+    check_not_raw(tiff_, request);
+    read_sample(tiff_, request, header_);
+    read_layout(tiff_, request, header_);
+    read_traits(tiff_, header_);
+    if (!TIFFIsCODECConfigured(header_.traits.compression))
+        fail_unsupported(path_, "TIFF compression " + std::to_string(header_.traits.compression) +
+                                    " is not supported; convert it first");
+    set_frame(header_, tiff_.field<uint32_t>(TIFFTAG_IMAGEWIDTH, 0), tiff_.field<uint32_t>(TIFFTAG_IMAGELENGTH, 0),
+              request);
 }
 
 /* Lossless compressions are kept; recompressing with a lossy one would damage the pixels a second time. */
@@ -320,60 +347,68 @@ void set_tags(TIFF *handle, const Picture &picture, uint32_t rows_per_strip) {
         TIFFSetField(handle, TIFFTAG_ICCPROFILE, static_cast<uint32_t>(picture.icc.size()), picture.icc.data());
 }
 
-bool write_strips(TIFF *handle, const Picture &picture, uint32_t rows_per_strip) {
-    const size_t row_bytes = static_cast<size_t>(pixel_bytes(picture) * picture.width);
-    std::vector<uint8_t> strip(row_bytes * rows_per_strip); /* libtiff may scramble what it is given */
-    for (uint32_t y = 0; y < picture.height; y += rows_per_strip) {
-        const uint32_t rows = std::min(rows_per_strip, picture.height - y);
-        for (size_t i = 0; i < rows; ++i)
-            std::memcpy(strip.data() + i * row_bytes, picture.pixels.data() + (y + i) * picture.row_bytes, row_bytes);
-        if (TIFFWriteEncodedStrip(handle, y / rows_per_strip, strip.data(),
-                                  static_cast<tmsize_t>(rows * row_bytes)) < 0)
-            return false;
-    }
-    return TIFFFlush(handle) == 1;
+class TiffSink final : public RowSink {
+public:
+    TiffSink(const std::string &path, const Picture &header);
+    void write(const uint8_t *row) override;
+    void finish() override;
+
+private:
+    void write_strip();
+    [[noreturn]] void fail() const { fail_to_write(path_, tiff_.message.text, tiff_.message.error_number); }
+
+    std::string path_;
+    const size_t row_bytes_;
+    const uint32_t rows_per_strip_;
+    Tiff tiff_;
+    std::vector<uint8_t> strip_; /* rows to be written; libtiff may scramble what it is given */
+    uint32_t strips_ = 0;
+};
+
+size_t frame_row_bytes(const Picture &header) { return static_cast<size_t>(pixel_bytes(header) * header.width); }
+
+TiffSink::TiffSink(const std::string &path, const Picture &header)
+    : path_(path), row_bytes_(frame_row_bytes(header)),
+      rows_per_strip_(static_cast<uint32_t>(
+          std::min<size_t>(std::max<size_t>(1, strip_bytes / std::max<size_t>(1, row_bytes_)), header.height))),
+      tiff_(path, row_bytes_ * uint64_t(header.height) > classic_max_bytes ? "w8" : "w") {
+    if (!tiff_.handle)
+        fail();
+    set_tags(tiff_.handle, header, rows_per_strip_);
+    strip_.reserve(row_bytes_ * rows_per_strip_);
+}
+
+void TiffSink::write(const uint8_t *row) {
+    strip_.insert(strip_.end(), row, row + row_bytes_);
+    if (strip_.size() == row_bytes_ * rows_per_strip_)
+        write_strip();
+}
+
+void TiffSink::write_strip() {
+    errno = 0; /* an error that libtiff itself finds has no number */
+    if (TIFFWriteEncodedStrip(tiff_.handle, strips_++, strip_.data(), static_cast<tmsize_t>(strip_.size())) < 0)
+        fail();
+    strip_.clear();
+}
+
+/* Closing writes the directory; whether that went well only the handler knows. */
+void TiffSink::finish() {
+    if (!strip_.empty())
+        write_strip();
+    errno = 0;
+    const bool flushed = TIFFFlush(tiff_.handle) == 1;
+    tiff_.close();
+    if (!flushed || tiff_.message.text[0] != '\0')
+        fail();
 }
 
 }  // namespace
 
-Picture read_tiff(const ReadRequest &request) {
-    /* m: no memory map, which would end the process when the file is cut while being read. */
-    Tiff tiff(request.path, "rm");
-    if (!tiff.handle)
-        fail_damaged(request.path, tiff.message.text);
-    tiff.message = Message(); /* errors in tags that are not needed */
-    check_not_raw(tiff, request);
-    Picture picture;
-    read_sample(tiff, request, picture);
-    read_layout(tiff, request, picture);
-    read_traits(tiff, picture);
-    if (!TIFFIsCODECConfigured(picture.traits.compression))
-        fail_unsupported(request.path, "TIFF compression " + std::to_string(picture.traits.compression) +
-                                           " is not supported; convert it first");
-    set_frame(picture, tiff.field<uint32_t>(TIFFTAG_IMAGEWIDTH, 0), tiff.field<uint32_t>(TIFFTAG_IMAGELENGTH, 0),
-              request);
-    if (request.header_only)
-        return picture;
-    BandReader reader(tiff, request, picture);
-    RowSink sink(picture, picture.frame_width);
-    reader.read(sink);
-    return picture;
-}
+std::unique_ptr<RowSource> open_tiff(const ReadRequest &request) { return std::make_unique<TiffSource>(request); }
 
-void write_tiff(const std::string &path, const Picture &picture) {
-    const bool big = pixel_bytes(picture) * picture.width * picture.height > classic_max_bytes;
-    const size_t rows = std::max<size_t>(1, strip_bytes / std::max<size_t>(1, picture.row_bytes));
-    const uint32_t rows_per_strip = static_cast<uint32_t>(std::min<size_t>(rows, picture.height));
+std::unique_ptr<RowSink> create_tiff(const std::string &path, const Picture &header) {
     errno = 0;
-    Tiff tiff(path, big ? "w8" : "w");
-    bool good = tiff.handle != nullptr;
-    if (good) {
-        set_tags(tiff.handle, picture, rows_per_strip);
-        good = write_strips(tiff.handle, picture, rows_per_strip);
-        tiff.close(); /* writes the directory; whether that went well only the handler knows */
-    }
-    if (!good || tiff.message.text[0] != '\0')
-        fail_to_write(path, tiff.message.text, tiff.message.error_number);
+    return std::make_unique<TiffSink>(path, header);
 }
 
 }  // namespace codec
