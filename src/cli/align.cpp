@@ -16,7 +16,7 @@ namespace {
 struct Options {
     FitOptions fit;
     std::string to = "mean", output = "aligned", pto;
-    uint32_t seed = 1, pairs = 0, max_side = 800;
+    uint32_t seed = 1, pairs = 0, max_side = 800, threads = 0;
     bool json = false, progress = false;
     std::vector<std::string> files;
 };
@@ -36,6 +36,7 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--seed", o.seed, "of the sampling");
     app.add_option("--max-side", o.max_side,
                    "sample frames reduced to no less than this many pixels (800); 0 = full size");
+    declare_threads(app, o.threads);
     app.add_flag("--json", o.json, "print one JSON object");
     app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
 }
@@ -113,25 +114,29 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
     std::vector<Correction> jobs;
     for (uint32_t i : frames) {
         std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
-        jobs.push_back({project.files[i], (std::filesystem::path(o.output) / name).string(), nullptr, {}, {}, 0});
+        jobs.push_back({project.files[i], (std::filesystem::path(o.output) / name).string(), nullptr, {}, {}, 0, 0});
     }
     check_targets(jobs, project.files, "");
     return jobs;
 }
 
-Json report(const Options &o, const Fitted &fitted, const std::vector<lensprof_exposure> &exposures, Json written) {
+Json report(const Options &o, const Fitted &fitted, const std::vector<lensprof_exposure> &exposures,
+            const Corrected &corrected) {
     const lensprof_fit_result &r = fitted.result;
+    Json written = corrected.pictures;
     for (size_t i = 0; i < written.size(); i++) {
         const auto &w = exposures[i].white_balance;
         written[i]["ev"] = exposures[i].ev;
         written[i]["white_balance"] = {w[0], w[1], w[2]};
     }
     auto known = [](double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(value); };
-    return {{"schema", 1}, {"usable", r.usable != 0}, {"reason", r.reason}, {"to", o.to}, {"frames", written},
+    Json json = {{"schema", 1}, {"usable", r.usable != 0}, {"reason", r.reason}, {"to", o.to}, {"frames", written},
             {"residual", {{"before_rms", known(r.before_rms)}, {"heldout_rms", known(r.heldout_rms)},
                           {"heldout_median", known(r.heldout_median)}, {"noise", r.noise_levels},
                           {"inlier_share", r.inlier_share}}},
             {"pairs", r.pairs}};
+    add_speed(corrected, json);
+    return json;
 }
 
 int align(const Options &o, Streams &streams) {
@@ -146,7 +151,7 @@ int align(const Options &o, Streams &streams) {
     set_text(fitted.result.reason, sizeof fitted.result.reason, reason);
     std::vector<lensprof_exposure> exposures;
     for (uint32_t i : frames) exposures.push_back(fitted.exposures[i]);
-    Json written = Json::array();
+    Corrected written;
     if (fitted.result.usable) {
         std::shared_ptr<const lensprof_profile> model = profile_of(fitted.result);
         for (size_t i = 0; i < jobs.size(); i++) {
@@ -156,7 +161,7 @@ int align(const Options &o, Streams &streams) {
             warn_of_limits(jobs[i].source, jobs[i].own.ev, jobs[i].wanted.ev, white_shares[frames[i]], streams);
         }
         make_folder(o.output);
-        written = write_corrected(jobs, {}, nullptr, progress, streams);
+        written = write_corrected(jobs, {false, false, o.threads, 0}, nullptr, progress, streams);
     }
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;
@@ -165,7 +170,7 @@ int align(const Options &o, Streams &streams) {
         streams.err << "lensprof: " << (fitted.result.usable ? "warning: " + item + ": " : item + ": not usable: ")
                     << reason << (fitted.result.usable ? "" : "; nothing was written") << "\n";
     if (o.json) print_json(report(o, fitted, exposures, written), streams.out);
-    for (const auto &entry : written)
+    for (const auto &entry : written.pictures)
         if (!o.json) streams.out << entry["output"].get<std::string>() << "\n";
     return static_cast<int>(fitted.result.usable ? ExitCode::done : ExitCode::not_usable);
 }

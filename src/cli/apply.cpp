@@ -14,6 +14,7 @@ namespace {
 struct Options {
     std::string db, pto, output, exposure, sheet;
     int64_t profile = 0;
+    uint32_t threads = 0;
     bool from_db = false, linear = false, simulate = false, json = false, progress = false;
     std::vector<std::string> files;
 };
@@ -32,6 +33,7 @@ void declare(CLI::App &app, Options &o) {
     app.add_flag("--simulate", o.simulate, "put the falloff in instead of taking it out");
     app.add_option("-o,--output", o.output, "folder for the pictures")->required();
     app.add_option("--contact-sheet", o.sheet, "write an overview, before above after (PNG)");
+    declare_threads(app, o.threads);
     app.add_flag("--json", o.json, "print one JSON object");
     app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
     app.add_option("FILES", o.files, "pictures; with --pto default all of the project");
@@ -138,7 +140,7 @@ std::vector<Correction> make_jobs(const Options &o, lensprof_exposure &mean) {
     Store store = from_store ? open_store(o.db, LENSPROF_STORE_READ) : Store();
     std::vector<Correction> jobs;
     for (const std::string &file : files) {
-        Correction job{file, target_name(o, file), model, {}, {}, 0};
+        Correction job{file, target_name(o, file), model, {}, {}, 0, 0};
         lensprof_exposure_init(&job.own);
         if (project) {
             uint32_t image = image_of_file(*project, file);
@@ -173,13 +175,16 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;
     for (Correction &job : jobs) job.wanted = o.exposure == "keep" ? job.own : o.exposure == "mean" ? mean : reference;
-    Json written = write_corrected(jobs, {o.simulate, o.linear}, o.sheet.empty() ? nullptr : &sheet, progress, streams);
+    Corrected written = write_corrected(jobs, {o.simulate, o.linear, o.threads, 0}, o.sheet.empty() ? nullptr : &sheet,
+                                        progress, streams);
     progress.clear();
     if (!o.sheet.empty()) sheet.write(o.sheet);
     if (o.json) {
-        print_json(Json{{"schema", 1}, {"pictures", written}}, streams.out);
+        Json json = {{"schema", 1}, {"pictures", written.pictures}};
+        add_speed(written, json);
+        print_json(json, streams.out);
     } else {
-        for (const auto &entry : written) streams.out << entry["output"].get<std::string>() << "\n";
+        for (const auto &entry : written.pictures) streams.out << entry["output"].get<std::string>() << "\n";
         if (!o.sheet.empty()) streams.out << o.sheet << "\n";
     }
     return 0;

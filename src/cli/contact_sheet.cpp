@@ -9,11 +9,12 @@ namespace {
 constexpr uint32_t kThumbnailSide = 320, kGap = 8, kPerRow = 6;
 constexpr uint8_t kBackground = 40;
 
-double load(const Picture &picture, uint32_t x, uint32_t y, uint32_t s) {
-    uint32_t bytes = lensprof_sample_bytes(picture.sample), samples = lensprof_layout_samples(picture.layout);
-    const uint8_t *p = &picture.pixels[y * picture.row_bytes + (static_cast<size_t>(x) * samples + s) * bytes];
-    if (picture.sample == LENSPROF_SAMPLE_U8) return *p / 255.0;
-    if (picture.sample == LENSPROF_SAMPLE_U16) {
+double load(const lensprof_image &rows, uint32_t x, uint32_t y, uint32_t s) {
+    uint32_t bytes = lensprof_sample_bytes(rows.sample), samples = lensprof_layout_samples(rows.layout);
+    const uint8_t *p = static_cast<const uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes
+        + (static_cast<size_t>(x) * samples + s) * bytes;
+    if (rows.sample == LENSPROF_SAMPLE_U8) return *p / 255.0;
+    if (rows.sample == LENSPROF_SAMPLE_U16) {
         uint16_t value;
         std::memcpy(&value, p, sizeof value);
         return value / 65535.0;
@@ -25,29 +26,46 @@ double load(const Picture &picture, uint32_t x, uint32_t y, uint32_t s) {
 
 }  // namespace
 
-ContactSheet::Thumbnail ContactSheet::shrink(const Picture &picture) {
-    uint32_t step = std::max(1u, (std::max(picture.width, picture.height) + kThumbnailSide - 1) / kThumbnailSide);
-    Thumbnail small{std::max(1u, picture.width / step), std::max(1u, picture.height / step), {}};
-    bool grey = lensprof_layout_channels(picture.layout) == 1;
-    small.rgb.resize(static_cast<size_t>(small.width) * small.height * 3);
-    for (uint32_t y = 0; y < small.height; y++)
-        for (uint32_t x = 0; x < small.width; x++)
-            for (uint32_t c = 0; c < 3; c++) {
-                double sum = 0.0;
-                uint32_t count = 0;
-                for (uint32_t v = y * step; v < std::min(picture.height, (y + 1) * step); v++)
-                    for (uint32_t u = x * step; u < std::min(picture.width, (x + 1) * step); u++, count++)
-                        sum += load(picture, u, v, grey ? 0 : c);
-                double mean = std::clamp(sum / count, 0.0, 1.0);
-                small.rgb[(static_cast<size_t>(y) * small.width + x) * 3 + c] =
-                    static_cast<uint8_t>(mean * 255.0 + 0.5);
-            }
-    return small;
+Thumbnail::Thumbnail(uint32_t picture_width, uint32_t picture_height)
+    : picture_width_(picture_width), picture_height_(picture_height),
+      step_(std::max(1u, (std::max(picture_width, picture_height) + kThumbnailSide - 1) / kThumbnailSide)) {
+    width = std::max(1u, picture_width / step_);
+    height = std::max(1u, picture_height / step_);
+    rgb.resize(static_cast<size_t>(width) * height * 3);
+    sums_.assign(static_cast<size_t>(width) * 3, 0.0);
 }
 
-void ContactSheet::add(const Picture &before, const Picture &after) {
-    before_.push_back(shrink(before));
-    after_.push_back(shrink(after));
+void Thumbnail::add(const lensprof_image &rows) {
+    bool grey = lensprof_layout_channels(rows.layout) == 1;
+    for (uint32_t y = 0; y < rows.height && row_ < height * step_; y++) {
+        for (uint32_t x = 0; x < width; x++)
+            for (uint32_t c = 0; c < 3; c++)
+                for (uint32_t u = x * step_; u < std::min(picture_width_, (x + 1) * step_); u++)
+                    sums_[x * size_t(3) + c] += load(rows, u, y, grey ? 0 : c);
+        row_++;
+        if (row_ % step_ == 0 || row_ == picture_height_) end_boxes();
+    }
+}
+
+void Thumbnail::end_boxes() {
+    uint32_t y = (row_ - 1) / step_, high = row_ - y * step_;
+    for (uint32_t x = 0; x < width; x++)
+        for (uint32_t c = 0; c < 3; c++) {
+            uint32_t count = high * (std::min(picture_width_, (x + 1) * step_) - x * step_);
+            double mean = std::clamp(sums_[x * size_t(3) + c] / count, 0.0, 1.0);
+            rgb[(static_cast<size_t>(y) * width + x) * 3 + c] = static_cast<uint8_t>(mean * 255.0 + 0.5);
+        }
+    std::fill(sums_.begin(), sums_.end(), 0.0);
+}
+
+void ContactSheet::reserve(size_t pictures) {
+    before_.resize(pictures);
+    after_.resize(pictures);
+}
+
+void ContactSheet::put(size_t picture, Thumbnail before, Thumbnail after) {
+    before_[picture] = std::move(before);
+    after_[picture] = std::move(after);
 }
 
 void ContactSheet::write(const std::string &path) const {

@@ -1,49 +1,13 @@
 #include "correction.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
 
-#include "interrupt.hpp"
 #include "picture.hpp"
-#include "project.hpp"
 
 namespace lensprof {
-namespace {
-
-Picture correct(Picture &source, const Correction &job, const CorrectionKind &kind) {
-    lensprof_apply_options options;
-    lensprof_apply_options_init(&options);
-    options.direction = kind.simulate ? LENSPROF_DIRECTION_SIMULATE : LENSPROF_DIRECTION_CORRECT;
-    options.output = kind.linear ? LENSPROF_ENCODING_LINEAR : LENSPROF_ENCODING_RESPONSE;
-    options.frame_width = source.frame_width;
-    options.frame_height = source.frame_height;
-    options.source_sample = source.sample;
-    options.source_layout = source.layout;
-    options.target_sample = kind.linear ? static_cast<uint32_t>(LENSPROF_SAMPLE_F32) : source.sample;
-    options.responses = job.model->responses;
-    options.vignettings = job.model->vignettings;
-    options.response = job.model->response;
-    options.vignetting = job.model->vignetting;
-    options.grid = &job.model->grid;
-    options.source = job.own;
-    options.target = job.wanted;
-    std::vector<uint64_t> memory(lensprof_plan_bytes(&options) / 8 + 1);
-    const lensprof_plan *plan = nullptr;
-    check(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan), job.source);
-
-    Picture result = source;
-    result.sample = options.target_sample;
-    result.row_bytes = static_cast<size_t>(result.width) * lensprof_layout_samples(result.layout)
-        * lensprof_sample_bytes(result.sample);
-    result.pixels.assign(result.row_bytes * result.height, 0);
-    lensprof_image from = source.view(), to = result.view();
-    check(lensprof_apply(plan, &from, &to, 0, 0), job.source);
-    return result;
-}
-
-}  // namespace
-
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures) {
     lensprof_exposure mean{};
     double logs[3] = {0, 0, 0}, share = 1.0 / static_cast<double>(exposures.size());
@@ -66,13 +30,13 @@ std::string one_name(const std::string &path) {
 
 }  // namespace
 
-void check_targets(const std::vector<Correction> &jobs, const std::vector<std::string> &inputs,
-                   const std::string &sheet) {
+void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet) {
     std::set<std::string> read, written;
     for (const std::string &file : inputs) read.insert(one_name(file));
     for (const Correction &job : jobs) read.insert(one_name(job.source));
-    for (const Correction &job : jobs) {
-        read_header(job.source);  /* an unreadable picture shows before anything is written */
+    for (Correction &job : jobs) {
+        PictureSize size = read_size(job.source);  /* an unreadable picture shows before anything is written */
+        job.pixels = uint64_t(size.width) * size.height;
         const std::string target = one_name(job.target);
         if (target == one_name(job.source) || is_same_file(job.source, job.target))
             throw Failure(ExitCode::usage,
@@ -95,27 +59,15 @@ void make_folder(const std::string &folder) {
     if (error) throw Failure(ExitCode::failed, folder + ": cannot be made: " + error.message());
 }
 
-Json write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
-                     Progress &progress, Streams &streams) {
-    Json written = Json::array();
-    for (size_t i = 0; i < jobs.size(); i++) {
-        stop_if_interrupted();
-        progress.update("correcting", static_cast<double>(i) / static_cast<double>(jobs.size()));
-        const Correction &job = jobs[i];
-        Picture before = read_picture(job.source);
-        check_finite(before, job.source);
-        Picture after = correct(before, job, kind);
-        WriteOptions write;
-        write.metadata_from = job.source;
-        if (!write_picture(job.target, after, write))
-            streams.err << "lensprof: warning: " << job.target
-                        << ": written without EXIF, which this kind of file cannot hold here\n";
-        if (sheet) sheet->add(before, after);
-        Json entry = {{"file", job.source}, {"output", job.target}};
-        if (job.profile_id) entry["profile"] = job.profile_id;
-        written.push_back(entry);
-    }
-    return written;
+void add_speed(const Corrected &corrected, Json &json) {
+    json["seconds"] = corrected.seconds;
+    json["megapixels_per_second"] =
+        corrected.megapixels > 0.0 ? Json(corrected.megapixels / std::max(corrected.seconds, 1e-6)) : Json();
+}
+
+void declare_threads(CLI::App &app, uint32_t &threads) {
+    app.add_option("--threads", threads, "threads that correct pictures; 0 = all cores (default)")
+        ->check(in_range(0, 1024));
 }
 
 }  // namespace lensprof

@@ -20,29 +20,48 @@ struct Correction {
     std::shared_ptr<const lensprof_profile> model;
     lensprof_exposure own, wanted; /* what the picture got, and what it shall look like */
     int64_t profile_id = 0;        /* 0 = the model is of no profile */
+    uint64_t pixels = 0;           /* of the source */
 };
 
 struct CorrectionKind {
-    bool simulate = false; /* put in what would be taken out */
-    bool linear = false;   /* irradiance as 32 bit float */
+    bool simulate = false;    /* put in what would be taken out */
+    bool linear = false;      /* irradiance as 32 bit float */
+    uint32_t threads = 0;     /* 0 = all cores */
+    uint32_t strip_rows = 0;  /* rows of a picture that are worked on at once; 0 = about strip_bytes of them */
 };
+
+constexpr size_t strip_bytes = size_t(1) << 20;
+
+/* What was written, and how fast. */
+struct Corrected {
+    Json pictures = Json::array(); /* file, output and, where one was used, profile */
+    double seconds = 0, megapixels = 0;
+};
+
+/* Adds `seconds` and `megapixels_per_second` (null when nothing was written) to a command's object. */
+void add_speed(const Corrected &corrected, Json &json);
+
+/* The option --threads. */
+void declare_threads(CLI::App &app, uint32_t &threads);
 
 /* Geometric mean of exposures and white balances: Goldman & Chen 2005, equation 15. */
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures);
 
 /* Failure for a picture that cannot be read (unreadable), and for an output or contact sheet (path or empty) that would
  * take the place of a picture that is corrected, of another of the `inputs` or of another output (usage): before anything
- * is written. */
-void check_targets(const std::vector<Correction> &jobs, const std::vector<std::string> &inputs,
-                   const std::string &sheet);
+ * is written. Sets the jobs' numbers of pixels. */
+void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet);
 
 /* The folder, made where there is none. */
 void make_folder(const std::string &folder);
 
-/* Corrects and writes all pictures; `sheet` (NULL = none) receives them before and after. Returns an array of what was
- * written: file, output and, where one was used, profile. */
-Json write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
-                     Progress &progress, Streams &streams);
+/* Corrects and writes all pictures; `sheet` (NULL = none) receives them before and after. Several pictures are worked on
+ * at once, one a thread, each in strips of rows; where there are at least twice as many threads as pictures, a picture is
+ * encoded on a thread of its own. Whatever the number of threads, what is written and said is as if it had been done one after
+ * another: the failure of the first picture that has one is thrown, those before it are written, it and those behind
+ * are not. */
+Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
+                          Progress &progress, Streams &streams);
 
 }  // namespace lensprof
 

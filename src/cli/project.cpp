@@ -42,7 +42,7 @@ SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
                       + std::to_string(p.frame_height) + " pixels, but " + project.path + " says "
                       + std::to_string(camera.width) + " x " + std::to_string(camera.height)
                       + "; use the pictures that the project was made with");
-    check_finite(p, file);
+    check_finite(result.picture.view(), 0, p.reduction, file);
     if (!project.pto) return result;
     std::vector<uint8_t> mask(static_cast<size_t>(p.width) * p.height);
     check(lensprof_pto_draw_mask(project.pto.get(), i, mask.data(), p.width, p.height,
@@ -58,18 +58,18 @@ int on_sampling(double done, void *progress) {
 
 }  // namespace
 
-void check_finite(const Picture &picture, const std::string &file) {
-    if (picture.sample != LENSPROF_SAMPLE_F32) return;
-    uint32_t samples = lensprof_layout_samples(picture.layout);
-    for (uint32_t y = 0; y < picture.height; y++)
-        for (uint32_t s = 0; s < picture.width * samples; s++) {
-            float value;
-            std::memcpy(&value, &picture.pixels[y * picture.row_bytes + s * sizeof value], sizeof value);
-            if (!std::isfinite(value))
-                throw Failure(ExitCode::unreadable, file + ": pixel " + std::to_string(s / samples * picture.reduction)
-                                                        + ", " + std::to_string(y * picture.reduction)
+void check_finite(const lensprof_image &rows, uint32_t first_row, uint32_t reduction, const std::string &file) {
+    if (rows.sample != LENSPROF_SAMPLE_F32) return;
+    uint32_t samples = lensprof_layout_samples(rows.layout);
+    for (uint32_t y = 0; y < rows.height; y++) {
+        const auto *row = reinterpret_cast<const float *>(static_cast<const uint8_t *>(rows.data)
+                                                          + static_cast<ptrdiff_t>(y) * rows.row_bytes);
+        for (uint32_t s = 0; s < rows.width * samples; s++)
+            if (!std::isfinite(row[s]))
+                throw Failure(ExitCode::unreadable, file + ": pixel " + std::to_string(s / samples * reduction) + ", "
+                                                        + std::to_string((first_row + y) * reduction)
                                                         + " is not a finite number; repair the picture");
-        }
+    }
 }
 
 Project read_project(const std::string &path, bool one_lens) {
