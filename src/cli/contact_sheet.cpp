@@ -1,7 +1,6 @@
 #include "contact_sheet.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace lensprof {
 namespace {
@@ -9,19 +8,20 @@ namespace {
 constexpr uint32_t kThumbnailSide = 320, kGap = 8, kPerRow = 6;
 constexpr uint8_t kBackground = 40;
 
-double load(const lensprof_image &rows, uint32_t x, uint32_t y, uint32_t s) {
-    uint32_t bytes = lensprof_sample_bytes(rows.sample), samples = lensprof_layout_samples(rows.layout);
-    const uint8_t *p = static_cast<const uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes
-        + (static_cast<size_t>(x) * samples + s) * bytes;
-    if (rows.sample == LENSPROF_SAMPLE_U8) return *p / 255.0;
-    if (rows.sample == LENSPROF_SAMPLE_U16) {
-        uint16_t value;
-        std::memcpy(&value, p, sizeof value);
-        return value / 65535.0;
+double full_scale(uint8_t) { return 255.0; }
+double full_scale(uint16_t) { return 65535.0; }
+double full_scale(float) { return 1.0; }
+
+/* Adds the samples of a row to the sums of the boxes, `step` wide, that they are in. */
+template <class Sample>
+void add_row(const Sample *row, uint32_t layout, uint32_t picture_width, uint32_t step, std::vector<double> &sums) {
+    uint32_t samples = lensprof_layout_samples(layout), next = lensprof_layout_channels(layout) == 1 ? 0 : 1;
+    for (size_t x = 0; x < sums.size() / 3; x++) {
+        double *sum = &sums[x * 3];
+        const Sample *end = row + std::min(picture_width, static_cast<uint32_t>(x + 1) * step) * size_t(samples);
+        for (const Sample *p = row + x * step * samples; p < end; p += samples)
+            for (uint32_t c = 0; c < 3; c++) sum[c] += p[c * next] / full_scale(Sample());
     }
-    float value;
-    std::memcpy(&value, p, sizeof value);
-    return value;
 }
 
 }  // namespace
@@ -36,12 +36,14 @@ Thumbnail::Thumbnail(uint32_t picture_width, uint32_t picture_height)
 }
 
 void Thumbnail::add(const lensprof_image &rows) {
-    bool grey = lensprof_layout_channels(rows.layout) == 1;
     for (uint32_t y = 0; y < rows.height && row_ < height * step_; y++) {
-        for (uint32_t x = 0; x < width; x++)
-            for (uint32_t c = 0; c < 3; c++)
-                for (uint32_t u = x * step_; u < std::min(picture_width_, (x + 1) * step_); u++)
-                    sums_[x * size_t(3) + c] += load(rows, u, y, grey ? 0 : c);
+        const auto *row = static_cast<const uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes;
+        if (rows.sample == LENSPROF_SAMPLE_U8)
+            add_row(row, rows.layout, picture_width_, step_, sums_);
+        else if (rows.sample == LENSPROF_SAMPLE_U16)
+            add_row(reinterpret_cast<const uint16_t *>(row), rows.layout, picture_width_, step_, sums_);
+        else
+            add_row(reinterpret_cast<const float *>(row), rows.layout, picture_width_, step_, sums_);
         row_++;
         if (row_ % step_ == 0 || row_ == picture_height_) end_boxes();
     }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <initializer_list>
 #include <iterator>
 #include <mutex>
@@ -14,7 +15,7 @@
 
 #include "codec.hpp"
 #include "error.hpp"
-#include "output_file.hpp"
+#include "picture_excerpt.hpp"
 
 namespace lensprof {
 
@@ -227,53 +228,37 @@ double read_distance(const Exiv2::ExifData &exif) {
 
 /* Writing. */
 
-std::vector<uint8_t> read_bytes(const std::string &path) {
-    const codec::File file = codec::open_for_reading(path);
-    std::vector<uint8_t> bytes;
-    size_t count = 1;
-    while (count > 0) {
-        const size_t start = bytes.size();
-        bytes.resize(start + (size_t(1) << 20));
-        count = std::fread(bytes.data() + start, 1, bytes.size() - start, file.get());
-        bytes.resize(start + count);
+/* Reads, changes and writes the metadata of a file in memory: Exiv2 does not notice a disk that is full. False when the
+ * excerpt was not enough. */
+bool edit_excerpt(const std::string &path, const codec::PictureExcerpt &excerpt,
+                  const std::function<void(Exiv2::Image &)> &change) {
+    ExivImage image;
+    try {
+        image = Exiv2::ImageFactory::open(excerpt.bytes().data(), static_cast<long>(excerpt.bytes().size()));
+        image->readMetadata();
+    } catch (const std::exception &error) {
+        fail_reading(path, error);
     }
-    return bytes;
+    Exiv2::BasicIo &io = image->io();
+    const Exiv2::byte *data = nullptr;
+    try {
+        change(*image);
+        image->writeMetadata();
+        io.open();
+        data = io.mmap();
+    } catch (const std::exception &error) {
+        fail_writing(path, error);
+    }
+    return excerpt.replace(data, static_cast<size_t>(io.size()));
 }
 
-/* A picture file in memory whose metadata are changed: Exiv2 does not notice a disk that is full. */
-class Edit {
-public:
-    explicit Edit(const std::string &path) : path_(path), bytes_(read_bytes(path)) {
-        prepare_exiv2();
-        try {
-            image_ = Exiv2::ImageFactory::open(bytes_.data(), static_cast<long>(bytes_.size()));
-            image_->readMetadata();
-        } catch (const std::exception &error) {
-            fail_reading(path_, error);
-        }
-    }
-
-    Exiv2::Image &image() { return *image_; }
-    bool is_tiff() const { return image_->mimeType() == "image/tiff"; }
-
-    void save() {
-        Exiv2::BasicIo &io = image_->io();
-        const void *data = nullptr;
-        try {
-            image_->writeMetadata();
-            io.open();
-            data = io.mmap();
-        } catch (const std::exception &error) {
-            fail_writing(path_, error);
-        }
-        write_file(path_, data, static_cast<size_t>(io.size()));
-    }
-
-private:
-    std::string path_;
-    std::vector<uint8_t> bytes_;
-    ExivImage image_;
-};
+/* Without the pixels where that can be, so that memory does not grow with them. */
+void edit_metadata(const std::string &path, const std::function<void(Exiv2::Image &)> &change) {
+    prepare_exiv2();
+    const auto excerpt = codec::excerpt_of(path);
+    if (!excerpt || !edit_excerpt(path, *excerpt, change))
+        edit_excerpt(path, *codec::whole_file(path), change);
+}
 
 /* Tags of the main directory that say how pixels are stored, where other things are in the file, or hold what is kept
  * by other means (ICC, XMP, IPTC). */
@@ -417,10 +402,9 @@ bool copy_metadata(const std::string &source, const std::string &target) {
     if (is_big_tiff(source) || is_big_tiff(target))
         return false;
     const ExivImage from = open_image(source);
-    Edit edit(target);
-    Exiv2::Image &to = edit.image();
-    try {
-        Exiv2::ExifData exif = merge_exif(from->exifData(), to.exifData(), edit.is_tiff());
+    edit_metadata(target, [&](Exiv2::Image &to) {
+        const bool tiff = to.mimeType() == "image/tiff";
+        Exiv2::ExifData exif = merge_exif(from->exifData(), to.exifData(), tiff);
         Exiv2::XmpData xmp = copy_xmp(from->xmpData());
         set_sizes(exif, xmp, static_cast<uint32_t>(to.pixelWidth()), static_cast<uint32_t>(to.pixelHeight()));
         const auto mime_type = xmp.findKey(Exiv2::XmpKey("Xmp.dc.format"));
@@ -429,24 +413,20 @@ bool copy_metadata(const std::string &source, const std::string &target) {
         to.setExifData(exif);
         to.setXmpData(xmp);
         to.setIptcData(from->iptcData());
-        if (!edit.is_tiff()) /* maker notes that Exiv2 does not know are copied byte by byte */
+        if (!tiff) /* maker notes that Exiv2 does not know are copied byte by byte */
             to.setByteOrder(from->byteOrder());
         if (!from->comment().empty() && (to.checkMode(Exiv2::mdComment) & Exiv2::amWrite))
             to.setComment(from->comment());
-    } catch (const std::exception &error) {
-        fail_writing(target, error);
-    }
-    edit.save();
+    });
     return true;
 }
 
 bool write_metadata(const std::string &path, const PictureMetadata &metadata) {
     if (is_big_tiff(path))
         return false;
-    Edit edit(path);
-    const lensprof_profile_key &key = metadata.key;
-    Exiv2::ExifData &exif = edit.image().exifData();
-    try {
+    edit_metadata(path, [&](Exiv2::Image &image) {
+        const lensprof_profile_key &key = metadata.key;
+        Exiv2::ExifData &exif = image.exifData();
         set_text(exif, "Exif.Image.Make", key.camera_maker);
         set_text(exif, "Exif.Image.Model", key.camera_model);
         set_text(exif, "Exif.Photo.LensModel", key.lens);
@@ -458,10 +438,7 @@ bool write_metadata(const std::string &path, const PictureMetadata &metadata) {
         set_rational(exif, "Exif.Photo.ExposureTime", metadata.exposure_time_s.value_or(LENSPROF_UNKNOWN));
         if (metadata.iso && *metadata.iso >= 0.5) /* 16 bits; 65535 stands for what is larger */
             exif["Exif.Photo.ISOSpeedRatings"] = static_cast<uint16_t>(std::lround(std::fmin(*metadata.iso, 65535)));
-    } catch (const std::exception &error) {
-        fail_writing(path, error);
-    }
-    edit.save();
+    });
     return true;
 }
 

@@ -85,9 +85,9 @@ struct WriteOptions {
 constexpr uint32_t picture_max_side = 1u << 20;
 constexpr uint64_t picture_max_bytes = uint64_t(8) << 30;
 
-/* Most bytes of coefficients that are held in memory while a JPEG is written: of 16 million pixels, with half of the
- * chroma twice as many. */
-constexpr uint64_t jpeg_memory_bytes = uint64_t(96) << 20;
+/* Most bytes of coefficients that are held in memory while a JPEG is written. Those of larger pictures pass through a file,
+ * which costs no more time where the system has memory to spare. */
+constexpr uint64_t jpeg_memory_bytes = uint64_t(16) << 20;
 
 /* Reads PNG (all kinds; palette, 1, 2 and 4 bits and transparent colours are expanded), TIFF (8 and 16 bit unsigned,
  * 32 bit float; grey or RGB, at most one extra sample; first page) or JPEG (grey, YCbCr, RGB), by content whatever the

@@ -1,0 +1,111 @@
+/* Memory of the program while it corrects pictures: its peak as a process. A child begins with the peak of its parent, so that
+ * this process must stay small: pictures are made by children. */
+#include "batch_runs.hpp"
+
+#include <fcntl.h>
+
+using namespace batch_runs;
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool keeps_freed_memory = true;
+#else
+constexpr bool keeps_freed_memory = false;
+#endif
+
+/* Peak memory of the program as a process, bytes. */
+long peak_of(const Words &words) {
+    const pid_t child = fork();
+    if (child == 0) {
+        std::vector<char *> arguments = {const_cast<char *>(LENSPROF_PROGRAM)};
+        for (const std::string &word : words)
+            arguments.push_back(const_cast<char *>(word.c_str()));
+        arguments.push_back(nullptr);
+        dup2(open("/dev/null", O_WRONLY), 1);
+        execv(LENSPROF_PROGRAM, arguments.data());
+        _exit(127);
+    }
+    int status = 0;
+    rusage used = {};
+    assert_int_equal(wait4(child, &status, 0, &used), child);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), done);
+    return used.ru_maxrss * 1024;
+}
+
+/* Rows that are alike compress well, which keeps the test short. */
+Picture make_tall(uint32_t height) {
+    Picture picture = make_smooth(600, 16, LENSPROF_LAYOUT_RGB);
+    picture.pixels.resize(picture.row_bytes * height);
+    for (size_t i = picture.row_bytes * 16; i < picture.pixels.size(); ++i)
+        picture.pixels[i] = picture.pixels[i - picture.row_bytes * 16];
+    picture.height = picture.frame_height = height;
+    return picture;
+}
+
+/* A file that is `height` rows high: its own process, so that this one's memory, which a child begins with, stays small. */
+std::string make_tall_file(const std::string &kind, uint32_t height) {
+    const std::string path = work(kind + std::to_string(height) + "." + kind.substr(kind.size() - 3));
+    const pid_t child = fork();
+    if (child == 0) {
+        Picture picture = make_tall(height);
+        picture.traits.compression = kind == "stored.tif" ? COMPRESSION_NONE : COMPRESSION_LZW;
+        TiffKind tiles{"w", COMPRESSION_LZW};
+        tiles.tile = 128;
+        if (kind == "tiles.tif")
+            write_tiff_file(path, picture, tiles);
+        else
+            write_picture(path, picture);
+        _exit(0);
+    }
+    int status = 1;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    return path;
+}
+
+/* The tall pictures have 12 MB more of pixels, and as a JPEG 25 MB more of coefficients. */
+void test_memory_does_not_grow_with_height(void **) {
+    if (keeps_freed_memory)
+        skip();
+    const uint32_t low = 1000, high = 8000;
+    database();
+    for (const std::string kind : {"rows.png", "strips.tif", "stored.tif", "tiles.tif", "baseline.jpg"}) {
+        const std::string small = make_tall_file(kind, low), tall = make_tall_file(kind, high);
+        const long few = peak_of(corrected_into("out", {"--threads", "1", small})),
+                   many = peak_of(corrected_into("out", {"--threads", "1", "--contact-sheet", work("sheet.png"), tall}));
+        if (many - few > 6 << 20)
+            fail_msg("%s: %ld KiB for %u rows, %ld KiB for %u", kind.c_str(), few / 1024, low, many / 1024, high);
+        fs::remove(small);
+        fs::remove(tall);
+        fs::remove_all(work("out"));
+    }
+}
+
+/* A picture on every thread. */
+void test_memory_does_not_grow_with_pictures(void **) {
+    if (keeps_freed_memory)
+        skip();
+    database();
+    const std::string file = make_tall_file("strips.tif", 1500);
+    Words files;
+    for (int i = 0; i < 16; ++i) {
+        files.push_back(work(std::to_string(i) + ".tif"));
+        fs::create_hard_link(file, files.back());
+    }
+    const long few = peak_of(corrected_into("out", {"--threads", "2", files[0], files[1]})),
+               many = peak_of(corrected_into("out", Words{"--threads", "2"} + files));
+    if (many - few > 6 << 20)
+        fail_msg("%ld KiB for two pictures, %ld KiB for 16", few / 1024, many / 1024);
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_memory_does_not_grow_with_height),
+        CLI_TEST(test_memory_does_not_grow_with_pictures),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
