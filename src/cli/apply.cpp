@@ -164,6 +164,9 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
     Options o;
     CLI::App app("Corrects pictures: undoes falloff, exposure and white balance, and encodes again.", "lensprof apply");
     declare(app, o);
+    app.footer("Pictures keep format, depth, metadata and colour profile. Several are corrected at once, in strips of rows;\n"
+               "interlaced PNG and progressive JPEG alone are held in memory as a whole. When one cannot be corrected,\n"
+               "those before it are written, it and those behind it are not.");
     if (!parse(app, arguments, streams)) return 0;
     lensprof_exposure mean, reference;
     lensprof_exposure_init(&mean);

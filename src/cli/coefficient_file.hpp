@@ -12,9 +12,9 @@ namespace lensprof {
 
 namespace codec {
 
-/* The best Huffman tables are known when all blocks are, so that libjpeg keeps the coefficients of the whole picture, in
- * "virtual arrays" which are all in memory as libjpeg is commonly built. Here those of a picture that has more than
- * jpeg_memory_bytes of them are in a file without a name, but for a few rows. */
+/* The best Huffman tables are known when all blocks are, so that libjpeg keeps the coefficients of the whole picture,
+ * in "virtual arrays" which are all in memory as libjpeg is commonly built. Here those of a picture that has more
+ * than jpeg_memory_bytes of them are in a file without a name, but for a few rows. */
 class CoefficientFile {
 public:
     /* `beside`: a path in the folder that the file is made in. */
@@ -23,7 +23,8 @@ public:
     CoefficientFile(const CoefficientFile &) = delete;
     CoefficientFile &operator=(const CoefficientFile &) = delete;
 
-    /* Before jpeg_start_compress, all else being set. `info` must not outlive this object's use; errors leave by its error_exit. */
+    /* Before jpeg_start_compress, all else being set. `info` must not outlive this object's use; errors leave by its
+     * error_exit. */
     void attach(jpeg_compress_struct &info);
 
 private:

@@ -47,19 +47,19 @@ void declare_threads(CLI::App &app, uint32_t &threads);
 /* Geometric mean of exposures and white balances: Goldman & Chen 2005, equation 15. */
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures);
 
-/* Failure for a picture that cannot be read (unreadable), and for an output or contact sheet (path or empty) that would
- * take the place of a picture that is corrected, of another of the `inputs` or of another output (usage): before anything
- * is written. Sets the jobs' numbers of pixels. */
+/* Failure for a picture that cannot be read (unreadable), and for an output or contact sheet (path or empty) that
+ * would take the place of a picture that is corrected, of another of the `inputs` or of another output (usage):
+ * before anything is written. Sets the jobs' numbers of pixels. */
 void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet);
 
 /* The folder, made where there is none. */
 void make_folder(const std::string &folder);
 
-/* Corrects and writes all pictures; `sheet` (NULL = none) receives them before and after. Several pictures are worked on
- * at once, one a thread, each in strips of rows; where there are at least twice as many threads as pictures, a picture is
- * encoded on a thread of its own. Whatever the number of threads, what is written and said is as if it had been done one after
- * another: the failure of the first picture that has one is thrown, those before it are written, it and those behind
- * are not. */
+/* Corrects and writes all pictures; `sheet` (NULL = none) receives them before and after. Several pictures are worked
+ * on at once, one a thread, each in strips of rows; where there are at least twice as many threads as pictures, a
+ * picture is encoded on a thread of its own. Whatever the number of threads, what is written and said is as if it had
+ * been done one after another: the failure of the first picture that has one is thrown, those before it are written,
+ * it and those behind are not. */
 Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
                           Progress &progress, Streams &streams);
 

@@ -56,8 +56,8 @@ private:
 /* Writes the file `path` with these bytes, complete or not at all. */
 void write_file(const std::string &path, const void *data, size_t bytes);
 
-/* Opens a file for reading and writing that has no name, in the folder of `beside`: it is gone when it is closed. -1 and
- * errno where there is none to be had. */
+/* Opens a file for reading and writing that has no name, in the folder of `beside`: it is gone when it is closed. -1
+ * and errno where there is none to be had. */
 int open_nameless(const std::string &beside);
 
 /* Failure, with this code and about `item`, where `folder` neither is one that can be written to nor can be made: to be

@@ -185,8 +185,8 @@ bool write_picture(const std::string &path, const Picture &picture, const WriteO
     format_of_name(path);
     check_held(path, picture);
     PictureWriter writer(path, picture, options);
-    writer.write({const_cast<uint8_t *>(picture.pixels.data()), static_cast<ptrdiff_t>(picture.row_bytes), picture.width,
-                  picture.height, picture.sample, picture.layout});
+    writer.write({const_cast<uint8_t *>(picture.pixels.data()), static_cast<ptrdiff_t>(picture.row_bytes),
+                  picture.width, picture.height, picture.sample, picture.layout});
     const bool with_metadata = writer.finish();
     writer.commit();
     return with_metadata;

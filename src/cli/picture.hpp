@@ -85,8 +85,8 @@ struct WriteOptions {
 constexpr uint32_t picture_max_side = 1u << 20;
 constexpr uint64_t picture_max_bytes = uint64_t(8) << 30;
 
-/* Most bytes of coefficients that are held in memory while a JPEG is written. Those of larger pictures pass through a file,
- * which costs no more time where the system has memory to spare. */
+/* Most bytes of coefficients that are held in memory while a JPEG is written. Those of larger pictures pass through a
+ * file, which costs no more time where the system has memory to spare. */
 constexpr uint64_t jpeg_memory_bytes = uint64_t(16) << 20;
 
 /* Reads PNG (all kinds; palette, 1, 2 and 4 bits and transparent colours are expanded), TIFF (8 and 16 bit unsigned,
@@ -109,9 +109,9 @@ class RowSource;
 class RowSink;
 }  // namespace codec
 
-/* A picture read from the top in strips of whole rows, full size. Held in memory is what the format's smallest unit asks
- * for, whatever the picture's height: a row of PNG, of JPEG those of a block, a strip of TIFF (compressed) or a row of its
- * tiles. An interlaced PNG is decoded as a whole, and of a progressive JPEG all coefficients are. */
+/* A picture read from the top in strips of whole rows, full size. Held in memory is what the format's smallest unit
+ * asks for, whatever the picture's height: a row of PNG, of JPEG those of a block, a strip of TIFF (compressed) or a
+ * row of its tiles. An interlaced PNG is decoded as a whole, and of a progressive JPEG all coefficients are. */
 class PictureReader {
 public:
     explicit PictureReader(const std::string &path);
@@ -119,8 +119,8 @@ public:
 
     const Picture &header() const; /* without pixels */
 
-    /* The next rows.height rows into `rows`, of the header's width, sample and layout. With the last one the rest of the file is
-     * checked. */
+    /* The next rows.height rows into `rows`, of the header's width, sample and layout. With the last one the rest of
+     * the file is checked. */
     void read(const lensprof_image &rows);
 
 private:
@@ -138,8 +138,9 @@ FileFormat format_of_name(const std::string &path);
  * False when the picture is complete but without the metadata, because one of the files is a BigTIFF. */
 bool write_picture(const std::string &path, const Picture &picture, const WriteOptions &options = {});
 
-/* The same in strips of whole rows from the top. Nothing is at `path` before commit(). A JPEG's coefficients, of which the best
- * Huffman tables need all, are in memory up to jpeg_memory_bytes, and beyond in a file without a name in the same folder. */
+/* The same in strips of whole rows from the top. Nothing is at `path` before commit(). A JPEG's coefficients, of
+ * which the best Huffman tables need all, are in memory up to jpeg_memory_bytes, and beyond in a file without a name
+ * in the same folder. */
 class PictureWriter {
 public:
     /* Of `header` sizes, sample, layout, profile and traits count, not the pixels. */

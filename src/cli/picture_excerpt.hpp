@@ -32,17 +32,18 @@ private:
     std::vector<uint8_t> buffer_;
 };
 
-/* Exiv2 holds the files that it changes in memory, several times. It gets a small file instead that has everything but the
- * coded pixels, which are then copied from the old file: the result is to the byte what Exiv2 makes of the whole. */
+/* Exiv2 holds the files that it changes in memory, several times. It gets a small file instead that has everything
+ * but the coded pixels, which are then copied from the old file: the result is to the byte what Exiv2 makes of the
+ * whole. */
 class PictureExcerpt {
 public:
     virtual ~PictureExcerpt() = default;
 
     const std::vector<uint8_t> &bytes() const { return bytes_; }
 
-    /* Replaces the file, complete or not at all, by one of the structure and metadata in `edited`, which is what became of
-     * bytes(). False, the file being as it was, when it is not clear where in it the pixels belong: do the same with the
-     * whole file. Throws Failure. */
+    /* Replaces the file, complete or not at all, by one of the structure and metadata in `edited`, which is what
+     * became of bytes(). False, the file being as it was, when it is not clear where in it the pixels belong: do the
+     * same with the whole file. Throws Failure. */
     virtual bool replace(const uint8_t *edited, size_t size) const = 0;
 
 protected:

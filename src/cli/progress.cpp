@@ -89,8 +89,8 @@ void Throughput::show() {
 
 std::string Throughput::summary() const {
     double s = std::max(seconds(), 1e-6), million = megapixels();
-    return format("%u pictures, %.1f megapixels in %.1f s: %.1f pictures/s, %.1f megapixels/s", pictures_done_, million, s,
-                  pictures_done_ / s, million / s);
+    return format("%u pictures, %.1f megapixels in %.1f s: %.1f pictures/s, %.1f megapixels/s", pictures_done_, million,
+                  s, pictures_done_ / s, million / s);
 }
 
 }  // namespace lensprof

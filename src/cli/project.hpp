@@ -38,7 +38,8 @@ struct SamplePicture {
  * contradict the project, unreadable files and float samples that are not finite are a Failure that names the file. */
 std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress);
 
-/* Failure (unreadable) that names the first sample that is not a finite number, in rows of a picture from first_row on. */
+/* Failure (unreadable) that names the first sample that is not a finite number, in rows of a picture from first_row
+ * on. */
 void check_finite(const lensprof_image &rows, uint32_t first_row, uint32_t reduction, const std::string &file);
 
 /* 3, or 1 when every picture is grey. */

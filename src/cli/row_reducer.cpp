@@ -11,8 +11,8 @@ namespace codec {
 
 namespace {
 
-/* Of every block of 2 x 2 pixels in two rows, of `row_samples` each, the mean of the middle two; put at the front of the
- * upper row. Not finite values stay so. */
+/* Of every block of 2 x 2 pixels in two rows, of `row_samples` each, the mean of the middle two; put at the front of
+ * the upper row. Not finite values stay so. */
 template <class Sample, class Sum> void reduce_blocks(uint8_t *rows, size_t row_samples, size_t pixel, size_t count) {
     Sample *to = reinterpret_cast<Sample *>(rows);
     const Sample *upper = to, *lower = to + row_samples;
@@ -77,8 +77,9 @@ void RowReducer::halve_rows() {
         reduce_blocks<float, double>(scratch_.data(), row_samples, pixel, count);
 }
 
-/* Multiples of the plane's generalised golden ratio (Roberts' R2 sequence) and of the golden ratio, as fractions of 2^32,
- * choose the block, so that the blocks of any few neighbouring pixels lie evenly about the middles of their squares. */
+/* Multiples of the plane's generalised golden ratio (Roberts' R2 sequence) and of the golden ratio, as fractions of
+ * 2^32, choose the block, so that the blocks of any few neighbouring pixels lie evenly about the middles of their
+ * squares. */
 void RowReducer::choose_blocks() {
     for (auto &picks : picks_)
         picks.clear();

@@ -13,8 +13,8 @@ namespace lensprof {
 namespace codec {
 
 /* Takes a picture row by row from the top and keeps it in picture.pixels, reduced as ReadOptions says. The rows may
- * already be halved in both directions (`done` = 2). Memory grows with the rows, so that a damaged header does not claim
- * it. */
+ * already be halved in both directions (`done` = 2). Memory grows with the rows, so that a damaged header does not
+ * claim it. */
 class RowReducer {
 public:
     RowReducer(Picture &picture, uint32_t source_width, uint32_t done = 1);

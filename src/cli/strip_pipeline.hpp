@@ -12,8 +12,8 @@
 
 namespace lensprof {
 
-/* Items that go round between two threads: empty to the maker, full to the taker, in order. Neither waits for ever for the
- * other: who ends says so. */
+/* Items that go round between two threads: empty to the maker, full to the taker, in order. Neither waits for ever
+ * for the other: who ends says so. */
 template <class Item> class StripRing {
 public:
     explicit StripRing(size_t items) : items_(items) {}
@@ -53,8 +53,8 @@ private:
     std::condition_variable changed_;
 };
 
-/* Calls make(item), on another thread if `split`, until it returns false, and take(item) for every item it made, in order.
- * Throws what the first of the two to fail, in the order of the items, has thrown. */
+/* Calls make(item), on another thread if `split`, until it returns false, and take(item) for every item it made, in
+ * order. Throws what the first of the two to fail, in the order of the items, has thrown. */
 template <class Item, class Make, class Take> void make_and_take(bool split, const Make &make, const Take &take) {
     StripRing<Item> ring(split ? 3 : 1);
     std::exception_ptr failure;

@@ -1,4 +1,5 @@
-/* Many pictures corrected at once, each in strips: the same bytes whatever the threads and strips, what a failure leaves. */
+/* Many pictures corrected at once, each in strips: the same bytes whatever the threads and strips, what a failure
+ * leaves. */
 #include "batch_runs.hpp"
 
 #include "cli/correction.hpp"
@@ -200,7 +201,8 @@ void test_bad_picture_among_good_ones(void **) {
             const Outcome outcome = run_words(corrected_into("out", Words{"--threads", threads} + files));
             assert_int_equal(outcome.code, unreadable);
             assert_true(contains(outcome.err, files[5]));
-            assert_true(contains(outcome.err, number ? "pixel 199, 149 is not a finite number" : "truncated or damaged"));
+            const char *reason = number ? "pixel 199, 149 is not a finite number" : "truncated or damaged";
+            assert_true(contains(outcome.err, reason));
             assert_string_equal(outcome.out.c_str(), "");
             const auto left = contents(work("out"));
             assert_int_equal(left.size(), 5);
@@ -266,7 +268,8 @@ void test_bad_thread_counts(void **) {
     write_picture(work("a.png"), make_noise(30, 20, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB));
     for (const char *word : {"-1", "1025", "many", "1.5", "nan", ""}) {
         assert_refused(usage, corrected_into("out", {"--threads", word, work("a.png")}), {"--threads"});
-        assert_refused(usage, {"align", "--threads", word, "-o", work("out"), work("a.png"), work("a.png")}, {"--threads"});
+        assert_refused(usage, {"align", "--threads", word, "-o", work("out"), work("a.png"), work("a.png")},
+                       {"--threads"});
     }
 }
 

@@ -1,5 +1,5 @@
-/* Memory of the program while it corrects pictures: its peak as a process. A child begins with the peak of its parent, so that
- * this process must stay small: pictures are made by children. */
+/* Memory of the program while it corrects pictures: its peak as a process. A child begins with the peak of its
+ * parent, so that this process must stay small: pictures are made by children. */
 #include "batch_runs.hpp"
 
 #include <fcntl.h>
@@ -44,7 +44,8 @@ Picture make_tall(uint32_t height) {
     return picture;
 }
 
-/* A file that is `height` rows high: its own process, so that this one's memory, which a child begins with, stays small. */
+/* A file that is `height` rows high: its own process, so that this one's memory, which a child begins with, stays
+ * small. */
 std::string make_tall_file(const std::string &kind, uint32_t height) {
     const std::string path = work(kind + std::to_string(height) + "." + kind.substr(kind.size() - 3));
     const pid_t child = fork();
@@ -73,8 +74,9 @@ void test_memory_does_not_grow_with_height(void **) {
     database();
     for (const std::string kind : {"rows.png", "strips.tif", "stored.tif", "tiles.tif", "baseline.jpg"}) {
         const std::string small = make_tall_file(kind, low), tall = make_tall_file(kind, high);
-        const long few = peak_of(corrected_into("out", {"--threads", "1", small})),
-                   many = peak_of(corrected_into("out", {"--threads", "1", "--contact-sheet", work("sheet.png"), tall}));
+        const Words words = {"--threads", "1", "--contact-sheet", work("sheet.png")};
+        const long few = peak_of(corrected_into("out", words + Words{small})),
+                   many = peak_of(corrected_into("out", words + Words{tall}));
         if (many - few > 6 << 20)
             fail_msg("%s: %ld KiB for %u rows, %ld KiB for %u", kind.c_str(), few / 1024, low, many / 1024, high);
         fs::remove(small);

@@ -241,10 +241,11 @@ void test_interrupted_with_pictures(void **) {
     }
 }
 
-/* What is there is complete. */
+/* What is there is complete, and has its name. */
 void assert_complete_pictures(const std::string &place, size_t fewer_than) {
     size_t count = 0;
     for (const fs::directory_entry &entry : fs::directory_iterator(place)) {
+        assert_false(entry.path().filename().string()[0] == '.');
         assert_int_equal(read_picture(entry.path().string()).height, 400);
         ++count;
     }
@@ -260,9 +261,32 @@ void test_interrupted_apply(void **) {
         files.push_back(work("many/" + std::to_string(i) + ".png"));
         fs::copy(work("one/img000.png"), files.back());
     }
-    interrupt_at("correcting",
-                 Words{"apply", "--profile", "1", "--db", work("p.db"), "--progress", "-o", work("out")} + files);
-    assert_complete_pictures(work("out"), 60);
+    for (const char *threads : {"1", "2", "5"}) {
+        fs::remove_all(work("out"));
+        const Words words = {"apply", "--profile", "1", "--db", work("p.db"), "--progress", "-o", work("out")};
+        const double seconds = interrupt_at("correcting", words + Words{"--threads", threads} + files);
+        assert_complete_pictures(work("out"), 60);
+        assert_true(seconds < 2);
+    }
+}
+
+/* In the middle of a picture, on one thread and with one more that encodes. */
+void test_interrupted_in_a_picture(void **) {
+    must_exit(done, build_quick({"--db", work("p.db")}));
+    for (const char *name : {"a.png", "a.tif", "a.jpg"}) {
+        write_picture(work(name), make_noise(3000, 2000, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB));
+        for (const char *threads : {"1", "2"}) {
+            const Disk before = disk();
+            const Words words = {"apply", "--profile", "1", "--db", work("p.db"), "--progress", "-o", work("out")};
+            const double seconds = interrupt_at("correcting 1", words + Words{"--threads", threads, work(name)});
+            fs::remove(work("out"));
+            const std::string changes = difference(before, disk());
+            if (!changes.empty())
+                fail_msg("after the interrupt:%s", changes.c_str());
+            assert_true(seconds < 2);
+        }
+        fs::remove(work(name));
+    }
 }
 
 /* Says nothing without a terminal: the first picture tells that it is at work. */
@@ -332,6 +356,7 @@ int main() {
         CLI_TEST(test_interrupted_build),
         CLI_TEST(test_interrupted_with_pictures),
         CLI_TEST(test_interrupted_apply),
+        CLI_TEST(test_interrupted_in_a_picture),
         CLI_TEST(test_interrupted_simulate),
         CLI_TEST(test_full_standard_output),
         CLI_TEST(test_file_size_limit),
