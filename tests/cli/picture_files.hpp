@@ -240,7 +240,7 @@ inline void write_png_file(const std::string &path, const PngKind &kind, Bytes &
 
 struct JpegKind {
     int quality = 90, step_x = 2, step_y = 2;
-    bool progressive = false, cmyk = false;
+    bool progressive = false, cmyk = false, best_tables = false;
 };
 
 inline void write_jpeg_file(const std::string &path, const Picture &picture, const JpegKind &kind) {
@@ -258,6 +258,7 @@ inline void write_jpeg_file(const std::string &path, const Picture &picture, con
     jpeg_set_quality(&info, kind.quality, TRUE);
     info.comp_info[0].h_samp_factor = info.input_components == 1 ? 1 : kind.step_x;
     info.comp_info[0].v_samp_factor = info.input_components == 1 ? 1 : kind.step_y;
+    info.optimize_coding = kind.best_tables;
     if (kind.progressive)
         jpeg_simple_progression(&info);
     jpeg_start_compress(&info, TRUE);

@@ -180,6 +180,26 @@ void test_jpeg_keeps_coding(void **) {
     assert_int_equal(read_picture(in_folder("b.jpg")).traits.quantisation[0][0], 1);
 }
 
+/* More coefficients than are held in memory: the file is what libjpeg makes with all of them in memory. */
+void test_large_jpeg(void **) {
+    const Picture noise = make_noise(1400, 1301, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB),
+                  smooth = make_smooth(1404, 2000, LENSPROF_LAYOUT_RGB),
+                  grey = make_smooth(4001, 2100, LENSPROF_LAYOUT_GREY);
+    for (const bool progressive : {false, true})
+        for (const int step : {1, 2})
+            for (const Picture *kind : {&noise, &smooth, &grey}) {
+                Picture picture = *kind;
+                const uint64_t samples = uint64_t(picture.width) * picture.height;
+                picture.traits.chroma_step_x = picture.traits.chroma_step_y = step;
+                picture.traits.progressive = progressive;
+                write_jpeg_file(in_folder("b.jpg"), picture, {95, step, step, progressive, false, true});
+                write_picture(in_folder("a.jpg"), picture);
+                assert_true(load(in_folder("a.jpg")) == load(in_folder("b.jpg")));
+                if (step == 1 && kind != &noise) /* the test is about such pictures */
+                    assert_true(samples * 2 * lensprof_layout_channels(picture.layout) > jpeg_memory_bytes);
+            }
+}
+
 /* Tests: kinds of files. */
 
 /* Bits from the highest down, as PNG packs them. */
@@ -451,7 +471,7 @@ int main() {
         cmocka_unit_test(test_reduced_lossless),      cmocka_unit_test(test_reduced_jpeg),
         cmocka_unit_test(test_reduced_jpeg_kinds),    cmocka_unit_test(test_reduced_is_not_shifted),
         cmocka_unit_test(test_reduced_keeps_wrong_pixels_apart),
-        cmocka_unit_test(test_size),
+        cmocka_unit_test(test_large_jpeg),            cmocka_unit_test(test_size),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

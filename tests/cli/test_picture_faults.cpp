@@ -360,6 +360,11 @@ void test_full_disk(void **) {
         assert_false(fs::exists(in_folder(name)));
         fs::remove(in_folder("whole" + std::string(name)));
     }
+    /* The coefficients of a large JPEG, before anything of it is in the file itself. */
+    const Picture large = make_smooth(1404, 2000, LENSPROF_LAYOUT_RGB);
+    for (rlim_t limit : {rlim_t(0), rlim_t(1) << 20, rlim_t(16) << 20})
+        assert_int_equal(write_on_full_disk("a.jpg", large, options, limit), 0);
+    assert_false(fs::exists(in_folder("a.jpg")));
     assert_int_equal(files_in_folder(), 1);
 }
 
