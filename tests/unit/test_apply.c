@@ -309,8 +309,16 @@ static void test_plan_refuses(void **state)
     } while (0)
     REFUSED(f.options.struct_size = 4, LENSPROF_ERROR_STRUCT_SIZE);
     REFUSED(f.options.direction = 2, LENSPROF_ERROR_ARGUMENT);
-    REFUSED(f.options.source_sample = 3, LENSPROF_ERROR_ARGUMENT);
-    REFUSED(f.options.source_layout = 6, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.source_sample = 4, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.target_sample = 4, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.source_layout = 11, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.strength = 1.5, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.strength = NAN, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.gain_cap = 0.5, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.gain_cap = NAN, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.gain_cap = INFINITY, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.dither = 2, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.reserved = 1, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.saturated = 2, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.responses = 2, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.response = NULL, LENSPROF_ERROR_ARGUMENT);

@@ -1,0 +1,103 @@
+/* Eight lanes: AVX2. */
+#ifndef LENSPROF_CORE_LANES_H
+#define LENSPROF_CORE_LANES_H
+
+#include <immintrin.h>
+#include <stdint.h>
+#include <string.h>
+
+#define LANES 8
+#define STRIP 256
+
+typedef __m256 lane_f;
+typedef __m256i lane_i;
+typedef __m256 lane_b;
+
+static inline lane_f f_set(float v) { return _mm256_set1_ps(v); }
+static inline lane_f f_load(const float *p) { return _mm256_loadu_ps(p); }
+static inline void f_store(float *p, lane_f v) { _mm256_storeu_ps(p, v); }
+static inline lane_f f_add(lane_f a, lane_f b) { return _mm256_add_ps(a, b); }
+static inline lane_f f_sub(lane_f a, lane_f b) { return _mm256_sub_ps(a, b); }
+static inline lane_f f_mul(lane_f a, lane_f b) { return _mm256_mul_ps(a, b); }
+static inline lane_f f_div(lane_f a, lane_f b) { return _mm256_div_ps(a, b); }
+static inline lane_f f_max(lane_f a, lane_f b) { return _mm256_max_ps(a, b); }
+static inline lane_f f_min(lane_f a, lane_f b) { return _mm256_min_ps(a, b); }
+static inline lane_b f_less(lane_f a, lane_f b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
+static inline lane_b f_is_number(lane_f a) { return _mm256_cmp_ps(a, a, _CMP_EQ_OQ); }
+static inline lane_f f_pick(lane_b is, lane_f yes, lane_f no) { return _mm256_blendv_ps(no, yes, is); }
+static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no)
+{
+    return _mm256_blendv_epi8(no, yes, _mm256_castps_si256(is));
+}
+static inline float f_largest(lane_f a)
+{
+    __m128 m = _mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
+    m = _mm_max_ps(m, _mm_movehl_ps(m, m));
+    return _mm_cvtss_f32(_mm_max_ss(m, _mm_shuffle_ps(m, m, 1)));
+}
+
+static inline lane_i i_set(int32_t v) { return _mm256_set1_epi32(v); }
+static inline lane_i i_load(const int32_t *p) { return _mm256_loadu_si256((const __m256i *)(const void *)p); }
+static inline lane_i i_add(lane_i a, lane_i b) { return _mm256_add_epi32(a, b); }
+static inline lane_i i_sub(lane_i a, lane_i b) { return _mm256_sub_epi32(a, b); }
+static inline lane_i i_and(lane_i a, lane_i b) { return _mm256_and_si256(a, b); }
+static inline lane_i i_or(lane_i a, lane_i b) { return _mm256_or_si256(a, b); }
+static inline lane_i i_min(lane_i a, lane_i b) { return _mm256_min_epi32(a, b); }
+#define i_left(a, n) _mm256_slli_epi32((a), (n))
+#define i_right(a, n) _mm256_srli_epi32((a), (n))
+
+static inline lane_f f_of_i(lane_i a) { return _mm256_cvtepi32_ps(a); }
+static inline lane_i i_of_f(lane_f a) { return _mm256_cvttps_epi32(a); }
+static inline lane_f f_of_bits(lane_i a) { return _mm256_castsi256_ps(a); }
+static inline lane_i i_of_bits(lane_f a) { return _mm256_castps_si256(a); }
+static inline lane_i i_count(void) { return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7); }
+
+static inline lane_i i_load_u8(const uint8_t *p)
+{
+    return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)p));
+}
+static inline lane_i i_load_u16(const uint8_t *p)
+{
+    return _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)(const void *)p));
+}
+static inline __m128i to_u16(lane_i v)
+{
+    return _mm_packus_epi32(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
+}
+static inline void i_store_u8(uint8_t *p, lane_i v)
+{
+    __m128i words = to_u16(v);
+    _mm_storel_epi64((__m128i *)(void *)p, _mm_packus_epi16(words, words));
+}
+static inline void i_store_u16(uint8_t *p, lane_i v) { _mm_storeu_si128((__m128i *)(void *)p, to_u16(v)); }
+
+static inline lane_f f_gather(const float *base, lane_i index) { return _mm256_i32gather_ps(base, index, 4); }
+static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second)
+{
+    const double *pairs = (const double *)(const void *)base;
+    __m256 low = _mm256_castpd_ps(_mm256_i32gather_pd(pairs, _mm256_castsi256_si128(index), 4));
+    __m256 high = _mm256_castpd_ps(_mm256_i32gather_pd(pairs, _mm256_extracti128_si256(index, 1), 4));
+    __m256d a = _mm256_castps_pd(_mm256_shuffle_ps(low, high, 0x88));
+    __m256d b = _mm256_castps_pd(_mm256_shuffle_ps(low, high, 0xdd));
+    *first = _mm256_castpd_ps(_mm256_permute4x64_pd(a, 0xd8));
+    *second = _mm256_castpd_ps(_mm256_permute4x64_pd(b, 0xd8));
+}
+
+static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
+{
+    __m256i first = _mm256_setr_epi32(0, 0, 0, 1, 1, 1, 2, 2), second = _mm256_setr_epi32(2, 3, 3, 3, 4, 4, 4, 5),
+            third = _mm256_setr_epi32(5, 5, 6, 6, 6, 7, 7, 7);
+    __m256 x = _mm256_blend_ps(_mm256_permutevar8x32_ps(a, first), _mm256_permutevar8x32_ps(b, first), 0x92);
+    __m256 y = _mm256_blend_ps(_mm256_permutevar8x32_ps(a, second), _mm256_permutevar8x32_ps(b, second), 0x24);
+    __m256 z = _mm256_blend_ps(_mm256_permutevar8x32_ps(a, third), _mm256_permutevar8x32_ps(b, third), 0x49);
+    f_store(p, _mm256_blend_ps(x, _mm256_permutevar8x32_ps(c, first), 0x24));
+    f_store(p + 8, _mm256_blend_ps(y, _mm256_permutevar8x32_ps(c, second), 0x49));
+    f_store(p + 16, _mm256_blend_ps(z, _mm256_permutevar8x32_ps(c, third), 0x92));
+}
+
+#define CAN_STREAM 1
+static inline void f_stream(float *p, lane_f v) { _mm256_stream_ps(p, v); }
+static inline void i_stream_u16(uint8_t *p, lane_i v) { _mm_stream_si128((__m128i *)(void *)p, to_u16(v)); }
+static inline void end_stream(void) { _mm_sfence(); }
+
+#endif

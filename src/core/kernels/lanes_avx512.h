@@ -1,0 +1,98 @@
+/* Sixteen lanes: AVX-512 F, BW, DQ and VL. */
+#ifndef LENSPROF_CORE_LANES_H
+#define LENSPROF_CORE_LANES_H
+
+#include <immintrin.h>
+#include <stdint.h>
+#include <string.h>
+
+#define LANES 16
+#define STRIP 256
+
+typedef __m512 lane_f;
+typedef __m512i lane_i;
+typedef __mmask16 lane_b;
+
+static inline lane_f f_set(float v) { return _mm512_set1_ps(v); }
+static inline lane_f f_load(const float *p) { return _mm512_loadu_ps(p); }
+static inline void f_store(float *p, lane_f v) { _mm512_storeu_ps(p, v); }
+static inline lane_f f_add(lane_f a, lane_f b) { return _mm512_add_ps(a, b); }
+static inline lane_f f_sub(lane_f a, lane_f b) { return _mm512_sub_ps(a, b); }
+static inline lane_f f_mul(lane_f a, lane_f b) { return _mm512_mul_ps(a, b); }
+static inline lane_f f_div(lane_f a, lane_f b) { return _mm512_div_ps(a, b); }
+static inline lane_f f_max(lane_f a, lane_f b) { return _mm512_max_ps(a, b); }
+static inline lane_f f_min(lane_f a, lane_f b) { return _mm512_min_ps(a, b); }
+static inline lane_b f_less(lane_f a, lane_f b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+static inline lane_b f_is_number(lane_f a) { return _mm512_cmp_ps_mask(a, a, _CMP_EQ_OQ); }
+static inline lane_f f_pick(lane_b is, lane_f yes, lane_f no) { return _mm512_mask_blend_ps(is, no, yes); }
+static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) { return _mm512_mask_blend_epi32(is, no, yes); }
+static inline float f_largest(lane_f a) { return _mm512_reduce_max_ps(a); }
+
+static inline lane_i i_set(int32_t v) { return _mm512_set1_epi32(v); }
+static inline lane_i i_load(const int32_t *p) { return _mm512_loadu_si512(p); }
+static inline lane_i i_add(lane_i a, lane_i b) { return _mm512_add_epi32(a, b); }
+static inline lane_i i_sub(lane_i a, lane_i b) { return _mm512_sub_epi32(a, b); }
+static inline lane_i i_and(lane_i a, lane_i b) { return _mm512_and_si512(a, b); }
+static inline lane_i i_or(lane_i a, lane_i b) { return _mm512_or_si512(a, b); }
+static inline lane_i i_min(lane_i a, lane_i b) { return _mm512_min_epi32(a, b); }
+#define i_left(a, n) _mm512_slli_epi32((a), (n))
+#define i_right(a, n) _mm512_srli_epi32((a), (n))
+
+static inline lane_f f_of_i(lane_i a) { return _mm512_cvtepi32_ps(a); }
+static inline lane_i i_of_f(lane_f a) { return _mm512_cvttps_epi32(a); }
+static inline lane_f f_of_bits(lane_i a) { return _mm512_castsi512_ps(a); }
+static inline lane_i i_of_bits(lane_f a) { return _mm512_castps_si512(a); }
+static inline lane_i i_count(void)
+{
+    return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+static inline lane_i i_load_u8(const uint8_t *p)
+{
+    return _mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)(const void *)p));
+}
+static inline lane_i i_load_u16(const uint8_t *p)
+{
+    return _mm512_cvtepu16_epi32(_mm256_loadu_si256((const __m256i *)(const void *)p));
+}
+static inline void i_store_u8(uint8_t *p, lane_i v)
+{
+    _mm_storeu_si128((__m128i *)(void *)p, _mm512_cvtepi32_epi8(v));
+}
+static inline void i_store_u16(uint8_t *p, lane_i v)
+{
+    _mm256_storeu_si256((__m256i *)(void *)p, _mm512_cvtepi32_epi16(v));
+}
+
+static inline lane_f f_gather(const float *base, lane_i index) { return _mm512_i32gather_ps(index, base, 4); }
+static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second)
+{
+    __m512 low = _mm512_castpd_ps(_mm512_i32gather_pd(_mm512_castsi512_si256(index), base, 4));
+    __m512 high = _mm512_castpd_ps(_mm512_i32gather_pd(_mm512_extracti64x4_epi64(index, 1), base, 4));
+    const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+    *first = _mm512_permutex2var_ps(low, even, high);
+    *second = _mm512_permutex2var_ps(low, _mm512_add_epi32(even, _mm512_set1_epi32(1)), high);
+}
+
+static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
+{
+    const __m512i first = _mm512_setr_epi32(0, 16, 0, 1, 17, 0, 2, 18, 0, 3, 19, 0, 4, 20, 0, 5),
+                  second = _mm512_setr_epi32(21, 0, 6, 22, 0, 7, 23, 0, 8, 24, 0, 9, 25, 0, 10, 26),
+                  third = _mm512_setr_epi32(0, 11, 27, 0, 12, 28, 0, 13, 29, 0, 14, 30, 0, 15, 31, 0);
+    const __m512i c1 = _mm512_setr_epi32(0, 0, 0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0, 4, 0),
+                  c2 = _mm512_setr_epi32(0, 5, 0, 0, 6, 0, 0, 7, 0, 0, 8, 0, 0, 9, 0, 0),
+                  c3 = _mm512_setr_epi32(10, 0, 0, 11, 0, 0, 12, 0, 0, 13, 0, 0, 14, 0, 0, 15);
+    f_store(p, _mm512_mask_permutexvar_ps(_mm512_permutex2var_ps(a, first, b), 0x4924, c1, c));
+    f_store(p + 16, _mm512_mask_permutexvar_ps(_mm512_permutex2var_ps(a, second, b), 0x2492, c2, c));
+    f_store(p + 32, _mm512_mask_permutexvar_ps(_mm512_permutex2var_ps(a, third, b), 0x9249, c3, c));
+}
+
+#define CAN_STREAM 1
+static inline void f_stream(float *p, lane_f v) { _mm512_stream_ps(p, v); }
+static inline void i_stream_u16(uint8_t *p, lane_i v)
+{
+    _mm256_stream_si256((__m256i *)(void *)p, _mm512_cvtepi32_epi16(v));
+}
+static inline void end_stream(void) { _mm_sfence(); }
+
+#endif

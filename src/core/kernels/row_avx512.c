@@ -1,0 +1,4 @@
+#include "lanes_avx512.h"
+
+#define ROW_KERNEL lp_row_avx512
+#include "row.h"

@@ -1,0 +1,56 @@
+/* What a plan holds: made by apply.c, read by the kernels. */
+#ifndef LENSPROF_CORE_PLAN_H
+#define LENSPROF_CORE_PLAN_H
+
+#include <lensprof/apply.h>
+
+#define LP_CHANNELS 3
+#define LP_ALPHA 3         /* in the place of a channel */
+#define LP_FORWARD_SHIFT 10 /* log2 of the samples of a response */
+
+/* How codes or values become irradiance, and how that becomes a value 0..1 again. */
+enum lp_curve {
+    LP_CURVE_NONE,  /* linear; codes count in units of their own, which the plan's factors hold */
+    LP_CURVE_CLIP,  /* linear, cut to 0..1 */
+    LP_CURVE_TABLE, /* by the response's samples; codes by a table of all of them */
+    LP_CURVE_POWER, /* x^exponent, cut to 0..1 */
+    LP_CURVE_MIXED  /* the channels differ: a power where exponent > 0, else the table */
+};
+
+/* Applies a plan to `count` pixels of a row, the first of which is pixel (x, y) of the frame. `stream`: write past the
+ * caches. */
+typedef void lp_row_kernel(const lensprof_plan *plan, const uint8_t *const source[3], uint8_t *const target[3],
+                           uint32_t x, uint32_t y, uint32_t count, int stream);
+
+struct lensprof_plan {
+    lp_row_kernel *row;
+    uint32_t source_sample, target_sample, layout;
+    uint32_t samples, channels;  /* of a pixel; colour channels */
+    uint32_t decode, encode;     /* lp_curve */
+    uint32_t simulate, dither;
+    uint32_t neutral_white;      /* LENSPROF_SATURATED_NEUTRAL is in force */
+    uint32_t frame_width, frame_height;
+    uint32_t gains;              /* 1 when all channels have the same gain, else 3 */
+    uint32_t curves;             /* 1 or 3 */
+    uint8_t site[2][2];          /* channel by row and column parity, of mosaics */
+    uint8_t channel_of_sample[4];
+    float center_px[2];
+    float k[LP_CHANNELS][3];     /* 1 + k1 r2 + ..., r2 in px^2 */
+    float least, strength;       /* of the attenuation, after the gain cap; of the grid's part */
+    float factor[LP_CHANNELS];   /* target over source exposure, and the units of linear codes */
+    float exponent[LP_CHANNELS]; /* of the response, for LP_CURVE_POWER and _MIXED; else 0 */
+    float inverse_exponent[LP_CHANNELS];
+    uint32_t columns, rows;      /* of the gain grid; 0 = none */
+    uint32_t inverse_shift;      /* log2 of the codes that `inverse` has an entry for */
+    const float *nodes[LP_CHANNELS];
+    const float *forward;        /* curves x 1024 samples of f */
+    const float *inverse;        /* curves x codes of g; NULL without */
+};
+
+/* The kernels. Each gives the same bytes. */
+lp_row_kernel lp_row_scalar, lp_row_sse41, lp_row_avx2, lp_row_avx512, lp_row_neon;
+
+/* The fastest one that this processor has; of at most `lanes` lanes, 0 = any. */
+lp_row_kernel *lp_row_best(uint32_t lanes);
+
+#endif

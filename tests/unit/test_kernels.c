@@ -1,0 +1,372 @@
+/* The row kernels: every lane count gives the scalar one's bytes, and stays within the pixels it was given. */
+#include "support.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <core/plan.h>
+
+enum { MOST_WIDTH = 67, ROWS = 3, LAYOUTS = 11, FRAME_W = 900, FRAME_H = 700 };
+
+/* Memory whose last byte is followed by one that must not be touched. */
+typedef struct guarded {
+    uint8_t *pages, *end;
+    size_t bytes;
+} guarded;
+
+static guarded guarded_memory(void)
+{
+    guarded g;
+    size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    g.bytes = 4 * page;
+    g.pages = mmap(NULL, g.bytes + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_true(g.pages != MAP_FAILED);
+    assert_int_equal(mprotect(g.pages + g.bytes, page, PROT_NONE), 0);
+    g.end = g.pages + g.bytes;
+    return g;
+}
+
+typedef struct model {
+    lensprof_response response[3];
+    lensprof_vignetting vignetting[3];
+    lensprof_gain_grid grid;
+    lensprof_apply_options options;
+} model;
+
+static void random_response(lensprof_response *r, uint32_t kind, uint64_t *random)
+{
+    double emor[3] = {lp_random(random) - 0.5, 0.4 * (lp_random(random) - 0.5), 0.2 * (lp_random(random) - 0.5)};
+    double table[9] = {0.0};
+    for (int i = 1; i < 9; i++) table[i] = table[i - 1] + 0.01 + lp_random(random);
+    for (int i = 0; i < 9; i++) table[i] /= table[8];
+    lensprof_response_set_linear(r);
+    if (kind == LENSPROF_RESPONSE_GAMMA) assert_ok(lensprof_response_set_gamma(r, 0.4 + 3.0 * lp_random(random)));
+    if (kind == LENSPROF_RESPONSE_TABLE) assert_ok(lensprof_response_set_table(r, table, 9));
+    if (kind == LENSPROF_RESPONSE_EMOR && lensprof_response_set_emor(r, emor, 3) != LENSPROF_OK)
+        assert_ok(lensprof_response_set_emor(r, emor, 1));
+}
+
+/* One model of many, by its number. */
+static void make_model(model *m, uint64_t seed)
+{
+    uint64_t random = seed * 977 + 5;
+    uint32_t kinds = (uint32_t)(5 * lp_random(&random));
+    memset(m, 0, sizeof *m);
+    lensprof_apply_options *o = &m->options;
+    lensprof_apply_options_init(o);
+    double center[2] = {0.2 * (lp_random(&random) - 0.5), 0.2 * (lp_random(&random) - 0.5)};
+    for (uint32_t c = 0; c < 3; c++) {
+        random_response(&m->response[c], kinds < 4 ? kinds : (uint32_t)(4 * lp_random(&random)), &random);
+        for (int n = 0; n < 3; n++) m->vignetting[c].k[n] = 0.2 * (lp_random(&random) - 0.6);
+        memcpy(m->vignetting[c].center, center, sizeof center);
+    }
+    o->response = m->response;
+    o->vignetting = m->vignetting;
+    o->responses = lp_random(&random) < 0.5 ? 1 : 3;
+    o->vignettings = lp_random(&random) < 0.5 ? 1 : 3;
+    o->frame_width = FRAME_W;
+    o->frame_height = FRAME_H;
+    o->source_layout = (uint32_t)(LAYOUTS * lp_random(&random));
+    o->source_sample = (uint32_t)(4 * lp_random(&random));
+    o->target_sample = lp_random(&random) < 0.6 ? o->source_sample : (uint32_t)(4 * lp_random(&random));
+    o->direction = lp_random(&random) < 0.3;
+    o->input = lp_random(&random) < 0.4;
+    o->output = lp_random(&random) < 0.4;
+    o->saturated = lp_random(&random) < 0.5;
+    o->dither = lp_random(&random) < 0.3;
+    if (lp_random(&random) < 0.3) o->strength = lp_random(&random);
+    if (lp_random(&random) < 0.3) o->gain_cap = 1.0 + lp_random(&random);
+    o->source = (lensprof_exposure){lp_random(&random), {1.0 + lp_random(&random), 1.0, 0.8}};
+    if (lp_random(&random) < 0.3) o->source = o->target;
+    if (lp_random(&random) < 0.3) {
+        m->grid.columns = 2 + (uint32_t)(31 * lp_random(&random));
+        m->grid.rows = 2 + (uint32_t)(31 * lp_random(&random));
+        m->grid.channels = lp_random(&random) < 0.5 ? 1 : 3;
+        for (uint32_t i = 0; i < m->grid.columns * m->grid.rows * m->grid.channels; i++)
+            m->grid.attenuation[i] = (float)(0.6 + 0.8 * lp_random(&random));
+        o->grid = &m->grid;
+    }
+}
+
+static void *make_plan(const model *m, uint32_t lanes, const lensprof_plan **plan)
+{
+    size_t bytes = lensprof_plan_bytes(&m->options);
+    void *memory = malloc(bytes);
+    assert_true(bytes > 0);
+    assert_ok(lensprof_plan_init(memory, bytes, &m->options, plan));
+    ((lensprof_plan *)memory)->row = lp_row_best(lanes);
+    return memory;
+}
+
+static void fill_samples(uint8_t *p, size_t bytes, uint32_t sample, uint64_t random)
+{
+    for (size_t i = 0; i + 4 <= bytes; i += 4) {
+        float value = (float)(1.3 * lp_random(&random) - 0.1);
+        uint32_t any = (uint32_t)(4294967296.0 * lp_random(&random));
+        if (sample == LENSPROF_SAMPLE_F32 && any % 50 == 0) value = (float)NAN;
+        if (sample == LENSPROF_SAMPLE_F32) memcpy(p + i, &value, 4);
+        else memcpy(p + i, &any, 4);
+        if (sample == LENSPROF_SAMPLE_F16) p[i + 1] &= 0x3f, p[i + 3] &= 0x3f; /* 0..2 */
+        if (sample < 2 && i % 64 < 24) p[i] = p[i + 1] = p[i + 2] = p[i + 3] = 255 - any % 32; /* near white */
+    }
+}
+
+/* Rows of a tile that end where the guarded memory does, with `gap` bytes between rows. */
+static lensprof_image tile_in(const guarded *g, uint32_t sample, uint32_t layout, uint32_t width, size_t gap)
+{
+    uint32_t bytes = lensprof_sample_bytes(sample) * lensprof_layout_samples(layout);
+    lensprof_image image = {NULL, (ptrdiff_t)(width * bytes + gap), width, ROWS, sample, layout};
+    image.data = g->end - (width * bytes + (size_t)(ROWS - 1) * (size_t)image.row_bytes);
+    return image;
+}
+
+static void apply_rows_streamed(const lensprof_plan *plan, const lensprof_image *from, const lensprof_image *to,
+                                uint32_t x0, uint32_t y0)
+{
+    for (uint32_t y = 0; y < ROWS; y++) {
+        const uint8_t *source[3] = {(uint8_t *)from->data + y * from->row_bytes, NULL, NULL};
+        uint8_t *target[3] = {(uint8_t *)to->data + y * to->row_bytes, NULL, NULL};
+        plan->row(plan, source, target, x0, y0 + y, from->width, 1);
+    }
+}
+
+static void check_case(uint64_t seed, uint32_t width, const guarded *in, const guarded *out, uint8_t *wanted)
+{
+    model m;
+    make_model(&m, seed);
+    if (m.options.source_layout == LENSPROF_LAYOUT_PLANAR) m.options.source_layout = LENSPROF_LAYOUT_RGB;
+    uint64_t random = seed + 7;
+    uint32_t x0 = (uint32_t)((FRAME_W - width) * lp_random(&random)), y0 = (uint32_t)((FRAME_H - ROWS) * lp_random(&random));
+    size_t gap = 4 * (size_t)(4 * lp_random(&random));
+    lensprof_image from = tile_in(in, m.options.source_sample, m.options.source_layout, width, gap);
+    lensprof_image to = tile_in(out, m.options.target_sample, m.options.source_layout, width, gap);
+    const uint32_t lanes[] = {1, 4, 8, 0};
+    int in_place = m.options.source_sample == m.options.target_sample && seed % 3 == 0;
+    for (int n = 0; n < 4; n++) {
+        const lensprof_plan *plan;
+        void *memory = make_plan(&m, lanes[n], &plan);
+        fill_samples(in->pages, in->bytes, m.options.source_sample, seed);
+        memset(out->pages, 0xA5, out->bytes);
+        if (in_place) memcpy(out->pages, in->pages, in->bytes);
+        if (n && seed % 5 == 0 && !in_place) apply_rows_streamed(plan, &from, &to, x0, y0);
+        else assert_ok(lensprof_apply(plan, in_place ? &to : &from, &to, x0, y0));
+        if (n == 0) memcpy(wanted, out->pages, out->bytes);
+        else if (memcmp(wanted, out->pages, out->bytes))
+            fail_msg("model %llu, width %u, layout %u, samples %u to %u: %u lanes give other bytes",
+                     (unsigned long long)seed, width, m.options.source_layout, m.options.source_sample,
+                     m.options.target_sample, lanes[n]);
+        free(memory);
+    }
+}
+
+static void test_every_lane_count_gives_the_same_bytes(void **state)
+{
+    (void)state;
+    guarded in = guarded_memory(), out = guarded_memory();
+    uint8_t *wanted = malloc(out.bytes);
+    for (uint64_t seed = 0; seed < 6000; seed++) check_case(seed, 1 + (uint32_t)(seed % MOST_WIDTH), &in, &out, wanted);
+    for (uint64_t seed = 6000; seed < 6200; seed++) check_case(seed, 250 + (uint32_t)(seed % 20), &in, &out, wanted);
+    free(wanted);
+}
+
+/* A row in pieces, at any place, is the row. */
+static void test_pieces_give_the_row(void **state)
+{
+    (void)state;
+    static uint8_t source[4 * 4 * FRAME_W], whole[4 * 4 * FRAME_W], pieces[4 * 4 * FRAME_W];
+    for (uint64_t seed = 0; seed < 300; seed++) {
+        model m;
+        make_model(&m, seed);
+        if (m.options.source_layout == LENSPROF_LAYOUT_PLANAR) continue;
+        const lensprof_plan *plan;
+        void *memory = make_plan(&m, 0, &plan);
+        uint32_t samples = lensprof_layout_samples(m.options.source_layout);
+        uint32_t in = samples * lensprof_sample_bytes(m.options.source_sample),
+                 out = samples * lensprof_sample_bytes(m.options.target_sample);
+        fill_samples(source, sizeof source, m.options.source_sample, seed);
+        lensprof_image from = {source, 0, FRAME_W, 1, m.options.source_sample, m.options.source_layout};
+        lensprof_image to = {whole, 0, FRAME_W, 1, m.options.target_sample, m.options.source_layout};
+        assert_ok(lensprof_apply(plan, &from, &to, 0, 77));
+        uint64_t random = seed;
+        for (uint32_t x = 0; x < FRAME_W;) {
+            uint32_t width = 1 + (uint32_t)(FRAME_W / 4 * lp_random(&random));
+            if (width > FRAME_W - x) width = FRAME_W - x;
+            from.data = source + x * in, to.data = pieces + x * out;
+            from.width = to.width = width;
+            assert_ok(lensprof_apply(plan, &from, &to, x, 77));
+            x += width;
+        }
+        assert_memory_equal(pieces, whole, (size_t)FRAME_W * out);
+        free(memory);
+    }
+}
+
+/* Planes give what interleaved pixels give. */
+static void test_planes_are_the_same_picture(void **state)
+{
+    (void)state;
+    enum { W = 301 };
+    static uint8_t rgb[12 * W], target[12 * W], planes[3][4 * W], result[3][4 * W];
+    for (uint64_t seed = 0; seed < 400; seed++) {
+        model m;
+        make_model(&m, seed);
+        uint32_t in = lensprof_sample_bytes(m.options.source_sample), out = lensprof_sample_bytes(m.options.target_sample);
+        fill_samples(rgb, sizeof rgb, m.options.source_sample, seed);
+        lensprof_image from = {rgb, 0, W, 1, m.options.source_sample, LENSPROF_LAYOUT_RGB}, to = from;
+        to.data = target, to.sample = m.options.target_sample;
+        lensprof_image sources[3], targets[3];
+        for (uint32_t c = 0; c < 3; c++) {
+            for (uint32_t i = 0; i < W; i++) memcpy(planes[c] + i * in, rgb + (3 * i + c) * in, in);
+            sources[c] = (lensprof_image){planes[c], 0, W, 1, m.options.source_sample, LENSPROF_LAYOUT_GREY};
+            targets[c] = (lensprof_image){result[c], 0, W, 1, m.options.target_sample, LENSPROF_LAYOUT_GREY};
+        }
+        const lensprof_plan *plan;
+        m.options.source_layout = LENSPROF_LAYOUT_RGB;
+        void *memory = make_plan(&m, 0, &plan);
+        assert_ok(lensprof_apply(plan, &from, &to, 40, 50));
+        assert_int_equal(lensprof_apply_planar(plan, sources, targets, 40, 50), LENSPROF_ERROR_ARGUMENT);
+        free(memory);
+        m.options.source_layout = LENSPROF_LAYOUT_PLANAR;
+        memory = make_plan(&m, 0, &plan);
+        assert_ok(lensprof_apply_planar(plan, sources, targets, 40, 50));
+        for (uint32_t c = 0; c < 3; c++)
+            for (uint32_t i = 0; i < W; i++)
+                assert_memory_equal(result[c] + i * out, target + (3 * i + c) * out, out);
+        free(memory);
+    }
+}
+
+static void test_planes_that_are_refused(void **state)
+{
+    (void)state;
+    enum { W = 20 };
+    static uint8_t data[6][W], before[6][W];
+    model m;
+    make_model(&m, 1);
+    m.options.source_layout = LENSPROF_LAYOUT_PLANAR;
+    m.options.source_sample = m.options.target_sample = LENSPROF_SAMPLE_U8;
+    const lensprof_plan *plan;
+    void *memory = make_plan(&m, 0, &plan);
+    lensprof_image source[3], target[3], wrong[3];
+    memset(data, 77, sizeof data);
+    memcpy(before, data, sizeof data);
+    for (int c = 0; c < 3; c++) {
+        source[c] = (lensprof_image){data[c], 0, W, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY};
+        target[c] = source[c];
+        target[c].data = data[3 + c];
+    }
+    assert_int_equal(lensprof_apply(plan, source, target, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_apply_planar(NULL, source, target, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_apply_planar(plan, source, target, FRAME_W, 0), LENSPROF_ERROR_SIZE);
+    memcpy(wrong, target, sizeof wrong);
+    wrong[2].data = data[3]; /* two targets in one place */
+    assert_int_equal(lensprof_apply_planar(plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    wrong[2].data = data[0]; /* another plane's source */
+    assert_int_equal(lensprof_apply_planar(plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    memcpy(wrong, source, sizeof wrong);
+    wrong[1].width = W - 1;
+    assert_int_equal(lensprof_apply_planar(plan, wrong, target, 0, 0), LENSPROF_ERROR_SIZE);
+    memcpy(wrong, target, sizeof wrong);
+    wrong[1].layout = LENSPROF_LAYOUT_RGB;
+    assert_int_equal(lensprof_apply_planar(plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_memory_equal(data, before, sizeof data);
+    assert_ok(lensprof_apply_planar(plan, source, source, 0, 0)); /* each in its place */
+    free(memory);
+}
+
+/* Each site of a mosaic gets what its channel gets in a picture of that colour alone. */
+static void test_mosaics_follow_their_pattern(void **state)
+{
+    (void)state;
+    enum { W = 131, H = 7 };
+    static const char *patterns[] = {"RGGB", "GRBG", "GBRG", "BGGR"};
+    static uint16_t mosaic[H][W], result[H][W], rgb[H][3 * W], full[H][3 * W];
+    for (uint32_t n = 0; n < 40; n++) {
+        model m;
+        make_model(&m, n);
+        m.options.source_sample = m.options.target_sample = LENSPROF_SAMPLE_U16;
+        m.options.saturated = LENSPROF_SATURATED_AS_VALUE;
+        fill_samples((uint8_t *)mosaic, sizeof mosaic, LENSPROF_SAMPLE_U16, n);
+        for (uint32_t y = 0; y < H; y++)
+            for (uint32_t x = 0; x < 3 * W; x++) rgb[y][x] = mosaic[y][x / 3];
+        const uint32_t x0 = 11 * (n % 3), y0 = n % 2;
+        lensprof_image from = {mosaic, sizeof *mosaic, W, H, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGGB + n % 4}, to = from;
+        lensprof_image from_rgb = {rgb, sizeof *rgb, W, H, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB}, to_rgb = from_rgb;
+        to.data = result, to_rgb.data = full;
+        const lensprof_plan *plan;
+        m.options.source_layout = from.layout;
+        void *memory = make_plan(&m, 0, &plan);
+        assert_ok(lensprof_apply(plan, &from, &to, x0, y0));
+        free(memory);
+        m.options.source_layout = LENSPROF_LAYOUT_RGB;
+        memory = make_plan(&m, 0, &plan);
+        assert_ok(lensprof_apply(plan, &from_rgb, &to_rgb, x0, y0));
+        free(memory);
+        for (uint32_t y = 0; y < H; y++)
+            for (uint32_t x = 0; x < W; x++) {
+                char colour = patterns[n % 4][2 * ((y0 + y) & 1) + ((x0 + x) & 1)];
+                assert_int_equal(result[y][x], full[y][3 * x + (colour == 'R' ? 0 : colour == 'G' ? 1 : 2)]);
+            }
+    }
+}
+
+/* Half floats: all of them survive, and others go to the nearest, halves to even. */
+static void test_half_floats(void **state)
+{
+    (void)state;
+    static uint16_t half[65536], back[65536];
+    static float wide[65536];
+    model m;
+    make_model(&m, 0);
+    lensprof_apply_options *o = &m.options;
+    lensprof_apply_options_init(o);
+    memset(m.vignetting, 0, sizeof m.vignetting);
+    lensprof_response_set_linear(m.response);
+    o->response = m.response, o->vignetting = m.vignetting;
+    o->frame_width = 65536, o->frame_height = 1;
+    o->input = o->output = LENSPROF_ENCODING_LINEAR;
+    o->source_layout = LENSPROF_LAYOUT_GREY;
+    for (uint32_t h = 0; h < 65536; h++) half[h] = (uint16_t)h;
+    lensprof_image image = {half, 0, 65536, 1, LENSPROF_SAMPLE_F16, LENSPROF_LAYOUT_GREY}, as_float = image, again = image;
+    as_float.data = wide, as_float.sample = LENSPROF_SAMPLE_F32, again.data = back;
+    const lensprof_plan *plan;
+    o->source_sample = LENSPROF_SAMPLE_F16, o->target_sample = LENSPROF_SAMPLE_F32;
+    void *memory = make_plan(&m, 0, &plan);
+    assert_ok(lensprof_apply(plan, &image, &as_float, 0, 0));
+    free(memory);
+    for (uint32_t h = 0; h < 65536; h++) {
+        int exponent = (int)(h >> 10 & 31);
+        double size = exponent ? ldexp(1.0 + (h & 0x3ff) / 1024.0, exponent - 15) : ldexp((h & 0x3ff) / 1024.0, -14);
+        if (exponent < 31) assert_true((double)wide[h] == (h & 0x8000 ? -size : size));
+        else assert_true(h & 0x3ff ? isnan(wide[h]) : isinf(wide[h]));
+    }
+    o->source_sample = LENSPROF_SAMPLE_F32, o->target_sample = LENSPROF_SAMPLE_F16;
+    memory = make_plan(&m, 0, &plan);
+    assert_ok(lensprof_apply(plan, &as_float, &again, 0, 0));
+    for (uint32_t h = 0; h < 65536; h++)
+        if ((h >> 10 & 31) < 31 || !(h & 0x3ff)) assert_int_equal(back[h], h);
+    for (uint32_t h = 0; h < 0x7bff; h++) wide[h] = 0.5f * (wide[h] + wide[h + 1]); /* exactly between two */
+    assert_ok(lensprof_apply(plan, &as_float, &again, 0, 0));
+    for (uint32_t h = 0; h < 0x7bff; h++) assert_int_equal(back[h], h + (h & 1));
+    for (uint32_t h = 0; h < 0x7bff; h++) wide[h] = nextafterf(wide[h], 1e9f);
+    assert_ok(lensprof_apply(plan, &as_float, &again, 0, 0));
+    for (uint32_t h = 0; h < 0x7bff; h++) assert_int_equal(back[h], h + 1);
+    wide[0] = 65519.0f, wide[1] = 65520.0f;
+    assert_ok(lensprof_apply(plan, &as_float, &again, 0, 0));
+    assert_int_equal(back[0], 0x7bff);
+    assert_int_equal(back[1], 0x7c00);
+    free(memory);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_lane_count_gives_the_same_bytes),
+        cmocka_unit_test(test_pieces_give_the_row),
+        cmocka_unit_test(test_planes_are_the_same_picture),
+        cmocka_unit_test(test_planes_that_are_refused),
+        cmocka_unit_test(test_mosaics_follow_their_pattern),
+        cmocka_unit_test(test_half_floats),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
