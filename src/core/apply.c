@@ -214,14 +214,14 @@ static float *prepare_curves(lensprof_plan *plan, const lensprof_apply_options *
     return memory + plan->curves * (samples + codes);
 }
 
-/* Copies the nodes of the gain grid to `memory`. */
+/* Copies the nodes of the gain grid, less 1, to `memory`. */
 static void prepare_grid(lensprof_plan *plan, const lensprof_apply_options *o, float *memory)
 {
     const lensprof_gain_grid *grid = o->grid;
     if (!nodes_of(o)) return;
     plan->columns = grid->columns;
     plan->rows = grid->rows;
-    memcpy(memory, grid->attenuation, nodes_of(o) * sizeof *memory);
+    for (size_t i = 0; i < nodes_of(o); i++) memory[i] = grid->attenuation[i] - 1.0f;
     for (uint32_t c = 0; c < LP_CHANNELS; c++)
         plan->nodes[c] = memory + (grid->channels == 3 ? c : 0) * grid->rows * grid->columns;
 }
@@ -262,8 +262,11 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, u
 static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o)
 {
     const double w = o->frame_width, h = o->frame_height, rho = 0.5 * sqrt(w * w + h * h);
-    plan->center_px[0] = (float)(0.5 * (w - 1.0) + rho * o->vignetting[0].center[0]);
-    plan->center_px[1] = (float)(0.5 * (h - 1.0) + rho * o->vignetting[0].center[1]);
+    for (int d = 0; d < 2; d++) {
+        const double center = 0.5 * ((d ? h : w) - 1.0) + rho * o->vignetting[0].center[d];
+        plan->center_px[d] = (int32_t)floor(center + 0.5);
+        plan->center_part[d] = (float)(center - plan->center_px[d]);
+    }
     plan->least = o->gain_cap > 0.0 ? (float)(1.0 / o->gain_cap) : 0.0f;
     plan->strength = (float)o->strength;
     plan->gains = 1;

@@ -34,7 +34,8 @@ struct lensprof_plan {
     uint32_t curves;             /* 1 or 3 */
     uint8_t site[2][2];          /* channel by row and column parity, of mosaics */
     uint8_t channel_of_sample[4];
-    float center_px[2];
+    int32_t center_px[2];        /* of the falloff: whole pixels, */
+    float center_part[2];        /* and the rest, -1/2..1/2, which single precision holds better */
     float k[LP_CHANNELS][3];     /* 1 + k1 r2 + ..., r2 in px^2 */
     float least, strength;       /* of the attenuation, after the gain cap; of the grid's part */
     float factor[LP_CHANNELS];   /* target over source exposure, and the units of linear codes */
@@ -42,7 +43,7 @@ struct lensprof_plan {
     float inverse_exponent[LP_CHANNELS];
     uint32_t columns, rows;      /* of the gain grid; 0 = none */
     uint32_t inverse_shift;      /* log2 of the codes that `inverse` has an entry for */
-    const float *nodes[LP_CHANNELS];
+    const float *nodes[LP_CHANNELS]; /* attenuation less 1 */
     const float *forward;        /* curves x 1024 samples of f */
     const float *inverse;        /* curves x codes of g; NULL without */
 };

@@ -19,7 +19,8 @@ typedef struct strip {
 
 /* ---- gains ---- */
 
-/* The gain grid's nodes, interpolated to a row. */
+/* The gain grid's nodes, interpolated to a row. They hold what the attenuation is beyond 1, which is small: single
+ * precision loses less. */
 static void blend_rows(const lensprof_plan *plan, uint32_t y, strip *s)
 {
     uint32_t last = plan->rows - 1, pixels = plan->frame_height > 1 ? plan->frame_height - 1 : 1;
@@ -51,15 +52,19 @@ static void gains_of_channel(const lensprof_plan *plan, uint32_t c, uint32_t x, 
     float *gain = s->gain[c];
     const int has_grid = plan->columns != 0;
     const lane_f one = f_set(1.0f), k0 = f_set(plan->k[c][0]), k1 = f_set(plan->k[c][1]), k2 = f_set(plan->k[c][2]);
-    const lane_f center = f_set(plan->center_px[0]), dy2 = f_set(dy * dy), factor = f_set(plan->factor[c]);
+    const lane_i first = i_add(i_set((int32_t)x - plan->center_px[0]), i_count());
+    const lane_f part = f_set(plan->center_part[0]), dy2 = f_set(dy * dy), factor = f_set(plan->factor[c]);
     const lane_f least = f_set(plan->least), strength = f_set(plan->strength);
     if (has_grid) grid_values(plan, s->grid[c], x, count, gain);
     for (uint32_t i = 0; i < count; i += LANES) {
-        lane_f dx = f_sub(f_of_i(i_add(i_set((int32_t)(x + i)), i_count())), center);
+        lane_f dx = f_sub(f_of_i(i_add(first, i_set((int32_t)i))), part);
         lane_f r2 = f_add(f_mul(dx, dx), dy2);
-        lane_f m = f_add(one, f_mul(r2, f_add(k0, f_mul(r2, f_add(k1, f_mul(r2, k2))))));
-        if (has_grid) m = f_add(one, f_mul(strength, f_sub(f_mul(m, f_load(gain + i)), one)));
-        m = f_max(m, least);
+        lane_f off = f_mul(r2, f_add(k0, f_mul(r2, f_add(k1, f_mul(r2, k2))))); /* M - 1 */
+        if (has_grid) {
+            const lane_f grid = f_load(gain + i);
+            off = f_mul(strength, f_add(f_add(off, grid), f_mul(off, grid)));
+        }
+        const lane_f m = f_max(f_add(one, off), least);
         f_store(gain + i, plan->simulate ? f_div(m, factor) : f_div(factor, m));
     }
 }
@@ -504,7 +509,7 @@ void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8
     const uint32_t planes = plan->layout == LENSPROF_LAYOUT_PLANAR ? 3 : 1;
     const uint32_t from_step = plan->samples * lensprof_sample_bytes(plan->source_sample);
     const uint32_t to_step = plan->samples * lensprof_sample_bytes(plan->target_sample);
-    const float dy = (float)y - plan->center_px[1];
+    const float dy = (float)((int32_t)y - plan->center_px[1]) - plan->center_part[1];
     strip s;
     if (plan->columns) blend_rows(plan, y, &s);
     if (plan->curves == 3) find_channels(plan, x, y, &s);
