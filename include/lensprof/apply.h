@@ -95,6 +95,9 @@ typedef struct lensprof_apply_options {
     double gain_cap; /* M counts as no less than 1 / gain_cap, which is 1..1e6: corners get at most this; 0 = no cap */
     uint32_t dither; /* 1: ordered 8 x 8 dither in place of rounding, where U8 is written; 0: none */
     uint32_t reserved; /* 0 */
+    const void *blob;  /* instead of response, vignetting and grid, which are NULL then: a profile blob (profile.h), at any
+                          address, read during plan init only; its own counts stand for responses and vignettings */
+    size_t blob_bytes;
 } lensprof_apply_options;
 
 /* Correct, encoded in and out, u8 RGB in and out, exposures 0 EV, strength 1; the rest zero, to be set by the caller. */
@@ -108,7 +111,8 @@ LENSPROF_API size_t lensprof_plan_bytes(const lensprof_apply_options *options);
 /* Prepares a plan in memory[bytes] (8-byte aligned, owned by the caller, must outlive the plan). Nothing is to
  * be released. Errors: NULL or unknown values ARGUMENT, struct_size STRUCT_SIZE, zero frame SIZE, too little or
  * unaligned memory CAPACITY, and what the model's validate functions say; three vignettings must have one centre;
- * target over source must be within 1e-12..1e12 (EXPOSURE). Takes well under a millisecond. */
+ * target over source must be within 1e-12..1e12 (EXPOSURE); of a blob CORRUPT and LAYOUT as lensprof_profile_unpack. A
+ * plan made from a blob and one made from the profile unpacked from it are the same. Takes well under a millisecond. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_plan_init(void *memory, size_t bytes,
                                                                   const lensprof_apply_options *options,
                                                                   const lensprof_plan **plan);

@@ -52,7 +52,7 @@ typedef enum lensprof_status {
     LENSPROF_ERROR_NO_UNKNOWNS = 32,  /* nothing was asked to be estimated */
     LENSPROF_ERROR_STORE = 40,        /* the database could not be opened or used */
     LENSPROF_ERROR_NOT_FOUND = 41,    /* no such profile */
-    LENSPROF_ERROR_CORRUPT = 42,      /* the file is not a lensprof database, or is damaged */
+    LENSPROF_ERROR_CORRUPT = 42,      /* not a lensprof database or profile blob, or damaged */
     LENSPROF_ERROR_LAYOUT = 43,       /* written by a newer lensprof */
     LENSPROF_ERROR_READ_ONLY = 44,    /* the database cannot be written */
     LENSPROF_ERROR_FULL = 45,         /* no space left for the database */

@@ -1,6 +1,7 @@
 /* lensprof/profile.h - what is known about one camera, lens and setting.
  *
- * A profile is a value: it can be copied, stored (store.h) and applied (apply.h). No heap, no I/O.
+ * A profile is a value: it can be copied, stored (store.h), applied (apply.h) and packed into a blob for firmware.
+ * No heap, no I/O.
  * Threads: all functions are pure. */
 #ifndef LENSPROF_PROFILE_H
 #define LENSPROF_PROFILE_H
@@ -74,6 +75,25 @@ LENSPROF_API void lensprof_profile_init(lensprof_profile *profile);
 /* LENSPROF_OK when key, provenance, responses, vignettings (which share one centre), gain grid and covariance (finite,
  * symmetric, non-negative diagonal) are valid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
+
+typedef enum lensprof_pack {
+    LENSPROF_PACK_COVARIANCE = 1 /* the covariance as well, which a camera has no use for: up to 5 kB */
+} lensprof_pack;
+
+/* The profile as a blob (docs/blob.md): little-endian, with a version and a CRC-32, for lensprof_plan_init (apply.h) to
+ * read in place. It holds the key, the responses (samples in single precision), vignettings, gain grid, and of the
+ * provenance all but the source: 132 bytes and the texts for a linear response, 4 kB more for each curve of samples.
+ * The same profile gives the same bytes on every machine. `flags`: lensprof_pack, 0 = none. *bytes receives the size in
+ * every case but an invalid argument; CAPACITY when the buffer is smaller (capacity 0 asks for the size, blob may be
+ * NULL then), and nothing is written to it. Errors: what lensprof_profile_validate says; ARGUMENT for unknown flags. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags,
+                                                                     void *blob, size_t capacity, size_t *bytes);
+
+/* The profile of blob[bytes], at any address; packed again, with its covariance, it gives the same blob. Nothing is
+ * trusted: CORRUPT when it is no blob, is damaged in any bit, cut or too long, or holds what is not a profile; LAYOUT
+ * when a newer lensprof wrote it. The profile is written only once the whole blob was found to be good. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_unpack(const void *blob, size_t bytes,
+                                                                       lensprof_profile *profile);
 
 #ifdef __cplusplus
 }

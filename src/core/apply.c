@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "blob.h"
 #include "response.h"
 
 #define LARGEST_SIDE (1u << 20)
@@ -63,24 +64,60 @@ void lensprof_apply_options_init(lensprof_apply_options *options)
 
 static int is_mosaic(uint32_t layout) { return layout >= LENSPROF_LAYOUT_RGGB && layout <= LENSPROF_LAYOUT_BGGR; }
 
-/* The responses that pixels pass through: grey is treated as green. */
-static uint32_t curves_of(const lensprof_apply_options *o)
+/* ---- model ---- */
+
+static void view_response(struct lp_model_response *view, const lensprof_response *response)
 {
-    return lensprof_layout_channels(o->source_layout) == 1 ? 1 : o->responses;
+    view->kind = response->kind;
+    view->gamma = response->kind == LENSPROF_RESPONSE_GAMMA ? response->gamma : 1.0;
+    view->table = response->table;
 }
 
-static const lensprof_response *response_of(const lensprof_apply_options *o, uint32_t curve)
+/* The model in the caller's structs. Its size does not depend on the vignetting, which may not be there yet. */
+static lensprof_status view_structs(const lensprof_apply_options *o, lp_model *m)
+{
+    memset(m, 0, sizeof *m);
+    if (!o->response || (o->responses != 1 && o->responses != 3)) return LENSPROF_ERROR_ARGUMENT;
+    m->responses = o->responses;
+    m->vignettings = o->vignetting && (o->vignettings == 1 || o->vignettings == 3) ? o->vignettings : 0;
+    for (uint32_t c = 0; c < m->responses; c++) view_response(&m->response[c], &o->response[c]);
+    for (uint32_t c = 0; c < m->vignettings; c++) m->vignetting[c] = o->vignetting[c];
+    if (!o->grid) return LENSPROF_OK;
+    m->columns = o->grid->columns, m->rows = o->grid->rows, m->channels = o->grid->channels;
+    m->attenuation = o->grid->attenuation;
+    return lensprof_gain_grid_validate(o->grid);
+}
+
+static lensprof_status view_model(const lensprof_apply_options *o, lp_model *m)
+{
+    if (!o->blob) return view_structs(o, m);
+    if (o->response || o->vignetting || o->grid) return LENSPROF_ERROR_ARGUMENT;
+    lp_blob blob;
+    const lensprof_status status = lp_blob_open(o->blob, o->blob_bytes, &blob);
+    if (status == LENSPROF_OK) *m = blob.model;
+    return status;
+}
+
+/* The responses that pixels pass through: grey is treated as green. */
+static uint32_t curves_of(const lensprof_apply_options *o, const lp_model *m)
+{
+    return lensprof_layout_channels(o->source_layout) == 1 ? 1 : m->responses;
+}
+
+static const struct lp_model_response *response_of(const lensprof_apply_options *o, const lp_model *m, uint32_t curve)
 {
     uint32_t channel = lensprof_layout_channels(o->source_layout) == 1 ? 1 : curve;
-    return &o->response[o->responses == 3 ? channel : 0];
+    return &m->response[m->responses == 3 ? channel : 0];
 }
 
+/* ---- plan ---- */
+
 /* The kind of curve of all channels. */
-static uint32_t kind_of(const lensprof_apply_options *o)
+static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m)
 {
     uint32_t kind = LP_CURVE_NONE;
-    for (uint32_t c = 0; c < curves_of(o); c++) {
-        uint32_t own = response_of(o, c)->kind;
+    for (uint32_t c = 0; c < curves_of(o, m); c++) {
+        uint32_t own = response_of(o, m, c)->kind;
         own = own == LENSPROF_RESPONSE_LINEAR  ? LP_CURVE_CLIP
               : own == LENSPROF_RESPONSE_GAMMA ? LP_CURVE_POWER
                                                : LP_CURVE_TABLE;
@@ -93,55 +130,61 @@ static uint32_t kind_of(const lensprof_apply_options *o)
 static int is_integer(uint32_t sample) { return sample == LENSPROF_SAMPLE_U8 || sample == LENSPROF_SAMPLE_U16; }
 
 /* Codes of a linear response lie within 0..1 as they are. */
-static uint32_t decode_of(const lensprof_apply_options *o)
+static uint32_t decode_of(const lensprof_apply_options *o, const lp_model *m)
 {
-    uint32_t kind = o->input == LENSPROF_ENCODING_LINEAR ? (uint32_t)LP_CURVE_NONE : kind_of(o);
+    uint32_t kind = o->input == LENSPROF_ENCODING_LINEAR ? (uint32_t)LP_CURVE_NONE : kind_of(o, m);
     if (!is_integer(o->source_sample)) return kind;
     if (kind == LP_CURVE_CLIP) return LP_CURVE_NONE;
     if (kind == LP_CURVE_POWER && o->source_sample == LENSPROF_SAMPLE_U16) return kind;
     return kind == LP_CURVE_NONE ? kind : (uint32_t)LP_CURVE_TABLE;
 }
 
-static uint32_t encode_of(const lensprof_apply_options *o)
+static uint32_t encode_of(const lensprof_apply_options *o, const lp_model *m)
 {
-    uint32_t kind = o->output == LENSPROF_ENCODING_LINEAR ? (uint32_t)LP_CURVE_NONE : kind_of(o);
+    uint32_t kind = o->output == LENSPROF_ENCODING_LINEAR ? (uint32_t)LP_CURVE_NONE : kind_of(o, m);
     return kind == LP_CURVE_CLIP && is_integer(o->target_sample) ? (uint32_t)LP_CURVE_NONE : kind;
 }
 
 /* Entries of the table of all codes; 0 without. */
-static size_t codes_of(const lensprof_apply_options *o)
+static size_t codes_of(const lensprof_apply_options *o, const lp_model *m)
 {
-    if (!is_integer(o->source_sample) || decode_of(o) != LP_CURVE_TABLE) return 0;
+    if (!is_integer(o->source_sample) || decode_of(o, m) != LP_CURVE_TABLE) return 0;
     return o->source_sample == LENSPROF_SAMPLE_U8 ? 256 : 65536;
 }
 
 /* Entries of the table of the response; 0 where none is asked. */
-static size_t samples_of(const lensprof_apply_options *o)
+static size_t samples_of(const lensprof_apply_options *o, const lp_model *m)
 {
-    uint32_t decode = codes_of(o) ? (uint32_t)LP_CURVE_NONE : decode_of(o), encode = encode_of(o);
+    uint32_t decode = codes_of(o, m) ? (uint32_t)LP_CURVE_NONE : decode_of(o, m), encode = encode_of(o, m);
     int is_asked = decode == LP_CURVE_TABLE || decode == LP_CURVE_MIXED || encode == LP_CURVE_TABLE
                    || encode == LP_CURVE_MIXED;
     return is_asked ? LENSPROF_RESPONSE_SAMPLES : 0;
 }
 
-static size_t nodes_of(const lensprof_apply_options *o)
+static size_t nodes_of(const lp_model *m) { return (size_t)m->channels * m->rows * m->columns; }
+
+static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m)
 {
-    return o->grid ? (size_t)o->grid->channels * o->grid->rows * o->grid->columns : 0;
+    const size_t numbers = curves_of(o, m) * (samples_of(o, m) + codes_of(o, m)) + nodes_of(m);
+    return sizeof(lensprof_plan) + numbers * sizeof(float);
 }
 
 size_t lensprof_plan_bytes(const lensprof_apply_options *o)
 {
-    if (!o || o->struct_size != sizeof *o || !o->response) return 0;
-    if (!lensprof_sample_bytes(o->source_sample) || !lensprof_sample_bytes(o->target_sample)
-        || !lensprof_layout_samples(o->source_layout) || (o->responses != 1 && o->responses != 3))
+    lp_model model;
+    if (!o || o->struct_size != sizeof *o || !lensprof_sample_bytes(o->source_sample)
+        || !lensprof_sample_bytes(o->target_sample) || !lensprof_layout_samples(o->source_layout))
         return 0;
-    if (o->grid && lensprof_gain_grid_validate(o->grid) != LENSPROF_OK) return 0;
-    return sizeof(lensprof_plan) + (curves_of(o) * (samples_of(o) + codes_of(o)) + nodes_of(o)) * sizeof(float);
+    return view_model(o, &model) == LENSPROF_OK ? bytes_of(o, &model) : 0;
 }
 
-static lensprof_status validate_model(const lensprof_apply_options *o)
+/* The model in the caller's structs; view_model checks the grid, and all of a blob. */
+static lensprof_status validate_structs(const lensprof_apply_options *o)
 {
     lensprof_status status = LENSPROF_OK;
+    if (!o->response || !o->vignetting || (o->responses != 1 && o->responses != 3)
+        || (o->vignettings != 1 && o->vignettings != 3))
+        return LENSPROF_ERROR_ARGUMENT;
     for (uint32_t c = 0; c < o->responses && status == LENSPROF_OK; c++)
         status = lensprof_response_validate(&o->response[c]);
     for (uint32_t c = 0; c < o->vignettings && status == LENSPROF_OK; c++) {
@@ -150,7 +193,6 @@ static lensprof_status validate_model(const lensprof_apply_options *o)
                                       || o->vignetting[c].center[1] != o->vignetting[0].center[1]))
             status = LENSPROF_ERROR_VIGNETTING; /* one centre for all channels */
     }
-    if (status == LENSPROF_OK && o->grid) status = lensprof_gain_grid_validate(o->grid);
     return status;
 }
 
@@ -165,8 +207,7 @@ static lensprof_status validate_options(const lensprof_apply_options *o)
     if (o->direction > LENSPROF_DIRECTION_SIMULATE || o->input > LENSPROF_ENCODING_LINEAR
         || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE
         || !lensprof_sample_bytes(o->source_sample) || !lensprof_sample_bytes(o->target_sample)
-        || !lensprof_layout_samples(o->source_layout) || !o->response || !o->vignetting
-        || (o->responses != 1 && o->responses != 3) || (o->vignettings != 1 && o->vignettings != 3))
+        || !lensprof_layout_samples(o->source_layout))
         return LENSPROF_ERROR_ARGUMENT;
     if (!(o->strength >= 0.0 && o->strength <= 1.0) || o->dither > 1 || o->reserved
         || !(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LARGEST_GAIN_CAP)))
@@ -177,53 +218,65 @@ static lensprof_status validate_options(const lensprof_apply_options *o)
     if (status == LENSPROF_OK) status = lensprof_exposure_validate(&o->target);
     for (uint32_t c = 0; c < 3 && status == LENSPROF_OK; c++) /* single precision must hold the factor */
         if (!(factor_of(o, c) >= 1e-12 && factor_of(o, c) <= 1e12)) status = LENSPROF_ERROR_EXPOSURE;
-    return status == LENSPROF_OK ? validate_model(o) : status;
+    return status == LENSPROF_OK && !o->blob ? validate_structs(o) : status;
+}
+
+static int is_power(const struct lp_model_response *response)
+{
+    return response->kind == LENSPROF_RESPONSE_LINEAR || response->kind == LENSPROF_RESPONSE_GAMMA;
 }
 
 /* g of every code. As codes rise, so does the place among the response's samples. */
-static void fill_inverse(const lensprof_response *response, size_t codes, float *inverse)
+static void fill_inverse(const struct lp_model_response *response, size_t codes, float *inverse)
 {
-    const int is_table = response->kind == LENSPROF_RESPONSE_EMOR || response->kind == LENSPROF_RESPONSE_TABLE;
-    for (size_t code = 0, j = 0; code < codes; code++) {
-        const double b = (double)code / (double)(codes - 1);
-        while (is_table && j + 2 < LENSPROF_RESPONSE_SAMPLES && response->table[j + 1] < b) j++;
-        inverse[code] = !is_table ? (float)lensprof_response_invert(response, b, NULL)
-                        : code    ? (float)lp_curve_invert_between(response->table, b, (uint32_t)j, (uint32_t)j + 1, NULL)
-                                  : 0.0f;
+    const double last = (double)(codes - 1);
+    inverse[0] = 0.0f;
+    for (size_t code = 1; is_power(response) && code < codes; code++)
+        inverse[code] = (float)lp_curve_power((double)code / last, response->gamma, NULL);
+    if (is_power(response)) return;
+    double below = 0.0, above = lp_model_sample(response, 1);
+    uint32_t j = 0;
+    for (size_t code = 1; code < codes; code++) {
+        const double b = (double)code / last;
+        for (; above < b && j + 2 < LENSPROF_RESPONSE_SAMPLES; j++) {
+            below = above;
+            above = lp_model_sample(response, j + 2);
+        }
+        inverse[code] = (float)lp_curve_between(below, above, b, j);
     }
 }
 
 /* Fills the tables of the curves at `memory`; returns the memory behind them. */
-static float *prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, float *memory)
+static float *prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m,
+                             float *memory)
 {
-    const size_t samples = samples_of(o), codes = codes_of(o);
-    plan->curves = curves_of(o);
-    plan->decode = decode_of(o);
-    plan->encode = encode_of(o);
+    const size_t samples = samples_of(o, m), codes = codes_of(o, m);
+    plan->curves = curves_of(o, m);
+    plan->decode = decode_of(o, m);
+    plan->encode = encode_of(o, m);
     plan->forward = memory;
     plan->inverse = codes ? memory + plan->curves * samples : NULL;
     plan->inverse_shift = codes == 256 ? 8 : 16;
     for (uint32_t c = 0; c < plan->curves; c++) {
-        const lensprof_response *response = response_of(o, c);
-        const int is_power = response->kind == LENSPROF_RESPONSE_GAMMA || response->kind == LENSPROF_RESPONSE_LINEAR;
-        plan->exponent[c] = is_power ? (float)(1.0 / response->gamma) : 0.0f;
-        plan->inverse_exponent[c] = is_power ? (float)response->gamma : 0.0f;
-        for (size_t j = 0; j < samples; j++) memory[c * samples + j] = (float)response->table[j];
-        fill_inverse(response, codes, memory + plan->curves * samples + c * codes);
+        const struct lp_model_response *response = response_of(o, m, c);
+        plan->exponent[c] = is_power(response) ? (float)(1.0 / response->gamma) : 0.0f;
+        plan->inverse_exponent[c] = is_power(response) ? (float)response->gamma : 0.0f;
+        for (size_t j = 0; j < samples; j++) /* not read where there is an exponent */
+            memory[c * samples + j] = is_power(response) ? 0.0f : (float)lp_model_sample(response, (uint32_t)j);
+        if (codes) fill_inverse(response, codes, memory + plan->curves * samples + c * codes);
     }
     return memory + plan->curves * (samples + codes);
 }
 
 /* Copies the nodes of the gain grid, less 1, to `memory`. */
-static void prepare_grid(lensprof_plan *plan, const lensprof_apply_options *o, float *memory)
+static void prepare_grid(lensprof_plan *plan, const lp_model *m, float *memory)
 {
-    const lensprof_gain_grid *grid = o->grid;
-    if (!nodes_of(o)) return;
-    plan->columns = grid->columns;
-    plan->rows = grid->rows;
-    for (size_t i = 0; i < nodes_of(o); i++) memory[i] = grid->attenuation[i] - 1.0f;
+    if (!nodes_of(m)) return;
+    plan->columns = m->columns;
+    plan->rows = m->rows;
+    for (uint32_t i = 0; i < nodes_of(m); i++) memory[i] = lp_model_node(m, i) - 1.0f;
     for (uint32_t c = 0; c < LP_CHANNELS; c++)
-        plan->nodes[c] = memory + (grid->channels == 3 ? c : 0) * grid->rows * grid->columns;
+        plan->nodes[c] = memory + (m->channels == 3 ? c : 0) * m->rows * m->columns;
 }
 
 static void prepare_layout(lensprof_plan *plan, const lensprof_apply_options *o)
@@ -246,10 +299,10 @@ static double unit_of(uint32_t sample, int is_linear)
 }
 
 /* Falloff and factor of a channel. The gain is factor / M, or M / factor to simulate. */
-static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, uint32_t channel)
+static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m, uint32_t channel)
 {
     const double w = o->frame_width, h = o->frame_height, per_rho2 = 4.0 / (w * w + h * h);
-    const double *k = o->vignetting[o->vignettings == 3 ? channel : 0].k;
+    const double *k = m->vignetting[m->vignettings == 3 ? channel : 0].k;
     const uint32_t at = plan->channels == 1 ? 0 : channel; /* grey is treated as green */
     double scale = plan->columns ? 1.0 : o->strength;
     for (int n = 0; n < 3; n++) plan->k[at][n] = (float)(k[n] * (scale *= per_rho2));
@@ -259,11 +312,11 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, u
     if (at != channel) plan->nodes[at] = plan->nodes[channel];
 }
 
-static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o)
+static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m)
 {
     const double w = o->frame_width, h = o->frame_height, rho = 0.5 * sqrt(w * w + h * h);
     for (int d = 0; d < 2; d++) {
-        const double center = 0.5 * ((d ? h : w) - 1.0) + rho * o->vignetting[0].center[d];
+        const double center = 0.5 * ((d ? h : w) - 1.0) + rho * m->vignetting[0].center[d];
         plan->center_px[d] = (int32_t)floor(center + 0.5);
         plan->center_part[d] = (float)(center - plan->center_px[d]);
     }
@@ -272,7 +325,7 @@ static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o)
     plan->gains = 1;
     for (uint32_t c = 0; c < LP_CHANNELS; c++) {
         if (plan->channels == 1 && c != 1) continue;
-        prepare_gain(plan, o, c);
+        prepare_gain(plan, o, m, c);
         if (plan->channels == 3
             && (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0]) || plan->factor[c] != plan->factor[0]
                 || plan->nodes[c] != plan->nodes[0]))
@@ -284,9 +337,11 @@ lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_ap
                                    const lensprof_plan **result)
 {
     if (!memory || !options || !result) return LENSPROF_ERROR_ARGUMENT;
+    lp_model model;
     lensprof_status status = validate_options(options);
+    if (status == LENSPROF_OK) status = view_model(options, &model);
     if (status != LENSPROF_OK) return status;
-    if (bytes < lensprof_plan_bytes(options) || (uintptr_t)memory % 8) return LENSPROF_ERROR_CAPACITY;
+    if (bytes < bytes_of(options, &model) || (uintptr_t)memory % 8) return LENSPROF_ERROR_CAPACITY;
 
     lensprof_plan *plan = memory;
     memset(plan, 0, sizeof *plan);
@@ -302,9 +357,9 @@ lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_ap
                           && !is_mosaic(plan->layout) && options->input == LENSPROF_ENCODING_RESPONSE
                           && options->output == LENSPROF_ENCODING_RESPONSE;
     float *tables = (float *)(void *)(plan + 1);
-    tables = prepare_curves(plan, options, tables);
-    prepare_grid(plan, options, tables);
-    prepare_gains(plan, options);
+    tables = prepare_curves(plan, options, &model, tables);
+    prepare_grid(plan, &model, tables);
+    prepare_gains(plan, options, &model);
     *result = plan;
     return LENSPROF_OK;
 }

@@ -5,29 +5,22 @@
 #include <string.h>
 
 #define NODES_MAX (3u * LENSPROF_GRID_SIDE * LENSPROF_GRID_SIDE)
-#define SMALLEST 0.001f
-#define LARGEST 1000.0f
 
 void lensprof_gain_grid_init(lensprof_gain_grid *grid)
 {
     memset(grid, 0, sizeof *grid);
 }
 
-static int is_side(uint32_t nodes)
-{
-    return nodes >= 2 && nodes <= LENSPROF_GRID_SIDE;
-}
-
 lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid)
 {
     if (!grid || grid->reserved) return LENSPROF_ERROR_ARGUMENT;
     int none = !grid->columns && !grid->rows;
-    if (!none && (!is_side(grid->columns) || !is_side(grid->rows))) return LENSPROF_ERROR_SIZE;
+    if (!none && (!lp_is_grid_side(grid->columns) || !lp_is_grid_side(grid->rows))) return LENSPROF_ERROR_SIZE;
     if (none ? grid->channels != 0 : grid->channels != 1 && grid->channels != 3) return LENSPROF_ERROR_ARGUMENT;
     uint32_t used = grid->channels * grid->rows * grid->columns;
     for (uint32_t i = 0; i < used; i++) {
         if (!isfinite(grid->attenuation[i])) return LENSPROF_ERROR_NOT_FINITE;
-        if (!(grid->attenuation[i] >= SMALLEST && grid->attenuation[i] <= LARGEST)) return LENSPROF_ERROR_VIGNETTING;
+        if (!lp_is_attenuation(grid->attenuation[i])) return LENSPROF_ERROR_VIGNETTING;
     }
     for (uint32_t i = used; i < NODES_MAX; i++)
         if (grid->attenuation[i] != 0.0f) return LENSPROF_ERROR_ARGUMENT;

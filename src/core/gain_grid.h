@@ -1,9 +1,14 @@
-/* Where a position lies between the nodes of a gain grid, and the value there: for one position, and for the pixels of
- * a row, whose columns and rows are looked up apart. */
+/* What a gain grid may hold; where a position lies between its nodes, and the value there: for one position, and for
+ * the pixels of a row, whose columns and rows are looked up apart. */
 #ifndef LENSPROF_CORE_GAIN_GRID_H
 #define LENSPROF_CORE_GAIN_GRID_H
 
 #include <lensprof/model.h>
+
+static inline int lp_is_grid_side(uint32_t nodes) { return nodes >= 2 && nodes <= LENSPROF_GRID_SIDE; }
+
+/* Also false for NaN. */
+static inline int lp_is_attenuation(float value) { return value >= 0.001f && value <= 1000.0f; }
 
 /* The node before a position on one axis, with a node behind it, and how far towards that one, 0..1. */
 typedef struct lp_grid_cell {

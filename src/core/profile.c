@@ -1,5 +1,5 @@
 /* Profiles as values: defaults and validation. */
-#include <lensprof/profile.h>
+#include "profile.h"
 
 #include <math.h>
 #include <string.h>
@@ -49,7 +49,7 @@ void lensprof_profile_init(lensprof_profile *profile)
     for (int c = 0; c < 3; c++) lensprof_response_set_linear(&profile->response[c]);
 }
 
-static lensprof_status validate_provenance(const lensprof_provenance *p)
+lensprof_status lp_provenance_validate(const lensprof_provenance *p)
 {
     if (!is_text(p->method, sizeof p->method) || !is_text(p->software, sizeof p->software)
         || !is_text(p->source, sizeof p->source))
@@ -90,7 +90,7 @@ lensprof_status lensprof_profile_validate(const lensprof_profile *profile)
         || (profile->vignettings != 1 && profile->vignettings != 3))
         return LENSPROF_ERROR_ARGUMENT;
     lensprof_status status = lensprof_profile_key_validate(&profile->key);
-    if (status == LENSPROF_OK) status = validate_provenance(&profile->provenance);
+    if (status == LENSPROF_OK) status = lp_provenance_validate(&profile->provenance);
     for (uint32_t c = 0; c < profile->responses && status == LENSPROF_OK; c++)
         status = lensprof_response_validate(&profile->response[c]);
     for (uint32_t c = 0; c < profile->vignettings && status == LENSPROF_OK; c++)

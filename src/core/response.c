@@ -33,7 +33,7 @@ void lensprof_response_set_linear(lensprof_response *response)
 lensprof_status lensprof_response_set_gamma(lensprof_response *response, double gamma)
 {
     if (!response) return LENSPROF_ERROR_ARGUMENT;
-    if (!(gamma >= 0.1 && gamma <= 10.0)) return LENSPROF_ERROR_RESPONSE;
+    if (!lp_is_gamma(gamma)) return LENSPROF_ERROR_RESPONSE;
     memset(response, 0, sizeof *response);
     response->kind = LENSPROF_RESPONSE_GAMMA;
     response->gamma = gamma;
@@ -98,7 +98,7 @@ lensprof_status lensprof_response_validate(const lensprof_response *response)
 {
     if (!response || response->kind > LENSPROF_RESPONSE_TABLE) return LENSPROF_ERROR_ARGUMENT;
     if (response->modes > LENSPROF_EMOR_MODES) return LENSPROF_ERROR_RESPONSE;
-    if (response->kind == LENSPROF_RESPONSE_GAMMA && !(response->gamma >= 0.1 && response->gamma <= 10.0))
+    if (response->kind == LENSPROF_RESPONSE_GAMMA && !lp_is_gamma(response->gamma))
         return LENSPROF_ERROR_RESPONSE;
     if (response->kind == LENSPROF_RESPONSE_EMOR)
         for (uint32_t l = 0; l < LENSPROF_EMOR_MODES; l++)
@@ -107,8 +107,7 @@ lensprof_status lensprof_response_validate(const lensprof_response *response)
     return is_curve(response->table) ? LENSPROF_OK : LENSPROF_ERROR_RESPONSE;
 }
 
-/* x^exponent and its slope on [0,1]; the slope of a root at 0 is infinite and stated as 0, as outside. */
-static double power(double x, double exponent, double *slope)
+double lp_curve_power(double x, double exponent, double *slope)
 {
     if (slope) *slope = 0.0;
     if (!(x > 0.0)) return 0.0;
@@ -121,8 +120,8 @@ static double power(double x, double exponent, double *slope)
 double lensprof_response_eval(const lensprof_response *response, double x, double *slope)
 {
     switch (response->kind) {
-    case LENSPROF_RESPONSE_LINEAR: return power(x, 1.0, slope);
-    case LENSPROF_RESPONSE_GAMMA: return power(x, 1.0 / response->gamma, slope);
+    case LENSPROF_RESPONSE_LINEAR: return lp_curve_power(x, 1.0, slope);
+    case LENSPROF_RESPONSE_GAMMA: return lp_curve_power(x, 1.0 / response->gamma, slope);
     default: return lp_curve_eval(response->table, x, slope);
     }
 }
@@ -130,8 +129,8 @@ double lensprof_response_eval(const lensprof_response *response, double x, doubl
 double lensprof_response_invert(const lensprof_response *response, double b, double *slope)
 {
     switch (response->kind) {
-    case LENSPROF_RESPONSE_LINEAR: return power(b, 1.0, slope);
-    case LENSPROF_RESPONSE_GAMMA: return power(b, response->gamma, slope);
+    case LENSPROF_RESPONSE_LINEAR: return lp_curve_power(b, 1.0, slope);
+    case LENSPROF_RESPONSE_GAMMA: return lp_curve_power(b, response->gamma, slope);
     default: return lp_curve_invert(response->table, b, slope);
     }
 }

@@ -10,6 +10,9 @@ extern "C" {
 
 #define LP_CURVE_LAST (LENSPROF_RESPONSE_SAMPLES - 1)
 
+/* Whether an exponent is one of a response. */
+static inline int lp_is_gamma(double gamma) { return gamma >= 0.1 && gamma <= 10.0; }
+
 /* f(x) of a table of 1024 samples; slope as lensprof_response_eval. The table need not end at 1. */
 static inline double lp_curve_eval(const double *table, double x, double *slope)
 {
@@ -24,6 +27,12 @@ static inline double lp_curve_eval(const double *table, double x, double *slope)
     return table[j] + (position - j) * step;
 }
 
+/* Where f is b, given its samples j and j + 1: below < b <= above. */
+static inline double lp_curve_between(double below, double above, double b, uint32_t j)
+{
+    return (j + (b - below) / (above - below)) / LP_CURVE_LAST;
+}
+
 /* Smallest x with f(x) >= b, where table[low] < b <= table[high]; slope dg/db as lensprof_response_invert. */
 static inline double lp_curve_invert_between(const double *table, double b, uint32_t low, uint32_t high, double *slope)
 {
@@ -32,9 +41,8 @@ static inline double lp_curve_invert_between(const double *table, double b, uint
         if (table[middle] < b) low = middle;
         else high = middle;
     }
-    double step = table[high] - table[low];
-    if (slope) *slope = 1.0 / (step * LP_CURVE_LAST);
-    return (low + (b - table[low]) / step) / LP_CURVE_LAST;
+    if (slope) *slope = 1.0 / ((table[high] - table[low]) * LP_CURVE_LAST);
+    return lp_curve_between(table[low], table[high], b, low);
 }
 
 /* The same over the whole table, which must not decrease. */
@@ -45,6 +53,9 @@ static inline double lp_curve_invert(const double *table, double b, double *slop
     if (b > table[LP_CURVE_LAST]) return 1.0;
     return lp_curve_invert_between(table, b, 0, LP_CURVE_LAST, slope);
 }
+
+/* x^exponent on [0,1], cut to it, and its slope; the slope of a root at 0 is infinite and stated as 0, as outside. */
+double lp_curve_power(double x, double exponent, double *slope);
 
 /* table = f0 + sum coefficients[l] h_(l+1), ends set to 0 and 1 exactly. Not checked for monotony. */
 void lp_emor_curve(const double *coefficients, uint32_t modes, double *table);

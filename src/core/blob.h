@@ -1,0 +1,104 @@
+/* Profile blobs (docs/blob.md), read where they lie; and the model of a plan, which comes from a blob or from the
+ * caller's structs. */
+#ifndef LENSPROF_CORE_BLOB_H
+#define LENSPROF_CORE_BLOB_H
+
+#include <string.h>
+
+#include <lensprof/profile.h>
+
+#define LP_BLOB_LAYOUT 1
+#define LP_BLOB_FIXED 100 /* bytes before what varies in length */
+
+/* Byte offsets of the fixed part. */
+enum lp_blob_offset {
+    LP_BLOB_MAGIC = 0,
+    LP_BLOB_VERSION = 4,        /* u16, then u16 0 */
+    LP_BLOB_BYTES = 8,          /* u32: of the whole blob */
+    LP_BLOB_PROCESSING = 12,    /* bytes from here on */
+    LP_BLOB_RESPONSES = 13,
+    LP_BLOB_VIGNETTINGS = 14,
+    LP_BLOB_GRID = 15,          /* channels, columns, rows */
+    LP_BLOB_COVARIANCE = 18,    /* its size n, then 0 */
+    LP_BLOB_TEXTS = 20,         /* lengths of the five texts, then three 0 */
+    LP_BLOB_KEY = 28,           /* focal_mm, aperture, distance_m */
+    LP_BLOB_CENTER = 52,        /* x, y */
+    LP_BLOB_CREATED = 68,       /* i64 */
+    LP_BLOB_COUNTS = 76,        /* images, pairs: u32 */
+    LP_BLOB_QUALITY = 84        /* heldout_rms, inlier_share */
+};
+
+/* ---- numbers: little-endian, at any address ---- */
+
+static inline uint32_t lp_u32_at(const uint8_t *p)
+{
+    return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
+static inline uint64_t lp_u64_at(const uint8_t *p) { return lp_u32_at(p) | (uint64_t)lp_u32_at(p + 4) << 32; }
+
+static inline float lp_f32_at(const uint8_t *p)
+{
+    uint32_t bits = lp_u32_at(p);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static inline double lp_f64_at(const uint8_t *p)
+{
+    uint64_t bits = lp_u64_at(p);
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* ---- models ---- */
+
+/* What a plan is made of. Where samples or nodes lie in a blob, `table` or `attenuation` is NULL. */
+typedef struct lp_model {
+    uint32_t responses, vignettings;
+    struct lp_model_response {
+        uint32_t kind;         /* lensprof_response_kind */
+        double gamma;          /* of GAMMA; else 1 */
+        const double *table;   /* the samples of EMOR and TABLE */
+        const uint8_t *packed; /* the same, f32 */
+    } response[3];
+    lensprof_vignetting vignetting[3];
+    uint32_t columns, rows, channels; /* of the gain grid; 0 = none */
+    const float *attenuation;
+    const uint8_t *packed_attenuation;
+} lp_model;
+
+static inline double lp_model_sample(const struct lp_model_response *response, uint32_t j)
+{
+    return response->table ? response->table[j] : (double)lp_f32_at(response->packed + 4 * j);
+}
+
+static inline float lp_model_node(const lp_model *model, uint32_t i)
+{
+    return model->attenuation ? model->attenuation[i] : lp_f32_at(model->packed_attenuation + 4 * i);
+}
+
+/* ---- blobs ---- */
+
+/* Where the parts of a blob are that vary in length. */
+typedef struct lp_blob {
+    const uint8_t *bytes;       /* its first byte: the fixed part */
+    const uint8_t *response[3]; /* kind, modes, 0, 0; then a gamma, or coefficients and samples */
+    const uint8_t *covariance;  /* upper triangle, row by row, f64 */
+    const uint8_t *text;        /* maker, model, lens, method, software, without gaps */
+    lp_model model;
+} lp_blob;
+
+/* CRC-32 of IEEE 802.3: reflected, polynomial 0xEDB88320. */
+uint32_t lp_crc32(const uint8_t *bytes, size_t count);
+
+/* Finds the parts and checks everything in them, as lensprof_profile_unpack states. */
+lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob);
+
+/* Key and provenance of an open blob; 0 where a text does not fit. */
+int lp_blob_key(const lp_blob *blob, lensprof_profile_key *key);
+int lp_blob_provenance(const lp_blob *blob, lensprof_provenance *provenance);
+
+#endif
