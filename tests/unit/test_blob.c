@@ -396,8 +396,8 @@ static void test_huge_sizes(void **state)
     uint8_t *blob = calloc(1, ROOM);
     size_t bytes;
     uint8_t *golden = golden_blob(0, &bytes);
-    static const uint8_t huge[][3] = {{3, 33, 33}, {3, 255, 255}, {255, 255, 255}, {1, 1, 2}, {2, 2, 2}, {1, 0, 2},
-                                      {0, 2, 2}};
+    static const uint8_t huge[][3] = {{3, 33, 33}, {3, 255, 255}, {255, 255, 255}, {1, 1, 2}, {1, 2, 1},  {1, 33, 2},
+                                      {1, 2, 33},  {3, 32, 255},  {2, 2, 2},       {1, 0, 2}, {1, 2, 0},  {0, 2, 2}};
     for (size_t n = 0; n < sizeof huge / sizeof huge[0]; n++)
         for (size_t more = 0; more < 2; more++) {
             const size_t nodes = (size_t)huge[n][0] * huge[n][1] * huge[n][2],
