@@ -56,6 +56,7 @@ std::string note_of(const std::vector<StoredProfile> &profiles) {
     for (const StoredProfile &stored : profiles)
         if (stored.profile->grid.columns) ids += (ids.empty() ? "" : ", ") + std::to_string(stored.id);
     if (ids.empty()) return ids;
+    if (!profiles[0].id) return "without the gain grid";
     const bool is_one = ids.find(',') == std::string::npos;
     return (is_one ? "without the gain grid of profile " : "without the gain grids of profiles ") + ids;
 }
@@ -144,7 +145,7 @@ Chart make_chart(const std::vector<StoredProfile> &profiles, int channel) {
             ChartCurve &curve = chart.curves.back();
             curve.label = printable(labels[i]);
             if (curve.channel >= 0) curve.label += (curve.label.empty() ? "" : ", ") + std::string(channel_names[c]);
-            if (curve.label.empty()) curve.label = "profile " + std::to_string(curve.id);
+            if (curve.label.empty()) curve.label = curve.id ? "profile " + std::to_string(curve.id) : "blob";
         }
     chart.title = printable(chart.title);
     chart.note = note_of(profiles);
@@ -188,7 +189,7 @@ Json chart_json(const Chart &chart) {
             sigma.push_back(curve.sigma[i]);
             ev.push_back(std::log2(curve.m[i]) + 0.0);
         }
-        json["id"] = curve.id;
+        json["id"] = curve.id ? Json(curve.id) : Json();
         json["label"] = curve.label;
         json["channel"] = curve.channel < 0 ? Json() : Json(channel_names[curve.channel]);
         json["r"] = r;

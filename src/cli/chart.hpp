@@ -16,7 +16,7 @@ constexpr size_t chart_samples = 101; /* of a curve, at r = i/100 */
 constexpr size_t chart_max_curves = 24;
 
 struct ChartCurve {
-    int64_t id;        /* of the profile */
+    int64_t id;        /* of the profile; 0 = of a blob */
     int channel;       /* 0..2; -1 = one curve for all channels */
     std::string label; /* what the curve does not share with the others */
     double m[chart_samples];
@@ -31,7 +31,7 @@ struct Chart {
 };
 
 struct StoredProfile {
-    int64_t id;
+    int64_t id; /* 0: of a blob, alone */
     std::unique_ptr<lensprof_profile> profile;
 };
 

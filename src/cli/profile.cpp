@@ -1,10 +1,11 @@
-/* `lensprof profile list | show | remove`. */
+/* `lensprof profile list | show | remove | export`. */
 #include <algorithm>
 
 #include "chart.hpp"
 #include "falloff.hpp"
 #include "key_filter.hpp"
 #include "library.hpp"
+#include "profile_blob.hpp"
 #include "report.hpp"
 #include "run.hpp"
 
@@ -41,15 +42,15 @@ int list(const std::string &db, bool json, Streams &streams) {
     return 0;
 }
 
-/* What `profile show` is asked for. */
-struct ShowOptions {
+/* What a verb is asked for. */
+struct ProfileOptions {
     std::vector<int64_t> ids;
     KeyFilter filter;
-    std::string db, chart_out, channel;
-    bool json = false, chart = false;
+    std::string db, blob, chart_out, channel;
+    bool json = false, chart = false, covariance = false;
 };
 
-std::vector<StoredProfile> read_profiles(const ShowOptions &o) {
+std::vector<StoredProfile> read_profiles(const ProfileOptions &o) {
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     std::vector<int64_t> ids = o.ids;
     if (ids.empty())
@@ -66,7 +67,7 @@ std::vector<StoredProfile> read_profiles(const ShowOptions &o) {
 }
 
 /* One curve a profile where there are several, so that they can be compared. */
-int channel_of(const ShowOptions &o, size_t profiles) {
+int channel_of(const ProfileOptions &o, size_t profiles) {
     static const char *const names[] = {"red", "green", "blue"};
     if (o.channel.empty()) return profiles > 1 ? 1 : -1;
     for (int c = 0; c < 3; c++)
@@ -102,16 +103,36 @@ void keep_with_falloff(std::vector<StoredProfile> &profiles) {
                                                  "or `lensprof build`");
 }
 
-int show(const ShowOptions &o, Streams &streams) {
-    if (o.ids.empty() == o.filter.is_empty())
+/* The blob's own line, then the profile as one of a database. */
+void print_blob(const std::string &path, const BlobStamp &stamp, const lensprof_profile &profile, bool json,
+                Streams &streams) {
+    if (!json) {
+        streams.out << format("blob      %s: %zu bytes, CRC-32 %s\n", path.c_str(), stamp.bytes, stamp.crc32.c_str());
+        print_profile(0, profile, streams.out);
+        return;
+    }
+    Json object = profile_json(0, profile);
+    object["blob"] = Json{{"file", path}, {"bytes", stamp.bytes}, {"crc32", stamp.crc32}};
+    print_json(object, streams.out);
+}
+
+int show(const ProfileOptions &o, Streams &streams) {
+    if (int(!o.ids.empty()) + int(!o.filter.is_empty()) + int(!o.blob.empty()) != 1)
         throw Failure(ExitCode::usage, "profile show: give either ids that `lensprof profile list` shows, or --camera, "
-                                       "--lens and the like");
+                                       "--lens and the like, or --blob");
+    if (!o.blob.empty() && !o.db.empty())
+        throw Failure(ExitCode::usage, "profile show: --blob reads a file of its own; leave --db out");
     if (!o.chart_out.empty()) check_chart_name(o.chart_out);
-    if (is_same_file(o.chart_out, store_path(o.db)))
-        throw Failure(ExitCode::usage, o.chart_out + ": is the profile database; give --chart-out another name");
-    std::vector<StoredProfile> profiles = read_profiles(o);
+    if (is_same_file(o.chart_out, o.blob.empty() ? store_path(o.db) : o.blob))
+        throw Failure(ExitCode::usage, o.chart_out + ": is the " + (o.blob.empty() ? "profile database" : "blob")
+                                           + "; give --chart-out another name");
+    std::vector<StoredProfile> profiles;
+    BlobStamp stamp{};
+    if (o.blob.empty()) profiles = read_profiles(o);
+    else profiles.push_back({0, read_blob(o.blob, stamp)});
     if (!o.chart && o.chart_out.empty()) {
-        print_profiles(profiles, o.json, streams);
+        if (o.blob.empty()) print_profiles(profiles, o.json, streams);
+        else print_blob(o.blob, stamp, *profiles[0].profile, o.json, streams);
         return 0;
     }
     keep_with_falloff(profiles);
@@ -132,8 +153,27 @@ int remove(const std::string &db, int64_t id, bool json, Streams &streams) {
     return 0;
 }
 
+int export_blob(const ProfileOptions &o, Streams &streams) {
+    if (is_same_file(o.blob, store_path(o.db)))
+        throw Failure(ExitCode::usage, o.blob + ": is the profile database; give --blob another name");
+    const std::vector<StoredProfile> profiles = read_profiles(o);
+    const lensprof_profile &profile = *profiles[0].profile;
+    const BlobStamp stamp = write_blob(profile, o.covariance, o.blob);
+    if (o.json) {
+        print_json(Json{{"schema", 1}, {"profile", o.ids[0]},
+                        {"blob", {{"file", o.blob}, {"bytes", stamp.bytes}, {"crc32", stamp.crc32}}},
+                        {"covariance_size", o.covariance ? profile.covariance_size : 0}},
+                   streams.out);
+        return 0;
+    }
+    streams.out << format("wrote %s: profile %lld, %zu bytes, CRC-32 %s\n", o.blob.c_str(),
+                          static_cast<long long>(o.ids[0]), stamp.bytes, stamp.crc32.c_str());
+    if (o.covariance && !profile.covariance_size) streams.out << "its covariance is not known: there is none in it\n";
+    return 0;
+}
+
 /* Options that a verb would not look at are mistakes. */
-void check_verb(const std::string &verb, const ShowOptions &o) {
+void check_verb(const std::string &verb, const ProfileOptions &o) {
     if (verb != "show" && (o.chart || !o.chart_out.empty() || !o.channel.empty()))
         throw Failure(ExitCode::usage, "profile " + verb + ": --chart, --chart-out and --channel belong to show");
     if (verb == "show" && !o.channel.empty() && !o.chart && o.chart_out.empty())
@@ -142,18 +182,26 @@ void check_verb(const std::string &verb, const ShowOptions &o) {
         throw Failure(ExitCode::usage, "profile " + verb + ": --camera, --lens and the like belong to show");
     if (verb == "list" && !o.ids.empty())
         throw Failure(ExitCode::usage, "profile list: lists all profiles, without an id; `profile show` takes ids");
-    if (verb == "remove" && o.ids.size() != 1)
-        throw Failure(ExitCode::usage, "profile remove: give the id, one, that `lensprof profile list` shows");
+    if ((verb == "remove" || verb == "export") && o.ids.size() != 1)
+        throw Failure(ExitCode::usage, "profile " + verb + ": give the id, one, that `lensprof profile list` shows");
+    if ((verb == "list" || verb == "remove") && !o.blob.empty())
+        throw Failure(ExitCode::usage, "profile " + verb + ": --blob belongs to show and export");
+    if (verb == "export" && o.blob.empty())
+        throw Failure(ExitCode::usage, "profile export: name the file to be written with --blob");
+    if (verb != "export" && o.covariance)
+        throw Failure(ExitCode::usage, "profile " + verb + ": --covariance belongs to export");
 }
 
 }  // namespace
 
 int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
     std::string verb;
-    ShowOptions o;
-    CLI::App app("Lists, shows or removes profiles of the database.", "lensprof profile");
-    app.add_option("VERB", verb, "list, show or remove")->required()->check(CLI::IsMember({"list", "show", "remove"}));
-    app.add_option("ID", o.ids, "profiles to show, or the one to remove")->check(CLI::PositiveNumber);
+    ProfileOptions o;
+    CLI::App app("Lists, shows, removes or exports profiles of the database.", "lensprof profile");
+    app.add_option("VERB", verb, "list, show, remove or export")
+        ->required()
+        ->check(CLI::IsMember({"list", "show", "remove", "export"}));
+    app.add_option("ID", o.ids, "profiles to show, or the one to remove or export")->check(CLI::PositiveNumber);
     app.add_option("--db", o.db, "profile database; default the user's own");
     app.add_flag("--json", o.json, "print one JSON object");
     app.add_flag("--chart", o.chart, "show: relative illuminance, M over r, as a chart and a table instead");
@@ -162,12 +210,17 @@ int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
                    "in charts, of profiles with a falloff a channel: red, green, blue or all; default all for one "
                    "profile, green for several")
         ->check(CLI::IsMember({"red", "green", "blue", "all"}));
+    app.add_option("--blob", o.blob,
+                   "export: the file to write, for firmware to read in place; show: a file to read instead of the "
+                   "database");
+    app.add_flag("--covariance", o.covariance, "export: the covariance as well, which a camera has no use for");
     app.option_defaults()->group("What to show, instead of ids");
     o.filter.add_options(app);
     if (!parse(app, arguments, streams)) return 0;
     check_verb(verb, o);
     o.filter.check_words();
     if (verb == "list") return list(o.db, o.json, streams);
+    if (verb == "export") return export_blob(o, streams);
     return verb == "show" ? show(o, streams) : remove(o.db, o.ids[0], o.json, streams);
 }
 

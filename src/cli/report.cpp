@@ -308,7 +308,7 @@ Json provenance_json(const lensprof_provenance &p) {
 Json profile_json(int64_t id, const lensprof_profile &profile) {
     Json json;
     json["schema"] = 1;
-    json["id"] = id;
+    json["id"] = id ? Json(id) : Json();
     json["key"] = key_json(profile.key);
     json["vignetting"] = vignetting_json(profile.vignetting, profile.vignettings);
     json["gain_grid"] = gain_grid_json(profile.grid);
@@ -344,7 +344,7 @@ std::string describe_key(const lensprof_profile_key &key) {
 
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
     const auto &p = profile.provenance;
-    out << "profile   " << id << ": " << describe_key(profile.key) << "\n";
+    out << "profile   " << (id ? std::to_string(id) + ": " : std::string()) << describe_key(profile.key) << "\n";
     print_vignettings(profile.vignetting, profile.vignettings, certainty_of(profile), out);
     print_gain_grid(profile.grid, out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);

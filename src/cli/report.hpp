@@ -65,6 +65,7 @@ void print_response(const lensprof_response &r, std::ostream &out);
 
 Json key_json(const lensprof_profile_key &key);
 Json provenance_json(const lensprof_provenance &provenance);
+/* `id` is the number in the database; 0 = not of one. */
 Json profile_json(int64_t id, const lensprof_profile &profile);
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out);
 
