@@ -105,6 +105,12 @@ static void print_apply_structs(void)
     FIELD(lensprof_apply_options, source);
     FIELD(lensprof_apply_options, target);
     FIELD(lensprof_apply_options, grid);
+    FIELD(lensprof_apply_options, strength);
+    FIELD(lensprof_apply_options, gain_cap);
+    FIELD(lensprof_apply_options, dither);
+    FIELD(lensprof_apply_options, reserved);
+    FIELD(lensprof_apply_options, blob);
+    FIELD(lensprof_apply_options, blob_bytes);
     end_struct();
 }
 
@@ -463,6 +469,7 @@ static void print_enumerations(void)
     VALUE(LENSPROF_PROCESSING_RAW);
     VALUE(LENSPROF_PROCESSING_JPEG);
     VALUE(LENSPROF_PROCESSING_CORRECTED);
+    VALUE(LENSPROF_PACK_COVARIANCE);
     VALUE(LENSPROF_SAMPLING_BALANCED);
     VALUE(LENSPROF_SAMPLING_PAPER);
     VALUE(LENSPROF_SAMPLING_BRACKET);

@@ -77,6 +77,27 @@ class Values(unittest.TestCase):
         with self.assertRaises(TypeError):
             options(grid=np.ones((2, 2)))
 
+    def test_blob_option(self):
+        with_grid = profile()
+        with_grid.response = lp.Response.from_emor([0.8, -0.3])
+        with_grid.grid = lp.GainGrid(np.random.default_rng(2).uniform(0.7, 1.3, (3, 4, 6)))
+        blob, array = with_grid.pack(), picture(np.uint16)
+        fields = lp.ApplyOptions(frame_width=40, frame_height=30, source_sample=lp.SampleType.U16,
+                                 target_sample=lp.SampleType.U16, blob=bytearray(blob))
+        self.assertEqual((fields.blob, fields.blob_bytes), (blob, len(blob)))
+        gc.collect()
+        np.testing.assert_array_equal(lp.Plan(fields).apply(array), lp.correct(array, lp.Profile.unpack(blob)))
+        with self.assertRaisesRegex(AttributeError, "assign blob"):
+            fields.blob_bytes = 3
+        fields.blob = blob[:-1]
+        with refused(self, lp.Status.ERROR_CORRUPT):
+            lp.Plan(fields)
+        fields.blob = None
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            lp.Plan(fields)
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            lp.Plan(options(blob=blob))
+
     def test_exposure_and_white_balance(self):
         array = picture(np.float32, largest=0.3)
         source, target = lp.Exposure(ev=-1, white_balance=(2, 1, 0.5)), lp.Exposure(ev=0.5)

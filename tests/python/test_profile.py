@@ -2,7 +2,9 @@
 import gc
 import math
 import pickle
+import struct
 import unittest
+import zlib
 
 import numpy as np
 
@@ -118,6 +120,82 @@ class Profiles(unittest.TestCase):
             self.assertEqual(other, profile)
             other.key.lens = "other"
             self.assertNotEqual(other, profile)
+
+
+def blob_of(profile, covariance=False):
+    """The blob as docs/blob.md has it, written by other means than the library's."""
+    key, provenance, grid = profile.key, profile.provenance, profile.grid
+    texts = [text.encode() for text in (key.camera_maker, key.camera_model, key.lens, provenance.method,
+                                        provenance.software)]
+    n = profile.covariance_size if covariance else 0
+    shape = grid.attenuation.shape if grid.attenuation.size else (0, 0, 0)
+    fixed = struct.pack("<BBBBBBBx5B3x", key.processing, profile.responses, profile.vignettings, shape[0], shape[2],
+                        shape[1], n, *map(len, texts))
+    fixed += struct.pack("<5dqIIdd", key.focal_mm, key.aperture, key.distance_m, *profile.vignetting[0].center,
+                         provenance.created_unix_s, provenance.images, provenance.pairs, provenance.heldout_rms,
+                         provenance.inlier_share)
+    rest = b"".join(struct.pack("<3d", *falloff.k) for falloff in profile.vignetting)
+    for curve in profile.response:
+        rest += struct.pack("<BBxx", curve.kind, curve.modes)
+        if curve.kind == lp.ResponseKind.GAMMA:
+            rest += struct.pack("<d", curve.gamma)
+        if curve.kind >= lp.ResponseKind.EMOR:
+            rest += np.asarray(curve.emor[:curve.modes], "<f8").tobytes() + np.asarray(curve.table, "<f4").tobytes()
+    rest += np.asarray(grid.attenuation, "<f4").tobytes()
+    rest += b"".join(profile.covariance[i, i:].astype("<f8").tobytes() for i in range(n)) + b"".join(texts)
+    blob = b"LPRF" + struct.pack("<HHI", 1, 0, 12 + len(fixed) + len(rest) + 4) + fixed + rest
+    return blob + struct.pack("<I", zlib.crc32(blob))
+
+
+def samples():
+    table = lp.Response.from_table(np.linspace(0, 1, 50) ** 0.4)
+    falloffs = [lp.Vignetting(k=(-0.3 + 0.05 * c, 0.1, -0.05), center=(0.02, -0.03)) for c in range(3)]
+    key = lp.ProfileKey(camera_maker="M", camera_model="Kamera ä", lens="50 mm", focal_mm=50, distance_m=math.inf,
+                        processing=lp.Processing.RAW)
+    rich = lp.Profile(key=key, response=[lp.Response.from_emor([0.8, -0.3, 0.1]), lp.Response.from_gamma(2.2), table],
+                      vignetting=falloffs, grid=lp.GainGrid(np.linspace(0.5, 1.5, 3 * 4 * 5).reshape(3, 4, 5)),
+                      covariance=np.diag([1.0, 2.0, 3.0]) + 0.25)
+    rich.provenance.method, rich.provenance.software, rich.provenance.pairs = "transfer", "lensprof 0.1.0", 5000
+    rich.provenance.created_unix_s, rich.provenance.heldout_rms = -5, 1.5
+    return [lp.Profile(), rich, lp.Profile(response=lp.Response.from_gamma(0.5)),
+            lp.Profile(key=key, response=table, vignetting=falloffs[0], covariance=np.eye(36))]
+
+
+class Blobs(unittest.TestCase):
+    def test_bytes_are_those_of_the_format(self):
+        for profile in samples():
+            for covariance in (False, True):
+                self.assertEqual(profile.pack(covariance=covariance), blob_of(profile, covariance))
+
+    def test_round_trip(self):
+        for profile in samples():
+            profile.provenance.source = "stays behind"
+            back = lp.Profile.unpack(np.frombuffer(profile.pack(covariance=True), np.uint8))
+            back.validate()
+            self.assertEqual(back.pack(covariance=True), profile.pack(covariance=True))
+            self.assertEqual(back.provenance.source, "")
+            for ours, theirs in zip(profile.response, back.response):
+                np.testing.assert_allclose(theirs.table, ours.table, rtol=0, atol=3.1e-8)
+            for name in ("key", "vignetting", "grid"):
+                self.assertEqual(getattr(back, name), getattr(profile, name))
+            np.testing.assert_array_equal(back.covariance, profile.covariance)
+            self.assertEqual(lp.Profile.unpack(profile.pack()).covariance_size, 0)
+
+    def test_refused(self):
+        blob = samples()[1].pack()
+        wrong = [b"", blob[:-1], blob + b"\0", b"x" * 200]
+        wrong += [blob[:at] + bytes([blob[at] ^ 4]) + blob[at + 1:] for at in range(0, len(blob), 211)]
+        for data in wrong:
+            with refused(self, lp.Status.ERROR_CORRUPT):
+                lp.Profile.unpack(data)
+        newer = blob[:4] + b"\2" + blob[5:-4]
+        with refused(self, lp.Status.ERROR_LAYOUT):
+            lp.Profile.unpack(newer + struct.pack("<I", zlib.crc32(newer)))
+        for data in ("text", 5, None):
+            with self.assertRaises(TypeError):
+                lp.Profile.unpack(data)
+        with refused(self, lp.Status.ERROR_VIGNETTING):
+            lp.Profile(vignetting=lp.Vignetting(k=(-2, 0, 0))).pack()
 
 
 if __name__ == "__main__":

@@ -6,8 +6,8 @@ ValueError.
 """
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
                    RESPONSE_SAMPLES, UNKNOWN, CameraKind, Direction, Encoding, FlatGrid, FlatLight, Free, GammaFrom,
-                   Layout, Loss, Method, Processing, Projection, ResponseKind, SampleType, Sampling, Saturated, Status,
-                   StoreMode)
+                   Layout, Loss, Method, Pack, Processing, Projection, ResponseKind, SampleType, Sampling, Saturated,
+                   Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE,
                       PAIR_DTYPE)
@@ -27,7 +27,7 @@ __all__ = [
     "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS",
     "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResult", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions",
     "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Layout", "Loss",
-    "MODES_AUTO", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Plan", "Processing", "Profile", "ProfileKey",
+    "MODES_AUTO", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey",
     "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Response", "ResponseKind", "SampleImage",
     "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreMode", "StoreRow", "UNKNOWN",
     "Vignetting", "correct", "emor_table", "fit_flat", "fit_overlap", "fit_radiance", "layout_channels",

@@ -118,6 +118,11 @@ class Processing(IntEnum):
     CORRECTED = 2
 
 
+class Pack(IntFlag):
+    """What a blob holds beside what a camera needs."""
+    COVARIANCE = 1
+
+
 class Sampling(IntEnum):
     """Balanced over image pairs, radius and grey level; or as in d'Angelo 2007, section 5.1."""
     BALANCED = 0
@@ -201,6 +206,7 @@ ENUMS = {
     "LENSPROF_ENCODING_": Encoding,
     "LENSPROF_SATURATED_": Saturated,
     "LENSPROF_PROCESSING_": Processing,
+    "LENSPROF_PACK_": Pack,
     "LENSPROF_SAMPLING_": Sampling,
     "LENSPROF_FREE_": Free,
     "LENSPROF_METHOD_": Method,
@@ -255,7 +261,8 @@ class ApplyOptions(Structure):
                 ("source_layout", c_uint32), ("target_sample", c_uint32), ("saturated", c_uint32),
                 ("responses", c_uint32), ("vignettings", c_uint32), ("response", POINTER(Response)),
                 ("vignetting", POINTER(Vignetting)), ("source", Exposure), ("target", Exposure),
-                ("grid", POINTER(GainGrid))]
+                ("grid", POINTER(GainGrid)), ("strength", c_double), ("gain_cap", c_double), ("dither", c_uint32),
+                ("reserved", c_uint32), ("blob", c_void_p), ("blob_bytes", c_size_t)]
 
 
 class Plan(Structure):
@@ -487,6 +494,8 @@ FUNCTIONS = {
     "lensprof_profile_key_validate": (_status, [_key]),
     "lensprof_profile_init": (None, [_profile]),
     "lensprof_profile_validate": (_status, [_profile]),
+    "lensprof_profile_pack": (_status, [_profile, c_uint32, c_void_p, c_size_t, _size_out]),
+    "lensprof_profile_unpack": (_status, [c_void_p, c_size_t, _profile]),
     # sample.h
     "lensprof_sample_options_init": (None, [POINTER(SampleOptions)]),
     "lensprof_sample_overlap": (_status, [POINTER(SampleOptions), POINTER(SampleImage), c_uint32, _pairs, c_uint32,

@@ -198,7 +198,10 @@ class Curves(_Field, Generic[T]):
 
 
 class Count(_Field):
-    """How many structures a pointer leads to: set together with the pointer, as the library reads so many."""
+    """How many structures or bytes a pointer leads to: set together with it, as the library reads so many."""
+
+    def __init__(self, instead: str = "assign one or three curves"):
+        self.instead = instead
 
     def __get__(self, instance: Any, owner: type) -> int:
         if instance is None:
@@ -206,7 +209,7 @@ class Count(_Field):
         return self.raw.__get__(instance)
 
     def __set__(self, instance: Any, value: int) -> None:
-        raise AttributeError(f"{self.name} cannot be set; assign one or three curves instead")
+        raise AttributeError(f"{self.name} cannot be set; {self.instead} instead")
 
 
 class Referenced(_Field, Generic[T]):
@@ -247,3 +250,21 @@ class OptionalReference(Referenced[T]):
         values = () if value is None else (value,)
         array = (_raw(self.cls) * len(values))(*values)
         self._point(instance, array if values else None)
+
+
+class Bytes(_Field):
+    """A pointer to bytes: a copy of what is assigned, kept alive by this structure, or None for NULL."""
+
+    def __init__(self, count: str):
+        self.count = count
+
+    def __get__(self, instance: Any, owner: type) -> Optional[bytes]:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        return vars(instance).get("_" + self.name)
+
+    def __set__(self, instance: Any, value: Any) -> None:
+        data = None if value is None else memoryview(value).tobytes()
+        vars(instance)["_" + self.name] = data
+        self.raw.__set__(instance, ctypes.cast(ctypes.c_char_p(data), ctypes.c_void_p))
+        vars(_raw(type(instance)))[self.count].__set__(instance, len(data or b""))

@@ -14,7 +14,7 @@ import numpy as np
 from . import _abi, _arrays
 from ._abi import Direction, Encoding, Layout, SampleType, Saturated
 from ._library import check, lib
-from ._struct import Count, Enumerated, Nested, OptionalReference, Referenced, Struct, integer
+from ._struct import Bytes, Count, Enumerated, Flag, Nested, OptionalReference, Referenced, Struct, integer
 from .model import Exposure, GainGrid, Response, Vignetting
 from .profile import Profile
 
@@ -40,6 +40,8 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
 
     frame_width, frame_height: the full frame, px. response and vignetting: one for all channels, or three. source:
     what the picture received. target: what it shall look like. grid: a GainGrid multiplied to the vignetting, or None.
+    strength: 0..1 of the falloff. gain_cap: the largest gain for the falloff, 1..1e6, or 0. dither: in place of
+    rounding, where uint8 is written. blob: what Profile.pack gave, instead of response, vignetting and grid, or None.
     """
 
     direction = Enumerated(Direction)
@@ -58,6 +60,11 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     source = Nested(Exposure)
     target = Nested(Exposure)
     grid = OptionalReference(GainGrid)
+    strength: float
+    gain_cap: float
+    dither = Flag()
+    blob = Bytes("blob_bytes")
+    blob_bytes = Count("assign blob")
 
     def _set_defaults(self) -> None:
         lib.lensprof_apply_options_init(byref(self))
@@ -72,7 +79,7 @@ class Plan:
         self._plan = POINTER(_abi.Plan)()
         check(lib.lensprof_plan_init(self._memory.ctypes.data, self._memory.nbytes, byref(options), byref(self._plan)),
               "these options cannot be applied: give a frame of 1..1048576 px, a valid response, vignetting (one "
-              "centre for all channels), gain grid, source and target")
+              "centre for all channels), gain grid, source and target; or a blob and no response, vignetting and grid")
         self._layout = options.source_layout
         self._target_dtype = _arrays.sample_dtype(options.target_sample)
 

@@ -1,13 +1,13 @@
 """What is known about one camera, lens and setting; see lensprof/profile.h."""
 from __future__ import annotations
 
-from ctypes import byref
+from ctypes import byref, c_size_t, create_string_buffer
 from typing import Any
 
 import numpy as np
 
 from . import _abi
-from ._abi import Processing
+from ._abi import Pack, Processing
 from ._library import check, lib
 from ._struct import Curves, Enumerated, Nested, Text, Value
 from .model import GainGrid, Response, Vignetting
@@ -105,3 +105,22 @@ class Profile(Value, _abi.Profile):
         check(lib.lensprof_profile_validate(byref(self)),
               f"{self.key}: not a valid profile; see validate() of its key, response, vignetting and grid, the "
               "covariance must be finite and symmetric")
+
+    def pack(self, covariance: bool = False) -> bytes:
+        """A blob for firmware, which lensprof_plan_init reads in place (docs/blob.md): response samples in single
+        precision, without the provenance's source, and without the covariance unless asked for."""
+        needed, flags = c_size_t(), Pack.COVARIANCE if covariance else 0
+        lib.lensprof_profile_pack(byref(self), flags, None, 0, byref(needed))
+        buffer = create_string_buffer(needed.value)
+        check(lib.lensprof_profile_pack(byref(self), flags, buffer, needed.value, byref(needed)),
+              f"{self.key}: not a valid profile; see validate()")
+        return buffer.raw
+
+    @classmethod
+    def unpack(cls, blob: Any) -> Profile:
+        """The profile of a blob (any object with bytes). Raises lensprof.Error with ERROR_CORRUPT when any of it is
+        wrong, with ERROR_LAYOUT when a newer lensprof wrote it."""
+        data, profile = memoryview(blob).tobytes(), cls()
+        check(lib.lensprof_profile_unpack(data, len(data), byref(profile)),
+              f"{len(data)} bytes: not a profile blob, damaged, or of a newer lensprof; write it again with pack()")
+        return profile
