@@ -145,6 +145,37 @@ static void test_format_is_that_of_the_files(void **state)
     }
 }
 
+static void assert_size(const lensprof_profile *p, size_t expected)
+{
+    size_t bytes = 0;
+    assert_int_equal(lensprof_profile_pack(p, LENSPROF_PACK_COVARIANCE, NULL, 0, &bytes), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(bytes, expected);
+}
+
+/* Those of docs/blob.md. */
+static void test_sizes(void **state)
+{
+    (void)state;
+    const double values[4] = {0.0, 0.0, 0.0, 0.0}, line[2] = {0.0, 1.0};
+    lensprof_profile *p = malloc(sizeof *p);
+    lensprof_profile_init(p);
+    assert_size(p, 132);
+    assert_ok(lensprof_response_set_gamma(&p->response[0], 2.2));
+    assert_size(p, 140);
+    assert_ok(lensprof_response_set_emor(&p->response[0], values, 4));
+    assert_size(p, 4260);
+    p->grid.columns = 16, p->grid.rows = 12, p->grid.channels = 1;
+    for (int i = 0; i < 16 * 12; i++) p->grid.attenuation[i] = 1.0f;
+    assert_size(p, 5028);
+    p->responses = p->vignettings = p->grid.channels = 3;
+    for (int c = 0; c < 3; c++) assert_ok(lensprof_response_set_table(&p->response[c], line, 2));
+    p->grid.columns = p->grid.rows = 32;
+    for (int i = 0; i < 3 * 32 * 32; i++) p->grid.attenuation[i] = 1.0f;
+    p->covariance_size = 36;
+    assert_size(p, 30092);
+    free(p);
+}
+
 static void test_any_address(void **state)
 {
     (void)state;
@@ -437,6 +468,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_profiles_come_back),
         cmocka_unit_test(test_format_is_that_of_the_files),
+        cmocka_unit_test(test_sizes),
         cmocka_unit_test(test_any_address),
         cmocka_unit_test(test_pack_refuses),
         cmocka_unit_test(test_every_flipped_bit_is_found),
