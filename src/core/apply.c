@@ -309,7 +309,21 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, c
     const double units = unit_of(o->target_sample, plan->encode == LP_CURVE_NONE)
                          / unit_of(o->source_sample, plan->decode == LP_CURVE_NONE);
     plan->factor[at] = (float)(plan->simulate ? factor_of(o, channel) / units : factor_of(o, channel) * units);
+    plan->times[at] = 1.0f;
     if (at != channel) plan->nodes[at] = plan->nodes[channel];
+}
+
+/* Channels that differ by their factors alone share one division a pixel, where what that rounds is not seen. */
+static void share_gains(lensprof_plan *plan)
+{
+    if (plan->gains == 1 || plan->target_sample == LENSPROF_SAMPLE_F32) return;
+    for (uint32_t c = 1; c < LP_CHANNELS; c++)
+        if (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0]) || plan->nodes[c] != plan->nodes[0]) return;
+    for (uint32_t c = 0; c < LP_CHANNELS; c++) {
+        plan->times[c] = plan->simulate ? 1.0f / plan->factor[c] : plan->factor[c];
+        plan->factor[c] = 1.0f;
+    }
+    plan->gains = 1;
 }
 
 static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m)
@@ -331,6 +345,7 @@ static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, 
                 || plan->nodes[c] != plan->nodes[0]))
             plan->gains = 3;
     }
+    share_gains(plan);
 }
 
 lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_apply_options *options,

@@ -39,6 +39,7 @@ struct lensprof_plan {
     float k[LP_CHANNELS][3];     /* 1 + k1 r2 + ..., r2 in px^2 */
     float least, strength;       /* of the attenuation, after the gain cap; of the grid's part */
     float factor[LP_CHANNELS];   /* target over source exposure, and the units of linear codes */
+    float times[LP_CHANNELS];    /* the same where the gain is otherwise that of all channels; else 1 */
     float exponent[LP_CHANNELS]; /* of the response, for LP_CURVE_POWER and _MIXED; else 0 */
     float inverse_exponent[LP_CHANNELS];
     uint32_t columns, rows;      /* of the gain grid; 0 = none */

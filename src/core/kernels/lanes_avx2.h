@@ -29,12 +29,6 @@ static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no)
 {
     return _mm256_blendv_epi8(no, yes, _mm256_castps_si256(is));
 }
-static inline float f_largest(lane_f a)
-{
-    __m128 m = _mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
-    m = _mm_max_ps(m, _mm_movehl_ps(m, m));
-    return _mm_cvtss_f32(_mm_max_ss(m, _mm_shuffle_ps(m, m, 1)));
-}
 
 static inline lane_i i_set(int32_t v) { return _mm256_set1_epi32(v); }
 static inline lane_i i_load(const int32_t *p) { return _mm256_loadu_si256((const __m256i *)(const void *)p); }
@@ -71,12 +65,27 @@ static inline void i_store_u8(uint8_t *p, lane_i v)
 }
 static inline void i_store_u16(uint8_t *p, lane_i v) { _mm_storeu_si128((__m128i *)(void *)p, to_u16(v)); }
 
-static inline lane_f f_gather(const float *base, lane_i index) { return _mm256_i32gather_ps(base, index, 4); }
+/* All lanes, which the compiler is not to know: it would leave out the zeros that gathers write into, and each would
+ * wait for whatever was in its register before. */
+static inline __m256i all_lanes(void)
+{
+    __m256i all = _mm256_set1_epi32(-1);
+    __asm__("" : "+x"(all));
+    return all;
+}
+static inline lane_f f_gather(const float *base, lane_i index)
+{
+    return _mm256_mask_i32gather_ps(_mm256_setzero_ps(), base, index, _mm256_castsi256_ps(all_lanes()), 4);
+}
+static inline __m256d gather_pairs(const float *base, __m128i index)
+{
+    return _mm256_mask_i32gather_pd(_mm256_setzero_pd(), (const double *)(const void *)base, index,
+                                    _mm256_castsi256_pd(all_lanes()), 4);
+}
 static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second)
 {
-    const double *pairs = (const double *)(const void *)base;
-    __m256 low = _mm256_castpd_ps(_mm256_i32gather_pd(pairs, _mm256_castsi256_si128(index), 4));
-    __m256 high = _mm256_castpd_ps(_mm256_i32gather_pd(pairs, _mm256_extracti128_si256(index, 1), 4));
+    __m256 low = _mm256_castpd_ps(gather_pairs(base, _mm256_castsi256_si128(index)));
+    __m256 high = _mm256_castpd_ps(gather_pairs(base, _mm256_extracti128_si256(index, 1)));
     __m256d a = _mm256_castps_pd(_mm256_shuffle_ps(low, high, 0x88));
     __m256d b = _mm256_castps_pd(_mm256_shuffle_ps(low, high, 0xdd));
     *first = _mm256_castpd_ps(_mm256_permute4x64_pd(a, 0xd8));

@@ -26,7 +26,6 @@ static inline lane_b f_less(lane_f a, lane_f b) { return vcltq_f32(a, b); }
 static inline lane_b f_is_number(lane_f a) { return vceqq_f32(a, a); }
 static inline lane_f f_pick(lane_b is, lane_f yes, lane_f no) { return vbslq_f32(is, yes, no); }
 static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) { return vbslq_s32(is, yes, no); }
-static inline float f_largest(lane_f a) { return vmaxvq_f32(a); }
 
 static inline lane_i i_set(int32_t v) { return vdupq_n_s32(v); }
 static inline lane_i i_load(const int32_t *p) { return vld1q_s32(p); }

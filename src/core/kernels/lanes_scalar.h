@@ -27,7 +27,6 @@ static inline lane_b f_less(lane_f a, lane_f b) { return a < b; }
 static inline lane_b f_is_number(lane_f a) { return a == a; }
 static inline lane_f f_pick(lane_b is, lane_f yes, lane_f no) { return is ? yes : no; }
 static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) { return is ? yes : no; }
-static inline float f_largest(lane_f a) { return a; }
 
 static inline lane_i i_set(int32_t v) { return v; }
 static inline lane_i i_load(const int32_t *p) { return *p; }

@@ -26,11 +26,6 @@ static inline lane_b f_less(lane_f a, lane_f b) { return _mm_cmplt_ps(a, b); }
 static inline lane_b f_is_number(lane_f a) { return _mm_cmpeq_ps(a, a); }
 static inline lane_f f_pick(lane_b is, lane_f yes, lane_f no) { return _mm_blendv_ps(no, yes, is); }
 static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) { return _mm_blendv_epi8(no, yes, _mm_castps_si128(is)); }
-static inline float f_largest(lane_f a)
-{
-    __m128 m = _mm_max_ps(a, _mm_movehl_ps(a, a));
-    return _mm_cvtss_f32(_mm_max_ss(m, _mm_shuffle_ps(m, m, 1)));
-}
 
 static inline lane_i i_set(int32_t v) { return _mm_set1_epi32(v); }
 static inline lane_i i_load(const int32_t *p) { return _mm_loadu_si128((const __m128i *)(const void *)p); }

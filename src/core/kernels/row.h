@@ -2,6 +2,12 @@
  * cache, each strip in steps: gains, light, light times gain, grey values. */
 #include "../plan.h"
 
+#if defined(__GNUC__)
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
+#else
+#define ALWAYS_INLINE static inline
+#endif
+
 #define LAST (LENSPROF_RESPONSE_SAMPLES - 1)
 #define MOST_SAMPLES (4 * STRIP)
 #define ROOM (MOST_SAMPLES + LANES) /* the last vector of a strip may go beyond */
@@ -76,21 +82,27 @@ static void spread_gains(const lensprof_plan *plan, uint32_t x, uint32_t y, uint
     for (uint32_t c = 0; c < LP_CHANNELS; c++) gain[c] = s->gain[plan->gains == 3 ? c : 0];
     if (plan->layout == LENSPROF_LAYOUT_PLANAR) {
         for (uint32_t c = 0; c < LP_CHANNELS; c++)
-            memcpy(s->factor + c * (STRIP + LANES), gain[c], count * sizeof *s->factor);
+            for (uint32_t i = 0; i < count; i++) s->factor[c * (STRIP + LANES) + i] = gain[c][i] * plan->times[c];
     } else if (plan->samples == 1) { /* grey and mosaics */
         const float *of[2];
-        for (uint32_t parity = 0; parity < 2; parity++) of[parity] = gain[plan->site[y & 1][(x + parity) & 1]];
-        for (uint32_t i = 0; i < count; i++) s->factor[i] = of[i & 1][i];
+        float times[2];
+        for (uint32_t parity = 0; parity < 2; parity++) {
+            const uint32_t c = plan->site[y & 1][(x + parity) & 1];
+            of[parity] = gain[c], times[parity] = plan->times[c];
+        }
+        for (uint32_t i = 0; i < count; i++) s->factor[i] = of[i & 1][i] * times[i & 1];
     } else if (plan->samples == 3) {
         const uint8_t *channel = plan->channel_of_sample;
+        const lane_f times[3] = {f_set(plan->times[channel[0]]), f_set(plan->times[channel[1]]),
+                                 f_set(plan->times[channel[2]])};
         for (uint32_t i = 0; i < count; i += LANES)
-            f_store3(s->factor + 3 * i, f_load(gain[channel[0]] + i), f_load(gain[channel[1]] + i),
-                     f_load(gain[channel[2]] + i));
+            f_store3(s->factor + 3 * i, f_mul(f_load(gain[channel[0]] + i), times[0]),
+                     f_mul(f_load(gain[channel[1]] + i), times[1]), f_mul(f_load(gain[channel[2]] + i), times[2]));
     } else {
         for (uint32_t i = 0; i < count; i++)
             for (uint32_t n = 0; n < plan->samples; n++) {
                 uint32_t c = plan->channel_of_sample[n];
-                s->factor[plan->samples * i + n] = c == LP_ALPHA ? 1.0f : gain[c][i];
+                s->factor[plan->samples * i + n] = c == LP_ALPHA ? 1.0f : gain[c][i] * plan->times[c];
             }
     }
 }
@@ -110,7 +122,7 @@ static void find_channels(const lensprof_plan *plan, uint32_t x, uint32_t y, str
 
 /* x^e for 0 <= x <= 1, e > 0: 2^(e log2 x). log2 by the series of atanh, 2^ by a polynomial; relative error below 2e-6
  * where the result is above 1e-3. */
-static inline lane_f power(lane_f x, lane_f e)
+ALWAYS_INLINE lane_f power(lane_f x, lane_f e)
 {
     const lane_i bits = i_of_bits(f_max(x, f_set(1e-37f)));
     const lane_i shifted = i_sub(bits, i_set(0x3f3504f3)); /* of the square root of 1/2: m lies about 1 */
@@ -135,10 +147,10 @@ static inline lane_f power(lane_f x, lane_f e)
     return f_pick(f_less(x, f_set(1.0f)), y, f_set(1.0f));
 }
 
-static inline lane_f cut(lane_f x) { return f_min(f_max(x, f_set(0.0f)), f_set(1.0f)); } /* 0 for NaN */
+ALWAYS_INLINE lane_f cut(lane_f x) { return f_min(f_max(x, f_set(0.0f)), f_set(1.0f)); } /* 0 for NaN */
 
 /* f(x) by its samples, 0 <= x <= 1. `first`: where the samples begin. */
-static inline lane_f table_at(const float *samples, lane_f x, lane_i first)
+ALWAYS_INLINE lane_f table_at(const float *samples, lane_f x, lane_i first)
 {
     const lane_f position = f_mul(x, f_set((float)LAST));
     const lane_i j = i_min(i_of_f(position), i_set(LAST - 1));
@@ -148,7 +160,7 @@ static inline lane_f table_at(const float *samples, lane_f x, lane_i first)
 }
 
 /* g(b) by the samples of f, 0 <= b <= 1: the smallest x with f(x) >= b. */
-static inline lane_f table_inverse(const float *samples, lane_f b, lane_i first)
+ALWAYS_INLINE lane_f table_inverse(const float *samples, lane_f b, lane_i first)
 {
     lane_i low = i_set(0);
     for (int32_t step = 512; step > 0; step /= 2) {
@@ -165,7 +177,7 @@ static inline lane_f table_inverse(const float *samples, lane_f b, lane_i first)
 }
 
 /* The value of a curve; NaN stays. `at`: index into s->channel. */
-static inline lane_f curve_value(const lensprof_plan *plan, const strip *s, uint32_t curve, int inverse, uint32_t at,
+ALWAYS_INLINE lane_f curve_value(const lensprof_plan *plan, const strip *s, uint32_t curve, int inverse, uint32_t at,
                                  lane_f x)
 {
     const float *exponents = inverse ? plan->inverse_exponent : plan->exponent;
@@ -182,11 +194,17 @@ static inline lane_f curve_value(const lensprof_plan *plan, const strip *s, uint
     return f_pick(f_is_number(x), y, x);
 }
 
+/* Codes of 16 bit that go through a formula become values. */
+ALWAYS_INLINE lane_f code_scale(const lensprof_plan *plan)
+{
+    return f_set(plan->source_sample == LENSPROF_SAMPLE_U16 ? 1.0f / 65535.0f : 1.0f);
+}
+
 /* Samples of a strip's light, in place, through a curve; codes of 16 bit become values first. */
-static inline void through_curve(const lensprof_plan *plan, strip *s, uint32_t curve, int inverse, uint32_t at,
+ALWAYS_INLINE void through_curve(const lensprof_plan *plan, strip *s, uint32_t curve, int inverse, uint32_t at,
                                  uint32_t count)
 {
-    const lane_f scale = f_set(inverse && plan->source_sample == LENSPROF_SAMPLE_U16 ? 1.0f / 65535.0f : 1.0f);
+    const lane_f scale = inverse ? code_scale(plan) : f_set(1.0f);
     for (uint32_t i = at; i < at + count; i += LANES)
         f_store(s->light + i, curve_value(plan, s, curve, inverse, i, f_mul(f_load(s->light + i), scale)));
 }
@@ -228,8 +246,8 @@ static inline uint16_t half_of_float(float f)
     return (uint16_t)(sign | (magnitude - 0x38000000u) >> 13);
 }
 
-/* Samples as numbers (codes or values), and the largest of them. The last vector is filled up by zeros. */
-static inline lane_f load_values(uint32_t sample, const uint8_t *p)
+/* Samples as numbers: codes or values. */
+ALWAYS_INLINE lane_f load_values(uint32_t sample, const uint8_t *p)
 {
     float values[LANES];
     switch (sample) {
@@ -242,41 +260,40 @@ static inline lane_f load_values(uint32_t sample, const uint8_t *p)
             values[i] = float_of_half(h);
         }
         break;
-    default: memcpy(values, p, sizeof values); break;
+    default: return f_load((const float *)(const void *)p);
     }
     return f_load(values);
 }
 
-static inline float load_codes(uint32_t sample, const uint8_t *from, uint32_t count, float *light)
+ALWAYS_INLINE void load_codes(uint32_t sample, const uint8_t *from, uint32_t count, float *light)
 {
     const uint32_t bytes = lensprof_sample_bytes(sample), whole = count - count % LANES;
-    lane_f largest = f_set(0.0f);
     for (uint32_t i = 0; i < whole; i += LANES) {
-        lane_f values = load_values(sample, from + i * bytes);
-        largest = f_max(values, largest);
-        f_store(light + i, values);
+        f_store(light + i, load_values(sample, from + i * bytes));
     }
     if (whole < count) {
-        uint8_t last[4 * LANES] = {0};
+        float room[LANES] = {0.0f};
+        uint8_t *last = (uint8_t *)room;
         memcpy(last, from + whole * bytes, (count - whole) * bytes);
-        lane_f values = load_values(sample, last);
-        largest = f_max(values, largest);
-        f_store(light + whole, values);
+        f_store(light + whole, load_values(sample, last));
     }
-    return f_largest(largest);
 }
 
-/* Codes on the strip through the table of all codes. */
-static inline void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uint32_t count)
+/* Light of codes by the table of all codes. */
+ALWAYS_INLINE lane_f light_of_codes(const lensprof_plan *plan, const strip *s, uint32_t at, lane_f codes)
 {
-    for (uint32_t i = at; i < at + count; i += LANES) {
-        lane_i code = i_of_f(f_load(s->light + i));
-        if (plan->curves == 3) {
-            lane_i channel = i_load(s->channel + i);
-            code = i_add(code, plan->inverse_shift == 8 ? i_left(channel, 8) : i_left(channel, 16));
-        }
-        f_store(s->light + i, f_gather(plan->inverse, code));
+    lane_i code = i_of_f(codes);
+    if (plan->curves == 3) {
+        const lane_i channel = i_load(s->channel + at);
+        code = i_add(code, plan->inverse_shift == 8 ? i_left(channel, 8) : i_left(channel, 16));
     }
+    return f_gather(plan->inverse, code);
+}
+
+static void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uint32_t count)
+{
+    for (uint32_t i = at; i < at + count; i += LANES)
+        f_store(s->light + i, light_of_codes(plan, s, i, f_load(s->light + i)));
 }
 
 /* ---- towards white ---- */
@@ -311,18 +328,13 @@ static void approach_white(strip *s, uint32_t count, uint32_t pitch, uint32_t st
 
 /* ---- light to samples ---- */
 
-/* One vector of the strip as samples at p. */
-static inline void store_vector(const lensprof_plan *plan, uint32_t sample, const strip *s, uint32_t at, uint8_t *p,
-                                int stream)
+/* One vector as samples at p. `at`: its place on the strip. */
+ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, const strip *s, uint32_t at, lane_f light,
+                                uint8_t *p, int stream)
 {
-    const lane_f light = f_load(s->light + at);
     if (sample == LENSPROF_SAMPLE_F32) {
         if (stream) f_stream((float *)(void *)p, light);
-        else {
-            float values[LANES];
-            f_store(values, light);
-            memcpy(p, values, sizeof values);
-        }
+        else f_store((float *)(void *)p, light);
         return;
     }
     if (sample == LENSPROF_SAMPLE_F16) {
@@ -343,7 +355,7 @@ static inline void store_vector(const lensprof_plan *plan, uint32_t sample, cons
     else i_store_u16(p, code);
 }
 
-static inline void store_samples(const lensprof_plan *plan, uint32_t sample, const strip *s, uint32_t at, uint8_t *to,
+ALWAYS_INLINE void store_samples(const lensprof_plan *plan, uint32_t sample, const strip *s, uint32_t at, uint8_t *to,
                                  uint32_t count, int stream)
 {
     const uint32_t bytes = lensprof_sample_bytes(sample);
@@ -352,14 +364,17 @@ static inline void store_samples(const lensprof_plan *plan, uint32_t sample, con
     if (stream) { /* up to where vectors are aligned */
         i = (uint32_t)(-(uintptr_t)to % (LANES * bytes)) / bytes;
         if (i > count) i = count;
-        uint8_t first[4 * LANES];
-        store_vector(plan, sample, s, at, first, 0);
+        float room[LANES];
+        uint8_t *first = (uint8_t *)room;
+        store_vector(plan, sample, s, at, f_load(s->light + at), first, 0);
         memcpy(to, first, i * bytes);
     }
-    for (; i + LANES <= count; i += LANES) store_vector(plan, sample, s, at + i, to + i * bytes, stream);
+    for (; i + LANES <= count; i += LANES) 
+        store_vector(plan, sample, s, at + i, f_load(s->light + at + i), to + i * bytes, stream);
     if (i < count) {
-        uint8_t last[4 * LANES];
-        store_vector(plan, sample, s, at + i, last, 0);
+        float room[LANES];
+        uint8_t *last = (uint8_t *)room;
+        store_vector(plan, sample, s, at + i, f_load(s->light + at + i), last, 0);
         memcpy(to + i * bytes, last, (count - i) * bytes);
     }
 }
@@ -461,13 +476,13 @@ static void encode(const lensprof_plan *plan, const run *r, strip *s)
     }
 }
 
-static float load_run(const lensprof_plan *plan, const run *r, strip *s)
+static void load_run(const lensprof_plan *plan, const run *r, strip *s)
 {
     switch (plan->source_sample) {
-    case LENSPROF_SAMPLE_U8: return load_codes(LENSPROF_SAMPLE_U8, r->from, r->count, s->light + r->at);
-    case LENSPROF_SAMPLE_U16: return load_codes(LENSPROF_SAMPLE_U16, r->from, r->count, s->light + r->at);
-    case LENSPROF_SAMPLE_F16: return load_codes(LENSPROF_SAMPLE_F16, r->from, r->count, s->light + r->at);
-    default: return load_codes(LENSPROF_SAMPLE_F32, r->from, r->count, s->light + r->at);
+    case LENSPROF_SAMPLE_U8: load_codes(LENSPROF_SAMPLE_U8, r->from, r->count, s->light + r->at); break;
+    case LENSPROF_SAMPLE_U16: load_codes(LENSPROF_SAMPLE_U16, r->from, r->count, s->light + r->at); break;
+    case LENSPROF_SAMPLE_F16: load_codes(LENSPROF_SAMPLE_F16, r->from, r->count, s->light + r->at); break;
+    default: load_codes(LENSPROF_SAMPLE_F32, r->from, r->count, s->light + r->at); break;
     }
 }
 
@@ -481,21 +496,111 @@ static void store_run(const lensprof_plan *plan, const run *r, const strip *s, i
     }
 }
 
+#if LANES > 1
+/* The usual ways in one pass: samples of one type in and out, through one curve both ways. The same steps as
+ * load_run, decode, encode and store_run, and so the same bytes. */
+ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t sample, uint32_t curve, uint32_t at,
+                             const uint8_t *from)
+{
+    lane_f light;
+    if (curve == LP_CURVE_TABLE && sample == LENSPROF_SAMPLE_U8) light = f_gather(plan->inverse, i_load_u8(from));
+    else if (curve == LP_CURVE_TABLE && sample == LENSPROF_SAMPLE_U16) light = f_gather(plan->inverse, i_load_u16(from));
+    else light = load_values(sample, from);
+    if (curve != LP_CURVE_NONE && !(curve == LP_CURVE_TABLE && sample != LENSPROF_SAMPLE_F32))
+        light = curve_value(plan, s, curve, 1, at, f_mul(light, code_scale(plan)));
+    light = f_mul(light, f_load(s->factor + at));
+    return curve == LP_CURVE_NONE ? light : curve_value(plan, s, curve, 0, at, light);
+}
+
+ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const strip *s, uint32_t sample, uint32_t curve,
+                            int stream)
+{
+    lensprof_plan own = *shared; /* which no store can change */
+    const lensprof_plan *plan = &own;
+    own.curves = 1, own.dither = 0;
+    const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
+    float room[2][LANES] = {{0.0f}, {0.0f}};
+    uint8_t *in = (uint8_t *)room[0], *out = (uint8_t *)room[1];
+    uint32_t i = 0;
+    if (stream) { /* up to where vectors are aligned */
+        i = (uint32_t)(-(uintptr_t)r->to % (LANES * bytes)) / bytes;
+        if (i > r->count) i = r->count;
+        memcpy(in, r->from, i * bytes);
+        store_vector(plan, sample, s, r->at, through(plan, s, sample, curve, r->at, in), out, 0);
+        memcpy(r->to, out, i * bytes);
+    }
+    for (; i + LANES <= r->count; i += LANES) {
+        const lane_f light = through(plan, s, sample, curve, r->at + i, r->from + i * bytes);
+        store_vector(plan, sample, s, r->at + i, light, r->to + i * bytes, stream);
+    }
+    if (i < r->count) {
+        memcpy(in, r->from + i * bytes, (r->count - i) * bytes);
+        store_vector(plan, sample, s, r->at + i, through(plan, s, sample, curve, r->at + i, in), out,
+                     0);
+        memcpy(r->to + i * bytes, out, (r->count - i) * bytes);
+    }
+}
+
+/* False for what is not one of the usual ways. */
+static int do_one_pass(const lensprof_plan *plan, const run *r, const strip *s, int stream)
+{
+    if (plan->source_sample != plan->target_sample || plan->decode != plan->encode || plan->dither
+        || (plan->curves == 3 && plan->decode != LP_CURVE_NONE))
+        return 0;
+    stream = stream && CAN_STREAM && plan->target_sample != LENSPROF_SAMPLE_U8;
+    switch (8 * plan->source_sample + plan->decode) {
+    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_NONE, 0); return 1;
+    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_TABLE, 0); return 1;
+    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_NONE, stream); return 1;
+    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_TABLE, stream); return 1;
+    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_POWER: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_POWER, stream); return 1;
+    case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_NONE, stream); return 1;
+    case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_TABLE, stream); return 1;
+    default: return 0;
+    }
+}
+#endif
+
+/* The largest of the codes or values of a run; 0 of none but NaN. Written so that compilers make vectors of it. */
+static float largest_of(const lensprof_plan *plan, const run *r)
+{
+    const uint16_t *codes = (const uint16_t *)(const void *)r->from;
+    const float *values = (const float *)(const void *)r->from;
+    uint8_t most8 = 0;
+    uint16_t most16 = 0;
+    float most = 0.0f;
+    switch (plan->source_sample) {
+    case LENSPROF_SAMPLE_U8:
+        for (uint32_t i = 0; i < r->count; i++) most8 = r->from[i] > most8 ? r->from[i] : most8;
+        return most8;
+    case LENSPROF_SAMPLE_U16:
+        for (uint32_t i = 0; i < r->count; i++) most16 = codes[i] > most16 ? codes[i] : most16;
+        return most16;
+    case LENSPROF_SAMPLE_F32:
+        for (uint32_t i = 0; i < r->count; i++) most = values[i] > most ? values[i] : most;
+        return most;
+    default: return 1.0f; /* halves are not looked through: as if there were white */
+    }
+}
+
 /* A strip whose factors are known. */
 static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes, uint32_t count, strip *s, int stream)
 {
     static const float units[] = {255.0f, 65535.0f, 1.0f, 1.0f};
     const float unit = units[plan->source_sample];
     const int has_alpha = plan->samples > plan->channels;
-    float largest = 0.0f;
+    int near_white = 0;
     if (has_alpha) take_alpha(plan, runs[0].from, count, s);
-    for (uint32_t p = 0; p < planes; p++) {
-        float own = load_run(plan, &runs[p], s);
-        if (own > largest) largest = own;
-    }
-    if (plan->neutral_white && largest > 0.89f * unit)
+    for (uint32_t p = 0; p < planes && plan->neutral_white; p++)
+        near_white |= largest_of(plan, &runs[p]) > 0.89f * unit;
+    for (uint32_t p = 0; p < planes && near_white; p++) load_run(plan, &runs[p], s);
+    if (near_white)
         approach_white(s, count, planes == 3 ? STRIP + LANES : 1, planes == 3 ? 1 : plan->samples, unit);
     for (uint32_t p = 0; p < planes; p++) {
+#if LANES > 1
+        if (do_one_pass(plan, &runs[p], s, stream)) continue;
+#endif
+        if (!near_white) load_run(plan, &runs[p], s);
         decode(plan, &runs[p], s);
         encode(plan, &runs[p], s);
         store_run(plan, &runs[p], s, stream);
