@@ -182,6 +182,10 @@ lensprof_status check_view(const lensprof_sample_image &image, uint32_t i, lensp
     lensprof_status status = lensprof_image_validate(&image.view);
     if (status != LENSPROF_OK) return fail(status, error, "image %u: not a valid view of pixels", i);
     const auto &view = image.view;
+    if (view.layout > LENSPROF_LAYOUT_BGRA || view.sample > LENSPROF_SAMPLE_F32)
+        return fail(LENSPROF_ERROR_ARGUMENT, error,
+                    "image %u: mosaics, planes and half floats are not sampled; give interleaved pixels of U8, U16 or F32",
+                    i);
     if (!image.reduction || image.every_pixel > 1
         || static_cast<uint64_t>(view.width) * image.reduction > image.camera.width
         || static_cast<uint64_t>(view.height) * image.reduction > image.camera.height)

@@ -32,7 +32,7 @@ C_LIBRARY = FREESTANDING | {
 }
 C_ARITHMETIC = C_LIBRARY - {"locale.h", "setjmp.h", "signal.h", "time.h"}
 POSIX = {"fcntl.h", "unistd.h", "sys/*"}
-INTRINSICS = {"immintrin.h", "smmintrin.h", "arm_neon.h"}
+INTRINSICS = {"immintrin.h", "smmintrin.h", "arm_neon.h", "cpuid.h"}
 CPP_LIBRARY = {"<c++>"}  # every standard C++ header: a name without a dot
 CPP_OUTSIDE = {
     "condition_variable",

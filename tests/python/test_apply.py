@@ -128,9 +128,34 @@ class Values(unittest.TestCase):
         np.testing.assert_array_equal(grey[..., 0], lp.correct(alpha[..., 0], profile()))
 
     def test_facts_of_layouts_and_samples(self):
-        self.assertEqual([lp.layout_samples(layout) for layout in lp.Layout], [1, 2, 3, 4, 3, 4])
-        self.assertEqual([lp.layout_channels(layout) for layout in lp.Layout], [1, 1, 3, 3, 3, 3])
-        self.assertEqual([lp.sample_bytes(sample) for sample in lp.SampleType], [1, 2, 4])
+        self.assertEqual([lp.layout_samples(layout) for layout in lp.Layout], [1, 2, 3, 4, 3, 4, 1, 1, 1, 1, 1])
+        self.assertEqual([lp.layout_channels(layout) for layout in lp.Layout], [1, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3])
+        self.assertEqual([lp.sample_bytes(sample) for sample in lp.SampleType], [1, 2, 4, 2])
+
+    def test_planes_mosaics_and_halves(self):
+        rng = np.random.default_rng(4)
+        profile = lp.Profile()
+        profile.vignetting[0].k[:] = (-0.3, 0.05, -0.1)
+        picture = rng.random((30, 40, 3)).astype(np.float16)
+        options = lp.ApplyOptions(frame_width=40, frame_height=30, source_sample=lp.SampleType.F16,
+                                  target_sample=lp.SampleType.F16, response=profile.response,
+                                  vignetting=profile.vignetting)
+        whole = lp.Plan(options).apply(picture)
+        self.assertEqual(whole.dtype, np.float16)
+        options.source_layout = lp.Layout.PLANAR
+        planes = [np.ascontiguousarray(picture[:, :, c]) for c in range(3)]
+        result = lp.Plan(options).apply_planar(planes)
+        for c in range(3):
+            np.testing.assert_array_equal(result[c], whole[:, :, c])
+        with self.assertRaises(lp.Error):
+            lp.Plan(options).apply_planar(planes, [planes[1], planes[0], planes[2]])
+        with self.assertRaises(ValueError):
+            lp.Plan(options).apply_planar(planes[:2])
+        options.source_layout = lp.Layout.GRBG
+        options.saturated = lp.Saturated.AS_VALUE
+        mosaic = lp.Plan(options).apply(planes[1])
+        self.assertEqual(mosaic.shape, (30, 40))
+        self.assertGreater(float(mosaic.astype(np.float32).sum()), float(planes[1].astype(np.float32).sum()))
 
     def test_saturated(self):
         array = np.full((30, 40, 3), 255, dtype=np.uint8)
@@ -259,7 +284,7 @@ class Refused(unittest.TestCase):
     def test_types(self):
         for array in (np.zeros((4, 4)), np.zeros((4, 4), np.int8), np.zeros((4, 4), np.bool_), np.zeros((4, 4), ">u2"),
                       np.zeros((4, 4), ">f4")):
-            with self.assertRaisesRegex(TypeError, "convert the picture to uint8, uint16 or float32"):
+            with self.assertRaisesRegex(TypeError, "convert the picture to uint8, uint16, float16 or float32"):
                 lp.correct(array, profile())
         with self.assertRaisesRegex(TypeError, "must be a numpy.ndarray, not list"):
             lp.correct([[1, 2]], profile())

@@ -77,10 +77,11 @@ class Projection(IntEnum):
 
 
 class SampleType(IntEnum):
-    """Type of a sample: uint8 (0..255 = 0..1), uint16 (0..65535 = 0..1), float32 (0..1)."""
+    """Type of a sample: uint8 (0..255 = 0..1), uint16 (0..65535 = 0..1), float32 or float16 (0..1)."""
     U8 = 0
     U16 = 1
     F32 = 2
+    F16 = 3
 
 
 class Layout(IntEnum):
@@ -91,6 +92,11 @@ class Layout(IntEnum):
     RGBA = 3
     BGR = 4
     BGRA = 5
+    PLANAR = 6
+    RGGB = 7
+    GRBG = 8
+    GBRG = 9
+    BGGR = 10
 
 
 class Direction(IntEnum):
@@ -489,6 +495,7 @@ FUNCTIONS = {
     "lensprof_plan_bytes": (c_size_t, [POINTER(ApplyOptions)]),
     "lensprof_plan_init": (_status, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(_plan)]),
     "lensprof_apply": (_status, [_plan, _image, _image, c_uint32, c_uint32]),
+    "lensprof_apply_planar": (_status, [_plan, _image, _image, c_uint32, c_uint32]),
     # profile.h
     "lensprof_profile_key_init": (None, [_key]),
     "lensprof_profile_key_validate": (_status, [_key]),

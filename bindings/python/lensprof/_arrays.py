@@ -41,7 +41,7 @@ FLAT_SPOT_DTYPE = _dtype(_abi.FlatSpot)
 """Layout of a spot of dust: x, y, radius (px), depth, shots."""
 
 _SAMPLE_TYPES = {np.dtype(np.uint8): SampleType.U8, np.dtype(np.uint16): SampleType.U16,
-                 np.dtype(np.float32): SampleType.F32}
+                 np.dtype(np.float32): SampleType.F32, np.dtype(np.float16): SampleType.F16}
 _LAYOUTS = {1: Layout.GREY, 2: Layout.GREY_ALPHA, 3: Layout.RGB, 4: Layout.RGBA}
 
 
@@ -54,8 +54,8 @@ def sample_type(dtype: Any) -> SampleType:
     """The sample type of a NumPy dtype."""
     found = _SAMPLE_TYPES.get(np.dtype(dtype))
     if found is None:
-        raise TypeError(f"samples of type {np.dtype(dtype)} are not supported; convert the picture to uint8, uint16 or "
-                        "float32 in native byte order")
+        raise TypeError(f"samples of type {np.dtype(dtype)} are not supported; convert the picture to uint8, uint16, "
+                        "float16 or float32 in native byte order")
     return found
 
 

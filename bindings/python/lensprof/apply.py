@@ -1,13 +1,13 @@
 """Undoing (or simulating) what the camera did to the light, on the memory of NumPy arrays; see lensprof/apply.h.
 
 Pictures have the shape (height, width) or (height, width, samples) and the type uint8 (0..255 = 0..1), uint16
-(0..65535) or float32 (0..1). Rows may be any number of bytes apart, also backwards: slices like a[10:20, 5:50] and
+(0..65535), float32 or float16 (0..1). Rows may be any number of bytes apart, also backwards: slices like a[10:20, 5:50] and
 a[::-1] work.
 """
 from __future__ import annotations
 
 from ctypes import POINTER, byref
-from typing import Any, Optional
+from typing import Any, Optional, Sequence
 
 import numpy as np
 
@@ -95,6 +95,23 @@ class Plan:
         check(lib.lensprof_apply(self._plan, byref(view), byref(target), integer(x0, "x0"), integer(y0, "y0")),
               f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have "
               "the plan's sample types, the same size, lie in the frame, and be the same array or apart")
+        return out
+
+    def apply_planar(self, source: Sequence[np.ndarray], out: Optional[Sequence[np.ndarray]] = None, *, x0: int = 0,
+                     y0: int = 0) -> Sequence[np.ndarray]:
+        """The same for three planes, red, green and blue, of shape (height, width); the plan's layout is PLANAR.
+
+        out: three arrays, each its source itself to work in place; new ones when None.
+        """
+        if out is None:
+            out = [np.empty(plane.shape, dtype=self._target_dtype) for plane in source]
+        if len(source) != 3 or len(out) != 3:
+            raise ValueError(f"{len(source)} planes and {len(out)} for the result: give red, green and blue")
+        planes = (_abi.Image * 3)(*(_arrays.image(p, Layout.GREY, what="source") for p in source))
+        targets = (_abi.Image * 3)(*(_arrays.image(p, Layout.GREY, writable=True, what="out") for p in out))
+        check(lib.lensprof_apply_planar(self._plan, planes, targets, integer(x0, "x0"), integer(y0, "y0")),
+              f"planes of {source[0].shape} {source[0].dtype} at ({x0}, {y0}): all must have the plan's sample types and one "
+              "size, lie in the frame, and each result be its source or apart from all")
         return out
 
 

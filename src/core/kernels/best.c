@@ -1,5 +1,5 @@
 /* Which kernel this processor runs best. */
-#include "../plan.h"
+#include "core/plan.h"
 
 #if defined(__x86_64__) && defined(LENSPROF_KERNELS)
 #include <cpuid.h>

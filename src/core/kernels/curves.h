@@ -1,0 +1,90 @@
+/* Responses and their inverses, of lanes. */
+
+/* x^e for 0 <= x <= 1, e > 0: 2^(e log2 x). log2 by the series of atanh, 2^ by a polynomial; relative error below 2e-6
+ * where the result is above 1e-3. */
+ALWAYS_INLINE lane_f power(lane_f x, lane_f e)
+{
+    const lane_i bits = i_of_bits(f_max(x, f_set(1e-37f)));
+    const lane_i shifted = i_sub(bits, i_set(0x3f3504f3)); /* of the square root of 1/2: m lies about 1 */
+    const lane_f whole = f_of_i(i_sub(i_right(i_add(shifted, i_set(0x40000000)), 23), i_set(0x80)));
+    const lane_f m = f_of_bits(i_add(i_and(shifted, i_set(0x007fffff)), i_set(0x3f3504f3)));
+    const lane_f t = f_div(f_sub(m, f_set(1.0f)), f_add(m, f_set(1.0f))), t2 = f_mul(t, t);
+    lane_f series = f_add(f_set(0.4121985831f), f_mul(t2, f_set(0.3205988980f)));
+    series = f_add(f_set(0.5770780164f), f_mul(t2, series));
+    series = f_add(f_set(0.9617966939f), f_mul(t2, series));
+    series = f_mul(t, f_add(f_set(2.8853900818f), f_mul(t2, series)));
+    const lane_f z = f_max(f_mul(e, f_add(whole, series)), f_set(-126.0f));
+    const lane_i n = i_sub(i_of_f(f_add(z, f_set(128.5f))), i_set(128)); /* to nearest */
+    const lane_f f = f_sub(z, f_of_i(n));
+    lane_f p = f_add(f_set(1.3333558e-3f), f_mul(f, f_set(1.5403530e-4f)));
+    p = f_add(f_set(9.6181291e-3f), f_mul(f, p));
+    p = f_add(f_set(5.5504109e-2f), f_mul(f, p));
+    p = f_add(f_set(2.4022651e-1f), f_mul(f, p));
+    p = f_add(f_set(6.9314718e-1f), f_mul(f, p));
+    p = f_add(f_set(1.0f), f_mul(f, p));
+    lane_f y = f_mul(p, f_of_bits(i_left(i_add(n, i_set(127)), 23)));
+    y = f_pick(f_less(x, f_set(1e-37f)), f_set(0.0f), y);
+    return f_pick(f_less(x, f_set(1.0f)), y, f_set(1.0f));
+}
+
+ALWAYS_INLINE lane_f cut(lane_f x) { return f_min(f_max(x, f_set(0.0f)), f_set(1.0f)); } /* 0 for NaN */
+
+/* f(x) by its samples, 0 <= x <= 1. `first`: where the samples begin. */
+ALWAYS_INLINE lane_f table_at(const float *samples, lane_f x, lane_i first)
+{
+    const lane_f position = f_mul(x, f_set((float)LAST));
+    const lane_i j = i_min(i_of_f(position), i_set(LAST - 1));
+    lane_f low, high;
+    f_gather_pair(samples, i_add(j, first), &low, &high);
+    return f_add(low, f_mul(f_sub(position, f_of_i(j)), f_sub(high, low)));
+}
+
+/* g(b) by the samples of f, 0 <= b <= 1: the smallest x with f(x) >= b. */
+ALWAYS_INLINE lane_f table_inverse(const float *samples, lane_f b, lane_i first)
+{
+    lane_i low = i_set(0);
+    for (int32_t step = 512; step > 0; step /= 2) {
+        const lane_i next = i_add(low, i_set(step));
+        low = i_pick(f_less(f_gather(samples, i_add(next, first)), b), next, low);
+    }
+    lane_f below, above;
+    low = i_min(low, i_set(LAST - 1));
+    f_gather_pair(samples, i_add(low, first), &below, &above);
+    const lane_f rise = f_sub(above, below);
+    const lane_f share = f_div(f_sub(b, below), f_pick(f_less(f_set(0.0f), rise), rise, f_set(1.0f)));
+    const lane_f x = f_div(f_add(f_of_i(low), share), f_set((float)LAST));
+    return f_pick(f_less(f_set(0.0f), b), x, f_set(0.0f));
+}
+
+/* The value of a curve; NaN stays. `at`: index into s->channel. */
+ALWAYS_INLINE lane_f curve_value(const lensprof_plan *plan, const strip *s, uint32_t curve, int inverse, uint32_t at,
+                                 lane_f x)
+{
+    const float *exponents = inverse ? plan->inverse_exponent : plan->exponent;
+    const lane_f inside = cut(x);
+    lane_f y = inside, e = f_set(exponents[0]);
+    lane_i channel = i_set(0);
+    if (plan->curves == 3) channel = i_load(s->channel + at), e = f_gather(exponents, channel);
+    if (curve == LP_CURVE_TABLE || curve == LP_CURVE_MIXED) {
+        const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
+        y = inverse ? table_inverse(plan->forward, inside, first) : table_at(plan->forward, inside, first);
+    }
+    if (curve == LP_CURVE_POWER) y = power(inside, e);
+    if (curve == LP_CURVE_MIXED) y = f_pick(f_less(f_set(0.0f), e), power(inside, e), y);
+    return f_pick(f_is_number(x), y, x);
+}
+
+/* Codes of 16 bit that go through a formula become values. */
+ALWAYS_INLINE lane_f code_scale(const lensprof_plan *plan)
+{
+    return f_set(plan->source_sample == LENSPROF_SAMPLE_U16 ? 1.0f / 65535.0f : 1.0f);
+}
+
+/* Samples of a strip's light, in place, through a curve; codes of 16 bit become values first. */
+ALWAYS_INLINE void through_curve(const lensprof_plan *plan, strip *s, uint32_t curve, int inverse, uint32_t at,
+                                 uint32_t count)
+{
+    const lane_f scale = inverse ? code_scale(plan) : f_set(1.0f);
+    for (uint32_t i = at; i < at + count; i += LANES)
+        f_store(s->light + i, curve_value(plan, s, curve, inverse, i, f_mul(f_load(s->light + i), scale)));
+}

@@ -1,0 +1,23 @@
+/* What the steps of a row kernel work on: a strip of pixels that stays in the first cache. A lanes_*.h comes first. */
+#include "core/plan.h"
+
+#if defined(__GNUC__)
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
+#else
+#define ALWAYS_INLINE static inline
+#endif
+
+#define LAST (LENSPROF_RESPONSE_SAMPLES - 1)
+#define MOST_SAMPLES (4 * STRIP)
+#define ROOM (MOST_SAMPLES + LANES) /* the last vector of a strip may go beyond */
+
+/* Planes stand STRIP + LANES apart on it. */
+typedef struct strip {
+    float gain[LP_CHANNELS][STRIP + LANES]; /* of the pixels */
+    float factor[ROOM];                     /* of the samples */
+    float light[ROOM];
+    int32_t channel[ROOM];  /* of the samples, where the channels have curves of their own */
+    float rounding[ROOM];   /* added before a code is cut to an integer, with dither */
+    uint8_t alpha[STRIP][4];
+    float grid[LP_CHANNELS][LENSPROF_GRID_SIDE + 1];
+} strip;
