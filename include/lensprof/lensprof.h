@@ -5,6 +5,7 @@
 #include "apply.h"
 #include "base.h"
 #include "fit.h"
+#include "fixed.h"
 #include "flat.h"
 #include "formats.h"
 #include "geometry.h"

@@ -45,6 +45,7 @@ lensprof_status lensprof_image_validate(const lensprof_image *image)
     if (image->row_bytes > LARGEST_ROW || image->row_bytes < -LARGEST_ROW) return LENSPROF_ERROR_SIZE;
     int64_t row = image->row_bytes < 0 ? -(int64_t)image->row_bytes : (int64_t)image->row_bytes;
     if (row < (int64_t)image->width * samples * bytes && image->height > 1) return LENSPROF_ERROR_SIZE;
+    if (row * image->height > PTRDIFF_MAX) return LENSPROF_ERROR_SIZE; /* where addresses have 32 bits */
     if ((uintptr_t)image->data % bytes || row % bytes) return LENSPROF_ERROR_ARGUMENT;
     return LENSPROF_OK;
 }
@@ -279,17 +280,23 @@ static void prepare_grid(lensprof_plan *plan, const lp_model *m, float *memory)
         plan->nodes[c] = memory + (m->channels == 3 ? c : 0) * m->rows * m->columns;
 }
 
-static void prepare_layout(lensprof_plan *plan, const lensprof_apply_options *o)
+void lp_layout_sites(uint32_t layout, uint8_t channel_of_sample[4], uint8_t site[2][2])
 {
     static const uint8_t sites[4][2][2] = {{{0, 1}, {1, 2}}, {{1, 0}, {2, 1}}, {{1, 2}, {0, 1}}, {{2, 1}, {1, 0}}};
-    const uint32_t layout = o->source_layout;
     const int reversed = layout == LENSPROF_LAYOUT_BGR || layout == LENSPROF_LAYOUT_BGRA;
-    plan->layout = layout;
-    plan->samples = lensprof_layout_samples(layout);
-    plan->channels = lensprof_layout_channels(layout);
     for (uint8_t s = 0; s < 4; s++)
-        plan->channel_of_sample[s] = s >= plan->channels ? LP_ALPHA : reversed && s < 3 ? (uint8_t)(2 - s) : s;
-    if (is_mosaic(layout)) memcpy(plan->site, sites[layout - LENSPROF_LAYOUT_RGGB], sizeof plan->site);
+        channel_of_sample[s] = s >= lensprof_layout_channels(layout) ? LP_ALPHA
+                               : reversed && s < 3                   ? (uint8_t)(2 - s)
+                                                                     : s;
+    if (is_mosaic(layout)) memcpy(site, sites[layout - LENSPROF_LAYOUT_RGGB], sizeof sites[0]);
+}
+
+static void prepare_layout(lensprof_plan *plan, const lensprof_apply_options *o)
+{
+    plan->layout = o->source_layout;
+    plan->samples = lensprof_layout_samples(plan->layout);
+    plan->channels = lensprof_layout_channels(plan->layout);
+    lp_layout_sites(plan->layout, plan->channel_of_sample, plan->site);
 }
 
 /* What the linear numbers of a kernel count in: codes stay codes where no curve is between. */
@@ -405,20 +412,27 @@ static int is_in_place(const lensprof_image *source, const lensprof_image *targe
     return source->data == target->data && source->row_bytes == target->row_bytes && source->sample == target->sample;
 }
 
-static lensprof_status validate_tile(const lensprof_plan *plan, const lensprof_image *source,
-                                     const lensprof_image *target, uint32_t layout, uint32_t x0, uint32_t y0)
+lensprof_status lp_tile_validate(const lp_tiles *tiles, const lensprof_image *source, const lensprof_image *target,
+                                 uint32_t x0, uint32_t y0)
 {
     lensprof_status status = lensprof_image_validate(source);
     if (status == LENSPROF_OK) status = lensprof_image_validate(target);
     if (status != LENSPROF_OK) return status;
-    if (source->sample != plan->source_sample || target->sample != plan->target_sample || source->layout != layout
-        || target->layout != layout)
+    if (source->sample != tiles->source_sample || target->sample != tiles->target_sample
+        || source->layout != tiles->layout || target->layout != tiles->layout)
         return LENSPROF_ERROR_ARGUMENT;
     if (source->width != target->width || source->height != target->height) return LENSPROF_ERROR_SIZE;
-    if (x0 > plan->frame_width || source->width > plan->frame_width - x0 || y0 > plan->frame_height
-        || source->height > plan->frame_height - y0)
+    if (x0 > tiles->frame_width || source->width > tiles->frame_width - x0 || y0 > tiles->frame_height
+        || source->height > tiles->frame_height - y0)
         return LENSPROF_ERROR_SIZE;
     return is_in_place(source, target) || !overlap(source, target) ? LENSPROF_OK : LENSPROF_ERROR_ARGUMENT;
+}
+
+static lensprof_status validate_tile(const lensprof_plan *plan, const lensprof_image *source,
+                                     const lensprof_image *target, uint32_t layout, uint32_t x0, uint32_t y0)
+{
+    const lp_tiles tiles = {plan->source_sample, plan->target_sample, layout, plan->frame_width, plan->frame_height};
+    return lp_tile_validate(&tiles, source, target, x0, y0);
 }
 
 static void apply_rows(const lensprof_plan *plan, const lensprof_image *source, const lensprof_image *target,
@@ -460,4 +474,17 @@ lensprof_status lensprof_apply_planar(const lensprof_plan *plan, const lensprof_
     }
     apply_rows(plan, source, target, 3, x0, y0);
     return LENSPROF_OK;
+}
+
+/* ---- what fixed_plan.c shares ---- */
+
+lensprof_status lp_options_validate(const lensprof_apply_options *options) { return validate_options(options); }
+
+double lp_exposure_ratio(const lensprof_apply_options *options, uint32_t channel) { return factor_of(options, channel); }
+
+uint32_t lp_curves(const lensprof_apply_options *options) { return curves_of(options); }
+
+const lensprof_response *lp_response(const lensprof_apply_options *options, uint32_t curve)
+{
+    return response_of(options, curve);
 }

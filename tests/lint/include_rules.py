@@ -51,7 +51,7 @@ CPP_OUTSIDE = {
     "thread",
 }
 
-CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "profile.h"}
+CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "profile.h"}
 FIT_API = CORE_API | {"sample.h", "fit.h", "flat.h"}
 FORMATS_API = FIT_API | {"formats.h"}
 STORE_API = CORE_API | {"store.h"}
@@ -94,6 +94,7 @@ PUBLIC = {
     "model.h": CORE_API,
     "geometry.h": CORE_API,
     "apply.h": CORE_API,
+    "fixed.h": CORE_API,
     "profile.h": CORE_API,
     "sample.h": FIT_API,
     "fit.h": FIT_API,

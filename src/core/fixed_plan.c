@@ -1,0 +1,167 @@
+/* Plans in integers (lensprof/fixed.h). What they hold is rounded from double precision. */
+#include "fixed_plan.h"
+
+#include <math.h>
+#include <string.h>
+
+#define LEAST_FALLOFF_SHIFT 21 /* M in 2^-21: 1 / 2000 of the smallest one allowed */
+#define SMALLEST_M 0.0005      /* below the smallest one allowed, above 0 after rounding */
+
+static int is_linear(const lensprof_apply_options *o, uint32_t encoding)
+{
+    int linear = 1;
+    for (uint32_t c = 0; c < lp_curves(o) && encoding == LENSPROF_ENCODING_RESPONSE; c++)
+        linear = linear && lp_response(o, c)->kind == LENSPROF_RESPONSE_LINEAR;
+    return linear;
+}
+
+static uint32_t tables_of(const lensprof_apply_options *o, uint32_t encoding)
+{
+    if (o->source_sample != LENSPROF_SAMPLE_U8) return 0;
+    return is_linear(o, encoding) ? 1 : lp_curves(o);
+}
+
+static size_t bytes_of(const lensprof_apply_options *o)
+{
+    return sizeof(lensprof_fixed_plan)
+           + (tables_of(o, o->input) + tables_of(o, o->output)) * (LP_CODES * sizeof(int32_t));
+}
+
+/* ---- falloff ---- */
+
+/* Centre, and the largest r^2 in the frame, px^2; at least that of a corner from the middle, in which k count. */
+static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
+{
+    const double unit = 1 << LP_CENTER_SHIFT, size[2] = {o->frame_width, o->frame_height};
+    const double rho2 = 0.25 * (size[0] * size[0] + size[1] * size[1]);
+    double reach2 = 0.0;
+    for (int d = 0; d < 2; d++) {
+        const double center = 0.5 * (size[d] - 1.0) + sqrt(rho2) * o->vignetting[0].center[d];
+        const double reach = fmax(center, size[d] - 1.0 - center) + 1.0 / unit;
+        plan->center[d] = (int32_t)floor(center * unit + 0.5);
+        reach2 += reach * reach;
+    }
+    return fmax(reach2, rho2);
+}
+
+/* Coefficients in powers of t = r^2 / R, R a power of 2 beyond the frame. 0 when integers do not hold them. */
+static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
+{
+    const double w = o->frame_width, h = o->frame_height, reach2 = prepare_center(plan, o);
+    double k[LP_CHANNELS][3], largest = 0.0, reach = 1.0; /* R, px^2 */
+    uint32_t shift = 63 - 2 * LP_CENTER_SHIFT;
+    for (; reach <= reach2; reach *= 2.0) shift--;
+    plan->reach_shift = shift;
+    for (uint32_t c = 0; c < LP_CHANNELS; c++) {
+        double scale = o->strength, sum = 1.0;
+        for (int n = 0; n < 3; n++) {
+            scale *= reach * 4.0 / (w * w + h * h);
+            k[c][n] = o->vignetting[o->vignettings == 1 ? 0 : plan->channels == 1 ? 1 : c].k[n] * scale;
+            sum += fabs(k[c][n]) + 1e-6; /* rounding */
+        }
+        largest = fmax(largest, sum);
+    }
+    plan->falloff_shift = 30;
+    while (plan->falloff_shift >= LEAST_FALLOFF_SHIFT && ldexp(largest, (int)plan->falloff_shift) >= 2147483648.0)
+        plan->falloff_shift--;
+    if (plan->falloff_shift < LEAST_FALLOFF_SHIFT) return 0;
+    const double unit = ldexp(1.0, (int)plan->falloff_shift);
+    for (uint32_t c = 0; c < LP_CHANNELS; c++)
+        for (int n = 0; n < 3; n++) plan->k[c][n] = (int32_t)floor(k[c][n] * unit + 0.5);
+    plan->least = (int32_t)(unit * fmax(o->gain_cap > 0.0 ? 1.0 / o->gain_cap : 0.0, SMALLEST_M));
+    return 1;
+}
+
+/* ---- logarithms ---- */
+
+/* In the plan's units, to nearest. */
+static int32_t log_of(double light)
+{
+    return light > 0.0 ? (int32_t)floor(log2(light) * (1 << LP_LOG_SHIFT) + 0.5) : LP_LOG_NONE;
+}
+
+static double light_of(const lensprof_apply_options *o, uint32_t encoding, uint32_t curve, double value)
+{
+    return encoding == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(lp_response(o, curve), value, NULL);
+}
+
+static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
+{
+    int32_t *table = (int32_t *)(void *)(plan + 1);
+    for (uint32_t c = 0; c < plan->decode_curves; c++, table += LP_CODES)
+        for (uint32_t code = 0; code < LP_CODES; code++) table[code] = log_of(light_of(o, o->input, c, code / 255.0));
+    for (uint32_t c = 0; c < plan->encode_curves; c++, table += LP_CODES) {
+        for (uint32_t code = 0; code < LP_CODES - 1; code++)
+            table[code] = log_of(light_of(o, o->output, c, (code + 0.5) / 255.0));
+        table[LP_CODES - 1] = INT32_MAX;
+    }
+}
+
+/* ---- plan ---- */
+
+static lensprof_status validate(const lensprof_apply_options *o)
+{
+    const lensprof_status status = lp_options_validate(o);
+    if (status != LENSPROF_OK) return status;
+    if (o->source_sample > LENSPROF_SAMPLE_U16 || o->target_sample != o->source_sample
+        || o->source_layout == LENSPROF_LAYOUT_PLANAR || (o->grid && o->grid->columns) || o->dither)
+        return LENSPROF_ERROR_UNSUPPORTED;
+    if (o->source_sample == LENSPROF_SAMPLE_U16 && !(is_linear(o, o->input) && is_linear(o, o->output)))
+        return LENSPROF_ERROR_UNSUPPORTED;
+    return LENSPROF_OK;
+}
+
+size_t lensprof_fixed_plan_bytes(const lensprof_apply_options *options)
+{
+    return options && validate(options) == LENSPROF_OK ? bytes_of(options) : 0;
+}
+
+static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
+{
+    plan->sample = (uint8_t)o->source_sample;
+    plan->layout = (uint8_t)o->source_layout;
+    plan->samples = (uint8_t)lensprof_layout_samples(plan->layout);
+    plan->channels = (uint8_t)lensprof_layout_channels(plan->layout);
+    lp_layout_sites(plan->layout, plan->channel_of_sample, plan->site);
+    plan->frame_width = o->frame_width;
+    plan->frame_height = o->frame_height;
+    plan->simulate = o->direction == LENSPROF_DIRECTION_SIMULATE;
+    plan->decode_curves = (uint8_t)tables_of(o, o->input);
+    plan->encode_curves = (uint8_t)tables_of(o, o->output);
+}
+
+static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
+{
+    plan->falloffs = plan->gains = 1;
+    for (uint32_t c = 0; c < LP_CHANNELS; c++)
+        plan->factor[c] = log_of(lp_exposure_ratio(o, plan->channels == 1 ? 1 : c)); /* grey is treated as green */
+    for (uint32_t c = 1; c < plan->channels; c++) {
+        if (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0])) plan->falloffs = 3;
+        if (plan->falloffs == 3 || plan->factor[c] != plan->factor[0]) plan->gains = 3;
+    }
+    plan->neutral_white = o->saturated == LENSPROF_SATURATED_NEUTRAL && !plan->simulate && plan->samples >= 3
+                          && plan->gains == 3 && o->input == LENSPROF_ENCODING_RESPONSE
+                          && o->output == LENSPROF_ENCODING_RESPONSE;
+}
+
+lensprof_status lensprof_fixed_plan_init(void *memory, size_t bytes, const lensprof_apply_options *options,
+                                         const lensprof_fixed_plan **result)
+{
+    if (!memory || !options || !result) return LENSPROF_ERROR_ARGUMENT;
+    lensprof_fixed_plan head;
+    memset(&head, 0, sizeof head);
+    const lensprof_status status = validate(options);
+    if (status != LENSPROF_OK) return status;
+    prepare_layout(&head, options);
+    if (!prepare_falloffs(&head, options)) return LENSPROF_ERROR_UNSUPPORTED;
+    prepare_gains(&head, options);
+    head.magic = LP_FIXED_MAGIC;
+    head.bytes = (uint32_t)bytes_of(options);
+    if (bytes < head.bytes || (uintptr_t)memory % 4) return LENSPROF_ERROR_CAPACITY;
+    lensprof_fixed_plan *plan = memory;
+    *plan = head;
+    prepare_tables(plan, options);
+    plan->check = lp_fixed_check(plan);
+    *result = plan;
+    return LENSPROF_OK;
+}

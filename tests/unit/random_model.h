@@ -1,0 +1,96 @@
+/* Random models of real cameras, and what applying one shall give, in double precision. */
+#ifndef LENSPROF_TESTS_RANDOM_MODEL_H
+#define LENSPROF_TESTS_RANDOM_MODEL_H
+
+#include "support.h"
+
+#include <lensprof/apply.h>
+
+enum { MODEL_WIDTH = 4000, MODEL_HEIGHT = 3000 };
+
+typedef struct model {
+    lensprof_response response[3];
+    lensprof_vignetting vignetting[3];
+    lensprof_gain_grid grid;
+    lensprof_apply_options options;
+} model;
+
+static void random_response(lensprof_response *r, uint64_t *random)
+{
+    uint32_t kind = (uint32_t)(4 * lp_random(random));
+    double emor[4], sizes[4] = {1.0, 0.5, 0.3, 0.1}, table[40] = {0.0};
+    lensprof_response_set_linear(r);
+    if (kind == 1) assert_ok(lensprof_response_set_gamma(r, 1.0 + 1.6 * lp_random(random)));
+    if (kind == 2)
+        do
+            for (int i = 0; i < 4; i++) emor[i] = sizes[i] * (2.0 * lp_random(random) - 1.0);
+        while (lensprof_response_set_emor(r, emor, 4) != LENSPROF_OK);
+    if (kind < 3) return;
+    for (int i = 1; i < 40; i++) table[i] = table[i - 1] + 0.2 + lp_random(random);
+    for (int i = 0; i < 40; i++) table[i] /= table[39];
+    assert_ok(lensprof_response_set_table(r, table, 40));
+}
+
+/* Falloffs of real lenses: between .25 and 1.1 anywhere in the frame. */
+static void random_falloff(lensprof_vignetting *v, const double center[2], uint64_t *random)
+{
+    int good = 0;
+    while (!good) {
+        for (int n = 0; n < 3; n++) v->k[n] = 1.2 * lp_random(random) - 0.8;
+        v->center[0] = center[0], v->center[1] = center[1];
+        good = 1;
+        for (double r = 0.0; r <= 1.2; r += 0.02) {
+            double m = lensprof_vignetting_eval(v, r * r, NULL);
+            good = good && m > 0.25 && m < 1.1;
+        }
+    }
+}
+
+static void random_model(model *m, uint64_t *random)
+{
+    memset(m, 0, sizeof *m);
+    lensprof_apply_options *o = &m->options;
+    lensprof_apply_options_init(o);
+    const double center[2] = {0.1 * (lp_random(random) - 0.5), 0.1 * (lp_random(random) - 0.5)};
+    o->responses = lp_random(random) < 0.5 ? 1 : 3;
+    o->vignettings = lp_random(random) < 0.5 ? 1 : 3;
+    for (int c = 0; c < 3; c++) {
+        random_response(&m->response[c], random);
+        random_falloff(&m->vignetting[c], center, random);
+    }
+    o->response = m->response, o->vignetting = m->vignetting;
+    o->frame_width = MODEL_WIDTH, o->frame_height = MODEL_HEIGHT;
+    o->direction = lp_random(random) < 0.3;
+    o->saturated = LENSPROF_SATURATED_AS_VALUE;
+    o->source.ev = 2.0 * lp_random(random) - 1.0;
+    for (int c = 0; c < 3; c += 2) o->source.white_balance[c] = 0.7 + 0.6 * lp_random(random);
+    if (lp_random(random) < 0.3) o->strength = lp_random(random);
+    if (lp_random(random) < 0.3) o->gain_cap = 1.0 + 2.0 * lp_random(random);
+    if (lp_random(random) < 0.3) {
+        m->grid.columns = 2 + (uint32_t)(31 * lp_random(random));
+        m->grid.rows = 2 + (uint32_t)(31 * lp_random(random));
+        m->grid.channels = lp_random(random) < 0.5 ? 1 : 3;
+        for (uint32_t i = 0; i < m->grid.columns * m->grid.rows * m->grid.channels; i++)
+            m->grid.attenuation[i] = (float)(0.8 + 0.4 * lp_random(random));
+        o->grid = &m->grid;
+    }
+}
+
+/* The formula of apply.h for a value of a channel at a pixel. */
+static double reference(const model *m, double value, uint32_t c, uint32_t x, uint32_t y)
+{
+    const lensprof_apply_options *o = &m->options;
+    const lensprof_response *r = &m->response[o->responses == 3 ? c : 0];
+    const lensprof_vignetting *v = &m->vignetting[o->vignettings == 3 ? c : 0];
+    double r2 = lensprof_vignetting_r2(v, o->frame_width, o->frame_height, x, y, NULL);
+    double falloff = lensprof_vignetting_eval(v, r2, NULL);
+    if (o->grid) falloff *= lensprof_gain_grid_eval(o->grid, o->frame_width, o->frame_height, x, y, c);
+    falloff = 1.0 + o->strength * (falloff - 1.0);
+    if (o->gain_cap > 0.0) falloff = fmax(falloff, 1.0 / o->gain_cap);
+    double ratio = lensprof_exposure_factor(&o->target, c) / lensprof_exposure_factor(&o->source, c);
+    double light = o->input == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(r, value, NULL);
+    light *= o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / falloff : falloff / ratio;
+    return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(r, light, NULL);
+}
+
+#endif
