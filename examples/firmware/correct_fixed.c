@@ -1,0 +1,42 @@
+/* correct_fixed - a camera without a floating-point unit does it in integers; with the plan that a PC prepared, which
+ * stays in flash, or with one that it prepares itself (-DPREPARE_HERE). */
+#include "demo.h"
+
+#ifdef PREPARE_HERE
+static uint32_t memory[1 << 10]; /* 4 KiB; see lensprof_fixed_plan_bytes */
+
+static lensprof_status get_plan(const lensprof_fixed_plan **plan)
+{
+    lensprof_apply_options options;
+    set_options(&options, &camera_table);
+    put_number("plan: bytes ", (uint32_t)lensprof_fixed_plan_bytes(&options));
+    return lensprof_fixed_plan_init(memory, sizeof memory, &options, plan);
+}
+#else
+static lensprof_status get_plan(const lensprof_fixed_plan **plan)
+{
+    return lensprof_fixed_plan_open(fixed_plan, fixed_plan_bytes, plan);
+}
+#endif
+
+int main(void)
+{
+    static uint8_t row[3 * STRIP_WIDTH];
+    const lensprof_fixed_plan *plan;
+    lensprof_status status;
+
+    paint_stack();
+    status = get_plan(&plan);
+    put_number("plan: stack ", deepest_stack());
+    paint_stack();
+    for (uint32_t y = 0; y < STRIP_ROWS && status == LENSPROF_OK; y++) {
+        lensprof_image source = {(void *)(strip + y * sizeof row), 0, STRIP_WIDTH, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
+        lensprof_image target = source;
+        target.data = row;
+        status = lensprof_fixed_apply(plan, &source, &target, 0, y);
+        if (y == STRIP_ROWS - 1) put_number("apply: stack ", deepest_stack());
+        put_row("fixed", row);
+    }
+    if (status != LENSPROF_OK) put_text("cannot correct\n");
+    return status != LENSPROF_OK;
+}

@@ -1,0 +1,90 @@
+/* make_data - writes data.c: what the demonstrations find in flash. Runs on a PC.
+ *
+ * The picture is an evening over hills, rendered as light and recorded by the library's own simulation. */
+#include <math.h>
+#include <stdio.h>
+
+#include "demo.h"
+
+static lensprof_response camera_table_made, camera_gamma_made;
+
+const lensprof_vignetting camera_falloff[3] = {
+    {{-0.375, -0.0625, -0.03125}, {0.015625, -0.03125}},
+    {{-0.40625, -0.0625, -0.03125}, {0.015625, -0.03125}},
+    {{-0.4375, -0.0625, -0.03125}, {0.015625, -0.03125}}};
+
+/* Light at a pixel: sky, sun, clouds, a ridge with trees. */
+static double light_at(double x, double y, int channel)
+{
+    static const double sky[3] = {0.30, 0.38, 0.55}, hill[3] = {0.05, 0.08, 0.03}, sun[3] = {1.0, 0.8, 0.5};
+    const double ridge = 10.0 + 2.0 * sin(0.11 * x) + 1.5 * sin(0.37 * x + 1.0) + sin(1.7 * x);
+    const double away2 = (x - 96.0) * (x - 96.0) + 6.0 * (y - 4.0) * (y - 4.0);
+    const double cloud = 0.12 * sin(0.09 * x + 0.4 * y) * sin(0.05 * x - 0.3 * y);
+    const double grain = 0.01 * sin(12.9898 * x + 78.233 * y);
+    if (y > ridge) return hill[channel] * (1.0 + 0.4 * sin(2.3 * x) * sin(1.9 * y)) + grain * 0.5;
+    return sky[channel] + cloud + grain + 1.2 * sun[channel] * exp(-away2 / 300.0);
+}
+
+static int render(uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3])
+{
+    static float light[STRIP_ROWS][STRIP_WIDTH][3];
+    static uint64_t memory[1 << 12];
+    lensprof_image from = {light, sizeof light[0], STRIP_WIDTH, STRIP_ROWS, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB};
+    lensprof_image to = {rows, sizeof rows[0], STRIP_WIDTH, STRIP_ROWS, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
+    lensprof_apply_options options;
+    const lensprof_plan *plan;
+
+    for (int y = 0; y < STRIP_ROWS; y++)
+        for (int x = 0; x < STRIP_WIDTH; x++)
+            for (int c = 0; c < 3; c++) light[y][x][c] = (float)light_at(x, y, c);
+    set_options(&options, &camera_table_made);
+    options.direction = LENSPROF_DIRECTION_SIMULATE;
+    options.input = LENSPROF_ENCODING_LINEAR;
+    options.source_sample = LENSPROF_SAMPLE_F32;
+    return lensprof_plan_init(memory, sizeof memory, &options, &plan) == LENSPROF_OK
+           && lensprof_apply(plan, &from, &to, 0, 0) == LENSPROF_OK;
+}
+
+/* Hexadecimal floating point: exact. */
+static void print_response(const char *name, const lensprof_response *r)
+{
+    printf("\nconst lensprof_response %s = {%u, 0, %a, {0.0}, {", name, r->kind, r->gamma);
+    for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) printf("%s%a,", j % 6 ? " " : "\n    ", r->table[j]);
+    printf("}};\n");
+}
+
+static int print_plan(void)
+{
+    static uint32_t memory[1 << 10];
+    lensprof_apply_options options;
+    const lensprof_fixed_plan *plan;
+    size_t bytes;
+
+    set_options(&options, &camera_table_made);
+    bytes = lensprof_fixed_plan_bytes(&options);
+    if (lensprof_fixed_plan_init(memory, sizeof memory, &options, &plan) != LENSPROF_OK) return 0;
+    printf("\nconst uint32_t fixed_plan_bytes = %u;\nconst uint32_t fixed_plan[] = {", (unsigned)bytes);
+    for (size_t i = 0; i < bytes / 4; i++) printf("%s0x%08x,", i % 8 ? " " : "\n    ", memory[i]);
+    printf("};\n");
+    return 1;
+}
+
+int main(void)
+{
+    static uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3];
+    double values[129];
+    for (int i = 0; i <= 128; i++) values[i] = pow(i / 128.0, 1.0 / 2.2);
+    if (lensprof_response_set_table(&camera_table_made, values, 129) != LENSPROF_OK) return 1;
+    if (lensprof_response_set_gamma(&camera_gamma_made, 2.2) != LENSPROF_OK || !render(rows)) return 1;
+    printf("/* Written by make_data. */\n#include \"data.h\"\n\nconst lensprof_vignetting camera_falloff[3] = {\n");
+    for (int c = 0; c < 3; c++)
+        printf("    {{%a, %a, %a}, {%a, %a}},\n", camera_falloff[c].k[0], camera_falloff[c].k[1],
+               camera_falloff[c].k[2], camera_falloff[c].center[0], camera_falloff[c].center[1]);
+    printf("};\n\nconst uint8_t strip[STRIP_ROWS * STRIP_WIDTH * 3] = {");
+    for (int i = 0; i < STRIP_ROWS * STRIP_WIDTH * 3; i++)
+        printf("%s%d,", i % 24 ? " " : "\n    ", ((const uint8_t *)rows)[i]);
+    printf("};\n");
+    print_response("camera_table", &camera_table_made);
+    print_response("camera_gamma", &camera_gamma_made);
+    return print_plan() ? 0 : 1;
+}
