@@ -46,7 +46,7 @@ lensprof_status lensprof_image_validate(const lensprof_image *image)
     int64_t row = image->row_bytes < 0 ? -(int64_t)image->row_bytes : (int64_t)image->row_bytes;
     if (row < (int64_t)image->width * samples * bytes && image->height > 1) return LENSPROF_ERROR_SIZE;
     if (row * image->height > PTRDIFF_MAX) return LENSPROF_ERROR_SIZE; /* where addresses have 32 bits */
-    if ((uintptr_t)image->data % bytes || row % bytes) return LENSPROF_ERROR_ARGUMENT;
+    if ((uintptr_t)image->data % bytes || (row & (bytes - 1))) return LENSPROF_ERROR_ARGUMENT;
     return LENSPROF_OK;
 }
 

@@ -4,6 +4,7 @@
 usage: symbol_rules.py [--nm NM] [--cc CC] CHECK
 
   core ARCHIVE                         the core needs nothing but the listed functions, and has no writable data
+  apply OBJECTS_FOLDER                 what applies a profile needs even less, its pixels least: for a camera's processor too
   layer NAME ARCHIVE OBJECTS_FOLDER    fit, formats or store refer to themselves, the core and their library only
   exports LIBRARY HEADERS              exported symbols = exported_symbols.txt = LENSPROF_API of the headers
   self-check                           every check must find a planted violation
@@ -88,6 +89,41 @@ def check_core(nm, archive):
     for name, _, section in nm.symbols(archive):
         if WRITABLE.match(section):
             violations.append(f"{archive}: {name} is writable data ({section}); the core has no mutable globals")
+    return violations
+
+
+# What applies a profile, without the rest of the core. The first set prepares plans: a stated handful of functions.
+APPLY_PATH = {"apply", "base", "best", "blob", "fixed", "fixed_plan", "fixed_table", "gain_grid", "response",
+              "row_scalar", "vignetting"}
+# log: what newlib makes of log2.
+APPLY_MAY_NEED = {"exp2", "fabs", "floor", "fmax", "hypot", "ldexp", "log", "log2", "pow", "sqrt", "copysign",
+                  "memcmp", "memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_"}
+OF_COMPILER = re.compile(r"^__(aeabi|gnu)_\w+$|^__(clz|ctz|popcount)[sd]i2$")
+# What an ARM compiler calls for numbers that the processor does not have.
+OF_DOUBLE = re.compile(r"^__aeabi_(c?d[a-z]\w*|\w+2d)$")
+OF_FLOAT = re.compile(r"^__aeabi_(c?[df][a-z]\w*|\w+2[df])$")
+# Pixels: no function but these; no double precision in the row kernel, no floating point in fixed.
+PIXELS = {"row_scalar": OF_DOUBLE, "fixed": OF_FLOAT}
+PIXELS_MAY_NEED = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_", "lensprof_sample_bytes", "lp_tile_validate",
+                   "lp_log2_table", "lp_exp2_table"}
+
+
+def check_apply(nm, folder):
+    paths = {path.name.split(".")[0]: path for path in sorted(pathlib.Path(folder).rglob("*.o"))}
+    if not PIXELS.keys() <= paths.keys():
+        return [f"{folder}: does not hold what applies a profile"]
+    needed, _ = nm.needed_and_made([path for name, path in paths.items() if name in APPLY_PATH])
+    _, core = nm.needed_and_made(paths.values())
+    # The EMoR tables belong to making responses; a linker leaves them out (tests/firmware).
+    violations = [
+        f"{folder}: what applies a profile refers to {name}"
+        for name in sorted(needed - APPLY_MAY_NEED - (core & {"lp_emor_table"}))
+        if not OF_COMPILER.match(name)
+    ]
+    for pixels, never in PIXELS.items():
+        for name in sorted(nm.needed_and_made([paths[pixels]])[0] - PIXELS_MAY_NEED):
+            if never.match(name) or not OF_COMPILER.match(name):
+                violations.append(f"{folder}: pixels in {pixels} call {name}")
     return violations
 
 
@@ -213,6 +249,24 @@ def self_check(nm, cc):
         ]:
             compile_c(code, "layer")
             expect(f"{layer}: {code}", check_layer(nm, layer, core, folder / "layer"), wanted)
+        pixels = "int __aeabi_%s(void); int %s(void) { return __aeabi_%s(); }"
+        for code, wanted in [
+            ("", []),
+            (pixels % ("dmul", "f", "dmul"), ["row_scalar call __aeabi_dmul"]),
+            (pixels % ("f2d", "f", "f2d"), ["row_scalar call __aeabi_f2d"]),
+            (pixels % ("lmul", "f", "lmul"), []),
+            ("float sqrtf(float); float f(float x) { return sqrtf(x); }",
+             ["applies a profile refers to sqrtf", "row_scalar call sqrtf"]),
+        ]:
+            (folder / "apply").mkdir(exist_ok=True)
+            for name, text in [("row_scalar", code), ("fixed", "")]:
+                (folder / "apply" / f"{name}.o").write_bytes(compile_c(text + "\nint here;", name).read_bytes())
+            expect(f"apply: {code}", check_apply(nm, folder / "apply"), wanted)
+        for helper, wanted in [("fadd", 1), ("cfcmple", 1), ("i2f", 1), ("dadd", 1), ("ui2d", 1), ("llsl", 0), ("uidiv", 0)]:
+            object_file = compile_c(pixels % (helper, "g", helper), "fixed")
+            (folder / "apply" / "fixed.o").write_bytes(object_file.read_bytes())
+            (folder / "apply" / "row_scalar.o").write_bytes(compile_c("int here;", "row_scalar").read_bytes())
+            expect(helper, check_apply(nm, folder / "apply"), ["pixels in fixed call"] * wanted)
         headers = folder / "headers"
         headers.mkdir()
         (headers / "x.h").write_text(
@@ -247,7 +301,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--nm", default="nm")
     parser.add_argument("--cc", default="cc")
-    parser.add_argument("check", choices=["core", "layer", "exports", "self-check"])
+    parser.add_argument("check", choices=["core", "apply", "layer", "exports", "self-check"])
     parser.add_argument("arguments", nargs="*")
     options = parser.parse_args()
     nm = Nm(options.nm)
@@ -255,6 +309,8 @@ def main():
         return self_check(nm, options.cc)
     if options.check == "core":
         violations = check_core(nm, *options.arguments)
+    elif options.check == "apply":
+        violations = check_apply(nm, *options.arguments)
     elif options.check == "layer":
         violations = check_layer(nm, *options.arguments)
     else:

@@ -1,0 +1,14 @@
+# need PROGRAM...: ends the test as skipped (77), visibly, where a program is missing.
+need() {
+    for program; do
+        command -v "$program" > /dev/null && continue
+        echo "skipped: needs $program (make test-deps)"
+        exit 77
+    done
+}
+
+# semihosted BOARD ELF: runs a program in QEMU; its output and exit code.
+semihosted() {
+    timeout 120 qemu-system-arm -M "$1" -display none -monitor none -serial none -chardev stdio,id=out \
+        -semihosting-config enable=on,target=native,chardev=out -kernel "$2"
+}

@@ -1,0 +1,43 @@
+#!/bin/bash
+# The demonstrations on the boards give the bytes of this machine's, and stay within their stack.
+# usage: test_boards.sh SOURCE_DIR WORK_DIR C_COMPILER BOARD
+set -euo pipefail
+source_dir=$1 work=$2 board=$4
+. "$source_dir/tests/firmware/need.sh"
+need arm-none-eabi-gcc qemu-system-arm make python3
+mkdir -p "$work"
+build=(make -s -C "$source_dir/examples/firmware" "OUT=$work" "CC=$3" "BOARD=$board")
+"${build[@]}" pc > "$work/pc.log" 2>&1 || { head -20 "$work/pc.log"; exit 1; }
+"${build[@]}" all > "$work/$board.log" 2>&1 || { head -20 "$work/$board.log"; exit 1; }
+! grep -i -A3 warning "$work/$board.log" "$work/pc.log" | cut -c1-200 || exit 1
+
+# same PROGRAM ROW PC_PROGRAM MOST: rows of one name, of which at most MOST bytes differ, by a level.
+same() {
+    semihosted "$board" "$work/$board/$1.elf" > "$work/$board/$1.txt" || { grep -v ': [0-9a-f]*$' "$work/$board/$1.txt"; exit 1; }
+    python3 - "$work/$board/$1.txt" "$work/$3.txt" "$2" "$4" << 'END'
+import sys
+board, pc = ([bytes.fromhex(line.split()[1]) for line in open(name) if line.startswith(sys.argv[3] + ":")]
+             for name in sys.argv[1:3])
+both = list(zip(b"".join(board), b"".join(pc)))
+differ, worst = sum(a != b for a, b in both), max(abs(a - b) for a, b in both)
+print(f"{sys.argv[3]}: {len(both)} bytes, {differ} differ, by {worst} at most")
+rows = len(board) == len(pc) == 16 and len(set(b"".join(pc))) > 60  # a picture, not a constant
+sys.exit(not rows or len(both) != 16 * 160 * 3 or differ > int(sys.argv[4]) or worst > 1)
+END
+}
+case $board in
+microbit)
+    same correct_fixed fixed correct_fixed 0
+    same correct_fixed_here fixed correct_fixed 20 # its own logarithms may end in other last bits
+    programs="correct_fixed correct_fixed_here" most=1024 ;;
+*)
+    same correct_float table correct_float 0
+    same correct_float gamma correct_float 20 # pow() of another C library
+    programs=correct_float most=2800 ;;
+esac
+for program in $programs; do
+    while read -r what _ bytes; do
+        echo "$program, $board: $what stack $bytes bytes"
+        [ "$bytes" -gt 64 ] && [ "$bytes" -le $most ] || { echo "more than $most"; exit 1; }
+    done < <(grep -a "stack" "$work/$board/$program.txt")
+done

@@ -1,0 +1,42 @@
+#!/bin/bash
+# The core for a Cortex-M: no promotion to double in pixels, no function but the listed ones, stack within what apply.h and
+# fixed.h state.
+# usage: test_objects.sh SOURCE_DIR WORK_DIR
+set -euo pipefail
+source_dir=$1 work=$2
+. "$source_dir/tests/firmware/need.sh"
+need arm-none-eabi-gcc arm-none-eabi-nm python3
+cd "$source_dir"
+
+# objects NAME FLAGS...: the core's objects and call graphs
+objects() {
+    local out=$work/$1
+    shift
+    rm -rf "$out" && mkdir -p "$out"
+    for source in src/core/*.c src/core/kernels/best.c src/core/kernels/row_scalar.c; do
+        arm-none-eabi-gcc -std=c11 -mthumb "$@" -ffp-contract=off -ffreestanding -Wall -Wextra -Werror -Iinclude \
+            -fcallgraph-info=su -c "$source" -o "$out/$(basename "$source" .c).o"
+    done
+    for pixels in kernels/row_scalar fixed; do
+        arm-none-eabi-gcc -std=c11 -mthumb "$@" -ffp-contract=off -Wdouble-promotion -Wfloat-conversion -Werror -Iinclude \
+            -fsyntax-only "src/core/$pixels.c"
+    done
+    python3 -B tests/lint/symbol_rules.py --nm arm-none-eabi-nm apply "$out"
+}
+depth() { python3 -B tests/firmware/stack_depth.py "$@"; }
+
+for options in "m4-Os -Os -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard" \
+               "m4-O2 -O2 -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard" \
+               "m7-O2 -O2 -mcpu=cortex-m7 -mfpu=fpv5-d16 -mfloat-abi=hard"; do
+    # shellcheck disable=SC2086
+    objects $options
+    graphs=("$work/${options%% *}"/*.ci)
+    depth 2560 lensprof_apply lp_row_scalar "${graphs[@]}"
+    depth 2560 lensprof_apply_planar lp_row_scalar "${graphs[@]}"
+    depth 1024 lensprof_plan_init - "${graphs[@]}"
+    depth 512 lensprof_fixed_apply - "${graphs[@]}"
+done
+objects m0 -Os -mcpu=cortex-m0plus
+depth 512 lensprof_fixed_apply - "$work/m0"/*.ci
+depth 512 lensprof_fixed_plan_open - "$work/m0"/*.ci
+depth 1024 lensprof_fixed_plan_init - "$work/m0"/*.ci
