@@ -9,6 +9,7 @@ static lensprof_status correct(const char *name, const lensprof_response *respon
     const lensprof_plan *plan;
     lensprof_apply_options options;
     lensprof_status status;
+    uint32_t ticks = 0;
 
     set_options(&options, response);
     paint_stack();
@@ -20,10 +21,13 @@ static lensprof_status correct(const char *name, const lensprof_response *respon
         lensprof_image source = {(void *)(strip + y * sizeof row), 0, STRIP_WIDTH, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
         lensprof_image target = source;
         target.data = row;
+        const uint32_t before = clock_ticks();
         status = lensprof_apply(plan, &source, &target, 0, y);
+        ticks += (before - clock_ticks()) & 0xFFFFFF;
         if (y == STRIP_ROWS - 1) put_number("apply: stack ", deepest_stack());
         put_row(name, row);
     }
+    put_number("apply: ticks ", ticks);
     return status;
 }
 

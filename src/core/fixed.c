@@ -62,12 +62,12 @@ static int32_t gain_of(const lensprof_fixed_plan *plan, uint32_t channel, int32_
 /* log2 of the gains of the channels at t. */
 static void find_gains(const lensprof_fixed_plan *plan, uint32_t t, int32_t *gain)
 {
-    int32_t falloff = 0;
-    for (uint32_t c = 0; c < plan->gains; c++) {
+    int32_t falloff = falloff_at(plan, 0, t);
+    gain[0] = gain_of(plan, 0, falloff);
+    for (uint32_t c = 1; c < LP_CHANNELS; c++) {
         if (c < plan->falloffs) falloff = falloff_at(plan, c, t);
-        gain[c] = gain_of(plan, c, falloff);
+        gain[c] = plan->gains == 3 ? gain_of(plan, c, falloff) : gain[0];
     }
-    for (uint32_t c = plan->gains; c < LP_CHANNELS; c++) gain[c] = gain[0];
 }
 
 /* ---- towards white ---- */

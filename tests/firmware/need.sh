@@ -7,8 +7,8 @@ need() {
     done
 }
 
-# semihosted BOARD ELF: runs a program in QEMU; its output and exit code.
+# semihosted BOARD ELF: runs a program in QEMU, a nanosecond an instruction; its output and exit code.
 semihosted() {
     timeout 120 qemu-system-arm -M "$1" -display none -monitor none -serial none -chardev stdio,id=out \
-        -semihosting-config enable=on,target=native,chardev=out -kernel "$2"
+        -icount shift=0 -semihosting-config enable=on,target=native,chardev=out -kernel "$2"
 }

@@ -39,6 +39,33 @@ def options(**fields):
                               "vignetting": profile().vignetting, **fields})
 
 
+class Fixed(unittest.TestCase):
+    def test_within_a_level_of_the_plan_in_floating_point(self):
+        for shape in ((30, 40), (30, 40, 3), (30, 40, 4)):
+            array = picture(np.uint8, shape)
+            fields = options(source_layout={2: lp.Layout.GREY}.get(len(shape), lp.Layout.RGB if shape[-1] == 3 else
+                                                                   lp.Layout.RGBA))
+            plan, wanted = lp.FixedPlan(fields), lp.Plan(fields).apply(array)
+            result = plan.apply(array)
+            self.assertLessEqual(np.abs(result.astype(int) - wanted).max(), 1)
+            self.assertTrue((result != array).any())
+            tile = np.ascontiguousarray(array[10:20, 5:25])
+            np.testing.assert_array_equal(lp.FixedPlan.open(plan.data, fields.source_layout).apply(tile, x0=5, y0=10),
+                                          result[10:20, 5:25])
+
+    def test_what_is_refused(self):
+        plan = lp.FixedPlan(options())
+        self.assertLess(len(plan.data), 5000)
+        for bad in (plan.data[:-4], plan.data[:20], b"", plan.data[:-1] + bytes([plan.data[-1] ^ 1])):
+            with self.assertRaises(lp.Error):
+                lp.FixedPlan.open(bad, lp.Layout.RGB)
+        for fields in ({"source_sample": lp.SampleType.F32}, {"grid": lp.GainGrid([[0.5, 0.5], [0.5, 0.5]])}):
+            with self.assertRaises(lp.Error):
+                lp.FixedPlan(options(**fields))
+        with self.assertRaises(lp.Error):
+            plan.apply(picture(np.uint8, (30, 40, 3)), x0=1)
+
+
 class Values(unittest.TestCase):
     def test_correct_in_every_type(self):
         for dtype, white in TYPES.items():

@@ -12,7 +12,7 @@ from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE,
                       PAIR_DTYPE)
 from ._library import Error, status_name, version
-from .apply import ApplyOptions, Plan, correct, layout_channels, layout_samples, sample_bytes, simulate
+from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_bytes, simulate
 from .fit import FitImage, FitOptions, FitResult, fit_overlap, fit_radiance, transfer_rms
 from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
 from .formats import Pto, PtoImage, points_read, points_write
@@ -25,8 +25,8 @@ from .store import Store, StoreRow
 __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "Direction", "EMOR_MODES",
     "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS",
-    "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResult", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions",
-    "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Layout", "Loss",
+    "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResult", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight",
+    "FlatOptions", "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Layout", "Loss",
     "MODES_AUTO", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey",
     "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Response", "ResponseKind", "SampleImage",
     "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreMode", "StoreRow", "UNKNOWN",

@@ -275,6 +275,10 @@ class Plan(Structure):
     """Opaque."""
 
 
+class FixedPlan(Structure):
+    """Opaque."""
+
+
 class ProfileKey(Structure):
     _fields_ = [("camera_maker", c_char * 64), ("camera_model", c_char * 64), ("lens", c_char * 128),
                 ("focal_mm", c_double), ("aperture", c_double), ("distance_m", c_double), ("processing", c_uint32),
@@ -434,7 +438,7 @@ STRUCTS = {
     "lensprof_store_row": StoreRow,
 }
 
-OPAQUE = {"lensprof_plan": Plan, "lensprof_pto": Pto, "lensprof_store": Store}
+OPAQUE = {"lensprof_fixed_plan": FixedPlan, "lensprof_plan": Plan, "lensprof_pto": Pto, "lensprof_store": Store}
 
 
 # ---- functions ---------------------------------------------------------------------------------------------------
@@ -456,6 +460,7 @@ _pairs = POINTER(Pair)
 _observations = POINTER(Observation)
 _fit_images = POINTER(FitImage)
 _plan = POINTER(Plan)
+_fixed_plan = POINTER(FixedPlan)
 _pto = POINTER(Pto)
 _store = POINTER(Store)
 
@@ -496,6 +501,11 @@ FUNCTIONS = {
     "lensprof_plan_init": (_status, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(_plan)]),
     "lensprof_apply": (_status, [_plan, _image, _image, c_uint32, c_uint32]),
     "lensprof_apply_planar": (_status, [_plan, _image, _image, c_uint32, c_uint32]),
+    # fixed.h
+    "lensprof_fixed_plan_bytes": (c_size_t, [POINTER(ApplyOptions)]),
+    "lensprof_fixed_plan_init": (_status, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(_fixed_plan)]),
+    "lensprof_fixed_plan_open": (_status, [c_void_p, c_size_t, POINTER(_fixed_plan)]),
+    "lensprof_fixed_apply": (_status, [_fixed_plan, _image, _image, c_uint32, c_uint32]),
     # profile.h
     "lensprof_profile_key_init": (None, [_key]),
     "lensprof_profile_key_validate": (_status, [_key]),

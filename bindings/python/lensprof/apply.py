@@ -115,6 +115,45 @@ class Plan:
         return out
 
 
+class FixedPlan:
+    """A plan in integers, for processors without floating point; see lensprof/fixed.h.
+
+    data: the plan as bytes, which may be copied into a camera; FixedPlan.open makes a plan of them again.
+    """
+
+    def __init__(self, options: ApplyOptions):
+        size = lib.lensprof_fixed_plan_bytes(byref(options))
+        self._memory = np.zeros(size // 4 + 1, dtype=np.uint32)
+        self._plan = POINTER(_abi.FixedPlan)()
+        check(lib.lensprof_fixed_plan_init(self._memory.ctypes.data, self._memory.nbytes, byref(options),
+                                           byref(self._plan)),
+              "these options cannot be applied in integers: give what Plan takes, uint8 in and out (or linear uint16), "
+              "without planes, gain grid and dither")
+        self.data = self._memory.tobytes()[:size]
+        self._layout = options.source_layout
+
+    @classmethod
+    def open(cls, data: bytes, layout: Layout) -> "FixedPlan":
+        """The plan whose `data` these are, made for pictures of a layout."""
+        plan = cls.__new__(cls)
+        plan._memory = np.frombuffer(bytearray(data) + bytes(-len(data) % 4), dtype=np.uint32)
+        plan._plan = POINTER(_abi.FixedPlan)()
+        check(lib.lensprof_fixed_plan_open(plan._memory.ctypes.data, len(data), byref(plan._plan)),
+              "not the data of a FixedPlan of this version, or damaged; make it again")
+        plan.data, plan._layout = bytes(data), Layout(layout)
+        return plan
+
+    def apply(self, source: np.ndarray, out: Optional[np.ndarray] = None, *, x0: int = 0, y0: int = 0) -> np.ndarray:
+        """As Plan.apply."""
+        view = _arrays.image(source, self._layout, what="source")
+        out = np.empty_like(source) if out is None else out
+        target = _arrays.image(out, self._layout, writable=True, what="out")
+        check(lib.lensprof_fixed_apply(self._plan, byref(view), byref(target), integer(x0, "x0"), integer(y0, "y0")),
+              f"source {source.shape} {source.dtype} and out {out.shape} {out.dtype} at ({x0}, {y0}): both must have "
+              "the plan's sample type, the same size, lie in the frame, and be the same array or apart")
+        return out
+
+
 def _apply(direction: Direction, array: np.ndarray, profile: Profile, out: Optional[np.ndarray],
            layout: Optional[Layout], **fields: Any) -> np.ndarray:
     view = _arrays.image(array, layout)
