@@ -6,8 +6,8 @@
  *   log2 g(B) + log2(e' w' / (e w)) - log2 M   ->   the grey value whose light that is     apply.h, correct
  *
  * A plan is prepared with floating point (software will do: some 100 ms on a Cortex-M0+ at 48 MHz), or on another
- * machine and copied: it holds no address. Pixels then need no floating point, no heap, no I/O, and less than 400 bytes of
- * stack.
+ * machine and copied: it holds no address. Pixels then need no floating point, no heap, no I/O, and at most 512 bytes of
+ * stack; lensprof_fixed_plan_init takes up to 2 KiB.
  * Formats: U8 and U16 in layouts GREY to BGRA and mosaics, the sample type written being the one read; U16 where input
  * and output are linear (by their encoding, or because the response is). A plan takes about 150 bytes, and for U8 2 KiB
  * more a response. No gain grid, no dither, no planes: UNSUPPORTED.

@@ -48,7 +48,7 @@ def ram_of(output):
 def self_check():
     text = "Discarded\n .text 0x0 0x99 libcore.a(a.o)\nLinker script and memory map\n\n.text 0x0 0x100\n"
     text += " .text.a 0x00000010 0x10 x/libcore.a(a.o)\n .text.long_name\n                0x00000020 0x8 x/libcore.a(a.o)\n"
-    text += " .text 0x0 0x40 /tmp/main.o\n .rodata.b 0x0 0x4 y/libm.a(b.o)\n.bss 0x0 0x50\n .bss 0x0 0x50 x/libcore.a(a.o)\n"
+    text += " .text 0x0 0x40 main.o\n .rodata.b 0x0 0x4 y/libm.a(b.o)\n.bss 0x0 0x50\n .bss 0x0 0x50 x/libcore.a(a.o)\n"
     good = flash_of(text) == {"core: a.o": 24, "libm": 4} and ram_of("plan: bytes 7\nplan: stack 9\napply: stack 3\n") == (7, 9)
     print("map_sizes: counted" if good else f"map_sizes: counted {flash_of(text)}")
     return 0 if good else 1

@@ -33,10 +33,10 @@ for options in "m4-Os -Os -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard" \
     graphs=("$work/${options%% *}"/*.ci)
     depth 2560 lensprof_apply lp_row_scalar "${graphs[@]}"
     depth 2560 lensprof_apply_planar lp_row_scalar "${graphs[@]}"
-    depth 1024 lensprof_plan_init - "${graphs[@]}"
+    depth 1536 lensprof_plan_init - "${graphs[@]}"
     depth 512 lensprof_fixed_apply - "${graphs[@]}"
 done
 objects m0 -Os -mcpu=cortex-m0plus
 depth 512 lensprof_fixed_apply - "$work/m0"/*.ci
 depth 512 lensprof_fixed_plan_open - "$work/m0"/*.ci
-depth 1024 lensprof_fixed_plan_init - "$work/m0"/*.ci
+depth 1536 lensprof_fixed_plan_init - "$work/m0"/*.ci
