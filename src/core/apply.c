@@ -7,13 +7,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "blob.h"
+#include "options.h"
 #include "response.h"
 
-#define LARGEST_SIDE (1u << 20)
-#define LARGEST_ROW ((ptrdiff_t)1 << 28) /* bytes; times LARGEST_SIDE rows it stays within an address */
+#define LARGEST_ROW ((ptrdiff_t)1 << 28) /* bytes; times LP_LARGEST_SIDE rows it stays within an address */
 #define STREAMED ((size_t)8 << 20)       /* bytes of a target that no cache is to hold */
-#define LARGEST_GAIN_CAP 1e6
 
 /* ---- formats ---- */
 
@@ -40,7 +38,7 @@ lensprof_status lensprof_image_validate(const lensprof_image *image)
     if (!image || !image->data) return LENSPROF_ERROR_ARGUMENT;
     uint32_t bytes = lensprof_sample_bytes(image->sample), samples = lensprof_layout_samples(image->layout);
     if (!bytes || !samples || image->layout == LENSPROF_LAYOUT_PLANAR) return LENSPROF_ERROR_ARGUMENT;
-    if (!image->width || !image->height || image->width > LARGEST_SIDE || image->height > LARGEST_SIDE)
+    if (!image->width || !image->height || image->width > LP_LARGEST_SIDE || image->height > LP_LARGEST_SIDE)
         return LENSPROF_ERROR_SIZE;
     if (image->row_bytes > LARGEST_ROW || image->row_bytes < -LARGEST_ROW) return LENSPROF_ERROR_SIZE;
     int64_t row = image->row_bytes < 0 ? -(int64_t)image->row_bytes : (int64_t)image->row_bytes;
@@ -52,64 +50,7 @@ lensprof_status lensprof_image_validate(const lensprof_image *image)
 
 /* ---- plan ---- */
 
-void lensprof_apply_options_init(lensprof_apply_options *options)
-{
-    memset(options, 0, sizeof *options);
-    options->struct_size = sizeof *options;
-    options->source_layout = LENSPROF_LAYOUT_RGB;
-    options->responses = options->vignettings = 1;
-    options->strength = 1.0;
-    lensprof_exposure_init(&options->source);
-    lensprof_exposure_init(&options->target);
-}
-
 static int is_mosaic(uint32_t layout) { return layout >= LENSPROF_LAYOUT_RGGB && layout <= LENSPROF_LAYOUT_BGGR; }
-
-/* ---- model ---- */
-
-static void view_response(struct lp_model_response *view, const lensprof_response *response)
-{
-    view->kind = response->kind;
-    view->gamma = response->kind == LENSPROF_RESPONSE_GAMMA ? response->gamma : 1.0;
-    view->table = response->table;
-}
-
-/* The model in the caller's structs. Its size does not depend on the vignetting, which may not be there yet. */
-static lensprof_status view_structs(const lensprof_apply_options *o, lp_model *m)
-{
-    memset(m, 0, sizeof *m);
-    if (!o->response || (o->responses != 1 && o->responses != 3)) return LENSPROF_ERROR_ARGUMENT;
-    m->responses = o->responses;
-    m->vignettings = o->vignetting && (o->vignettings == 1 || o->vignettings == 3) ? o->vignettings : 0;
-    for (uint32_t c = 0; c < m->responses; c++) view_response(&m->response[c], &o->response[c]);
-    for (uint32_t c = 0; c < m->vignettings; c++) m->vignetting[c] = o->vignetting[c];
-    if (!o->grid) return LENSPROF_OK;
-    m->columns = o->grid->columns, m->rows = o->grid->rows, m->channels = o->grid->channels;
-    m->attenuation = o->grid->attenuation;
-    return lensprof_gain_grid_validate(o->grid);
-}
-
-static lensprof_status view_model(const lensprof_apply_options *o, lp_model *m)
-{
-    if (!o->blob) return view_structs(o, m);
-    if (o->response || o->vignetting || o->grid) return LENSPROF_ERROR_ARGUMENT;
-    lp_blob blob;
-    const lensprof_status status = lp_blob_open(o->blob, o->blob_bytes, &blob);
-    if (status == LENSPROF_OK) *m = blob.model;
-    return status;
-}
-
-/* The responses that pixels pass through: grey is treated as green. */
-static uint32_t curves_of(const lensprof_apply_options *o, const lp_model *m)
-{
-    return lensprof_layout_channels(o->source_layout) == 1 ? 1 : m->responses;
-}
-
-static const struct lp_model_response *response_of(const lensprof_apply_options *o, const lp_model *m, uint32_t curve)
-{
-    uint32_t channel = lensprof_layout_channels(o->source_layout) == 1 ? 1 : curve;
-    return &m->response[m->responses == 3 ? channel : 0];
-}
 
 /* ---- plan ---- */
 
@@ -117,8 +58,8 @@ static const struct lp_model_response *response_of(const lensprof_apply_options 
 static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m)
 {
     uint32_t kind = LP_CURVE_NONE;
-    for (uint32_t c = 0; c < curves_of(o, m); c++) {
-        uint32_t own = response_of(o, m, c)->kind;
+    for (uint32_t c = 0; c < lp_curves(o, m); c++) {
+        uint32_t own = lp_response(o, m, c)->kind;
         own = own == LENSPROF_RESPONSE_LINEAR  ? LP_CURVE_CLIP
               : own == LENSPROF_RESPONSE_GAMMA ? LP_CURVE_POWER
                                                : LP_CURVE_TABLE;
@@ -166,7 +107,7 @@ static size_t nodes_of(const lp_model *m) { return (size_t)m->channels * m->rows
 
 static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m)
 {
-    const size_t numbers = curves_of(o, m) * (samples_of(o, m) + codes_of(o, m)) + nodes_of(m);
+    const size_t numbers = lp_curves(o, m) * (samples_of(o, m) + codes_of(o, m)) + nodes_of(m);
     return sizeof(lensprof_plan) + numbers * sizeof(float);
 }
 
@@ -176,50 +117,7 @@ size_t lensprof_plan_bytes(const lensprof_apply_options *o)
     if (!o || o->struct_size != sizeof *o || !lensprof_sample_bytes(o->source_sample)
         || !lensprof_sample_bytes(o->target_sample) || !lensprof_layout_samples(o->source_layout))
         return 0;
-    return view_model(o, &model) == LENSPROF_OK ? bytes_of(o, &model) : 0;
-}
-
-/* The model in the caller's structs; view_model checks the grid, and all of a blob. */
-static lensprof_status validate_structs(const lensprof_apply_options *o)
-{
-    lensprof_status status = LENSPROF_OK;
-    if (!o->response || !o->vignetting || (o->responses != 1 && o->responses != 3)
-        || (o->vignettings != 1 && o->vignettings != 3))
-        return LENSPROF_ERROR_ARGUMENT;
-    for (uint32_t c = 0; c < o->responses && status == LENSPROF_OK; c++)
-        status = lensprof_response_validate(&o->response[c]);
-    for (uint32_t c = 0; c < o->vignettings && status == LENSPROF_OK; c++) {
-        status = lensprof_vignetting_validate(&o->vignetting[c]);
-        if (status == LENSPROF_OK && (o->vignetting[c].center[0] != o->vignetting[0].center[0]
-                                      || o->vignetting[c].center[1] != o->vignetting[0].center[1]))
-            status = LENSPROF_ERROR_VIGNETTING; /* one centre for all channels */
-    }
-    return status;
-}
-
-static double factor_of(const lensprof_apply_options *o, uint32_t channel)
-{
-    return lensprof_exposure_factor(&o->target, channel) / lensprof_exposure_factor(&o->source, channel);
-}
-
-static lensprof_status validate_options(const lensprof_apply_options *o)
-{
-    if (o->struct_size != sizeof *o) return LENSPROF_ERROR_STRUCT_SIZE;
-    if (o->direction > LENSPROF_DIRECTION_SIMULATE || o->input > LENSPROF_ENCODING_LINEAR
-        || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE
-        || !lensprof_sample_bytes(o->source_sample) || !lensprof_sample_bytes(o->target_sample)
-        || !lensprof_layout_samples(o->source_layout))
-        return LENSPROF_ERROR_ARGUMENT;
-    if (!(o->strength >= 0.0 && o->strength <= 1.0) || o->dither > 1 || o->reserved
-        || !(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LARGEST_GAIN_CAP)))
-        return LENSPROF_ERROR_ARGUMENT;
-    if (!o->frame_width || !o->frame_height || o->frame_width > LARGEST_SIDE || o->frame_height > LARGEST_SIDE)
-        return LENSPROF_ERROR_SIZE;
-    lensprof_status status = lensprof_exposure_validate(&o->source);
-    if (status == LENSPROF_OK) status = lensprof_exposure_validate(&o->target);
-    for (uint32_t c = 0; c < 3 && status == LENSPROF_OK; c++) /* single precision must hold the factor */
-        if (!(factor_of(o, c) >= 1e-12 && factor_of(o, c) <= 1e12)) status = LENSPROF_ERROR_EXPOSURE;
-    return status == LENSPROF_OK && !o->blob ? validate_structs(o) : status;
+    return lp_options_model(o, &model) == LENSPROF_OK ? bytes_of(o, &model) : 0;
 }
 
 static int is_power(const struct lp_model_response *response)
@@ -252,14 +150,14 @@ static float *prepare_curves(lensprof_plan *plan, const lensprof_apply_options *
                              float *memory)
 {
     const size_t samples = samples_of(o, m), codes = codes_of(o, m);
-    plan->curves = curves_of(o, m);
+    plan->curves = lp_curves(o, m);
     plan->decode = decode_of(o, m);
     plan->encode = encode_of(o, m);
     plan->forward = memory;
     plan->inverse = codes ? memory + plan->curves * samples : NULL;
     plan->inverse_shift = codes == 256 ? 8 : 16;
     for (uint32_t c = 0; c < plan->curves; c++) {
-        const struct lp_model_response *response = response_of(o, m, c);
+        const struct lp_model_response *response = lp_response(o, m, c);
         plan->exponent[c] = is_power(response) ? (float)(1.0 / response->gamma) : 0.0f;
         plan->inverse_exponent[c] = is_power(response) ? (float)response->gamma : 0.0f;
         for (size_t j = 0; j < samples; j++) /* not read where there is an exponent */
@@ -315,7 +213,7 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, c
     for (int n = 0; n < 3; n++) plan->k[at][n] = (float)(k[n] * (scale *= per_rho2));
     const double units = unit_of(o->target_sample, plan->encode == LP_CURVE_NONE)
                          / unit_of(o->source_sample, plan->decode == LP_CURVE_NONE);
-    plan->factor[at] = (float)(plan->simulate ? factor_of(o, channel) / units : factor_of(o, channel) * units);
+    plan->factor[at] = (float)(plan->simulate ? lp_exposure_ratio(o, channel) / units : lp_exposure_ratio(o, channel) * units);
     plan->times[at] = 1.0f;
     if (at != channel) plan->nodes[at] = plan->nodes[channel];
 }
@@ -360,8 +258,7 @@ lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_ap
 {
     if (!memory || !options || !result) return LENSPROF_ERROR_ARGUMENT;
     lp_model model;
-    lensprof_status status = validate_options(options);
-    if (status == LENSPROF_OK) status = view_model(options, &model);
+    const lensprof_status status = lp_options_validate(options, &model);
     if (status != LENSPROF_OK) return status;
     if (bytes < bytes_of(options, &model) || (uintptr_t)memory % 8) return LENSPROF_ERROR_CAPACITY;
 
@@ -474,17 +371,4 @@ lensprof_status lensprof_apply_planar(const lensprof_plan *plan, const lensprof_
     }
     apply_rows(plan, source, target, 3, x0, y0);
     return LENSPROF_OK;
-}
-
-/* ---- what fixed_plan.c shares ---- */
-
-lensprof_status lp_options_validate(const lensprof_apply_options *options) { return validate_options(options); }
-
-double lp_exposure_ratio(const lensprof_apply_options *options, uint32_t channel) { return factor_of(options, channel); }
-
-uint32_t lp_curves(const lensprof_apply_options *options) { return curves_of(options); }
-
-const lensprof_response *lp_response(const lensprof_apply_options *options, uint32_t curve)
-{
-    return response_of(options, curve);
 }

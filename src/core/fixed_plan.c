@@ -7,36 +7,36 @@
 #define LEAST_FALLOFF_SHIFT 21 /* M in 2^-21: 1 / 2000 of the smallest one allowed */
 #define SMALLEST_M 0.0005      /* below the smallest one allowed, above 0 after rounding */
 
-static int is_linear(const lensprof_apply_options *o, uint32_t encoding)
+static int is_linear(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding)
 {
     int linear = 1;
-    for (uint32_t c = 0; c < lp_curves(o) && encoding == LENSPROF_ENCODING_RESPONSE; c++)
-        linear = linear && lp_response(o, c)->kind == LENSPROF_RESPONSE_LINEAR;
+    for (uint32_t c = 0; c < lp_curves(o, m) && encoding == LENSPROF_ENCODING_RESPONSE; c++)
+        linear = linear && lp_response(o, m, c)->kind == LENSPROF_RESPONSE_LINEAR;
     return linear;
 }
 
-static uint32_t tables_of(const lensprof_apply_options *o, uint32_t encoding)
+static uint32_t tables_of(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding)
 {
     if (o->source_sample != LENSPROF_SAMPLE_U8) return 0;
-    return is_linear(o, encoding) ? 1 : lp_curves(o);
+    return is_linear(o, m, encoding) ? 1 : lp_curves(o, m);
 }
 
-static size_t bytes_of(const lensprof_apply_options *o)
+static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m)
 {
     return sizeof(lensprof_fixed_plan)
-           + (tables_of(o, o->input) + tables_of(o, o->output)) * (LP_CODES * sizeof(int32_t));
+           + (tables_of(o, m, o->input) + tables_of(o, m, o->output)) * (LP_CODES * sizeof(int32_t));
 }
 
 /* ---- falloff ---- */
 
 /* Centre, and the largest r^2 in the frame, px^2; at least that of a corner from the middle, in which k count. */
-static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
+static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m)
 {
     const double unit = 1 << LP_CENTER_SHIFT, size[2] = {o->frame_width, o->frame_height};
     const double rho2 = 0.25 * (size[0] * size[0] + size[1] * size[1]);
     double reach2 = 0.0;
     for (int d = 0; d < 2; d++) {
-        const double center = 0.5 * (size[d] - 1.0) + sqrt(rho2) * o->vignetting[0].center[d];
+        const double center = 0.5 * (size[d] - 1.0) + sqrt(rho2) * m->vignetting[0].center[d];
         const double reach = fmax(center, size[d] - 1.0 - center) + 1.0 / unit;
         plan->center[d] = (int32_t)floor(center * unit + 0.5);
         reach2 += reach * reach;
@@ -45,9 +45,9 @@ static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_opt
 }
 
 /* Coefficients in powers of t = r^2 / R, R a power of 2 beyond the frame. 0 when integers do not hold them. */
-static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
+static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m)
 {
-    const double w = o->frame_width, h = o->frame_height, reach2 = prepare_center(plan, o);
+    const double w = o->frame_width, h = o->frame_height, reach2 = prepare_center(plan, o, m);
     double k[LP_CHANNELS][3], largest = 0.0, reach = 1.0; /* R, px^2 */
     uint32_t shift = 63 - 2 * LP_CENTER_SHIFT;
     for (; reach <= reach2; reach *= 2.0) shift--;
@@ -56,7 +56,7 @@ static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_opti
         double scale = o->strength, sum = 1.0;
         for (int n = 0; n < 3; n++) {
             scale *= reach * 4.0 / (w * w + h * h);
-            k[c][n] = o->vignetting[o->vignettings == 1 ? 0 : plan->channels == 1 ? 1 : c].k[n] * scale;
+            k[c][n] = m->vignetting[m->vignettings == 1 ? 0 : plan->channels == 1 ? 1 : c].k[n] * scale;
             sum += fabs(k[c][n]) + 1e-6; /* rounding */
         }
         largest = fmax(largest, sum);
@@ -80,43 +80,45 @@ static int32_t log_of(double light)
     return light > 0.0 ? (int32_t)floor(log2(light) * (1 << LP_LOG_SHIFT) + 0.5) : LP_LOG_NONE;
 }
 
-static double light_of(const lensprof_apply_options *o, uint32_t encoding, uint32_t curve, double value)
+static double light_of(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding, uint32_t curve,
+                       double value)
 {
-    return encoding == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(lp_response(o, curve), value, NULL);
+    return encoding == LENSPROF_ENCODING_LINEAR ? value : lp_model_invert(lp_response(o, m, curve), value);
 }
 
-static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
+static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m)
 {
     int32_t *table = (int32_t *)(void *)(plan + 1);
     for (uint32_t c = 0; c < plan->decode_curves; c++, table += LP_CODES)
-        for (uint32_t code = 0; code < LP_CODES; code++) table[code] = log_of(light_of(o, o->input, c, code / 255.0));
+        for (uint32_t code = 0; code < LP_CODES; code++) table[code] = log_of(light_of(o, m, o->input, c, code / 255.0));
     for (uint32_t c = 0; c < plan->encode_curves; c++, table += LP_CODES) {
         for (uint32_t code = 0; code < LP_CODES - 1; code++)
-            table[code] = log_of(light_of(o, o->output, c, (code + 0.5) / 255.0));
+            table[code] = log_of(light_of(o, m, o->output, c, (code + 0.5) / 255.0));
         table[LP_CODES - 1] = INT32_MAX;
     }
 }
 
 /* ---- plan ---- */
 
-static lensprof_status validate(const lensprof_apply_options *o)
+static lensprof_status validate(const lensprof_apply_options *o, lp_model *m)
 {
-    const lensprof_status status = lp_options_validate(o);
+    const lensprof_status status = lp_options_validate(o, m);
     if (status != LENSPROF_OK) return status;
     if (o->source_sample > LENSPROF_SAMPLE_U16 || o->target_sample != o->source_sample
-        || o->source_layout == LENSPROF_LAYOUT_PLANAR || (o->grid && o->grid->columns) || o->dither)
+        || o->source_layout == LENSPROF_LAYOUT_PLANAR || m->columns || o->dither)
         return LENSPROF_ERROR_UNSUPPORTED;
-    if (o->source_sample == LENSPROF_SAMPLE_U16 && !(is_linear(o, o->input) && is_linear(o, o->output)))
+    if (o->source_sample == LENSPROF_SAMPLE_U16 && !(is_linear(o, m, o->input) && is_linear(o, m, o->output)))
         return LENSPROF_ERROR_UNSUPPORTED;
     return LENSPROF_OK;
 }
 
 size_t lensprof_fixed_plan_bytes(const lensprof_apply_options *options)
 {
-    return options && validate(options) == LENSPROF_OK ? bytes_of(options) : 0;
+    lp_model model;
+    return options && validate(options, &model) == LENSPROF_OK ? bytes_of(options, &model) : 0;
 }
 
-static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
+static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m)
 {
     plan->sample = (uint8_t)o->source_sample;
     plan->layout = (uint8_t)o->source_layout;
@@ -126,8 +128,8 @@ static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_optio
     plan->frame_width = o->frame_width;
     plan->frame_height = o->frame_height;
     plan->simulate = o->direction == LENSPROF_DIRECTION_SIMULATE;
-    plan->decode_curves = (uint8_t)tables_of(o, o->input);
-    plan->encode_curves = (uint8_t)tables_of(o, o->output);
+    plan->decode_curves = (uint8_t)tables_of(o, m, o->input);
+    plan->encode_curves = (uint8_t)tables_of(o, m, o->output);
 }
 
 static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
@@ -150,17 +152,18 @@ lensprof_status lensprof_fixed_plan_init(void *memory, size_t bytes, const lensp
     if (!memory || !options || !result) return LENSPROF_ERROR_ARGUMENT;
     lensprof_fixed_plan head;
     memset(&head, 0, sizeof head);
-    const lensprof_status status = validate(options);
+    lp_model model;
+    const lensprof_status status = validate(options, &model);
     if (status != LENSPROF_OK) return status;
-    prepare_layout(&head, options);
-    if (!prepare_falloffs(&head, options)) return LENSPROF_ERROR_UNSUPPORTED;
+    prepare_layout(&head, options, &model);
+    if (!prepare_falloffs(&head, options, &model)) return LENSPROF_ERROR_UNSUPPORTED;
     prepare_gains(&head, options);
     head.magic = LP_FIXED_MAGIC;
-    head.bytes = (uint32_t)bytes_of(options);
+    head.bytes = (uint32_t)bytes_of(options, &model);
     if (bytes < head.bytes || (uintptr_t)memory % 4) return LENSPROF_ERROR_CAPACITY;
     lensprof_fixed_plan *plan = memory;
     *plan = head;
-    prepare_tables(plan, options);
+    prepare_tables(plan, options, &model);
     plan->check = lp_fixed_check(plan);
     *result = plan;
     return LENSPROF_OK;

@@ -4,6 +4,7 @@
 
 #include <lensprof/fixed.h>
 
+#include "options.h"
 #include "plan.h"
 
 #define LP_FIXED_MAGIC 0x3158464cu /* "LFX1" in memory; the last byte is the layout's version */

@@ -58,18 +58,8 @@ typedef struct lp_tiles {
 lensprof_status lp_tile_validate(const lp_tiles *tiles, const lensprof_image *source, const lensprof_image *target,
                                  uint32_t x0, uint32_t y0);
 
-/* The status that lensprof_plan_init gives these options. */
-lensprof_status lp_options_validate(const lensprof_apply_options *options);
-
 /* Channels of a layout: by the samples of a pixel, and by row and column parity where it is a mosaic. */
 void lp_layout_sites(uint32_t layout, uint8_t channel_of_sample[4], uint8_t site[2][2]);
-
-/* Target over source exposure of a channel. */
-double lp_exposure_ratio(const lensprof_apply_options *options, uint32_t channel);
-
-/* The response of a curve: grey is treated as green. */
-uint32_t lp_curves(const lensprof_apply_options *options);
-const lensprof_response *lp_response(const lensprof_apply_options *options, uint32_t curve);
 
 /* The kernels. Each gives the same bytes. */
 lp_row_kernel lp_row_scalar, lp_row_sse41, lp_row_avx2, lp_row_avx512, lp_row_neon;

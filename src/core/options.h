@@ -1,0 +1,27 @@
+/* Options of plans: what they may be, and the model they hold, in the caller's structs or in a blob. */
+#ifndef LENSPROF_CORE_OPTIONS_H
+#define LENSPROF_CORE_OPTIONS_H
+
+#include <lensprof/apply.h>
+
+#include "blob.h"
+
+#define LP_LARGEST_SIDE (1u << 20) /* px */
+
+/* The model. Of structs no more is checked than its size depends on; the vignetting may not be there yet. */
+lensprof_status lp_options_model(const lensprof_apply_options *options, lp_model *model);
+
+/* The status that lensprof_plan_init gives these options, and their model. */
+lensprof_status lp_options_validate(const lensprof_apply_options *options, lp_model *model);
+
+/* The responses that pixels pass through: grey is treated as green. */
+uint32_t lp_curves(const lensprof_apply_options *options, const lp_model *model);
+const struct lp_model_response *lp_response(const lensprof_apply_options *options, const lp_model *model, uint32_t curve);
+
+/* g(b), as lensprof_response_invert. */
+double lp_model_invert(const struct lp_model_response *response, double b);
+
+/* Target over source exposure of a channel. */
+double lp_exposure_ratio(const lensprof_apply_options *options, uint32_t channel);
+
+#endif
