@@ -8,7 +8,9 @@ static uint32_t memory[1 << 10]; /* 4 KiB; see lensprof_fixed_plan_bytes */
 static lensprof_status get_plan(const lensprof_fixed_plan **plan)
 {
     lensprof_apply_options options;
-    set_options(&options, &camera_table);
+    set_options(&options);
+    options.blob = camera_blob;
+    options.blob_bytes = camera_blob_bytes;
     put_number("plan: bytes ", (uint32_t)lensprof_fixed_plan_bytes(&options));
     return lensprof_fixed_plan_init(memory, sizeof memory, &options, plan);
 }

@@ -8,10 +8,13 @@
 enum { FRAME_WIDTH = 640, FRAME_HEIGHT = 480, STRIP_WIDTH = 160, STRIP_ROWS = 16 };
 extern const uint8_t strip[STRIP_ROWS * STRIP_WIDTH * 3];
 
-extern const lensprof_response camera_table, camera_gamma; /* the same curve nearly; the second one needs pow() */
+/* The camera's profile as a blob; and nearly the same response as a power, which needs pow(). */
+extern const uint8_t camera_blob[];
+extern const uint32_t camera_blob_bytes;
+extern const lensprof_response camera_gamma;
 extern const lensprof_vignetting camera_falloff[3];
 
-extern const uint32_t fixed_plan[]; /* what prepare_fixed (demo.h) says with camera_table, prepared on the PC */
+extern const uint32_t fixed_plan[]; /* what set_options (demo.h) says with camera_blob, prepared on the PC */
 extern const uint32_t fixed_plan_bytes;
 
 #endif

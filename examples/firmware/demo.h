@@ -5,15 +5,12 @@
 #include "board.h"
 #include "data.h"
 
-/* Exposures are whole stops: 2^ev is exact on every machine. */
-static inline void set_options(lensprof_apply_options *options, const lensprof_response *response)
+/* All but the profile. Exposures are whole stops: 2^ev is exact on every machine. */
+static inline void set_options(lensprof_apply_options *options)
 {
     lensprof_apply_options_init(options);
     options->frame_width = FRAME_WIDTH;
     options->frame_height = FRAME_HEIGHT;
-    options->response = response;
-    options->vignetting = camera_falloff;
-    options->vignettings = 3;
     options->source.white_balance[0] = 1.25;
     options->target.ev = 1.0;
     options->gain_cap = 4.0;

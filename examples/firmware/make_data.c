@@ -4,9 +4,14 @@
 #include <math.h>
 #include <stdio.h>
 
+#include <lensprof/profile.h>
+
 #include "demo.h"
 
-static lensprof_response camera_table_made, camera_gamma_made;
+static uint8_t blob[5000];
+static size_t blob_bytes;
+static lensprof_profile profile;
+static lensprof_response gamma_made;
 
 const lensprof_vignetting camera_falloff[3] = {
     {{-0.375, -0.0625, -0.03125}, {0.015625, -0.03125}},
@@ -37,7 +42,9 @@ static int render(uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3])
     for (int y = 0; y < STRIP_ROWS; y++)
         for (int x = 0; x < STRIP_WIDTH; x++)
             for (int c = 0; c < 3; c++) light[y][x][c] = (float)light_at(x, y, c);
-    set_options(&options, &camera_table_made);
+    set_options(&options);
+    options.blob = blob;
+    options.blob_bytes = blob_bytes;
     options.direction = LENSPROF_DIRECTION_SIMULATE;
     options.input = LENSPROF_ENCODING_LINEAR;
     options.source_sample = LENSPROF_SAMPLE_F32;
@@ -60,7 +67,9 @@ static int print_plan(void)
     const lensprof_fixed_plan *plan;
     size_t bytes;
 
-    set_options(&options, &camera_table_made);
+    set_options(&options);
+    options.blob = blob;
+    options.blob_bytes = blob_bytes;
     bytes = lensprof_fixed_plan_bytes(&options);
     if (lensprof_fixed_plan_init(memory, sizeof memory, &options, &plan) != LENSPROF_OK) return 0;
     printf("\nconst uint32_t fixed_plan_bytes = %u;\nconst uint32_t fixed_plan[] = {", (unsigned)bytes);
@@ -69,22 +78,39 @@ static int print_plan(void)
     return 1;
 }
 
+/* The profile of the blob; 0 when something is wrong with it. */
+static int pack(void)
+{
+    double values[129];
+    for (int i = 0; i <= 128; i++) values[i] = pow(i / 128.0, 1.0 / 2.2);
+    lensprof_profile_init(&profile);
+    profile.vignettings = 3;
+    for (int c = 0; c < 3; c++) profile.vignetting[c] = camera_falloff[c];
+    if (lensprof_response_set_table(&profile.response[0], values, 129) != LENSPROF_OK
+        || lensprof_profile_pack(&profile, 0, blob, sizeof blob, &blob_bytes) != LENSPROF_OK)
+        return 0;
+    return 1;
+}
+
+static void print_bytes(const char *name, const uint8_t *bytes, size_t count)
+{
+    printf("\nconst uint8_t %s[] = {", name);
+    for (size_t i = 0; i < count; i++) printf("%s%d,", i % 24 ? " " : "\n    ", bytes[i]);
+    printf("};\n");
+}
+
 int main(void)
 {
     static uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3];
-    double values[129];
-    for (int i = 0; i <= 128; i++) values[i] = pow(i / 128.0, 1.0 / 2.2);
-    if (lensprof_response_set_table(&camera_table_made, values, 129) != LENSPROF_OK) return 1;
-    if (lensprof_response_set_gamma(&camera_gamma_made, 2.2) != LENSPROF_OK || !render(rows)) return 1;
+    if (!pack() || lensprof_response_set_gamma(&gamma_made, 2.2) != LENSPROF_OK || !render(rows)) return 1;
     printf("/* Written by make_data. */\n#include \"data.h\"\n\nconst lensprof_vignetting camera_falloff[3] = {\n");
     for (int c = 0; c < 3; c++)
         printf("    {{%a, %a, %a}, {%a, %a}},\n", camera_falloff[c].k[0], camera_falloff[c].k[1],
                camera_falloff[c].k[2], camera_falloff[c].center[0], camera_falloff[c].center[1]);
-    printf("};\n\nconst uint8_t strip[STRIP_ROWS * STRIP_WIDTH * 3] = {");
-    for (int i = 0; i < STRIP_ROWS * STRIP_WIDTH * 3; i++)
-        printf("%s%d,", i % 24 ? " " : "\n    ", ((const uint8_t *)rows)[i]);
     printf("};\n");
-    print_response("camera_table", &camera_table_made);
-    print_response("camera_gamma", &camera_gamma_made);
+    print_bytes("strip", (const uint8_t *)rows, sizeof rows);
+    print_bytes("camera_blob", blob, blob_bytes);
+    printf("const uint32_t camera_blob_bytes = %u;\n", (unsigned)blob_bytes);
+    print_response("camera_gamma", &gamma_made);
     return print_plan() ? 0 : 1;
 }

@@ -75,9 +75,9 @@ static inline double lp_model_sample(const struct lp_model_response *response, u
     return response->table ? response->table[j] : (double)lp_f32_at(response->packed + 4 * j);
 }
 
-static inline float lp_model_node(const lp_model *model, uint32_t i)
+static inline float lp_model_node(const lp_model *m, uint32_t i)
 {
-    return model->attenuation ? model->attenuation[i] : lp_f32_at(model->packed_attenuation + 4 * i);
+    return m->attenuation ? m->attenuation[i] : lp_f32_at(m->packed_attenuation + 4 * i);
 }
 
 /* ---- blobs ---- */

@@ -14,11 +14,11 @@ objects() {
     shift
     rm -rf "$out" && mkdir -p "$out"
     for source in src/core/*.c src/core/kernels/best.c src/core/kernels/row_scalar.c; do
-        arm-none-eabi-gcc -std=c11 -mthumb "$@" -ffp-contract=off -ffreestanding -Wall -Wextra -Werror -Iinclude \
+        arm-none-eabi-gcc -std=c11 -mthumb "$@" -ffp-contract=off -ffreestanding -Wall -Wextra -Werror -Iinclude -Isrc \
             -fcallgraph-info=su -c "$source" -o "$out/$(basename "$source" .c).o"
     done
     for pixels in kernels/row_scalar fixed; do
-        arm-none-eabi-gcc -std=c11 -mthumb "$@" -ffp-contract=off -Wdouble-promotion -Wfloat-conversion -Werror -Iinclude \
+        arm-none-eabi-gcc -std=c11 -mthumb "$@" -ffp-contract=off -Wdouble-promotion -Wfloat-conversion -Werror -Iinclude -Isrc \
             -fsyntax-only "src/core/$pixels.c"
     done
     python3 -B tests/lint/symbol_rules.py --nm arm-none-eabi-nm apply "$out"

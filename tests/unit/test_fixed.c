@@ -2,6 +2,8 @@
  * that defines what happens (nearly saturated pixels). */
 #include "unit/fixed_cases.h"
 
+#include <lensprof/profile.h>
+
 #include <core/fixed_plan.h>
 
 enum { PROFILES = 3000 };
@@ -216,6 +218,40 @@ static void test_plans_can_be_copied(void **state)
     }
 }
 
+/* From a blob as from the profile that it holds; damaged it is refused. */
+static void test_blobs_give_the_same_plan(void **state)
+{
+    (void)state;
+    uint64_t random = 37;
+    static fixture f;
+    static lensprof_profile profile;
+    static uint8_t blob[1 << 15];
+    static uint32_t wanted[2048];
+    for (int n = 0; n < 60; n++) {
+        size_t bytes;
+        make_case(&f, LENSPROF_SAMPLE_U8, &random);
+        lensprof_apply_options *o = &f.m.options;
+        lensprof_profile_init(&profile);
+        profile.responses = o->responses, profile.vignettings = o->vignettings;
+        memcpy(profile.response, f.m.response, sizeof profile.response);
+        memcpy(profile.vignetting, f.m.vignetting, sizeof profile.vignetting);
+        assert_ok(lensprof_profile_pack(&profile, 0, blob, sizeof blob, &bytes));
+        assert_ok(lensprof_profile_unpack(blob, bytes, &profile));
+        o->response = profile.response, o->vignetting = profile.vignetting;
+        memset(f.memory, 0, sizeof f.memory);
+        make_plan(&f);
+        memcpy(wanted, f.memory, sizeof wanted);
+        o->response = NULL, o->vignetting = NULL;
+        o->blob = blob, o->blob_bytes = bytes;
+        make_plan(&f);
+        assert_memory_equal(f.memory, wanted, sizeof wanted);
+        blob[bytes / 2] ^= 1;
+        assert_int_equal(lensprof_fixed_plan_init(f.memory, sizeof f.memory, o, &f.plan), LENSPROF_ERROR_CORRUPT);
+        assert_memory_equal(f.memory, wanted, sizeof wanted);
+        assert_int_equal(lensprof_fixed_plan_bytes(o), 0);
+    }
+}
+
 static void expect_refused(fixture *f, lensprof_status wanted)
 {
     const lensprof_fixed_plan *plan = NULL;
@@ -328,6 +364,7 @@ int main(void)
         cmocka_unit_test(test_white_stays_white),
         cmocka_unit_test(test_tiles_give_the_frame),
         cmocka_unit_test(test_plans_can_be_copied),
+        cmocka_unit_test(test_blobs_give_the_same_plan),
         cmocka_unit_test(test_options_that_are_refused),
         cmocka_unit_test(test_tiles_that_are_refused),
         cmocka_unit_test(test_tables_are_what_they_say),
