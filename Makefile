@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build demo check test sanitize bench install clean
+.PHONY: help deps test-deps build demo check test sanitize bench bench-apply install clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -36,6 +36,11 @@ sanitize: ## build and run the C and C++ tests under address and undefined behav
 
 bench: test-deps build ## measure accuracy and speed beside the peers
 	tests/bench/run.sh
+	$(MAKE) bench-apply
+
+bench-apply: build ## measure how fast profiles are applied, beside memcpy, Lensfun, OpenCV and a plain loop
+	@cmake/install-packages.sh packages-bench.txt
+	tests/bench/apply.sh
 
 install: build ## install under PREFIX (default /usr/local)
 	cmake --install build --prefix $(PREFIX)

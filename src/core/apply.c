@@ -11,7 +11,7 @@
 #include "response.h"
 
 #define LARGEST_ROW ((ptrdiff_t)1 << 28) /* bytes; times LP_LARGEST_SIDE rows it stays within an address */
-#define STREAMED ((size_t)8 << 20)       /* bytes of a target that no cache is to hold */
+#define STREAMED ((size_t)8 << 20)       /* bytes of a float target that no cache is to hold; narrower ones gain nothing */
 
 /* ---- formats ---- */
 
@@ -336,7 +336,7 @@ static void apply_rows(const lensprof_plan *plan, const lensprof_image *source, 
                        uint32_t planes, uint32_t x0, uint32_t y0)
 {
     const size_t bytes = (size_t)target->width * target->height * plan->samples * lensprof_sample_bytes(target->sample);
-    const int stream = bytes >= STREAMED && !is_in_place(source, target);
+    const int stream = bytes >= STREAMED && target->sample == LENSPROF_SAMPLE_F32 && !is_in_place(source, target);
     for (uint32_t y = 0; y < source->height; y++) {
         const uint8_t *from[3] = {NULL, NULL, NULL};
         uint8_t *to[3] = {NULL, NULL, NULL};

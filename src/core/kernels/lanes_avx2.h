@@ -104,9 +104,13 @@ static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
     f_store(p + 16, _mm256_blend_ps(z, _mm256_permutevar8x32_ps(c, third), 0x92));
 }
 
+/* A line of 64 bytes past the caches; `to` is aligned to it. */
 #define CAN_STREAM 1
-static inline void f_stream(float *p, lane_f v) { _mm256_stream_ps(p, v); }
-static inline void i_stream_u16(uint8_t *p, lane_i v) { _mm_stream_si128((__m128i *)(void *)p, to_u16(v)); }
+static inline void stream_line(uint8_t *to, const uint8_t *from)
+{
+    for (int i = 0; i < 2; i++)
+        _mm256_stream_si256((__m256i *)(void *)to + i, _mm256_loadu_si256((const __m256i *)(const void *)from + i));
+}
 static inline void end_stream(void) { _mm_sfence(); }
 
 #endif

@@ -104,11 +104,11 @@ static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
     f_store(p + 32, _mm512_mask_permutexvar_ps(_mm512_permutex2var_ps(a, third, b), 0x9249, c3, c));
 }
 
+/* A line of 64 bytes past the caches; `to` is aligned to it. */
 #define CAN_STREAM 1
-static inline void f_stream(float *p, lane_f v) { _mm512_stream_ps(p, v); }
-static inline void i_stream_u16(uint8_t *p, lane_i v)
+static inline void stream_line(uint8_t *to, const uint8_t *from)
 {
-    _mm256_stream_si256((__m256i *)(void *)p, _mm512_cvtepi32_epi16(v));
+    _mm512_stream_si512((__m512i *)(void *)to, _mm512_loadu_si512(from));
 }
 static inline void end_stream(void) { _mm_sfence(); }
 

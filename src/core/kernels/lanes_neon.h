@@ -91,9 +91,6 @@ static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
     vst3q_f32(p, all);
 }
 
-#define CAN_STREAM 0
-static inline void f_stream(float *p, lane_f v) { f_store(p, v); }
-static inline void i_stream_u16(uint8_t *p, lane_i v) { i_store_u16(p, v); }
-static inline void end_stream(void) {}
+#define CAN_STREAM 0 /* no way past the caches */
 
 #endif

@@ -81,10 +81,6 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
 /* a0 b0 c0 a1 b1 c1 ... */
 static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) { p[0] = a, p[1] = b, p[2] = c; }
 
-/* Past the caches, where there is such a way; p is aligned to the vector. */
-#define CAN_STREAM 0
-static inline void f_stream(float *p, lane_f v) { f_store(p, v); }
-static inline void i_stream_u16(uint8_t *p, lane_i v) { i_store_u16(p, v); }
-static inline void end_stream(void) {}
+#define CAN_STREAM 0 /* no way past the caches */
 
 #endif

@@ -91,9 +91,13 @@ static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
     f_store(p + 8, _mm_shuffle_ps(ca_high, bc_high, _MM_SHUFFLE(2, 0, 2, 0))); /* c2 a3 b3 c3 */
 }
 
+/* A line of 64 bytes past the caches; `to` is aligned to it. */
 #define CAN_STREAM 1
-static inline void f_stream(float *p, lane_f v) { _mm_stream_ps(p, v); }
-static inline void i_stream_u16(uint8_t *p, lane_i v) { i_store_u16(p, v); } /* half a vector */
+static inline void stream_line(uint8_t *to, const uint8_t *from)
+{
+    for (int i = 0; i < 4; i++)
+        _mm_stream_si128((__m128i *)(void *)to + i, _mm_loadu_si128((const __m128i *)(const void *)from + i));
+}
 static inline void end_stream(void) { _mm_sfence(); }
 
 #endif

@@ -98,13 +98,13 @@ static void load_run(const lensprof_plan *plan, const run *r, strip *s)
     }
 }
 
-static void store_run(const lensprof_plan *plan, const run *r, const strip *s, int stream)
+static void store_run(const lensprof_plan *plan, const run *r, const strip *s)
 {
     switch (plan->target_sample) {
-    case LENSPROF_SAMPLE_U8: store_samples(plan, LENSPROF_SAMPLE_U8, s, r->at, r->to, r->count, stream); break;
-    case LENSPROF_SAMPLE_U16: store_samples(plan, LENSPROF_SAMPLE_U16, s, r->at, r->to, r->count, stream); break;
-    case LENSPROF_SAMPLE_F16: store_samples(plan, LENSPROF_SAMPLE_F16, s, r->at, r->to, r->count, stream); break;
-    default: store_samples(plan, LENSPROF_SAMPLE_F32, s, r->at, r->to, r->count, stream); break;
+    case LENSPROF_SAMPLE_U8: store_samples(plan, LENSPROF_SAMPLE_U8, s, r->at, r->to, r->count); break;
+    case LENSPROF_SAMPLE_U16: store_samples(plan, LENSPROF_SAMPLE_U16, s, r->at, r->to, r->count); break;
+    case LENSPROF_SAMPLE_F16: store_samples(plan, LENSPROF_SAMPLE_F16, s, r->at, r->to, r->count); break;
+    default: store_samples(plan, LENSPROF_SAMPLE_F32, s, r->at, r->to, r->count); break;
     }
 }
 
@@ -124,50 +124,40 @@ ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t
     return curve == LP_CURVE_NONE ? light : curve_value(plan, s, curve, 0, at, light);
 }
 
-ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const strip *s, uint32_t sample, uint32_t curve,
-                            int stream)
+ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const strip *s, uint32_t sample, uint32_t curve)
 {
     lensprof_plan own = *shared; /* which no store can change */
     const lensprof_plan *plan = &own;
-    own.curves = 1, own.dither = 0;
     const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
-    float room[2][LANES] = {{0.0f}, {0.0f}};
-    uint8_t *in = (uint8_t *)room[0], *out = (uint8_t *)room[1];
     uint32_t i = 0;
-    if (stream) { /* up to where vectors are aligned */
-        i = (uint32_t)(-(uintptr_t)r->to % (LANES * bytes)) / bytes;
-        if (i > r->count) i = r->count;
-        memcpy(in, r->from, i * bytes);
-        store_vector(plan, sample, s, r->at, through(plan, s, sample, curve, r->at, in), out, 0);
-        memcpy(r->to, out, i * bytes);
-    }
+    own.curves = 1, own.dither = 0;
     for (; i + LANES <= r->count; i += LANES) {
         const lane_f light = through(plan, s, sample, curve, r->at + i, r->from + i * bytes);
-        store_vector(plan, sample, s, r->at + i, light, r->to + i * bytes, stream);
+        store_vector(plan, sample, s, r->at + i, light, r->to + i * bytes);
     }
     if (i < r->count) {
+        float room[2][LANES] = {{0.0f}, {0.0f}};
+        uint8_t *in = (uint8_t *)room[0], *out = (uint8_t *)room[1];
         memcpy(in, r->from + i * bytes, (r->count - i) * bytes);
-        store_vector(plan, sample, s, r->at + i, through(plan, s, sample, curve, r->at + i, in), out,
-                     0);
+        store_vector(plan, sample, s, r->at + i, through(plan, s, sample, curve, r->at + i, in), out);
         memcpy(r->to + i * bytes, out, (r->count - i) * bytes);
     }
 }
 
 /* False for what is not one of the usual ways. */
-static int do_one_pass(const lensprof_plan *plan, const run *r, const strip *s, int stream)
+static int do_one_pass(const lensprof_plan *plan, const run *r, const strip *s)
 {
     if (plan->source_sample != plan->target_sample || plan->decode != plan->encode || plan->dither
         || (plan->curves == 3 && plan->decode != LP_CURVE_NONE))
         return 0;
-    stream = stream && CAN_STREAM && plan->target_sample != LENSPROF_SAMPLE_U8;
     switch (8 * plan->source_sample + plan->decode) {
-    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_NONE, 0); return 1;
-    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_TABLE, 0); return 1;
-    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_NONE, stream); return 1;
-    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_TABLE, stream); return 1;
-    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_POWER: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_POWER, stream); return 1;
-    case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_NONE, stream); return 1;
-    case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_TABLE, stream); return 1;
+    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_NONE); return 1;
+    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_TABLE); return 1;
+    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_NONE); return 1;
+    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_TABLE); return 1;
+    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_POWER: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_POWER); return 1;
+    case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_NONE); return 1;
+    case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_TABLE); return 1;
     default: return 0;
     }
 }
@@ -195,6 +185,30 @@ static float largest_of(const lensprof_plan *plan, const run *r)
     }
 }
 
+#if CAN_STREAM
+/* Whole lines of a cache past it: parts of lines would be slower than no such way. */
+static void stream_copy(uint8_t *to, const uint8_t *from, size_t bytes)
+{
+    size_t i = (size_t)(-(uintptr_t)to % 64);
+    if (i > bytes) i = bytes;
+    memcpy(to, from, i);
+    for (; i + 64 <= bytes; i += 64) stream_line(to + i, from + i);
+    memcpy(to + i, from + i, bytes - i);
+}
+#endif
+
+/* A run whose codes are on the strip already, `is_loaded`, or not yet. */
+static void do_run(const lensprof_plan *plan, const run *r, int is_loaded, strip *s)
+{
+#if LANES > 1
+    if (do_one_pass(plan, r, s)) return;
+#endif
+    if (!is_loaded) load_run(plan, r, s);
+    decode(plan, r, s);
+    encode(plan, r, s);
+    store_run(plan, r, s);
+}
+
 /* A strip whose factors are known. */
 static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes, uint32_t count, strip *s, int stream)
 {
@@ -209,15 +223,28 @@ static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes
     if (near_white)
         approach_white(s, count, planes == 3 ? STRIP + LANES : 1, planes == 3 ? 1 : plan->samples, unit);
     for (uint32_t p = 0; p < planes; p++) {
-#if LANES > 1
-        if (do_one_pass(plan, &runs[p], s, stream)) continue;
+        run r = runs[p];
+#if CAN_STREAM
+        uint8_t room[4 * MOST_SAMPLES];
+        if (stream) r.to = room;
 #endif
-        if (!near_white) load_run(plan, &runs[p], s);
-        decode(plan, &runs[p], s);
-        encode(plan, &runs[p], s);
-        store_run(plan, &runs[p], s, stream);
+        do_run(plan, &r, near_white, s);
+#if CAN_STREAM
+        if (stream) stream_copy(runs[p].to, room, r.count * lensprof_sample_bytes(plan->target_sample));
+#endif
     }
+    (void)stream;
     if (has_alpha) give_alpha(plan, s, runs[0].to, count);
+}
+
+/* Asks for the next strip's samples while this one is worked on. */
+static inline void fetch_ahead(const uint8_t *from, uint32_t bytes)
+{
+#if LANES > 1 && defined(__GNUC__)
+    for (uint32_t i = 0; i < bytes; i += 64) __builtin_prefetch(from + i);
+#else
+    (void)from, (void)bytes;
+#endif
 }
 
 void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8_t *const target[3], uint32_t x,
@@ -234,6 +261,8 @@ void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8
     for (uint32_t done = 0; done < count; done += STRIP) {
         const uint32_t n = count - done < STRIP ? count - done : STRIP;
         run runs[3];
+        for (uint32_t p = 0; p < planes && count - done >= 2 * STRIP; p++)
+            fetch_ahead(source[p] + (size_t)(done + STRIP) * from_step, STRIP * from_step);
         for (uint32_t c = 0; c < plan->gains; c++) gains_of_channel(plan, c, x + done, dy, n, &s);
         spread_gains(plan, x + done, y, n, &s);
         for (uint32_t p = 0; p < planes; p++)
@@ -241,5 +270,7 @@ void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8
                             p * (STRIP + LANES), n * plan->samples};
         do_strip(plan, runs, planes, n, &s, stream);
     }
+#if CAN_STREAM
     if (stream) end_stream();
+#endif
 }

@@ -89,11 +89,10 @@ static void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uin
 
 /* One vector as samples at p. `at`: its place on the strip. */
 ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, const strip *s, uint32_t at, lane_f light,
-                                uint8_t *p, int stream)
+                                uint8_t *p)
 {
     if (sample == LENSPROF_SAMPLE_F32) {
-        if (stream) f_stream((float *)(void *)p, light);
-        else f_store((float *)(void *)p, light);
+        f_store((float *)(void *)p, light);
         return;
     }
     if (sample == LENSPROF_SAMPLE_F16) {
@@ -110,30 +109,20 @@ ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, cons
     const lane_f half = plan->dither ? f_load(s->rounding + at) : f_set(0.5f);
     const lane_i code = i_of_f(f_min(f_add(f_max(codes, f_set(0.0f)), half), f_set(unit + 0.5f)));
     if (sample == LENSPROF_SAMPLE_U8) i_store_u8(p, code);
-    else if (stream) i_stream_u16(p, code);
     else i_store_u16(p, code);
 }
 
 ALWAYS_INLINE void store_samples(const lensprof_plan *plan, uint32_t sample, const strip *s, uint32_t at, uint8_t *to,
-                                 uint32_t count, int stream)
+                                 uint32_t count)
 {
     const uint32_t bytes = lensprof_sample_bytes(sample);
     uint32_t i = 0;
-    stream = stream && CAN_STREAM && sample != LENSPROF_SAMPLE_U8 && sample != LENSPROF_SAMPLE_F16;
-    if (stream) { /* up to where vectors are aligned */
-        i = (uint32_t)(-(uintptr_t)to % (LANES * bytes)) / bytes;
-        if (i > count) i = count;
-        float room[LANES];
-        uint8_t *first = (uint8_t *)room;
-        store_vector(plan, sample, s, at, f_load(s->light + at), first, 0);
-        memcpy(to, first, i * bytes);
-    }
-    for (; i + LANES <= count; i += LANES) 
-        store_vector(plan, sample, s, at + i, f_load(s->light + at + i), to + i * bytes, stream);
+    for (; i + LANES <= count; i += LANES)
+        store_vector(plan, sample, s, at + i, f_load(s->light + at + i), to + i * bytes);
     if (i < count) {
         float room[LANES];
         uint8_t *last = (uint8_t *)room;
-        store_vector(plan, sample, s, at + i, f_load(s->light + at + i), last, 0);
+        store_vector(plan, sample, s, at + i, f_load(s->light + at + i), last);
         memcpy(to + i * bytes, last, (count - i) * bytes);
     }
 }
