@@ -52,8 +52,6 @@ lensprof_status lensprof_image_validate(const lensprof_image *image)
 
 static int is_mosaic(uint32_t layout) { return layout >= LENSPROF_LAYOUT_RGGB && layout <= LENSPROF_LAYOUT_BGGR; }
 
-/* ---- plan ---- */
-
 /* The kind of curve of all channels. */
 static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m)
 {
@@ -94,12 +92,18 @@ static size_t codes_of(const lensprof_apply_options *o, const lp_model *m)
     return o->source_sample == LENSPROF_SAMPLE_U8 ? 256 : 65536;
 }
 
+/* Entries of the table of where to begin among the samples; 0 where values do not go through the inverse. */
+static size_t starts_of(const lensprof_apply_options *o, const lp_model *m)
+{
+    const uint32_t decode = codes_of(o, m) ? (uint32_t)LP_CURVE_NONE : decode_of(o, m);
+    return decode == LP_CURVE_TABLE || decode == LP_CURVE_MIXED ? LP_CELLS + 1 : 0;
+}
+
 /* Entries of the table of the response; 0 where none is asked. */
 static size_t samples_of(const lensprof_apply_options *o, const lp_model *m)
 {
-    uint32_t decode = codes_of(o, m) ? (uint32_t)LP_CURVE_NONE : decode_of(o, m), encode = encode_of(o, m);
-    int is_asked = decode == LP_CURVE_TABLE || decode == LP_CURVE_MIXED || encode == LP_CURVE_TABLE
-                   || encode == LP_CURVE_MIXED;
+    const uint32_t encode = encode_of(o, m);
+    const int is_asked = starts_of(o, m) || encode == LP_CURVE_TABLE || encode == LP_CURVE_MIXED;
     return is_asked ? LENSPROF_RESPONSE_SAMPLES : 0;
 }
 
@@ -107,7 +111,8 @@ static size_t nodes_of(const lp_model *m) { return (size_t)m->channels * m->rows
 
 static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m)
 {
-    const size_t numbers = lp_curves(o, m) * (samples_of(o, m) + codes_of(o, m)) + nodes_of(m);
+    const size_t samples = samples_of(o, m), behind = samples ? 1 : 0;
+    const size_t numbers = lp_curves(o, m) * (samples + codes_of(o, m) + starts_of(o, m)) + behind + nodes_of(m);
     return sizeof(lensprof_plan) + numbers * sizeof(float);
 }
 
@@ -145,16 +150,32 @@ static void fill_inverse(const struct lp_model_response *response, size_t codes,
     }
 }
 
+/* Where to begin among the samples, for every cell of values, and the first step from there. */
+static void fill_start(lensprof_plan *plan, const float *samples, float *start)
+{
+    uint32_t j = 0;
+    for (uint32_t cell = 0; cell <= LP_CELLS; cell++) {
+        const float least = (float)cell / LP_CELLS;
+        const uint32_t before = j;
+        while (j + 1 < LENSPROF_RESPONSE_SAMPLES && samples[j + 1] < least) j++;
+        start[cell] = (float)j;
+        while (plan->step <= (int32_t)(j - before) / 2) plan->step = plan->step ? 2 * plan->step : 1;
+    }
+}
+
 /* Fills the tables of the curves at `memory`; returns the memory behind them. */
 static float *prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m,
                              float *memory)
 {
-    const size_t samples = samples_of(o, m), codes = codes_of(o, m);
+    const size_t samples = samples_of(o, m), codes = codes_of(o, m), starts = starts_of(o, m);
     plan->curves = lp_curves(o, m);
     plan->decode = decode_of(o, m);
     plan->encode = encode_of(o, m);
+    float *inverse = memory + plan->curves * samples + (samples ? 1 : 0), *start = inverse + plan->curves * codes;
+    if (samples) inverse[-1] = 0.0f; /* kernels read it, times 0 */
     plan->forward = memory;
-    plan->inverse = codes ? memory + plan->curves * samples : NULL;
+    plan->inverse = codes ? inverse : NULL;
+    plan->start = starts ? start : NULL;
     plan->inverse_shift = codes == 256 ? 8 : 16;
     for (uint32_t c = 0; c < plan->curves; c++) {
         const struct lp_model_response *response = lp_response(o, m, c);
@@ -162,9 +183,11 @@ static float *prepare_curves(lensprof_plan *plan, const lensprof_apply_options *
         plan->inverse_exponent[c] = is_power(response) ? (float)response->gamma : 0.0f;
         for (size_t j = 0; j < samples; j++) /* not read where there is an exponent */
             memory[c * samples + j] = is_power(response) ? 0.0f : (float)lp_model_sample(response, (uint32_t)j);
-        if (codes) fill_inverse(response, codes, memory + plan->curves * samples + c * codes);
+        if (codes) fill_inverse(response, codes, inverse + c * codes);
+        memset(start + c * starts, 0, starts * sizeof *start);
+        if (starts && !is_power(response)) fill_start(plan, memory + c * samples, start + c * starts);
     }
-    return memory + plan->curves * (samples + codes);
+    return start + plan->curves * starts;
 }
 
 /* Copies the nodes of the gain grid, less 1, to `memory`. */
@@ -239,7 +262,7 @@ static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, 
         plan->center_px[d] = (int32_t)floor(center + 0.5);
         plan->center_part[d] = (float)(center - plan->center_px[d]);
     }
-    plan->least = o->gain_cap > 0.0 ? (float)(1.0 / o->gain_cap) : 0.0f;
+    plan->least = (float)(1.0 / (o->gain_cap > 0.0 ? o->gain_cap : LP_LARGEST_GAIN_CAP));
     plan->strength = (float)o->strength;
     plan->gains = 1;
     for (uint32_t c = 0; c < LP_CHANNELS; c++) {

@@ -6,8 +6,6 @@
 
 #include "response.h"
 
-#define LARGEST_GAIN_CAP 1e6
-
 void lensprof_apply_options_init(lensprof_apply_options *options)
 {
     memset(options, 0, sizeof *options);
@@ -77,7 +75,7 @@ double lp_model_invert(const struct lp_model_response *response, double b)
     return lp_curve_between(lp_model_sample(response, low), lp_model_sample(response, high), b, low);
 }
 
-/* The model in the caller's structs; view_model checks the grid, and all of a blob. */
+/* The model in the caller's structs; lp_options_model checks the grid, and all of a blob. */
 static lensprof_status validate_structs(const lensprof_apply_options *o)
 {
     lensprof_status status = LENSPROF_OK;
@@ -109,7 +107,7 @@ lensprof_status lp_options_validate(const lensprof_apply_options *o, lp_model *m
         || !lensprof_layout_samples(o->source_layout))
         return LENSPROF_ERROR_ARGUMENT;
     if (!(o->strength >= 0.0 && o->strength <= 1.0) || o->dither > 1 || o->reserved
-        || !(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LARGEST_GAIN_CAP)))
+        || !(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LP_LARGEST_GAIN_CAP)))
         return LENSPROF_ERROR_ARGUMENT;
     if (!o->frame_width || !o->frame_height || o->frame_width > LP_LARGEST_SIDE || o->frame_height > LP_LARGEST_SIDE)
         return LENSPROF_ERROR_SIZE;

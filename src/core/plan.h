@@ -7,6 +7,7 @@
 #define LP_CHANNELS 3
 #define LP_ALPHA 3         /* in the place of a channel */
 #define LP_FORWARD_SHIFT 10 /* log2 of the samples of a response */
+#define LP_CELLS 1024       /* that values 0..1 are divided into, to find them among the samples */
 
 /* How codes or values become irradiance, and how that becomes a value 0..1 again. */
 enum lp_curve {
@@ -45,8 +46,10 @@ struct lensprof_plan {
     uint32_t columns, rows;      /* of the gain grid; 0 = none */
     uint32_t inverse_shift;      /* log2 of the codes that `inverse` has an entry for */
     const float *nodes[LP_CHANNELS]; /* attenuation less 1 */
-    const float *forward;        /* curves x 1024 samples of f */
+    const float *forward;        /* curves x 1024 samples of f, and one number more */
     const float *inverse;        /* curves x codes of g; NULL without */
+    const float *start;          /* for g of values: curves x LP_CELLS + 1, the last sample below cell / LP_CELLS */
+    int32_t step;                /* from there the first step up the samples is this, then half of it, ... */
 };
 
 /* What the tiles of a plan must be. */

@@ -27,24 +27,29 @@ ALWAYS_INLINE lane_f power(lane_f x, lane_f e)
     return f_pick(f_less(x, f_set(1.0f)), y, f_set(1.0f));
 }
 
-ALWAYS_INLINE lane_f cut(lane_f x) { return f_min(f_max(x, f_set(0.0f)), f_set(1.0f)); } /* 0 for NaN */
+/* Within 0..1; 0 for NaN. `is_light`: numbers not below 0. */
+ALWAYS_INLINE lane_f cut(lane_f x, int is_light) { return f_min(is_light ? x : f_max(x, f_set(0.0f)), f_set(1.0f)); }
 
-/* f(x) by its samples, 0 <= x <= 1. `first`: where the samples begin. */
-ALWAYS_INLINE lane_f table_at(const float *samples, lane_f x, lane_i first)
+/* f(x) by its samples, 0 <= x <= 1. One number more follows them. */
+ALWAYS_INLINE lane_f table_at(const float *samples, lane_f x, lane_i channel)
 {
+    const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
     const lane_f position = f_mul(x, f_set((float)LAST));
-    const lane_i j = i_min(i_of_f(position), i_set(LAST - 1));
+    const lane_i j = i_of_f(position);
     lane_f low, high;
     f_gather_pair(samples, i_add(j, first), &low, &high);
     return f_add(low, f_mul(f_sub(position, f_of_i(j)), f_sub(high, low)));
 }
 
 /* g(b) by the samples of f, 0 <= b <= 1: the smallest x with f(x) >= b. */
-ALWAYS_INLINE lane_f table_inverse(const float *samples, lane_f b, lane_i first)
+ALWAYS_INLINE lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i channel)
 {
-    lane_i low = i_set(0);
-    for (int32_t step = 512; step > 0; step /= 2) {
-        const lane_i next = i_add(low, i_set(step));
+    const float *samples = plan->forward;
+    const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
+    const lane_i cell = i_add(i_of_f(f_mul(b, f_set((float)LP_CELLS))), channel); /* a table is one longer than cells */
+    lane_i low = i_of_f(f_gather(plan->start, i_add(cell, first)));
+    for (int32_t step = plan->step; step > 0; step /= 2) {
+        const lane_i next = i_min(i_add(low, i_set(step)), i_set(LAST));
         low = i_pick(f_less(f_gather(samples, i_add(next, first)), b), next, low);
     }
     lane_f below, above;
@@ -56,22 +61,20 @@ ALWAYS_INLINE lane_f table_inverse(const float *samples, lane_f b, lane_i first)
     return f_pick(f_less(f_set(0.0f), b), x, f_set(0.0f));
 }
 
-/* The value of a curve; NaN stays. `at`: index into s->channel. */
-ALWAYS_INLINE lane_f curve_value(const lensprof_plan *plan, const strip *s, uint32_t curve, int inverse, uint32_t at,
-                                 lane_f x)
+/* The value of a curve; NaN stays. `at`: index into s->channel. `is_light`: x are numbers not below 0. */
+ALWAYS_INLINE lane_f curve_value(const lensprof_plan *plan, const strip *s, uint32_t curve, int inverse, int is_light,
+                                 uint32_t at, lane_f x)
 {
     const float *exponents = inverse ? plan->inverse_exponent : plan->exponent;
-    const lane_f inside = cut(x);
+    const lane_f inside = cut(x, is_light);
     lane_f y = inside, e = f_set(exponents[0]);
     lane_i channel = i_set(0);
     if (plan->curves == 3) channel = i_load(s->channel + at), e = f_gather(exponents, channel);
-    if (curve == LP_CURVE_TABLE || curve == LP_CURVE_MIXED) {
-        const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
-        y = inverse ? table_inverse(plan->forward, inside, first) : table_at(plan->forward, inside, first);
-    }
+    if (curve == LP_CURVE_TABLE || curve == LP_CURVE_MIXED)
+        y = inverse ? table_inverse(plan, inside, channel) : table_at(plan->forward, inside, channel);
     if (curve == LP_CURVE_POWER) y = power(inside, e);
     if (curve == LP_CURVE_MIXED) y = f_pick(f_less(f_set(0.0f), e), power(inside, e), y);
-    return f_pick(f_is_number(x), y, x);
+    return is_light ? y : f_pick(f_is_number(x), y, x);
 }
 
 /* Codes of 16 bit that go through a formula become values. */
@@ -86,5 +89,5 @@ ALWAYS_INLINE void through_curve(const lensprof_plan *plan, strip *s, uint32_t c
 {
     const lane_f scale = inverse ? code_scale(plan) : f_set(1.0f);
     for (uint32_t i = at; i < at + count; i += LANES)
-        f_store(s->light + i, curve_value(plan, s, curve, inverse, i, f_mul(f_load(s->light + i), scale)));
+        f_store(s->light + i, curve_value(plan, s, curve, inverse, 0, i, f_mul(f_load(s->light + i), scale)));
 }

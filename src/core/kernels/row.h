@@ -114,14 +114,15 @@ static void store_run(const lensprof_plan *plan, const run *r, const strip *s)
 ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t sample, uint32_t curve, uint32_t at,
                              const uint8_t *from)
 {
+    const int is_light = sample != LENSPROF_SAMPLE_F32; /* codes are */
     lane_f light;
     if (curve == LP_CURVE_TABLE && sample == LENSPROF_SAMPLE_U8) light = f_gather(plan->inverse, i_load_u8(from));
     else if (curve == LP_CURVE_TABLE && sample == LENSPROF_SAMPLE_U16) light = f_gather(plan->inverse, i_load_u16(from));
     else light = load_values(sample, from);
-    if (curve != LP_CURVE_NONE && !(curve == LP_CURVE_TABLE && sample != LENSPROF_SAMPLE_F32))
-        light = curve_value(plan, s, curve, 1, at, f_mul(light, code_scale(plan)));
+    if (curve != LP_CURVE_NONE && !(curve == LP_CURVE_TABLE && is_light))
+        light = curve_value(plan, s, curve, 1, is_light, at, f_mul(light, code_scale(plan)));
     light = f_mul(light, f_load(s->factor + at));
-    return curve == LP_CURVE_NONE ? light : curve_value(plan, s, curve, 0, at, light);
+    return curve == LP_CURVE_NONE ? light : curve_value(plan, s, curve, 0, is_light, at, light);
 }
 
 ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const strip *s, uint32_t sample, uint32_t curve)
@@ -129,17 +130,18 @@ ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const str
     lensprof_plan own = *shared; /* which no store can change */
     const lensprof_plan *plan = &own;
     const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
+    const int is_inside = sample != LENSPROF_SAMPLE_F32 && curve != LP_CURVE_NONE;
     uint32_t i = 0;
     own.curves = 1, own.dither = 0;
     for (; i + LANES <= r->count; i += LANES) {
         const lane_f light = through(plan, s, sample, curve, r->at + i, r->from + i * bytes);
-        store_vector(plan, sample, s, r->at + i, light, r->to + i * bytes);
+        store_vector(plan, sample, is_inside, s, r->at + i, light, r->to + i * bytes);
     }
     if (i < r->count) {
         float room[2][LANES] = {{0.0f}, {0.0f}};
         uint8_t *in = (uint8_t *)room[0], *out = (uint8_t *)room[1];
         memcpy(in, r->from + i * bytes, (r->count - i) * bytes);
-        store_vector(plan, sample, s, r->at + i, through(plan, s, sample, curve, r->at + i, in), out);
+        store_vector(plan, sample, is_inside, s, r->at + i, through(plan, s, sample, curve, r->at + i, in), out);
         memcpy(r->to + i * bytes, out, (r->count - i) * bytes);
     }
 }

@@ -87,9 +87,9 @@ static void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uin
 
 /* ---- light to samples ---- */
 
-/* One vector as samples at p. `at`: its place on the strip. */
-ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, const strip *s, uint32_t at, lane_f light,
-                                uint8_t *p)
+/* One vector as samples at p. `at`: its place on the strip. `is_inside`: all within 0..1. */
+ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, int is_inside, const strip *s, uint32_t at,
+                                lane_f light, uint8_t *p)
 {
     if (sample == LENSPROF_SAMPLE_F32) {
         f_store((float *)(void *)p, light);
@@ -107,7 +107,8 @@ ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, cons
     const float unit = sample == LENSPROF_SAMPLE_U8 ? 255.0f : 65535.0f;
     const lane_f codes = f_mul(light, f_set(plan->encode == LP_CURVE_NONE ? 1.0f : unit));
     const lane_f half = plan->dither ? f_load(s->rounding + at) : f_set(0.5f);
-    const lane_i code = i_of_f(f_min(f_add(f_max(codes, f_set(0.0f)), half), f_set(unit + 0.5f)));
+    const lane_f up = f_add(is_inside ? codes : f_max(codes, f_set(0.0f)), half);
+    const lane_i code = i_of_f(is_inside ? up : f_min(up, f_set(unit + 0.5f)));
     if (sample == LENSPROF_SAMPLE_U8) i_store_u8(p, code);
     else i_store_u16(p, code);
 }
@@ -118,11 +119,11 @@ ALWAYS_INLINE void store_samples(const lensprof_plan *plan, uint32_t sample, con
     const uint32_t bytes = lensprof_sample_bytes(sample);
     uint32_t i = 0;
     for (; i + LANES <= count; i += LANES)
-        store_vector(plan, sample, s, at + i, f_load(s->light + at + i), to + i * bytes);
+        store_vector(plan, sample, 0, s, at + i, f_load(s->light + at + i), to + i * bytes);
     if (i < count) {
         float room[LANES];
         uint8_t *last = (uint8_t *)room;
-        store_vector(plan, sample, s, at + i, f_load(s->light + at + i), last);
+        store_vector(plan, sample, 0, s, at + i, f_load(s->light + at + i), last);
         memcpy(to + i * bytes, last, (count - i) * bytes);
     }
 }
