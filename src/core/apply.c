@@ -11,6 +11,7 @@
 #include "response.h"
 
 #define LARGEST_ROW ((ptrdiff_t)1 << 28) /* bytes; times LP_LARGEST_SIDE rows it stays within an address */
+#define LAST (LENSPROF_RESPONSE_SAMPLES - 1)
 #define STREAMED ((size_t)8 << 20)       /* bytes of a float target that no cache is to hold; narrower ones gain nothing */
 
 /* ---- formats ---- */
@@ -220,10 +221,10 @@ static void prepare_layout(lensprof_plan *plan, const lensprof_apply_options *o)
     lp_layout_sites(plan->layout, plan->channel_of_sample, plan->site);
 }
 
-/* What the linear numbers of a kernel count in: codes stay codes where no curve is between. */
-static double unit_of(uint32_t sample, int is_linear)
+/* White in the linear numbers of a kernel: where no curve is between, codes stay codes. */
+static double white_of(uint32_t sample, uint32_t curve)
 {
-    return !is_linear ? 1.0 : sample == LENSPROF_SAMPLE_U8 ? 255.0 : sample == LENSPROF_SAMPLE_U16 ? 65535.0 : 1.0;
+    return curve != LP_CURVE_NONE ? 1.0 : sample == LENSPROF_SAMPLE_U8 ? 255.0 : sample == LENSPROF_SAMPLE_U16 ? 65535.0 : 1.0;
 }
 
 /* Falloff and factor of a channel. The gain is factor / M, or M / factor to simulate. */
@@ -234,8 +235,8 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, c
     const uint32_t at = plan->channels == 1 ? 0 : channel; /* grey is treated as green */
     double scale = plan->columns ? 1.0 : o->strength;
     for (int n = 0; n < 3; n++) plan->k[at][n] = (float)(k[n] * (scale *= per_rho2));
-    const double units = unit_of(o->target_sample, plan->encode == LP_CURVE_NONE)
-                         / unit_of(o->source_sample, plan->decode == LP_CURVE_NONE);
+    const double units = (plan->encode == LP_CURVE_TABLE ? LAST : white_of(o->target_sample, plan->encode))
+                         / white_of(o->source_sample, plan->decode);
     plan->factor[at] = (float)(plan->simulate ? lp_exposure_ratio(o, channel) / units : lp_exposure_ratio(o, channel) * units);
     plan->times[at] = 1.0f;
     if (at != channel) plan->nodes[at] = plan->nodes[channel];

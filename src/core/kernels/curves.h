@@ -27,14 +27,16 @@ ALWAYS_INLINE lane_f power(lane_f x, lane_f e)
     return f_pick(f_less(x, f_set(1.0f)), y, f_set(1.0f));
 }
 
-/* Within 0..1; 0 for NaN. `is_light`: numbers not below 0. */
-ALWAYS_INLINE lane_f cut(lane_f x, int is_light) { return f_min(is_light ? x : f_max(x, f_set(0.0f)), f_set(1.0f)); }
+/* Within 0..most; 0 for NaN. `is_light`: numbers not below 0. */
+ALWAYS_INLINE lane_f cut(lane_f x, int is_light, float most)
+{
+    return f_min(is_light ? x : f_max(x, f_set(0.0f)), f_set(most));
+}
 
-/* f(x) by its samples, 0 <= x <= 1. One number more follows them. */
-ALWAYS_INLINE lane_f table_at(const float *samples, lane_f x, lane_i channel)
+/* f(position / LAST) by its samples, 0 <= position <= LAST. One number more follows them. */
+ALWAYS_INLINE lane_f table_at(const float *samples, lane_f position, lane_i channel)
 {
     const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
-    const lane_f position = f_mul(x, f_set((float)LAST));
     const lane_i j = i_of_f(position);
     lane_f low, high;
     f_gather_pair(samples, i_add(j, first), &low, &high);
@@ -61,17 +63,20 @@ ALWAYS_INLINE lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i c
     return f_pick(f_less(f_set(0.0f), b), x, f_set(0.0f));
 }
 
-/* The value of a curve; NaN stays. `at`: index into s->channel. `is_light`: x are numbers not below 0. */
+/* The value of a curve; NaN stays. `at`: index into s->channel. `is_light`: x are numbers not below 0. Towards codes by a
+ * table, x is a position in it. */
 ALWAYS_INLINE lane_f curve_value(const lensprof_plan *plan, const strip *s, uint32_t curve, int inverse, int is_light,
                                  uint32_t at, lane_f x)
 {
     const float *exponents = inverse ? plan->inverse_exponent : plan->exponent;
-    const lane_f inside = cut(x, is_light);
+    const int is_position = !inverse && curve == LP_CURVE_TABLE;
+    const lane_f inside = cut(x, is_light, is_position ? (float)LAST : 1.0f);
     lane_f y = inside, e = f_set(exponents[0]);
     lane_i channel = i_set(0);
     if (plan->curves == 3) channel = i_load(s->channel + at), e = f_gather(exponents, channel);
-    if (curve == LP_CURVE_TABLE || curve == LP_CURVE_MIXED)
-        y = inverse ? table_inverse(plan, inside, channel) : table_at(plan->forward, inside, channel);
+    if (is_position) y = table_at(plan->forward, inside, channel);
+    else if (inverse && (curve == LP_CURVE_TABLE || curve == LP_CURVE_MIXED)) y = table_inverse(plan, inside, channel);
+    else if (curve == LP_CURVE_MIXED) y = table_at(plan->forward, f_mul(inside, f_set((float)LAST)), channel);
     if (curve == LP_CURVE_POWER) y = power(inside, e);
     if (curve == LP_CURVE_MIXED) y = f_pick(f_less(f_set(0.0f), e), power(inside, e), y);
     return is_light ? y : f_pick(f_is_number(x), y, x);

@@ -132,7 +132,7 @@ ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const str
     const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
     const int is_inside = sample != LENSPROF_SAMPLE_F32 && curve != LP_CURVE_NONE;
     uint32_t i = 0;
-    own.curves = 1, own.dither = 0;
+    own.curves = 1, own.dither = 0, own.encode = curve;
     for (; i + LANES <= r->count; i += LANES) {
         const lane_f light = through(plan, s, sample, curve, r->at + i, r->from + i * bytes);
         store_vector(plan, sample, is_inside, s, r->at + i, light, r->to + i * bytes);

@@ -87,7 +87,7 @@ static void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uin
 
 /* ---- light to samples ---- */
 
-/* One vector as samples at p. `at`: its place on the strip. `is_inside`: all within 0..1. */
+/* One vector as samples at p. `at`: its place on the strip. `is_inside`: all within black and white. */
 ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, int is_inside, const strip *s, uint32_t at,
                                 lane_f light, uint8_t *p)
 {
@@ -105,7 +105,7 @@ ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, int 
         return;
     }
     const float unit = sample == LENSPROF_SAMPLE_U8 ? 255.0f : 65535.0f;
-    const lane_f codes = f_mul(light, f_set(plan->encode == LP_CURVE_NONE ? 1.0f : unit));
+    const lane_f codes = plan->encode == LP_CURVE_NONE ? light : f_mul(light, f_set(unit));
     const lane_f half = plan->dither ? f_load(s->rounding + at) : f_set(0.5f);
     const lane_f up = f_add(is_inside ? codes : f_max(codes, f_set(0.0f)), half);
     const lane_i code = i_of_f(is_inside ? up : f_min(up, f_set(unit + 0.5f)));
