@@ -12,7 +12,7 @@
 
 #define LARGEST_ROW ((ptrdiff_t)1 << 28) /* bytes; times LP_LARGEST_SIDE rows it stays within an address */
 #define LAST (LENSPROF_RESPONSE_SAMPLES - 1)
-#define STREAMED ((size_t)8 << 20)       /* bytes of a float target that no cache is to hold; narrower ones gain nothing */
+#define STREAMED ((size_t)8 << 20)       /* bytes of a float target to keep out of the caches; others gain nothing */
 
 /* ---- formats ---- */
 
@@ -126,19 +126,14 @@ size_t lensprof_plan_bytes(const lensprof_apply_options *o)
     return lp_options_model(o, &model) == LENSPROF_OK ? bytes_of(o, &model) : 0;
 }
 
-static int is_power(const struct lp_model_response *response)
-{
-    return response->kind == LENSPROF_RESPONSE_LINEAR || response->kind == LENSPROF_RESPONSE_GAMMA;
-}
-
 /* g of every code. As codes rise, so does the place among the response's samples. */
 static void fill_inverse(const struct lp_model_response *response, size_t codes, float *inverse)
 {
     const double last = (double)(codes - 1);
     inverse[0] = 0.0f;
-    for (size_t code = 1; is_power(response) && code < codes; code++)
+    for (size_t code = 1; lp_is_power(response) && code < codes; code++)
         inverse[code] = (float)lp_curve_power((double)code / last, response->gamma, NULL);
-    if (is_power(response)) return;
+    if (lp_is_power(response)) return;
     double below = 0.0, above = lp_model_sample(response, 1);
     uint32_t j = 0;
     for (size_t code = 1; code < codes; code++) {
@@ -180,13 +175,13 @@ static float *prepare_curves(lensprof_plan *plan, const lensprof_apply_options *
     plan->inverse_shift = codes == 256 ? 8 : 16;
     for (uint32_t c = 0; c < plan->curves; c++) {
         const struct lp_model_response *response = lp_response(o, m, c);
-        plan->exponent[c] = is_power(response) ? (float)(1.0 / response->gamma) : 0.0f;
-        plan->inverse_exponent[c] = is_power(response) ? (float)response->gamma : 0.0f;
+        plan->exponent[c] = lp_is_power(response) ? (float)(1.0 / response->gamma) : 0.0f;
+        plan->inverse_exponent[c] = lp_is_power(response) ? (float)response->gamma : 0.0f;
         for (size_t j = 0; j < samples; j++) /* not read where there is an exponent */
-            memory[c * samples + j] = is_power(response) ? 0.0f : (float)lp_model_sample(response, (uint32_t)j);
+            memory[c * samples + j] = lp_is_power(response) ? 0.0f : (float)lp_model_sample(response, (uint32_t)j);
         if (codes) fill_inverse(response, codes, inverse + c * codes);
         memset(start + c * starts, 0, starts * sizeof *start);
-        if (starts && !is_power(response)) fill_start(plan, memory + c * samples, start + c * starts);
+        if (starts && !lp_is_power(response)) fill_start(plan, memory + c * samples, start + c * starts);
     }
     return start + plan->curves * starts;
 }
@@ -224,7 +219,8 @@ static void prepare_layout(lensprof_plan *plan, const lensprof_apply_options *o)
 /* White in the linear numbers of a kernel: where no curve is between, codes stay codes. */
 static double white_of(uint32_t sample, uint32_t curve)
 {
-    return curve != LP_CURVE_NONE ? 1.0 : sample == LENSPROF_SAMPLE_U8 ? 255.0 : sample == LENSPROF_SAMPLE_U16 ? 65535.0 : 1.0;
+    if (curve != LP_CURVE_NONE) return 1.0;
+    return sample == LENSPROF_SAMPLE_U8 ? 255.0 : sample == LENSPROF_SAMPLE_U16 ? 65535.0 : 1.0;
 }
 
 /* Falloff and factor of a channel. The gain is factor / M, or M / factor to simulate. */
@@ -237,7 +233,8 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, c
     for (int n = 0; n < 3; n++) plan->k[at][n] = (float)(k[n] * (scale *= per_rho2));
     const double units = (plan->encode == LP_CURVE_TABLE ? LAST : white_of(o->target_sample, plan->encode))
                          / white_of(o->source_sample, plan->decode);
-    plan->factor[at] = (float)(plan->simulate ? lp_exposure_ratio(o, channel) / units : lp_exposure_ratio(o, channel) * units);
+    const double ratio = lp_exposure_ratio(o, channel);
+    plan->factor[at] = (float)(plan->simulate ? ratio / units : ratio * units);
     plan->times[at] = 1.0f;
     if (at != channel) plan->nodes[at] = plan->nodes[channel];
 }
@@ -257,9 +254,8 @@ static void share_gains(lensprof_plan *plan)
 
 static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m)
 {
-    const double w = o->frame_width, h = o->frame_height, rho = 0.5 * sqrt(w * w + h * h);
     for (int d = 0; d < 2; d++) {
-        const double center = 0.5 * ((d ? h : w) - 1.0) + rho * m->vignetting[0].center[d];
+        const double center = lp_center(o, m, d);
         plan->center_px[d] = (int32_t)floor(center + 0.5);
         plan->center_part[d] = (float)(center - plan->center_px[d]);
     }

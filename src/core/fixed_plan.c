@@ -36,7 +36,7 @@ static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_opt
     const double rho2 = 0.25 * (size[0] * size[0] + size[1] * size[1]);
     double reach2 = 0.0;
     for (int d = 0; d < 2; d++) {
-        const double center = 0.5 * (size[d] - 1.0) + sqrt(rho2) * m->vignetting[0].center[d];
+        const double center = lp_center(o, m, d);
         const double reach = fmax(center, size[d] - 1.0 - center) + 1.0 / unit;
         plan->center[d] = (int32_t)floor(center * unit + 0.5);
         reach2 += reach * reach;
@@ -90,7 +90,8 @@ static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_optio
 {
     int32_t *table = (int32_t *)(void *)(plan + 1);
     for (uint32_t c = 0; c < plan->decode_curves; c++, table += LP_CODES)
-        for (uint32_t code = 0; code < LP_CODES; code++) table[code] = log_of(light_of(o, m, o->input, c, code / 255.0));
+        for (uint32_t code = 0; code < LP_CODES; code++)
+            table[code] = log_of(light_of(o, m, o->input, c, code / 255.0));
     for (uint32_t c = 0; c < plan->encode_curves; c++, table += LP_CODES) {
         for (uint32_t code = 0; code < LP_CODES - 1; code++)
             table[code] = log_of(light_of(o, m, o->output, c, (code + 0.5) / 255.0));

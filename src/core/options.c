@@ -63,8 +63,7 @@ const struct lp_model_response *lp_response(const lensprof_apply_options *o, con
 double lp_model_invert(const struct lp_model_response *response, double b)
 {
     if (!(b > 0.0)) return 0.0;
-    if (response->kind == LENSPROF_RESPONSE_LINEAR || response->kind == LENSPROF_RESPONSE_GAMMA)
-        return lp_curve_power(b, response->gamma, NULL);
+    if (lp_is_power(response)) return lp_curve_power(b, response->gamma, NULL);
     uint32_t low = 0, high = LENSPROF_RESPONSE_SAMPLES - 1;
     if (b > lp_model_sample(response, high)) return 1.0;
     while (high - low > 1) {
@@ -91,6 +90,12 @@ static lensprof_status validate_structs(const lensprof_apply_options *o)
             status = LENSPROF_ERROR_VIGNETTING; /* one centre for all channels */
     }
     return status;
+}
+
+double lp_center(const lensprof_apply_options *o, const lp_model *m, int axis)
+{
+    const double w = o->frame_width, h = o->frame_height, rho = 0.5 * sqrt(w * w + h * h);
+    return 0.5 * ((axis ? h : w) - 1.0) + rho * m->vignetting[0].center[axis];
 }
 
 double lp_exposure_ratio(const lensprof_apply_options *o, uint32_t channel)

@@ -17,10 +17,20 @@ lensprof_status lp_options_validate(const lensprof_apply_options *options, lp_mo
 
 /* The responses that pixels pass through: grey is treated as green. */
 uint32_t lp_curves(const lensprof_apply_options *options, const lp_model *model);
-const struct lp_model_response *lp_response(const lensprof_apply_options *options, const lp_model *model, uint32_t curve);
+const struct lp_model_response *lp_response(const lensprof_apply_options *options, const lp_model *model,
+                                            uint32_t curve);
+
+/* A power of light, the first included, and not a table. */
+static inline int lp_is_power(const struct lp_model_response *response)
+{
+    return response->kind == LENSPROF_RESPONSE_LINEAR || response->kind == LENSPROF_RESPONSE_GAMMA;
+}
 
 /* g(b), as lensprof_response_invert. */
 double lp_model_invert(const struct lp_model_response *response, double b);
+
+/* Centre of the falloff, px from the middle of the frame's first pixel; across for axis 0, down for 1. */
+double lp_center(const lensprof_apply_options *options, const lp_model *model, int axis);
 
 /* Target over source exposure of a channel. */
 double lp_exposure_ratio(const lensprof_apply_options *options, uint32_t channel);

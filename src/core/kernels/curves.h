@@ -63,8 +63,8 @@ ALWAYS_INLINE lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i c
     return f_pick(f_less(f_set(0.0f), b), x, f_set(0.0f));
 }
 
-/* The value of a curve; NaN stays. `at`: index into s->channel. `is_light`: x are numbers not below 0. Towards codes by a
- * table, x is a position in it. */
+/* The value of a curve; NaN stays. `at`: index into s->channel. `is_light`: x are numbers not below 0. Towards
+ * codes by a table, x is a position in it. */
 ALWAYS_INLINE lane_f curve_value(const lensprof_plan *plan, const strip *s, uint32_t curve, int inverse, int is_light,
                                  uint32_t at, lane_f x)
 {

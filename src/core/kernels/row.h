@@ -1,5 +1,5 @@
-/* The row kernel, compiled once for every lane count (a lanes_*.h comes first): pixels in strips, each strip in steps: gains,
- * light, light times gain, grey values. */
+/* The row kernel, compiled once for every lane count (a lanes_*.h comes first): pixels in strips, each strip in steps:
+ * gains, light, light times gain, grey values. */
 #include "strip.h"
 
 #include "curves.h"
