@@ -161,7 +161,9 @@ int align(const Options &o, Streams &streams) {
             warn_of_limits(jobs[i].source, jobs[i].own.ev, jobs[i].wanted.ev, white_shares[frames[i]], streams);
         }
         make_folder(o.output);
-        written = write_corrected(jobs, {false, false, o.threads, 0}, nullptr, progress, streams);
+        CorrectionKind kind;
+        kind.threads = o.threads;
+        written = write_corrected(jobs, kind, nullptr, progress, streams);
     }
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;

@@ -14,10 +14,21 @@ namespace {
 struct Options {
     std::string db, pto, output, exposure, sheet;
     int64_t profile = 0;
-    uint32_t threads = 0;
-    bool from_db = false, linear = false, simulate = false, json = false, progress = false;
+    CorrectionKind kind;
+    bool from_db = false, json = false, progress = false;
     std::vector<std::string> files;
 };
+
+/* CLI::Range lets NaN through. */
+CLI::Validator between(double least, double most) {
+    return CLI::Validator(
+        [=](const std::string &word) {
+            double value = 0.0;
+            const bool good = CLI::detail::lexical_cast(word, value) && value >= least && value <= most;
+            return good ? std::string() : word + format(" is not a number within %g to %g", least, most);
+        },
+        "");
+}
 
 void declare(CLI::App &app, Options &o) {
     app.add_option("--profile", o.profile, "id of the profile to use")->check(CLI::PositiveNumber);
@@ -29,11 +40,18 @@ void declare(CLI::App &app, Options &o) {
                    "mean: all like the geometric mean of the project (default with --pto); reference: like its 0 EV; "
                    "keep: each its own (default without --pto)")
         ->check(CLI::IsMember({"mean", "reference", "keep"}));
-    app.add_flag("--linear", o.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
-    app.add_flag("--simulate", o.simulate, "put the falloff in instead of taking it out");
+    app.add_flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
+    app.add_flag("--simulate", o.kind.simulate, "put the falloff in instead of taking it out");
+    app.add_option("--strength", o.kind.strength, "share of the falloff to take out, 0 to 1; default 1")
+        ->check(between(0.0, 1.0));
+    app.add_option("--gain-cap", o.kind.gain_cap,
+                   "corners get at most so many times their light, 1 or more, so that noise stays low; default no cap")
+        ->check(between(1.0, 1e6));
+    app.add_flag("--dither", o.kind.dither,
+                 "ordered 8 x 8 dither in place of rounding, in pictures of 8 bit: no bands in skies");
     app.add_option("-o,--output", o.output, "folder for the pictures")->required();
     app.add_option("--contact-sheet", o.sheet, "write an overview, before above after (PNG)");
-    declare_threads(app, o.threads);
+    declare_threads(app, o.kind.threads);
     app.add_flag("--json", o.json, "print one JSON object");
     app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
     app.add_option("FILES", o.files, "pictures; with --pto default all of the project");
@@ -75,7 +93,7 @@ void look_up(lensprof_store *store, const Options &o, Correction &job) {
 
 std::string target_name(const Options &o, const std::string &source) {
     std::filesystem::path name = std::filesystem::path(source).filename();
-    if (o.linear) name.replace_extension(".tif");
+    if (o.kind.linear) name.replace_extension(".tif");
     return (std::filesystem::path(o.output) / name).string();
 }
 
@@ -178,8 +196,7 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;
     for (Correction &job : jobs) job.wanted = o.exposure == "keep" ? job.own : o.exposure == "mean" ? mean : reference;
-    Corrected written = write_corrected(jobs, {o.simulate, o.linear, o.threads, 0}, o.sheet.empty() ? nullptr : &sheet,
-                                        progress, streams);
+    Corrected written = write_corrected(jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress, streams);
     progress.clear();
     if (!o.sheet.empty()) sheet.write(o.sheet);
     if (o.json) {

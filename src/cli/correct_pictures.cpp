@@ -37,6 +37,9 @@ lensprof_apply_options options_of(const Picture &source, const Correction &job, 
     lensprof_apply_options_init(&options);
     options.direction = kind.simulate ? LENSPROF_DIRECTION_SIMULATE : LENSPROF_DIRECTION_CORRECT;
     options.output = kind.linear ? LENSPROF_ENCODING_LINEAR : LENSPROF_ENCODING_RESPONSE;
+    options.strength = kind.strength;
+    options.gain_cap = kind.gain_cap;
+    options.dither = kind.dither;
     options.frame_width = source.frame_width;
     options.frame_height = source.frame_height;
     options.source_sample = source.sample;

@@ -26,6 +26,9 @@ struct Correction {
 struct CorrectionKind {
     bool simulate = false;    /* put in what would be taken out */
     bool linear = false;      /* irradiance as 32 bit float */
+    double strength = 1.0;    /* of the falloff's correction; as lensprof_apply_options */
+    double gain_cap = 0.0;
+    bool dither = false;
     uint32_t threads = 0;     /* 0 = all cores */
     uint32_t strip_rows = 0;  /* rows of a picture that are worked on at once; 0 = about strip_bytes of them */
 };

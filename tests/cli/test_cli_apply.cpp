@@ -120,6 +120,41 @@ void test_simulate_undoes_correct(void **) {
     }
 }
 
+/* --strength and --gain-cap change what the falloff counts as; --dither keeps the mean of what rounding would lose. */
+void test_strength_cap_and_dither(void **) {
+    auto p = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(p.get());
+    p->vignetting[0].k[0] = -0.6;
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(work("p.db").c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+    Picture flat = make_noise(64, 48, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
+    std::fill(flat.pixels.begin(), flat.pixels.end(), uint8_t(40));
+    write_picture(work("flat.png"), flat);
+    const Words words = {"apply", "--profile", "1", "--db", work("p.db"), work("flat.png")};
+    must_exit(done, words + Words{"--strength", "0.5", "-o", work("half")});
+    must_exit(done, words + Words{"--gain-cap", "1.25", "-o", work("capped")});
+    must_exit(done, words + Words{"--dither", "-o", work("dithered")});
+    const Picture half = read_picture(work("half/flat.png")), capped = read_picture(work("capped/flat.png")),
+                  dithered = read_picture(work("dithered/flat.png"));
+    double sum[2] = {0, 0};
+    for (uint32_t y = 0; y < 48; y++)
+        for (uint32_t x = 0; x < 64; x++) {
+            const double m = lensprof_vignetting_eval(p->vignetting,
+                                                      lensprof_vignetting_r2(p->vignetting, 64, 48, x, y, nullptr), nullptr);
+            const size_t at = y * half.row_bytes + 3 * x;
+            assert_close(half.pixels[at], 40 / (1 + 0.5 * (m - 1)), 0.6);
+            assert_close(capped.pixels[at], 40 / std::max(m, 1 / 1.25), 0.6);
+            assert_close(dithered.pixels[at], 40 / m, 1.0);
+            if (x < 8 && y < 8) sum[0] += dithered.pixels[at], sum[1] += 40 / m;
+        }
+    assert_close(sum[0] / 64, sum[1] / 64, 0.1);
+    for (const Words &wrong : {Words{"--strength", "1.5"}, Words{"--gain-cap", "0.5"}, Words{"--strength", "nan"}})
+        must_exit(usage, words + wrong + Words{"-o", work("none")});
+    assert_false(fs::exists(work("none")));
+}
+
 void test_some_pictures_of_a_project(void **) {
     const std::string pto = make_project();
     const Json json = json_of({"apply", "--pto", pto, "--json", "-o", work("out"), picture_name(2), picture_name(0)});
@@ -281,7 +316,7 @@ int main() {
         CLI_TEST(test_simulate_undoes_correct), CLI_TEST(test_some_pictures_of_a_project),
         CLI_TEST(test_overlaps_agree_better),   CLI_TEST(test_pictures_keep_their_nature),
         CLI_TEST(test_profile_by_id_or_exif),   CLI_TEST(test_gain_grid_of_a_profile),
-        CLI_TEST(test_contact_sheet),
+        CLI_TEST(test_contact_sheet),           CLI_TEST(test_strength_cap_and_dither),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }
