@@ -35,7 +35,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_init(void *me
 
 /* A plan that was prepared elsewhere: the lensprof_fixed_plan_bytes bytes of its memory, copied to memory[bytes] (4-byte
  * aligned; may be read-only), on machines of one byte order. Errors: NULL or unaligned ARGUMENT, fewer bytes than the
- * plan has CAPACITY, of another version LAYOUT, damaged CORRUPT. */
+ * plan has CAPACITY, of another version LAYOUT, damaged CORRUPT (by its CRC-32, or because no plan holds such numbers:
+ * a plan that opens is safe to apply, whoever made its bytes). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_open(const void *memory, size_t bytes,
                                                                         const lensprof_fixed_plan **plan);
 

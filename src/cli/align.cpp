@@ -163,7 +163,7 @@ int align(const Options &o, Streams &streams) {
         make_folder(o.output);
         CorrectionKind kind;
         kind.threads = o.threads;
-        written = write_corrected(jobs, kind, nullptr, progress, streams);
+        written = write_corrected(jobs, kind, nullptr, progress);
     }
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;

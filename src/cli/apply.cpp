@@ -54,7 +54,7 @@ void declare(CLI::App &app, Options &o) {
     declare_threads(app, o.kind.threads);
     app.add_flag("--json", o.json, "print one JSON object");
     app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
-    app.add_option("FILES", o.files, "pictures; with --pto default all of the project");
+    app.add_option("FILES", o.files, "pictures, or folders of them; with --pto default all of the project");
 }
 
 std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
@@ -153,7 +153,7 @@ std::vector<Correction> make_jobs(const Options &o, lensprof_exposure &mean) {
         throw Failure(ExitCode::usage,
                       "--output-exposure " + o.exposure + " needs the exposures of a project; give it with --pto");
     }
-    std::vector<std::string> files = o.files.empty() && project ? project->files : o.files;
+    std::vector<std::string> files = o.files.empty() && project ? project->files : expand_folders(o.files);
     if (files.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
     Store store = from_store ? open_store(o.db, LENSPROF_STORE_READ) : Store();
     std::vector<Correction> jobs;
@@ -183,8 +183,9 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
     CLI::App app("Corrects pictures: undoes falloff, exposure and white balance, and encodes again.", "lensprof apply");
     declare(app, o);
     app.footer("Pictures keep format, depth, metadata and colour profile. Several are corrected at once, in strips of rows;\n"
-               "interlaced PNG and progressive JPEG alone are held in memory as a whole. When one cannot be corrected,\n"
-               "those before it are written, it and those behind it are not.");
+               "interlaced PNG and progressive JPEG alone are held in memory as a whole. All are opened first: when one\n"
+               "cannot be, nothing is written. When one turns out to be damaged later, those before it are written, it and\n"
+               "those behind it are not. A picture that was corrected already is not known as such: it is corrected again.");
     if (!parse(app, arguments, streams)) return 0;
     lensprof_exposure mean, reference;
     lensprof_exposure_init(&mean);
@@ -196,7 +197,7 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;
     for (Correction &job : jobs) job.wanted = o.exposure == "keep" ? job.own : o.exposure == "mean" ? mean : reference;
-    Corrected written = write_corrected(jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress, streams);
+    Corrected written = write_corrected(jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);
     progress.clear();
     if (!o.sheet.empty()) sheet.write(o.sheet);
     if (o.json) {

@@ -47,6 +47,9 @@ double convert_resolution(double value, PictureTraits::Unit from, PictureTraits:
 }
 
 File open_for_reading(const std::string &path) {
+    struct stat kind = {};
+    if (stat(path.c_str(), &kind) == 0 && !S_ISREG(kind.st_mode) && !S_ISDIR(kind.st_mode)) /* would wait for a writer */
+        throw Failure(ExitCode::unreadable, path + ": cannot read: is no file; give the name of a picture");
     File file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file)
         throw Failure(ExitCode::unreadable,

@@ -152,7 +152,7 @@ Finished PictureCorrection::run(bool split, Throughput &done) {
 }  // namespace
 
 Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
-                          Progress &progress, Streams &streams) {
+                          Progress &progress) {
     auto count = static_cast<uint32_t>(jobs.size());
     uint32_t threads = thread_count(kind.threads);
     uint64_t pixels = 0;
@@ -171,8 +171,8 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         finished[i].writer.reset();
         throughput.add_picture();
         if (!finished[i].with_metadata)
-            streams.err << "lensprof: warning: " << jobs[i].target
-                        << ": written without EXIF, which this kind of file cannot hold here\n";
+            progress.warn(jobs[i].target + ": written without the metadata of " + jobs[i].source
+                          + ", which are not read from or written to such a file (a BigTIFF); copy them with exiftool");
         Json entry = {{"file", jobs[i].source}, {"output", jobs[i].target}};
         if (jobs[i].profile_id) entry["profile"] = jobs[i].profile_id;
         corrected.pictures.push_back(entry);

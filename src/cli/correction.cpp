@@ -53,6 +53,29 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
                       sheet + ": the contact sheet would overwrite a picture; give it another name");
 }
 
+std::vector<std::string> expand_folders(const std::vector<std::string> &names) {
+    namespace fs = std::filesystem;
+    std::vector<std::string> files;
+    std::error_code error;
+    for (const std::string &name : names) {
+        if (!fs::is_directory(name, error)) {
+            files.push_back(name);
+            continue;
+        }
+        std::vector<std::string> found;
+        for (fs::directory_iterator entry(name, error), end; !error && entry != end; entry.increment(error)) {
+            const std::string file = entry->path().filename().string();
+            if (file[0] != '.' && is_picture_name(file) && !entry->is_directory()) found.push_back(entry->path().string());
+        }
+        if (error) throw Failure(ExitCode::unreadable, name + ": cannot be listed: " + error.message());
+        if (found.empty())
+            throw Failure(ExitCode::usage, name + ": is a folder without pictures (.jpg, .png, .tif); name another");
+        std::sort(found.begin(), found.end());
+        files.insert(files.end(), found.begin(), found.end());
+    }
+    return files;
+}
+
 void make_folder(const std::string &folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);

@@ -55,6 +55,10 @@ lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures)
  * before anything is written. Sets the jobs' numbers of pixels. */
 void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet);
 
+/* Names as they are, and in the place of a folder's its pictures by their names' ends (.jpg, .jpeg, .png, .tif, .tiff),
+ * in the order of the alphabet, without hidden ones. Failure (usage) for a folder without. */
+std::vector<std::string> expand_folders(const std::vector<std::string> &names);
+
 /* The folder, made where there is none. */
 void make_folder(const std::string &folder);
 
@@ -64,7 +68,7 @@ void make_folder(const std::string &folder);
  * been done one after another: the failure of the first picture that has one is thrown, those before it are written,
  * it and those behind are not. */
 Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
-                          Progress &progress, Streams &streams);
+                          Progress &progress);
 
 }  // namespace lensprof
 

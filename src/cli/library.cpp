@@ -5,7 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <vector>
 
 namespace lensprof {
 namespace {
@@ -87,16 +87,20 @@ bool is_same_file(const std::string &a, const std::string &b) {
     return plain(a) == plain(b) || std::filesystem::equivalent(a, b, ignored);
 }
 
-std::string read_text(const std::string &path) {
+std::string read_text(const std::string &path, uint64_t most_bytes) {
     if (std::filesystem::is_directory(path))
         throw Failure(ExitCode::unreadable, path + ": is a folder; name a file");
     std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
     if (!file)
         throw Failure(ExitCode::unreadable, path + ": cannot be opened: " + std::strerror(errno) + "; check the name");
-    text << file.rdbuf();
+    std::string text;
+    std::vector<char> room(1 << 16);
+    while (text.size() <= most_bytes && (file.read(room.data(), std::streamsize(room.size())), file.gcount() > 0))
+        text.append(room.data(), static_cast<size_t>(file.gcount()));
     if (file.bad()) throw Failure(ExitCode::unreadable, path + ": cannot be read to its end; copy it again");
-    return text.str();
+    if (text.size() > most_bytes)
+        throw Failure(ExitCode::unreadable, path + ": is larger than such a file can be; check the name");
+    return text;
 }
 
 Pto read_pto(const std::string &path) {

@@ -2,6 +2,7 @@
 #ifndef LENSPROF_CLI_LIBRARY_HPP
 #define LENSPROF_CLI_LIBRARY_HPP
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -38,7 +39,7 @@ std::string pto_text(const lensprof_pto &pto);
 bool is_same_file(const std::string &a, const std::string &b);
 
 /* The whole file; Failure (unreadable) names it. */
-std::string read_text(const std::string &path);
+std::string read_text(const std::string &path, uint64_t most_bytes = UINT64_MAX);
 
 /* Copies a text into a fixed field of a key or provenance, cut at its size between UTF-8 characters; control
  * characters become blanks, and in a text that is not UTF-8 all bytes beyond ASCII question marks. */

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <optional>
 
 #include "codec.hpp"
 #include "error.hpp"
@@ -122,7 +123,7 @@ PictureSize read_size(const std::string &path) {
     return {picture.frame_width, picture.frame_height};
 }
 
-FileFormat format_of_name(const std::string &path) {
+static std::optional<FileFormat> known_format(const std::string &path) {
     const size_t slash = path.rfind('/');
     const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
     const size_t dot = name.rfind('.');
@@ -135,6 +136,14 @@ FileFormat format_of_name(const std::string &path) {
         return FileFormat::tiff;
     if (extension == "jpg" || extension == "jpeg")
         return FileFormat::jpeg;
+    return std::nullopt;
+}
+
+bool is_picture_name(const std::string &path) { return known_format(path).has_value(); }
+
+FileFormat format_of_name(const std::string &path) {
+    if (const auto format = known_format(path))
+        return *format;
     throw Failure(ExitCode::usage, path + ": unknown kind of picture; the name must end in .png, .tif or .jpg");
 }
 

@@ -131,6 +131,7 @@ private:
 
 /* The format that a file name asks for: .png, .tif, .tiff, .jpg, .jpeg in any case; otherwise Failure (usage). */
 FileFormat format_of_name(const std::string &path);
+bool is_picture_name(const std::string &path); /* it has such an end */
 
 /* Writes a picture in the format of the name, metadata included, complete or not at all. A sample type or layout that
  * the format cannot hold is a Failure (usage): PNG 8 and 16 bit, JPEG 8 bit without alpha, TIFF everything.

@@ -108,7 +108,8 @@ struct JpegWriter {
 
 void read_quantisation(const jpeg_decompress_struct &info, PictureTraits &traits) {
     for (int i = 0; i < std::min(info.num_components, 2); ++i) {
-        const JQUANT_TBL *table = info.quant_tbl_ptrs[info.comp_info[i].quant_tbl_no];
+        const int number = info.comp_info[i].quant_tbl_no; /* as the file says: libjpeg has not looked at it yet */
+        const JQUANT_TBL *table = number >= 0 && number < NUM_QUANT_TBLS ? info.quant_tbl_ptrs[number] : nullptr;
         if (!table) { /* comes later in the file: the writer's default will do */
             traits.quantisation.clear();
             return;

@@ -9,6 +9,9 @@
 namespace lensprof {
 namespace {
 
+/* Bytes: no profile packs to more. */
+constexpr uint64_t largest_blob = 1 << 20;
+
 /* The CRC-32 is the last four bytes, the least significant first. */
 BlobStamp stamp_of(const unsigned char *blob, size_t bytes) {
     const unsigned char *crc = blob + bytes - 4;
@@ -30,7 +33,7 @@ BlobStamp write_blob(const lensprof_profile &profile, bool with_covariance, cons
 }
 
 std::unique_ptr<lensprof_profile> read_blob(const std::string &path, BlobStamp &stamp) {
-    const std::string blob = read_text(path);
+    const std::string blob = read_text(path, largest_blob);
     auto profile = std::make_unique<lensprof_profile>();
     const lensprof_status status = lensprof_profile_unpack(blob.data(), blob.size(), profile.get());
     if (status == LENSPROF_ERROR_LAYOUT)

@@ -54,6 +54,12 @@ void Progress::say(const std::string &line) {
     err_ << line << std::endl;
 }
 
+void Progress::warn(const std::string &line) {
+    std::lock_guard<std::mutex> lock(mutex_);
+    clear_line();
+    err_ << "lensprof: warning: " << line << std::endl;
+}
+
 Throughput::Throughput(Progress &progress, const std::string &what, uint32_t pictures, uint64_t pixels)
     : progress_(progress), what_(what), pictures_(pictures), pixels_(pixels),
       begin_(std::chrono::steady_clock::now()) {

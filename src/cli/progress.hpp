@@ -26,6 +26,9 @@ public:
     /* A line that stays, where progress is shown. */
     void say(const std::string &line);
 
+    /* A line that stays, always. */
+    void warn(const std::string &line);
+
 private:
     void clear_line();
 

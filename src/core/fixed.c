@@ -212,27 +212,3 @@ lensprof_status lensprof_fixed_apply(const lensprof_fixed_plan *plan, const lens
                (uint8_t *)target->data + (ptrdiff_t)y * target->row_bytes, x0, y0 + y, source->width);
     return status;
 }
-
-/* ---- plans made elsewhere ---- */
-
-uint32_t lp_fixed_check(const lensprof_fixed_plan *plan)
-{
-    const uint32_t *word = (const uint32_t *)(const void *)plan;
-    uint32_t check = 2166136261u;
-    for (uint32_t i = 3; i < plan->bytes / 4; i++) check = (check ^ word[i]) * 16777619u;
-    return check;
-}
-
-lensprof_status lensprof_fixed_plan_open(const void *memory, size_t bytes, const lensprof_fixed_plan **result)
-{
-    const lensprof_fixed_plan *plan = memory;
-    if (!memory || !result || (uintptr_t)memory % 4) return LENSPROF_ERROR_ARGUMENT;
-    if (bytes < sizeof *plan) return LENSPROF_ERROR_CAPACITY;
-    if ((plan->magic ^ LP_FIXED_MAGIC) & 0xffffffu) return LENSPROF_ERROR_CORRUPT;
-    if (plan->magic != LP_FIXED_MAGIC) return LENSPROF_ERROR_LAYOUT;
-    if (plan->bytes > bytes) return LENSPROF_ERROR_CAPACITY;
-    if (plan->bytes < sizeof *plan || plan->bytes % 4 || plan->check != lp_fixed_check(plan))
-        return LENSPROF_ERROR_CORRUPT;
-    *result = plan;
-    return LENSPROF_OK;
-}

@@ -7,7 +7,7 @@
 #include "options.h"
 #include "plan.h"
 
-#define LP_FIXED_MAGIC 0x3158464cu /* "LFX1" in memory; the last byte is the layout's version */
+#define LP_FIXED_MAGIC 0x3258464cu /* "LFX2" in memory; the last byte is the layout's version */
 #define LP_LOG_SHIFT 22            /* logarithms to base 2, in units of 2^-22 */
 #define LP_LOG_NONE (-(1 << 30))   /* of no light: far below all that a plan can add to */
 #define LP_CENTER_SHIFT 10         /* the falloff's centre, in units of 2^-10 px */
@@ -37,7 +37,7 @@ struct lensprof_fixed_plan {
 /* log2(1 + i/256) in 2^-22 and 2^(i/256) in 2^-30, i = 0..256. */
 extern const uint32_t lp_log2_table[257], lp_exp2_table[257];
 
-/* Of the words behind `check`, tables included (FNV-1a by words). */
+/* CRC-32 of the bytes behind `check`, tables included. fixed_open.c */
 uint32_t lp_fixed_check(const lensprof_fixed_plan *plan);
 
 #endif

@@ -120,6 +120,27 @@ void test_simulate_undoes_correct(void **) {
     }
 }
 
+/* A folder is its pictures, in order; what else there is in it is left alone. */
+void test_folder(void **) {
+    make_project();
+    write_picture(work("in/.hidden.tif"), make_picture(0));
+    save_text(work("in/notes.txt"), "rain");
+    fs::create_directory(work("in/more.tif"));
+    auto p = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(p.get());
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(work("p.db").c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+    const Words words = {"apply", "--profile", "1", "--db", work("p.db"), "-o", work("out")};
+    const Json json = json_of(words + Words{"--json", work("in")});
+    assert_int_equal(json["pictures"].size(), 3);
+    for (size_t i = 0; i < 3; ++i)
+        assert_string_equal(json["pictures"][i]["file"].get<std::string>().c_str(), picture_name(i).c_str());
+    fs::create_directory(work("empty"));
+    assert_true(contains(run_words(words + Words{work("empty")}).err, work("empty") + ": is a folder without pictures"));
+}
+
 /* --strength and --gain-cap change what the falloff counts as; --dither keeps the mean of what rounding would lose. */
 void test_strength_cap_and_dither(void **) {
     auto p = std::make_unique<lensprof_profile>();
@@ -317,6 +338,7 @@ int main() {
         CLI_TEST(test_overlaps_agree_better),   CLI_TEST(test_pictures_keep_their_nature),
         CLI_TEST(test_profile_by_id_or_exif),   CLI_TEST(test_gain_grid_of_a_profile),
         CLI_TEST(test_contact_sheet),           CLI_TEST(test_strength_cap_and_dither),
+        CLI_TEST(test_folder),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

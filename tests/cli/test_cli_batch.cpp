@@ -87,13 +87,12 @@ std::map<std::string, Bytes> correct_by(const Words &files, bool linear, uint32_
         jobs.push_back(job);
     }
     std::ostringstream said;
-    Streams streams{said, said};
     Progress progress(said, ShowProgress::never);
     CorrectionKind kind;
     kind.linear = linear;
     kind.threads = threads;
     kind.strip_rows = strip_rows;
-    const Corrected corrected = write_corrected(jobs, kind, nullptr, progress, streams);
+    const Corrected corrected = write_corrected(jobs, kind, nullptr, progress);
     assert_int_equal(corrected.pictures.size(), files.size());
     for (size_t i = 0; i < files.size(); ++i)
         assert_string_equal(corrected.pictures[i]["file"].get<std::string>().c_str(), files[i].c_str());

@@ -153,6 +153,23 @@ void test_changed_bytes(void **) {
     }
 }
 
+/* The number of a component's quantisation table is a byte of the file, of which 0 to 3 can be. */
+void test_any_quantisation_table(void **) {
+    write_jpeg_file(in_folder("a.jpg"), make_smooth(40, 30, LENSPROF_LAYOUT_RGB), JpegKind());
+    Bytes bytes = load(in_folder("a.jpg"));
+    size_t frame = 2;
+    while (bytes[frame + 1] != 0xc0) frame += 2 + 256u * bytes[frame + 2] + bytes[frame + 3];
+    for (size_t component = 0; component < 3; ++component)
+        for (int number = 0; number < 256; ++number) {
+            Bytes changed = bytes;
+            changed[frame + 12 + 3 * component] = static_cast<uint8_t>(number);
+            save(in_folder("changed"), changed);
+            if (number > 3)
+                assert_failure(ExitCode::unreadable, "changed: cannot read: file is truncated or damaged",
+                               [] { read_picture(in_folder("changed")); });
+        }
+}
+
 /* An end marker in the middle of a JPEG strip: libtiff only warns, half of the pixels would be made up. */
 void test_damaged_jpeg_in_tiff(void **) {
     TiffKind kind{"wl", COMPRESSION_JPEG};
@@ -191,6 +208,9 @@ void test_not_pictures(void **) {
     assert_failure(ExitCode::unreadable, "text.jpg: cannot read metadata: ",
                    [] { read_metadata(in_folder("text.jpg")); });
     assert_failure(ExitCode::unreadable, "is a folder", [] { read_metadata(in_folder(".")); });
+    assert_int_equal(mkfifo(in_folder("pipe.jpg").c_str(), 0600), 0); /* which nobody writes to */
+    assert_failure(ExitCode::unreadable, "pipe.jpg: cannot read: is no file", read("pipe.jpg"));
+    assert_failure(ExitCode::unreadable, "pipe.jpg: cannot read", [] { read_metadata(in_folder("pipe.jpg")); });
 }
 
 void test_unsupported_kinds(void **) {
@@ -390,6 +410,7 @@ int main() {
         TEST(test_cut_files),
         TEST(test_cut_tiff_pixels),
         TEST(test_changed_bytes),
+        TEST(test_any_quantisation_table),
         TEST(test_damaged_jpeg_in_tiff),
         TEST(test_png_checks_content),
         TEST(test_not_pictures),

@@ -70,7 +70,7 @@ static double value_at(const uint8_t *data, uint32_t sample, uint32_t i)
 }
 
 /* The code that sample i of the row shall become. */
-static double wanted_at(const fixture *f, uint32_t i)
+static inline double wanted_at(const fixture *f, uint32_t i)
 {
     const uint32_t samples = lensprof_layout_samples(f->from.layout), x = f->x0 + i / samples;
     const double unit = f->from.sample == LENSPROF_SAMPLE_U8 ? 255.0 : 65535.0, code = value_at(f->in, f->from.sample, i);

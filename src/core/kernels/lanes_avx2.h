@@ -35,7 +35,6 @@ static inline lane_i i_load(const int32_t *p) { return _mm256_loadu_si256((const
 static inline lane_i i_add(lane_i a, lane_i b) { return _mm256_add_epi32(a, b); }
 static inline lane_i i_sub(lane_i a, lane_i b) { return _mm256_sub_epi32(a, b); }
 static inline lane_i i_and(lane_i a, lane_i b) { return _mm256_and_si256(a, b); }
-static inline lane_i i_or(lane_i a, lane_i b) { return _mm256_or_si256(a, b); }
 static inline lane_i i_min(lane_i a, lane_i b) { return _mm256_min_epi32(a, b); }
 #define i_left(a, n) _mm256_slli_epi32((a), (n))
 #define i_right(a, n) _mm256_srli_epi32((a), (n))

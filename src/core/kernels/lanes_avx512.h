@@ -37,7 +37,6 @@ static inline lane_i i_load(const int32_t *p) { return _mm512_loadu_si512(p); }
 static inline lane_i i_add(lane_i a, lane_i b) { return _mm512_add_epi32(a, b); }
 static inline lane_i i_sub(lane_i a, lane_i b) { return _mm512_sub_epi32(a, b); }
 static inline lane_i i_and(lane_i a, lane_i b) { return _mm512_and_si512(a, b); }
-static inline lane_i i_or(lane_i a, lane_i b) { return _mm512_or_si512(a, b); }
 static inline lane_i i_min(lane_i a, lane_i b) { return _mm512_min_epi32(a, b); }
 #define i_left(a, n) _mm512_slli_epi32((a), (n))
 #define i_right(a, n) _mm512_srli_epi32((a), (n))

@@ -33,7 +33,6 @@ static inline lane_i i_load(const int32_t *p) { return *p; }
 static inline lane_i i_add(lane_i a, lane_i b) { return a + b; }
 static inline lane_i i_sub(lane_i a, lane_i b) { return a - b; }
 static inline lane_i i_and(lane_i a, lane_i b) { return a & b; }
-static inline lane_i i_or(lane_i a, lane_i b) { return a | b; }
 static inline lane_i i_min(lane_i a, lane_i b) { return a < b ? a : b; }
 #define i_left(a, n) ((lane_i)((uint32_t)(a) << (n)))
 #define i_right(a, n) ((lane_i)((uint32_t)(a) >> (n))) /* zeros come in */

@@ -1,0 +1,85 @@
+/* Plans in integers that were made elsewhere. A plan says of itself what it is, and is not believed: whatever its bytes
+ * are, one that opens is applied without reading or writing beyond it and the pixels, and without overflow. */
+#include <string.h>
+
+#include "fixed_plan.h"
+
+#define LARGEST_FACTOR (41 << LP_LOG_SHIFT) /* options allow 1e12, and its inverse */
+
+uint32_t lp_fixed_check(const lensprof_fixed_plan *plan)
+{
+    const size_t before = offsetof(lensprof_fixed_plan, check) + sizeof plan->check;
+    return lp_crc32((const uint8_t *)plan + before, plan->bytes - before);
+}
+
+static int is_one_or_three(uint32_t count) { return count == 1 || count == 3; }
+
+/* What follows from the layout is what it says. */
+static int is_layout_sound(const lensprof_fixed_plan *plan)
+{
+    uint8_t channel_of_sample[4], site[2][2] = {{0, 0}, {0, 0}};
+    const uint32_t samples = lensprof_layout_samples(plan->layout);
+    if (!samples || plan->layout == LENSPROF_LAYOUT_PLANAR || plan->sample > LENSPROF_SAMPLE_U16) return 0;
+    lp_layout_sites(plan->layout, channel_of_sample, site);
+    return plan->samples == samples && plan->channels == lensprof_layout_channels(plan->layout)
+           && !memcmp(plan->channel_of_sample, channel_of_sample, sizeof channel_of_sample)
+           && !memcmp(plan->site, site, sizeof site) && plan->simulate <= 1
+           && plan->neutral_white <= (samples >= 3 ? 1u : 0u);
+}
+
+/* t stays below 2^31 anywhere in the frame: its centre and size against the power of 2 that r^2 counts in. */
+static int is_reach_sound(const lensprof_fixed_plan *plan)
+{
+    const uint32_t size[2] = {plan->frame_width, plan->frame_height};
+    uint64_t r2 = 0;
+    for (int d = 0; d < 2; d++) {
+        if (!size[d] || size[d] > LP_LARGEST_SIDE || plan->center[d] <= -(1 << 30)) return 0;
+        const int64_t before = plan->center[d], behind = ((int64_t)(size[d] - 1) << LP_CENTER_SHIFT) - before;
+        const uint64_t reach = (uint64_t)(before > behind ? before : behind);
+        r2 += reach * reach;
+    }
+    return plan->reach_shift < 44 && !(r2 >> (63 - plan->reach_shift));
+}
+
+static uint32_t size_of(int32_t value) { return value < 0 ? 0u - (uint32_t)value : (uint32_t)value; }
+
+/* Sums of the falloff's terms stay within 31 bits, and so do those of gains and light. */
+static int are_gains_sound(const lensprof_fixed_plan *plan)
+{
+    if (!is_one_or_three(plan->falloffs) || !is_one_or_three(plan->gains)) return 0;
+    if (plan->falloff_shift > 30 || plan->least <= 0 || plan->least > 1 << plan->falloff_shift) return 0;
+    for (uint32_t c = 0; c < LP_CHANNELS; c++) {
+        uint64_t sum = (1u << plan->falloff_shift) + 3u; /* each product rounds down */
+        for (int n = 0; n < 3; n++) sum += size_of(plan->k[c][n]);
+        if (sum > INT32_MAX || size_of(plan->factor[c]) > LARGEST_FACTOR) return 0;
+    }
+    return 1;
+}
+
+static int are_tables_sound(const lensprof_fixed_plan *plan)
+{
+    const uint32_t decode = plan->decode_curves, encode = plan->encode_curves;
+    const int32_t *table = (const int32_t *)(const void *)(plan + 1);
+    const int is_coded = plan->sample == LENSPROF_SAMPLE_U8;
+    if (is_coded ? !is_one_or_three(decode) || !is_one_or_three(encode) : decode || encode) return 0;
+    if (plan->bytes != sizeof *plan + (decode + encode) * LP_CODES * sizeof *table) return 0;
+    for (uint32_t i = 0; i < decode * LP_CODES; i++)
+        if (size_of(table[i]) > size_of(LP_LOG_NONE)) return 0;
+    return 1;
+}
+
+lensprof_status lensprof_fixed_plan_open(const void *memory, size_t bytes, const lensprof_fixed_plan **result)
+{
+    const lensprof_fixed_plan *plan = memory;
+    if (!memory || !result || (uintptr_t)memory % 4) return LENSPROF_ERROR_ARGUMENT;
+    if (bytes < sizeof *plan) return LENSPROF_ERROR_CAPACITY;
+    if ((plan->magic ^ LP_FIXED_MAGIC) & 0xffffffu) return LENSPROF_ERROR_CORRUPT;
+    if (plan->magic != LP_FIXED_MAGIC) return LENSPROF_ERROR_LAYOUT;
+    if (plan->bytes > bytes) return LENSPROF_ERROR_CAPACITY;
+    if (plan->bytes < sizeof *plan || plan->bytes % 4 || plan->check != lp_fixed_check(plan))
+        return LENSPROF_ERROR_CORRUPT;
+    if (!is_layout_sound(plan) || !is_reach_sound(plan) || !are_gains_sound(plan) || !are_tables_sound(plan))
+        return LENSPROF_ERROR_CORRUPT;
+    *result = plan;
+    return LENSPROF_OK;
+}

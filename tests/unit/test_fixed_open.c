@@ -1,0 +1,115 @@
+/* Plans in integers from elsewhere: whatever their bytes are, they are refused, or applying them stays within them and
+ * the pixels (which the sanitizers watch). */
+#include "unit/fixed_cases.h"
+
+#include <core/fixed_plan.h>
+
+enum { ROUNDS = 30000, HEAD_WORDS = sizeof(lensprof_fixed_plan) / 4 };
+
+/* In memory of its own size, with or without the check made right. Returns whether it opens. */
+static int try_plan(const uint32_t *words, size_t bytes, int seal, const fixture *f)
+{
+    uint32_t *copy = malloc(bytes);
+    const lensprof_fixed_plan *opened = NULL;
+    memcpy(copy, words, bytes);
+    lensprof_fixed_plan *plan = (lensprof_fixed_plan *)(void *)copy;
+    if (seal && plan->bytes <= bytes && plan->bytes >= sizeof *plan) plan->check = lp_fixed_check(plan);
+    const int opens = lensprof_fixed_plan_open(copy, bytes, &opened) == LENSPROF_OK;
+    if (!opens) assert_null(opened);
+    for (int corner = 0; opens && corner < 4; corner++) {
+        lensprof_image from = f->from;
+        from.sample = opened->sample, from.layout = opened->layout;
+        from.width = opened->frame_width < PIXELS ? opened->frame_width : PIXELS;
+        const size_t row = (size_t)from.width * lensprof_layout_samples(from.layout) * lensprof_sample_bytes(from.sample);
+        from.data = malloc(row);
+        memcpy(from.data, f->in, row);
+        assert_ok(lensprof_fixed_apply(opened, &from, &from, corner & 1 ? opened->frame_width - from.width : 0,
+                                       corner & 2 ? opened->frame_height - 1 : 0));
+        free(from.data);
+    }
+    free(copy);
+    return opens;
+}
+
+static void change(uint32_t *words, size_t count, uint64_t *random)
+{
+    static const uint32_t values[] = {0, 1, 2, 3, 4, 30, 63, 64, 99, 255, 0x7fff, 0x100000, 0x40000000, 0x7fffffff,
+                                      0x80000000, 0xc0000000, 0xffffffff};
+    const size_t at = 3 + (size_t)((lp_random(random) < 0.8 ? HEAD_WORDS - 3 : count - 3) * lp_random(random));
+    const double kind = lp_random(random);
+    if (kind < 0.4) words[at] = values[(size_t)(lp_random(random) * (sizeof values / sizeof *values))];
+    else if (kind < 0.7) words[at] ^= 1u << (uint32_t)(32 * lp_random(random));
+    else ((uint8_t *)words)[4 * at + (size_t)(4 * lp_random(random))] = (uint8_t)(256 * lp_random(random));
+}
+
+static void test_any_bytes_are_safe(void **state)
+{
+    (void)state;
+    uint64_t random = 53;
+    static fixture f;
+    static uint32_t copy[2048];
+    int opened = 0, refused = 0;
+    for (int n = 0; n < ROUNDS; n++) {
+        if (n % 50 == 0) make_case(&f, n % 150 ? LENSPROF_SAMPLE_U8 : LENSPROF_SAMPLE_U16, &random);
+        const size_t bytes = lensprof_fixed_plan_bytes(&f.m.options);
+        memcpy(copy, f.memory, bytes);
+        for (int i = 0; i <= n % 3; i++) change(copy, bytes / 4, &random);
+        if (memcmp(copy, f.memory, bytes)) assert_int_equal(try_plan(copy, bytes, 0, &f), 0);
+        if (try_plan(copy, bytes, 1, &f)) opened++;
+        else refused++;
+    }
+    assert_true(opened > ROUNDS / 10 && refused > ROUNDS / 10);
+}
+
+/* One number that no plan holds is enough. */
+static void test_numbers_that_cannot_be(void **state)
+{
+    (void)state;
+    uint64_t random = 59;
+    static fixture f;
+    lensprof_fixed_plan *plan = (lensprof_fixed_plan *)(void *)f.memory, was;
+    make_case(&f, LENSPROF_SAMPLE_U8, &random);
+    const size_t bytes = plan->bytes;
+    was = *plan;
+#define REFUSED(member, value)                                         \
+    do {                                                               \
+        *plan = was;                                                   \
+        plan->member = (value);                                        \
+        assert_int_equal(try_plan(f.memory, bytes, 1, &f), 0);         \
+    } while (0)
+    assert_int_equal(try_plan(f.memory, bytes, 1, &f), 1);
+    REFUSED(bytes, sizeof was);
+    REFUSED(sample, LENSPROF_SAMPLE_F32);
+    REFUSED(layout, LENSPROF_LAYOUT_PLANAR);
+    REFUSED(layout, 200);
+    REFUSED(samples, 255);
+    REFUSED(channels, 2);
+    REFUSED(channel_of_sample[0], 200);
+    REFUSED(site[1][1], 7);
+    REFUSED(simulate, 2);
+    REFUSED(neutral_white, 3);
+    REFUSED(decode_curves, 2);
+    REFUSED(encode_curves, 0);
+    REFUSED(falloffs, 2);
+    REFUSED(gains, 4);
+    REFUSED(frame_width, 0);
+    REFUSED(frame_height, (1u << 20) + 1);
+    REFUSED(center[0], INT32_MIN);
+    REFUSED(reach_shift, 99);
+    REFUSED(reach_shift, was.reach_shift + 3);
+    REFUSED(falloff_shift, 40);
+    REFUSED(least, 0);
+    REFUSED(least, -1);
+    REFUSED(k[0][1], INT32_MIN);
+    REFUSED(factor[2], INT32_MAX);
+#undef REFUSED
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_any_bytes_are_safe),
+        cmocka_unit_test(test_numbers_that_cannot_be),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
