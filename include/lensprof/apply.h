@@ -88,8 +88,9 @@ typedef struct lensprof_apply_options {
     uint32_t saturated; /* lensprof_saturated; NEUTRAL acts where direction is CORRECT and both input
                            and output are encoded */
     uint32_t responses, vignettings;        /* 1 for all channels, or 3: red, green, blue; grey is treated as green */
-    const lensprof_response *response;      /* read during plan init only */
-    const lensprof_vignetting *vignetting;  /* read during plan init only */
+    const lensprof_response *response;      /* read during plan init only; a linear one where nothing is encoded */
+    const lensprof_vignetting *vignetting;  /* read during plan init only. Single precision holds M to some
+                                               1e-7 (1 + |k1| + |k2| + |k3|) */
     lensprof_exposure source;               /* what the picture received */
     lensprof_exposure target;               /* what it shall look like; equal to source = keep */
     const lensprof_gain_grid *grid;         /* multiplied to the vignetting; NULL = none; read during plan init only */

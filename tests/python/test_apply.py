@@ -184,6 +184,17 @@ class Values(unittest.TestCase):
         self.assertEqual(mosaic.shape, (30, 40))
         self.assertGreater(float(mosaic.astype(np.float32).sum()), float(planes[1].astype(np.float32).sum()))
 
+    def test_strength_cap_and_dither(self):
+        array = np.full((48, 64, 3), 90, np.uint8)
+        full, half = lp.correct(array, profile()), lp.correct(array, profile(), strength=0.5)
+        self.assertTrue(90 < half[0, 0, 1] < full[0, 0, 1])
+        self.assertLessEqual(lp.correct(array, profile(), gain_cap=1.0).max(), 91)
+        self.assertGreater(len(np.unique(lp.correct(array, profile(), dither=True)[20:28, 28:36])), 1)
+        with self.assertRaisesRegex(lp.Error, "strength"):
+            lp.correct(array, profile(), strength=2.0)
+        with self.assertRaisesRegex(TypeError, "FixedPlan.open"):
+            lp.FixedPlan(b"12")
+
     def test_saturated(self):
         array = np.full((30, 40, 3), 255, dtype=np.uint8)
         cast = lp.Exposure(ev=0.5, white_balance=(1, 1, 2))

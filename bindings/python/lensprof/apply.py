@@ -79,7 +79,8 @@ class Plan:
         self._plan = POINTER(_abi.Plan)()
         check(lib.lensprof_plan_init(self._memory.ctypes.data, self._memory.nbytes, byref(options), byref(self._plan)),
               "these options cannot be applied: give a frame of 1..1048576 px, a valid response, vignetting (one "
-              "centre for all channels), gain grid, source and target; or a blob and no response, vignetting and grid")
+              "centre for all channels), gain grid, source and target, strength 0..1, gain_cap 0 or 1..1e6; or an undamaged "
+              "blob and no response, vignetting and grid")
         self._layout = options.source_layout
         self._target_dtype = _arrays.sample_dtype(options.target_sample)
 
@@ -122,6 +123,8 @@ class FixedPlan:
     """
 
     def __init__(self, options: ApplyOptions):
+        if not isinstance(options, ApplyOptions):
+            raise TypeError("a FixedPlan is made of ApplyOptions; of its data by FixedPlan.open(data, layout)")
         size = lib.lensprof_fixed_plan_bytes(byref(options))
         self._memory = np.zeros(size // 4 + 1, dtype=np.uint32)
         self._plan = POINTER(_abi.FixedPlan)()
@@ -167,14 +170,16 @@ def _apply(direction: Direction, array: np.ndarray, profile: Profile, out: Optio
 
 def correct(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] = None,
             target: Optional[Exposure] = None, saturated: Optional[Saturated] = None,
+            strength: Optional[float] = None, gain_cap: Optional[float] = None, dither: Optional[bool] = None,
             layout: Optional[Layout] = None, out: Optional[np.ndarray] = None) -> np.ndarray:
     """Removes a profile's falloff (and what its gain grid has) from a full frame, and brings exposure and white balance
     from source to target.
 
-    source, target: 0 EV when None. layout: grey, RGB or RGBA by the number of samples when None. out: `array` itself to
+    source, target: 0 EV when None. strength, gain_cap, dither: as in ApplyOptions. layout: grey, RGB or RGBA by the number of samples when None. out: `array` itself to
     work in place, another array (its type is written), a new one when None. Returns out.
     """
-    return _apply(Direction.CORRECT, array, profile, out, layout, source=source, target=target, saturated=saturated)
+    return _apply(Direction.CORRECT, array, profile, out, layout, source=source, target=target, saturated=saturated,
+                  strength=strength, gain_cap=gain_cap, dither=dither)
 
 
 def simulate(array: np.ndarray, profile: Profile, *, source: Optional[Exposure] = None,
