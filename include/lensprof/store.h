@@ -1,6 +1,6 @@
 /* lensprof/store.h - the profile database (SQLite).
  *
- * Every call is one transaction: it happens whole or not at all, also when the process is killed. A file of an older
+ * Every call is one transaction, or part of the caller's: it happens whole or not at all, also when the process is killed. A file of an older
  * layout is read as it is; the first call that writes brings it up to date, which older versions then refuse.
  * Threads: a handle belongs to one thread at a time; several processes may open the same file. */
 #ifndef LENSPROF_STORE_H
@@ -42,6 +42,58 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find(lensprof_stor
                                                                    const lensprof_profile_key *key,
                                                                    lensprof_profile *profile, int64_t *id,
                                                                    lensprof_error *error);
+
+/* What stands for a focus distance that is not known. */
+typedef enum lensprof_distance_rule {
+    LENSPROF_DISTANCE_WEAKEST = 0, /* of the falloffs at all stored distances the weakest, radius by radius: what is taken
+                                      out was there, whatever the distance */
+    LENSPROF_DISTANCE_FARTHEST = 1 /* that at the farthest one */
+} lensprof_distance_rule;
+
+typedef struct lensprof_lookup_options {
+    uint32_t struct_size;
+    uint32_t distance_rule;  /* lensprof_distance_rule */
+    uint32_t with_doubt;     /* 1: profiles with a doubt (provenance) count as others do; 0: not at all */
+    uint32_t any_processing; /* 1: the key's processing does not matter; 0: it must be the same */
+} lensprof_lookup_options;
+
+/* WEAKEST, without doubt, the same processing. */
+LENSPROF_API void lensprof_lookup_options_init(lensprof_lookup_options *options);
+
+#define LENSPROF_LOOKUP_ROWS 24
+
+/* How a lookup came to its answer. Frozen value struct. */
+typedef struct lensprof_lookup {
+    uint32_t exact;        /* 1: a stored profile, as it is */
+    uint32_t rows;         /* profiles that were used, 1..LENSPROF_LOOKUP_ROWS */
+    int64_t id[LENSPROF_LOOKUP_ROWS];    /* of them, nearest first */
+    double weight[LENSPROF_LOOKUP_ROWS]; /* of each; they add up to about 1, and may be below 0 */
+    double distance;       /* from the setting to the nearest one; 0 = the same, refused beyond 0.5: two stops from wide
+                              open, a factor 2 in focal length, 0.4 m focus against infinity */
+    double sigma;          /* standard error of M in the corner, a 68 % band; LENSPROF_UNKNOWN for an exact one without
+                              covariance */
+    double name_score;     /* of the lens's name: 1 the same but for case and blanks, 0.9 but for signs, 0.8 but for a
+                              maker in front, less where only some words are the same */
+    char reason[256];      /* what to mind; where nothing is found, why */
+} lensprof_lookup;
+
+/* The profile for a setting: a stored one, or the falloff predicted from those of the same lens at other settings
+ * (docs/database.md says how). The lens's name decides, then the camera, unit and sensor: profiles of the key's unit
+ * before those of any, of the key's camera before those of a lens alone; of these, those of the smallest sensor that is
+ * not smaller than the key's, their radii rescaled. A predicted profile has key `key`, the response of the nearest
+ * profile, no gain grid, and provenance method "lookup". Nothing is written. NOT_FOUND, with *lookup filled as far as it
+ * goes, where there is no such lens, or nothing near enough; profile is then untouched. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup(lensprof_store *store,
+                                                                     const lensprof_profile_key *key,
+                                                                     const lensprof_lookup_options *options,
+                                                                     lensprof_profile *profile,
+                                                                     lensprof_lookup *lookup, lensprof_error *error);
+
+/* From here to commit or rollback all calls on this handle are one transaction, which makes thousands of them fast.
+ * Closing the store rolls back. Errors: READ_ONLY, BUSY, ... ; ARGUMENT for a second begin, or an end without one. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_begin(lensprof_store *store, lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_commit(lensprof_store *store, lensprof_error *error);
+LENSPROF_API void lensprof_store_rollback(lensprof_store *store);
 
 /* The profile with an id. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_get(lensprof_store *store, int64_t id,

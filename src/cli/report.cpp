@@ -288,6 +288,8 @@ Json key_json(const lensprof_profile_key &key) {
     return {{"camera_maker", key.camera_maker},
             {"camera_model", key.camera_model},
             {"lens", key.lens},
+            {"unit", key.unit},
+            {"crop_factor", number_or_null(key.crop_factor)},
             {"focal_mm", number_or_null(key.focal_mm)},
             {"aperture", number_or_null(key.aperture)},
             {"distance_m", distance_json(key.distance_m)},
@@ -302,7 +304,8 @@ Json provenance_json(const lensprof_provenance &p) {
             {"images", p.images},
             {"pairs", p.pairs},
             {"heldout_rms", number_or_null(p.heldout_rms)},
-            {"inlier_share", number_or_null(p.inlier_share)}};
+            {"inlier_share", number_or_null(p.inlier_share)},
+            {"doubt", p.doubt}};
 }
 
 Json profile_json(int64_t id, const lensprof_profile &profile) {

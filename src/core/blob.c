@@ -149,6 +149,8 @@ static int copy_text(const lp_blob *blob, uint32_t index, char *text, size_t cap
 int lp_blob_key(const lp_blob *blob, lensprof_profile_key *key)
 {
     const uint8_t *b = blob->bytes;
+    memset(key->unit, 0, sizeof key->unit);
+    key->crop_factor = LENSPROF_UNKNOWN;
     key->focal_mm = lp_f64_at(b + LP_BLOB_KEY);
     key->aperture = lp_f64_at(b + LP_BLOB_KEY + 8);
     key->distance_m = lp_f64_at(b + LP_BLOB_KEY + 16);
@@ -163,6 +165,7 @@ int lp_blob_provenance(const lp_blob *blob, lensprof_provenance *provenance)
 {
     const uint8_t *b = blob->bytes;
     memset(provenance->source, 0, sizeof provenance->source);
+    memset(provenance->doubt, 0, sizeof provenance->doubt);
     provenance->created_unix_s = (int64_t)lp_u64_at(b + LP_BLOB_CREATED);
     provenance->images = lp_u32_at(b + LP_BLOB_COUNTS);
     provenance->pairs = lp_u32_at(b + LP_BLOB_COUNTS + 4);

@@ -7,7 +7,7 @@
 void lensprof_profile_key_init(lensprof_profile_key *key)
 {
     memset(key, 0, sizeof *key);
-    key->focal_mm = key->aperture = key->distance_m = LENSPROF_UNKNOWN;
+    key->crop_factor = key->focal_mm = key->aperture = key->distance_m = LENSPROF_UNKNOWN;
     key->processing = LENSPROF_PROCESSING_JPEG;
 }
 
@@ -31,9 +31,9 @@ lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key)
 {
     if (!key || key->processing > LENSPROF_PROCESSING_CORRECTED || key->reserved) return LENSPROF_ERROR_ARGUMENT;
     if (!is_text(key->camera_maker, sizeof key->camera_maker) || !is_text(key->camera_model, sizeof key->camera_model)
-        || !is_text(key->lens, sizeof key->lens))
+        || !is_text(key->lens, sizeof key->lens) || !is_text(key->unit, sizeof key->unit))
         return LENSPROF_ERROR_ARGUMENT;
-    if (!is_known_or_unknown(key->focal_mm, 1e5) || !is_known_or_unknown(key->aperture, 1e4)
+    if (!is_known_or_unknown(key->crop_factor, 1e4) || !is_known_or_unknown(key->focal_mm, 1e5) || !is_known_or_unknown(key->aperture, 1e4)
         || !is_known_or_unknown(key->distance_m, INFINITY))
         return LENSPROF_ERROR_ARGUMENT;
     return LENSPROF_OK;
@@ -52,7 +52,7 @@ void lensprof_profile_init(lensprof_profile *profile)
 lensprof_status lp_provenance_validate(const lensprof_provenance *p)
 {
     if (!is_text(p->method, sizeof p->method) || !is_text(p->software, sizeof p->software)
-        || !is_text(p->source, sizeof p->source))
+        || !is_text(p->source, sizeof p->source) || !is_text(p->doubt, sizeof p->doubt))
         return LENSPROF_ERROR_ARGUMENT;
     if (!(p->heldout_rms == LENSPROF_UNKNOWN || (p->heldout_rms >= 0.0 && p->heldout_rms <= 255.0)))
         return LENSPROF_ERROR_ARGUMENT;

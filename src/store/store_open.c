@@ -62,7 +62,9 @@ static lensprof_status check_tables(lensprof_store *store, lensprof_error *error
     if (status != LENSPROF_OK) return status;
     const char *sql = store->layout < 2
         ? "SELECT 1 FROM profiles, responses, emor_coefficients, vignettings"
-        : "SELECT gain_grids.channels FROM profiles, responses, emor_coefficients, vignettings, gain_grids";
+        : store->layout < 3
+        ? "SELECT gain_grids.channels FROM profiles, responses, emor_coefficients, vignettings, gain_grids"
+        : "SELECT unit, gain_grids.channels FROM profiles, responses, emor_coefficients, vignettings, gain_grids";
     status = lp_store_prepare(store, sql, &statement, error);
     if (status == LENSPROF_OK) sqlite3_finalize(statement);
     lp_store_rollback(store);
@@ -118,6 +120,7 @@ lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_
         made->db = NULL;
         made->mode = mode;
         made->layout = 0;
+        made->batch = false;
         memcpy(made->path, path, length + 1);
         status = connect(made, full, busy_ms, error);
     }

@@ -7,19 +7,20 @@
 #include <stdbool.h>
 
 #define LP_STORE_APPLICATION_ID 0x4C505246 /* as in 0001_profiles.sql */
-#define LP_STORE_LAYOUT 2 /* that of the newest schema */
+#define LP_STORE_LAYOUT 3 /* that of the newest schema */
 #define LP_STORE_BUSY_MS 5000
 
 struct lensprof_store {
     sqlite3 *db;
     uint32_t mode;
     int layout;               /* of the file, as the transaction found or made it */
+    bool batch;               /* the caller's transaction is open: calls are savepoints in it */
     lensprof_profile scratch; /* 50 kB: a profile is read here first, so that on error outputs are untouched */
     char path[];              /* as the caller wrote it, for error texts */
 };
 
 /* profiles/schema: number n makes layout n of layout n - 1. */
-extern const char lp_schema_0001[], lp_schema_0002[];
+extern const char lp_schema_0001[], lp_schema_0002[], lp_schema_0003[];
 
 /* store_error.c: each sets `error` (may be NULL) to "path: what; next" and returns the status. */
 lensprof_status lp_store_fail(const char *path, lensprof_status status, const char *what, const char *next,
@@ -57,6 +58,9 @@ lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error); /
 void lp_store_rollback(lensprof_store *store);
 lensprof_status lp_store_prepare(lensprof_store *store, const char *sql, sqlite3_stmt **statement,
                                  lensprof_error *error);
+
+/* store_read.c: the profile with an id, within a transaction, into store->scratch. */
+lensprof_status lp_store_fetch(lensprof_store *store, int64_t id, lensprof_error *error);
 
 /* store_columns.c (and lp_store_run in store_transaction.c): parameters and columns, each call takes the next one. */
 typedef struct lp_store_binder {

@@ -4,9 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROW_COLUMNS \
-    "id, camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing, method, software, source," \
-    " created_unix_s, images, pairs, heldout_rms, inlier_share"
+/* What layout 3 added, and what stands for it in older ones. */
+#define UNIT_3 "unit"
+#define CROP_3 "crop_factor"
+#define DOUBT_3 "doubt"
+#define UNIT_1 "''"
+#define CROP_1 "NULL"
+#define DOUBT_1 "''"
+
+#define ROW_COLUMNS(unit, crop, doubt) \
+    "id, camera_maker, camera_model, lens, " unit " AS unit, " crop " AS crop_factor, focal_mm, aperture, distance_m, processing, method, software, source," \
+    " created_unix_s, images, pairs, heldout_rms, inlier_share, " doubt " AS doubt"
 
 /* Texts are equal without ASCII case and outer blanks. */
 #define SAME_TEXT(column, value) "trim(" column ") COLLATE NOCASE = trim(" value ")"
@@ -21,6 +29,8 @@ static void bind_key(lp_store_binder *binder, const lensprof_profile_key *key)
     lp_bind_text(binder, key->camera_maker);
     lp_bind_text(binder, key->camera_model);
     lp_bind_text(binder, key->lens);
+    lp_bind_text(binder, key->unit);
+    lp_bind_known(binder, key->crop_factor);
     lp_bind_known(binder, key->focal_mm);
     lp_bind_known(binder, key->aperture);
     lp_bind_known(binder, key->distance_m);
@@ -36,6 +46,8 @@ static void read_row(lp_store_reader *reader, lensprof_store_row *row)
     lp_read_text(reader, key->camera_maker, sizeof key->camera_maker);
     lp_read_text(reader, key->camera_model, sizeof key->camera_model);
     lp_read_text(reader, key->lens, sizeof key->lens);
+    lp_read_text(reader, key->unit, sizeof key->unit);
+    key->crop_factor = lp_read_known(reader);
     key->focal_mm = lp_read_known(reader);
     key->aperture = lp_read_known(reader);
     key->distance_m = lp_read_known(reader);
@@ -48,6 +60,7 @@ static void read_row(lp_store_reader *reader, lensprof_store_row *row)
     provenance->pairs = (uint32_t)lp_read_integer(reader, 0, UINT32_MAX);
     provenance->heldout_rms = lp_read_known(reader);
     provenance->inlier_share = lp_read_known(reader);
+    lp_read_text(reader, provenance->doubt, sizeof provenance->doubt);
 }
 
 /* From the row at which `statement` stands, and its curves, into store->scratch. */
@@ -76,25 +89,40 @@ static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *stateme
                                  : lp_store_fail_profile(store, *id, lensprof_status_name(status), error);
 }
 
-#define SELECT_PROFILE(grids) \
-    "SELECT " ROW_COLUMNS ", response_curves, vignetting_curves, covariance_size, covariance, " grids \
-    " FROM profiles WHERE "
-#define WITH_KEY \
+#define SELECT_PROFILE(unit, crop, doubt, grids) \
+    "SELECT " ROW_COLUMNS(unit, crop, doubt) ", response_curves, vignetting_curves, covariance_size, covariance, " \
+    grids " FROM profiles WHERE "
+#define WITH_KEY(unit, crop) \
     SAME_TEXT("camera_maker", "?1") " AND " SAME_TEXT("camera_model", "?2") " AND " SAME_TEXT("lens", "?3") " AND " \
-    SAME_NUMBER("focal_mm", "?4") " AND " SAME_NUMBER("aperture", "?5") " AND " SAME_NUMBER("distance_m", "?6") \
-    " AND processing = ?7 ORDER BY id DESC LIMIT 1"
-#define NO_GRIDS "0 AS gain_grids" /* layout 1 */
+    SAME_TEXT(unit, "?4") " AND " SAME_NUMBER(crop, "?5") " AND " SAME_NUMBER("focal_mm", "?6") " AND " \
+    SAME_NUMBER("aperture", "?7") " AND " SAME_NUMBER("distance_m", "?8") " AND processing = ?9 ORDER BY id DESC LIMIT 1"
+#define WITH_ID "id = ?1"
+#define LIST(unit, crop, doubt) /* one order for all: that of the index profiles_by_key */ \
+    "SELECT " ROW_COLUMNS(unit, crop, doubt) " FROM profiles WHERE " \
+    ANY_TEXT("camera_maker", "?1") " AND " ANY_TEXT("camera_model", "?2") " AND " ANY_TEXT("lens", "?3") " AND " \
+    ANY_TEXT(unit, "?4") " AND " ANY_NUMBER(crop, "?5") " AND " ANY_NUMBER("focal_mm", "?6") " AND " \
+    ANY_NUMBER("aperture", "?7") " AND " ANY_NUMBER("distance_m", "?8") \
+    " ORDER BY trim(camera_maker) COLLATE NOCASE, trim(camera_model) COLLATE NOCASE, trim(lens) COLLATE NOCASE," \
+    " focal_mm, aperture, distance_m, id"
 
-static const char *const find_sql[] = {SELECT_PROFILE(NO_GRIDS) WITH_KEY, SELECT_PROFILE("gain_grids") WITH_KEY};
-static const char *const get_sql[] = {SELECT_PROFILE(NO_GRIDS) "id = ?1", SELECT_PROFILE("gain_grids") "id = ?1"};
+/* By layout. */
+static const struct statements {
+    const char *find, *get, *list;
+} statements[LP_STORE_LAYOUT] = {
+    {SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "0 AS gain_grids") WITH_KEY(UNIT_1, CROP_1),
+     SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "0 AS gain_grids") WITH_ID, LIST(UNIT_1, CROP_1, DOUBT_1)},
+    {SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "gain_grids") WITH_KEY(UNIT_1, CROP_1),
+     SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "gain_grids") WITH_ID, LIST(UNIT_1, CROP_1, DOUBT_1)},
+    {SELECT_PROFILE(UNIT_3, CROP_3, DOUBT_3, "gain_grids") WITH_KEY(UNIT_3, CROP_3),
+     SELECT_PROFILE(UNIT_3, CROP_3, DOUBT_3, "gain_grids") WITH_ID, LIST(UNIT_3, CROP_3, DOUBT_3)}};
 
 /* Reads the profile with `key`, or with `*id` when key is NULL, into store->scratch. */
 static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *key, int64_t *id,
                              lensprof_error *error)
 {
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
-    const char *sql = (key ? find_sql : get_sql)[store->layout >= 2];
-    lensprof_status status = lp_store_prepare(store, sql, &binder.statement, error);
+    const struct statements *of_layout = &statements[store->layout - 1];
+    lensprof_status status = lp_store_prepare(store, key ? of_layout->find : of_layout->get, &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     if (key) {
         bind_key(&binder, key);
@@ -109,6 +137,11 @@ static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *
                                "list the profiles to see which there are", error);
     sqlite3_finalize(binder.statement);
     return status;
+}
+
+lensprof_status lp_store_fetch(lensprof_store *store, int64_t id, lensprof_error *error)
+{
+    return fetch(store, NULL, &id, error);
 }
 
 static lensprof_status fetch_in_transaction(lensprof_store *store, const lensprof_profile_key *key, int64_t *id,
@@ -144,14 +177,6 @@ lensprof_status lensprof_store_get(lensprof_store *store, int64_t id, lensprof_p
     if (status == LENSPROF_OK) *profile = store->scratch;
     return status;
 }
-
-/* One order for all: that of the index profiles_by_key. */
-static const char list_sql[] =
-    "SELECT " ROW_COLUMNS " FROM profiles WHERE "
-    ANY_TEXT("camera_maker", "?1") " AND " ANY_TEXT("camera_model", "?2") " AND " ANY_TEXT("lens", "?3") " AND "
-    ANY_NUMBER("focal_mm", "?4") " AND " ANY_NUMBER("aperture", "?5") " AND " ANY_NUMBER("distance_m", "?6")
-    " ORDER BY trim(camera_maker) COLLATE NOCASE, trim(camera_model) COLLATE NOCASE, trim(lens) COLLATE NOCASE,"
-    " focal_mm, aperture, distance_m, id";
 
 /* Rows as they come, in a buffer that grows, so that the caller's stays untouched when a later row fails. */
 typedef struct listing {
@@ -193,7 +218,7 @@ static lensprof_status list_rows(lensprof_store *store, const lensprof_profile_k
                                  lensprof_error *error)
 {
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
-    lensprof_status status = lp_store_prepare(store, list_sql, &binder.statement, error);
+    lensprof_status status = lp_store_prepare(store, statements[store->layout - 1].list, &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     bind_key(&binder, filter);
     lensprof_profile_init(&store->scratch);

@@ -16,7 +16,7 @@ int lp_store_number(sqlite3 *db, const char *sql, int64_t *value)
 
 int lp_store_migrate(sqlite3 *db, int layout)
 {
-    static const char *const schemas[LP_STORE_LAYOUT] = {lp_schema_0001, lp_schema_0002};
+    static const char *const schemas[LP_STORE_LAYOUT] = {lp_schema_0001, lp_schema_0002, lp_schema_0003};
     int rc = SQLITE_OK;
     for (int next = layout; next < LP_STORE_LAYOUT && rc == SQLITE_OK; next++)
         rc = sqlite3_exec(db, schemas[next], NULL, NULL, NULL);
@@ -84,6 +84,10 @@ static lensprof_status bring_up_to_date(lensprof_store *store, lensprof_error *e
 lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error *error)
 {
     layout found = {0, 0, 0};
+    if (store->batch) {
+        int rc = sqlite3_exec(store->db, "SAVEPOINT call", NULL, NULL, NULL);
+        return rc ? lp_store_fail_sql(store->path, store->db, rc, error) : LENSPROF_OK;
+    }
     if (write && store->mode == LENSPROF_STORE_READ)
         return lp_store_fail(store->path, LENSPROF_ERROR_READ_ONLY, "was opened for reading only",
                              "open it with LENSPROF_STORE_WRITE", error);
@@ -103,7 +107,7 @@ lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error
 
 lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error)
 {
-    int rc = sqlite3_exec(store->db, "COMMIT", NULL, NULL, NULL);
+    int rc = sqlite3_exec(store->db, store->batch ? "RELEASE call" : "COMMIT", NULL, NULL, NULL);
     if (rc == SQLITE_OK) return LENSPROF_OK;
     lensprof_status status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_rollback(store);
@@ -112,8 +116,38 @@ lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error)
 
 void lp_store_rollback(lensprof_store *store)
 {
+    if (store->batch && !sqlite3_get_autocommit(store->db)) {
+        (void)sqlite3_exec(store->db, "ROLLBACK TO call; RELEASE call", NULL, NULL, NULL);
+        return;
+    }
     /* Some failures have rolled back already. If there is not even the memory for this, the next begin does it. */
     if (!sqlite3_get_autocommit(store->db)) (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+}
+
+lensprof_status lensprof_store_begin(lensprof_store *store, lensprof_error *error)
+{
+    lp_store_clear(error);
+    if (!store || store->batch) return lp_store_fail_argument("store is NULL, or a transaction is open already", error);
+    const lensprof_status status = lp_store_begin(store, true, error);
+    store->batch = status == LENSPROF_OK;
+    return status;
+}
+
+lensprof_status lensprof_store_commit(lensprof_store *store, lensprof_error *error)
+{
+    lp_store_clear(error);
+    if (!store || !store->batch) return lp_store_fail_argument("store is NULL, or no transaction is open", error);
+    store->batch = false;
+    if (!sqlite3_get_autocommit(store->db)) return lp_store_commit(store, error);
+    return lp_store_fail(store->path, LENSPROF_ERROR_STORE, "the transaction was rolled back by an earlier failure",
+                         "nothing of it was stored; try again", error);
+}
+
+void lensprof_store_rollback(lensprof_store *store)
+{
+    if (!store || !store->batch) return;
+    store->batch = false;
+    lp_store_rollback(store);
 }
 
 lensprof_status lp_store_prepare(lensprof_store *store, const char *sql, sqlite3_stmt **statement,

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "store_names.h"
+
 #define SAME_CURVE 1e-9 /* of the grey range; far below what a picture can show */
 
 /* What is stored of a response must give the same curve again. */
@@ -32,7 +34,7 @@ static lensprof_status check_profile(lensprof_store *store, const lensprof_profi
     return LENSPROF_OK;
 }
 
-static void bind_profile(lp_store_binder *binder, const lensprof_profile *profile)
+static void bind_profile(lp_store_binder *binder, const lensprof_profile *profile, const char *lens_name)
 {
     const lensprof_profile_key *key = &profile->key;
     const lensprof_provenance *provenance = &profile->provenance;
@@ -59,6 +61,10 @@ static void bind_profile(lp_store_binder *binder, const lensprof_profile *profil
         lp_bind_doubles(binder, profile->covariance, profile->covariance_size * profile->covariance_size);
     else lp_bind_null(binder);
     lp_bind_integer(binder, profile->grid.columns > 0);
+    lp_bind_text(binder, key->unit);
+    lp_bind_known(binder, key->crop_factor);
+    lp_bind_text(binder, provenance->doubt);
+    lp_bind_text(binder, lens_name);
 }
 
 static lensprof_status put_profile(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
@@ -69,11 +75,13 @@ static lensprof_status put_profile(lensprof_store *store, const lensprof_profile
         store,
         "INSERT INTO profiles (camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing,"
         " method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
-        " response_curves, vignetting_curves, covariance_size, covariance, gain_grids)"
-        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        " response_curves, vignetting_curves, covariance_size, covariance, gain_grids, unit, crop_factor, doubt, lens_name)"
+        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
         &binder.statement, error);
     if (status != LENSPROF_OK) return status;
-    bind_profile(&binder, profile);
+    char lens_name[LP_NAME_BYTES]; /* bound as it is: until the statement has run */
+    lp_squeeze(profile->key.lens, lens_name);
+    bind_profile(&binder, profile, lens_name);
     status = lp_store_run(store, &binder, error);
     *id = sqlite3_last_insert_rowid(store->db);
     return status;

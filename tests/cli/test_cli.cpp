@@ -339,7 +339,7 @@ void test_key_from_the_command_line(void **) {
     const Json key = json_of({"profile", "show", "1", "--json", "--db", work("p.db")})["key"];
     assert_true(
         key ==
-        Json::parse(R"({"camera_maker":"Maker","camera_model":"Cämera","lens":"Lens","focal_mm":24.0,"aperture":1.4,)"
+        Json::parse(R"({"camera_maker":"Maker","camera_model":"Cämera","lens":"Lens","unit":"","crop_factor":null,"focal_mm":24.0,"aperture":1.4,)"
                     R"("distance_m":2.5,"processing":"raw"})"));
 }
 

@@ -120,6 +120,8 @@ static void print_profile_structs(void)
     FIELD(lensprof_profile_key, camera_maker);
     FIELD(lensprof_profile_key, camera_model);
     FIELD(lensprof_profile_key, lens);
+    FIELD(lensprof_profile_key, unit);
+    FIELD(lensprof_profile_key, crop_factor);
     FIELD(lensprof_profile_key, focal_mm);
     FIELD(lensprof_profile_key, aperture);
     FIELD(lensprof_profile_key, distance_m);
@@ -135,6 +137,7 @@ static void print_profile_structs(void)
     FIELD(lensprof_provenance, pairs);
     FIELD(lensprof_provenance, heldout_rms);
     FIELD(lensprof_provenance, inlier_share);
+    FIELD(lensprof_provenance, doubt);
     end_struct();
     BEGIN(lensprof_profile);
     FIELD(lensprof_profile, key);
@@ -147,6 +150,22 @@ static void print_profile_structs(void)
     FIELD(lensprof_profile, covariance_size);
     FIELD(lensprof_profile, reserved);
     FIELD(lensprof_profile, covariance);
+    end_struct();
+    BEGIN(lensprof_lookup_options);
+    FIELD(lensprof_lookup_options, struct_size);
+    FIELD(lensprof_lookup_options, distance_rule);
+    FIELD(lensprof_lookup_options, with_doubt);
+    FIELD(lensprof_lookup_options, any_processing);
+    end_struct();
+    BEGIN(lensprof_lookup);
+    FIELD(lensprof_lookup, exact);
+    FIELD(lensprof_lookup, rows);
+    FIELD(lensprof_lookup, id);
+    FIELD(lensprof_lookup, weight);
+    FIELD(lensprof_lookup, distance);
+    FIELD(lensprof_lookup, sigma);
+    FIELD(lensprof_lookup, name_score);
+    FIELD(lensprof_lookup, reason);
     end_struct();
     BEGIN(lensprof_store_row);
     FIELD(lensprof_store_row, id);
@@ -504,6 +523,9 @@ static void print_enumerations(void)
     VALUE(LENSPROF_STORE_READ);
     VALUE(LENSPROF_STORE_WRITE);
     VALUE(LENSPROF_STORE_CREATE);
+    VALUE(LENSPROF_DISTANCE_WEAKEST);
+    VALUE(LENSPROF_DISTANCE_FARTHEST);
+    VALUE(LENSPROF_LOOKUP_ROWS);
 }
 
 int main(void)

@@ -86,7 +86,7 @@ class Tables(unittest.TestCase):
         ours = {prefix + member.name: member.value for prefix, enum in _abi.ENUMS.items() for member in enum}
         constants = {"LENSPROF_" + name: getattr(_abi, name) for name in
                      ("RESPONSE_SAMPLES", "EMOR_MODES", "GRID_SIDE", "COVARIANCE_MAX", "COVERAGE_BINS", "FLAT_IMAGES",
-                      "FLAT_SPOTS", "UNKNOWN", "MODES_AUTO")}
+                      "FLAT_SPOTS", "UNKNOWN", "MODES_AUTO", "LOOKUP_ROWS")}
         version = dict(zip(("LENSPROF_VERSION_MAJOR", "LENSPROF_VERSION_MINOR", "LENSPROF_VERSION_PATCH"),
                            map(int, _abi.VERSION.split("."))))
         self.assertEqual({**ours, **constants, **version}, self.c["values"])

@@ -376,7 +376,8 @@ static void test_long_list(void **state)
     run_sql(here->path, "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 1000)"
                         " INSERT INTO profiles SELECT i, camera_maker, camera_model, lens, i, aperture, distance_m,"
                         " processing, method, software, source, created_unix_s, images, pairs, heldout_rms,"
-                        " inlier_share, response_curves, vignetting_curves, covariance_size, covariance, 0"
+                        " inlier_share, response_curves, vignetting_curves, covariance_size, covariance, 0,"
+                        " unit, crop_factor, doubt, lens_name"
                         " FROM profiles, n");
     assert_ok(lensprof_store_list(store, NULL, rows, COUNT, &found, NULL));
     assert_int_equal(found, COUNT);

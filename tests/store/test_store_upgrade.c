@@ -81,7 +81,7 @@ static void test_first_put_brings_up_to_date(void **state)
     assert_int_equal(put_at(store, &old[0]), 4);
     lensprof_store_close(store);
     lensprof_store_close(other);
-    assert_int_equal(layout_of(here->path), 2);
+    assert_int_equal(layout_of(here->path), LP_STORE_LAYOUT);
     assert_integrity(here->path);
     store = store_at(here->path, LENSPROF_STORE_READ);
     assert_old_profiles(store);
@@ -97,7 +97,7 @@ static void test_first_remove_brings_up_to_date(void **state)
     assert_ok(lensprof_store_remove(store, 1, NULL));
     assert_int_equal(count_at(store), 1);
     lensprof_store_close(store);
-    assert_int_equal(layout_of(here->path), 2);
+    assert_int_equal(layout_of(here->path), LP_STORE_LAYOUT);
     assert_integrity(here->path);
 }
 
@@ -153,7 +153,7 @@ static void test_old_and_new_files_become_the_same(void **state)
     lensprof_store_close(store);
     snprintf(path, sizeof path, "%s/new.db", here->directory);
     lensprof_store_close(store_at(path, LENSPROF_STORE_CREATE));
-    assert_int_equal(layout_of(path), 2);
+    assert_int_equal(layout_of(path), LP_STORE_LAYOUT);
     read_schema(here->path, schema[0], sizeof schema[0]);
     read_schema(path, schema[1], sizeof schema[1]);
     assert_string_equal(schema[0], schema[1]);

@@ -7,7 +7,7 @@ ValueError.
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
                    RESPONSE_SAMPLES, UNKNOWN, CameraKind, Direction, Encoding, FlatGrid, FlatLight, Free, GammaFrom,
                    Layout, Loss, Method, Pack, Processing, Projection, ResponseKind, SampleType, Sampling, Saturated,
-                   Status, StoreMode)
+                   Status, StoreMode, DistanceRule)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE,
                       PAIR_DTYPE)
@@ -20,7 +20,7 @@ from .geometry import Camera
 from .model import Exposure, GainGrid, Response, Vignetting, emor_table
 from .profile import Profile, ProfileKey, Provenance
 from .sample import SampleImage, SampleOptions, sample_overlap, sample_tracks
-from .store import Store, StoreRow
+from .store import Lookup, LookupOptions, Store, StoreRow
 
 __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "Direction", "EMOR_MODES",
@@ -29,7 +29,8 @@ __all__ = [
     "FlatOptions", "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Layout", "Loss",
     "MODES_AUTO", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey",
     "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Response", "ResponseKind", "SampleImage",
-    "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreMode", "StoreRow", "UNKNOWN",
+    "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreMode", "StoreRow",
+    "DistanceRule", "Lookup", "LookupOptions", "UNKNOWN",
     "Vignetting", "correct", "emor_table", "fit_flat", "fit_overlap", "fit_radiance", "layout_channels",
     "layout_samples", "points_read", "points_write", "sample_bytes", "sample_overlap", "sample_tracks", "simulate",
     "status_name", "transfer_rms", "version",

@@ -16,6 +16,7 @@ RESPONSE_SAMPLES = 1024
 EMOR_MODES = 25
 GRID_SIDE = 32
 COVARIANCE_MAX = 36
+LOOKUP_ROWS = 24
 COVERAGE_BINS = 10
 FLAT_IMAGES = 128
 FLAT_SPOTS = 32
@@ -201,6 +202,12 @@ class StoreMode(IntEnum):
     CREATE = 2
 
 
+class DistanceRule(IntEnum):
+    """What stands for an unknown focus distance: the weakest falloff of all stored distances, or that of the farthest."""
+    WEAKEST = 0
+    FARTHEST = 1
+
+
 # Prefix of the names in C; a member's C name is prefix + name.
 ENUMS = {
     "LENSPROF_": Status,
@@ -222,6 +229,7 @@ ENUMS = {
     "LENSPROF_FLAT_LIGHT_": FlatLight,
     "LENSPROF_FLAT_GRID_": FlatGrid,
     "LENSPROF_STORE_": StoreMode,
+    "LENSPROF_DISTANCE_": DistanceRule,
 }
 
 
@@ -281,14 +289,14 @@ class FixedPlan(Structure):
 
 class ProfileKey(Structure):
     _fields_ = [("camera_maker", c_char * 64), ("camera_model", c_char * 64), ("lens", c_char * 128),
-                ("focal_mm", c_double), ("aperture", c_double), ("distance_m", c_double), ("processing", c_uint32),
+                ("unit", c_char * 64), ("crop_factor", c_double), ("focal_mm", c_double), ("aperture", c_double), ("distance_m", c_double), ("processing", c_uint32),
                 ("reserved", c_uint32)]
 
 
 class Provenance(Structure):
     _fields_ = [("method", c_char * 32), ("software", c_char * 32), ("source", c_char * 256),
                 ("created_unix_s", c_int64), ("images", c_uint32), ("pairs", c_uint32), ("heldout_rms", c_double),
-                ("inlier_share", c_double)]
+                ("inlier_share", c_double), ("doubt", c_char * 64)]
 
 
 class Profile(Structure):
@@ -409,6 +417,17 @@ class StoreRow(Structure):
     _fields_ = [("id", c_int64), ("key", ProfileKey), ("provenance", Provenance)]
 
 
+class LookupOptions(Structure):
+    _fields_ = [("struct_size", c_uint32), ("distance_rule", c_uint32), ("with_doubt", c_uint32),
+                ("any_processing", c_uint32)]
+
+
+class Lookup(Structure):
+    _fields_ = [("exact", c_uint32), ("rows", c_uint32), ("id", c_int64 * LOOKUP_ROWS),
+                ("weight", c_double * LOOKUP_ROWS), ("distance", c_double), ("sigma", c_double),
+                ("name_score", c_double), ("reason", c_char * 256)]
+
+
 STRUCTS = {
     "lensprof_error": ErrorText,
     "lensprof_response": Response,
@@ -436,6 +455,8 @@ STRUCTS = {
     "lensprof_flat_result": FlatResult,
     "lensprof_pto_image": PtoImage,
     "lensprof_store_row": StoreRow,
+    "lensprof_lookup_options": LookupOptions,
+    "lensprof_lookup": Lookup,
 }
 
 OPAQUE = {"lensprof_fixed_plan": FixedPlan, "lensprof_plan": Plan, "lensprof_pto": Pto, "lensprof_store": Store}
@@ -550,6 +571,11 @@ FUNCTIONS = {
     "lensprof_store_close": (None, [_store]),
     "lensprof_store_put": (_status, [_store, _profile, POINTER(c_int64), _error]),
     "lensprof_store_find": (_status, [_store, _key, _profile, POINTER(c_int64), _error]),
+    "lensprof_lookup_options_init": (None, [POINTER(LookupOptions)]),
+    "lensprof_store_lookup": (_status, [_store, _key, POINTER(LookupOptions), _profile, POINTER(Lookup), _error]),
+    "lensprof_store_begin": (_status, [_store, _error]),
+    "lensprof_store_commit": (_status, [_store, _error]),
+    "lensprof_store_rollback": (None, [_store]),
     "lensprof_store_get": (_status, [_store, c_int64, _profile, _error]),
     "lensprof_store_list": (_status, [_store, _key, POINTER(StoreRow), c_uint32, _u32_out, _error]),
     "lensprof_store_remove": (_status, [_store, c_int64, _error]),

@@ -16,12 +16,15 @@ from .model import GainGrid, Response, Vignetting
 class ProfileKey(Value, _abi.ProfileKey):
     """What a profile is for; empty texts and lensprof.UNKNOWN where not known, processing JPEG by default.
 
-    focal_mm, aperture (f-number) and distance_m (may be infinite) are above 0, or UNKNOWN.
+    unit: serial numbers, where a profile is of one camera and lens. crop_factor, focal_mm, aperture (f-number) and
+    distance_m (may be infinite) are above 0, or UNKNOWN.
     """
 
     camera_maker = Text()
     camera_model = Text()
     lens = Text()
+    unit = Text()
+    crop_factor: float
     focal_mm: float
     aperture: float
     distance_m: float
@@ -40,7 +43,7 @@ class Provenance(Value, _abi.Provenance):
     """Where a profile comes from. Part of a Profile, which sets the defaults.
 
     created_unix_s: seconds since 1970-01-01 UTC, 0 = unknown. images, pairs: how many were used. heldout_rms: levels
-    of 255, or UNKNOWN. inlier_share: 0..1, or UNKNOWN.
+    of 255, or UNKNOWN. inlier_share: 0..1, or UNKNOWN. doubt: why it may be wrong, as found when it was imported.
     """
 
     method = Text()
@@ -51,6 +54,7 @@ class Provenance(Value, _abi.Provenance):
     pairs: int
     heldout_rms: float
     inlier_share: float
+    doubt = Text()
 
     def _set_defaults(self) -> None:
         self.heldout_rms = self.inlier_share = _abi.UNKNOWN

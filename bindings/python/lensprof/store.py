@@ -4,12 +4,13 @@ from __future__ import annotations
 import ctypes
 import os
 from ctypes import POINTER, byref, c_int64, c_uint32
-from typing import Any, List, Optional, Union
+from contextlib import contextmanager
+from typing import Any, Iterator, List, Optional, Union
 
 from . import _abi
-from ._abi import StoreMode
+from ._abi import DistanceRule, StoreMode
 from ._library import Handle, check, lib
-from ._struct import Nested, Value, integer
+from ._struct import Enumerated, Flag, Nested, Struct, Text, Value, integer
 from .profile import Profile, ProfileKey, Provenance
 
 
@@ -19,6 +20,30 @@ class StoreRow(Value, _abi.StoreRow):
     id: int
     key = Nested(ProfileKey)
     provenance = Nested(Provenance)
+
+
+class LookupOptions(Struct, _abi.LookupOptions):
+    """How Store.lookup searches. distance_rule: where the focus distance is unknown. with_doubt: profiles with a doubt
+    count as others do. any_processing: the key's processing does not matter."""
+
+    distance_rule = Enumerated(DistanceRule)
+    with_doubt = Flag()
+    any_processing = Flag()
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_lookup_options_init(byref(self))
+
+
+class Lookup(Value, _abi.Lookup):
+    """How Store.lookup came to its answer: id[:rows] and weight[:rows] of the profiles used, nearest first; exact when it
+    is one of them as it is; distance to the nearest; sigma of M in the corner; name_score; reason: what to mind."""
+
+    exact: int
+    rows: int
+    distance: float
+    sigma: float
+    name_score: float
+    reason = Text()
 
 
 class Store(Handle):
@@ -53,6 +78,25 @@ class Store(Handle):
         profile, number = Profile(), c_int64()
         self._call(lib.lensprof_store_find, byref(key), byref(profile), byref(number))
         return number.value, profile
+
+    def lookup(self, key: ProfileKey, options: Optional[LookupOptions] = None) -> tuple[Profile, Lookup]:
+        """The profile for a setting, stored or predicted from those of the same lens at other settings, and how it was
+        found; lensprof.Error NOT_FOUND, with the reason, where there is none near enough."""
+        profile, how = Profile(), Lookup()
+        self._call(lib.lensprof_store_lookup, byref(key), byref(options or LookupOptions()), byref(profile), byref(how))
+        return profile, how
+
+    @contextmanager
+    def transaction(self) -> Iterator[None]:
+        """`with store.transaction():` makes all calls in it one: stored at its end, or none of it after an exception."""
+        self._call(lib.lensprof_store_begin)
+        try:
+            yield
+        except BaseException:
+            with self._use() as store:
+                lib.lensprof_store_rollback(store)
+            raise
+        self._call(lib.lensprof_store_commit)
 
     def get(self, id: int) -> Profile:
         """The profile with an id."""

@@ -1,0 +1,348 @@
+/* Profiles for settings that are not stored: names, cameras, units, sensors, the falloff between settings, refusals. */
+#include "store_fixture.h"
+
+#include "store/falloff_prediction.h"
+#include "store/store_names.h"
+
+static lensprof_profile shared; /* 50 kB */
+
+static lensprof_profile *zoom_profile(const char *lens, double focal, double aperture, double distance)
+{
+    lensprof_profile *p = &shared;
+    lensprof_profile_init(p);
+    snprintf(p->key.lens, sizeof p->key.lens, "%s", lens);
+    p->key.focal_mm = focal, p->key.aperture = aperture, p->key.distance_m = distance;
+    p->key.processing = LENSPROF_PROCESSING_RAW;
+    p->key.crop_factor = 1.0;
+    return p;
+}
+
+/* A lens that loses less the more it is stopped down, and the longer it is. */
+static void true_falloff(double focal, double aperture, double k[3])
+{
+    const double open = 1.8 / aperture;
+    k[0] = -0.12 - 0.45 * open * open - 0.1 * log2(70.0 / focal) * open;
+    k[1] = 0.15 * open;
+    k[2] = -0.06 * open * open;
+}
+
+static int64_t put_falloff(lensprof_store *store, const char *lens, double focal, double aperture, double distance)
+{
+    lensprof_profile *p = zoom_profile(lens, focal, aperture, distance);
+    true_falloff(focal, aperture, p->vignetting[0].k);
+    return put_at(store, p);
+}
+
+static const char zoom[] = "Example EF 24-70mm f/1.8L USM";
+
+static lensprof_store *zoom_store(const place *here)
+{
+    static const double focals[] = {24, 35, 50, 70}, apertures[] = {1.8, 2.0, 2.8, 4.0, 5.6, 8.0};
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    assert_ok(lensprof_store_begin(store, NULL));
+    for (int f = 0; f < 4; f++)
+        for (int a = 0; a < 6; a++) put_falloff(store, zoom, focals[f], apertures[a], INFINITY);
+    assert_ok(lensprof_store_commit(store, NULL));
+    return store;
+}
+
+static lensprof_profile answered;
+static lensprof_lookup how;
+
+static lensprof_status ask_with(lensprof_store *store, const lensprof_profile_key *key,
+                                const lensprof_lookup_options *options)
+{
+    lensprof_error error;
+    memset(&how, 0, sizeof how);
+    return lensprof_store_lookup(store, key, options, &answered, &how, &error);
+}
+
+static lensprof_status ask(lensprof_store *store, const char *lens, double focal, double aperture, double distance)
+{
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    const lensprof_profile_key key = zoom_profile(lens, focal, aperture, distance)->key;
+    return ask_with(store, &key, &options);
+}
+
+static double worst_error(double focal, double aperture)
+{
+    double k[3], worst = 0.0;
+    true_falloff(focal, aperture, k);
+    for (double r = 0.0; r <= 1.0; r += 0.05) {
+        const lensprof_vignetting truth = {{k[0], k[1], k[2]}, {0.0, 0.0}};
+        worst = fmax(worst, fabs(lensprof_vignetting_eval(&truth, r * r, NULL)
+                                 - lensprof_vignetting_eval(&answered.vignetting[0], r * r, NULL)));
+    }
+    return worst;
+}
+
+static void test_exact(void **state)
+{
+    lensprof_store *store = zoom_store(*state);
+    assert_ok(ask(store, zoom, 35, 2.8, INFINITY));
+    assert_int_equal(how.exact, 1);
+    assert_int_equal(how.rows, 1);
+    assert_int_equal(how.id[0], 1 + 6 + 2);
+    assert_close(how.name_score, 1.0, 0.0);
+    assert_close(worst_error(35, 2.8), 0.0, 1e-12);
+    const int64_t newer = put_falloff(store, zoom, 35, 2.8, INFINITY);
+    assert_ok(ask(store, zoom, 35, 2.8, INFINITY));
+    assert_int_equal(how.id[0], newer);
+    lensprof_store_close(store);
+}
+
+static void test_between_settings(void **state)
+{
+    static const double asked[][2] = {{28, 2.4}, {42, 3.5}, {60, 6.3}, {24, 1.9}, {70, 7.1}, {30, 4.0}};
+    lensprof_store *store = zoom_store(*state);
+    for (int i = 0; i < 6; i++) {
+        assert_ok(ask(store, zoom, asked[i][0], asked[i][1], INFINITY));
+        assert_int_equal(how.exact, 0);
+        assert_true(how.rows > 4 && how.distance > 0.0 && how.distance < 0.5 && how.sigma > 0.0);
+        assert_true(worst_error(asked[i][0], asked[i][1]) < 0.02);
+        double sum = 0.0;
+        for (uint32_t n = 0; n < how.rows; n++) sum += how.weight[n];
+        assert_close(sum, 1.0, 0.02);
+        assert_string_equal(answered.provenance.method, "lookup");
+        assert_close(answered.key.focal_mm, asked[i][0], 0.0);
+        assert_ok(lensprof_profile_validate(&answered));
+    }
+    lensprof_store_close(store);
+}
+
+/* Without a bit of difference, whoever asks and however often. */
+static void test_same_answer_and_nothing_written(void **state)
+{
+    const place *here = *state;
+    lensprof_store *store = zoom_store(here);
+    size_t before, after;
+    unsigned char *was = read_file(here->path, &before);
+    assert_ok(ask(store, zoom, 28, 2.4, INFINITY));
+    const lensprof_vignetting first = answered.vignetting[0];
+    for (int i = 0; i < 5; i++) {
+        assert_ok(ask(store, zoom, 28, 2.4, INFINITY));
+        assert_memory_equal(&answered.vignetting[0], &first, sizeof first);
+    }
+    lensprof_store_close(store);
+    unsigned char *is = read_file(here->path, &after);
+    assert_int_equal(after, before);
+    assert_memory_equal(is, was, before);
+    free(was);
+    free(is);
+}
+
+static void test_refusals(void **state)
+{
+    lensprof_store *store = zoom_store(*state);
+    static const struct {
+        double focal, aperture;
+        const char *why;
+    } cases[] = {{24, 1.2, "aperture is beyond"},      {24, 16, "aperture is beyond"},
+                 {14, 2.8, "focal length is beyond"},  {200, 2.8, "focal length is beyond"},
+                 {LENSPROF_UNKNOWN, 2.8, "focal length is not known"},
+                 {35, LENSPROF_UNKNOWN, "aperture is not known"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        memset(&answered, 0x5A, sizeof answered);
+        assert_int_equal(ask(store, zoom, cases[i].focal, cases[i].aperture, INFINITY), LENSPROF_ERROR_NOT_FOUND);
+        assert_non_null(strstr(how.reason, cases[i].why));
+        assert_int_equal(((unsigned char *)&answered)[7], 0x5A);
+    }
+    assert_int_equal(ask(store, "Another lens", 35, 2.8, INFINITY), LENSPROF_ERROR_NOT_FOUND);
+    assert_non_null(strstr(how.reason, "no profile of a lens of this name"));
+    assert_int_equal(ask(store, zoom, 35, 2.8, 0.1), LENSPROF_ERROR_NOT_FOUND);
+    assert_non_null(strstr(how.reason, "too far"));
+    lensprof_store_close(store);
+}
+
+static void test_names(void **state)
+{
+    lensprof_store *store = zoom_store(*state);
+    put_falloff(store, "Canon EF 85mm f/1.8 USM", 85, 1.8, INFINITY);
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    static const struct {
+        const char *lens, *maker;
+        double score;
+    } cases[] = {{"Canon EF 85mm f/1.8 USM", "", 1.0},     {" canon ef 85MM F/1.8 usm ", "", 1.0},
+                 {"Canon EF85mm F1.8 USM", "", 0.9},       {"EF85mm f/1.8 USM", "Canon", 0.8},
+                 {"EF85mm f/1.8 USM", "CANON INC.", 0.8},  {"EF85mm f/1.8 USM", "NIKON CORPORATION", 0.0},
+                 {"Canon EF 85mm f/1.2 USM", "Canon", 0.0}, {"", "Canon", 0.0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        lensprof_profile_key key = zoom_profile(cases[i].lens, 85, 1.8, INFINITY)->key;
+        snprintf(key.camera_maker, sizeof key.camera_maker, "%s", cases[i].maker);
+        const lensprof_status status = ask_with(store, &key, &options);
+        assert_int_equal(status, cases[i].score > 0.0 ? LENSPROF_OK : LENSPROF_ERROR_NOT_FOUND);
+        if (status == LENSPROF_OK) assert_close(how.name_score, cases[i].score, 1e-12);
+    }
+    lensprof_store_close(store);
+}
+
+/* A camera's own profiles before a lens's, a unit's before the model's, the smallest sensor that is large enough. */
+static void test_which_rows(void **state)
+{
+    const place *here = *state;
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    double k[4] = {-0.5, -0.4, -0.3, -0.2};
+    int64_t id[4];
+    for (int i = 0; i < 4; i++) {
+        lensprof_profile *p = zoom_profile("Lens", 50, 2.0, INFINITY);
+        p->vignetting[0].k[0] = k[i];
+        p->key.crop_factor = i == 1 ? 1.5 : 1.0;
+        if (i >= 2) snprintf(p->key.camera_model, sizeof p->key.camera_model, "Body");
+        if (i == 3) snprintf(p->key.unit, sizeof p->key.unit, "12345");
+        id[i] = put_at(store, p);
+    }
+    lensprof_profile_key key = zoom_profile("Lens", 50, 2.0, INFINITY)->key;
+    assert_ok(ask_with(store, &key, &options));
+    snprintf(key.camera_model, sizeof key.camera_model, "body");
+    assert_ok(ask_with(store, &key, &options));
+    assert_int_equal(how.id[0], id[2]);
+    snprintf(key.unit, sizeof key.unit, "12345");
+    assert_ok(ask_with(store, &key, &options));
+    assert_int_equal(how.id[0], id[3]);
+    snprintf(key.camera_model, sizeof key.camera_model, "Another body");
+    *key.unit = 0;
+    key.crop_factor = 1.5;
+    assert_ok(ask_with(store, &key, &options));
+    assert_int_equal(how.id[0], id[1]);
+    key.crop_factor = 1.2; /* of the full frame: r = 1 is at 1 / 1.2 of it */
+    assert_ok(ask_with(store, &key, &options));
+    assert_int_equal(how.id[0], id[0]);
+    assert_close(answered.vignetting[0].k[0], k[0] / (1.2 * 1.2), 1e-3);
+    key.crop_factor = 0.7;
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
+    assert_non_null(strstr(how.reason, "smaller sensors"));
+    lensprof_store_close(store);
+}
+
+/* Nothing that was not there is taken out. */
+static void test_unknown_distance(void **state)
+{
+    const place *here = *state;
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    static const double distance[3] = {0.5, 2.0, INFINITY}, k[3] = {-0.3, -0.5, -0.4};
+    for (int i = 0; i < 3; i++) {
+        lensprof_profile *p = zoom_profile("Lens", 50, 2.0, distance[i]);
+        p->vignetting[0].k[0] = k[i];
+        put_at(store, p);
+    }
+    lensprof_profile_key key = zoom_profile("Lens", 50, 2.0, LENSPROF_UNKNOWN)->key;
+    assert_ok(ask_with(store, &key, &options));
+    assert_true(answered.vignetting[0].k[0] > -0.32 && answered.vignetting[0].k[0] < -0.28);
+    assert_non_null(strstr(how.reason, "weakest"));
+    options.distance_rule = LENSPROF_DISTANCE_FARTHEST;
+    assert_ok(ask_with(store, &key, &options));
+    assert_close(answered.vignetting[0].k[0], -0.4, 0.02);
+    assert_non_null(strstr(how.reason, "farthest"));
+    lensprof_store_close(store);
+}
+
+static void test_doubt_and_processing(void **state)
+{
+    const place *here = *state;
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    lensprof_profile *p = zoom_profile("Lens", 50, 2.0, INFINITY);
+    snprintf(p->provenance.doubt, sizeof p->provenance.doubt, "start values of a fit that failed");
+    put_at(store, p);
+    lensprof_profile_key key = zoom_profile("Lens", 50, 2.0, INFINITY)->key;
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
+    options.with_doubt = 1;
+    assert_ok(ask_with(store, &key, &options));
+    assert_string_equal(answered.provenance.doubt, "start values of a fit that failed");
+    key.processing = LENSPROF_PROCESSING_JPEG;
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
+    options.any_processing = 1;
+    assert_ok(ask_with(store, &key, &options));
+    assert_int_equal(answered.key.processing, LENSPROF_PROCESSING_RAW);
+    lensprof_store_close(store);
+}
+
+static void test_covariance_counts(void **state)
+{
+    (void)state;
+    lp_falloff_node nodes[2] = {{1, 50, 2.0, INFINITY, {{-0.2}, {-0.2}, {-0.2}}, 0.0},
+                                {2, 50, 2.0, INFINITY, {{-0.4}, {-0.4}, {-0.4}}, 0.0}};
+    const lp_falloff_node at = {0, 50, 2.2, INFINITY, {{0}}, 0.0};
+    lp_falloff_prediction equal, unequal;
+    assert_int_equal(lp_predict_falloff(nodes, 2, &at, &equal), 1);
+    nodes[0].variance = 0.1;
+    assert_int_equal(lp_predict_falloff(nodes, 2, &at, &unequal), 1);
+    assert_true(unequal.k[0][0] < equal.k[0][0] - 0.03);
+}
+
+static void test_transactions(void **state)
+{
+    const place *here = *state;
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_error error;
+    uint32_t found = 9;
+    assert_int_equal(lensprof_store_commit(store, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_ok(lensprof_store_begin(store, &error));
+    assert_int_equal(lensprof_store_begin(store, &error), LENSPROF_ERROR_ARGUMENT);
+    put_falloff(store, zoom, 24, 2.0, INFINITY);
+    assert_int_equal(lensprof_store_remove(store, 77, &error), LENSPROF_ERROR_NOT_FOUND); /* takes nothing else along */
+    put_falloff(store, zoom, 35, 2.0, INFINITY);
+    assert_ok(lensprof_store_list(store, NULL, NULL, 0, &found, &error));
+    assert_int_equal(found, 2);
+    lensprof_store *other = store_at(here->path, LENSPROF_STORE_READ);
+    assert_ok(lensprof_store_list(other, NULL, NULL, 0, &found, &error));
+    assert_int_equal(found, 0);
+    lensprof_store_rollback(store);
+    assert_ok(lensprof_store_list(store, NULL, NULL, 0, &found, &error));
+    assert_int_equal(found, 0);
+    assert_ok(lensprof_store_begin(store, &error));
+    put_falloff(store, zoom, 24, 2.0, INFINITY);
+    assert_ok(lensprof_store_commit(store, &error));
+    assert_ok(lensprof_store_list(other, NULL, NULL, 0, &found, &error));
+    assert_int_equal(found, 1);
+    lensprof_store_close(other);
+    lensprof_store_close(store);
+    assert_integrity(here->path);
+}
+
+static void test_arguments(void **state)
+{
+    lensprof_store *store = zoom_store(*state);
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    lensprof_profile_key key = zoom_profile(zoom, 35, 2.8, INFINITY)->key;
+    assert_int_equal(lensprof_store_lookup(NULL, &key, &options, &answered, &how, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_lookup(store, NULL, &options, &answered, &how, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_lookup(store, &key, NULL, &answered, &how, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_lookup(store, &key, &options, NULL, &how, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_lookup(store, &key, &options, &answered, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
+    options.distance_rule = 2;
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_ARGUMENT);
+    lensprof_lookup_options_init(&options);
+    options.struct_size = 1;
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_STRUCT_SIZE);
+    lensprof_lookup_options_init(&options);
+    key.focal_mm = NAN;
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_ARGUMENT);
+    lensprof_store_close(store);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        store_test(test_exact),
+        store_test(test_between_settings),
+        store_test(test_same_answer_and_nothing_written),
+        store_test(test_refusals),
+        store_test(test_names),
+        store_test(test_which_rows),
+        store_test(test_unknown_distance),
+        store_test(test_doubt_and_processing),
+        store_test(test_covariance_counts),
+        store_test(test_transactions),
+        store_test(test_arguments),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
