@@ -1,4 +1,4 @@
-/* lensprof/formats.h - other tools' files, from and to memory: Hugin projects and point files.
+/* lensprof/formats.h - other tools' files, from and to memory: Hugin projects and point files, Lensfun databases.
  *
  * No function here opens a file. Threads: a handle belongs to one thread at a time. */
 #ifndef LENSPROF_FORMATS_H
@@ -6,6 +6,7 @@
 
 #include "fit.h"
 #include "geometry.h"
+#include "profile.h"
 #include "sample.h"
 
 #ifdef __cplusplus
@@ -93,6 +94,56 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_read(const char *
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_points_write(const lensprof_pair *pairs, uint32_t pair_count, const lensprof_camera *cameras, uint32_t count,
                       char *text, size_t capacity, size_t *needed);
+
+/* ---- Falloffs of other programs' databases ---------------------------------------------------------------- */
+
+/* One falloff of a file. Frozen value struct. */
+typedef struct lensprof_import_entry {
+    const lensprof_profile *profile; /* until the visitor returns: key, provenance, vignetting; a linear response */
+    uint32_t usable; /* 0: what the file has is no falloff (provenance.doubt says why), and lensprof_profile_validate
+                      * refuses it; 1: a valid profile, which provenance.doubt may still warn of */
+    uint32_t reserved; /* 0 */
+} lensprof_import_entry;
+
+/* Receives the entries in the order of the file. Anything but OK stops the reading and is what it returns, with the
+ * error text as the visitor left it. */
+typedef lensprof_status (*lensprof_import_visitor)(void *user, const lensprof_import_entry *entry);
+
+/* ---- Lensfun database (.xml) ------------------------------------------------------------------------------ */
+
+/* Every <vignetting> of a database of version 1 or 2, as a profile of raw pictures in lensprof's conventions
+ * (docs/formats.md):
+ *  - lens = "<maker> <model>", or the model alone where it begins with the maker; texts without a `lang` count before
+ *    English ones. For a lens with one mount whose first letter is small (a camera with a fixed lens), camera_maker and
+ *    camera_model too, where the file has exactly one <camera> with this mount.
+ *  - crop_factor of the lens or of its <calibration>; focal_mm, aperture and distance_m as written, but 1000 m, which
+ *    Lensfun's tools write for it, is INFINITY.
+ *  - model "pa": k as written. Model "acm", with radii in focal lengths: rescaled, by the <distortion>'s real-focal of
+ *    that focal length where there is one. <center> by the <aspect-ratio>, 3:2 where there is none.
+ *  - provenance: method "import", source = `source` (a file's name, say; may be NULL, cut where it is too long) and the
+ *    licence of Lensfun's database. doubt: M below 0.001 (usable = 0); coefficients -0.3, 0, 0, which a fit of
+ *    Lensfun's calibrate.py starts from; M, followed outwards, rises by more than 0.05.
+ * All of the text is checked before the first entry is visited. Document types are skipped and entities not expanded.
+ * Errors (the text names line and lens): ARGUMENT; SIZE over 64 MiB, or over 2 million elements or attributes; SYNTAX;
+ * UNSUPPORTED for another version or model; MEMORY; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_read(const char *text, size_t bytes,
+                                                                     const char *source, lensprof_import_visitor visit,
+                                                                     void *user, lensprof_error *error);
+
+/* The falloffs of profiles as a database of version 1, which every Lensfun reads: model "pa", one <lens> for each lens
+ * and crop factor. Sizes as lensprof_pto_write. Doubles are written so that they read back the same.
+ *  - <maker> is the first word of key.lens, <model> all of it; the mount is Lensfun's "Generic".
+ *  - Lensfun has one curve for all channels: of three, their mean is written. It has no responses, covariances, units
+ *    and provenance: these are left out.
+ *  - Infinite and unknown distances are 1000 m.
+ *  - A centre is converted for frames of 3:2; Lensfun has one a lens.
+ * Errors (the text names the profile, counted from 0): ARGUMENT for an unknown lens, crop factor, focal length or
+ * aperture, texts that are not UTF-8, two profiles of the same lens and setting, or centres of one lens that differ;
+ * UNSUPPORTED for a gain grid or pictures corrected in camera; what lensprof_profile_validate says; CAPACITY;
+ * MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_write(const lensprof_profile *const *profiles,
+                                                                      uint32_t count, char *text, size_t capacity,
+                                                                      size_t *needed, lensprof_error *error);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,6 @@
 #include "text.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -58,6 +59,31 @@ bool read_whole(std::string_view text, double low, double high, double &value) {
     if (!read_number(text, number) || number != std::floor(number) || number < low || number > high) return false;
     value = number;
     return true;
+}
+
+size_t find_not_utf8(std::string_view text) {
+    size_t at = 0;
+    const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+    while (at < text.size()) {
+        const unsigned lead = byte(at);
+        const size_t more = lead < 0x80 ? 0 : lead < 0xC2 ? 4 : lead < 0xE0 ? 1 : lead < 0xF0 ? 2 : lead < 0xF5 ? 3 : 4;
+        if (more == 4) return at;
+        for (size_t i = 1; i <= more; i++)
+            if ((byte(at + i) & 0xC0) != 0x80) return at;
+        const unsigned next = byte(at + 1);  // overlong forms, surrogates, beyond U+10FFFF
+        if ((lead == 0xE0 && next < 0xA0) || (lead == 0xED && next > 0x9F) || (lead == 0xF0 && next < 0x90)
+            || (lead == 0xF4 && next > 0x8F))
+            return at;
+        at += 1 + more;
+    }
+    return at;
+}
+
+void put_text(char *field, size_t capacity, std::string_view text) {
+    size_t length = std::min(text.size(), capacity - 1);
+    while (length < text.size() && length && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) length--;
+    std::memset(field, 0, capacity);
+    std::memcpy(field, text.data(), length);
 }
 
 std::string number_text(double value) {

@@ -72,6 +72,12 @@ bool read_number(std::string_view text, double &value);
 // The same as a whole number within [low, high].
 bool read_whole(std::string_view text, double low, double high, double &value);
 
+// Offset of the first byte that is not part of well-formed UTF-8; the size where there is none.
+size_t find_not_utf8(std::string_view text);
+
+// Copies to a text field of a value struct; what does not fit is cut between characters.
+void put_text(char *field, size_t capacity, std::string_view text);
+
 // Shortest decimal form that reads back as the same number.
 std::string number_text(double value);
 

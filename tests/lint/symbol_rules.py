@@ -128,8 +128,8 @@ def check_apply(nm, folder):
     return violations
 
 
-LIBRARY_OF = {"fit": re.compile(r"^nlopt_"), "formats": re.compile(r"^$"), "store": re.compile(r"^sqlite3_")}
-OF_LIBRARIES = re.compile(r"^(nlopt_|sqlite3_|lensprof_|lp_|_ZNK?8lensprof|png_|TIFF|jpeg_|_ZN5Exiv2)")
+LIBRARY_OF = {"fit": re.compile(r"^nlopt_"), "formats": re.compile(r"^_ZNK?4pugi"), "store": re.compile(r"^sqlite3_")}
+OF_LIBRARIES = re.compile(r"^(nlopt_|sqlite3_|lensprof_|lp_|_ZNK?8lensprof|_ZNK?4pugi|png_|TIFF|jpeg_|_ZN5Exiv2)")
 
 
 def check_layer(nm, name, archive, folder):
@@ -243,6 +243,8 @@ def self_check(nm, cc):
             ("fit", "int pthread_create(void); int f(void) { return pthread_create(); }", []),
             ("store", "int pthread_create(void); int f(void) { return pthread_create(); }", ["pthread_create"]),
             ("formats", "int nlopt_create(void); int f(void) { return nlopt_create(); }", ["nlopt_create"]),
+            ("formats", "int _ZN4pugi4loadEv(void); int f(void) { return _ZN4pugi4loadEv(); }", []),
+            ("store", "int _ZNK4pugi4loadEv(void); int f(void) { return _ZNK4pugi4loadEv(); }", ["_ZNK4pugi4loadEv"]),
             ("formats", "#include <stdio.h>\nvoid *f(void) { return fopen(\"x\", \"r\"); }", ["fopen"]),
             ("formats", "#include <stdio.h>\nint f(char *s) { return snprintf(s, 9, \"%s\", s + 1); }", []),
             ("store", "#include <time.h>\nlong f(void) { return time(0); }", ["time"]),

@@ -382,6 +382,11 @@ static void print_flat_structs(void)
 
 static void print_formats_structs(void)
 {
+    BEGIN(lensprof_import_entry);
+    FIELD(lensprof_import_entry, profile);
+    FIELD(lensprof_import_entry, usable);
+    FIELD(lensprof_import_entry, reserved);
+    end_struct();
     BEGIN(lensprof_pto_image);
     FIELD(lensprof_pto_image, camera);
     FIELD(lensprof_pto_image, exposure);

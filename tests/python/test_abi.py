@@ -24,6 +24,8 @@ def header_text():
 
 def ctype_of(declaration):
     """ctypes type of a C parameter or result: `const double *values`, `double xy[2]`, `lensprof_pto **pto`."""
+    if "lensprof_import_visitor" in declaration:
+        return _abi.ImportVisitor
     words = re.findall(r"\w+", declaration)
     name = next(word for word in words if word != "const")
     stars = declaration.count("*") + declaration.count("[")
@@ -111,10 +113,11 @@ class Tables(unittest.TestCase):
         for name in _abi.FUNCTIONS:
             self.assertRegex(sources, rf"lib(rary)?\.{name}\b")
 
-    def test_callback_type(self):
-        typedef = re.search(r"typedef (\w+) \(\*lensprof_progress\)\(([^)]*)\);", self.headers)
-        self.assertIs(_abi.Progress._restype_, ctype_of(typedef[1]))
-        self.assertEqual(list(_abi.Progress._argtypes_), [ctype_of(p) for p in typedef[2].split(",")])
+    def test_callback_types(self):
+        for name, kind in {"progress": _abi.Progress, "import_visitor": _abi.ImportVisitor}.items():
+            typedef = re.search(rf"typedef (\w+) \(\*lensprof_{name}\)\(([^)]*)\);", self.headers)
+            self.assertIs(kind._restype_, ctype_of(typedef[1]))
+            self.assertEqual(list(kind._argtypes_), [ctype_of(p) for p in typedef[2].split(",")])
 
     def test_everything_public_is_exported(self):
         import lensprof

@@ -1,4 +1,4 @@
-"""Hugin projects and point files."""
+"""Hugin projects and point files, Lensfun databases."""
 import gc
 import math
 import unittest
@@ -175,6 +175,55 @@ class Points(unittest.TestCase):
         with refused(self, lp.Status.ERROR_SYNTAX) as caught:
             lp.points_read(b"0 1 1 1 2 2 .1 .1 .1 .2 .2 .2 0 0 0 0\n0 1\n")
         self.assertIn("line 2", caught.exception.text)
+
+
+LENSFUN = """<lensdatabase version="1"><lens><maker>Acme</maker><model>50mm \u00e9</model><mount>Generic</mount>
+<cropfactor>1.5</cropfactor><calibration>
+<vignetting model="pa" focal="50" aperture="2" distance="1000" k1="-0.5" k2="0.25" k3="-0.1"/>
+<vignetting model="pa" focal="50" aperture="4" distance="0.5" k1="-2" k2="0" k3="0"/>
+</calibration></lens></lensdatabase>"""
+
+
+class Lensfun(unittest.TestCase):
+    def test_read(self):
+        for text in (LENSFUN, LENSFUN.encode()):
+            (good, usable), (bad, damaged) = lp.lensfun_read(text, "my.xml")
+            self.assertIs(usable, True)
+            self.assertIs(damaged, False)
+            self.assertEqual(good.key, lp.ProfileKey(lens="Acme 50mm \u00e9", crop_factor=1.5, focal_mm=50, aperture=2,
+                                                     distance_m=math.inf, processing=lp.Processing.RAW))
+            self.assertEqual(good.vignetting[0].k.tolist(), [-0.5, 0.25, -0.1])
+            self.assertEqual(good.provenance.source, "my.xml; Lensfun database, CC BY-SA 3.0")
+            good.validate()
+            self.assertEqual(bad.provenance.doubt, "M is negative at r = 0.71")
+            self.assertEqual(bad.key.distance_m, 0.5)
+            with refused(self, lp.Status.ERROR_VIGNETTING):
+                bad.validate()
+
+    def test_round_trip(self):
+        profile = lp.Profile()
+        profile.key = lp.ProfileKey(lens="A <lens>", crop_factor=1, focal_mm=35.1, aperture=1.4, distance_m=0.3,
+                                    processing=lp.Processing.RAW)
+        profile.vignetting = lp.Vignetting(k=(-0.1 - 0.2, 0, 0), center=(0.25, 0))
+        text = lp.lensfun_write(iter([profile]))
+        self.assertIn("<model>A &lt;lens&gt;</model>", text)
+        (again, usable), = lp.lensfun_read(text)
+        self.assertTrue(usable)
+        self.assertEqual(again.key, profile.key)
+        self.assertEqual(again.vignetting, profile.vignetting)
+        self.assertEqual(lp.lensfun_read(lp.lensfun_write([])), [])
+
+    def test_refused(self):
+        with refused(self, lp.Status.ERROR_SYNTAX) as caught:
+            lp.lensfun_read(LENSFUN.replace("k1=\"-2\"", "k1=\"x\""))
+        self.assertIn("line 4: lens \"Acme 50mm", caught.exception.text)
+        with refused(self, lp.Status.ERROR_ARGUMENT) as caught:
+            lp.lensfun_write([lp.Profile()])
+        self.assertIn("profile 0: its lens is unknown", caught.exception.text)
+        with self.assertRaises(TypeError):
+            lp.lensfun_write([lp.Vignetting()])
+        with self.assertRaises(ValueError):
+            lp.lensfun_read(LENSFUN, "a\0b")
 
 
 if __name__ == "__main__":

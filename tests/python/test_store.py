@@ -154,6 +154,28 @@ class Stores(unittest.TestCase):
         with self.assertRaises(ValueError):
             lp.Store(self.path, 3)
 
+    def test_lookup(self):
+        with lp.Store(self.path, lp.StoreMode.CREATE) as store:
+            with store.transaction():
+                for aperture, k1 in ((1.8, -0.6), (2.8, -0.35), (4.0, -0.2), (5.6, -0.15)):
+                    store.put(lp.Profile(key=lp.ProfileKey(lens="Lens 50 mm", focal_mm=50, aperture=aperture,
+                                                           distance_m=math.inf), vignetting=lp.Vignetting(k=(k1, 0, 0))))
+            with self.assertRaises(RuntimeError), store.transaction():
+                store.put(sample_profile())
+                raise RuntimeError("no more")
+            self.assertEqual(len(store.list()), 4)
+            key = lp.ProfileKey(lens="LENS 50mm", focal_mm=50, aperture=2.2, distance_m=math.inf)
+            profile, how = store.lookup(key)
+            self.assertTrue(-0.6 < profile.vignetting[0].k[0] < -0.35)
+            self.assertEqual((how.exact, how.rows), (0, 4))
+            self.assertAlmostEqual(how.name_score, 0.9)
+            key.aperture = 4.0
+            profile, how = store.lookup(key, lp.LookupOptions(distance_rule=lp.DistanceRule.FARTHEST))
+            self.assertEqual((how.exact, how.id[0]), (1, 3))
+            key.aperture = 22.0
+            with refused(self, lp.Status.ERROR_NOT_FOUND):
+                store.lookup(key)
+
 
 if __name__ == "__main__":
     unittest.main()

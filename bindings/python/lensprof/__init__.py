@@ -15,7 +15,7 @@ from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_bytes, simulate
 from .fit import FitImage, FitOptions, FitResult, fit_overlap, fit_radiance, transfer_rms
 from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
-from .formats import Pto, PtoImage, points_read, points_write
+from .formats import Pto, PtoImage, lensfun_read, lensfun_write, points_read, points_write
 from .geometry import Camera
 from .model import Exposure, GainGrid, Response, Vignetting, emor_table
 from .profile import Profile, ProfileKey, Provenance
@@ -32,6 +32,6 @@ __all__ = [
     "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreMode", "StoreRow",
     "DistanceRule", "Lookup", "LookupOptions", "UNKNOWN",
     "Vignetting", "correct", "emor_table", "fit_flat", "fit_overlap", "fit_radiance", "layout_channels",
-    "layout_samples", "points_read", "points_write", "sample_bytes", "sample_overlap", "sample_tracks", "simulate",
-    "status_name", "transfer_rms", "version",
+    "layout_samples", "lensfun_read", "lensfun_write", "points_read", "points_write", "sample_bytes", "sample_overlap",
+    "sample_tracks", "simulate", "status_name", "transfer_rms", "version",
 ]

@@ -306,6 +306,13 @@ class Profile(Structure):
                 ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX))]
 
 
+class ImportEntry(Structure):
+    _fields_ = [("profile", POINTER(Profile)), ("usable", c_uint32), ("reserved", c_uint32)]
+
+
+ImportVisitor = CFUNCTYPE(c_int, c_void_p, POINTER(ImportEntry))
+
+
 class Pair(Structure):
     _fields_ = [("image", c_uint32 * 2), ("xy", c_double * 2 * 2), ("value", c_double * 3 * 2)]
 
@@ -440,6 +447,7 @@ STRUCTS = {
     "lensprof_profile_key": ProfileKey,
     "lensprof_provenance": Provenance,
     "lensprof_profile": Profile,
+    "lensprof_import_entry": ImportEntry,
     "lensprof_pair": Pair,
     "lensprof_observation": Observation,
     "lensprof_sample_image": SampleImage,
@@ -566,6 +574,8 @@ FUNCTIONS = {
     "lensprof_pto_write": (_status, [_pto, c_char_p, c_size_t, _size_out]),
     "lensprof_points_read": (_status, [c_char_p, c_size_t, _pairs, c_uint32, _u32_out, _error]),
     "lensprof_points_write": (_status, [_pairs, c_uint32, _camera, c_uint32, c_char_p, c_size_t, _size_out]),
+    "lensprof_lensfun_read": (_status, [c_char_p, c_size_t, c_char_p, ImportVisitor, c_void_p, _error]),
+    "lensprof_lensfun_write": (_status, [POINTER(_profile), c_uint32, c_char_p, c_size_t, _size_out, _error]),
     # store.h
     "lensprof_store_open": (_status, [c_char_p, c_uint32, POINTER(_store), _error]),
     "lensprof_store_close": (None, [_store]),

@@ -1,7 +1,7 @@
-"""Other tools' files, from and to memory: Hugin projects and point files; see lensprof/formats.h."""
+"""Other tools' files, from and to memory: Hugin projects and point files, Lensfun databases; see lensprof/formats.h."""
 from __future__ import annotations
 
-from ctypes import POINTER, byref, c_size_t, c_uint32, create_string_buffer
+from ctypes import POINTER, byref, c_size_t, c_uint32, cast, create_string_buffer
 from typing import Any, Callable, Iterable, Sequence, Union
 
 import numpy as np
@@ -12,6 +12,7 @@ from ._library import Handle, check, lib
 from ._struct import Enumerated, Flag, Nested, Value, Vector, integer
 from .geometry import Camera
 from .model import Exposure, Response, Vignetting
+from .profile import Profile
 
 
 def _bytes(text: Union[str, bytes]) -> bytes:
@@ -154,3 +155,47 @@ def points_write(pairs: np.ndarray, cameras: Sequence[Camera]) -> bytes:
     return _written(lambda *buffer: lib.lensprof_points_write(pointer, count, frames, len(frames), *buffer),
                     f"{count} pairs over {len(cameras)} cameras: image numbers must be below that, sizes above 0, "
                     "numbers finite")
+
+
+def lensfun_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profile, bool]]:
+    """The falloffs of a Lensfun database (.xml) as profiles of about 50 kB each, in the order of the file.
+
+    False stands beside those that are no falloff, which cannot be stored or applied; provenance.doubt says why, and may
+    warn of others. source: where the text is from, for provenance.source.
+    """
+    data, error, name = _bytes(text), _abi.ErrorText(), _bytes(source)
+    if b"\0" in name:
+        raise ValueError(f"{source!r}: a source holds no zero bytes")
+    found: list[tuple[Profile, bool]] = []
+    raised: list[BaseException] = []
+
+    def visit(_user: Any, entry: Any) -> int:
+        try:
+            found.append((Profile.from_buffer_copy(entry.contents.profile.contents), bool(entry.contents.usable)))
+            return Status.OK
+        except BaseException as exception:  # must not cross C
+            raised.append(exception)
+            return Status.ERROR_CANCELLED
+
+    status = lib.lensprof_lensfun_read(data, len(data), name, _abi.ImportVisitor(visit), None, byref(error))
+    if raised:
+        raise raised[0]
+    check(status, "the database cannot be read", error)
+    return found
+
+
+def lensfun_write(profiles: Iterable[Profile]) -> str:
+    """A Lensfun database (.xml) of the falloffs of profiles, whose lens, crop factor, focal length and aperture are
+    known."""
+    given, error = list(profiles), _abi.ErrorText()
+    if not all(isinstance(profile, Profile) for profile in given):
+        raise TypeError("profiles takes an iterable of Profile")
+    kind, needed = POINTER(_abi.Profile), c_size_t()
+    pointers = (kind * len(given))(*(cast(byref(profile), kind) for profile in given))
+    status = lib.lensprof_lensfun_write(pointers, len(given), None, 0, byref(needed), byref(error))
+    if status != Status.ERROR_CAPACITY:
+        check(status, "the database cannot be written", error)
+    buffer = create_string_buffer(needed.value)
+    check(lib.lensprof_lensfun_write(pointers, len(given), buffer, needed.value, byref(needed), byref(error)),
+          "the database cannot be written", error)
+    return buffer.raw.decode()

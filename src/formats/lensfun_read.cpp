@@ -1,0 +1,281 @@
+// Lensfun databases to profiles.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <lensprof/formats.h>
+
+#include "falloff_doubt.hpp"
+#include "radius.hpp"
+#include "text.hpp"
+#include "xml.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kInfinityM = 1000.0;  // what calibrate.py writes for pictures taken at infinity
+constexpr double kAspectRatio = 1.5;   // of lenses that do not say
+constexpr const char *kLicence = "Lensfun database, CC BY-SA 3.0";
+
+struct Camera {
+    std::string maker, model;
+    uint32_t count = 0;  // cameras with this mount
+};
+
+
+// Blanks and line ends as one blank, none at the ends.
+std::string one_line(std::string_view text) {
+    std::string line;
+    for (char c : text) {
+        const bool blank = c == ' ' || (c >= '\t' && c <= '\r');
+        if (!blank) line += c;
+        else if (!line.empty() && line.back() != ' ') line += ' ';
+    }
+    if (!line.empty() && line.back() == ' ') line.pop_back();
+    return line;
+}
+
+// Text of the child with this name: that without a language, else the English one, else the first.
+std::string child_text(const pugi::xml_node &parent, const char *name) {
+    pugi::xml_node best;
+    int best_rank = 0;
+    for (pugi::xml_node child : parent.children(name)) {
+        const std::string_view lang = child.attribute("lang").value();
+        const int rank = lang.empty() ? 3 : lang == "en" ? 2 : 1;
+        if (rank > best_rank) best = child, best_rank = rank;
+    }
+    return one_line(best.child_value());
+}
+
+bool begins_with(const std::string &text, const std::string &prefix) {
+    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+    const auto same = [&](char a, char b) { return lower(a) == lower(b); };
+    return text.size() >= prefix.size() && std::equal(prefix.begin(), prefix.end(), text.begin(), same)
+           && (text.size() == prefix.size() || text[prefix.size()] == ' ' || prefix.empty());
+}
+
+class LensfunReader {
+public:
+    LensfunReader(std::string_view text, const char *source)
+        : xml_(text, "lensdatabase"), profile_(new lensprof_profile) {
+        lensprof_profile_init(profile_.get());
+        fill_provenance(source ? source : "");
+        check_version();
+        for (pugi::xml_node camera : xml_.root().children("camera")) add_camera(camera);
+    }
+
+    // Calls use(profile, usable) for every entry until it does not return OK.
+    template <typename Use>
+    lensprof_status walk(Use use);
+
+private:
+    [[noreturn]] void fail(const pugi::xml_node &node, const std::string &text,
+                           lensprof_status status = LENSPROF_ERROR_SYNTAX) const {
+        fail_at_line(xml_.line_of(node), label_ + text, status);
+    }
+
+    void check_version() const;
+    void add_camera(const pugi::xml_node &camera);
+    void fill_provenance(const std::string &source);
+    void check_text(const pugi::xml_node &node, const std::string &text, size_t capacity) const;
+    double number(const pugi::xml_node &node, std::string_view text, const char *what, double low, double high) const;
+    double attribute(const pugi::xml_node &node, const char *name, double low, double high) const;
+    double aspect_ratio(const pugi::xml_node &node, std::string_view text) const;
+    void begin_lens(const pugi::xml_node &lens);
+    void begin_calibration(const pugi::xml_node &lens, const pugi::xml_node &calibration);
+    void read_center(const pugi::xml_node &lens, double aspect);
+    double real_focal(const pugi::xml_node &entry, double focal_mm) const;
+    void read_entry(const pugi::xml_node &entry);
+
+    XmlText xml_;
+    std::unique_ptr<lensprof_profile> profile_;
+    std::map<std::string, Camera, std::less<>> cameras_;  // by mount
+    std::string label_;                                   // of the lens, for error texts
+};
+
+void LensfunReader::check_version() const {
+    const pugi::xml_attribute version = xml_.root().attribute("version");
+    if (!version) return;  // the oldest databases have none
+    double value = 0.0;
+    if (!read_whole(version.value(), 0, 1e9, value))
+        fail(xml_.root(), "the version is " + quoted(version.value()) + ", not a number; correct the file");
+    if (value > 2)
+        fail(xml_.root(), "a database of version " + quoted(version.value()) + "; lensprof reads versions up to 2",
+             LENSPROF_ERROR_UNSUPPORTED);
+}
+
+void LensfunReader::add_camera(const pugi::xml_node &camera) {
+    Camera &entry = cameras_[child_text(camera, "mount")];
+    if (entry.count++) return;
+    entry.maker = child_text(camera, "maker");
+    entry.model = child_text(camera, "model");
+}
+
+void LensfunReader::fill_provenance(const std::string &source) {
+    lensprof_provenance &provenance = profile_->provenance;
+    put_text(provenance.method, sizeof provenance.method, "import");
+    put_text(provenance.software, sizeof provenance.software, std::string("lensprof ") + lensprof_version());
+    char shown[sizeof provenance.source - 40];  // leaves room for the licence
+    put_text(shown, sizeof shown, source);
+    for (char &c : shown)
+        if ((c > 0 && c < ' ') || c == 127) c = '?';
+    const std::string name = find_not_utf8(shown) < std::string_view(shown).size() ? "" : shown;
+    put_text(provenance.source, sizeof provenance.source, name.empty() ? kLicence : name + "; " + kLicence);
+}
+
+void LensfunReader::check_text(const pugi::xml_node &node, const std::string &text, size_t capacity) const {
+    if (text.size() >= capacity)
+        fail(node, quoted(text) + " is longer than " + std::to_string(capacity - 1) + " bytes; shorten it");
+    for (char c : text)
+        if ((c > 0 && c < ' ') || c == 127) fail(node, quoted(text) + " has control characters; take them out");
+}
+
+// The text as a number of (low, high]; low itself only where it is negative.
+double LensfunReader::number(const pugi::xml_node &node, std::string_view text, const char *what, double low,
+                             double high) const {
+    const std::string word = one_line(text);
+    double value = 0.0;
+    if (!read_number(word, value))
+        fail(node, std::string(what) + " is " + quoted(word) + ", not a finite number; correct it");
+    if (!(value > low || (low < 0.0 && value == low)) || value > high)
+        fail(node, std::string(what) + " is " + quoted(word) + (low < 0.0 ? ", beyond " : ", not above 0 and up to ")
+                       + number_text(high) + "; correct it");
+    return value;
+}
+
+double LensfunReader::attribute(const pugi::xml_node &node, const char *name, double low, double high) const {
+    const pugi::xml_attribute found = node.attribute(name);
+    if (!found) fail(node, "<" + std::string(node.name()) + "> has no " + name + "; add it");
+    return number(node, found.value(), name, low, high);
+}
+
+// "3:2" or "1.5".
+double LensfunReader::aspect_ratio(const pugi::xml_node &node, std::string_view text) const {
+    const size_t colon = text.find(':');
+    const double first = number(node, text.substr(0, colon), "aspect ratio", 0.0, 1e4);
+    return colon == std::string_view::npos ? first
+                                           : first / number(node, text.substr(colon + 1), "aspect ratio", 0.0, 1e4);
+}
+
+void LensfunReader::begin_lens(const pugi::xml_node &lens) {
+    label_.clear();
+    const std::string maker = child_text(lens, "maker"), model = child_text(lens, "model");
+    if (model.empty()) fail(lens, "a <lens> without a <model>; add it");
+    const std::string name = maker.empty() || begins_with(model, maker) ? model : maker + " " + model;
+    lensprof_profile_key &key = profile_->key;
+    lensprof_profile_key_init(&key);
+    key.processing = LENSPROF_PROCESSING_RAW;
+    check_text(lens, name, sizeof key.lens);
+    put_text(key.lens, sizeof key.lens, name);
+    label_ = "lens " + quoted(name) + ": ";
+
+    const auto mounts = lens.children("mount");
+    if (std::distance(mounts.begin(), mounts.end()) != 1) return;
+    const std::string mount = child_text(lens, "mount");
+    const auto found = cameras_.find(mount);
+    const bool fixed = !mount.empty() && mount[0] >= 'a' && mount[0] <= 'z';
+    if (!fixed || found == cameras_.end() || found->second.count != 1) return;
+    check_text(lens, found->second.maker, sizeof key.camera_maker);
+    check_text(lens, found->second.model, sizeof key.camera_model);
+    put_text(key.camera_maker, sizeof key.camera_maker, found->second.maker);
+    put_text(key.camera_model, sizeof key.camera_model, found->second.model);
+}
+
+// Crop factor and centre, which the calibration of a newer database may give for itself.
+void LensfunReader::begin_calibration(const pugi::xml_node &lens, const pugi::xml_node &calibration) {
+    const pugi::xml_attribute own_crop = calibration.attribute("cropfactor"),
+                              own_aspect = calibration.attribute("aspect-ratio");
+    const pugi::xml_node crop = lens.child("cropfactor"), aspect = lens.child("aspect-ratio");
+    if (!own_crop && !crop) fail(lens, "no <cropfactor>; add it");
+    profile_->key.crop_factor = own_crop ? number(calibration, own_crop.value(), "cropfactor", 0.0, 1e4)
+                                         : number(crop, crop.child_value(), "cropfactor", 0.0, 1e4);
+    read_center(lens, own_aspect ? aspect_ratio(calibration, own_aspect.value())
+                      : aspect   ? aspect_ratio(aspect, aspect.child_value())
+                                 : kAspectRatio);
+}
+
+void LensfunReader::read_center(const pugi::xml_node &lens, double aspect) {
+    const pugi::xml_node center = lens.child("center");
+    const char *const names[2] = {"x", "y"};
+    for (int i = 0; i < 2; i++) {
+        const double value = center && center.attribute(names[i]) ? attribute(center, names[i], -1e6, 1e6) : 0.0;
+        profile_->vignetting[0].center[i] = value * half_short_side(aspect);
+    }
+}
+
+double LensfunReader::real_focal(const pugi::xml_node &entry, double focal_mm) const {
+    for (pugi::xml_node distortion : entry.parent().children("distortion")) {
+        double focal = 0.0;
+        if (distortion.attribute("real-focal") && read_number(distortion.attribute("focal").value(), focal)
+            && focal == focal_mm)
+            return attribute(distortion, "real-focal", 0.0, 1e5);
+    }
+    return focal_mm;
+}
+
+void LensfunReader::read_entry(const pugi::xml_node &entry) {
+    lensprof_profile_key &key = profile_->key;
+    key.focal_mm = attribute(entry, "focal", 0.0, 1e5);
+    key.aperture = attribute(entry, "aperture", 0.0, 1e4);
+    key.distance_m = attribute(entry, "distance", 0.0, 1e300);
+    if (key.distance_m == kInfinityM) key.distance_m = INFINITY;
+    const std::string model = entry.attribute("model").value();
+    if (model != "pa" && model != "acm")
+        fail(entry, "a falloff of model " + quoted(model) + "; lensprof reads \"pa\" and \"acm\"",
+             LENSPROF_ERROR_UNSUPPORTED);
+    static constexpr const char *kNames[2][3] = {{"k1", "k2", "k3"}, {"alpha1", "alpha2", "alpha3"}};
+    const bool acm = model == "acm";
+    std::array<double, 3> terms{};
+    for (int n = 0; n < 3; n++)  // Lensfun takes those after the first that are left out as 0
+        if (n == 0 || entry.attribute(kNames[acm][n])) terms[n] = attribute(entry, kNames[acm][n], -1e300, 1e300);
+    if (acm) terms = in_half_diagonals(terms, real_focal(entry, key.focal_mm) / half_diagonal_mm(key.crop_factor));
+    for (double k : terms)
+        if (!std::isfinite(k)) fail(entry, "coefficients beyond all numbers; correct them");
+    std::copy(terms.begin(), terms.end(), profile_->vignetting[0].k);
+}
+
+template <typename Use>
+lensprof_status LensfunReader::walk(Use use) {
+    for (pugi::xml_node lens : xml_.root().children("lens")) {
+        begin_lens(lens);
+        for (pugi::xml_node calibration : lens.children("calibration")) {
+            if (!calibration.child("vignetting")) continue;
+            begin_calibration(lens, calibration);
+            for (pugi::xml_node entry : calibration.children("vignetting")) {
+                read_entry(entry);
+                const FalloffDoubt doubt = find_doubt(profile_->vignetting[0]);
+                put_text(profile_->provenance.doubt, sizeof profile_->provenance.doubt, doubt.text);
+                const lensprof_status status = use(*profile_, doubt.usable);
+                if (status != LENSPROF_OK) return status;
+            }
+        }
+    }
+    return LENSPROF_OK;
+}
+
+}  // namespace
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_lensfun_read(const char *text, size_t bytes, const char *source,
+                                      lensprof_import_visitor visit, void *user, lensprof_error *error) {
+    if ((!text && bytes) || !visit) {
+        set_error(error, "lensprof_lensfun_read: text or visit is NULL; pass a buffer and a function");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    lensprof_status visited = LENSPROF_OK;
+    const lensprof_status status = at_boundary(error, [&] {
+        LensfunReader reader(std::string_view(bytes ? text : "", bytes), source);
+        reader.walk([](const lensprof_profile &, bool) { return LENSPROF_OK; });  // all entries are checked first
+        visited = reader.walk([&](const lensprof_profile &profile, bool usable) {
+            const lensprof_import_entry entry = {&profile, usable, 0};
+            return visit(user, &entry);
+        });
+    });
+    return status == LENSPROF_OK ? visited : status;
+}
