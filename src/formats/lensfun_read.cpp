@@ -130,6 +130,8 @@ void LensfunReader::fill_provenance(const std::string &source) {
 void LensfunReader::check_text(const pugi::xml_node &node, const std::string &text, size_t capacity) const {
     if (text.size() >= capacity)
         fail(node, quoted(text) + " is longer than " + std::to_string(capacity - 1) + " bytes; shorten it");
+    if (find_not_utf8(text) < text.size())  // by a character reference
+        fail(node, quoted(text) + " has characters that there are not; take them out");
     for (char c : text)
         if ((c > 0 && c < ' ') || c == 127) fail(node, quoted(text) + " has control characters; take them out");
 }

@@ -10,6 +10,7 @@ typedef struct world {
     lensprof_pto *pto;
     lensprof_response response;
     lensprof_exposure exposures[4];
+    lensprof_profile *profile;
 } world;
 
 static lensprof_status read_again(world *w)
@@ -59,6 +60,35 @@ static lensprof_status write_points(world *w)
     return status;
 }
 
+static lensprof_status count_entry(void *user, const lensprof_import_entry *entry)
+{
+    *(int *)user += (int)entry->usable;
+    return LENSPROF_OK;
+}
+
+static lensprof_status read_lensfun(world *w)
+{
+    (void)w;
+    const char text[] = "<lensdatabase><camera><maker>A long name of a maker</maker><mount>acme</mount></camera>"
+                        "<lens><maker>A long name of a maker</maker><model>and of a lens</model><mount>acme</mount>"
+                        "<cropfactor>1</cropfactor><calibration><vignetting model=\"pa\" focal=\"9\" aperture=\"2\" "
+                        "distance=\"1\" k1=\"-0.3\"/></calibration></lens></lensdatabase>";
+    int entries = 0;
+    lensprof_status status = lensprof_lensfun_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
+    assert_int_equal(entries, status == LENSPROF_OK);
+    return status;
+}
+
+static lensprof_status write_lensfun(world *w)
+{
+    const lensprof_profile *const profiles[1] = {w->profile};
+    char text[1000] = "untouched";
+    size_t needed = 0;
+    lensprof_status status = lensprof_lensfun_write(profiles, 1, text, sizeof text, &needed, NULL);
+    assert_true((strcmp(text, "untouched") == 0) == (status != LENSPROF_OK));
+    return status;
+}
+
 static lensprof_status read_points(world *w)
 {
     (void)w;
@@ -93,6 +123,10 @@ static void test_out_of_memory(void **state)
     (void)state;
     world *w = calloc(1, sizeof *w);
     w->pto = read_pto(SAMPLE_PTO);
+    w->profile = malloc(sizeof *w->profile);
+    lensprof_profile_init(w->profile);
+    strcpy(w->profile->key.lens, "A lens with a long name");
+    w->profile->key.crop_factor = w->profile->key.focal_mm = w->profile->key.aperture = 2;
     lensprof_response_set_linear(&w->response);
     for (int i = 0; i < 4; i++) lensprof_exposure_init(&w->exposures[i]);
     fail_each(w, read_again, 10);
@@ -100,8 +134,11 @@ static void test_out_of_memory(void **state)
     fail_each(w, draw, 2);
     fail_each(w, set_result, 20);
     fail_each(w, write_points, 1);
+    fail_each(w, read_lensfun, 5);
+    fail_each(w, write_lensfun, 5);
     fail_each(w, read_points, 0); /* needs no memory at all */
     lensprof_pto_destroy(w->pto);
+    free(w->profile);
     free(w);
 }
 

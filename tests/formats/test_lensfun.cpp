@@ -2,7 +2,8 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <sstream>
+
+#include <pugixml.hpp>
 
 #include "lensfun_support.hpp"
 
@@ -197,6 +198,7 @@ void test_wrong_values(void **) {
     expect_error(replaced(kGolden, "&#70;ixed", lengthy), LENSPROF_ERROR_SYNTAX, "longer than 127 bytes");
     expect_error(replaced(kGolden, "PowerShot X", lengthy), LENSPROF_ERROR_SYNTAX, "longer than 63 bytes");
     expect_error(replaced(kGolden, "&#70;ixed", "a&#7;b"), LENSPROF_ERROR_SYNTAX, "control characters");
+    expect_error(replaced(kGolden, "&#70;ixed", "a&#xD800;b"), LENSPROF_ERROR_SYNTAX, "characters that there are not");
     assert_ok(read_lensfun(replaced(kGolden, " version=\"2\"", "")).status);
 }
 
@@ -393,6 +395,42 @@ std::string without_comments(std::string text) {
     return text;
 }
 
+long allocations_left = -1;
+
+void *failing_allocation(size_t size) {
+    if (allocations_left == 0) return nullptr;
+    if (allocations_left > 0) allocations_left--;
+    return std::malloc(size);
+}
+
+// Every allocation of pugixml is made to fail once; test_formats_memory does so with those of lensprof.
+void test_out_of_memory(void **) {
+    const std::string lengthy(127, 'x');  // more than a page of pugixml's
+    std::vector<lensprof_profile> profiles;
+    for (int i = 0; i < 120; i++) profiles.push_back(lens_profile(lengthy.c_str(), 1 + i, 50, 2, 1, -0.1));
+    const std::string whole = write_lensfun(profiles);
+    pugi::set_memory_management_functions(failing_allocation, std::free);
+    lensprof_status status = LENSPROF_ERROR_MEMORY;
+    long good = 0;
+    for (; status != LENSPROF_OK && good < 1000; good++) {
+        allocations_left = good;
+        const Database database = read_lensfun(whole);
+        status = database.status;
+        assert_int_equal(database.entries.size(), status == LENSPROF_OK ? profiles.size() : 0);
+        if (status != LENSPROF_OK) assert_int_equal(status, LENSPROF_ERROR_MEMORY);
+    }
+    assert_true(good > 2 && good < 1000);
+    status = LENSPROF_ERROR_MEMORY;
+    for (good = 0; status != LENSPROF_OK && good < 1000; good++) {
+        allocations_left = good;
+        const std::string text = write_lensfun(profiles, &status);
+        if (status != LENSPROF_OK) assert_int_equal(status, LENSPROF_ERROR_MEMORY);
+        else assert_string_equal(text.c_str(), whole.c_str());
+    }
+    assert_true(good > 2 && good < 1000);
+    allocations_left = -1;
+}
+
 // Every file that is installed, and the statistics of what it holds.
 void test_installed_database(void **) {
     const std::filesystem::path folder = "/usr/share/lensfun/version_1";
@@ -443,6 +481,7 @@ int main() {
         cmocka_unit_test(test_capacity),
         cmocka_unit_test(test_write_refuses),
         cmocka_unit_test(test_round_trip_is_exact),
+        cmocka_unit_test(test_out_of_memory),
         cmocka_unit_test(test_installed_database),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
