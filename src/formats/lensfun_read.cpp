@@ -68,7 +68,7 @@ public:
         for (pugi::xml_node camera : xml_.root().children("camera")) add_camera(camera);
     }
 
-    // Calls use(profile, usable) for every entry until it does not return OK.
+    // Calls use(profile) for every entry until it does not return OK.
     template <typename Use>
     lensprof_status walk(Use use);
 
@@ -249,9 +249,7 @@ lensprof_status LensfunReader::walk(Use use) {
             begin_calibration(lens, calibration);
             for (pugi::xml_node entry : calibration.children("vignetting")) {
                 read_entry(entry);
-                const FalloffDoubt doubt = find_doubt(profile_->vignetting[0]);
-                put_text(profile_->provenance.doubt, sizeof profile_->provenance.doubt, doubt.text);
-                const lensprof_status status = use(*profile_, doubt.usable);
+                const lensprof_status status = use(*profile_);
                 if (status != LENSPROF_OK) return status;
             }
         }
@@ -273,9 +271,11 @@ lensprof_status lensprof_lensfun_read(const char *text, size_t bytes, const char
     lensprof_status visited = LENSPROF_OK;
     const lensprof_status status = at_boundary(error, [&] {
         LensfunReader reader(std::string_view(bytes ? text : "", bytes), source);
-        reader.walk([](const lensprof_profile &, bool) { return LENSPROF_OK; });  // all entries are checked first
-        visited = reader.walk([&](const lensprof_profile &profile, bool usable) {
-            const lensprof_import_entry entry = {&profile, usable, 0};
+        reader.walk([](lensprof_profile &) { return LENSPROF_OK; });  // all entries are checked first
+        visited = reader.walk([&](lensprof_profile &profile) {
+            const FalloffDoubt doubt = find_doubt(profile.vignetting[0]);
+            put_text(profile.provenance.doubt, sizeof profile.provenance.doubt, doubt.text);
+            const lensprof_import_entry entry = {&profile, doubt.usable, 0};
             return visit(user, &entry);
         });
     });
