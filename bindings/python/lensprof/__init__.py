@@ -5,9 +5,9 @@ with a `status`; what it could not be asked (an array of a wrong type, shape or 
 ValueError.
 """
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
-                   RESPONSE_SAMPLES, UNKNOWN, CameraKind, Direction, Encoding, FlatGrid, FlatLight, Free, GammaFrom,
+                   RESPONSE_SAMPLES, UNKNOWN, CameraKind, Direction, DistanceRule, Encoding, FlatGrid, FlatLight, Free, GammaFrom,
                    Layout, Loss, Method, Pack, Processing, Projection, ResponseKind, SampleType, Sampling, Saturated,
-                   Status, StoreMode, DistanceRule)
+                   Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE,
                       PAIR_DTYPE)
@@ -23,15 +23,15 @@ from .sample import SampleImage, SampleOptions, sample_overlap, sample_tracks
 from .store import Lookup, LookupOptions, Store, StoreRow
 
 __all__ = [
-    "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "Direction", "EMOR_MODES",
-    "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS",
+    "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "Direction", "DistanceRule",
+    "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES", "FLAT_QUALITY_DTYPE", "FLAT_SPOTS",
     "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResult", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight",
-    "FlatOptions", "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Layout", "Loss",
-    "MODES_AUTO", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey",
-    "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Response", "ResponseKind", "SampleImage",
-    "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreMode", "StoreRow",
-    "DistanceRule", "Lookup", "LookupOptions", "UNKNOWN",
-    "Vignetting", "correct", "emor_table", "fit_flat", "fit_overlap", "fit_radiance", "layout_channels",
-    "layout_samples", "lensfun_read", "lensfun_write", "points_read", "points_write", "sample_bytes", "sample_overlap",
-    "sample_tracks", "simulate", "status_name", "transfer_rms", "version",
+    "FlatOptions", "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Layout",
+    "Lookup", "LookupOptions", "Loss", "MODES_AUTO", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
+    "Processing", "Profile", "ProfileKey", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES",
+    "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status",
+    "Store", "StoreMode", "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_flat", "fit_overlap",
+    "fit_radiance", "layout_channels", "layout_samples", "lensfun_read", "lensfun_write", "points_read",
+    "points_write", "sample_bytes", "sample_overlap", "sample_tracks", "simulate", "status_name", "transfer_rms",
+    "version",
 ]
