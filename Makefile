@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build demo check test sanitize bench bench-apply install clean
+.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply install clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -18,6 +18,13 @@ test-deps: deps ## install what only tests and benchmarks need (packages-test.tx
 build: ## build the library and the program build/lensprof
 	cmake --preset release
 	cmake --build --preset release -j $(JOBS)
+
+profiles: build ## a database of the installed Lensfun data (liblensfun-data-v1): build/lensfun.db
+	@cmake/install-packages.sh packages-profiles.txt
+	rm -f build/lensfun.db.part
+	build/lensprof profile import --db build/lensfun.db.part /usr/share/lensfun/version_1/*.xml
+	mv build/lensfun.db.part build/lensfun.db
+	@echo 'try: build/lensprof query --db build/lensfun.db --lens "Canon EF 24-70mm f/2.8L USM" --focal 40 --aperture 3.2'
 
 demo: deps build ## calibrate and correct a rendered sequence, or yours: make demo PHOTOS=dir/pano.pto
 	examples/demo.sh "$(PHOTOS)"

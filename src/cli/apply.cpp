@@ -19,17 +19,6 @@ struct Options {
     std::vector<std::string> files;
 };
 
-/* CLI::Range lets NaN through. */
-CLI::Validator between(double least, double most) {
-    return CLI::Validator(
-        [=](const std::string &word) {
-            double value = 0.0;
-            const bool good = CLI::detail::lexical_cast(word, value) && value >= least && value <= most;
-            return good ? std::string() : word + format(" is not a number within %g to %g", least, most);
-        },
-        "");
-}
-
 void declare(CLI::App &app, Options &o) {
     app.add_option("--profile", o.profile, "id of the profile to use")->check(CLI::PositiveNumber);
     app.add_flag("--from-db", o.from_db, "look each picture's profile up by its EXIF");
@@ -43,10 +32,10 @@ void declare(CLI::App &app, Options &o) {
     app.add_flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
     app.add_flag("--simulate", o.kind.simulate, "put the falloff in instead of taking it out");
     app.add_option("--strength", o.kind.strength, "share of the falloff to take out, 0 to 1; default 1")
-        ->check(between(0.0, 1.0));
+        ->check(in_range(0.0, 1.0));
     app.add_option("--gain-cap", o.kind.gain_cap,
                    "corners get at most so many times their light, 1 or more, so that noise stays low; default no cap")
-        ->check(between(1.0, 1e6));
+        ->check(in_range(1.0, 1e6));
     app.add_flag("--dither", o.kind.dither,
                  "ordered 8 x 8 dither in place of rounding, in pictures of 8 bit: no bands in skies");
     app.add_option("-o,--output", o.output, "folder for the pictures")->required();

@@ -28,15 +28,21 @@ bool KeyFilter::is_empty() const {
            && aperture_ == LENSPROF_UNKNOWN && distance_ == LENSPROF_UNKNOWN;
 }
 
+lensprof_profile_key KeyFilter::key(uint32_t processing) const {
+    lensprof_profile_key key;
+    lensprof_profile_key_init(&key);
+    set_text(key.camera_maker, sizeof key.camera_maker, maker_);
+    set_text(key.camera_model, sizeof key.camera_model, camera_);
+    set_text(key.lens, sizeof key.lens, lens_);
+    key.focal_mm = focal_;
+    key.aperture = aperture_;
+    key.distance_m = distance_;
+    key.processing = processing_.empty() ? processing : processing_of_name(processing_);
+    return key;
+}
+
 std::vector<lensprof_store_row> KeyFilter::rows(lensprof_store *store, const std::string &db) const {
-    lensprof_profile_key filter;
-    lensprof_profile_key_init(&filter);
-    set_text(filter.camera_maker, sizeof filter.camera_maker, maker_);
-    set_text(filter.camera_model, sizeof filter.camera_model, camera_);
-    set_text(filter.lens, sizeof filter.lens, lens_);
-    filter.focal_mm = focal_;
-    filter.aperture = aperture_;
-    filter.distance_m = distance_;
+    const lensprof_profile_key filter = key(LENSPROF_PROCESSING_JPEG);
     lensprof_error error{};
     uint32_t found = 0;
     check(lensprof_store_list(store, &filter, nullptr, 0, &found, &error), store_path(db), &error);

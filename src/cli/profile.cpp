@@ -1,4 +1,4 @@
-/* `lensprof profile list | show | remove | export`. */
+/* `lensprof profile list | show | remove | export | import`. */
 #include <algorithm>
 
 #include "chart.hpp"
@@ -195,9 +195,12 @@ void check_verb(const std::string &verb, const ProfileOptions &o) {
 }  // namespace
 
 int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
+    if (!arguments.empty() && arguments[0] == "import")
+        return run_profile_import({arguments.begin() + 1, arguments.end()}, streams);
     std::string verb;
     ProfileOptions o;
-    CLI::App app("Lists, shows, removes or exports profiles of the database.", "lensprof profile");
+    CLI::App app("Lists, shows, removes or exports profiles of the database. `lensprof profile import` has options of its own.",
+                 "lensprof profile");
     app.add_option("VERB", verb, "list, show, remove or export")
         ->required()
         ->check(CLI::IsMember({"list", "show", "remove", "export"}));

@@ -5,36 +5,107 @@
 #include "run.hpp"
 
 namespace lensprof {
+namespace {
 
-int run_query(const std::vector<std::string> &arguments, Streams &streams) {
-    std::string db;
+struct Options {
+    std::string db, rule = "weakest";
     KeyFilter filter;
-    bool json = false;
-    CLI::App app("Prints the newest profile that matches; what is not given may be anything.", "lensprof query");
-    filter.add_options(app);
-    app.add_option("--db", db, "profile database; default the user's own");
-    app.add_flag("--json", json, "print one JSON object");
-    if (!parse(app, arguments, streams)) return 0;
-    filter.check_words();
-    if (!filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
+    double crop_factor = LENSPROF_UNKNOWN;
+    bool doubtful = false, json = false;
+};
 
-    Store store = open_store(db, LENSPROF_STORE_READ);
-    const auto rows = filter.rows(store.get(), db);
-    if (rows.empty()) throw Failure(ExitCode::not_found, filter.nothing_found(db));
+void declare(CLI::App &app, Options &o) {
+    o.filter.add_options(app);
+    app.add_option("--crop-factor", o.crop_factor, "43.27 mm over the diagonal of the camera's sensor")
+        ->check(in_range(0.01, 1e4));
+    app.add_option("--unknown-distance", o.rule,
+                   "without --distance: weakest, the weakest falloff of all stored distances, which never corrects too "
+                   "much (default), or farthest")
+        ->check(CLI::IsMember({"weakest", "farthest"}));
+    app.add_flag("--doubtful", o.doubtful, "predict also from profiles that were imported with a doubt");
+    app.add_option("--db", o.db, "profile database; default the user's own");
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.footer("When no profile is stored for the setting, the falloff is predicted from those of the same lens at other\n"
+               "settings; the answer says from which, how far away they are, and how sure it is.");
+}
+
+/* The newest of the profiles that match. */
+void answer_stored(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows,
+                   Streams &streams) {
     int64_t newest = 0;
     for (const auto &row : rows) newest = std::max(newest, row.id);
     lensprof_error error{};
     auto profile = std::make_unique<lensprof_profile>();
-    check(lensprof_store_get(store.get(), newest, profile.get(), &error), store_path(db), &error);
-    if (json) {
+    check(lensprof_store_get(store, newest, profile.get(), &error), store_path(o.db), &error);
+    if (o.json) {
         Json object = profile_json(newest, *profile);
         object["matches"] = rows.size();
         print_json(object, streams.out);
-    } else {
-        print_profile(newest, *profile, streams.out);
-        if (rows.size() > 1)
-            streams.out << rows.size() << " profiles match; this is the newest. Give more of the setting to choose.\n";
+        return;
     }
+    print_profile(newest, *profile, streams.out);
+    if (rows.size() > 1)
+        streams.out << rows.size() << " profiles match; this is the newest. Give more of the setting to choose.\n";
+}
+
+Json lookup_json(const lensprof_lookup &how) {
+    Json rows = Json::array();
+    for (uint32_t i = 0; i < how.rows; i++) rows.push_back({{"id", how.id[i]}, {"weight", how.weight[i]}});
+    return {{"exact", how.exact != 0},       {"rows", rows},
+            {"distance", how.distance},      {"sigma", how.sigma == LENSPROF_UNKNOWN ? Json() : Json(how.sigma)},
+            {"name_score", how.name_score}, {"reason", how.reason}};
+}
+
+void print_lookup(const lensprof_lookup &how, std::ostream &out) {
+    if (how.exact) out << "stored    as profile " << how.id[0] << "\n";
+    else out << format("predicted from %u profiles of this lens, the nearest (%lld) at %.2f of the 0.5 that are allowed\n",
+                       how.rows, static_cast<long long>(how.id[0]), how.distance);
+    if (how.sigma != LENSPROF_UNKNOWN) out << format("sigma     %.3f of M in the corner\n", how.sigma);
+    if (how.name_score < 1.0) out << format("name      matched with score %.1f\n", how.name_score);
+    if (*how.reason) out << "mind      " << how.reason << "\n";
+}
+
+/* The falloff between what is stored. */
+void answer_predicted(const Options &o, lensprof_store *store, Streams &streams) {
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    options.distance_rule = o.rule == "weakest" ? LENSPROF_DISTANCE_WEAKEST : LENSPROF_DISTANCE_FARTHEST;
+    options.with_doubt = o.doubtful;
+    options.any_processing = !o.filter.has_processing();
+    lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
+    key.crop_factor = o.crop_factor;
+    lensprof_lookup how{};
+    lensprof_error error{};
+    auto profile = std::make_unique<lensprof_profile>();
+    const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
+    if (status == LENSPROF_ERROR_NOT_FOUND)
+        throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db) + "; nor can it be predicted: " + how.reason);
+    check(status, store_path(o.db), &error);
+    if (o.json) {
+        Json object = profile_json(how.exact ? how.id[0] : 0, *profile);
+        object["matches"] = 0;
+        object["lookup"] = lookup_json(how);
+        print_json(object, streams.out);
+        return;
+    }
+    print_profile(how.exact ? how.id[0] : 0, *profile, streams.out);
+    print_lookup(how, streams.out);
+}
+
+}  // namespace
+
+int run_query(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app("Prints the newest profile that matches; what is not given may be anything.", "lensprof query");
+    declare(app, o);
+    if (!parse(app, arguments, streams)) return 0;
+    o.filter.check_words();
+    if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
+    Store store = open_store(o.db, LENSPROF_STORE_READ);
+    const auto rows = o.filter.rows(store.get(), o.db);
+    if (rows.empty() && !o.filter.has_lens()) throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db));
+    if (rows.empty()) answer_predicted(o, store.get(), streams);
+    else answer_stored(o, store.get(), rows, streams);
     return 0;
 }
 

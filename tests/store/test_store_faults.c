@@ -3,7 +3,7 @@
 #include "store_fixture.h"
 
 #ifndef STEP
-#define STEP 23 /* every 23rd operation is made to fail; in the slow variant every third */
+#define STEP 23 /* every 23rd operation is made to fail; in the slow variant every one */
 #endif
 
 static int countdown = -1; /* faults when it comes to 0; negative = never */

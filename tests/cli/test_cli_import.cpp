@@ -1,0 +1,83 @@
+/* `lensprof profile import`, and `lensprof query` for settings that are not stored. */
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+using namespace picture_files;
+
+namespace {
+
+std::string entry(double focal, double aperture, double k1, double k2 = 0.0) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "<vignetting model=\"pa\" focal=\"%g\" aperture=\"%g\" distance=\"1000\" k1=\"%g\" k2=\"%g\" k3=\"0\"/>\n",
+                  focal, aperture, k1, k2);
+    return text;
+}
+
+std::string database(const std::string &entries) {
+    return "<lensdatabase version=\"1\"><lens><maker>Example</maker><model>Example 24-70mm f/2.8</model>"
+           "<mount>Generic</mount><cropfactor>1.5</cropfactor><calibration>" + entries +
+           "</calibration></lens></lensdatabase>\n";
+}
+
+std::string make_file() {
+    save_text(work("lenses.xml"),
+              database(entry(24, 2.8, -0.6) + entry(24, 4, -0.35) + entry(24, 8, -0.15) + entry(70, 2.8, -0.4) +
+                       entry(70, 4, -0.25) + entry(70, 8, -0.1) + entry(50, 2.8, -0.3) + entry(50, 4, -1.9, 0.1)));
+    return work("lenses.xml");
+}
+
+Words import_words() { return {"profile", "import", "--db", work("l.db")}; }
+
+void test_import(void **) {
+    const std::string file = make_file();
+    const std::string said = must_exit(done, import_words() + Words{file});
+    assert_true(contains(said, "imported 7 falloffs of 1 lenses from 1 file"));
+    assert_true(contains(said, "2 are doubtful"));
+    const Json again = json_of(import_words() + Words{"--json", file});
+    assert_int_equal(again["stored"], 0);
+    assert_int_equal(again["known"], 7);
+    assert_int_equal(again["flagged"].size(), 2);
+    assert_true(again["flagged"][0]["stored"].get<bool>() != again["flagged"][1]["stored"].get<bool>());
+    assert_int_equal(json_of({"profile", "list", "--db", work("l.db"), "--json"})["profiles"].size(), 7);
+}
+
+void test_query_between(void **) {
+    must_exit(done, import_words() + Words{make_file()});
+    const Words query = {"query", "--db", work("l.db"), "--lens", "example 24-70MM F2.8"};
+    const Json json = json_of(query + Words{"--focal", "35", "--aperture", "3.4", "--distance", "inf", "--json"});
+    const double k1 = json["vignetting"]["k"][0][0].get<double>();
+    assert_true(k1 < -0.25 && k1 > -0.6);
+    assert_false(json["lookup"]["exact"].get<bool>());
+    assert_true(json["lookup"]["rows"].size() >= 6);
+    assert_true(json["lookup"]["sigma"].get<double>() > 0.0);
+    assert_true(json["id"].is_null());
+    const std::string said = must_exit(done, query + Words{"--focal", "35", "--aperture", "3.4"});
+    assert_true(contains(said, "predicted from") && contains(said, "the weakest falloff of those stored is taken"));
+    assert_true(contains(said, "Lensfun database, CC BY-SA 3.0"));
+    assert_refused(not_found, query + Words{"--focal", "35", "--aperture", "32"}, {"aperture is beyond"});
+    assert_refused(not_found, query + Words{"--focal", "35", "--aperture", "3.4", "--crop-factor", "1"},
+                   {"smaller sensors only"});
+    assert_refused(not_found, {"query", "--db", work("l.db"), "--lens", "Nothing 50mm", "--focal", "50", "--aperture", "2"},
+                   {"no profile of a lens of this name"});
+    assert_refused(usage, query + Words{"--unknown-distance", "nearest"}, {"--unknown-distance"});
+}
+
+/* All files or none. */
+void test_import_refuses(void **) {
+    const std::string good = make_file();
+    save_text(work("cut.xml"), database(entry(24, 2.8, -0.6)).substr(0, 150));
+    assert_refused(unreadable, import_words() + Words{good, work("cut.xml")}, {work("cut.xml")});
+    must_exit(done, import_words() + Words{good});
+    assert_refused(unreadable, import_words() + Words{good, work("cut.xml")}, {work("cut.xml")});
+    assert_refused(unreadable, import_words() + Words{work("none.xml")}, {work("none.xml")});
+    assert_refused(unreadable, import_words() + Words{work("")}, {"is a folder"});
+    assert_refused(usage, {"profile", "import"}, {"FILES"});
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {CLI_TEST(test_import), CLI_TEST(test_query_between), CLI_TEST(test_import_refuses)};
+    return cmocka_run_group_tests(tests, make_scene, remove_folder);
+}
