@@ -21,7 +21,7 @@ void lensprof_lookup_options_init(lensprof_lookup_options *options)
 /* A row of the lens: how well it fits the camera, and its node. */
 typedef struct candidate {
     lp_falloff_node node;
-    int of_unit, of_camera;
+    int of_unit, of_camera, has_covariance;
     double crop;
     uint32_t processing;
 } candidate;
@@ -36,7 +36,7 @@ typedef struct candidates {
 
 #define ROWS_OF_LENS(name, unit, crop, doubt) \
     "SELECT id, camera_maker, camera_model, lens, " unit ", " crop ", focal_mm, aperture, distance_m, processing," \
-    " curve, k1, k2, k3, vignetting_curves FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
+    " curve, k1, k2, k3, vignetting_curves, covariance_size FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
     " = ?1 AND (?2 OR " doubt " = '') AND (?3 OR processing = ?4) ORDER BY id, curve"
 
 static const char *const rows_sql[2] = {
@@ -89,6 +89,7 @@ static int take_row(sqlite3_stmt *s, const lensprof_profile_key *key, candidates
         one->node.id = id;
         one->of_unit = unit, one->of_camera = camera;
         one->crop = known_or_unknown(s, 5);
+        one->has_covariance = sqlite3_column_int(s, 15) > 0;
         one->node.focal_mm = known_or_unknown(s, 6);
         one->node.aperture = known_or_unknown(s, 7);
         one->node.distance_m = known_or_unknown(s, 8);
@@ -306,6 +307,7 @@ static lensprof_status weigh(lensprof_store *store, candidates *found, lensprof_
 {
     lensprof_status status = LENSPROF_OK;
     for (uint32_t i = 0; i < found->count && status == LENSPROF_OK; i++) {
+        if (!found->all[i].has_covariance) continue;
         status = lp_store_fetch(store, found->all[i].node.id, error);
         if (status == LENSPROF_OK) found->all[i].node.variance = corner_variance(&store->scratch);
     }
