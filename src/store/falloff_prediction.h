@@ -35,7 +35,7 @@ typedef struct lp_falloff_prediction {
  * covariance of M is (1 + d) e^-d + const; N0 is the smallest f-number known at this focal length or a longer one, so
  * that t = 1 is wide open. From curves a mean trend -0.4 t^2 r^2 is taken first. Axes, kernel and constants are those of
  * the smallest leave-one-out error over half of the lenses of Lensfun's database, checked on the other half
- * (docs/benchmarks.md). A prediction leaves the range of its neighbours' curves by no more than half of that range and
+ * (docs/database.md). A prediction leaves the range of its neighbours' curves by no more than half of that range and
  * 0.02. */
 int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
                        lp_falloff_prediction *prediction);
