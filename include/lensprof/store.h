@@ -1,7 +1,7 @@
 /* lensprof/store.h - the profile database (SQLite).
  *
- * Every call is one transaction, or part of the caller's: it happens whole or not at all, also when the process is killed. A file of an older
- * layout is read as it is; the first call that writes brings it up to date, which older versions then refuse.
+ * Every call is one transaction, or part of the caller's: it happens whole or not at all, also when the process is
+ * killed. A file of an older layout is read as it is; the first call that writes brings it up to date, which older versions then refuse.
  * Threads: a handle belongs to one thread at a time; several processes may open the same file. */
 #ifndef LENSPROF_STORE_H
 #define LENSPROF_STORE_H
@@ -73,7 +73,7 @@ typedef struct lensprof_lookup {
     double sigma;          /* standard error of M in the corner, a 68 % band; LENSPROF_UNKNOWN for an exact one without
                               covariance */
     double name_score;     /* of the lens's name: 1 the same but for case and blanks, 0.9 but for signs, 0.8 but for a
-                              maker in front, less where only some words are the same */
+                              maker in front */
     char reason[256];      /* what to mind; where nothing is found, why */
 } lensprof_lookup;
 

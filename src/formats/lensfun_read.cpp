@@ -10,6 +10,7 @@
 #include <lensprof/formats.h>
 
 #include "falloff_doubt.hpp"
+#include "lensfun.hpp"
 #include "radius.hpp"
 #include "text.hpp"
 #include "xml.hpp"
@@ -17,15 +18,12 @@
 namespace lensprof {
 namespace {
 
-constexpr double kInfinityM = 1000.0;  // what calibrate.py writes for pictures taken at infinity
-constexpr double kAspectRatio = 1.5;   // of lenses that do not say
 constexpr const char *kLicence = "Lensfun database, CC BY-SA 3.0";
 
 struct Camera {
     std::string maker, model;
     uint32_t count = 0;  // cameras with this mount
 };
-
 
 // Blanks and line ends as one blank, none at the ends.
 std::string one_line(std::string_view text) {
@@ -197,7 +195,7 @@ void LensfunReader::begin_calibration(const pugi::xml_node &lens, const pugi::xm
                                          : number(crop, crop.child_value(), "cropfactor", 0.0, 1e4);
     read_center(lens, own_aspect ? aspect_ratio(calibration, own_aspect.value())
                       : aspect   ? aspect_ratio(aspect, aspect.child_value())
-                                 : kAspectRatio);
+                                 : kLensfunAspectRatio);
 }
 
 void LensfunReader::read_center(const pugi::xml_node &lens, double aspect) {
@@ -224,7 +222,7 @@ void LensfunReader::read_entry(const pugi::xml_node &entry) {
     key.focal_mm = attribute(entry, "focal", 0.0, 1e5);
     key.aperture = attribute(entry, "aperture", 0.0, 1e4);
     key.distance_m = attribute(entry, "distance", 0.0, 1e300);
-    if (key.distance_m == kInfinityM) key.distance_m = INFINITY;
+    if (key.distance_m == kLensfunInfinityM) key.distance_m = INFINITY;
     const std::string model = entry.attribute("model").value();
     if (model != "pa" && model != "acm")
         fail(entry, "a falloff of model " + quoted(model) + "; lensprof reads \"pa\" and \"acm\"",

@@ -8,6 +8,7 @@
 
 #include <lensprof/formats.h>
 
+#include "lensfun.hpp"
 #include "radius.hpp"
 #include "text.hpp"
 #include "xml.hpp"
@@ -15,8 +16,6 @@
 namespace lensprof {
 namespace {
 
-constexpr double kInfinityM = 1000.0;
-constexpr double kAspectRatio = 1.5;  // profiles do not know their frame's
 constexpr const char *kMount = "Generic";  // which Lensfun's cameras with exchangeable lenses take
 
 using Setting = std::tuple<double, double, double>;  // focal length, aperture, distance
@@ -89,8 +88,8 @@ WrittenLens begin_lens(pugi::xml_node root, const lensprof_profile &profile) {
     if (center[0] != 0.0 || center[1] != 0.0) {
         append_text(lens, "aspect-ratio", "3:2");
         pugi::xml_node node = append(lens, "center");
-        append_number(node, "x", center[0] / half_short_side(kAspectRatio));
-        append_number(node, "y", center[1] / half_short_side(kAspectRatio));
+        append_number(node, "x", center[0] / half_short_side(kLensfunAspectRatio));
+        append_number(node, "y", center[1] / half_short_side(kLensfunAspectRatio));
     }
     return {append(lens, "calibration"), {center[0], center[1]}, {}};
 }
@@ -102,7 +101,7 @@ void append_entry(WrittenLens &lens, const lensprof_profile &profile, uint32_t i
            "another centre than an earlier profile of " + quoted(key.lens)
                + ", and Lensfun has one a lens; fit it without");
     const bool far = key.distance_m == LENSPROF_UNKNOWN || std::isinf(key.distance_m);
-    const Setting setting{key.focal_mm, key.aperture, far ? kInfinityM : key.distance_m};
+    const Setting setting{key.focal_mm, key.aperture, far ? kLensfunInfinityM : key.distance_m};
     demand(lens.settings.insert(setting).second, index,
            "lens " + quoted(key.lens) + " and setting of an earlier profile; leave one out");
     pugi::xml_node entry = append(lens.calibration, "vignetting");

@@ -16,9 +16,14 @@ typedef struct point {
     uint32_t node;
 } point;
 
+static double distance(const point *a, const point *b)
+{
+    return sqrt((a->x - b->x) * (a->x - b->x) + (a->t - b->t) * (a->t - b->t) + (a->z - b->z) * (a->z - b->z));
+}
+
 static double covariance(const point *a, const point *b)
 {
-    const double d = sqrt((a->x - b->x) * (a->x - b->x) + (a->t - b->t) * (a->t - b->t) + (a->z - b->z) * (a->z - b->z));
+    const double d = distance(a, b);
     return (1.0 + d) * exp(-d) + ANY_LEVEL;
 }
 
@@ -62,14 +67,14 @@ static int is_repeated(const lp_falloff_node *nodes, uint32_t count, uint32_t i)
 }
 
 /* The nearest nodes, nearest first, to points[count]; returns how many are used. */
-static uint32_t find_neighbours(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at, point *points)
+static uint32_t find_neighbours(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
+                                const point *here, point *points)
 {
-    const point here = point_of(nodes, count, at, at);
     uint32_t kept = 0;
     for (uint32_t i = 0; i < count; i++) {
         if (is_repeated(nodes, count, i)) continue;
         point p = point_of(nodes, count, at, &nodes[i]);
-        p.d = sqrt((p.x - here.x) * (p.x - here.x) + (p.t - here.t) * (p.t - here.t) + (p.z - here.z) * (p.z - here.z));
+        p.d = distance(&p, here);
         p.node = i;
         points[kept++] = p;
     }
@@ -144,7 +149,7 @@ static void restrain(const lp_falloff_node *nodes, const point *points, uint32_t
     if (changed) lp_fit_falloff(values, k);
 }
 
-/* Means of the neighbours, to which differences are weighted; returns s^2 of the process. */
+/* The neighbours' mean and their weighted differences from it, trends taken out first and put back here. */
 static void combine(const lp_falloff_node *nodes, const point *points, uint32_t used, const point *here,
                     const double *weight, double k[3][3])
 {
@@ -188,7 +193,7 @@ int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_fa
     point *points = malloc(count * sizeof *points);
     if (!points) return -1;
     const point here = point_of(nodes, count, at, at);
-    const uint32_t used = find_neighbours(nodes, count, at, points);
+    const uint32_t used = find_neighbours(nodes, count, at, &here, points);
     prediction->nearest = points[0].d;
     if (points[0].d > LP_FALLOFF_REACH) {
         free(points);

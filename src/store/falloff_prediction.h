@@ -2,9 +2,9 @@
 #ifndef LENSPROF_STORE_FALLOFF_PREDICTION_H
 #define LENSPROF_STORE_FALLOFF_PREDICTION_H
 
-#include <stdint.h>
+#include <lensprof/store.h>
 
-#define LP_NEIGHBOURS 24
+#define LP_NEIGHBOURS LENSPROF_LOOKUP_ROWS /* a lookup names them all */
 
 /* What is known at one setting. distance_m may be infinite. */
 typedef struct lp_falloff_node {
@@ -25,7 +25,7 @@ typedef struct lp_falloff_prediction {
     } row[LP_NEIGHBOURS]; /* nearest first; weights add up to nearly 1 */
 } lp_falloff_prediction;
 
-/* Beyond this distance nothing is predicted. One is about two stops from wide open, or four focal lengths. */
+/* Beyond this distance nothing is predicted: two stops from wide open, or a factor 2 in focal length. */
 #define LP_FALLOFF_REACH 0.5
 
 /* The falloff at a setting; `count` > 0 nodes. 0 where the nearest node is beyond LP_FALLOFF_REACH; then only `nearest`
@@ -36,7 +36,7 @@ typedef struct lp_falloff_prediction {
  * that t = 1 is wide open. From curves a mean trend -0.4 t^2 r^2 is taken first. Axes, kernel and constants are those of
  * the smallest leave-one-out error over half of the lenses of Lensfun's database, checked on the other half
  * (docs/database.md). A prediction leaves the range of its neighbours' curves by no more than half of that range and
- * 0.02. */
+ * 0.02, and stays above half of the lowest. Returns -1 without memory. */
 int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
                        lp_falloff_prediction *prediction);
 

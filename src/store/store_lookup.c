@@ -35,8 +35,7 @@ typedef struct candidates {
 /* ---- rows ---- */
 
 #define ROWS_OF_LENS(name, unit, crop, doubt) \
-    "SELECT id, camera_maker, camera_model, lens, " unit ", " crop ", focal_mm, aperture, distance_m, processing," \
-    " curve, k1, k2, k3, vignetting_curves, covariance_size FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
+    "SELECT id, camera_model, lens, " unit ", " crop ", focal_mm, aperture, distance_m, curve, k1, k2, k3, vignetting_curves, covariance_size FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
     " = ?1 AND (?2 OR " doubt " = '') AND (?3 OR processing = ?4) ORDER BY id, curve"
 
 static const char *const rows_sql[2] = {
@@ -62,41 +61,52 @@ static int fits(const char *own, const char *asked)
     return lp_name_score(own, asked) >= 0.8 ? 1 : -1;
 }
 
-static double known_or_unknown(sqlite3_stmt *statement, int column)
+/* One curve of a row, as rows_sql has it. */
+typedef struct row {
+    lensprof_profile_key key;
+    int64_t id, curve, curves, covariance_size;
+    double k[3];
+} row;
+
+/* False, with the reader's column, for what no profile has. */
+static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r)
 {
-    return sqlite3_column_type(statement, column) == SQLITE_NULL ? LENSPROF_UNKNOWN
-                                                                 : sqlite3_column_double(statement, column);
+    *reader = (lp_store_reader){statement, 0, NULL};
+    lensprof_profile_key_init(&r->key);
+    r->id = lp_read_integer(reader, 1, INT64_MAX);
+    lp_read_text(reader, r->key.camera_model, sizeof r->key.camera_model);
+    lp_read_text(reader, r->key.lens, sizeof r->key.lens);
+    lp_read_text(reader, r->key.unit, sizeof r->key.unit);
+    r->key.crop_factor = lp_read_known(reader);
+    r->key.focal_mm = lp_read_known(reader);
+    r->key.aperture = lp_read_known(reader);
+    r->key.distance_m = lp_read_known(reader);
+    r->curve = lp_read_integer(reader, 0, 2);
+    for (int n = 0; n < 3; n++) r->k[n] = lp_read_real(reader);
+    r->curves = lp_read_integer(reader, 1, 3);
+    r->covariance_size = lp_read_integer(reader, 0, LENSPROF_COVARIANCE_MAX);
+    if (!reader->bad && lensprof_profile_key_validate(&r->key) != LENSPROF_OK) reader->bad = "key";
+    return !reader->bad;
 }
 
-static const char *text_of(sqlite3_stmt *statement, int column)
+/* Takes a row that fits the key; its first curve comes first. False without memory. */
+static bool take_row(const row *r, const lensprof_profile_key *key, candidates *found)
 {
-    const char *text = (const char *)sqlite3_column_text(statement, column);
-    return text ? text : "";
-}
-
-/* Takes a row with one curve of a falloff. SQLITE_OK or SQLITE_NOMEM. */
-static int take_row(sqlite3_stmt *s, const lensprof_profile_key *key, candidates *found)
-{
-    const int64_t id = sqlite3_column_int64(s, 0);
-    const int curve = sqlite3_column_int(s, 10), curves = sqlite3_column_int(s, 14);
     candidate *one = found->count ? &found->all[found->count - 1] : NULL;
-    if (!one || one->node.id != id) {
-        const int unit = fits(text_of(s, 4), key->unit), camera = fits(text_of(s, 2), key->camera_model);
-        if (unit < 0 || (camera < 0 && *key->camera_model) || curve != 0) return SQLITE_OK;
-        const double score = lp_name_score(text_of(s, 3), key->lens);
-        if (!(one = add(found))) return SQLITE_NOMEM;
-        found->name_score = fmax(found->name_score, score);
-        one->node.id = id;
-        one->of_unit = unit, one->of_camera = camera;
-        one->crop = known_or_unknown(s, 5);
-        one->has_covariance = sqlite3_column_int(s, 15) > 0;
-        one->node.focal_mm = known_or_unknown(s, 6);
-        one->node.aperture = known_or_unknown(s, 7);
-        one->node.distance_m = known_or_unknown(s, 8);
-    }
-    for (int c = curves == 3 ? curve : 0; c < (curves == 3 ? curve + 1 : 3) && c < 3 && c >= 0; c++)
-        for (int n = 0; n < 3; n++) one->node.k[c][n] = sqlite3_column_double(s, 11 + n);
-    return SQLITE_OK;
+    if (!one || one->node.id != r->id) {
+        const int unit = fits(r->key.unit, key->unit), camera = fits(r->key.camera_model, key->camera_model);
+        if (unit < 0 || (camera < 0 && *key->camera_model) || r->curve != 0) return true;
+        if (!(one = add(found))) return false;
+        found->name_score = fmax(found->name_score, lp_name_score(r->key.lens, key->lens));
+        one->of_unit = unit, one->of_camera = camera, one->has_covariance = r->covariance_size > 0;
+        one->crop = r->key.crop_factor;
+        one->node.id = r->id;
+        one->node.focal_mm = r->key.focal_mm;
+        one->node.aperture = r->key.aperture;
+        one->node.distance_m = r->key.distance_m;
+        for (int c = 0; c < 3; c++) memcpy(one->node.k[c], r->k, sizeof r->k); /* of all, unless others follow */
+    } else memcpy(one->node.k[r->curve], r->k, sizeof r->k);
+    return true;
 }
 
 static lensprof_status read_rows(lensprof_store *store, const char *name, const lensprof_profile_key *key,
@@ -110,11 +120,13 @@ static lensprof_status read_rows(lensprof_store *store, const char *name, const 
     lp_bind_integer(&binder, o->any_processing);
     lp_bind_text(&binder, lp_store_processings[key->processing]);
     int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
-    while (rc == SQLITE_ROW) {
-        rc = take_row(binder.statement, key, found);
-        if (rc == SQLITE_OK) rc = sqlite3_step(binder.statement);
+    while (rc == SQLITE_ROW && status == LENSPROF_OK) {
+        lp_store_reader reader;
+        row r;
+        if (!read_row(binder.statement, &reader, &r)) status = lp_store_fail_profile(store, r.id, reader.bad, error);
+        else rc = take_row(&r, key, found) ? sqlite3_step(binder.statement) : SQLITE_NOMEM;
     }
-    if (rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
     sqlite3_finalize(binder.statement);
     return status;
 }
@@ -160,10 +172,10 @@ static void rescale(candidate *c, const lensprof_profile_key *key)
 
 /* ---- settings ---- */
 
-static double *setting(lp_falloff_node *node, int which)
-{
-    return which == 0 ? &node->focal_mm : which == 1 ? &node->aperture : &node->distance_m;
-}
+/* Focal length for 0, aperture for 1. */
+static double setting(const lp_falloff_node *node, int which) { return which ? node->aperture : node->focal_mm; }
+
+static void set(lp_falloff_node *node, int which, double value) { *(which ? &node->aperture : &node->focal_mm) = value; }
 
 static int is_same(double a, double b) { return a == b || fabs(a - b) <= 1e-6 * fmin(a, b); }
 
@@ -175,19 +187,17 @@ static const char *settle(candidates *found, lp_falloff_node *at, int which)
                                           "the aperture is not known, and the lens has several; give it"};
     static const char *const useless[] = {"no profile of this lens has a focal length",
                                           "no profile of this lens has an aperture"};
-    double *asked = setting(at, which);
     uint32_t kept = 0;
-    if (*asked == LENSPROF_UNKNOWN) {
-        *asked = *setting(&found->all[0].node, which);
+    if (setting(at, which) == LENSPROF_UNKNOWN) {
+        const double only = setting(&found->all[0].node, which);
         for (uint32_t i = 1; i < found->count; i++)
-            if (!is_same(*setting(&found->all[i].node, which), *asked)) return missing[which];
-        if (*asked != LENSPROF_UNKNOWN) return NULL;
-        *asked = 1.0; /* nobody knows: no difference */
-        for (uint32_t i = 0; i < found->count; i++) *setting(&found->all[i].node, which) = 1.0;
+            if (!is_same(setting(&found->all[i].node, which), only)) return missing[which];
+        set(at, which, only != LENSPROF_UNKNOWN ? only : 1.0); /* where nobody knows it makes no difference */
+        for (uint32_t i = 0; i < found->count && only == LENSPROF_UNKNOWN; i++) set(&found->all[i].node, which, 1.0);
         return NULL;
     }
     for (uint32_t i = 0; i < found->count; i++)
-        if (*setting(&found->all[i].node, which) != LENSPROF_UNKNOWN) found->all[kept++] = found->all[i];
+        if (setting(&found->all[i].node, which) != LENSPROF_UNKNOWN) found->all[kept++] = found->all[i];
     found->count = kept;
     return kept ? NULL : useless[which];
 }
@@ -199,18 +209,15 @@ static int is_beyond(const candidates *found, const lp_falloff_node *at, int whi
     double low = INFINITY, high = 0.0, above_low = INFINITY, below_high = 0.0;
     const double single = which ? 1.0 / 6.0 : 1.0 / 12.0; /* log2; of the f-number half a stop counts as 1/4 */
     for (uint32_t i = 0; i < found->count; i++) {
-        lp_falloff_node node = found->all[i].node;
-        const double value = log2(*setting(&node, which));
+        const double value = log2(setting(&found->all[i].node, which));
         low = fmin(low, value), high = fmax(high, value);
     }
     for (uint32_t i = 0; i < found->count; i++) {
-        lp_falloff_node node = found->all[i].node;
-        const double value = log2(*setting(&node, which));
+        const double value = log2(setting(&found->all[i].node, which));
         if (value > low + 1e-6) above_low = fmin(above_low, value);
         if (value < high - 1e-6) below_high = fmax(below_high, value);
     }
-    lp_falloff_node here = *at;
-    const double asked = log2(*setting(&here, which)), least = 1e-6;
+    const double asked = log2(setting(at, which)), least = 1e-6;
     const double before = high - low > 1e-6 ? fmax(above_low - low, single) : single;
     const double behind = high - low > 1e-6 ? fmax(high - below_high, single) : single;
     return asked < low - before - least || asked > high + behind + least;
@@ -270,7 +277,8 @@ static double corner_variance(const lensprof_profile *p)
 {
     uint32_t first = 0;
     double sum = 0.0;
-    for (uint32_t c = 0; c < p->responses; c++) first += p->response[c].kind == LENSPROF_RESPONSE_EMOR ? p->response[c].modes : 0;
+    for (uint32_t c = 0; c < p->responses; c++)
+        if (p->response[c].kind == LENSPROF_RESPONSE_EMOR) first += p->response[c].modes;
     if (p->covariance_size < first + 3) return 0.0;
     for (uint32_t i = first; i < first + 3; i++)
         for (uint32_t j = first; j < first + 3; j++) sum += p->covariance[i * p->covariance_size + j];
@@ -362,7 +370,8 @@ static lensprof_status answer(lensprof_store *store, const lensprof_profile_key 
 {
     lp_falloff_node at = {0, key->focal_mm, key->aperture, key->distance_m, {{0}}, 0.0};
     lookup->name_score = found->name_score;
-    if (!found->count) return refuse(store, lookup, "no profile of a lens of this name; list the profiles to see which there are", error);
+    if (!found->count)
+        return refuse(store, lookup, "no profile of a lens of this name; list the profiles to see which there are", error);
     if (!keep_best(found, key)) return refuse(store, lookup, "this lens was measured on smaller sensors only", error);
     const int64_t same = find_exact(found, &at, key);
     if (same > 0) {

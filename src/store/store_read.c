@@ -13,8 +13,8 @@
 #define DOUBT_1 "''"
 
 #define ROW_COLUMNS(unit, crop, doubt) \
-    "id, camera_maker, camera_model, lens, " unit " AS unit, " crop " AS crop_factor, focal_mm, aperture, distance_m, processing, method, software, source," \
-    " created_unix_s, images, pairs, heldout_rms, inlier_share, " doubt " AS doubt"
+    "id, camera_maker, camera_model, lens, " unit " AS unit, " crop " AS crop_factor, focal_mm, aperture," \
+    " distance_m, processing, method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, " doubt " AS doubt"
 
 /* Texts are equal without ASCII case and outer blanks. */
 #define SAME_TEXT(column, value) "trim(" column ") COLLATE NOCASE = trim(" value ")"

@@ -264,6 +264,25 @@ static void test_doubt_and_processing(void **state)
     lensprof_store_close(store);
 }
 
+/* What no profile has, by another program's hand. */
+static void test_damaged_rows(void **state)
+{
+    static const char *const damages[] = {"profiles SET aperture = -2.0", "profiles SET focal_mm = 0.0",
+                                          "vignettings SET k1 = 9e999", "profiles SET camera_model = char(7)"};
+    const place *here = *state;
+    for (size_t i = 0; i < sizeof damages / sizeof *damages; i++) {
+        char sql[120];
+        lensprof_store *store = zoom_store(here);
+        snprintf(sql, sizeof sql, "PRAGMA ignore_check_constraints = ON; UPDATE %s", damages[i]);
+        run_sql(here->path, sql);
+        memset(&answered, 0x5A, sizeof answered);
+        assert_int_equal(ask(store, zoom, 28, 2.4, INFINITY), LENSPROF_ERROR_CORRUPT);
+        assert_int_equal(((unsigned char *)&answered)[7], 0x5A);
+        lensprof_store_close(store);
+        unlink(here->path);
+    }
+}
+
 static void test_covariance_counts(void **state)
 {
     (void)state;
@@ -340,6 +359,7 @@ int main(void)
         store_test(test_which_rows),
         store_test(test_unknown_distance),
         store_test(test_doubt_and_processing),
+        store_test(test_damaged_rows),
         store_test(test_covariance_counts),
         store_test(test_transactions),
         store_test(test_arguments),

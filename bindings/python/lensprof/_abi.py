@@ -289,7 +289,8 @@ class FixedPlan(Structure):
 
 class ProfileKey(Structure):
     _fields_ = [("camera_maker", c_char * 64), ("camera_model", c_char * 64), ("lens", c_char * 128),
-                ("unit", c_char * 64), ("crop_factor", c_double), ("focal_mm", c_double), ("aperture", c_double), ("distance_m", c_double), ("processing", c_uint32),
+                ("unit", c_char * 64), ("crop_factor", c_double), ("focal_mm", c_double),
+                ("aperture", c_double), ("distance_m", c_double), ("processing", c_uint32),
                 ("reserved", c_uint32)]
 
 
