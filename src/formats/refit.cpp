@@ -169,7 +169,8 @@ double left_at(const FalloffMap &map, const lensprof_vignetting &falloff, uint32
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (uint32_t j = down.low; j <= down.high; j++)
         for (uint32_t i = across.low; i <= across.high; i++) {
-            const double value = values[size_t(j) * map.columns + i], px = map.x0 + i * map.dx, py = map.y0 + j * map.dy;
+            const double value = values[size_t(j) * map.columns + i];
+            const double px = map.x0 + i * map.dx, py = map.y0 + j * map.dy;
             if (value < scale.lowest) continue;
             const double r2 = lensprof_vignetting_r2(&falloff, map.width, map.height, px, py, nullptr);
             const Eigen::Vector3d at(1.0, (px - x) / step_x, (py - y) / step_y);
@@ -180,7 +181,8 @@ double left_at(const FalloffMap &map, const lensprof_vignetting &falloff, uint32
     if (count == 0.0) return 1.0;
     const double spread = std::min(normal(1, 1), normal(2, 2));
     const bool plane = count >= 6.0 && spread > 0.01 * count;
-    const double left = plane ? (normal + 1e-6 * count * Eigen::Matrix3d::Identity()).ldlt().solve(right)[0] : right[0] / count;
+    normal.diagonal().array() += 1e-6 * count;
+    const double left = plane ? normal.ldlt().solve(right)[0] : right[0] / count;
     return std::clamp(left, kLowest, 1.0 / kLowest);
 }
 
@@ -252,7 +254,8 @@ double profile_attenuation(const lensprof_profile &profile, uint32_t width, uint
 
 double fit_map(const FalloffMap &map, lensprof_profile &profile) {
     for (double value : map.attenuation)
-        if (!std::isfinite(value)) throw FormatFailure{LENSPROF_ERROR_NOT_FINITE, "a map that is not finite; correct it"};
+        if (!std::isfinite(value))
+            throw FormatFailure{LENSPROF_ERROR_NOT_FINITE, "a map that is not finite; correct it"};
     for (uint32_t c = 0; c < map.channels; c++)
         if (!(largest(map, c) > 0.0)) fail("a map without a value above 0; correct it");
     MapFit fit(map);

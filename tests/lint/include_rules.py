@@ -73,7 +73,7 @@ LAYERS = {
     "src/fit": Layer(FIT_API, C_ARITHMETIC | CPP_LIBRARY | {"Eigen/*", "nlopt.h", "nlopt.hpp"}, ["core"],
                      CPP_OUTSIDE - {"thread"}),
     "src/formats": Layer(
-        FORMATS_API, C_ARITHMETIC | CPP_LIBRARY | {"pugixml.hpp", "nlohmann/*"}, ["core"], CPP_OUTSIDE
+        FORMATS_API, C_ARITHMETIC | CPP_LIBRARY | {"Eigen/*", "pugixml.hpp", "nlohmann/*"}, ["core"], CPP_OUTSIDE
     ),
     "src/store": Layer(STORE_API, C_ARITHMETIC | {"sqlite3.h"}, ["core"]),
     "src/cli": Layer(
