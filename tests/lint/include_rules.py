@@ -222,7 +222,7 @@ BAD = [
     ("src/fit/fit.cpp", "#include <mutex>"),
     ("src/fit/fit.cpp", "#include <png.h>"),
     ("src/fit/fit.cpp", "#include <lensprof/lensprof.h>"),
-    ("src/formats/pto.cpp", "#include <Eigen/Core>"),
+    ("src/formats/pto.cpp", "#include <nlopt.h>"),
     ("src/formats/pto.cpp", "#include <nlopt.h>"),
     ("src/formats/pto.cpp", '#include "fit/fit.cpp"'),
     ("src/formats/pto.cpp", "#include <fstream>"),
