@@ -66,7 +66,8 @@ typedef enum lensprof_gamma_from {
     LENSPROF_GAMMA_PRIOR = 1,     /* the prior on the response alone */
     LENSPROF_GAMMA_EXPOSURES = 2, /* known_ev of the images alone; without differences there, the prior */
     LENSPROF_GAMMA_KNOWN = 3,     /* results only: parameters held fixed, be it response, falloff or exposures */
-    LENSPROF_GAMMA_NONE = 4       /* results only: nothing, for want of a prior (the paper's method): it is arbitrary */
+    LENSPROF_GAMMA_NONE = 4,      /* results only: nothing, for want of a prior (the paper's method): it is arbitrary */
+    LENSPROF_GAMMA_PROFILE = 5    /* results only: the profile that the options give as the prior */
 } lensprof_gamma_from;
 
 /* The measured responses behind the prior (DoRF database). */
@@ -88,6 +89,13 @@ typedef struct lensprof_fit_image {
                                    0.02 counts as 0.02. One alone says nothing: only differences do */
 } lensprof_fit_image;
 
+/* What became of lensprof_fit_options.profile. */
+typedef enum lensprof_profile_prior {
+    LENSPROF_PROFILE_PRIOR_NONE = 0,     /* none was given */
+    LENSPROF_PROFILE_PRIOR_USED = 1,     /* it is in the result, which takes its place */
+    LENSPROF_PROFILE_PRIOR_OVERRULED = 2 /* the pictures contradict it; the result is without it, `reason` says so */
+} lensprof_profile_prior;
+
 typedef struct lensprof_fit_options {
     uint32_t struct_size;
     uint32_t channels;      /* 1 or 3 */
@@ -107,6 +115,11 @@ typedef struct lensprof_fit_options {
                                held-out pairs are not clearly worse for it. Wants pairs of all greys; for TRANSFER with
                                at most 256 images and 100 pairs or more, else without effect. 0 = EMoR alone */
     uint32_t reserved;      /* 0 */
+    const lensprof_profile *profile;   /* of the same camera, lens and setting, from other pictures: the prior in place of
+                                          that of all cameras, by its covariance, which it must have, where a response
+                                          of EMoR modes and a falloff have one; TRANSFER and RADIANCE, a prior_weight
+                                          above 0. Overruled where held-out pairs are clearly worse for it (three
+                                          standard errors). NULL = none. Read during the call */
     const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
     lensprof_vignetting vignetting;   /* the value where fixed */
     lensprof_progress progress;       /* or NULL */
@@ -144,7 +157,7 @@ typedef struct lensprof_fit_result {
     uint32_t components;     /* connected groups of images; 1 when all are tied together */
     uint32_t iterations;
     uint32_t converged;
-    uint32_t gamma_from;     /* what settled gamma: PRIOR, EXPOSURES, KNOWN or NONE */
+    uint32_t gamma_from;     /* what settled gamma: PRIOR, EXPOSURES, KNOWN, NONE or PROFILE */
     double gamma_sigma;      /* standard error of ln gamma; 0 when KNOWN, LENSPROF_UNKNOWN when NONE */
     double before_rms;       /* |B1 - B2| of the held-out pairs, levels of 255 */
     double heldout_rms;      /* transfer residual of pairs left out of the fit, levels of 255 */
@@ -159,8 +172,8 @@ typedef struct lensprof_fit_result {
     uint32_t radius_ends[LENSPROF_COVERAGE_BINS]; /* pair ends in rings of r, each 1/10 half diagonal wide */
     uint32_t grey_ends[LENSPROF_COVERAGE_BINS];   /* pair ends in tenths of the grey range, all channels */
     uint32_t covariance_size; /* order as in profile.h; parameters held fixed have zero rows; 0 = not determined */
-    uint32_t reserved;
-    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* of the data and of gamma together */
+    uint32_t profile_prior;   /* lensprof_profile_prior */
+    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* of the data, of gamma and of a profile together */
     double gamma_direction[LENSPROF_COVARIANCE_MAX]; /* change of each parameter per unit of ln gamma */
     lensprof_fit_image_quality *image_quality; /* the caller's array of image_count, set before the call; or NULL */
 } lensprof_fit_result;

@@ -17,6 +17,24 @@ constexpr uint32_t kSharedFlags =
     LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
 constexpr uint32_t kImageFlags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
 
+// The profile that is to be the prior.
+lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *error) {
+    if (o.method != LENSPROF_METHOD_TRANSFER && o.method != LENSPROF_METHOD_RADIANCE)
+        return fail(LENSPROF_ERROR_UNSUPPORTED, error,
+                    "fit options: a profile as the prior is for the methods transfer and radiance; leave it out");
+    if (!(o.prior_weight > 0.0))
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit options: a profile as the prior wants a prior weight above 0");
+    lensprof_status status = lensprof_profile_validate(o.profile);
+    if (status != LENSPROF_OK)
+        return fail(status, error, "fit options: the profile is not valid; see lensprof_profile_validate");
+    bool knows = false;
+    for (uint32_t i = 0; i < o.profile->covariance_size; i++)
+        knows = knows || o.profile->covariance[i * o.profile->covariance_size + i] > 0.0;
+    return knows ? LENSPROF_OK
+                 : fail(LENSPROF_ERROR_ARGUMENT, error,
+                        "fit options: the profile has no covariance, and says nothing of how sure it is; leave it out");
+}
+
 lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_count, lensprof_error *error) {
     if (o.struct_size != sizeof o)
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit options: call lensprof_fit_options_init first");
@@ -35,8 +53,9 @@ lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_coun
     if (status != LENSPROF_OK)
         return fail(status, error, "fit options: the given vignetting is not positive and finite");
     status = o.response ? lensprof_response_validate(o.response) : LENSPROF_OK;
-    return status == LENSPROF_OK ? status
-                                 : fail(status, error, "fit options: the given response is not monotone from 0 to 1");
+    if (status != LENSPROF_OK)
+        return fail(status, error, "fit options: the given response is not monotone from 0 to 1");
+    return o.profile ? check_profile(o, error) : LENSPROF_OK;
 }
 
 lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, lensprof_error *error) {

@@ -74,6 +74,16 @@ double scatter_of(std::vector<double> off) {
 
 }  // namespace
 
+// dx = -h(x) / f'(x) at the grey value that defines it.
+Eigen::VectorXd gamma_slope(const Estimate &estimate) {
+    Eigen::VectorXd by_mode = Eigen::VectorXd::Zero(kMaxModes);
+    double slope, x = estimate.curve.invert(kGaugeGrey, &slope);
+    for (int l = 0; l < estimate.modes; l++)
+        by_mode[l] = -lp_curve_eval(lensprof_emor_table(static_cast<uint32_t>(l) + 1), x, nullptr) * slope
+                     / (x * std::log(x));
+    return by_mode;
+}
+
 Estimate with_exponent(const Problem &problem, const Estimate &estimate, double log_gamma) {
     Estimate moved = estimate;
     double gamma = std::exp(log_gamma), curve[LENSPROF_RESPONSE_SAMPLES];
@@ -88,14 +98,21 @@ Estimate with_exponent(const Problem &problem, const Estimate &estimate, double 
     return moved;
 }
 
-Gauge::Gauge(const lensprof_fit_options &options, const Problem &problem)
-    : prior_(&gamma_prior(options.camera_kind)), wanted_(static_cast<lensprof_gamma_from>(options.gamma_from)) {
+Gauge::Gauge(const lensprof_fit_options &options, const Problem &problem, const StoredPrior *stored)
+    : prior_(&gamma_prior(options.camera_kind)), is_stored_(stored && stored->gamma_sigma() > 0.0),
+      stored_position_(is_stored_ ? stored->gamma_position() : 0.0),
+      prior_sigma_(is_stored_ ? stored->gamma_sigma() : prior_->sigma),
+      wanted_(static_cast<lensprof_gamma_from>(options.gamma_from)) {
     bool is_family = nothing_fixes_gamma(options, problem);
     open_ = is_family && options.prior_weight > 0.0;
     if (is_family && !open_) from_ = LENSPROF_GAMMA_NONE;
     bool any = false;
     for (uint32_t i = 0; i < problem.image_count; i++) any = any || problem.images[i].known_ev_sigma > 0.0;
     if (any) known_weight_.assign(problem.image_count, 1.0);
+}
+
+double Gauge::expected(const double *table) const {
+    return is_stored_ ? stored_position_ : expected_position(*prior_, table);
 }
 
 Gauge Gauge::unheld() const {
@@ -164,15 +181,16 @@ double Gauge::distance(const Problem &problem, const Estimate &estimate) {
     compare_known(problem, estimate);
     if (!open_) return 0.0;
     const double *table = estimate.curve.table.data();
-    double offset = gamma_position(table) - expected_position(*prior_, table);
+    double offset = gamma_position(table) - expected(table);
     bool says = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;
-    double prior_precision = 1.0 / (prior_->sigma * prior_->sigma);
+    double prior_precision = 1.0 / (prior_sigma_ * prior_sigma_);
     if (says) {  // errors of the prior have heavy tails: where exposures contradict it, it counts for less
-        double z = (offset - std::log(slope_)) / std::hypot(prior_->sigma, slope_sigma_);
+        double z = (offset - std::log(slope_)) / std::hypot(prior_sigma_, slope_sigma_);
+        if (is_stored_) z /= kDoubtful;  // those of a profile's have not
         prior_precision *= wanted_ == LENSPROF_GAMMA_EXPOSURES ? 0.0 : 1.0 / (1.0 + z * z);
     }
     double precision = says ? 1.0 / (slope_sigma_ * slope_sigma_) : 0.0;
-    from_ = precision > prior_precision ? LENSPROF_GAMMA_EXPOSURES : LENSPROF_GAMMA_PRIOR;
+    from_ = precision > prior_precision ? LENSPROF_GAMMA_EXPOSURES : is_stored_ ? LENSPROF_GAMMA_PROFILE : LENSPROF_GAMMA_PRIOR;
     sigma_ = 1.0 / std::sqrt(precision + prior_precision);
     return (prior_precision * offset + precision * std::log(slope_)) / (precision + prior_precision);
 }
@@ -198,14 +216,10 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
     prior.pin_precision = prior.pin_value = 0.0;
     if (open_) {
         double here = distance(problem, estimate);
-        // d position / d emor: dx = -h(x) / f'(x) at the grey value that defines it.
-        double slope, x = estimate.curve.invert(kGaugeGrey, &slope);
-        for (int l = 0; l < estimate.modes; l++)
-            prior.pin[l] = -lp_curve_eval(lensprof_emor_table(static_cast<uint32_t>(l) + 1), x, nullptr) * slope
-                           / (x * std::log(x));
+        prior.pin = gamma_slope(estimate);
         double pairs = static_cast<double>(std::max<size_t>(problem.pairs.size(), 1));
         double hold = std::min(kLargestPinSigma, kPinSigma * std::sqrt(kPinPairs / pairs));
-        hold = std::max(hold * std::pow(sigma_ / prior_->sigma, 4), kSmallestPinSigma);
+        hold = std::max(hold * std::pow(sigma_ / prior_sigma_, 4), kSmallestPinSigma);
         prior.pin_precision = 1.0 / (hold * hold);
         prior.pin_value = prior.pin.dot(Eigen::Map<const Eigen::VectorXd>(estimate.emor.data(), kMaxModes)) - here;
     } else {

@@ -8,6 +8,7 @@
 #include "gamma_prior.hpp"
 #include "prior.hpp"
 #include "problem.hpp"
+#include "stored_prior.hpp"
 
 namespace lensprof {
 
@@ -16,7 +17,8 @@ constexpr double kKnownSigma = 0.02;
 
 class Gauge {
 public:
-    Gauge(const lensprof_fit_options &options, const Problem &problem);
+    // `stored` (NULL where there is none): a profile whose gamma is expected in place of that of most cameras.
+    Gauge(const lensprof_fit_options &options, const Problem &problem, const StoredPrior *stored = nullptr);
 
     // False where parameters held fixed settle gamma, or where no prior is wanted (the paper's method).
     bool is_open() const { return open_; }
@@ -49,13 +51,20 @@ public:
 private:
     void compare_known(const Problem &problem, const Estimate &estimate);
 
+    double expected(const double *table) const;  // position within the family
+
     const GammaPrior *prior_;
+    bool is_stored_ = false;         // the prior's gamma is that of a profile
+    double stored_position_ = 0.0, prior_sigma_;
     lensprof_gamma_from wanted_, from_ = LENSPROF_GAMMA_KNOWN;
     bool open_ = false;
     double sigma_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
     double scatter_ = 1.0;  // of the known exposures about the estimate's, in their stated standard errors; 1 at least
     std::vector<double> known_weight_;  // trust in each known exposure, 0..1
 };
+
+// Change of a response's position within its family for each of its coefficients.
+Eigen::VectorXd gamma_slope(const Estimate &estimate);
 
 // The same estimate with the exponent gamma = exp(log_gamma) put in; a response without modes follows exactly.
 Estimate with_exponent(const Problem &problem, const Estimate &estimate, double log_gamma);

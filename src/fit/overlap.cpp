@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <memory>
 #include <numeric>
 
 #include "heldout.hpp"
@@ -29,22 +31,38 @@ public:
     // make(keep): the problem of some of `count` pairs or tracks.
     using Make = std::function<Problem(const std::vector<uint32_t> &keep)>;
 
-    Fit(const lensprof_fit_options &options, uint32_t image_count, Make make, uint32_t count)
+    // `profile`: of the options, or NULL for a fit without it. Progress goes from `from` to `to`.
+    Fit(const lensprof_fit_options &options, uint32_t image_count, Make make, uint32_t count,
+        const lensprof_profile *profile, double from, double to)
         : options_(options), image_count_(image_count), problem_(std::move(make)),
           split_(split_pairs(count, image_count)), step_(options.refine ? 1 + count / kEnoughForModes : 1),
-          all_(problem_(thinned(split_.all))), gauge_(options, all_) {
+          all_(problem_(thinned(split_.all))), stored_(stored_prior(options, profile, all_)),
+          gauge_(options, all_, stored_.get()) {
         if (split_.has_heldout()) heldout_ = problem_(thinned(split_.heldout));
         has_heldout_ = heldout_.pairs.size() >= kFewestHeldout;
         train_ = problem_(thinned(has_heldout_ ? split_.train : split_.all));
         control_.max_iterations = static_cast<int>(options.max_iterations);
-        control_.cancelled = [this] {
-            return options_.progress && options_.progress(done_, options_.progress_user) != 0;
+        control_.cancelled = [this, from, to] {
+            return options_.progress && options_.progress(from + (to - from) * done_, options_.progress_user) != 0;
         };
     }
 
-    void run(lensprof_exposure *exposures, lensprof_fit_result &result);
+    void run();
+
+    // Standard errors by which held-out pairs are worse for this fit than for one without its profile; 0 without such
+    // pairs.
+    double worse_than(const Fit &other) const;
+
+    void describe(lensprof_exposure *exposures, lensprof_fit_result &result);
 
 private:
+    static std::unique_ptr<StoredPrior> stored_prior(const lensprof_fit_options &options,
+                                                     const lensprof_profile *profile, const Problem &problem) {
+        if (!profile) return nullptr;
+        const bool is_free = options.free & LENSPROF_FREE_RESPONSE;
+        const int most = !is_free ? 0 : static_cast<int>(std::min<uint32_t>(options.modes, LENSPROF_EMOR_MODES));
+        return std::make_unique<StoredPrior>(*profile, problem, most);
+    }
     Loss loss() const {
         Loss l;
         l.kind = options_.loss;
@@ -60,7 +78,15 @@ private:
     void set_vignettings(int count) {
         for (Problem *p : {&all_, &train_, &heldout_}) p->vignettings = count;
         prior_ = make_prior(options_.prior_weight, count, all_.by_radiance);
+        if (stored_) stored_->put_into(prior_, count, options_.prior_weight);
     }
+    // Fewer modes than the profile's would leave out what is known of the others.
+    int first_vignettings() const {
+        const bool three =
+            options_.vignettings == 3 || (options_.vignettings == 0 && stored_ && stored_->vignettings() == 3);
+        return three && options_.channels == 3 ? 3 : 1;
+    }
+    int start_modes() const { return stored_ ? std::max(kStartModes, stored_->modes()) : kStartModes; }
     Estimate best_start(int modes);
     void reconsider(const Problem &problem, const Loss &used, Estimate &estimate);
     Candidate candidate(const Estimate &from, int modes);
@@ -80,8 +106,13 @@ private:
     Problem all_, train_, heldout_;
     bool has_heldout_ = false;
     const bool is_free_ = (options_.free & LENSPROF_FREE_RESPONSE) && options_.modes != 0;  // the response
+    std::unique_ptr<StoredPrior> stored_;
     Gauge gauge_;
     Prior prior_;
+    Loss used_;
+    Candidate best_;     // of the training pairs
+    Estimate estimate_;  // of all
+    Outcome outcome_;
     Loss common_;  // of the candidates: what held-out losses are measured with
     Control control_;
     double done_ = 0.0;
@@ -180,10 +211,11 @@ void Fit::reconsider(const Problem &problem, const Loss &used, Estimate &estimat
 // More modes are tried until two in a row have not helped, fewer until one is worse.
 Candidate Fit::choose_modes(const Estimate &start) {
     std::vector<Candidate> tried;  // by falling number of modes, once complete
-    tried.push_back(candidate(start, kStartModes));
+    tried.push_back(candidate(start, start_modes()));
     double lowest = tried[0].mean;
     int failures = 0;
     for (int modes : {7, 9, 12, 16}) {
+        if (modes <= start_modes()) continue;
         tried.insert(tried.begin(), candidate(tried.front().estimate, modes));
         failures = tried.front().mean < lowest ? 0 : failures + 1;
         lowest = std::min(lowest, tried.front().mean);
@@ -198,7 +230,7 @@ Candidate Fit::choose_modes(const Estimate &start) {
         return difference <= error;
     };
     for (int modes : {3, 2, 1}) {
-        if (!is_good(tried.back())) break;
+        if (!is_good(tried.back()) || (stored_ && modes < stored_->modes())) break;
         tried.push_back(candidate(tried.back().estimate, modes));
     }
     for (size_t i = tried.size(); i-- > 1;)
@@ -220,11 +252,12 @@ Candidate Fit::choose(Loss &used) {
     constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
     bool any_modes = is_free_ && options_.modes == LENSPROF_MODES_AUTO && has_heldout_;
     bool any_curves = options_.vignettings == 0 && options_.channels == 3 && (options_.free & falloff) && has_heldout_;
-    int modes = options_.modes == LENSPROF_MODES_AUTO ? kStartModes : static_cast<int>(options_.modes);
+    int modes = options_.modes == LENSPROF_MODES_AUTO ? start_modes() : static_cast<int>(options_.modes);
+    if (any_curves && stored_ && stored_->vignettings() == 3) any_curves = false;
 
-    set_vignettings(options_.vignettings == 3 && options_.channels == 3 ? 3 : 1);
+    set_vignettings(first_vignettings());
     Candidate best;
-    best.estimate = best_start(is_free_ ? std::min(std::max(modes, 1), kStartModes) : 0);
+    best.estimate = best_start(is_free_ ? std::min(std::max(modes, 1), start_modes()) : 0);
     done_ = 0.2;
     set_modes(best.estimate, modes);
     Control first = control_;
@@ -279,31 +312,65 @@ void Fit::free_response(const Gauge &asked, Loss &used, Candidate &best, Estimat
     }
 }
 
-void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
-    auto began = std::chrono::steady_clock::now();
+void Fit::run() {
     bool frees = options_.refine && is_free_ && has_heldout_ && image_count_ <= kMostRefinedImages;
     const Gauge asked = gauge_;
     if (frees) gauge_ = gauge_.by_prior();
-    Loss used = loss();
-    used.distrusts = true;
-    Candidate best = choose(used);
-    Estimate estimate = best.estimate;
-    if (has_heldout_) reconsider(all_, used, estimate);
-    Outcome outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
-    if (frees) free_response(asked, used, best, estimate, outcome);
+    used_ = loss();
+    used_.distrusts = true;
+    best_ = choose(used_);
+    estimate_ = best_.estimate;
+    if (has_heldout_) reconsider(all_, used_, estimate_);
+    outcome_ = solve(all_, prior_, gauge_, used_, true, control_, estimate_);
+    if (frees) free_response(asked, used_, best_, estimate_, outcome_);
     else take_all();
+}
 
+double Fit::worse_than(const Fit &other) const {
+    if (!has_heldout_) return 0.0;
+    HeldoutLoss own = heldout_loss(other.heldout_, best_.estimate, other.common_),
+                others = heldout_loss(other.heldout_, other.best_.estimate, other.common_);
+    double error, difference = loss_difference(own, others, error);
+    return error > 0.0 ? difference / error : 0.0;
+}
+
+void Fit::describe(lensprof_exposure *exposures, lensprof_fit_result &result) {
     lensprof_fit_result r = result;
-    r.iterations = static_cast<uint32_t>(outcome.iterations);
-    r.converged = outcome.converged;
+    r.iterations = static_cast<uint32_t>(outcome_.iterations);
+    r.converged = outcome_.converged;
     std::vector<lensprof_fit_image_quality> own(image_count_);
     if (!r.image_quality) r.image_quality = own.data();
-    describe_model(all_, estimate, r);
-    describe_heldout(has_heldout_ ? heldout_ : all_, best.estimate, has_heldout_, r);
-    describe_quality(all_, prior_, gauge_, used, estimate, r);
-    judge(all_, estimate, r);
+    describe_model(all_, estimate_, r);
+    describe_heldout(has_heldout_ ? heldout_ : all_, best_.estimate, has_heldout_, r);
+    describe_quality(all_, prior_, gauge_, used_, estimate_, r);
+    judge(all_, estimate_, r);
     r.image_quality = result.image_quality;
-    write_exposures(all_, estimate, exposures);
+    write_exposures(all_, estimate_, exposures);
+    result = r;
+}
+
+// Fits, and where a profile is the prior, without it too: that is the result where the pictures contradict the profile.
+void run_fits(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count,
+              lensprof_exposure *exposures, lensprof_fit_result &result) {
+    constexpr double kClearly = 3.0;  // standard errors
+    auto began = std::chrono::steady_clock::now();
+    Fit alone(options, image_count, make, count, nullptr, 0.0, options.profile ? 0.5 : 1.0);
+    alone.run();
+    lensprof_fit_result r = result;
+    r.profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
+    if (options.profile) {
+        Fit informed(options, image_count, make, count, options.profile, 0.5, 1.0);
+        informed.run();
+        const double worse = informed.worse_than(alone);
+        r.profile_prior = worse > kClearly ? LENSPROF_PROFILE_PRIOR_OVERRULED : LENSPROF_PROFILE_PRIOR_USED;
+        (worse > kClearly ? alone : informed).describe(exposures, r);
+        if (worse > kClearly && r.usable)
+            std::snprintf(r.reason, sizeof r.reason,
+                          "the profile given as the prior contradicts the pictures (held-out pairs are worse for it by "
+                          "%.0f standard errors) and was left out: is it of this lens and setting?", worse);
+    } else {
+        alone.describe(exposures, r);
+    }
     r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     result = r;
 }
@@ -316,7 +383,7 @@ void fit_overlap(const lensprof_fit_options &options, const lensprof_fit_image *
     auto make = [&](const std::vector<uint32_t> &keep) {
         return make_problem(options, images, image_count, pairs, keep);
     };
-    Fit(options, image_count, make, pair_count).run(exposures, result);
+    run_fits(options, image_count, make, pair_count, exposures, result);
 }
 
 void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
@@ -324,7 +391,7 @@ void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image 
     auto make = [&](const std::vector<uint32_t> &keep) {
         return make_problem(options, images, image_count, tracks, keep);
     };
-    Fit(options, image_count, make, static_cast<uint32_t>(tracks.tracks.size())).run(exposures, result);
+    run_fits(options, image_count, make, static_cast<uint32_t>(tracks.tracks.size()), exposures, result);
 }
 
 Summary transfer_summary(const lensprof_response &response, const lensprof_vignetting vignetting[3],

@@ -33,20 +33,34 @@ Prior make_prior(double weight, int vignettings, bool by_covariance) {
     Eigen::Matrix3d covariance;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) covariance(i, j) = kFalloffCovariance[i][j];
-    int green = kFalloff + (vignettings == 3 ? 3 : 0);
+    int green = green_falloff(vignettings);
     prior.precision.block<3, 3>(green, green) = weight * covariance.inverse();
     for (int c = 0; c < vignettings; c++)
-        for (int i = 0; i < 3; i++) {
-            int own = kFalloff + 3 * c + i;
-            double tie = weight / (kChannelSigma * kChannelSigma);
-            prior.mean(own) = kFalloffMean[i];
-            if (own == green + i) continue;
-            prior.precision(own, own) += tie;
-            prior.precision(green + i, green + i) += tie;
-            prior.precision(own, green + i) = prior.precision(green + i, own) = -tie;
-        }
+        for (int i = 0; i < 3; i++) prior.mean(kFalloff + 3 * c + i) = kFalloffMean[i];
+    tie_channels(weight, vignettings, prior);
     for (int d = 0; d < 2; d++) prior.precision(kCenter + d, kCenter + d) = weight / (kCenterSigma * kCenterSigma);
     return prior;
+}
+
+void tie_channels(double weight, int vignettings, Prior &prior) {
+    const int green = green_falloff(vignettings);
+    const double tie = weight / (kChannelSigma * kChannelSigma);
+    for (int own = kFalloff; own < kFalloff + 3 * vignettings; own++) {
+        const int of_green = green + (own - kFalloff) % 3;
+        if (own == of_green) continue;
+        prior.precision(own, own) += tie;
+        prior.precision(of_green, of_green) += tie;
+        prior.precision(own, of_green) = prior.precision(of_green, own) = -tie;
+    }
+}
+
+Eigen::MatrixXd scatter_of_all() {
+    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
+    for (int l = 0; l < kMaxModes; l++) scatter(l, l) = kEmorSigma[l] * kEmorSigma[l];
+    for (int a = 0; a < 9; a++)
+        for (int b = 0; b < 9; b++) scatter(kFalloff + a, kFalloff + b) = kFalloffCovariance[a % 3][b % 3];
+    for (int d = 0; d < 2; d++) scatter(kCenter + d, kCenter + d) = kCenterSigma * kCenterSigma;
+    return scatter;
 }
 
 Prior prior_of(const Prior &prior, int modes) {

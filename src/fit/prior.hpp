@@ -40,6 +40,16 @@ Prior make_prior(double weight, int vignettings, bool by_covariance = false);
 // The prior where `modes` coefficients are estimated: what the others may be has no part in it.
 Prior prior_of(const Prior &prior, int modes);
 
+// Ties the falloff curves of the channels to that of green, where there are three.
+void tie_channels(double weight, int vignettings, Prior &prior);
+
+// Column of the full shared vector where k1..k3 of green's falloff begin.
+inline int green_falloff(int vignettings) { return kFalloff + (vignettings == 3 ? 3 : 0); }
+
+// Covariance of the full shared vector over all measured cameras and lenses; modes as independent, curves of the channels
+// alike.
+Eigen::MatrixXd scatter_of_all();
+
 // Its share of the objective; of the shared unknowns those in `columns` alone.
 double prior_cost(const Prior &prior, const Problem &problem, const std::vector<int> &columns,
                   const Estimate &estimate);

@@ -239,6 +239,7 @@ static void print_fit_structs(void)
     FIELD(lensprof_fit_options, method);
     FIELD(lensprof_fit_options, refine);
     FIELD(lensprof_fit_options, reserved);
+    FIELD(lensprof_fit_options, profile);
     FIELD(lensprof_fit_options, response);
     FIELD(lensprof_fit_options, vignetting);
     FIELD(lensprof_fit_options, progress);
@@ -282,7 +283,7 @@ static void print_fit_structs(void)
     FIELD(lensprof_fit_result, radius_ends);
     FIELD(lensprof_fit_result, grey_ends);
     FIELD(lensprof_fit_result, covariance_size);
-    FIELD(lensprof_fit_result, reserved);
+    FIELD(lensprof_fit_result, profile_prior);
     FIELD(lensprof_fit_result, covariance);
     FIELD(lensprof_fit_result, gamma_direction);
     FIELD(lensprof_fit_result, image_quality);
@@ -515,6 +516,10 @@ static void print_enumerations(void)
     VALUE(LENSPROF_GAMMA_EXPOSURES);
     VALUE(LENSPROF_GAMMA_KNOWN);
     VALUE(LENSPROF_GAMMA_NONE);
+    VALUE(LENSPROF_GAMMA_PROFILE);
+    VALUE(LENSPROF_PROFILE_PRIOR_NONE);
+    VALUE(LENSPROF_PROFILE_PRIOR_USED);
+    VALUE(LENSPROF_PROFILE_PRIOR_OVERRULED);
     VALUE(LENSPROF_CAMERA_ANY);
     VALUE(LENSPROF_CAMERA_FILM);
     VALUE(LENSPROF_CAMERA_DIGITAL);

@@ -6,7 +6,7 @@ ValueError.
 """
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
                    RESPONSE_SAMPLES, UNKNOWN, CameraKind, Direction, DistanceRule, Encoding, FlatGrid, FlatLight, Free, GammaFrom,
-                   Layout, Loss, Method, Pack, Processing, Projection, ResponseKind, SampleType, Sampling, Saturated,
+                   Layout, Loss, Method, Pack, Processing, ProfilePrior, Projection, ResponseKind, SampleType, Sampling, Saturated,
                    Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE,
@@ -28,7 +28,7 @@ __all__ = [
     "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResult", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight",
     "FlatOptions", "FlatResult", "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "IMAGE_QUALITY_DTYPE", "Layout",
     "Lookup", "LookupOptions", "Loss", "MODES_AUTO", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
-    "Processing", "Profile", "ProfileKey", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES",
+    "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES",
     "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status",
     "Store", "StoreMode", "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_flat", "fit_overlap",
     "fit_radiance", "layout_channels", "layout_samples", "lensfun_read", "lensfun_write", "points_read",

@@ -165,12 +165,20 @@ class Loss(IntEnum):
 
 
 class GammaFrom(IntEnum):
-    """What settles the exponent that pictures leave open; KNOWN and NONE in results only."""
+    """What settles the exponent that pictures leave open; KNOWN, NONE and PROFILE in results only."""
     AUTO = 0
     PRIOR = 1
     EXPOSURES = 2
     KNOWN = 3
     NONE = 4
+    PROFILE = 5
+
+
+class ProfilePrior(IntEnum):
+    """What became of a profile that was given as the prior."""
+    NONE = 0
+    USED = 1
+    OVERRULED = 2
 
 
 class CameraKind(IntEnum):
@@ -225,6 +233,7 @@ ENUMS = {
     "LENSPROF_METHOD_": Method,
     "LENSPROF_LOSS_": Loss,
     "LENSPROF_GAMMA_": GammaFrom,
+    "LENSPROF_PROFILE_PRIOR_": ProfilePrior,
     "LENSPROF_CAMERA_": CameraKind,
     "LENSPROF_FLAT_LIGHT_": FlatLight,
     "LENSPROF_FLAT_GRID_": FlatGrid,
@@ -346,7 +355,8 @@ class FitOptions(Structure):
                 ("modes", c_uint32), ("loss", c_uint32), ("huber_levels", c_double), ("prior_weight", c_double),
                 ("max_iterations", c_uint32), ("vignettings", c_uint32), ("gamma_from", c_uint32),
                 ("camera_kind", c_uint32), ("threads", c_uint32), ("method", c_uint32), ("refine", c_uint32),
-                ("reserved", c_uint32), ("response", POINTER(Response)), ("vignetting", Vignetting),
+                ("reserved", c_uint32), ("profile", POINTER(Profile)), ("response", POINTER(Response)),
+                ("vignetting", Vignetting),
                 ("progress", Progress), ("progress_user", c_void_p)]
 
 
@@ -364,7 +374,7 @@ class FitResult(Structure):
                 ("gamma_sigma", c_double), ("before_rms", c_double), ("heldout_rms", c_double),
                 ("heldout_median", c_double), ("noise_levels", c_double), ("inlier_share", c_double),
                 ("frame_share", c_double), ("image_share", c_double), ("seconds", c_double), ("radius_ends", c_uint32 * COVERAGE_BINS),
-                ("grey_ends", c_uint32 * COVERAGE_BINS), ("covariance_size", c_uint32), ("reserved", c_uint32),
+                ("grey_ends", c_uint32 * COVERAGE_BINS), ("covariance_size", c_uint32), ("profile_prior", c_uint32),
                 ("covariance", c_double * (COVARIANCE_MAX * COVARIANCE_MAX)),
                 ("gamma_direction", c_double * COVARIANCE_MAX), ("image_quality", POINTER(FitImageQuality))]
 

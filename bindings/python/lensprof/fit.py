@@ -7,7 +7,7 @@ from typing import Any, Iterable, Optional, Sequence, Union
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import CameraKind, Free, GammaFrom, Loss, Method
+from ._abi import CameraKind, Free, GammaFrom, Loss, Method, ProfilePrior
 from ._library import check, lib, version
 from ._progress import WithProgress, calling
 from ._struct import (Curves, Enumerated, Flag, Nested, OptionalReference, Struct, Text, Value, Vector, integer,
@@ -49,7 +49,9 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     error. gamma_from: GammaFrom.AUTO, PRIOR or EXPOSURES. camera_kind: whose responses the prior is of. method:
     Method.TRANSFER, RADIANCE, TRANSFER_FUNCTION, or DEBEVEC: the response alone, from known exposures of all images.
     refine: free the response of the EMoR modes where held-out pairs are clearly better for it.
-    threads: at most so many, 0 = one a core; the result does not depend on it.
+    threads: at most so many, 0 = one a core; the result does not depend on it. profile: of the same camera, lens and
+    setting, from other pictures, the prior in place of that of all cameras; the result takes its place, unless
+    FitResult.profile_prior says OVERRULED.
 
     progress: called now and then during a fit with a fraction 0..1; the fit is cancelled when it returns True, and
     when it raises an exception, which then comes out of fit_overlap.
@@ -69,6 +71,7 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     threads: int
     method = Enumerated(Method)
     refine = Flag()
+    profile = OptionalReference(Profile)
     response = OptionalReference(Response)
     vignetting = Nested(Vignetting)
 
@@ -110,6 +113,7 @@ class FitResult(Struct, _abi.FitResult):
     radius_ends = Vector(writable=False)
     grey_ends = Vector(writable=False)
     covariance_size: int
+    profile_prior = Enumerated(ProfilePrior)
     covariance = Covariance()
     gamma_direction = Vector(writable=False)
 

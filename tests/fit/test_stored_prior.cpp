@@ -1,0 +1,219 @@
+// A stored profile as the prior: two-picture sequences improve one after the other, a wrong profile is overruled.
+#include <memory>
+
+#include "simulated.hpp"
+
+namespace {
+
+constexpr uint32_t kSequences = 5, kCameras = 12;
+
+// Two pictures of one lens, half a frame apart.
+Simulation sequence(uint64_t seed, uint32_t pairs = 2000) {
+    Simulation s;
+    s.images = 2;
+    s.response = srgb_response();
+    s.vignetting = {{-0.45, 0.12, -0.12}, {0.015, -0.01}};
+    s.shift = 0.5;
+    s.make(pairs, 2.0, 0.03, 1.5, seed);
+    for (uint32_t i = 0; i < s.images; i++) {  // as EXIF says, to a tenth
+        uint64_t random = seed + 77 + i;
+        s.fit_images[i].known_ev = s.exposures[i].ev + 0.1 * lp_normal(&random);
+        s.fit_images[i].known_ev_sigma = 0.1;
+    }
+    return s;
+}
+
+struct Found {
+    std::unique_ptr<lensprof_fit_result> result = std::make_unique<lensprof_fit_result>();
+    std::vector<lensprof_exposure> exposures;
+};
+
+lensprof_status fit(const Simulation &s, const lensprof_profile *profile, Found &found, lensprof_error *error = nullptr,
+                    uint32_t method = LENSPROF_METHOD_TRANSFER) {
+    lensprof_fit_options options;
+    lensprof_fit_options_init(&options);
+    options.profile = profile;
+    options.method = method;
+    lensprof_fit_result_init(found.result.get());
+    found.exposures.resize(s.images);
+    return lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
+                                static_cast<uint32_t>(s.pairs.size()), found.exposures.data(), found.result.get(), error);
+}
+
+// What the command stores.
+std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &r) {
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    profile->response[0] = r.response;
+    profile->vignettings = r.vignettings;
+    for (uint32_t c = 0; c < r.vignettings; c++) profile->vignetting[c] = r.vignetting[c];
+    profile->covariance_size = r.covariance_size;
+    std::copy(r.covariance, r.covariance + r.covariance_size * r.covariance_size, profile->covariance);
+    return profile;
+}
+
+struct Errors {
+    double falloff = 0.0, response = 0.0, gamma = 0.0;  // largest of M and f; ln gamma in its stated standard error
+
+    void add(const Errors &e) {
+        falloff += e.falloff * e.falloff, response += e.response * e.response, gamma += e.gamma * e.gamma;
+    }
+    Errors root_mean(double count) const {
+        return {std::sqrt(falloff / count), std::sqrt(response / count), std::sqrt(gamma / count)};
+    }
+};
+
+Errors errors_of(const Simulation &s, const lensprof_fit_result &r) {
+    Errors e;
+    for (int k = 1; k <= 20; k++) {
+        e.falloff = std::max(e.falloff, std::abs(lensprof_vignetting_eval(&r.vignetting[1], k / 20.0, nullptr)
+                                                 - lensprof_vignetting_eval(&s.vignetting, k / 20.0, nullptr)));
+        e.response = std::max(e.response, std::abs(lensprof_response_eval(&r.response, k / 20.0, nullptr)
+                                                   - lensprof_response_eval(&s.response, k / 20.0, nullptr)));
+    }
+    const auto log_at = [](const lensprof_response &f) { return std::log(lensprof_response_invert(&f, 0.35, nullptr)); };
+    e.gamma = std::log(log_at(r.response) / log_at(s.response)) / r.gamma_sigma;
+    return e;
+}
+
+void test_sequences_improve(void **) {
+    Errors after[kSequences], alone;
+    uint32_t overruled = 0;
+    for (uint32_t camera = 0; camera < kCameras; camera++) {
+        std::unique_ptr<lensprof_profile> stored;
+        for (uint32_t i = 0; i < kSequences; i++) {
+            const Simulation s = sequence(1000 * camera + 7 * i + 1);
+            Found found, own;
+            assert_ok(fit(s, stored.get(), found));
+            assert_ok(fit(s, nullptr, own));
+            assert_int_equal(own.result->profile_prior, LENSPROF_PROFILE_PRIOR_NONE);
+            if (stored) assert_int_not_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_NONE);
+            overruled += found.result->profile_prior == LENSPROF_PROFILE_PRIOR_OVERRULED;
+            after[i].add(errors_of(s, *found.result));
+            alone.add(errors_of(s, *own.result));
+            stored = profile_of(*found.result);
+            assert_ok(lensprof_profile_validate(stored.get()));
+        }
+    }
+    for (Errors &e : after) e = e.root_mean(kCameras);
+    alone = alone.root_mean(kCameras * kSequences);
+    for (const Errors &e : after)
+        printf("    falloff %.4f, response %.4f, gamma %.2f sigma\n", e.falloff, e.response, e.gamma);
+    printf("    each alone: falloff %.4f, response %.4f\n", alone.falloff, alone.response);
+    const Errors &last = after[kSequences - 1];
+    assert_true(last.falloff < 0.75 * after[0].falloff && last.response < 0.75 * after[0].response);
+    assert_true(last.falloff < 0.75 * alone.falloff && last.response < 0.75 * alone.response);
+    assert_true(last.gamma < 1.6);  // what is stated of gamma shrinks no faster than the error
+    assert_true(overruled <= 1);    // three standard errors
+}
+
+// Of another lens; of another response; both stated as certain.
+void test_wrong_profile_is_overruled(void **) {
+    for (const bool other_lens : {true, false}) {
+        Simulation other = sequence(5), s = sequence(99);
+        if (other_lens) other.vignetting = {{-0.05, 0.0, 0.0}, {0.0, 0.0}};
+        else other.response = gamma_response(1.3);
+        other.pairs.clear(), other.fit_images.clear();
+        other.make(2000, 1.0, 0.0, 1.5, 5);
+        Found first, found, own;
+        assert_ok(fit(other, nullptr, first));
+        const auto stored = profile_of(*first.result);
+        assert_ok(fit(s, stored.get(), found));
+        assert_ok(fit(s, nullptr, own));
+        assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_OVERRULED);
+        assert_int_equal(found.result->usable, 1);
+        assert_non_null(strstr(found.result->reason, "contradicts the pictures"));
+        assert_memory_equal(found.result->vignetting, own.result->vignetting, sizeof own.result->vignetting);
+        assert_memory_equal(&found.result->response, &own.result->response, sizeof own.result->response);
+        assert_memory_equal(found.exposures.data(), own.exposures.data(), 2 * sizeof own.exposures[0]);
+    }
+}
+
+// A falloff without a response that goes with it, as from a database: 80 pairs alone leave it open.
+void test_falloff_alone(void **) {
+    double with = 0.0, without = 0.0;
+    for (uint64_t seed = 1; seed <= 10; seed++) {
+        const Simulation s = sequence(seed, 80);
+        auto stored = std::make_unique<lensprof_profile>();
+        lensprof_profile_init(stored.get());
+        stored->vignetting[0] = s.vignetting;
+        stored->covariance_size = 5;
+        for (int i = 0; i < 3; i++) stored->covariance[6 * i] = 1e-4;
+        Found found, own;
+        assert_ok(fit(s, stored.get(), found));
+        assert_ok(fit(s, nullptr, own));
+        assert_int_equal(found.result->gamma_from == LENSPROF_GAMMA_PROFILE, 0);
+        with += errors_of(s, *found.result).falloff / 10.0, without += errors_of(s, *own.result).falloff / 10.0;
+    }
+    printf("    80 pairs: %.4f with a falloff, %.4f without\n", with, without);
+    assert_true(with < 0.6 * without);
+}
+
+void test_three_curves_for_one_and_one_for_three(void **) {
+    const Simulation s = sequence(3);
+    for (const uint32_t curves : {1u, 3u}) {
+        auto stored = std::make_unique<lensprof_profile>();
+        lensprof_profile_init(stored.get());
+        stored->vignettings = curves;
+        for (uint32_t c = 0; c < curves; c++) stored->vignetting[c] = s.vignetting;
+        stored->covariance_size = 3 * curves + 2;
+        for (uint32_t i = 0; i < stored->covariance_size; i++)
+            stored->covariance[i * stored->covariance_size + i] = 1e-4;
+        for (const uint32_t asked : {1u, 3u}) {
+            Found found;
+            found.exposures.resize(2);
+            lensprof_fit_options options;
+            lensprof_fit_options_init(&options);
+            options.profile = stored.get();
+            options.vignettings = asked;
+            lensprof_fit_result_init(found.result.get());
+            assert_ok(lensprof_fit_overlap(&options, s.fit_images.data(), 2, s.pairs.data(), 2000,
+                                           found.exposures.data(), found.result.get(), nullptr));
+            assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_USED);
+            assert_int_equal(found.result->vignettings, asked);
+            assert_true(errors_of(s, *found.result).falloff < 0.06);
+        }
+    }
+}
+
+void test_radiance(void **) {
+    const Simulation s = sequence(21), other = sequence(22);
+    Found first, second, own;
+    assert_ok(fit(other, nullptr, first, nullptr, LENSPROF_METHOD_RADIANCE));
+    assert_ok(fit(s, nullptr, own, nullptr, LENSPROF_METHOD_RADIANCE));
+    const auto stored = profile_of(*first.result);
+    assert_ok(fit(s, stored.get(), second, nullptr, LENSPROF_METHOD_RADIANCE));
+    assert_int_equal(second.result->profile_prior, LENSPROF_PROFILE_PRIOR_USED);
+    assert_true(second.result->gamma_sigma < 0.9 * own.result->gamma_sigma);
+}
+
+void test_refused(void **) {
+    const Simulation s = sequence(1);
+    Found found;
+    lensprof_error error;
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    assert_int_equal(fit(s, profile.get(), found, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.text, "no covariance"));
+    profile->covariance_size = 5;  // all held
+    assert_int_equal(fit(s, profile.get(), found, &error), LENSPROF_ERROR_ARGUMENT);
+    profile->covariance[0] = 1e-4;
+    assert_int_equal(fit(s, profile.get(), found, &error, LENSPROF_METHOD_TRANSFER_FUNCTION), LENSPROF_ERROR_UNSUPPORTED);
+    profile->vignetting[0].k[0] = -2.0;
+    assert_int_equal(fit(s, profile.get(), found, &error), LENSPROF_ERROR_VIGNETTING);
+    assert_non_null(strstr(error.text, "the profile is not valid"));
+}
+
+}  // namespace
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_sequences_improve),
+        cmocka_unit_test(test_wrong_profile_is_overruled),
+        cmocka_unit_test(test_falloff_alone),
+        cmocka_unit_test(test_three_curves_for_one_and_one_for_three),
+        cmocka_unit_test(test_radiance),
+        cmocka_unit_test(test_refused),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
