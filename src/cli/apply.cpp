@@ -3,8 +3,10 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "correction.hpp"
+#include "lookup_report.hpp"
 #include "project.hpp"
 #include "run.hpp"
 
@@ -21,7 +23,9 @@ struct Options {
 
 void declare(CLI::App &app, Options &o) {
     app.add_option("--profile", o.profile, "id of the profile to use")->check(CLI::PositiveNumber);
-    app.add_flag("--from-db", o.from_db, "look each picture's profile up by its EXIF");
+    app.add_flag("--from-db", o.from_db,
+                 "look each picture's profile up by its EXIF; between the settings that are stored its falloff is "
+                 "predicted, as by `lensprof query`");
     app.add_option("--pto", o.pto,
                    "take exposures (and, without --profile or --from-db, the curves) from this project");
     app.add_option("--db", o.db, "profile database; default the user's own");
@@ -69,13 +73,18 @@ void look_up(lensprof_store *store, const Options &o, Correction &job) {
     if (o.profile) {
         check(lensprof_store_get(store, o.profile, profile.get(), &error), store_path(o.db), &error);
     } else {
-        lensprof_profile_key key = read_metadata(job.source).key;
-        lensprof_status status = lensprof_store_find(store, &key, profile.get(), &job.profile_id, &error);
+        const lensprof_profile_key key = read_metadata(job.source).key;
+        lensprof_lookup_options options;
+        lensprof_lookup_options_init(&options);
+        lensprof_lookup how{};
+        const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
         if (status == LENSPROF_ERROR_NOT_FOUND)
             throw Failure(ExitCode::not_found, job.source + ": no profile for " + describe_key(key) + " in "
-                                                   + store_path(o.db)
-                                                   + "; make one with `lensprof build` or name one with --profile");
+                                                   + store_path(o.db) + " (" + how.reason
+                                                   + "); make one with `lensprof build` or name one with --profile");
         check(status, store_path(o.db), &error);
+        if (how.exact) job.profile_id = how.id[0];
+        else job.lookup = std::make_shared<lensprof_lookup>(how);
     }
     job.model = profile;
 }
@@ -147,7 +156,7 @@ std::vector<Correction> make_jobs(const Options &o, lensprof_exposure &mean) {
     Store store = from_store ? open_store(o.db, LENSPROF_STORE_READ) : Store();
     std::vector<Correction> jobs;
     for (const std::string &file : files) {
-        Correction job{file, target_name(o, file), model, {}, {}, 0, 0};
+        Correction job{file, target_name(o, file), model, {}, {}, 0, nullptr, 0};
         lensprof_exposure_init(&job.own);
         if (project) {
             uint32_t image = image_of_file(*project, file);
@@ -163,6 +172,19 @@ std::vector<Correction> make_jobs(const Options &o, lensprof_exposure &mean) {
         check_one_result(*project);
     }
     return jobs;
+}
+
+/* Once for every kind of prediction, with its first picture. */
+void say_predicted(const std::vector<Correction> &jobs, Streams &streams) {
+    std::set<std::string> said;
+    for (const Correction &job : jobs) {
+        if (!job.lookup) continue;
+        const lensprof_lookup &how = *job.lookup;
+        std::string text =
+            "falloff " + describe_prediction(how) + format(", standard error %.3f of M in the corner", how.sigma);
+        if (*how.reason) text += std::string("; ") + how.reason;
+        if (said.insert(text).second) streams.err << "lensprof: note: " << job.source << ": " << text << "\n";
+    }
 }
 
 }  // namespace
@@ -186,6 +208,7 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;
     for (Correction &job : jobs) job.wanted = o.exposure == "keep" ? job.own : o.exposure == "mean" ? mean : reference;
+    say_predicted(jobs, streams);
     Corrected written = write_corrected(jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);
     progress.clear();
     if (!o.sheet.empty()) sheet.write(o.sheet);

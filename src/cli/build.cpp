@@ -26,7 +26,9 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--points-out", o.points_out,
                    "write the pairs used (Hugin's 16 columns), also those of a fit that is not usable");
     app.add_option("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
-    declare_fit(app, o.fit);
+    FitChoices choices;
+    choices.stored_prior = true;
+    declare_fit(app, o.fit, choices);
     app.add_option("--falloff-curves", o.falloff, "1, 3 (one a channel) or auto (held-out error decides)")
         ->check(CLI::IsMember({"auto", "1", "3"}));
     app.add_option("--free", o.free, "what is estimated instead of the v lines: response,falloff,center,ev,wb or all");
@@ -206,7 +208,7 @@ Fitted fit_for_project(const Options &o, FitInput &input, const Fitted &best, ui
 }
 
 BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                  OutputFiles &outputs, Streams &streams) {
+                  const StoredPrior &prior, OutputFiles &outputs, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
@@ -214,6 +216,9 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     FitInput input;
     input.options = project_options(o, project, input.fixed);
     report.camera_kind = input.options.camera_kind;
+    report.prior_id = prior.id;
+    report.no_prior = prior.reason;
+    input.options.profile = prior.profile.get();
     get_points(o, project, progress, report, input);
     stop_if_interrupted();
     input.images = fit_images(project);
@@ -252,8 +257,10 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
     check_store(o.store);
     OutputFiles outputs;
-    BuildReport report = build(o, project, metadata, outputs, streams);
-    int code = finish_fit(report, key, o.store, {o.fit.method, o.pto, o.json, &outputs}, streams);
+    StoredPrior prior;
+    if (o.fit.wants_stored_prior()) prior = find_stored_prior(o.store, key, o.pto);
+    BuildReport report = build(o, project, metadata, prior, outputs, streams);
+    int code = finish_fit(report, key, o.store, {o.fit.method, o.pto, o.json, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     if (!report.fit.usable && !o.pto_out.empty() && !o.store.force)
         streams.err << "lensprof: " << o.pto_out << ": not written (--force writes it all the same)\n";
@@ -271,7 +278,7 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
     check_fit_options(o.fit);
     if (o.json && !o.compare.empty())
         throw Failure(ExitCode::usage, "--compare prints a table, which --json leaves out; give one of the two");
-    check_store_options(o.store);
+    if (!o.fit.wants_stored_prior()) check_store_options(o.store);
 
     std::vector<std::string> names;
     try {

@@ -4,6 +4,7 @@
 
 #include "correction.hpp"
 #include "interrupt.hpp"
+#include "lookup_report.hpp"
 #include "parallel.hpp"
 #include "picture.hpp"
 #include "project.hpp"
@@ -175,6 +176,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
                           + ", which are not read from or written to such a file (a BigTIFF); copy them with exiftool");
         Json entry = {{"file", jobs[i].source}, {"output", jobs[i].target}};
         if (jobs[i].profile_id) entry["profile"] = jobs[i].profile_id;
+        if (jobs[i].lookup) entry["lookup"] = lookup_json(*jobs[i].lookup);
         corrected.pictures.push_back(entry);
     };
     for_each_in_order(count, threads, work, finish);

@@ -20,6 +20,7 @@ struct Correction {
     std::shared_ptr<const lensprof_profile> model;
     lensprof_exposure own, wanted; /* what the picture got, and what it shall look like */
     int64_t profile_id = 0;        /* 0 = the model is of no profile */
+    std::shared_ptr<const lensprof_lookup> lookup; /* how the model was predicted; NULL = it was not */
     uint64_t pixels = 0;           /* of the source */
 };
 
@@ -37,7 +38,7 @@ constexpr size_t strip_bytes = size_t(1) << 20;
 
 /* What was written, and how fast. */
 struct Corrected {
-    Json pictures = Json::array(); /* file, output and, where one was used, profile */
+    Json pictures = Json::array(); /* file, output and, where one was used, profile or lookup */
     double seconds = 0, megapixels = 0;
 };
 

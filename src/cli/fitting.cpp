@@ -29,6 +29,26 @@ uint32_t method_of_name(const std::string &name) {
                                          : LENSPROF_METHOD_TRANSFER;
 }
 
+/* --prior as a weight; -1 for what is none. */
+double prior_weight_of(const std::string &text) {
+    size_t used = 0;
+    double value = -1.0;
+    try {
+        value = std::stod(text, &used);
+    } catch (const std::exception &) {
+    }
+    return used == text.size() && value >= 0.0 && value <= 1e6 ? value : -1.0;
+}
+
+/* What --prior may be. */
+CLI::Validator is_prior(bool may_be_stored) {
+    return {[may_be_stored](std::string &text) {
+                if (prior_weight_of(text) >= 0.0 || (may_be_stored && text == "auto")) return std::string();
+                return text + ": give a weight, 0 to 1000000" + (may_be_stored ? ", or auto" : "");
+            },
+            may_be_stored ? "WEIGHT|auto" : "WEIGHT"};
+}
+
 int on_progress(double done, void *progress) {
     static_cast<Progress *>(progress)->update("fitting", done);
     return interrupted();
@@ -57,7 +77,11 @@ void declare_fit(CLI::App &app, FitOptions &o, FitChoices choices) {
     app.add_option("--loss", o.loss, "robust, huber (the paper's) or squared")
         ->check(CLI::IsMember({"robust", "huber", "squared"}));
     app.add_option("--huber", o.huber, "sigma of the Huber loss, levels of 255")->check(in_range(0.01, 255.0));
-    app.add_option("--prior", o.prior, "weight of the priors; 0 = none, as in the paper")->check(in_range(0.0, 1e6));
+    std::string weighs = "weight of the priors; 0 = none, as in the paper";
+    if (choices.stored_prior)
+        weighs += "; auto: the profile that is stored for this lens and setting is the prior, and what is stored holds "
+                  "both";
+    app.add_option("--prior", o.prior, weighs)->check(is_prior(choices.stored_prior));
     app.add_option("--gamma-from", o.gamma_from, settles)->check(CLI::IsMember(gamma));
     app.add_option("--exif-sigma", o.exif_sigma, "standard error of an EXIF exposure, EV; 0 = do not use them")
         ->check(in_range(0.0, 10.0));
@@ -66,6 +90,8 @@ void declare_fit(CLI::App &app, FitOptions &o, FitChoices choices) {
 }
 
 void check_fit_options(const FitOptions &o) {
+    if (o.wants_stored_prior() && o.method != "transfer" && o.method != "radiance")
+        throw Failure(ExitCode::usage, "--prior auto: is for the methods transfer and radiance; give a weight");
     if (o.gamma_from == "exif" && o.exif_sigma == 0.0)
         throw Failure(ExitCode::usage,
                       "--gamma-from exif and --exif-sigma 0, which leaves EXIF out, contradict each other");
@@ -85,7 +111,7 @@ lensprof_fit_options fit_options(const FitOptions &o) {
     if (o.gamma_from == "known") options.free &= ~LENSPROF_FREE_RESPONSE;
     options.camera_kind = camera_kind_of_name(o.camera_kind);
     options.huber_levels = o.huber;
-    options.prior_weight = o.prior;
+    options.prior_weight = o.wants_stored_prior() ? 1.0 : prior_weight_of(o.prior);
     return options;
 }
 
@@ -166,7 +192,13 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
         auto profile = profile_of(report.fit);
         profile->key = key;
         profile->provenance.images = static_cast<uint32_t>(report.names.size());
-        report.profile_id = store_profile(store, *profile, finish.method, report.fit.usable, finish.source);
+        std::string method = finish.method;
+        if (finish.prior && report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED) {
+            method = fused_method(method, finish.prior->id);
+            profile->provenance.images += finish.prior->profile->provenance.images;
+            profile->provenance.pairs += finish.prior->profile->provenance.pairs;
+        }
+        report.profile_id = store_profile(store, *profile, method, report.fit.usable, finish.source);
     }
     if (finish.outputs) finish.outputs->commit();
     if (finish.json) print_json(build_json(report), streams.out);

@@ -15,19 +15,24 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "run.hpp"
+#include "stored_prior.hpp"
 
 namespace lensprof {
 
 /* How to fit. */
 struct FitOptions {
     std::string method = "transfer", modes = "auto", loss = "robust", gamma_from = "auto", camera_kind = "any";
-    double huber = 5.0, prior = 1.0, exif_sigma = 0.1;
+    std::string prior = "1"; /* a weight, or auto */
+    double huber = 5.0, exif_sigma = 0.1;
+
+    bool wants_stored_prior() const { return prior == "auto"; }
 };
 
 /* What not every command has to offer. */
 struct FitChoices {
     bool debevec = false;        /* the pictures' exposures may be known */
     bool known_response = true;  /* a project says a response that may be held */
+    bool stored_prior = false;   /* a stored profile may be the prior */
 };
 void declare_fit(CLI::App &app, FitOptions &o, FitChoices choices = {});
 
@@ -73,6 +78,7 @@ struct Finish {
     std::string source;             /* what it was made from */
     bool json = false;
     OutputFiles *outputs = nullptr; /* committed once the profile is stored; or NULL */
+    const StoredPrior *prior = nullptr; /* that the fit was given; or NULL */
 };
 
 /* Stores a result that is usable or forced, prints it, says on standard error what is wrong with it. Returns the exit

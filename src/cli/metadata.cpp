@@ -152,6 +152,17 @@ std::string read_lens(const Exiv2::ExifData &exif) {
     return is_lens_name(name) ? name : std::string();
 }
 
+/* Serial numbers of camera and lens, as far as they are known: "BODY", "BODY/LENS" or "/LENS". */
+std::string read_unit(const Exiv2::ExifData &exif) {
+    const auto of_maker = Exiv2::serialNumber(exif);
+    const std::string lens = read_text(exif, "Exif.Photo.LensSerialNumber");
+    const auto is_nothing = [](const std::string &text) { return text.find_first_not_of("0 .-") == std::string::npos; };
+    std::string unit = read_text(exif, "Exif.Photo.BodySerialNumber");
+    if (is_nothing(unit) && of_maker != exif.end()) unit = clean_text(of_maker->print(&exif));
+    if (is_nothing(unit)) unit.clear();
+    return is_nothing(lens) ? unit : unit + "/" + lens;
+}
+
 /* In double precision; NaN when there is no value. */
 double number(const Exiv2::Exifdatum &datum) {
     if (datum.count() == 0)
@@ -224,6 +235,23 @@ double read_distance(const Exiv2::ExifData &exif) {
     }
     const auto datum = Exiv2::subjectDistance(exif);
     return datum == exif.end() || datum == stated ? LENSPROF_UNKNOWN : parse_distance(clean_text(datum->print(&exif)));
+}
+
+/* 43.27 mm over the sensor's diagonal: by the pixels' pitch, else by the focal length's equivalent, which is rounded to
+ * whole mm. */
+double read_crop_factor(const Exiv2::ExifData &exif, double focal_mm) {
+    const double full_frame = std::hypot(36.0, 24.0);
+    const double unit = read_number(exif, {"Exif.Photo.FocalPlaneResolutionUnit"}) == 3 ? 10.0 : 25.4; /* mm: cm, inch */
+    const double width = read_number(exif, {"Exif.Photo.PixelXDimension"})
+                       / read_number(exif, {"Exif.Photo.FocalPlaneXResolution"}) * unit;
+    const double height = read_number(exif, {"Exif.Photo.PixelYDimension"})
+                        / read_number(exif, {"Exif.Photo.FocalPlaneYResolution"}) * unit;
+    const double equivalent = read_number(exif, {"Exif.Photo.FocalLengthIn35mmFilm"}) / focal_mm;
+    const double pitched = full_frame / std::hypot(width, height);
+    const auto is_plausible = [](double crop) { return crop > 0.2 && crop < 50.0; };
+    const bool known = is_plausible(equivalent) && focal_mm > 0.0;
+    if (is_plausible(pitched) && (!known || std::fabs(pitched / equivalent - 1.0) < 0.1)) return pitched;
+    return known ? equivalent : LENSPROF_UNKNOWN;
 }
 
 /* Writing. */
@@ -387,6 +415,8 @@ PictureMetadata read_metadata(const std::string &path) {
         metadata.key.focal_mm = in_range(read_number(exif, {"Exif.Photo.FocalLength", "Exif.Image.FocalLength"}), 1e5)
                                     .value_or(LENSPROF_UNKNOWN);
         metadata.key.distance_m = read_distance(exif);
+        metadata.key.crop_factor = read_crop_factor(exif, metadata.key.focal_mm);
+        store_text(read_unit(exif), metadata.key.unit);
         if (image->mimeType() == "image/tiff" && read_number(exif, {"Exif.Image.SampleFormat"}) == 3)
             metadata.key.processing = LENSPROF_PROCESSING_RAW;
     } catch (const std::exception &error) {

@@ -16,6 +16,8 @@ void declare_store(CLI::App &app, StoreOptions &o) {
     app.add_option("--maker", o.maker, "camera maker, instead of EXIF's");
     app.add_option("--camera", o.camera, "camera model");
     app.add_option("--lens", o.lens, "lens");
+    app.add_option("--unit", o.unit,
+                   "the profile is of one camera and lens alone: their serial numbers, or exif for those of the picture");
     app.add_option("--focal", o.focal, "focal length, mm")->check(in_range(0.01, 1e5));
     app.add_option("--aperture", o.aperture, "f-number")->check(in_range(0.01, 1e4));
     app.add_option("--distance", o.distance, "focus distance, m")->check(in_range(1e-6, INFINITY));
@@ -30,6 +32,9 @@ lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &
     if (!o.maker.empty()) set_text(key.camera_maker, sizeof key.camera_maker, o.maker);
     if (!o.camera.empty()) set_text(key.camera_model, sizeof key.camera_model, o.camera);
     if (!o.lens.empty()) set_text(key.lens, sizeof key.lens, o.lens);
+    if (o.unit == "exif" && !*key.unit)
+        throw Failure(ExitCode::usage, file + ": its EXIF has no serial numbers; give them with --unit");
+    if (o.unit != "exif") set_text(key.unit, sizeof key.unit, o.unit); /* of all of the model, where none is given */
     if (o.focal != LENSPROF_UNKNOWN) key.focal_mm = o.focal;
     if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;
     if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;

@@ -1,6 +1,7 @@
 /* `lensprof query`: the profile of a camera, lens and setting. */
 #include "key_filter.hpp"
 #include "library.hpp"
+#include "lookup_report.hpp"
 #include "report.hpp"
 #include "run.hpp"
 
@@ -46,23 +47,6 @@ void answer_stored(const Options &o, lensprof_store *store, const std::vector<le
     print_profile(newest, *profile, streams.out);
     if (rows.size() > 1)
         streams.out << rows.size() << " profiles match; this is the newest. Give more of the setting to choose.\n";
-}
-
-Json lookup_json(const lensprof_lookup &how) {
-    Json rows = Json::array();
-    for (uint32_t i = 0; i < how.rows; i++) rows.push_back({{"id", how.id[i]}, {"weight", how.weight[i]}});
-    return {{"exact", how.exact != 0},       {"rows", rows},
-            {"distance", how.distance},      {"sigma", how.sigma == LENSPROF_UNKNOWN ? Json() : Json(how.sigma)},
-            {"name_score", how.name_score}, {"reason", how.reason}};
-}
-
-void print_lookup(const lensprof_lookup &how, std::ostream &out) {
-    if (how.exact) out << "stored    as profile " << how.id[0] << "\n";
-    else out << format("predicted from %u profiles of this lens, the nearest (%lld) at %.2f of the 0.5 that are allowed\n",
-                       how.rows, static_cast<long long>(how.id[0]), how.distance);
-    if (how.sigma != LENSPROF_UNKNOWN) out << format("sigma     %.3f of M in the corner\n", how.sigma);
-    if (how.name_score < 1.0) out << format("name      matched with score %.1f\n", how.name_score);
-    if (*how.reason) out << "mind      " << how.reason << "\n";
 }
 
 /* The falloff between what is stored. */

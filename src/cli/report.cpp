@@ -120,8 +120,8 @@ std::string format(const char *pattern, ...) {
 }
 
 const char *gamma_name(uint32_t from) {
-    static const char *const names[] = {"auto", "prior", "exif", "known", "none"};
-    return from <= LENSPROF_GAMMA_NONE ? names[from] : "unknown";
+    static const char *const names[] = {"auto", "prior", "exif", "known", "none", "profile"};
+    return from <= LENSPROF_GAMMA_PROFILE ? names[from] : "unknown";
 }
 
 const char *camera_kind_name(uint32_t kind) {
@@ -198,6 +198,14 @@ Json gamma_json(const BuildReport &report) {
     return json;
 }
 
+/* The stored profile that the fit was given; null where none was asked for. */
+Json prior_json(const BuildReport &report) {
+    if (!report.prior_id && report.no_prior.empty()) return Json();
+    return {{"profile", report.prior_id ? Json(report.prior_id) : Json()},
+            {"used", report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED},
+            {"reason", report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_OVERRULED ? report.fit.reason : report.no_prior}};
+}
+
 }  // namespace
 
 Json build_json(const BuildReport &report) {
@@ -226,6 +234,7 @@ Json build_json(const BuildReport &report) {
     json["iterations"] = fit.iterations;
     json["covariance"] = covariance_json(fit.covariance, fit.covariance_size);
     json["seconds"] = {{"load", report.load_s}, {"sample", report.sample_s}, {"solve", fit.seconds}};
+    json["prior"] = prior_json(report);
     json["profile"] = report.profile_id ? Json(report.profile_id) : Json();
     return json;
 }
@@ -265,6 +274,13 @@ void print_gamma(const BuildReport &report, std::ostream &out) {
         << " and response, which pictures leave open (docs/model.md)\n";
 }
 
+void print_prior(const BuildReport &report, std::ostream &out) {
+    if (!report.no_prior.empty()) out << "prior     of all cameras: " << report.no_prior << "\n";
+    if (!report.prior_id) return;
+    const bool used = report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED;
+    out << "prior     profile " << report.prior_id << (used ? ", which the result holds\n" : ", overruled by the pictures\n");
+}
+
 }  // namespace
 
 void print_build(const BuildReport &report, std::ostream &out) {
@@ -274,6 +290,7 @@ void print_build(const BuildReport &report, std::ostream &out) {
         print_vignettings(fit.vignetting, fit.vignettings, {fit.covariance, fit.covariance_size, fit.response.modes}, out);
     print_response(fit.response, out);
     print_gamma(report, out);
+    print_prior(report, out);
     std::string heldout = "not measured: too few pairs";
     if (fit.heldout_rms != LENSPROF_UNKNOWN)
         heldout = format("%.2f (RMS; median %.2f) on pairs left out of the fit", fit.heldout_rms, fit.heldout_median);

@@ -29,6 +29,8 @@ struct BuildReport {
     double load_s = 0, sample_s = 0;
     uint32_t camera_kind = LENSPROF_CAMERA_ANY; /* whose prior settled gamma */
     int64_t profile_id = 0; /* 0 = not stored */
+    int64_t prior_id = 0;   /* of the profile that was the prior; 0 = none */
+    std::string no_prior;   /* why none was, where one was asked for */
 };
 
 /* One line. Names of files need not be UTF-8, JSON must: bytes that are not become U+FFFD. */

@@ -53,6 +53,8 @@ public:
     // pairs.
     double worse_than(const Fit &other) const;
 
+    double falloff_distance(const lensprof_fit_result &alone) const { return stored_->falloff_distance(alone); }
+
     void describe(lensprof_exposure *exposures, lensprof_fit_result &result);
 
 private:
@@ -352,24 +354,24 @@ void Fit::describe(lensprof_exposure *exposures, lensprof_fit_result &result) {
 // Fits, and where a profile is the prior, without it too: that is the result where the pictures contradict the profile.
 void run_fits(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count,
               lensprof_exposure *exposures, lensprof_fit_result &result) {
-    constexpr double kClearly = 3.0;  // standard errors
+    constexpr double kClearly = 3.0, kFarApart = 5.0;  // standard errors
     auto began = std::chrono::steady_clock::now();
     Fit alone(options, image_count, make, count, nullptr, 0.0, options.profile ? 0.5 : 1.0);
     alone.run();
     lensprof_fit_result r = result;
+    alone.describe(exposures, r);
     r.profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
     if (options.profile) {
         Fit informed(options, image_count, make, count, options.profile, 0.5, 1.0);
         informed.run();
-        const double worse = informed.worse_than(alone);
-        r.profile_prior = worse > kClearly ? LENSPROF_PROFILE_PRIOR_OVERRULED : LENSPROF_PROFILE_PRIOR_USED;
-        (worse > kClearly ? alone : informed).describe(exposures, r);
-        if (worse > kClearly && r.usable)
+        const double worse = informed.worse_than(alone), apart = informed.falloff_distance(r);
+        const bool overruled = worse > kClearly || apart > kFarApart;
+        r.profile_prior = overruled ? LENSPROF_PROFILE_PRIOR_OVERRULED : LENSPROF_PROFILE_PRIOR_USED;
+        if (!overruled) informed.describe(exposures, r);
+        else if (r.usable)
             std::snprintf(r.reason, sizeof r.reason,
-                          "the profile given as the prior contradicts the pictures (held-out pairs are worse for it by "
-                          "%.0f standard errors) and was left out: is it of this lens and setting?", worse);
-    } else {
-        alone.describe(exposures, r);
+                          "the profile given as the prior contradicts the pictures (its falloff is %.1f, held-out pairs "
+                          "%.1f standard errors off) and was left out: is it of this lens and setting?", apart, worse);
     }
     r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     result = r;

@@ -104,6 +104,25 @@ Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from) const {
     return 0.5 * (precision + precision.transpose());
 }
 
+double StoredPrior::falloff_distance(const lensprof_fit_result &alone) const {
+    const int own = green_falloff(vignettings_), size = static_cast<int>(alone.covariance_size);
+    const int theirs = static_cast<int>(alone.response.modes) + (alone.vignettings == 3 ? 3 : 0);
+    if (covariance_(own, own) <= 0.0 || size < theirs + 3) return 0.0;
+    double farthest = 0.0;
+    for (double r2 : {0.1, 0.25, 0.5, 1.0}) {
+        const double power[3] = {r2, r2 * r2, r2 * r2 * r2};
+        double variance = 0.0, difference = 0.0;
+        for (int i = 0; i < 3; i++) {
+            difference += power[i] * (mean_[own + i] - alone.vignetting[1].k[i]);
+            for (int j = 0; j < 3; j++)
+                variance += power[i] * power[j]
+                          * (covariance_(own + i, own + j) + alone.covariance[(theirs + i) * size + theirs + j]);
+        }
+        if (variance > 0.0) farthest = std::max(farthest, std::abs(difference) / std::sqrt(variance));
+    }
+    return farthest;
+}
+
 void StoredPrior::put_into(Prior &prior, int vignettings, double weight) const {
     const Places places = this->places(vignettings);
     if (modes_ > 0) prior.covariance_weight = 0.0;

@@ -19,6 +19,9 @@ public:
     // is settled apart (gauge.hpp).
     void put_into(Prior &prior, int vignettings, double weight) const;
 
+    // Largest difference of its falloff (green's) from that of a result without it, in standard errors of both together.
+    double falloff_distance(const lensprof_fit_result &alone) const;
+
     // Position of its response within its family (gamma_prior.hpp), and the standard error; 0 where none is known.
     double gamma_position() const { return gamma_position_; }
     double gamma_sigma() const { return gamma_sigma_; }

@@ -91,6 +91,29 @@ void test_float_tiff_is_linear(void **) {
     assert_int_equal(read_metadata(in_folder("a.tif")).key.processing, LENSPROF_PROCESSING_RAW);
 }
 
+void test_unit_and_sensor(void **) {
+    const PictureMetadata both = read_exif({{"Exif.Photo.BodySerialNumber", " 0123 "}, {"Exif.Photo.LensSerialNumber", "9"}});
+    assert_string_equal(both.key.unit, "0123/9");
+    assert_string_equal(read_exif({{"Exif.Photo.LensSerialNumber", "9"}}).key.unit, "/9");
+    assert_string_equal(read_exif({{"Exif.Photo.BodySerialNumber", "0000"}, {"Exif.Photo.LensSerialNumber", "-"}}).key.unit,
+                        "");
+    /* 6000 x 4000 pixels of 3.9 um: 23.4 mm x 15.6 mm. */
+    const PictureMetadata pitched = read_exif({{"Exif.Photo.PixelXDimension", "6000"},
+                                               {"Exif.Photo.PixelYDimension", "4000"},
+                                               {"Exif.Photo.FocalPlaneXResolution", "100000/39"},
+                                               {"Exif.Photo.FocalPlaneYResolution", "100000/39"},
+                                               {"Exif.Photo.FocalPlaneResolutionUnit", "3"},
+                                               {"Exif.Photo.FocalLength", "18/1"},
+                                               {"Exif.Photo.FocalLengthIn35mmFilm", "27"}});
+    assert_close(pitched.key.crop_factor, std::hypot(36, 24) / std::hypot(23.4, 15.6), 1e-9);
+    const PictureMetadata equivalent = read_exif({{"Exif.Photo.FocalLength", "425/100"},
+                                                  {"Exif.Photo.FocalLengthIn35mmFilm", "26"}});
+    assert_close(equivalent.key.crop_factor, 26 / 4.25, 1e-9);
+    for (const char *focal : {"0/1", "1/0", "5000/1"})
+        assert_close(read_exif({{"Exif.Photo.FocalLength", focal}, {"Exif.Photo.FocalLengthIn35mmFilm", "26"}}).key.crop_factor,
+                     LENSPROF_UNKNOWN, 0);
+}
+
 void test_texts(void **) {
     const std::string longer = "  " + std::string(62, 'm') + "\xc3\xa9\xc3\xa9  ";
     PictureMetadata metadata = read_exif({{"Exif.Image.Make", "  NIKON CORPORATION  "},
@@ -372,6 +395,7 @@ int main() {
         TEST(test_written_is_read),
         TEST(test_float_tiff_is_linear),
         TEST(test_texts),
+        TEST(test_unit_and_sensor),
         TEST(test_lens_of_maker_note),
         TEST(test_exposure),
         TEST(test_distance),

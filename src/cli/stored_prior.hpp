@@ -1,0 +1,27 @@
+/* stored_prior.hpp - the profile of the same lens and setting that a fit may start from, and whether it may. */
+#ifndef LENSPROF_CLI_STORED_PRIOR_HPP
+#define LENSPROF_CLI_STORED_PRIOR_HPP
+
+#include <memory>
+#include <string>
+
+#include "profile_store.hpp"
+
+namespace lensprof {
+
+struct StoredPrior {
+    int64_t id = 0;                            /* 0: there is none */
+    std::unique_ptr<lensprof_profile> profile; /* or NULL */
+    std::string reason;                        /* why there is none */
+};
+
+/* The profile that is stored for the key, unless it has no covariance or was made from `source` already, which would
+ * then count twice: its provenance tells (`transfer+12`: profile 12 is in it). */
+StoredPrior find_stored_prior(const StoreOptions &o, const lensprof_profile_key &key, const std::string &source);
+
+/* The method of a profile that holds another one. */
+std::string fused_method(const std::string &method, int64_t prior);
+
+}  // namespace lensprof
+
+#endif

@@ -1,0 +1,144 @@
+/* What is stored serves later pictures: as the prior of the next fit, for one unit, between settings. */
+#include <exiv2/exiv2.hpp>
+
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+using namespace picture_files;
+
+namespace {
+
+/* Two overlapping pictures of the simulated camera; another seed is another place. */
+std::string pictures(const std::string &name, const char *seed, const char *falloff = "-0.4,0.1,-0.1") {
+    must_exit(done, {"simulate", "-o", work(name), "--images", "2", "--size", "480x320", "--overlap", "0.5",
+                     "--vignetting", falloff, "--ev", "1.5", "--exif", "--exif-rounding", "0.1", "--seed", seed});
+    return work(name + "/pano.pto");
+}
+
+Words build(const std::string &project, const Words &more = {}) {
+    return Words{"build", project, "--db", work("l.db"), "--prior", "auto", "--json"} + more;
+}
+
+double corner_sigma(const Json &json) {
+    const size_t first = json["response"]["emor"].size();
+    double variance = 0.0;
+    for (size_t i = first; i < first + 3; i++)
+        for (size_t j = first; j < first + 3; j++) variance += json["covariance"][i][j].get<double>();
+    return std::sqrt(variance);
+}
+
+Json shown(int64_t id) { return json_of({"profile", "show", std::to_string(id), "--db", work("l.db"), "--json"}); }
+
+void test_next_sequences(void **) {
+    const Json first = json_of(build(pictures("a", "1")));
+    assert_true(first["prior"]["profile"].is_null());
+    assert_true(contains(first["prior"]["reason"].get<std::string>(), "no database yet"));
+    Json last = first;
+    for (const char *name : {"b", "c"}) {
+        const Json next = json_of(build(pictures(name, name == std::string("b") ? "2" : "3")));
+        assert_true(next["prior"]["used"].get<bool>());
+        assert_int_equal(next["prior"]["profile"].get<int>(), last["profile"].get<int>());
+        assert_true(corner_sigma(next) < corner_sigma(last));
+        last = next;
+    }
+    const Json stored = shown(3);
+    assert_string_equal(stored["provenance"]["method"].get<std::string>().c_str(), "transfer+2");
+    assert_int_equal(stored["provenance"]["images"], 6);
+    assert_int_equal(stored["provenance"]["pairs"].get<int>(),
+                     3 * shown(1)["provenance"]["pairs"].get<int>());
+    const std::string said = must_exit(done, {"build", pictures("d", "4"), "--db", work("l.db"), "--prior", "auto"});
+    assert_true(contains(said, "prior     profile 3, which the result holds"));
+}
+
+/* Not even as what is in another profile. */
+void test_pictures_count_once(void **) {
+    const std::string a = pictures("a", "1"), b = pictures("b", "2");
+    json_of(build(a));
+    json_of(build(b));
+    for (const std::string &again : {a, b}) {
+        const Json json = json_of(build(again, {"--no-store"}));
+        assert_true(contains(json["prior"]["reason"].get<std::string>(), "profile 2 holds these pictures already"));
+        assert_false(json["prior"]["used"].get<bool>());
+    }
+    must_exit(done, {"profile", "remove", "1", "--db", work("l.db")}); /* the chain ends: nothing is known of it */
+    assert_true(json_of(build(a, {"--no-store"}))["prior"]["used"].get<bool>());
+}
+
+void test_wrong_profile_is_overruled(void **) {
+    json_of(build(pictures("a", "1", "-0.05,0,0")));
+    const Outcome outcome = run_words(build(pictures("b", "2")));
+    assert_int_equal(outcome.code, done);
+    assert_true(contains(outcome.err, "contradicts the pictures"));
+    const Json json = Json::parse(outcome.out);
+    assert_false(json["prior"]["used"].get<bool>());
+    assert_true(contains(json["prior"]["reason"].get<std::string>(), "contradicts the pictures"));
+    assert_string_equal(shown(2)["provenance"]["method"].get<std::string>().c_str(), "transfer");
+    assert_int_equal(shown(2)["provenance"]["images"], 2);
+}
+
+void test_no_prior_for_this(void **) {
+    const std::string a = pictures("a", "1"), b = pictures("b", "2");
+    json_of(build(a, {"--aperture", "4"}));
+    assert_true(contains(json_of(build(b, {"--no-store"}))["prior"]["reason"].get<std::string>(), "no profile is stored"));
+    assert_refused(usage, build(b, {"--method", "transfer-function"}), {"--prior auto", "transfer"});
+    assert_refused(usage, {"build", b, "--prior", "some"}, {"--prior", "some", "auto"});
+    assert_refused(usage, {"bracket", work("a/img000.png"), "--prior", "auto"}, {"--prior"});
+    save_text(work("l.db"), "not a database, but long enough that it might be one. not a database, but long enough...");
+    assert_refused(store_failed, build(b), {work("l.db")});
+}
+
+void write_exif(const std::string &file, const std::map<std::string, std::string> &values) {
+    auto image = Exiv2::ImageFactory::open(file);
+    image->readMetadata();
+    for (const auto &value : values) image->exifData()[value.first].setValue(value.second);
+    image->writeMetadata();
+}
+
+/* A profile of one unit serves this unit, before one of the model, and no other. */
+void test_units(void **) {
+    const std::string a = pictures("a", "1");
+    const auto set_unit = [&](const char *body) {
+        for (const char *name : {"a/img000.png", "a/img001.png"})
+            write_exif(work(name), {{"Exif.Photo.BodySerialNumber", body}, {"Exif.Photo.LensSerialNumber", "77"}});
+    };
+    set_unit("123");
+    const Words db = {"--db", work("l.db")};
+    must_exit(done, Words{"build", a} + db);
+    must_exit(done, Words{"build", a, "--unit", "exif"} + db);
+    must_exit(done, Words{"build", a, "--unit", "other"} + db);
+    assert_string_equal(shown(1)["key"]["unit"].get<std::string>().c_str(), "");
+    assert_string_equal(shown(2)["key"]["unit"].get<std::string>().c_str(), "123/77");
+    const Words apply = Words{"apply", "--from-db", "--json", "-o", work("out"), work("a/img000.png")} + db;
+    assert_int_equal(json_of(apply)["pictures"][0]["profile"], 2);
+    fs::remove_all(work("out"));
+    set_unit("124");
+    assert_int_equal(json_of(apply)["pictures"][0]["profile"], 1);
+    write_exif(work("a/img000.png"), {{"Exif.Photo.BodySerialNumber", ""}, {"Exif.Photo.LensSerialNumber", "0000"}});
+    assert_refused(usage, Words{"build", a, "--unit", "exif"} + db, {"img000.png", "--unit"});
+}
+
+/* Between two apertures the falloff is predicted, and it is said. */
+void test_apply_between_settings(void **) {
+    const std::string a = pictures("a", "1"), b = pictures("b", "1", "-0.2,0.05,-0.05");
+    const Words db = {"--db", work("l.db"), "--distance", "inf"};
+    must_exit(done, Words{"build", a, "--aperture", "2.5"} + db);
+    must_exit(done, Words{"build", b, "--aperture", "3.2"} + db);
+    const Words apply = {"apply", "--from-db", "-o", work("out"), work("a/img000.png"), "--db", work("l.db")};
+    const Outcome outcome = run_words(apply);
+    assert_int_equal(outcome.code, done);
+    assert_true(contains(outcome.err, "falloff predicted from 2 profiles of this lens"));
+    fs::remove_all(work("out"));
+    const Json lookup = json_of(apply + Words{"--json"})["pictures"][0]["lookup"];
+    assert_int_equal(lookup["rows"].size(), 2);
+    assert_false(lookup["exact"].get<bool>());
+    assert_true(lookup["sigma"].get<double>() > 0.0);
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {CLI_TEST(test_next_sequences),          CLI_TEST(test_pictures_count_once),
+                                CLI_TEST(test_wrong_profile_is_overruled), CLI_TEST(test_no_prior_for_this),
+                                CLI_TEST(test_units),                   CLI_TEST(test_apply_between_settings)};
+    return cmocka_run_group_tests(tests, make_scene, remove_folder);
+}
