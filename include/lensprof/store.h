@@ -114,6 +114,15 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list(lensprof_stor
                                                                    lensprof_store_row *rows, uint32_t capacity,
                                                                    uint32_t *found, lensprof_error *error);
 
+/* Adds every profile of `other`, another open database, that is not there yet with the same key, content and provenance,
+ * with its provenance as it is; the oldest first. All or none, and never twice: merged again, nothing is added. *added
+ * and *known (may be NULL) receive how many were and how many were there. `other` is only read, whatever its layout.
+ * Errors: ARGUMENT for the database itself; what lensprof_store_put and, of `other`, lensprof_store_get say: the text
+ * names the file and the damaged profile. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *other,
+                                                                    uint32_t *added, uint32_t *known,
+                                                                    lensprof_error *error);
+
 /* Removes the profile with an id; NOT_FOUND when there is none. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_remove(lensprof_store *store, int64_t id,
                                                                      lensprof_error *error);

@@ -1,4 +1,4 @@
-/* `lensprof profile list | show | remove | export | import`. */
+/* `lensprof profile list | show | remove | export | import | merge`. */
 #include <algorithm>
 
 #include "chart.hpp"
@@ -197,9 +197,12 @@ void check_verb(const std::string &verb, const ProfileOptions &o) {
 int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
     if (!arguments.empty() && arguments[0] == "import")
         return run_profile_import({arguments.begin() + 1, arguments.end()}, streams);
+    if (!arguments.empty() && arguments[0] == "merge")
+        return run_profile_merge({arguments.begin() + 1, arguments.end()}, streams);
     std::string verb;
     ProfileOptions o;
-    CLI::App app("Lists, shows, removes or exports profiles of the database. `lensprof profile import` has options of its own.",
+    CLI::App app("Lists, shows, removes or exports profiles of the database. `lensprof profile import` and `merge` have "
+                 "options of their own.",
                  "lensprof profile");
     app.add_option("VERB", verb, "list, show, remove or export")
         ->required()

@@ -58,9 +58,6 @@ void check_store(const StoreOptions &o) {
         check_folder(folder.string(), file.string(), ExitCode::store);
 }
 
-namespace {
-
-/* A database that was to be made for one profile is not left behind empty; one that somebody else has filled stays. */
 void remove_empty_store(const std::string &file) {
     lensprof_store *store = nullptr;
     uint32_t profiles = 0;
@@ -71,8 +68,6 @@ void remove_empty_store(const std::string &file) {
     std::error_code ignored;
     if (profiles == 0) std::filesystem::remove(file, ignored);
 }
-
-}  // namespace
 
 std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit) {
     auto profile = std::make_unique<lensprof_profile>();

@@ -30,6 +30,9 @@ lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &
 /* Failure (store) before the work is done when the database cannot be used. */
 void check_store(const StoreOptions &o);
 
+/* A database that was to be made for what failed is not left behind empty; one that somebody else has filled stays. */
+void remove_empty_store(const std::string &file);
+
 /* A profile of what a fit found, its key and provenance but the result's numbers still empty. */
 std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit);
 

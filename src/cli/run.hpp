@@ -31,6 +31,7 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams);
 int run_flat(const std::vector<std::string> &arguments, Streams &streams);
 int run_profile(const std::vector<std::string> &arguments, Streams &streams);
 int run_profile_import(const std::vector<std::string> &arguments, Streams &streams); /* behind `profile import` */
+int run_profile_merge(const std::vector<std::string> &arguments, Streams &streams);  /* behind `profile merge` */
 int run_query(const std::vector<std::string> &arguments, Streams &streams);
 int run_simulate(const std::vector<std::string> &arguments, Streams &streams);
 

@@ -141,7 +141,7 @@ static lensprof_status read_rows(lensprof_store *store, int64_t id, const rows *
     lensprof_status status = lp_store_prepare(store, wanted->sql, &statement, error);
     if (status != LENSPROF_OK) return status;
     status = read_statement(store, id, wanted, statement, error);
-    sqlite3_finalize(statement);
+    lp_store_release(store, statement);
     return status;
 }
 

@@ -136,12 +136,13 @@ lensprof_status lp_store_fail_sql(const char *path, sqlite3 *db, int rc, lenspro
     return lp_store_fail(path, status, what, sentence->next, error);
 }
 
-lensprof_status lp_store_fail_profile(const lensprof_store *store, int64_t id, const char *what, lensprof_error *error)
+lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const char *what, lensprof_error *error)
 {
     char text[100];
     if (sqlite3_errcode(store->db) == SQLITE_NOMEM) /* a column could not be fetched */
         return lp_store_fail_sql(store->path, store->db, SQLITE_NOMEM, error);
     snprintf(text, sizeof text, "profile %lld is damaged (%.50s)", (long long)id, what);
+    snprintf(store->damage, sizeof store->damage, "%.50s", what);
     return lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, text, "remove it, or restore the file from a copy",
                          error);
 }

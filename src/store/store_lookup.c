@@ -127,7 +127,7 @@ static lensprof_status read_rows(lensprof_store *store, const char *name, const 
         else rc = take_row(&r, key, found) ? sqlite3_step(binder.statement) : SQLITE_NOMEM;
     }
     if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
-    sqlite3_finalize(binder.statement);
+    lp_store_release(store, binder.statement);
     return status;
 }
 

@@ -65,8 +65,9 @@ static lensprof_status check_tables(lensprof_store *store, lensprof_error *error
         : store->layout < 3
         ? "SELECT gain_grids.channels FROM profiles, responses, emor_coefficients, vignettings, gain_grids"
         : "SELECT unit, gain_grids.channels FROM profiles, responses, emor_coefficients, vignettings, gain_grids";
-    status = lp_store_prepare(store, sql, &statement, error);
-    if (status == LENSPROF_OK) sqlite3_finalize(statement);
+    const int rc = sqlite3_prepare_v2(store->db, sql, -1, &statement, NULL);
+    if (rc) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    sqlite3_finalize(statement);
     lp_store_rollback(store);
     return status;
 }
@@ -121,6 +122,8 @@ lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_
         made->mode = mode;
         made->layout = 0;
         made->batch = false;
+        made->prepared = 0;
+        made->damage[0] = 0;
         memcpy(made->path, path, length + 1);
         status = connect(made, full, busy_ms, error);
     }
@@ -138,6 +141,7 @@ lensprof_status lensprof_store_open(const char *path, uint32_t mode, lensprof_st
 void lensprof_store_close(lensprof_store *store)
 {
     if (!store) return;
-    sqlite3_close(store->db); /* no statement outlives a call */
+    lp_store_forget_statements(store);
+    sqlite3_close(store->db);
     free(store);
 }

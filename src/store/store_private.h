@@ -10,11 +10,19 @@
 #define LP_STORE_LAYOUT 3 /* that of the newest schema */
 #define LP_STORE_BUSY_MS 5000
 
+#define LP_STORE_STATEMENTS 48 /* more than there are in the sources; what is beyond is prepared each time */
+
 struct lensprof_store {
     sqlite3 *db;
     uint32_t mode;
     int layout;               /* of the file, as the transaction found or made it */
     bool batch;               /* the caller's transaction is open: calls are savepoints in it */
+    uint32_t prepared;        /* statements that are kept for the next call */
+    struct {
+        const char *sql; /* a literal, known by its address */
+        sqlite3_stmt *statement;
+    } kept[LP_STORE_STATEMENTS];
+    char damage[64];          /* what lp_store_fail_profile said last */
     lensprof_profile scratch; /* 50 kB: a profile is read here first, so that on error outputs are untouched */
     char path[];              /* as the caller wrote it, for error texts */
 };
@@ -30,7 +38,7 @@ lensprof_status lp_store_fail_sql(const char *path, sqlite3 *db, int rc, lenspro
 /* For a wrong argument; the text names it and not the file. */
 lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error);
 /* CORRUPT and NOT_FOUND for the profile with an id. */
-lensprof_status lp_store_fail_profile(const lensprof_store *store, int64_t id, const char *what, lensprof_error *error);
+lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const char *what, lensprof_error *error);
 lensprof_status lp_store_fail_missing(const lensprof_store *store, int64_t id, lensprof_error *error);
 void lp_store_clear(lensprof_error *error);
 
@@ -56,13 +64,20 @@ int lp_store_migrate(sqlite3 *db, int layout); /* result code; from tables of `l
 lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error *error);
 lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error); /* rolls back when it fails */
 void lp_store_rollback(lensprof_store *store);
+
+/* store_statements.c: statements are prepared once a handle. `sql` is a literal. The statement is the caller's until he
+ * releases it, whatever happened to it. */
 lensprof_status lp_store_prepare(lensprof_store *store, const char *sql, sqlite3_stmt **statement,
                                  lensprof_error *error);
+void lp_store_release(lensprof_store *store, sqlite3_stmt *statement);
+void lp_store_forget_statements(lensprof_store *store); /* before the connection is closed */
+int lp_store_execute(lensprof_store *store, const char *sql);                 /* result code; without parameters, rows */
+int lp_store_integer(lensprof_store *store, const char *sql, int64_t *value); /* as lp_store_number */
 
 /* store_read.c: the profile with an id, within a transaction, into store->scratch. */
 lensprof_status lp_store_fetch(lensprof_store *store, int64_t id, lensprof_error *error);
 
-/* store_columns.c (and lp_store_run in store_transaction.c): parameters and columns, each call takes the next one. */
+/* store_columns.c (and lp_store_run in store_statements.c): parameters and columns, each call takes the next one. */
 typedef struct lp_store_binder {
     sqlite3_stmt *statement;
     int column;
@@ -76,7 +91,7 @@ void lp_bind_text(lp_store_binder *binder, const char *text);
 void lp_bind_doubles(lp_store_binder *binder, const double *values, uint32_t count); /* little-endian blobs */
 void lp_bind_floats(lp_store_binder *binder, const float *values, uint32_t count);
 
-/* Runs a statement that returns no row, and finalizes it. */
+/* Runs a statement that returns no row, and releases it. */
 lensprof_status lp_store_run(lensprof_store *store, lp_store_binder *binder, lensprof_error *error);
 
 typedef struct lp_store_reader {
@@ -93,6 +108,11 @@ void lp_read_text(lp_store_reader *reader, char *text, size_t capacity); /* zero
 void lp_read_doubles(lp_store_reader *reader, double *values, uint32_t count);
 void lp_read_floats(lp_store_reader *reader, float *values, uint32_t count);
 uint32_t lp_read_name(lp_store_reader *reader, const char *const *names, uint32_t count); /* index of the text */
+
+/* store_write.c: a profile known to be valid, within a transaction; and its columns, in the order of that INSERT. */
+lensprof_status lp_store_insert(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
+                                lensprof_error *error);
+void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *profile, const char *lens_name);
 
 /* Words of the database for enum values; the position is the value. They are part of the layout. */
 #define LP_STORE_PROCESSINGS 3

@@ -135,7 +135,7 @@ static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *
     else
         status = lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile with this key",
                                "list the profiles to see which there are", error);
-    sqlite3_finalize(binder.statement);
+    lp_store_release(store, binder.statement);
     return status;
 }
 
@@ -229,7 +229,7 @@ static lensprof_status list_rows(lensprof_store *store, const lensprof_profile_k
         if (status == LENSPROF_OK) rc = sqlite3_step(binder.statement);
     }
     if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
-    sqlite3_finalize(binder.statement);
+    lp_store_release(store, binder.statement);
     return status;
 }
 

@@ -27,15 +27,15 @@ typedef struct layout {
     int64_t application_id, user_version, pages;
 } layout;
 
-static int begin(sqlite3 *db, bool write, layout *found)
+static int begin(lensprof_store *store, bool write, layout *found)
 {
     int rc = SQLITE_OK;
-    if (!sqlite3_get_autocommit(db)) rc = sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL); /* lacked the memory before */
-    if (rc == SQLITE_OK) rc = sqlite3_exec(db, write ? "BEGIN IMMEDIATE" : "BEGIN", NULL, NULL, NULL);
+    if (!sqlite3_get_autocommit(store->db)) rc = lp_store_execute(store, "ROLLBACK"); /* lacked the memory before */
+    if (rc == SQLITE_OK) rc = write ? lp_store_execute(store, "BEGIN IMMEDIATE") : lp_store_execute(store, "BEGIN");
     if (rc) return rc;
-    rc = lp_store_number(db, "PRAGMA application_id", &found->application_id);
-    if (rc == SQLITE_OK) rc = lp_store_number(db, "PRAGMA user_version", &found->user_version);
-    if (rc == SQLITE_OK) rc = lp_store_number(db, "PRAGMA page_count", &found->pages);
+    rc = lp_store_integer(store, "PRAGMA application_id", &found->application_id);
+    if (rc == SQLITE_OK) rc = lp_store_integer(store, "PRAGMA user_version", &found->user_version);
+    if (rc == SQLITE_OK) rc = lp_store_integer(store, "PRAGMA page_count", &found->pages);
     return rc;
 }
 
@@ -85,17 +85,17 @@ lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error
 {
     layout found = {0, 0, 0};
     if (store->batch) {
-        int rc = sqlite3_exec(store->db, "SAVEPOINT call", NULL, NULL, NULL);
+        int rc = lp_store_execute(store, "SAVEPOINT call");
         return rc ? lp_store_fail_sql(store->path, store->db, rc, error) : LENSPROF_OK;
     }
     if (write && store->mode == LENSPROF_STORE_READ)
         return lp_store_fail(store->path, LENSPROF_ERROR_READ_ONLY, "was opened for reading only",
                              "open it with LENSPROF_STORE_WRITE", error);
-    int rc = begin(store->db, write, &found);
+    int rc = begin(store, write, &found);
     if (rc == SQLITE_READONLY_ROLLBACK) {
         lp_store_rollback(store);
         undo_cut_off_write(store);
-        rc = begin(store->db, write, &found);
+        rc = begin(store, write, &found);
     }
     lensprof_status status = rc ? lp_store_fail_sql(store->path, store->db, rc, error)
                                 : check_layout(store, &found, error);
@@ -107,7 +107,7 @@ lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error
 
 lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error)
 {
-    int rc = sqlite3_exec(store->db, store->batch ? "RELEASE call" : "COMMIT", NULL, NULL, NULL);
+    int rc = store->batch ? lp_store_execute(store, "RELEASE call") : lp_store_execute(store, "COMMIT");
     if (rc == SQLITE_OK) return LENSPROF_OK;
     lensprof_status status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_rollback(store);
@@ -117,11 +117,12 @@ lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error)
 void lp_store_rollback(lensprof_store *store)
 {
     if (store->batch && !sqlite3_get_autocommit(store->db)) {
-        (void)sqlite3_exec(store->db, "ROLLBACK TO call; RELEASE call", NULL, NULL, NULL);
+        (void)lp_store_execute(store, "ROLLBACK TO call");
+        (void)lp_store_execute(store, "RELEASE call");
         return;
     }
     /* Some failures have rolled back already. If there is not even the memory for this, the next begin does it. */
-    if (!sqlite3_get_autocommit(store->db)) (void)sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+    if (!sqlite3_get_autocommit(store->db)) (void)lp_store_execute(store, "ROLLBACK");
 }
 
 lensprof_status lensprof_store_begin(lensprof_store *store, lensprof_error *error)
@@ -148,20 +149,4 @@ void lensprof_store_rollback(lensprof_store *store)
     if (!store || !store->batch) return;
     store->batch = false;
     lp_store_rollback(store);
-}
-
-lensprof_status lp_store_prepare(lensprof_store *store, const char *sql, sqlite3_stmt **statement,
-                                 lensprof_error *error)
-{
-    int rc = sqlite3_prepare_v2(store->db, sql, -1, statement, NULL);
-    return rc ? lp_store_fail_sql(store->path, store->db, rc, error) : LENSPROF_OK;
-}
-
-lensprof_status lp_store_run(lensprof_store *store, lp_store_binder *binder, lensprof_error *error)
-{
-    int rc = binder->rc;
-    if (rc == SQLITE_OK) rc = sqlite3_step(binder->statement);
-    lensprof_status status = rc == SQLITE_DONE ? LENSPROF_OK : lp_store_fail_sql(store->path, store->db, rc, error);
-    sqlite3_finalize(binder->statement);
-    return status;
 }

@@ -34,7 +34,7 @@ static lensprof_status check_profile(lensprof_store *store, const lensprof_profi
     return LENSPROF_OK;
 }
 
-static void bind_profile(lp_store_binder *binder, const lensprof_profile *profile, const char *lens_name)
+void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *profile, const char *lens_name)
 {
     const lensprof_profile_key *key = &profile->key;
     const lensprof_provenance *provenance = &profile->provenance;
@@ -81,10 +81,17 @@ static lensprof_status put_profile(lensprof_store *store, const lensprof_profile
     if (status != LENSPROF_OK) return status;
     char lens_name[LP_NAME_BYTES]; /* bound as it is: until the statement has run */
     lp_squeeze(profile->key.lens, lens_name);
-    bind_profile(&binder, profile, lens_name);
+    lp_store_bind_profile(&binder, profile, lens_name);
     status = lp_store_run(store, &binder, error);
     *id = sqlite3_last_insert_rowid(store->db);
     return status;
+}
+
+lensprof_status lp_store_insert(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
+                                lensprof_error *error)
+{
+    lensprof_status status = put_profile(store, profile, id, error);
+    return status == LENSPROF_OK ? lp_store_put_curves(store, *id, profile, error) : status;
 }
 
 lensprof_status lensprof_store_put(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
@@ -96,8 +103,7 @@ lensprof_status lensprof_store_put(lensprof_store *store, const lensprof_profile
     lensprof_status status = check_profile(store, profile, error);
     if (status == LENSPROF_OK) status = lp_store_begin(store, true, error);
     if (status != LENSPROF_OK) return status;
-    status = put_profile(store, profile, &made, error);
-    if (status == LENSPROF_OK) status = lp_store_put_curves(store, made, profile, error);
+    status = lp_store_insert(store, profile, &made, error);
     if (status == LENSPROF_OK) status = lp_store_commit(store, error);
     else lp_store_rollback(store);
     if (status == LENSPROF_OK && id) *id = made;

@@ -96,6 +96,22 @@ class Stores(unittest.TestCase):
             with refused(self, lp.Status.ERROR_NOT_FOUND):
                 store.remove(numbers[0])
 
+    def test_merge(self):
+        self.make(sample_profile("a"), sample_profile("b"))
+        with lp.Store(self.path.with_name("all.db"), lp.StoreMode.CREATE) as store, lp.Store(self.path) as other:
+            store.put(sample_profile("b"))
+            self.assertEqual(store.merge(other), (1, 1))
+            self.assertEqual(store.merge(other), (0, 2))
+            self.assertEqual(store.get(2), sample_profile("a"))
+            with self.assertRaisesRegex(ValueError, "the database itself"):
+                store.merge(store)
+            with self.assertRaises(TypeError):
+                store.merge(self.path)
+            with refused(self, lp.Status.ERROR_READ_ONLY):
+                other.merge(store)
+            with lp.Store(self.path) as same, refused(self, lp.Status.ERROR_ARGUMENT):
+                same.merge(other)
+
     def test_threads_share_a_store(self):
         profile = sample_profile()
         number, = self.make(profile)

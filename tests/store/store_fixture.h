@@ -148,7 +148,7 @@ static inline void assert_file(const char *path, const void *expected, size_t si
 /* A file as lensprof made it before there were gain grids: layout 1, with these profiles, whose grids are left out. */
 static inline void make_layout_1(const char *path, const lensprof_profile *profiles, size_t count)
 {
-    char newer[300], sql[2000];
+    char newer[400], sql[2000];
     const char *columns = "id, camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing, method,"
                           " software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
                           " response_curves, vignetting_curves, covariance_size, covariance";

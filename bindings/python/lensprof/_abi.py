@@ -599,5 +599,6 @@ FUNCTIONS = {
     "lensprof_store_rollback": (None, [_store]),
     "lensprof_store_get": (_status, [_store, c_int64, _profile, _error]),
     "lensprof_store_list": (_status, [_store, _key, POINTER(StoreRow), c_uint32, _u32_out, _error]),
+    "lensprof_store_merge": (_status, [_store, _store, _u32_out, _u32_out, _error]),
     "lensprof_store_remove": (_status, [_store, c_int64, _error]),
 }

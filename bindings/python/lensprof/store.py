@@ -98,6 +98,18 @@ class Store(Handle):
             raise
         self._call(lib.lensprof_store_commit)
 
+    def merge(self, other: Store) -> tuple[int, int]:
+        """Adds the profiles of another open database that are not there yet with the same key, content and provenance;
+        returns how many were added and how many were there. All or none."""
+        if not isinstance(other, Store):
+            raise TypeError(f"merge takes a Store, not {type(other).__name__}")
+        if other is self:
+            raise ValueError("this Store is the database itself; merge another one")
+        added, known = c_uint32(), c_uint32()
+        with other._use() as theirs:
+            self._call(lib.lensprof_store_merge, theirs, byref(added), byref(known))
+        return added.value, known.value
+
     def get(self, id: int) -> Profile:
         """The profile with an id."""
         profile = Profile()

@@ -1,0 +1,80 @@
+/* `lensprof profile merge`: whole databases. */
+#include "cli_runs.hpp"
+
+#include <sqlite3.h>
+
+using namespace cli_runs;
+using namespace picture_files;
+
+namespace {
+
+std::string entry(double focal, double aperture, double k1, double distance = 1000.0) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "<vignetting model=\"pa\" focal=\"%g\" aperture=\"%g\" distance=\"%g\" k1=\"%g\" k2=\"0\" k3=\"0\"/>\n",
+                  focal, aperture, distance, k1);
+    return text;
+}
+
+/* A database of one imported lens with these falloffs. */
+std::string make_db(const std::string &name, const std::string &lens, const std::string &entries) {
+    save_text(work(name + ".xml"), "<lensdatabase version=\"1\"><lens><maker>Example</maker><model>Example " + lens
+                                       + "</model><mount>Generic</mount><cropfactor>1.5</cropfactor><calibration>"
+                                       + entries + "</calibration></lens></lensdatabase>\n");
+    must_exit(done, {"profile", "import", "--db", work(name), work(name + ".xml")});
+    return work(name);
+}
+
+void run_sql(const std::string &file, const std::string &sql) {
+    sqlite3 *db = nullptr;
+    assert_int_equal(sqlite3_open(file.c_str(), &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
+    sqlite3_close(db);
+}
+
+size_t profiles_in(const std::string &file) {
+    return json_of({"profile", "list", "--db", file, "--json"})["profiles"].size();
+}
+
+Words merge_into(const std::string &db) { return {"profile", "merge", "--db", db}; }
+
+void test_merge(void **) {
+    const std::string a = make_db("a.db", "50mm", entry(50, 2, -0.4) + entry(50, 4, -0.2));
+    const std::string b = make_db("b.db", "85mm", entry(85, 2, -0.4)), all = work("all.db");
+    const std::string said = must_exit(done, merge_into(all) + Words{a, b});
+    assert_true(contains(said, a + ": 2 profiles added to " + all + ", 0 were there"));
+    assert_true(contains(said, b + ": 1 profiles added"));
+    const Json again = json_of(merge_into(all) + Words{b, a, "--json"});
+    assert_string_equal(again["merged"][1]["file"].get<std::string>().c_str(), a.c_str());
+    for (size_t i = 0; i < 2; i++) assert_int_equal(again["merged"][i]["added"], 0);
+    assert_int_equal(again["merged"][1]["known"], 2);
+    assert_int_equal(profiles_in(all), 3);
+    const Json there = json_of({"profile", "list", "--db", all, "--json"}), here = json_of({"profile", "list", "--db", a, "--json"});
+    assert_true(there["profiles"][0]["provenance"] == here["profiles"][0]["provenance"]);
+}
+
+void test_merge_refuses(void **) {
+    const std::string a = make_db("a.db", "50mm", entry(50, 2, -0.4)), b = make_db("b.db", "85mm", entry(85, 2, -0.4));
+    const std::string all = make_db("all.db", "24mm", entry(24, 2, -0.4)), fresh = work("fresh.db");
+    fs::create_hard_link(a, work("hard.db"));
+    for (const std::string &db : {all, fresh}) {
+        assert_refused(usage, merge_into(db) + Words{b, db}, {db, "is the database itself"});
+        assert_refused(not_found, merge_into(db) + Words{b, work("none.db")}, {"none.db"});
+        assert_refused(store_failed, merge_into(db) + Words{b, work("a.db.xml")}, {"a.db.xml", "not a lensprof database"});
+    }
+    assert_refused(usage, merge_into(a) + Words{work("hard.db")}, {"hard.db", "is the database itself"});
+    assert_refused(usage, merge_into(all), {"OTHER.db"});
+    run_sql(a, "UPDATE vignettings SET k1 = -7");
+    for (const std::string &db : {all, fresh})
+        assert_refused(store_failed, merge_into(db) + Words{b, a}, {"a.db", "profile 1 is damaged"});
+    run_sql(a, "PRAGMA user_version = 99");
+    assert_refused(store_failed, merge_into(all) + Words{b, a}, {"a.db", "layout 99"});
+    assert_int_equal(profiles_in(all), 1);
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {CLI_TEST(test_merge), CLI_TEST(test_merge_refuses)};
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

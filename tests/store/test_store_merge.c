@@ -1,0 +1,233 @@
+/* Databases merged: everything arrives as it was, nothing twice, all or nothing. */
+#include "store_fixture.h"
+
+static lensprof_profile sample[3], found;
+
+/* Profiles with something in every field: EMoR and a grid; three tables; unknown numbers, gamma and a doubt. */
+static void fill_samples(void)
+{
+    double values[LENSPROF_RESPONSE_SAMPLES];
+    for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) values[j] = sqrt(j / 1023.0);
+    fill_profile(&sample[0]);
+    fill_profile(&sample[1]);
+    sample[1].responses = sample[1].vignettings = 3;
+    for (int c = 0; c < 3; c++) {
+        assert_ok(lensprof_response_set_table(&sample[1].response[c], values, LENSPROF_RESPONSE_SAMPLES));
+        sample[1].vignetting[c] = (lensprof_vignetting){{-0.1 / (c + 1), 0.0, 1.0 / 30}, {-1.0 / 3, 1.0}};
+    }
+    strcpy(sample[1].key.unit, "12345");
+    sample[1].key.crop_factor = 1.53;
+    lensprof_profile_init(&sample[2]);
+    strcpy(sample[2].key.lens, "Another");
+    sample[2].key.distance_m = INFINITY;
+    strcpy(sample[2].provenance.doubt, "start values");
+    assert_ok(lensprof_response_set_gamma(&sample[2].response[0], 2.2));
+}
+
+static lensprof_store *other_store(const place *here, const char *name, uint32_t mode)
+{
+    char path[300];
+    snprintf(path, sizeof path, "%s/%s", here->directory, name);
+    return store_at(path, mode);
+}
+
+/* A database of the samples from `first` on, closed. */
+static void make_other(const place *here, const char *name, int first, int count)
+{
+    lensprof_store *store = other_store(here, name, LENSPROF_STORE_CREATE);
+    for (int i = 0; i < count; i++) put_at(store, &sample[first + i]);
+    lensprof_store_close(store);
+}
+
+static void assert_merged(lensprof_store *store, lensprof_store *other, uint32_t new_ones, uint32_t old_ones)
+{
+    lensprof_error error;
+    uint32_t added = 99, known = 99;
+    if (lensprof_store_merge(store, other, &added, &known, &error) != LENSPROF_OK) fail_msg("%s", error.text);
+    assert_int_equal(added, new_ones);
+    assert_int_equal(known, old_ones);
+}
+
+static void test_everything_arrives_as_it_was(void **state)
+{
+    const place *here = *state;
+    fill_samples();
+    make_other(here, "other.db", 0, 3);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_READ);
+    put_at(store, &sample[2]);
+    assert_merged(store, other, 2, 1);
+    for (int i = 0; i < 2; i++) {
+        assert_ok(lensprof_store_get(store, 2 + i, &found, NULL));
+        assert_same_profile(&found, &sample[i]);
+    }
+    assert_merged(store, other, 0, 3); /* not twice */
+    assert_int_equal(count_at(store), 3);
+    assert_int_equal(count_at(other), 3);
+    lensprof_store_close(other);
+    lensprof_store_close(store);
+    assert_integrity(here->path);
+}
+
+/* Whatever differs makes another profile, be it the last bit of one number. */
+static void test_what_differs_is_added(void **state)
+{
+    const place *here = *state;
+    enum { CHANGES = 13 };
+    lensprof_profile *p = malloc(sizeof *p);
+    fill_samples();
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    put_at(store, &sample[0]);
+    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_CREATE);
+    for (int i = 0; i < CHANGES; i++) {
+        static const double coefficients[] = {-0.625, 0.1, -0.05, 0.02, 0.03};
+        *p = sample[0];
+        if (i == 0) strcpy(p->key.camera_maker, "CANON");
+        if (i == 1) p->key.focal_mm = nextafter(p->key.focal_mm, 100.0);
+        if (i == 2) p->key.processing = LENSPROF_PROCESSING_RAW;
+        if (i == 3) strcpy(p->provenance.source, "");
+        if (i == 4) p->provenance.created_unix_s = 0;
+        if (i == 5) p->provenance.inlier_share = LENSPROF_UNKNOWN;
+        if (i == 6) strcpy(p->provenance.doubt, "x");
+        if (i == 7) p->covariance[0] = nextafter(p->covariance[0], 1.0);
+        if (i == 8) p->covariance_size = 0;
+        if (i == 9) assert_ok(lensprof_response_set_emor(&p->response[0], coefficients, 5));
+        if (i == 10) p->vignetting[0].k[2] = nextafter(p->vignetting[0].k[2], 1.0);
+        if (i == 11) p->grid.attenuation[3] = nextafterf(p->grid.attenuation[3], 2.0f);
+        if (i == 12) lensprof_gain_grid_init(&p->grid);
+        put_at(other, p);
+    }
+    assert_merged(store, other, CHANGES, 0);
+    assert_merged(store, other, 0, CHANGES);
+    lensprof_store_close(other);
+    lensprof_store_close(store);
+    free(p);
+}
+
+/* The newest of a key is the newest of the other database, as it was there; two that are the same become one. */
+static void test_order_and_repetitions(void **state)
+{
+    const place *here = *state;
+    int64_t id;
+    fill_samples();
+    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_CREATE);
+    put_at(other, &sample[0]);
+    sample[0].vignetting[0].k[0] = -0.25;
+    put_at(other, &sample[0]);
+    put_at(other, &sample[0]);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    assert_merged(store, other, 2, 1);
+    assert_ok(lensprof_store_find(store, &sample[0].key, &found, &id, NULL));
+    assert_int_equal(id, 2);
+    assert_close(found.vignetting[0].k[0], -0.25, 0.0);
+    lensprof_store_close(store);
+    lensprof_store_close(other);
+}
+
+static void test_older_layout_is_read_as_it_is(void **state)
+{
+    const place *here = *state;
+    char path[300];
+    size_t size;
+    fill_samples();
+    lensprof_gain_grid_init(&sample[0].grid);
+    snprintf(path, sizeof path, "%s/old.db", here->directory);
+    make_layout_1(path, sample, 1);
+    unsigned char *bytes = read_file(path, &size);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_store *other = other_store(here, "old.db", LENSPROF_STORE_READ);
+    assert_merged(store, other, 1, 0);
+    assert_ok(lensprof_store_get(store, 1, &found, NULL));
+    assert_same_profile(&found, &sample[0]);
+    lensprof_store_close(other);
+    lensprof_store_close(store);
+    assert_file(path, bytes, size);
+    free(bytes);
+}
+
+static void test_damaged_row_takes_everything_back(void **state)
+{
+    const place *here = *state;
+    char path[300];
+    lensprof_error error;
+    uint32_t added = 77;
+    fill_samples();
+    make_other(here, "other.db", 0, 3);
+    snprintf(path, sizeof path, "%s/other.db", here->directory);
+    run_sql(path, "UPDATE vignettings SET k1 = -5 WHERE profile_id = 3");
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_store *other = store_at(path, LENSPROF_STORE_READ);
+    assert_int_equal(lensprof_store_merge(store, other, &added, NULL, &error), LENSPROF_ERROR_CORRUPT);
+    assert_non_null(strstr(error.text, "other.db: profile 3 is damaged ("));
+    assert_int_equal(added, 77);
+    assert_int_equal(count_at(store), 0);
+    assert_ok(lensprof_store_begin(store, NULL)); /* in the caller's transaction too, whose other calls stay */
+    put_at(store, &sample[1]);
+    assert_int_equal(lensprof_store_merge(store, other, &added, NULL, &error), LENSPROF_ERROR_CORRUPT);
+    assert_ok(lensprof_store_commit(store, NULL));
+    assert_int_equal(count_at(store), 1);
+    lensprof_store_close(other);
+    lensprof_store_close(store);
+    assert_integrity(here->path);
+}
+
+static void test_one_transaction_for_several(void **state)
+{
+    const place *here = *state;
+    fill_samples();
+    make_other(here, "a.db", 0, 2);
+    make_other(here, "b.db", 1, 2);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_store *a = other_store(here, "a.db", 0), *b = other_store(here, "b.db", 0);
+    for (int again = 0; again < 2; again++) {
+        assert_ok(lensprof_store_begin(store, NULL));
+        assert_merged(store, a, 2, 0);
+        assert_merged(store, b, 1, 1);
+        if (again) assert_ok(lensprof_store_commit(store, NULL));
+        else lensprof_store_rollback(store);
+        assert_int_equal(count_at(store), again ? 3 : 0);
+    }
+    lensprof_store_close(a);
+    lensprof_store_close(b);
+    lensprof_store_close(store);
+}
+
+static void test_refusals(void **state)
+{
+    const place *here = *state;
+    lensprof_error error;
+    char link[300];
+    fill_samples();
+    make_other(here, "other.db", 0, 1);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE), *same = store_at(here->path, 0);
+    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_READ);
+    snprintf(link, sizeof link, "%s/link.db", here->directory);
+    assert_int_equal(symlink(here->path, link), 0);
+    lensprof_store *linked = store_at(link, LENSPROF_STORE_READ);
+    assert_int_equal(lensprof_store_merge(NULL, other, NULL, NULL, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_merge(store, NULL, NULL, NULL, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_merge(store, store, NULL, NULL, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_merge(store, same, NULL, NULL, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_store_merge(store, linked, NULL, NULL, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.text, "is the database itself"));
+    assert_int_equal(lensprof_store_merge(other, store, NULL, NULL, &error), LENSPROF_ERROR_READ_ONLY);
+    assert_int_equal(count_at(store), 0);
+    lensprof_store_close(linked);
+    lensprof_store_close(other);
+    lensprof_store_close(same);
+    lensprof_store_close(store);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        store_test(test_everything_arrives_as_it_was),
+        store_test(test_what_differs_is_added),
+        store_test(test_order_and_repetitions),
+        store_test(test_older_layout_is_read_as_it_is),
+        store_test(test_damaged_row_takes_everything_back),
+        store_test(test_one_transaction_for_several),
+        store_test(test_refusals),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
