@@ -123,6 +123,56 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_merge(lensprof_sto
                                                                     uint32_t *added, uint32_t *known,
                                                                     lensprof_error *error);
 
+/* Something that is wrong in a database. Frozen value struct. */
+typedef struct lensprof_store_fault {
+    int64_t id;       /* of the profile; 0 = of the file as a whole */
+    char reason[256]; /* in words, or as SQLite says it */
+} lensprof_store_fault;
+
+/* Receives the faults: those of the file, rows without their profile, then damaged profiles by id. It makes no call on
+ * the store. Anything but OK ends the check and is what it returns. */
+typedef lensprof_status (*lensprof_fault_visitor)(void *user, const lensprof_store_fault *fault);
+
+/* Reads everything and checks it: SQLite's integrity_check, foreign keys, and every profile as lensprof_store_get does
+ * (types, ranges, finite numbers, monotone responses, positive falloffs, symmetric covariance), so that a row may be
+ * named more than once. *profiles and *faults (may be NULL) receive how many there are; faults are no error. One
+ * transaction, which writes nothing. visit may be NULL. Errors: the store's, but not for damage that it could get
+ * past; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_check(lensprof_store *store,
+                                                                    lensprof_fault_visitor visit, void *user,
+                                                                    uint32_t *profiles, uint32_t *faults,
+                                                                    lensprof_error *error);
+
+#define LENSPROF_STATS_GROUPS 8
+
+/* Profiles with the same text. */
+typedef struct lensprof_store_group {
+    char name[256];
+    uint32_t profiles; /* 0 beyond the last group */
+    uint32_t reserved; /* 0 */
+} lensprof_store_group;
+
+/* What is in a database. Names that differ in ASCII case or outer blanks are one. Frozen value struct. */
+typedef struct lensprof_store_stats {
+    uint32_t profiles;
+    uint32_t cameras, lenses, units; /* different ones that are known */
+    uint32_t processing[3];          /* profiles, by lensprof_processing */
+    uint32_t with_covariance, with_grid, with_doubt; /* profiles */
+    uint32_t methods, sources;                       /* different ones */
+    double focal_mm[2];              /* smallest and largest that is known; LENSPROF_UNKNOWN where none is */
+    double aperture[2];
+    double distance_m[2];
+    lensprof_store_group method[LENSPROF_STATS_GROUPS]; /* those with the most profiles, largest first */
+    lensprof_store_group source[LENSPROF_STATS_GROUPS];
+    int64_t bytes;                   /* of the file, what a log beside it holds included */
+    uint32_t layout;                 /* number of profiles/schema */
+    uint32_t reserved;               /* 0 */
+} lensprof_store_stats;
+
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_get_stats(lensprof_store *store,
+                                                                        lensprof_store_stats *stats,
+                                                                        lensprof_error *error);
+
 /* Removes the profile with an id; NOT_FOUND when there is none. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_remove(lensprof_store *store, int64_t id,
                                                                      lensprof_error *error);

@@ -1,4 +1,4 @@
-/* `lensprof profile list | show | remove | export | import | merge`. */
+/* `lensprof profile list | show | remove | export`, and the way to the verbs that have files of their own. */
 #include <algorithm>
 
 #include "chart.hpp"
@@ -195,14 +195,15 @@ void check_verb(const std::string &verb, const ProfileOptions &o) {
 }  // namespace
 
 int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
-    if (!arguments.empty() && arguments[0] == "import")
-        return run_profile_import({arguments.begin() + 1, arguments.end()}, streams);
-    if (!arguments.empty() && arguments[0] == "merge")
-        return run_profile_merge({arguments.begin() + 1, arguments.end()}, streams);
+    static const Command others[] = {{"import", "", run_profile_import}, {"merge", "", run_profile_merge},
+                                     {"check", "", run_profile_check}, {"stats", "", run_profile_stats}};
+    for (const Command &other : others)
+        if (!arguments.empty() && arguments[0] == other.name)
+            return other.run({arguments.begin() + 1, arguments.end()}, streams);
     std::string verb;
     ProfileOptions o;
-    CLI::App app("Lists, shows, removes or exports profiles of the database. `lensprof profile import` and `merge` have "
-                 "options of their own.",
+    CLI::App app("Lists, shows, removes or exports profiles of the database. `lensprof profile import`, `merge`, "
+                 "`check` and `stats` have options of their own.",
                  "lensprof profile");
     app.add_option("VERB", verb, "list, show, remove or export")
         ->required()

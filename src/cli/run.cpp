@@ -27,7 +27,7 @@ const Command commands[] = {
     {"apply", "correct pictures with a profile or a project", run_apply},
     {"align", "frames of a sequence -> all with one exposure and white balance", run_align},
     {"query", "look a profile up by camera, lens, focal length and aperture", run_query},
-    {"profile", "list, show, remove, export, import or merge profiles", run_profile},
+    {"profile", "list, show, remove, export, import, merge or check profiles", run_profile},
     {"simulate", "render overlapping pictures with a known camera", run_simulate},
     {"version", "print the version", run_version},
     {"help", "print this, or the help of a command", run_help},

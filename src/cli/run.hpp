@@ -31,6 +31,8 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams);
 int run_flat(const std::vector<std::string> &arguments, Streams &streams);
 int run_profile(const std::vector<std::string> &arguments, Streams &streams);
 int run_profile_import(const std::vector<std::string> &arguments, Streams &streams); /* behind `profile import` */
+int run_profile_check(const std::vector<std::string> &arguments, Streams &streams);  /* behind `profile check` */
+int run_profile_stats(const std::vector<std::string> &arguments, Streams &streams);  /* behind `profile stats` */
 int run_profile_merge(const std::vector<std::string> &arguments, Streams &streams);  /* behind `profile merge` */
 int run_query(const std::vector<std::string> &arguments, Streams &streams);
 int run_simulate(const std::vector<std::string> &arguments, Streams &streams);

@@ -1,4 +1,4 @@
-/* `lensprof profile merge`: whole databases. */
+/* `lensprof profile merge`, `check` and `stats`: whole databases. */
 #include "cli_runs.hpp"
 
 #include <sqlite3.h>
@@ -72,9 +72,47 @@ void test_merge_refuses(void **) {
     assert_int_equal(profiles_in(all), 1);
 }
 
+void test_check(void **) {
+    const std::string a = make_db("a.db", "50mm", entry(50, 2, -0.4) + entry(50, 4, -0.2) + entry(50, 8, -0.1));
+    const Words check = {"profile", "check", "--db", a};
+    const Disk before = disk();
+    assert_string_equal(must_exit(done, check).c_str(), (a + ": 3 profiles read, 0 faults\n").c_str());
+    assert_string_equal(difference(before, disk()).c_str(), "");
+    run_sql(a, "PRAGMA foreign_keys = OFF; UPDATE vignettings SET k1 = -7 WHERE profile_id IN (1, 3);"
+               "INSERT INTO vignettings VALUES (77, 0, 0.0, 0.0, 0.0, 0.0, 0.0)");
+    const std::string said = must_exit(store_failed, check);
+    for (const char *line : {"profile 1: ", "profile 3: ", "profile 77: a row of vignettings without its profile\n",
+                             ": 3 profiles read, 3 faults\n"})
+        assert_true(contains(said, line));
+    const Json json = json_of(check + Words{"--json"}, store_failed);
+    assert_int_equal(json["faults"].size(), 3);
+    assert_int_equal(json["faults"][0]["id"], 77);
+    assert_int_equal(json["faults"][2]["id"], 3);
+    assert_int_equal(json["profiles"], 3);
+    for (const char *id : {"1", "3"}) must_exit(done, {"profile", "remove", "--db", a, id});
+    assert_refused(not_found, {"profile", "check", "--db", work("none.db")}, {"none.db"});
+    assert_refused(store_failed, {"profile", "check", "--db", work("a.db.xml")}, {"a.db.xml"});
+    assert_refused(usage, {"profile", "check", "--db", a, "1"}, {"1"});
+}
+
+void test_stats(void **) {
+    const std::string a = make_db("a.db", "50mm", entry(50, 2, -0.4, 0.45) + entry(50, 4, -0.2) + entry(24, 4, -0.6));
+    const std::string said = must_exit(done, {"profile", "stats", "--db", a});
+    for (const char *line : {"layout 3", "3 of 0 cameras, 1 lenses, 0 single units", "3 raw, 0 jpeg", "24 mm to 50 mm",
+                             "f/2 to f/4", "0.45 m to inf m", "import", "a.db.xml"})
+        if (!contains(said, line)) fail_msg("no %s in %s", line, said.c_str());
+    const Json json = json_of({"profile", "stats", "--db", a, "--json"});
+    assert_int_equal(json["profiles"], 3);
+    assert_string_equal(json["distance_m"][1].get<std::string>().c_str(), "infinity");
+    assert_int_equal(json["methods"][0]["profiles"], 3);
+    assert_int_equal(json["bytes"].get<uint64_t>(), fs::file_size(a));
+    assert_refused(not_found, {"profile", "stats", "--db", work("none.db")}, {"none.db"});
+}
+
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_merge), CLI_TEST(test_merge_refuses)};
+    const CMUnitTest tests[] = {CLI_TEST(test_merge), CLI_TEST(test_merge_refuses), CLI_TEST(test_check),
+                                CLI_TEST(test_stats)};
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

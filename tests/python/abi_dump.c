@@ -167,6 +167,35 @@ static void print_profile_structs(void)
     FIELD(lensprof_lookup, name_score);
     FIELD(lensprof_lookup, reason);
     end_struct();
+    BEGIN(lensprof_store_fault);
+    FIELD(lensprof_store_fault, id);
+    FIELD(lensprof_store_fault, reason);
+    end_struct();
+    BEGIN(lensprof_store_group);
+    FIELD(lensprof_store_group, name);
+    FIELD(lensprof_store_group, profiles);
+    FIELD(lensprof_store_group, reserved);
+    end_struct();
+    BEGIN(lensprof_store_stats);
+    FIELD(lensprof_store_stats, profiles);
+    FIELD(lensprof_store_stats, cameras);
+    FIELD(lensprof_store_stats, lenses);
+    FIELD(lensprof_store_stats, units);
+    FIELD(lensprof_store_stats, processing);
+    FIELD(lensprof_store_stats, with_covariance);
+    FIELD(lensprof_store_stats, with_grid);
+    FIELD(lensprof_store_stats, with_doubt);
+    FIELD(lensprof_store_stats, methods);
+    FIELD(lensprof_store_stats, sources);
+    FIELD(lensprof_store_stats, focal_mm);
+    FIELD(lensprof_store_stats, aperture);
+    FIELD(lensprof_store_stats, distance_m);
+    FIELD(lensprof_store_stats, method);
+    FIELD(lensprof_store_stats, source);
+    FIELD(lensprof_store_stats, bytes);
+    FIELD(lensprof_store_stats, layout);
+    FIELD(lensprof_store_stats, reserved);
+    end_struct();
     BEGIN(lensprof_store_row);
     FIELD(lensprof_store_row, id);
     FIELD(lensprof_store_row, key);
@@ -536,6 +565,7 @@ static void print_enumerations(void)
     VALUE(LENSPROF_DISTANCE_WEAKEST);
     VALUE(LENSPROF_DISTANCE_FARTHEST);
     VALUE(LENSPROF_LOOKUP_ROWS);
+    VALUE(LENSPROF_STATS_GROUPS);
 }
 
 int main(void)

@@ -26,6 +26,8 @@ def ctype_of(declaration):
     """ctypes type of a C parameter or result: `const double *values`, `double xy[2]`, `lensprof_pto **pto`."""
     if "lensprof_import_visitor" in declaration:
         return _abi.ImportVisitor
+    if "lensprof_fault_visitor" in declaration:
+        return _abi.FaultVisitor
     words = re.findall(r"\w+", declaration)
     name = next(word for word in words if word != "const")
     stars = declaration.count("*") + declaration.count("[")
@@ -88,7 +90,7 @@ class Tables(unittest.TestCase):
         ours = {prefix + member.name: member.value for prefix, enum in _abi.ENUMS.items() for member in enum}
         constants = {"LENSPROF_" + name: getattr(_abi, name) for name in
                      ("RESPONSE_SAMPLES", "EMOR_MODES", "GRID_SIDE", "COVARIANCE_MAX", "COVERAGE_BINS", "FLAT_IMAGES",
-                      "FLAT_SPOTS", "UNKNOWN", "MODES_AUTO", "LOOKUP_ROWS")}
+                      "FLAT_SPOTS", "UNKNOWN", "MODES_AUTO", "LOOKUP_ROWS", "STATS_GROUPS")}
         version = dict(zip(("LENSPROF_VERSION_MAJOR", "LENSPROF_VERSION_MINOR", "LENSPROF_VERSION_PATCH"),
                            map(int, _abi.VERSION.split("."))))
         self.assertEqual({**ours, **constants, **version}, self.c["values"])
@@ -114,7 +116,8 @@ class Tables(unittest.TestCase):
             self.assertRegex(sources, rf"lib(rary)?\.{name}\b")
 
     def test_callback_types(self):
-        for name, kind in {"progress": _abi.Progress, "import_visitor": _abi.ImportVisitor}.items():
+        for name, kind in {"progress": _abi.Progress, "import_visitor": _abi.ImportVisitor,
+                           "fault_visitor": _abi.FaultVisitor}.items():
             typedef = re.search(rf"typedef (\w+) \(\*lensprof_{name}\)\(([^)]*)\);", self.headers)
             self.assertIs(kind._restype_, ctype_of(typedef[1]))
             self.assertEqual(list(kind._argtypes_), [ctype_of(p) for p in typedef[2].split(",")])

@@ -1,8 +1,10 @@
 """The profile database."""
+import contextlib
 import gc
 import math
 import os
 import pathlib
+import sqlite3
 import tempfile
 import threading
 import unittest
@@ -111,6 +113,25 @@ class Stores(unittest.TestCase):
                 other.merge(store)
             with lp.Store(self.path) as same, refused(self, lp.Status.ERROR_ARGUMENT):
                 same.merge(other)
+
+    def test_check_and_stats(self):
+        numbers = self.make(sample_profile("a"), sample_profile("A "), sample_profile("b", unit="1"))
+        with lp.Store(self.path) as store:
+            self.assertEqual(store.check(), (3, []))
+            stats = store.stats()
+            self.assertEqual((stats.profiles, stats.cameras, stats.lenses, stats.units), (3, 1, 2, 1))
+            self.assertEqual(list(stats.processing), [3, 0, 0])
+            self.assertEqual((stats.with_covariance, stats.with_grid, stats.with_doubt, stats.layout), (3, 3, 0, 3))
+            self.assertEqual((list(stats.focal_mm), list(stats.distance_m)), ([28, 28], [math.inf, math.inf]))
+            self.assertEqual((stats.method, stats.source), ({"transfer": 3}, {"/tmp/a.pto": 3}))
+            self.assertEqual(stats.bytes, self.path.stat().st_size)
+        with contextlib.closing(sqlite3.connect(self.path)) as database:
+            database.execute("UPDATE vignettings SET k1 = -9 WHERE profile_id = ?", (numbers[1],))
+            database.commit()
+        with lp.Store(self.path) as store:
+            profiles, faults = store.check()
+            self.assertEqual((profiles, [fault.id for fault in faults]), (3, [numbers[1]]))
+            self.assertIn("VIGNETTING", faults[0].reason)
 
     def test_threads_share_a_store(self):
         profile = sample_profile()

@@ -20,7 +20,7 @@ from .geometry import Camera
 from .model import Exposure, GainGrid, Response, Vignetting, emor_table
 from .profile import Profile, ProfileKey, Provenance
 from .sample import SampleImage, SampleOptions, sample_overlap, sample_tracks
-from .store import Lookup, LookupOptions, Store, StoreRow
+from .store import Lookup, LookupOptions, Store, StoreFault, StoreRow, StoreStats
 
 __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "Direction", "DistanceRule",
@@ -30,7 +30,7 @@ __all__ = [
     "Lookup", "LookupOptions", "Loss", "MODES_AUTO", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
     "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES",
     "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status",
-    "Store", "StoreMode", "StoreRow", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_flat", "fit_overlap",
+    "Store", "StoreFault", "StoreMode", "StoreRow", "StoreStats", "UNKNOWN", "Vignetting", "correct", "emor_table", "fit_flat", "fit_overlap",
     "fit_radiance", "layout_channels", "layout_samples", "lensfun_read", "lensfun_write", "points_read",
     "points_write", "sample_bytes", "sample_overlap", "sample_tracks", "simulate", "status_name", "transfer_rms",
     "version",

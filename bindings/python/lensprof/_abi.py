@@ -17,6 +17,7 @@ EMOR_MODES = 25
 GRID_SIDE = 32
 COVARIANCE_MAX = 36
 LOOKUP_ROWS = 24
+STATS_GROUPS = 8
 COVERAGE_BINS = 10
 FLAT_IMAGES = 128
 FLAT_SPOTS = 32
@@ -435,6 +436,26 @@ class StoreRow(Structure):
     _fields_ = [("id", c_int64), ("key", ProfileKey), ("provenance", Provenance)]
 
 
+class StoreFault(Structure):
+    _fields_ = [("id", c_int64), ("reason", c_char * 256)]
+
+
+FaultVisitor = CFUNCTYPE(c_int, c_void_p, POINTER(StoreFault))
+
+
+class StoreGroup(Structure):
+    _fields_ = [("name", c_char * 256), ("profiles", c_uint32), ("reserved", c_uint32)]
+
+
+class StoreStats(Structure):
+    _fields_ = [("profiles", c_uint32), ("cameras", c_uint32), ("lenses", c_uint32), ("units", c_uint32),
+                ("processing", c_uint32 * 3), ("with_covariance", c_uint32), ("with_grid", c_uint32),
+                ("with_doubt", c_uint32), ("methods", c_uint32), ("sources", c_uint32), ("focal_mm", c_double * 2),
+                ("aperture", c_double * 2), ("distance_m", c_double * 2), ("method", StoreGroup * STATS_GROUPS),
+                ("source", StoreGroup * STATS_GROUPS), ("bytes", c_int64), ("layout", c_uint32),
+                ("reserved", c_uint32)]
+
+
 class LookupOptions(Structure):
     _fields_ = [("struct_size", c_uint32), ("distance_rule", c_uint32), ("with_doubt", c_uint32),
                 ("any_processing", c_uint32)]
@@ -474,6 +495,9 @@ STRUCTS = {
     "lensprof_flat_result": FlatResult,
     "lensprof_pto_image": PtoImage,
     "lensprof_store_row": StoreRow,
+    "lensprof_store_fault": StoreFault,
+    "lensprof_store_group": StoreGroup,
+    "lensprof_store_stats": StoreStats,
     "lensprof_lookup_options": LookupOptions,
     "lensprof_lookup": Lookup,
 }
@@ -600,5 +624,7 @@ FUNCTIONS = {
     "lensprof_store_get": (_status, [_store, c_int64, _profile, _error]),
     "lensprof_store_list": (_status, [_store, _key, POINTER(StoreRow), c_uint32, _u32_out, _error]),
     "lensprof_store_merge": (_status, [_store, _store, _u32_out, _u32_out, _error]),
+    "lensprof_store_check": (_status, [_store, FaultVisitor, c_void_p, _u32_out, _u32_out, _error]),
+    "lensprof_store_get_stats": (_status, [_store, POINTER(StoreStats), _error]),
     "lensprof_store_remove": (_status, [_store, c_int64, _error]),
 }

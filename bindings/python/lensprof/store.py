@@ -8,9 +8,9 @@ from contextlib import contextmanager
 from typing import Any, Iterator, List, Optional, Union
 
 from . import _abi
-from ._abi import DistanceRule, StoreMode
-from ._library import Handle, check, lib
-from ._struct import Enumerated, Flag, Nested, Struct, Text, Value, integer
+from ._abi import DistanceRule, Status, StoreMode
+from ._library import Error, Handle, check, lib
+from ._struct import Enumerated, Flag, Nested, Struct, Text, Value, Vector, integer
 from .profile import Profile, ProfileKey, Provenance
 
 
@@ -44,6 +44,41 @@ class Lookup(Value, _abi.Lookup):
     sigma: float
     name_score: float
     reason = Text()
+
+
+class StoreFault(Value, _abi.StoreFault):
+    """Something that Store.check found: id of the profile, 0 for the file as a whole, and the reason."""
+
+    id: int
+    reason = Text()
+
+
+class StoreStats(Value, _abi.StoreStats):
+    """What is in a database: counts, (smallest, largest) of focal_mm, aperture and distance_m, bytes, layout; method and
+    source, the groups with the most profiles, as a dictionary of their counts."""
+
+    profiles: int
+    cameras: int
+    lenses: int
+    units: int
+    processing = Vector(writable=False)
+    focal_mm = Vector(writable=False)
+    aperture = Vector(writable=False)
+    distance_m = Vector(writable=False)
+
+    @property
+    def method(self) -> dict[str, int]:
+        """Profiles by method."""
+        return self._groups(_abi.StoreStats.method)
+
+    @property
+    def source(self) -> dict[str, int]:
+        """Profiles by source."""
+        return self._groups(_abi.StoreStats.source)
+
+    def _groups(self, field: Any) -> dict[str, int]:
+        return {group.name.decode("utf-8", "surrogateescape"): group.profiles
+                for group in field.__get__(self) if group.profiles}
 
 
 class Store(Handle):
@@ -109,6 +144,34 @@ class Store(Handle):
         with other._use() as theirs:
             self._call(lib.lensprof_store_merge, theirs, byref(added), byref(known))
         return added.value, known.value
+
+    def check(self) -> tuple[int, List[StoreFault]]:
+        """Reads and checks everything: how many profiles there are, and all that is wrong."""
+        faults: List[StoreFault] = []
+        raised: List[BaseException] = []
+        profiles = c_uint32()
+
+        def visit(_user: Any, fault: Any) -> int:
+            try:
+                faults.append(StoreFault.from_buffer_copy(fault.contents))
+                return Status.OK
+            except BaseException as exception:  # must not cross C
+                raised.append(exception)
+                return Status.ERROR_CANCELLED
+
+        try:
+            self._call(lib.lensprof_store_check, _abi.FaultVisitor(visit), None, byref(profiles), None)
+        except Error:
+            if raised:
+                raise raised[0] from None
+            raise
+        return profiles.value, faults
+
+    def stats(self) -> StoreStats:
+        """How much of what is in the database."""
+        stats = StoreStats()
+        self._call(lib.lensprof_store_get_stats, byref(stats))
+        return stats
 
     def get(self, id: int) -> Profile:
         """The profile with an id."""
