@@ -1,7 +1,9 @@
 /* lensprof/store.h - the profile database (SQLite).
  *
  * Every call is one transaction, or part of the caller's: it happens whole or not at all, also when the process is
- * killed. A file of an older layout is read as it is; the first call that writes brings it up to date, which older versions then refuse.
+ * killed or the power fails. The file is in write-ahead mode: readers and a writer do not hinder each other, and calls wait up
+ * to 5 s for another writer (then BUSY). While it is open a -wal and a -shm lie beside it; the last to close removes
+ * them. A file of an older layout is read as it is; the first call that writes brings it up to date, which older versions then refuse.
  * Threads: a handle belongs to one thread at a time; several processes may open the same file. */
 #ifndef LENSPROF_STORE_H
 #define LENSPROF_STORE_H
@@ -16,7 +18,8 @@ typedef struct lensprof_store lensprof_store;
 
 typedef enum lensprof_store_mode {
     LENSPROF_STORE_READ =
-        0, /* the file must exist; nothing is written (but what a killed writer left half done is undone) */
+        0, /* the file must exist; nothing is written (but what a killed writer left is completed or undone); works on
+            * read-only media, where the file was closed */
     LENSPROF_STORE_WRITE = 1, /* the file must exist */
     LENSPROF_STORE_CREATE = 2 /* write, and make the file when there is none */
 } lensprof_store_mode;

@@ -40,21 +40,18 @@ lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error)
 static int last_errno(sqlite3 *db)
 {
     int number = sqlite3_system_errno(db);
+    sqlite3_file *log = NULL;
     if (!number) (void)sqlite3_file_control(db, "main", SQLITE_FCNTL_LAST_ERRNO, &number);
+    if (!number) (void)sqlite3_file_control(db, "main", SQLITE_FCNTL_JOURNAL_POINTER, &log);
+    if (log && log->pMethods) (void)log->pMethods->xFileControl(log, SQLITE_FCNTL_LAST_ERRNO, &number);
     return number;
 }
 
 /* A file that could not be opened or made: SQLite tries several ways, and its errno is that of the last. */
 static lensprof_status status_of_folder(const char *path)
 {
-    sqlite3_vfs *vfs = sqlite3_vfs_find(NULL); /* there is one: it was asked to open the file */
-    const char *slash = strrchr(path, '/');
-    char *folder = slash ? sqlite3_mprintf("%.*s", (int)(slash - path) + 1, path) : sqlite3_mprintf(".");
-    int exists = 0, writable = 0;
-    if (!folder) return LENSPROF_ERROR_MEMORY;
-    (void)vfs->xAccess(vfs, folder, SQLITE_ACCESS_EXISTS, &exists);
-    (void)vfs->xAccess(vfs, folder, SQLITE_ACCESS_READWRITE, &writable);
-    sqlite3_free(folder);
+    bool exists;
+    const bool writable = lp_store_is_folder_writable(path, &exists);
     return !exists ? LENSPROF_ERROR_NOT_FOUND : !writable ? LENSPROF_ERROR_READ_ONLY : LENSPROF_ERROR_STORE;
 }
 
@@ -120,8 +117,8 @@ static const struct sentence {
 
 lensprof_status lp_store_fail_sql(const char *path, sqlite3 *db, int rc, lensprof_error *error)
 {
-    if (rc == SQLITE_READONLY_ROLLBACK)
-        return lp_store_fail(path, LENSPROF_ERROR_READ_ONLY, "a write that was cut off must be undone first",
+    if (rc == SQLITE_READONLY_ROLLBACK || rc == SQLITE_READONLY_RECOVERY || rc == SQLITE_READONLY_CANTINIT)
+        return lp_store_fail(path, LENSPROF_ERROR_READ_ONLY, "a write that was cut off must be completed or undone first",
                              "open it once where it can be written", error);
     if (rc == SQLITE_READONLY_DBMOVED)
         return lp_store_fail(path, LENSPROF_ERROR_STORE, "was moved or removed while it was open", "open it again",

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #define HEADER_BYTES 100 /* https://www.sqlite.org/fileformat2.html, section 1.3 */
+#define READ_VERSION_AT 19 /* 2 = write-ahead mode */
 #define APPLICATION_ID_AT 68
 
 static uint32_t big_endian(const unsigned char *bytes)
@@ -29,7 +30,7 @@ static int classify(sqlite3_file *handle, lp_store_file *file)
     rc = handle->pMethods->xRead(handle, header, HEADER_BYTES, 0);
     if (rc) return rc;
     if (memcmp(header, "SQLite format 3", 16) == 0 && big_endian(header + APPLICATION_ID_AT) == LP_STORE_APPLICATION_ID)
-        *file = LP_STORE_FILE_OURS;
+        *file = header[READ_VERSION_AT] == 2 ? LP_STORE_FILE_LOGGED : LP_STORE_FILE_OURS;
     return SQLITE_OK;
 }
 

@@ -10,8 +10,8 @@
 
 #define LARGEST_VALUE (1 << 20) /* bytes; the largest blob is 12288, more is a crafted file */
 
-/* The journal mode stays what it is in a new file, DELETE: one file that can be copied and mailed, readable from
- * read-only media. A write-ahead log would need two more files beside it and gains nothing for a few short writes. */
+/* Those who only read may write to the file all the same: to undo or complete what a killed writer left, and to remove
+ * the log when they are the last. query_only keeps them from more. */
 static int configure(sqlite3 *db, uint32_t mode, int busy_ms)
 {
     int rc = sqlite3_extended_result_codes(db, 1);
@@ -26,8 +26,9 @@ static int configure(sqlite3 *db, uint32_t mode, int busy_ms)
     sqlite3_limit(db, SQLITE_LIMIT_ATTACHED, 0);
     if (rc == SQLITE_OK)
         rc = sqlite3_exec(db, "PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY", NULL, NULL, NULL);
-    if (rc == SQLITE_OK && mode != LENSPROF_STORE_READ) /* reads the file, which lp_store_begin prepares for readers */
-        rc = sqlite3_exec(db, "PRAGMA synchronous = FULL", NULL, NULL, NULL);
+    if (rc == SQLITE_OK)
+        rc = sqlite3_exec(db, mode == LENSPROF_STORE_READ ? "PRAGMA query_only = ON" : "PRAGMA synchronous = FULL", NULL,
+                          NULL, NULL);
     return rc;
 }
 
@@ -72,13 +73,30 @@ static lensprof_status check_tables(lensprof_store *store, lensprof_error *error
     return status;
 }
 
-static lensprof_status connect(lensprof_store *store, const char *full, int busy_ms, lensprof_error *error)
+/* A connection to the file, configured. */
+static int open_connection(const lensprof_store *store, const char *full, bool immutable, sqlite3 **db)
 {
     int flags = SQLITE_OPEN_NOMUTEX; /* a handle belongs to one thread at a time */
-    flags |= store->mode == LENSPROF_STORE_READ ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
+    flags |= immutable ? SQLITE_OPEN_READONLY | SQLITE_OPEN_URI : SQLITE_OPEN_READWRITE;
     if (store->mode == LENSPROF_STORE_CREATE) flags |= SQLITE_OPEN_CREATE;
-    int rc = sqlite3_open_v2(full, &store->db, flags, NULL);
-    if (rc == SQLITE_OK) rc = configure(store->db, store->mode, busy_ms);
+    char *uri = immutable ? lp_store_immutable_uri(full) : NULL;
+    if (immutable && !uri) return SQLITE_NOMEM;
+    const int rc = sqlite3_open_v2(uri ? uri : full, db, flags, NULL);
+    sqlite3_free(uri);
+    return rc ? rc : configure(*db, store->mode, store->busy_ms);
+}
+
+/* Read-only media: a log and its index cannot be made beside the file, and where there is none, none is needed. */
+static bool is_immutable(const lensprof_store *store, const char *full, lp_store_file file)
+{
+    bool exists;
+    return store->mode == LENSPROF_STORE_READ && file == LP_STORE_FILE_LOGGED
+           && !lp_store_is_folder_writable(full, &exists) && !lp_store_has_log(full);
+}
+
+static lensprof_status connect(lensprof_store *store, const char *full, lensprof_error *error)
+{
+    const int rc = open_connection(store, full, store->immutable, &store->db);
     if (rc) return lp_store_fail_sql(store->path, store->db, rc, error);
     /* SQLite opens a file for reading when it may not be written. */
     if (store->mode != LENSPROF_STORE_READ && sqlite3_db_readonly(store->db, "main") == 1)
@@ -86,6 +104,41 @@ static lensprof_status connect(lensprof_store *store, const char *full, int busy
     lensprof_status status = LENSPROF_OK;
     if (store->mode == LENSPROF_STORE_CREATE) status = create_when_empty(store, error);
     return status == LENSPROF_OK ? check_tables(store, error) : status;
+}
+
+/* A full disk has no room for the index of a log either. Then what is in the file can still be read: where nothing can be
+ * written, it does not change. */
+static lensprof_status connect_to(lensprof_store *store, const char *full, lp_store_file file, lensprof_error *error)
+{
+    store->immutable = is_immutable(store, full, file);
+    lensprof_status status = connect(store, full, error);
+    const bool no_room = status == LENSPROF_ERROR_FULL || status == LENSPROF_ERROR_STORE || status == LENSPROF_ERROR_READ_ONLY;
+    if (!no_room || file != LP_STORE_FILE_LOGGED || store->immutable || lp_store_has_log(full)) return status;
+    lp_store_forget_statements(store);
+    sqlite3_close(store->db);
+    store->db = NULL;
+    lp_store_clear_log(full);
+    if (store->mode != LENSPROF_STORE_READ) return status;
+    store->immutable = true;
+    return connect(store, full, error);
+}
+
+lensprof_status lp_store_refresh(lensprof_store *store, lensprof_error *error)
+{
+    const char *full = sqlite3_db_filename(store->db, "main");
+    sqlite3 *db = NULL;
+    if (!store->immutable || !lp_store_has_log(full)) return LENSPROF_OK;
+    const int rc = open_connection(store, full, false, &db);
+    if (rc) {
+        lensprof_status status = lp_store_fail_sql(store->path, db, rc, error);
+        sqlite3_close(db);
+        return status;
+    }
+    lp_store_forget_statements(store);
+    sqlite3_close(store->db);
+    store->db = db;
+    store->immutable = false;
+    return LENSPROF_OK;
 }
 
 static lensprof_status check_file(const char *path, uint32_t mode, lp_store_file file, lensprof_error *error)
@@ -121,11 +174,12 @@ lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_
         made->db = NULL;
         made->mode = mode;
         made->layout = 0;
-        made->batch = false;
+        made->busy_ms = busy_ms;
+        made->settled = made->immutable = made->batch = false;
         made->prepared = 0;
         made->damage[0] = 0;
         memcpy(made->path, path, length + 1);
-        status = connect(made, full, busy_ms, error);
+        status = connect_to(made, full, file, error);
     }
     sqlite3_free(full);
     if (status == LENSPROF_OK) *store = made;

@@ -15,6 +15,9 @@
 struct lensprof_store {
     sqlite3 *db;
     uint32_t mode;
+    int busy_ms;              /* how long it waits for other processes */
+    bool settled;             /* the journal mode is what it is to be */
+    bool immutable;           /* read without locks, from where nobody can write a log */
     int layout;               /* of the file, as the transaction found or made it */
     bool batch;               /* the caller's transaction is open: calls are savepoints in it */
     uint32_t prepared;        /* statements that are kept for the next call */
@@ -47,12 +50,22 @@ typedef enum lp_store_file {
     LP_STORE_FILE_MISSING,
     LP_STORE_FILE_EMPTY,
     LP_STORE_FILE_OURS,
+    LP_STORE_FILE_LOGGED, /* ours, in write-ahead mode */
     LP_STORE_FILE_FOREIGN
 } lp_store_file;
 /* `full` receives the full path, sqlite3_free it. Errors: NOT_FOUND, STORE, MEMORY ... with text. */
 lensprof_status lp_store_probe(const char *path, lp_store_file *file, char **full, lensprof_error *error);
 
-/* store_open.c. lensprof_store_open waits LP_STORE_BUSY_MS for other processes; tests wait less. */
+/* store_log.c: the write-ahead log. */
+int lp_store_settle_journal(lensprof_store *store); /* behind a commit: result code, of no matter to that */
+bool lp_store_has_log(const char *full);            /* a log that is not empty lies beside the file */
+bool lp_store_is_folder_writable(const char *full, bool *exists);
+void lp_store_clear_log(const char *full);          /* files of a log that could not be begun; never one in use */
+char *lp_store_immutable_uri(const char *full);     /* sqlite3_free it; NULL = no memory */
+
+/* store_open.c. Connects again where another process has begun to write beside an immutable file. */
+lensprof_status lp_store_refresh(lensprof_store *store, lensprof_error *error);
+/* lensprof_store_open waits LP_STORE_BUSY_MS for other processes; tests wait less. */
 lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_ms, lensprof_store **store,
                                       lensprof_error *error);
 

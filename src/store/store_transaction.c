@@ -27,10 +27,19 @@ typedef struct layout {
     int64_t application_id, user_version, pages;
 } layout;
 
+/* What would be written to a file that has been removed would be lost; a log does not notice. */
+static int check_place(sqlite3 *db)
+{
+    int moved = 0;
+    (void)sqlite3_file_control(db, "main", SQLITE_FCNTL_HAS_MOVED, &moved);
+    return moved ? SQLITE_READONLY_DBMOVED : SQLITE_OK;
+}
+
 static int begin(lensprof_store *store, bool write, layout *found)
 {
     int rc = SQLITE_OK;
     if (!sqlite3_get_autocommit(store->db)) rc = lp_store_execute(store, "ROLLBACK"); /* lacked the memory before */
+    if (rc == SQLITE_OK && write) rc = check_place(store->db);
     if (rc == SQLITE_OK) rc = write ? lp_store_execute(store, "BEGIN IMMEDIATE") : lp_store_execute(store, "BEGIN");
     if (rc) return rc;
     rc = lp_store_integer(store, "PRAGMA application_id", &found->application_id);
@@ -58,20 +67,6 @@ static lensprof_status check_layout(const lensprof_store *store, const layout *f
     return LENSPROF_OK;
 }
 
-/* A writer that was killed leaves its journal beside the file, and nobody may read before it is played back. A
- * connection that only reads cannot do that; one that may write does it at its first read. */
-static void undo_cut_off_write(const lensprof_store *store)
-{
-    sqlite3 *db;
-    int64_t pages;
-    if (sqlite3_open_v2(sqlite3_db_filename(store->db, "main"), &db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL)
-        == SQLITE_OK) {
-        sqlite3_busy_timeout(db, LP_STORE_BUSY_MS);
-        (void)lp_store_number(db, "PRAGMA page_count", &pages); /* success shows when the reader tries again */
-    }
-    sqlite3_close(db);
-}
-
 /* Part of the transaction that writes: when that is not committed, the file keeps its layout. */
 static lensprof_status bring_up_to_date(lensprof_store *store, lensprof_error *error)
 {
@@ -91,13 +86,12 @@ lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error
     if (write && store->mode == LENSPROF_STORE_READ)
         return lp_store_fail(store->path, LENSPROF_ERROR_READ_ONLY, "was opened for reading only",
                              "open it with LENSPROF_STORE_WRITE", error);
+    lensprof_status status = lp_store_refresh(store, error);
+    if (status != LENSPROF_OK) return status;
     int rc = begin(store, write, &found);
-    if (rc == SQLITE_READONLY_ROLLBACK) {
-        lp_store_rollback(store);
-        undo_cut_off_write(store);
-        rc = begin(store, write, &found);
-    }
-    lensprof_status status = rc ? lp_store_fail_sql(store->path, store->db, rc, error)
+    if (rc == SQLITE_CANTOPEN && lp_store_has_log(sqlite3_db_filename(store->db, "main")))
+        rc = SQLITE_READONLY_RECOVERY; /* no place for the log's index beside it */
+    status = rc ? lp_store_fail_sql(store->path, store->db, rc, error)
                                 : check_layout(store, &found, error);
     if (status == LENSPROF_OK) store->layout = (int)found.user_version;
     if (status == LENSPROF_OK && write) status = bring_up_to_date(store, error);
@@ -108,6 +102,7 @@ lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error
 lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error)
 {
     int rc = store->batch ? lp_store_execute(store, "RELEASE call") : lp_store_execute(store, "COMMIT");
+    if (rc == SQLITE_OK && !store->batch) (void)lp_store_settle_journal(store);
     if (rc == SQLITE_OK) return LENSPROF_OK;
     lensprof_status status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_rollback(store);
@@ -123,6 +118,7 @@ void lp_store_rollback(lensprof_store *store)
     }
     /* Some failures have rolled back already. If there is not even the memory for this, the next begin does it. */
     if (!sqlite3_get_autocommit(store->db)) (void)lp_store_execute(store, "ROLLBACK");
+    if (store->immutable) (void)sqlite3_db_release_memory(store->db); /* nobody says when the file changes */
 }
 
 lensprof_status lensprof_store_begin(lensprof_store *store, lensprof_error *error)

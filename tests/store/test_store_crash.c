@@ -113,11 +113,13 @@ static void test_killed_while_creating(void **state)
     const place *here = *state;
     report reports[1000];
     uint64_t seed = 8;
-    char journal[200];
-    snprintf(journal, sizeof journal, "%s-journal", here->path);
+    static const char *const ends[] = {"", "-journal", "-wal", "-shm"};
     for (int round = 0; round < ROUNDS; round++) {
-        unlink(here->path);
-        unlink(journal);
+        for (int i = 0; i < 4; i++) {
+            char path[200];
+            snprintf(path, sizeof path, "%s%s", here->path, ends[i]);
+            unlink(path);
+        }
         size_t count = work_and_kill(here->path, 1, 0.008 * lp_random(&seed), reports, 1000);
         lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
         assert_true(count_at(store) <= count + 1);
