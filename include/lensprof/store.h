@@ -75,13 +75,16 @@ typedef struct lensprof_lookup {
                               open, a factor 2 in focal length, 0.4 m focus against infinity */
     double sigma;          /* standard error of M in the corner, a 68 % band; LENSPROF_UNKNOWN for an exact one without
                               covariance */
-    double name_score;     /* of the lens's name: 1 the same but for case and blanks, 0.9 but for signs, 0.8 but for a
-                              maker in front */
+    double name_score;     /* of the lens's name (of the camera's, where no lens was asked for): 1 the same but for case and
+                              outer blanks, 0.9 but for signs and blanks, 0.8 but for a maker in front or its spelling, or
+                              a camera's name in another country; 0.6 the same words in another order or form, all
+                              numbers and generations the same, where nothing better is stored */
     char reason[256];      /* what to mind; where nothing is found, why */
 } lensprof_lookup;
 
 /* The profile for a setting: a stored one, or the falloff predicted from those of the same lens at other settings
- * (docs/database.md says how). The lens's name decides, then the camera, unit and sensor: profiles of the key's unit
+ * (docs/database.md says how). The lens's name decides, then the camera, unit and sensor - without a lens the camera, whose profiles without a
+ * lens, or of its only lens, count (their focal lengths to 2 % or 0.1 mm, for such cameras round them); profiles of the key's unit
  * before those of any, of the key's camera before those of a lens alone; of these, those of the smallest sensor that is
  * not smaller than the key's, their radii rescaled. A predicted profile has key `key`, the response of the nearest
  * profile, no gain grid, and provenance method "lookup". Nothing is written. NOT_FOUND, with *lookup filled as far as it

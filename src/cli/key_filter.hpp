@@ -25,7 +25,6 @@ public:
     /* What was given, the rest unknown; `processing` where none was given. */
     lensprof_profile_key key(uint32_t processing) const;
     bool has_processing() const { return !processing_.empty(); }
-    bool has_lens() const { return !lens_.empty(); }
 
     /* Rows of the profiles that match, in the order of lensprof_store_list; `db` as given, for texts. */
     std::vector<lensprof_store_row> rows(lensprof_store *store, const std::string &db) const;

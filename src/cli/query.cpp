@@ -87,7 +87,6 @@ int run_query(const std::vector<std::string> &arguments, Streams &streams) {
     if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     const auto rows = o.filter.rows(store.get(), o.db);
-    if (rows.empty() && !o.filter.has_lens()) throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db));
     if (rows.empty()) answer_predicted(o, store.get(), streams);
     else answer_stored(o, store.get(), rows, streams);
     return 0;

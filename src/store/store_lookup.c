@@ -1,15 +1,14 @@
 /* The profile for a setting that need not be stored: which rows of the lens are used, and what is made of them. */
-#include "store_private.h"
+#include "lookup_candidates.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "falloff_prediction.h"
-#include "store_names.h"
-
 #define CROP_TOLERANCE 0.96 /* a sensor may be larger by so much than the one that was measured */
+#define SAME_FOCAL 0.02     /* of a lens that cannot be changed */
+#define SAME_FOCAL_MM 0.1
 #define MOST_DISTANCES 8    /* stored focus distances that are tried where it is not known */
 
 void lensprof_lookup_options_init(lensprof_lookup_options *options)
@@ -18,136 +17,23 @@ void lensprof_lookup_options_init(lensprof_lookup_options *options)
     options->struct_size = sizeof *options;
 }
 
-/* A row of the lens: how well it fits the camera, and its node. */
-typedef struct candidate {
-    lp_falloff_node node;
-    int of_unit, of_camera, has_covariance;
-    double crop;
-    uint32_t processing;
-} candidate;
-
-typedef struct candidates {
-    candidate *all;
-    uint32_t count, room;
-    double name_score;
-} candidates;
-
-/* ---- rows ---- */
-
-#define ROWS_OF_LENS(name, unit, crop, doubt) \
-    "SELECT id, camera_model, lens, " unit ", " crop ", focal_mm, aperture, distance_m, curve, k1, k2, k3, vignetting_curves, covariance_size FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
-    " = ?1 AND (?2 OR " doubt " = '') AND (?3 OR processing = ?4) ORDER BY id, curve"
-
-static const char *const rows_sql[2] = {
-    ROWS_OF_LENS("lower(replace(replace(replace(replace(replace(replace(lens,"
-                 " ' ', ''), '-', ''), '/', ''), '.', ''), '(', ''), ')', ''))", "''", "NULL", "''"),
-    ROWS_OF_LENS("lens_name", "unit", "crop_factor", "doubt")};
-
-static candidate *add(candidates *found)
-{
-    if (found->count == found->room) {
-        const uint32_t room = found->room ? 2 * found->room : 64;
-        candidate *all = realloc(found->all, room * sizeof *all);
-        if (!all) return NULL;
-        found->all = all, found->room = room;
-    }
-    return memset(&found->all[found->count++], 0, sizeof(candidate));
-}
-
-/* -1 for a row of another camera or unit. */
-static int fits(const char *own, const char *asked)
-{
-    if (!*own) return 0;
-    return lp_name_score(own, asked) >= 0.8 ? 1 : -1;
-}
-
-/* One curve of a row, as rows_sql has it. */
-typedef struct row {
-    lensprof_profile_key key;
-    int64_t id, curve, curves, covariance_size;
-    double k[3];
-} row;
-
-/* False, with the reader's column, for what no profile has. */
-static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r)
-{
-    *reader = (lp_store_reader){statement, 0, NULL};
-    lensprof_profile_key_init(&r->key);
-    r->id = lp_read_integer(reader, 1, INT64_MAX);
-    lp_read_text(reader, r->key.camera_model, sizeof r->key.camera_model);
-    lp_read_text(reader, r->key.lens, sizeof r->key.lens);
-    lp_read_text(reader, r->key.unit, sizeof r->key.unit);
-    r->key.crop_factor = lp_read_known(reader);
-    r->key.focal_mm = lp_read_known(reader);
-    r->key.aperture = lp_read_known(reader);
-    r->key.distance_m = lp_read_known(reader);
-    r->curve = lp_read_integer(reader, 0, 2);
-    for (int n = 0; n < 3; n++) r->k[n] = lp_read_real(reader);
-    r->curves = lp_read_integer(reader, 1, 3);
-    r->covariance_size = lp_read_integer(reader, 0, LENSPROF_COVARIANCE_MAX);
-    if (!reader->bad && lensprof_profile_key_validate(&r->key) != LENSPROF_OK) reader->bad = "key";
-    return !reader->bad;
-}
-
-/* Takes a row that fits the key; its first curve comes first. False without memory. */
-static bool take_row(const row *r, const lensprof_profile_key *key, candidates *found)
-{
-    candidate *one = found->count ? &found->all[found->count - 1] : NULL;
-    if (!one || one->node.id != r->id) {
-        const int unit = fits(r->key.unit, key->unit), camera = fits(r->key.camera_model, key->camera_model);
-        if (unit < 0 || (camera < 0 && *key->camera_model) || r->curve != 0) return true;
-        if (!(one = add(found))) return false;
-        found->name_score = fmax(found->name_score, lp_name_score(r->key.lens, key->lens));
-        one->of_unit = unit, one->of_camera = camera, one->has_covariance = r->covariance_size > 0;
-        one->crop = r->key.crop_factor;
-        one->node.id = r->id;
-        one->node.focal_mm = r->key.focal_mm;
-        one->node.aperture = r->key.aperture;
-        one->node.distance_m = r->key.distance_m;
-        for (int c = 0; c < 3; c++) memcpy(one->node.k[c], r->k, sizeof r->k); /* of all, unless others follow */
-    } else memcpy(one->node.k[r->curve], r->k, sizeof r->k);
-    return true;
-}
-
-static lensprof_status read_rows(lensprof_store *store, const char *name, const lensprof_profile_key *key,
-                                 const lensprof_lookup_options *o, candidates *found, lensprof_error *error)
-{
-    lp_store_binder binder = {NULL, 0, SQLITE_OK};
-    lensprof_status status = lp_store_prepare(store, rows_sql[store->layout >= 3], &binder.statement, error);
-    if (status != LENSPROF_OK) return status;
-    lp_bind_text(&binder, name);
-    lp_bind_integer(&binder, o->with_doubt);
-    lp_bind_integer(&binder, o->any_processing);
-    lp_bind_text(&binder, lp_store_processings[key->processing]);
-    int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
-    while (rc == SQLITE_ROW && status == LENSPROF_OK) {
-        lp_store_reader reader;
-        row r;
-        if (!read_row(binder.statement, &reader, &r)) status = lp_store_fail_profile(store, r.id, reader.bad, error);
-        else rc = take_row(&r, key, found) ? sqlite3_step(binder.statement) : SQLITE_NOMEM;
-    }
-    if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
-    lp_store_release(store, binder.statement);
-    return status;
-}
-
 /* ---- which of them ---- */
 
-static int is_sensor_covered(const candidate *c, const lensprof_profile_key *key)
+static int is_sensor_covered(const lp_candidate *c, const lensprof_profile_key *key)
 {
     return c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
            || key->crop_factor / c->crop >= CROP_TOLERANCE;
 }
 
 /* Larger is better: unit, camera, then the sensor nearest to the key's. */
-static double rank_of(const candidate *c, const lensprof_profile_key *key)
+static double rank_of(const lp_candidate *c, const lensprof_profile_key *key)
 {
     const int is_known = c->crop != LENSPROF_UNKNOWN && key->crop_factor != LENSPROF_UNKNOWN;
     return 100.0 * c->of_unit + 10.0 * c->of_camera + (is_known ? fmin(c->crop / key->crop_factor, 1.0) : 0.5);
 }
 
 /* Keeps the best group; returns how many there are. */
-static uint32_t keep_best(candidates *found, const lensprof_profile_key *key)
+static uint32_t keep_best(lp_candidates *found, const lensprof_profile_key *key)
 {
     double best = -1.0;
     uint32_t kept = 0;
@@ -160,7 +46,7 @@ static uint32_t keep_best(candidates *found, const lensprof_profile_key *key)
 }
 
 /* k in half diagonals of the key's sensor: r there is r times the ratio here. */
-static void rescale(candidate *c, const lensprof_profile_key *key)
+static void rescale(lp_candidate *c, const lensprof_profile_key *key)
 {
     if (c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN) return;
     const double ratio2 = (c->crop / key->crop_factor) * (c->crop / key->crop_factor);
@@ -181,7 +67,7 @@ static int is_same(double a, double b) { return a == b || fabs(a - b) <= 1e-6 * 
 
 /* Rows that lack a number which the key has are of no use; one that the key lacks must be the same in all rows. Returns
  * NULL, or what is wrong. */
-static const char *settle(candidates *found, lp_falloff_node *at, int which)
+static const char *settle(lp_candidates *found, lp_falloff_node *at, int which)
 {
     static const char *const missing[] = {"the focal length is not known, and the lens has several; give it",
                                           "the aperture is not known, and the lens has several; give it"};
@@ -204,7 +90,7 @@ static const char *settle(candidates *found, lp_falloff_node *at, int which)
 
 /* Nothing is predicted more than one node beyond the last: the outermost two nodes' spacing (in stops or octaves), or a
  * twelfth of an octave in focal length and a third of a stop where there is one node only. */
-static int is_beyond(const candidates *found, const lp_falloff_node *at, int which)
+static int is_beyond(const lp_candidates *found, const lp_falloff_node *at, int which)
 {
     double low = INFINITY, high = 0.0, above_low = INFINITY, below_high = 0.0;
     const double single = which ? 1.0 / 6.0 : 1.0 / 12.0; /* log2; of the f-number half a stop counts as 1/4 */
@@ -311,7 +197,7 @@ static lensprof_status make_profile(lensprof_store *store, const lensprof_profil
 }
 
 /* Profiles with a covariance count the less the less is known of them. */
-static lensprof_status weigh(lensprof_store *store, candidates *found, lensprof_error *error)
+static lensprof_status weigh(lensprof_store *store, lp_candidates *found, lensprof_error *error)
 {
     lensprof_status status = LENSPROF_OK;
     for (uint32_t i = 0; i < found->count && status == LENSPROF_OK; i++) {
@@ -323,7 +209,7 @@ static lensprof_status weigh(lensprof_store *store, candidates *found, lensprof_
 }
 
 static lensprof_status predict(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
-                               candidates *found, lp_falloff_node at, lensprof_lookup *lookup, lensprof_error *error)
+                               lp_candidates *found, lp_falloff_node at, lensprof_lookup *lookup, lensprof_error *error)
 {
     lp_falloff_prediction p;
     lp_falloff_node *nodes = malloc(found->count * sizeof *nodes);
@@ -350,12 +236,35 @@ static lensprof_status predict(lensprof_store *store, const lensprof_profile_key
     return make_profile(store, key, &p, lookup, error);
 }
 
+/* Adds to what the caller has to mind. */
+static void mind(lensprof_lookup *lookup, const char *what)
+{
+    const size_t used = strlen(lookup->reason);
+    snprintf(lookup->reason + used, sizeof lookup->reason - used, "%s%s", used ? "; " : "", what);
+}
+
+/* Cameras with a fixed lens round its focal length as they like (4.25, 4.2, 4.3 mm): one that differs by no more than
+ * that is the stored one. */
+static void round_focal(const lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup)
+{
+    double nearest = LENSPROF_UNKNOWN, off = fmax(SAME_FOCAL * at->focal_mm, SAME_FOCAL_MM);
+    for (uint32_t i = 0; i < found->count && at->focal_mm != LENSPROF_UNKNOWN; i++) {
+        const lp_candidate *c = &found->all[i];
+        const double d = fabs(c->node.focal_mm - at->focal_mm);
+        if (c->is_fixed && c->node.focal_mm != LENSPROF_UNKNOWN && d <= off + 1e-9 && (d < off || nearest < 0.0))
+            off = d, nearest = c->node.focal_mm;
+    }
+    if (nearest < 0.0 || is_same(nearest, at->focal_mm)) return;
+    at->focal_mm = nearest;
+    mind(lookup, "the focal length is rounded otherwise than in the profiles of this camera");
+}
+
 /* The newest row that is at the setting, or -1. */
-static int64_t find_exact(const candidates *found, const lp_falloff_node *at, const lensprof_profile_key *key)
+static int64_t find_exact(const lp_candidates *found, const lp_falloff_node *at, const lensprof_profile_key *key)
 {
     int64_t newest = -1;
     for (uint32_t i = 0; i < found->count; i++) {
-        const candidate *c = &found->all[i];
+        const lp_candidate *c = &found->all[i];
         const int same_sensor = c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
                                 || is_same(c->crop, key->crop_factor);
         if (same_sensor && is_same(c->node.focal_mm, at->focal_mm) && is_same(c->node.aperture, at->aperture)
@@ -366,13 +275,19 @@ static int64_t find_exact(const candidates *found, const lp_falloff_node *at, co
 }
 
 static lensprof_status answer(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
-                              candidates *found, lensprof_lookup *lookup, lensprof_error *error)
+                              lp_candidates *found, lensprof_lookup *lookup, lensprof_error *error)
 {
     lp_falloff_node at = {0, key->focal_mm, key->aperture, key->distance_m, {{0}}, 0.0};
     lookup->name_score = found->name_score;
+    if (found->has_lenses) return refuse(store, lookup, "this camera has profiles of several lenses; give the lens", error);
     if (!found->count)
-        return refuse(store, lookup, "no profile of a lens of this name; list the profiles to see which there are", error);
+        return refuse(store, lookup,
+                      key->lens[strspn(key->lens, " ")] || !*key->camera_model
+                          ? "no profile of a lens of this name; list the profiles to see which there are"
+                          : "no profile of this camera; list the profiles to see which there are", error);
     if (!keep_best(found, key)) return refuse(store, lookup, "this lens was measured on smaller sensors only", error);
+    if (found->by_words) mind(lookup, "the lens was found by the words and numbers of its name, in another order or form");
+    round_focal(found, &at, lookup);
     const int64_t same = find_exact(found, &at, key);
     if (same > 0) {
         lookup->exact = lookup->rows = 1;
@@ -390,23 +305,11 @@ static lensprof_status answer(lensprof_store *store, const lensprof_profile_key 
                                                : "the focal length is beyond those at which this lens is known", error);
     }
     if (at.distance_m == LENSPROF_UNKNOWN)
-        snprintf(lookup->reason, sizeof lookup->reason, "the focus distance is not known: %s",
-                 o->distance_rule == LENSPROF_DISTANCE_WEAKEST ? "the weakest falloff of those stored is taken"
-                                                               : "the falloff at the farthest one stored is taken");
+        mind(lookup, o->distance_rule == LENSPROF_DISTANCE_WEAKEST
+                         ? "the focus distance is not known: the weakest falloff of those stored is taken"
+                         : "the focus distance is not known: the falloff at the farthest one stored is taken");
     lensprof_status status = weigh(store, found, error);
     return status == LENSPROF_OK ? predict(store, key, o, found, at, lookup, error) : status;
-}
-
-/* All rows of the lens, under the first name that any has. */
-static lensprof_status find_lens(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
-                                 candidates *found, lensprof_error *error)
-{
-    lp_names names;
-    lensprof_status status = LENSPROF_OK;
-    lp_name_variants(key->lens, key->camera_maker, &names);
-    for (uint32_t i = 0; i < names.count && status == LENSPROF_OK && !found->count; i++)
-        status = read_rows(store, names.name[i], key, o, found, error);
-    return status;
 }
 
 lensprof_status lensprof_store_lookup(lensprof_store *store, const lensprof_profile_key *key,
@@ -414,7 +317,7 @@ lensprof_status lensprof_store_lookup(lensprof_store *store, const lensprof_prof
                                       lensprof_lookup *lookup, lensprof_error *error)
 {
     lensprof_lookup result;
-    candidates found = {NULL, 0, 0, 0.0};
+    lp_candidates found = {NULL, 0, 0, 0.0, false, false};
     lp_store_clear(error);
     if (!store || !key || !options || !profile || !lookup)
         return lp_store_fail_argument("store, key, options, profile or lookup is NULL", error);
@@ -426,7 +329,7 @@ lensprof_status lensprof_store_lookup(lensprof_store *store, const lensprof_prof
     memset(&result, 0, sizeof result);
     lensprof_status status = lp_store_begin(store, false, error);
     if (status != LENSPROF_OK) return status;
-    status = find_lens(store, key, options, &found, error);
+    status = lp_find_candidates(store, key, options, &found, error);
     if (status == LENSPROF_OK) status = answer(store, key, options, &found, &result, error);
     lp_store_rollback(store);
     free(found.all);

@@ -1,0 +1,199 @@
+/* The rows that a lookup may use, found by the names of lens and camera. */
+#include "lookup_candidates.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "store_names.h"
+
+
+#define ROWS_OF_LENS(name, unit, crop, doubt) \
+    "SELECT id, camera_model, lens, " unit ", " crop ", focal_mm, aperture, distance_m, curve, k1, k2, k3, vignetting_curves, covariance_size FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
+    " = ?1 AND (?2 OR " doubt " = '') AND (?3 OR processing = ?4) ORDER BY id, curve"
+
+static const char *const rows_sql[2] = {
+    ROWS_OF_LENS("lower(replace(replace(replace(replace(replace(replace(lens,"
+                 " ' ', ''), '-', ''), '/', ''), '.', ''), '(', ''), ')', ''))", "''", "NULL", "''"),
+    ROWS_OF_LENS("lens_name", "unit", "crop_factor", "doubt")};
+
+static lp_candidate *add(lp_candidates *found)
+{
+    if (found->count == found->room) {
+        const uint32_t room = found->room ? 2 * found->room : 64;
+        lp_candidate *all = realloc(found->all, room * sizeof *all);
+        if (!all) return NULL;
+        found->all = all, found->room = room;
+    }
+    return memset(&found->all[found->count++], 0, sizeof(lp_candidate));
+}
+
+/* -1 for a row of another camera or unit. */
+static int fits(const char *own, const char *asked)
+{
+    if (!*own) return 0;
+    return lp_name_score(own, asked) >= 0.8 ? 1 : -1;
+}
+
+/* One curve of a row, as rows_sql has it. */
+typedef struct row {
+    lensprof_profile_key key;
+    int64_t id, curve, curves, covariance_size;
+    double k[3];
+} row;
+
+/* False, with the reader's column, for what no profile has. */
+static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r)
+{
+    *reader = (lp_store_reader){statement, 0, NULL};
+    lensprof_profile_key_init(&r->key);
+    r->id = lp_read_integer(reader, 1, INT64_MAX);
+    lp_read_text(reader, r->key.camera_model, sizeof r->key.camera_model);
+    lp_read_text(reader, r->key.lens, sizeof r->key.lens);
+    lp_read_text(reader, r->key.unit, sizeof r->key.unit);
+    r->key.crop_factor = lp_read_known(reader);
+    r->key.focal_mm = lp_read_known(reader);
+    r->key.aperture = lp_read_known(reader);
+    r->key.distance_m = lp_read_known(reader);
+    r->curve = lp_read_integer(reader, 0, 2);
+    for (int n = 0; n < 3; n++) r->k[n] = lp_read_real(reader);
+    r->curves = lp_read_integer(reader, 1, 3);
+    r->covariance_size = lp_read_integer(reader, 0, LENSPROF_COVARIANCE_MAX);
+    if (!reader->bad && lensprof_profile_key_validate(&r->key) != LENSPROF_OK) reader->bad = "key";
+    return !reader->bad;
+}
+
+static bool is_known(const char *text) { return text[strspn(text, " ")] != 0; }
+
+/* Of the lens's name, or of the camera's where no lens is asked for. */
+static double score_of(const row *r, const lensprof_profile_key *key, bool by_words)
+{
+    if (!is_known(key->lens)) return lp_name_score(r->key.camera_model, key->camera_model);
+    return by_words ? lp_words_score(r->key.lens, key->lens, key->camera_maker) : lp_name_score(r->key.lens, key->lens);
+}
+
+/* Takes a row that fits the key; its first curve comes first. False without memory. */
+static bool take_row(const row *r, const lensprof_profile_key *key, lp_candidates *found)
+{
+    lp_candidate *one = found->count ? &found->all[found->count - 1] : NULL;
+    if (!one || one->node.id != r->id) {
+        const int unit = fits(r->key.unit, key->unit), camera = fits(r->key.camera_model, key->camera_model);
+        if (unit < 0 || (camera < 0 && *key->camera_model) || r->curve != 0) return true;
+        if (!is_known(key->lens) && camera <= 0) return true; /* the camera's own only */
+        if (!(one = add(found))) return false;
+        found->name_score = fmax(found->name_score, score_of(r, key, found->by_words));
+        one->is_fixed = !is_known(key->lens) || !is_known(r->key.lens);
+        one->of_unit = unit, one->of_camera = camera, one->has_covariance = r->covariance_size > 0;
+        one->crop = r->key.crop_factor;
+        one->node.id = r->id;
+        one->node.focal_mm = r->key.focal_mm;
+        one->node.aperture = r->key.aperture;
+        one->node.distance_m = r->key.distance_m;
+        for (int c = 0; c < 3; c++) memcpy(one->node.k[c], r->k, sizeof r->k); /* of all, unless others follow */
+    } else memcpy(one->node.k[r->curve], r->k, sizeof r->k);
+    return true;
+}
+
+static lensprof_status read_rows(lensprof_store *store, const char *name, const lensprof_profile_key *key,
+                                 const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error)
+{
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    lensprof_status status = lp_store_prepare(store, rows_sql[store->layout >= 3], &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_bind_text(&binder, name);
+    lp_bind_integer(&binder, o->with_doubt);
+    lp_bind_integer(&binder, o->any_processing);
+    lp_bind_text(&binder, lp_store_processings[key->processing]);
+    int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
+    while (rc == SQLITE_ROW && status == LENSPROF_OK) {
+        lp_store_reader reader;
+        row r;
+        if (!read_row(binder.statement, &reader, &r)) status = lp_store_fail_profile(store, r.id, reader.bad, error);
+        else rc = take_row(&r, key, found) ? sqlite3_step(binder.statement) : SQLITE_NOMEM;
+    }
+    if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, binder.statement);
+    return status;
+}
+
+
+/* Every name of a lens once; the first through the index profiles_by_lens, name by name. */
+static const char *const lenses_sql[2] = {
+    "SELECT DISTINCT lens FROM profiles ORDER BY lens",
+    "WITH RECURSIVE names(name) AS (SELECT min(lens_name) FROM profiles UNION ALL"
+    " SELECT (SELECT min(lens_name) FROM profiles WHERE lens_name > name) FROM names WHERE name IS NOT NULL)"
+    " SELECT (SELECT lens FROM profiles WHERE lens_name = name LIMIT 1) FROM names WHERE name IS NOT NULL"};
+
+/* The squeezed name of the first lens that has the same words; empty where there is none. */
+static lensprof_status find_by_words(lensprof_store *store, const lensprof_profile_key *key, char *name,
+                                     lensprof_error *error)
+{
+    sqlite3_stmt *statement;
+    *name = 0;
+    lensprof_status status = lp_store_prepare(store, lenses_sql[store->layout >= 3], &statement, error);
+    if (status != LENSPROF_OK) return status;
+    int rc = sqlite3_step(statement);
+    for (; rc == SQLITE_ROW; rc = sqlite3_step(statement)) {
+        const char *stored = (const char *)sqlite3_column_text(statement, 0);
+        if (!stored || (size_t)sqlite3_column_bytes(statement, 0) >= sizeof ((lensprof_profile_key *)0)->lens) continue;
+        if (lp_words_score(stored, key->lens, key->camera_maker) <= 0.0) continue;
+        lp_squeeze(stored, name);
+        break;
+    }
+    if (rc != SQLITE_ROW && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, statement);
+    return status;
+}
+
+/* The squeezed name of the only lens of a camera. *lenses: how many there are, 2 for more. */
+static lensprof_status find_only_lens(lensprof_store *store, const lensprof_profile_key *key, char *name, int *lenses,
+                                      lensprof_error *error)
+{
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    *lenses = 0;
+    lensprof_status status = lp_store_prepare(
+        store, "SELECT DISTINCT lens FROM profiles WHERE trim(camera_model) COLLATE NOCASE = trim(?1) LIMIT 2",
+        &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_bind_text(&binder, key->camera_model);
+    int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
+    for (; rc == SQLITE_ROW; rc = sqlite3_step(binder.statement)) {
+        lp_store_reader reader = {binder.statement, 0, NULL};
+        char lens[LP_NAME_BYTES];
+        lp_read_text(&reader, lens, sizeof lens);
+        if (!reader.bad && ++*lenses == 1) lp_squeeze(lens, name);
+    }
+    if (rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, binder.statement);
+    return status;
+}
+
+static lensprof_status find_camera(lensprof_store *store, const lensprof_profile_key *key,
+                                   const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error)
+{
+    char name[LP_NAME_BYTES] = "";
+    int lenses = 0;
+    lensprof_status status = read_rows(store, "", key, o, found, error);
+    if (status != LENSPROF_OK || found->count) return status;
+    status = find_only_lens(store, key, name, &lenses, error);
+    found->has_lenses = lenses > 1;
+    return status == LENSPROF_OK && lenses == 1 ? read_rows(store, name, key, o, found, error) : status;
+}
+
+lensprof_status lp_find_candidates(lensprof_store *store, const lensprof_profile_key *key,
+                                   const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error)
+{
+    lp_names names;
+    char name[LP_NAME_BYTES];
+    lensprof_status status = LENSPROF_OK;
+    if (!is_known(key->lens))
+        return is_known(key->camera_model) ? find_camera(store, key, o, found, error) : LENSPROF_OK;
+    lp_name_variants(key->lens, key->camera_maker, &names);
+    for (uint32_t i = 0; i < names.count && status == LENSPROF_OK && !found->count; i++)
+        status = read_rows(store, names.name[i], key, o, found, error);
+    if (status != LENSPROF_OK || found->count) return status;
+    status = find_by_words(store, key, name, error);
+    found->by_words = *name != 0;
+    return status == LENSPROF_OK && *name ? read_rows(store, name, key, o, found, error) : status;
+}

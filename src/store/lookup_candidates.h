@@ -1,0 +1,29 @@
+/* The rows that a lookup may use. */
+#ifndef LENSPROF_STORE_LOOKUP_CANDIDATES_H
+#define LENSPROF_STORE_LOOKUP_CANDIDATES_H
+
+#include "falloff_prediction.h"
+#include "store_private.h"
+
+/* A row of the lens: how well it fits the camera, and its node. */
+typedef struct lp_candidate {
+    lp_falloff_node node;
+    int of_unit, of_camera, has_covariance;
+    int is_fixed; /* of a camera whose lens has no name of its own: it cannot be changed */
+    double crop;
+} lp_candidate;
+
+typedef struct lp_candidates {
+    lp_candidate *all; /* free it */
+    uint32_t count, room;
+    double name_score;
+    bool by_words;   /* the lens was found by the words of its name */
+    bool has_lenses; /* nothing was found, since the camera has several lenses and none was asked for */
+} lp_candidates;
+
+/* All rows of the lens under the first of its names that any has, else of the lens with the same words; without a lens
+ * those of the camera, its own or those of the only lens it has. Within a transaction. */
+lensprof_status lp_find_candidates(lensprof_store *store, const lensprof_profile_key *key,
+                                   const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error);
+
+#endif

@@ -1,0 +1,179 @@
+/* Names that are written in many ways: what is the same lens or camera, and above all what is not. */
+#include "store_fixture.h"
+
+#include "store/store_names.h"
+
+static void test_scores(void **state)
+{
+    static const struct {
+        const char *a, *b;
+        double score;
+    } cases[] = {
+        {"Canon EF 50mm f/1.8", " canon EF 50MM F/1.8 ", 1.0},
+        {"Canon EF 50mm f/1.8", "Canon EF50mm F1.8", 0.9},
+        {"EF 50mm f/1.8", "CANON INC. EF50mm F1.8", 0.8},
+        {"NIKON CORPORATION NIKON D90", "Nikon D90", 0.8},
+        {"OLYMPUS IMAGING CORP. E-M5", "OM Digital Solutions E-M5", 0.8},
+        {"Panasonic Lumix G 20mm F1.7", "LUMIX G 20mm f/1.7", 0.8},
+        {"Fuji XF 23mm F2 R WR", "FUJINON XF23mmF2 R WR", 0.8},
+        {"LEICA CAMERA AG M10", "Leica M10", 0.8},
+        {"EASTMAN KODAK COMPANY DC290", "Kodak DC290", 0.8},
+        {"SAMSUNG TECHWIN NX10", "NX10", 0.8},
+        {"Canon EOS REBEL T3i", "EOS 600D", 0.8},
+        {"Canon EOS Kiss X5", "Canon EOS REBEL T3i", 0.8},
+        {"Canon EOS REBEL T3", "EOS 600D", 0.0},
+        {"Sigma 50mm f/1.4", "Sony 50mm f/1.4", 0.0},
+        {"Canon EF 50mm f/1.8", "EF 50mm f/1.4", 0.0},
+        {"Canon", "", 0.0},
+        {"Canon", "Nikon", 0.0},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        for (int turned = 0; turned < 2; turned++) {
+            const double score = turned ? lp_name_score(cases[i].b, cases[i].a) : lp_name_score(cases[i].a, cases[i].b);
+            if (score != cases[i].score) fail_msg("%s, %s: %g", cases[i].a, cases[i].b, score);
+        }
+}
+
+static void test_words(void **state)
+{
+    static const struct {
+        const char *a, *b, *camera_maker;
+        int same;
+    } cases[] = {
+        {"Canon EF 24-70mm f/2.8L II USM", "24-70mm f/2.8 EF L USM II", "Canon", 1},
+        {"Canon EF 24-70mm f/2.8L II USM", "Canon Lens EF 24-70mm 1:2.8 L Mark II USM", "", 1},
+        {"Sigma 35mm F1.4 DG HSM Art", "Sigma Art 35mm f/1.4 DG HSM for Canon EF", "Canon", 1},
+        {"Zeiss 50.0mm f/2.0 Planar", "Carl Zeiss Planar 50mm f/2", "", 1},
+        {"Tamron 17-50mm f/2.8 MkII", "TAMRON 17-50mm II F2.8", "", 1},
+        {"Canon EF 24-70mm f/2.8L USM", "EF USM 24-105mm f/2.8L", "Canon", 0},
+        {"Canon EF 70-200mm f/2.8L USM", "EF L USM 70-200mm f/4", "Canon", 0},
+        {"Canon EF 24-70mm f/2.8L II USM", "EF L USM 24-70mm f/2.8", "Canon", 0},
+        {"Canon EF 24-70mm f/2.8L II USM", "EF L III USM 24-70mm f/2.8", "Canon", 0},
+        {"Canon EF 70-200mm f/4L IS USM", "EF L USM 70-200mm f/4", "Canon", 0},
+        {"Sigma 50mm f/1.4 EX", "Sony EX 50mm f/1.4", "", 0},
+        {"Canon EF 85mm f/1.8 USM", "USM EF 85mm f/1.8", "NIKON CORPORATION", 0},
+        {"Canon EF 85mm f/1.8 USM", "USM EF 85mm f/1.8", "CANON INC.", 1},
+        {"Canon EF 85mm f/1.8 USM", "USM EF 85mm f/1.8", "Unheard Of", 0},
+        {"Kit lens", "lens Kit", "", 0}, /* without a number anything could be meant */
+        {"50 20 mm", "502 0 mm", "", 0},
+        {"", "", "", 0},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        for (int turned = 0; turned < 2; turned++) {
+            const double score = lp_words_score(turned ? cases[i].b : cases[i].a, turned ? cases[i].a : cases[i].b,
+                                                cases[i].camera_maker);
+            if (score != (cases[i].same ? 0.6 : 0.0)) fail_msg("%s, %s: %g", cases[i].a, cases[i].b, score);
+        }
+    char longest[128];
+    memset(longest, 0, sizeof longest);
+    for (size_t i = 0; i + 1 < sizeof longest; i++) longest[i] = i % 2 ? '7' : 'x'; /* more words than are looked at */
+    assert_close(lp_words_score(longest, longest, ""), 0.0, 0.0);
+    memset(longest, '7', sizeof longest - 1);
+    assert_close(lp_words_score(longest, longest, longest), 0.6, 0.0);
+}
+
+static lensprof_profile profile;
+static lensprof_lookup how;
+
+static int64_t put(lensprof_store *store, const char *maker, const char *camera, const char *lens, double focal,
+                   double aperture)
+{
+    lensprof_profile_init(&profile);
+    strcpy(profile.key.camera_maker, maker);
+    strcpy(profile.key.camera_model, camera);
+    strcpy(profile.key.lens, lens);
+    profile.key.focal_mm = focal, profile.key.aperture = aperture;
+    profile.vignetting[0].k[0] = -0.6 / aperture;
+    return put_at(store, &profile);
+}
+
+static lensprof_status ask(lensprof_store *store, const char *maker, const char *camera, const char *lens, double focal,
+                           double aperture)
+{
+    lensprof_lookup_options options;
+    lensprof_profile_key key;
+    lensprof_error error;
+    lensprof_lookup_options_init(&options);
+    lensprof_profile_key_init(&key);
+    strcpy(key.camera_maker, maker);
+    strcpy(key.camera_model, camera);
+    strcpy(key.lens, lens);
+    key.focal_mm = focal, key.aperture = aperture;
+    memset(&how, 0, sizeof how);
+    return lensprof_store_lookup(store, &key, &options, &profile, &how, &error);
+}
+
+static void test_lenses_found_by_other_names(void **state)
+{
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    const int64_t canon = put(store, "", "", "Canon EF 24-70mm f/2.8L II USM", 24, 2.8);
+    const int64_t fuji = put(store, "", "", "Fujinon XF 23mm F2 R WR", 23, 2);
+    const int64_t nikkor = put(store, "", "", "Nikon Nikkor Z 50mm f/1.8 S", 50, 1.8);
+    const struct {
+        const char *maker, *lens;
+        double focal, aperture, score;
+        int64_t id;
+    } cases[] = {
+        {"Canon", "EF24-70mm f/2.8L II USM", 24, 2.8, 0.8, canon},
+        {"Canon", "EF24-70mm f/2.8L USM II lens", 24, 2.8, 0.6, canon},
+        {"FUJIFILM", "XF23mmF2 R WR", 23, 2, 0.8, fuji},
+        {"", "Fujifilm XF23mm F2 R WR", 23, 2, 0.8, fuji},
+        {"NIKON CORPORATION", "NIKKOR Z 50mm f/1.8 S", 50, 1.8, 0.8, nikkor},
+        {"NIKON CORPORATION", "Z 50mm f/1.8 S for Nikon Z", 50, 1.8, 0.6, nikkor},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        if (ask(store, cases[i].maker, "", cases[i].lens, cases[i].focal, cases[i].aperture) != LENSPROF_OK)
+            fail_msg("%s: %s", cases[i].lens, how.reason);
+        assert_int_equal(how.id[0], cases[i].id);
+        assert_close(how.name_score, cases[i].score, 0.0);
+        assert_int_equal(strstr(how.reason, "words") != NULL, cases[i].score < 0.7);
+    }
+    assert_int_equal(ask(store, "Canon", "", "EF USM II L 24-105mm f/2.8", 24, 2.8), LENSPROF_ERROR_NOT_FOUND);
+    assert_int_equal(ask(store, "Canon", "", "EF USM II L 24-70mm f/4", 24, 2.8), LENSPROF_ERROR_NOT_FOUND);
+    assert_int_equal(ask(store, "Canon", "", "EF USM L 24-70mm f/2.8", 24, 2.8), LENSPROF_ERROR_NOT_FOUND);
+    lensprof_store_close(store);
+}
+
+static void test_fixed_lenses(void **state)
+{
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    const int64_t phone = put(store, "Apple", "iPhone 7", "", 4.2, 1.8);
+    put(store, "Canon", "PowerShot G7", "Canon PowerShot G7 & compatibles", 7.4, 2.8);
+    put(store, "Canon", "EOS 5D", "Canon EF 50mm", 50, 2);
+    put(store, "Canon", "EOS 5D", "Canon EF 85mm", 85, 2);
+    assert_ok(ask(store, "Apple", "iphone 7", "", 4.25, 1.8));
+    assert_int_equal(how.id[0], phone);
+    assert_int_equal(how.exact, 1);
+    assert_close(how.name_score, 1.0, 0.0);
+    assert_non_null(strstr(how.reason, "rounded"));
+    assert_ok(ask(store, "", "Apple iPhone 7", " ", 4.3, 1.8));
+    assert_close(how.name_score, 0.8, 0.0);
+    assert_ok(ask(store, "", "iPhone 7", "", 4.2, 1.8));
+    assert_string_equal(how.reason, "");
+    assert_ok(ask(store, "", "iPhone 7", "", 4.25, 2.0)); /* predicted, from the rounded one */
+    assert_int_equal(how.exact, 0);
+    assert_int_equal(ask(store, "", "iPhone 7", "", 6.0, 1.8), LENSPROF_ERROR_NOT_FOUND);
+    assert_int_equal(ask(store, "", "iPhone 7 Plus", "", 4.2, 1.8), LENSPROF_ERROR_NOT_FOUND);
+    assert_non_null(strstr(how.reason, "no profile of this camera"));
+    assert_ok(ask(store, "Canon", "PowerShot G7", "", 7.5, 2.8)); /* its only lens */
+    assert_int_equal(how.exact, 1);
+    assert_int_equal(ask(store, "Canon", "EOS 5D", "", 50, 2), LENSPROF_ERROR_NOT_FOUND);
+    assert_non_null(strstr(how.reason, "several lenses; give the lens"));
+    assert_ok(ask(store, "Canon", "EOS 5D", "Canon EF 50mm", 51, 2)); /* a lens of its own name: 51 mm are 51 mm */
+    assert_int_equal(how.exact, 0);
+    assert_int_equal(ask(store, "Canon", "", "", 50, 2), LENSPROF_ERROR_NOT_FOUND);
+    lensprof_store_close(store);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_scores),
+        cmocka_unit_test(test_words),
+        store_test(test_lenses_found_by_other_names),
+        store_test(test_fixed_lenses),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
