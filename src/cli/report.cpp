@@ -48,20 +48,6 @@ Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
 
 namespace {
 
-/* Rows of every channel; null where there is no grid. */
-Json gain_grid_json(const lensprof_gain_grid &grid) {
-    if (!grid.columns) return Json();
-    Json channels = Json::array();
-    const float *node = grid.attenuation;
-    for (uint32_t c = 0; c < grid.channels; c++) {
-        Json rows = Json::array();
-        for (uint32_t j = 0; j < grid.rows; j++, node += grid.columns)
-            rows.push_back(std::vector<float>(node, node + grid.columns));
-        channels.push_back(rows);
-    }
-    return {{"columns", grid.columns}, {"rows", grid.rows}, {"attenuation", channels}};
-}
-
 void print_gain_grid(const lensprof_gain_grid &grid, std::ostream &out) {
     if (!grid.columns) return;
     const float *end = grid.attenuation + grid.channels * grid.rows * grid.columns;
@@ -326,15 +312,16 @@ Json provenance_json(const lensprof_provenance &p) {
 }
 
 Json profile_json(int64_t id, const lensprof_profile &profile) {
-    Json json;
-    json["schema"] = 1;
-    json["id"] = id ? Json(id) : Json();
-    json["key"] = key_json(profile.key);
-    json["vignetting"] = vignetting_json(profile.vignetting, profile.vignettings);
-    json["gain_grid"] = gain_grid_json(profile.grid);
-    json["response"] = response_json(profile.response, profile.responses);
-    json["covariance"] = covariance_json(profile.covariance, profile.covariance_size);
-    json["provenance"] = provenance_json(profile.provenance);
+    const lensprof_profile *const pointer = &profile;
+    lensprof_error error{};
+    size_t bytes = 0;
+    lensprof_status status = lensprof_json_write(&pointer, 1, nullptr, 0, &bytes, &error);
+    std::string text(bytes, '\0');
+    if (status == LENSPROF_ERROR_CAPACITY)
+        status = lensprof_json_write(&pointer, 1, text.data(), bytes, &bytes, &error);
+    check(status, "profile as JSON", &error);
+    Json json = Json::parse(text);
+    if (id) json["id"] = id;
     return json;
 }
 

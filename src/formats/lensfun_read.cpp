@@ -9,7 +9,7 @@
 
 #include <lensprof/formats.h>
 
-#include "falloff_doubt.hpp"
+#include "import.hpp"
 #include "lensfun.hpp"
 #include "radius.hpp"
 #include "text.hpp"
@@ -24,18 +24,6 @@ struct Camera {
     std::string maker, model;
     uint32_t count = 0;  // cameras with this mount
 };
-
-// Blanks and line ends as one blank, none at the ends.
-std::string one_line(std::string_view text) {
-    std::string line;
-    for (char c : text) {
-        const bool blank = c == ' ' || (c >= '\t' && c <= '\r');
-        if (!blank) line += c;
-        else if (!line.empty() && line.back() != ' ') line += ' ';
-    }
-    if (!line.empty() && line.back() == ' ') line.pop_back();
-    return line;
-}
 
 // Text of the child with this name: that without a language, else the English one, else the first.
 std::string child_text(const pugi::xml_node &parent, const char *name) {
@@ -59,9 +47,9 @@ bool begins_with(const std::string &text, const std::string &prefix) {
 class LensfunReader {
 public:
     LensfunReader(std::string_view text, const char *source)
-        : xml_(text, "lensdatabase"), profile_(new lensprof_profile) {
+        : xml_(text, {"lensdatabase"}), profile_(new lensprof_profile) {
         lensprof_profile_init(profile_.get());
-        fill_provenance(source ? source : "");
+        set_import_provenance(*profile_, source, kLicence);
         check_version();
         for (pugi::xml_node camera : xml_.root().children("camera")) add_camera(camera);
     }
@@ -78,7 +66,6 @@ private:
 
     void check_version() const;
     void add_camera(const pugi::xml_node &camera);
-    void fill_provenance(const std::string &source);
     void check_text(const pugi::xml_node &node, const std::string &text, size_t capacity) const;
     double number(const pugi::xml_node &node, std::string_view text, const char *what, double low, double high) const;
     double attribute(const pugi::xml_node &node, const char *name, double low, double high) const;
@@ -113,25 +100,8 @@ void LensfunReader::add_camera(const pugi::xml_node &camera) {
     entry.model = child_text(camera, "model");
 }
 
-void LensfunReader::fill_provenance(const std::string &source) {
-    lensprof_provenance &provenance = profile_->provenance;
-    put_text(provenance.method, sizeof provenance.method, "import");
-    put_text(provenance.software, sizeof provenance.software, std::string("lensprof ") + lensprof_version());
-    char shown[sizeof provenance.source - 40];  // leaves room for the licence
-    put_text(shown, sizeof shown, source);
-    for (char &c : shown)
-        if ((c > 0 && c < ' ') || c == 127) c = '?';
-    const std::string name = find_not_utf8(shown) < std::string_view(shown).size() ? "" : shown;
-    put_text(provenance.source, sizeof provenance.source, name.empty() ? kLicence : name + "; " + kLicence);
-}
-
 void LensfunReader::check_text(const pugi::xml_node &node, const std::string &text, size_t capacity) const {
-    if (text.size() >= capacity)
-        fail(node, quoted(text) + " is longer than " + std::to_string(capacity - 1) + " bytes; shorten it");
-    if (find_not_utf8(text) < text.size())  // by a character reference
-        fail(node, quoted(text) + " has characters that there are not; take them out");
-    for (char c : text)
-        if ((c > 0 && c < ' ') || c == 127) fail(node, quoted(text) + " has control characters; take them out");
+    xml_.check_key_text(node, label_, text, capacity);
 }
 
 // The text as a number of (low, high]; low itself only where it is negative.
@@ -270,12 +240,7 @@ lensprof_status lensprof_lensfun_read(const char *text, size_t bytes, const char
     const lensprof_status status = at_boundary(error, [&] {
         LensfunReader reader(std::string_view(bytes ? text : "", bytes), source);
         reader.walk([](lensprof_profile &) { return LENSPROF_OK; });  // all entries are checked first
-        visited = reader.walk([&](lensprof_profile &profile) {
-            const FalloffDoubt doubt = find_doubt(profile.vignetting[0]);
-            put_text(profile.provenance.doubt, sizeof profile.provenance.doubt, doubt.text);
-            const lensprof_import_entry entry = {&profile, doubt.usable, 0};
-            return visit(user, &entry);
-        });
+        visited = reader.walk([&](lensprof_profile &profile) { return visit_entry(profile, "", visit, user); });
     });
     return status == LENSPROF_OK ? visited : status;
 }

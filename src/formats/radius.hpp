@@ -25,4 +25,10 @@ inline double half_short_side(double aspect_ratio) {
     return 1.0 / std::hypot(aspect_ratio, 1.0);
 }
 
+// From the centre of a falloff, in half diagonals from that of the frame, to the frame's farthest corner.
+inline double farthest_corner(const double center[2], double width, double height) {
+    const double rho = std::hypot(width, height) / 2.0;
+    return std::hypot(width / 2.0 / rho + std::fabs(center[0]), height / 2.0 / rho + std::fabs(center[1]));
+}
+
 }  // namespace lensprof

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include "radius.hpp"
 #include "text.hpp"
 
 namespace lensprof {
@@ -221,23 +222,26 @@ double worst_error(const FalloffMap &map, const MapFit &fit, const lensprof_prof
 
 }  // namespace
 
-RadialRefit refit_radial(const std::function<double(double)> &attenuation) {
-    const double middle = attenuation(0.0);
-    Eigen::Matrix<double, kSteps + 1, 3> powers;
-    Eigen::Matrix<double, kSteps + 1, 1> rest;
-    std::array<double, kSteps + 1> value{};
+EvenRefit refit_even(const std::function<double(double)> &target, uint32_t count) {
+    const double middle = target(0.0);
+    Eigen::MatrixXd powers(kSteps + 1, count);
+    Eigen::VectorXd rest(kSteps + 1);
     for (int i = 0; i <= kSteps; i++) {
-        const double r2 = double(i) / kSteps;
-        value[i] = attenuation(r2) / middle;
-        if (!std::isfinite(value[i]))
+        const double t = double(i) / kSteps, value = target(t) / middle;
+        if (!std::isfinite(value))
             throw FormatFailure{LENSPROF_ERROR_NOT_FINITE, "a falloff that is not finite; correct it"};
-        if (!(value[i] > 0.0)) fail("a falloff that is not above 0; correct it");
-        powers.row(i) << r2 / value[i], r2 * r2 / value[i], r2 * r2 * r2 / value[i];
-        rest[i] = 1.0 - 1.0 / value[i];
+        if (!(value > 0.0)) fail("a falloff that is not above 0; correct it");
+        double power = t / value;
+        for (uint32_t n = 0; n < count; n++, power *= t) powers(i, n) = power;
+        rest[i] = 1.0 - 1.0 / value;
     }
-    const Eigen::Vector3d k = powers.colPivHouseholderQr().solve(rest);
-    RadialRefit refit{{k[0], k[1], k[2]}, (powers * k - rest).cwiseAbs().maxCoeff()};
-    return refit;
+    const Eigen::VectorXd terms = powers.colPivHouseholderQr().solve(rest);
+    return {std::vector<double>(terms.data(), terms.data() + count), (powers * terms - rest).cwiseAbs().maxCoeff()};
+}
+
+RadialRefit refit_radial(const std::function<double(double)> &attenuation, double reach) {
+    const EvenRefit refit = refit_even([&](double t) { return attenuation(t * reach * reach); }, 3);
+    return {in_half_diagonals({refit.terms[0], refit.terms[1], refit.terms[2]}, reach), refit.worst};
 }
 
 void place_as_cells(FalloffMap &map) {

@@ -11,13 +11,21 @@
 
 namespace lensprof {
 
-// A radial attenuation, r^2 in half diagonals, sampled evenly in r^2 over 0..1, that is evenly over the area. The
-// attenuation in the centre is taken as 1. Throws NOT_FINITE or VIGNETTING for what is not finite, or not above 0, there.
+// 1 + terms[0] t + terms[1] t^2 + ... for a target sampled evenly in t over 0..1, target(0) taken as 1. Throws NOT_FINITE
+// or VIGNETTING for what is not finite, or not above 0, there.
+struct EvenRefit {
+    std::vector<double> terms;
+    double worst;  // largest |polynomial / target - 1|
+};
+EvenRefit refit_even(const std::function<double(double t)> &target, uint32_t count);
+
+// A radial attenuation, r^2 in half diagonals, sampled evenly in r^2, that is evenly over the area, up to r = `reach`
+// half diagonals. The attenuation in the centre is taken as 1. Throws as refit_even.
 struct RadialRefit {
     std::array<double, 3> k;
     double worst;  // largest |M / attenuation - 1|
 };
-RadialRefit refit_radial(const std::function<double(double r2)> &attenuation);
+RadialRefit refit_radial(const std::function<double(double r2)> &attenuation, double reach = 1.0);
 
 // Attenuations at evenly spaced places of a frame.
 struct FalloffMap {

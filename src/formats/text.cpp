@@ -86,6 +86,13 @@ void put_text(char *field, size_t capacity, std::string_view text) {
     std::memcpy(field, text.data(), length);
 }
 
+void put_name(char *field, size_t capacity, const char *name) {
+    put_text(field, capacity, name ? name : "");
+    for (char *c = field; *c; c++)
+        if ((*c > 0 && *c < ' ') || *c == 127) *c = '?';
+    if (find_not_utf8(field) < std::string_view(field).size()) std::memset(field, 0, capacity);
+}
+
 std::string number_text(double value) {
     char buffer[32];
     auto result = std::to_chars(buffer, buffer + sizeof buffer, value == 0 ? 0.0 : value);  // no "-0"

@@ -81,7 +81,22 @@ void put_text(char *field, size_t capacity, std::string_view text);
 // Shortest decimal form that reads back as the same number.
 std::string number_text(double value);
 
+// The same for a name that a caller gives, a file's say: control characters as '?', nothing where it is not UTF-8.
+void put_name(char *field, size_t capacity, const char *name);
+
 // Copies to a caller's buffer; CAPACITY when it is too small. A terminator is added where there is room for one.
 lensprof_status copy_text(const std::string &source, char *text, size_t capacity, size_t *needed) noexcept;
+
+// Runs `make`, which returns a whole file, and copies it to the caller's buffer as copy_text does.
+template <typename Make>
+lensprof_status write_at_boundary(char *text, size_t capacity, size_t *needed, lensprof_error *error,
+                                  Make make) noexcept {
+    std::string all;
+    lensprof_status status = at_boundary(error, [&] { all = make(); });
+    if (status != LENSPROF_OK) return status;
+    status = copy_text(all, text, capacity, needed);
+    if (status != LENSPROF_OK) set_error(error, "the text is longer than the buffer; call again with the size needed");
+    return status;
+}
 
 }  // namespace lensprof

@@ -89,6 +89,127 @@ static lensprof_status write_lensfun(world *w)
     return status;
 }
 
+static lensprof_status read_json(world *w)
+{
+    (void)w;
+    const char text[] = "{\"profiles\":[{\"key\":{\"lens\":\"A lens with a rather long name\",\"processing\":\"raw\"},"
+                        "\"vignetting\":{\"k\":[[-0.3,0,0]]},\"response\":{\"kind\":\"emor\",\"emor\":[0.1]},\"a\":[[[]]]}]}";
+    int entries = 0;
+    lensprof_status status = lensprof_json_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
+    assert_int_equal(entries, status == LENSPROF_OK);
+    return status;
+}
+
+static lensprof_status read_wrong_json(world *w)
+{
+    (void)w;
+    int entries = 0;
+    const char text[] = "{\"key\":{\"processing\":\"a word that is too long for the small string of any library\"}}";
+    lensprof_status status = lensprof_json_read(text, sizeof text - 1, NULL, count_entry, &entries, NULL);
+    return status == LENSPROF_ERROR_SYNTAX ? LENSPROF_OK : status;
+}
+
+static lensprof_status write_json(world *w)
+{
+    const lensprof_profile *const profiles[2] = {w->profile, w->profile};
+    static char text[100000];
+    strcpy(text, "untouched");
+    size_t needed = 0;
+    lensprof_status status = lensprof_json_write(profiles, 2, text, sizeof text, &needed, NULL);
+    assert_true((strcmp(text, "untouched") == 0) == (status != LENSPROF_OK));
+    return status;
+}
+
+static lensprof_status read_pcalib(world *w)
+{
+    w->response.kind = 99;
+    lensprof_status status = lensprof_pcalib_read("0 1 2\n4 8", 9, &w->response, NULL);
+    assert_true((w->response.kind == 99) == (status != LENSPROF_OK));
+    lensprof_response_set_linear(&w->response);
+    return status;
+}
+
+static lensprof_status read_curves(world *w)
+{
+    const char text[] = "# name: a_name_that_is_far_too_long_for_a_small_string\n0 0 0\n0 1 1\n";
+    uint32_t count = 99;
+    static lensprof_response responses[3];
+    (void)w;
+    lensprof_status status = lensprof_curves_read(text, sizeof text - 1, LENSPROF_CURVE_INVERSE, responses, &count, NULL);
+    assert_true((count == 99) == (status != LENSPROF_OK));
+    return status;
+}
+
+/* Of all writers of tables. */
+static lensprof_status write_tables(world *w)
+{
+    static char text[20000];
+    const lensprof_frame_time frame = {"00001", 1.5, 2.5};
+    lensprof_status status = lensprof_pcalib_write(&w->response, text, sizeof text, NULL, NULL);
+    if (status != LENSPROF_OK) return status;
+    status = lensprof_curves_write(&w->response, 1, LENSPROF_CURVE_LOG, 256, text, sizeof text, NULL, NULL);
+    if (status != LENSPROF_OK) return status;
+    return lensprof_times_write(&frame, 1, text, sizeof text, NULL, NULL);
+}
+
+static lensprof_status read_lcp(world *w)
+{
+    (void)w;
+    const char text[] = "<rdf:RDF><x:CameraProfiles><rdf:Seq><rdf:li Make=\"A long name of a maker\" FocalLength=\"9\" "
+                        "ImageWidth=\"60\" ImageLength=\"40\"><PerspectiveModel><VignetteModel FocalLengthX=\"1\" "
+                        "FocalLengthY=\"1.1\" VignetteModelParam1=\"-0.3\"/></PerspectiveModel></rdf:li></rdf:Seq>"
+                        "</x:CameraProfiles></rdf:RDF>";
+    int entries = 0;
+    lensprof_status status = lensprof_lcp_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
+    assert_int_equal(entries, status == LENSPROF_OK);
+    return status;
+}
+
+static lensprof_status write_lcp(world *w)
+{
+    const lensprof_profile *const profiles[1] = {w->profile};
+    char text[4000] = "untouched";
+    size_t needed = 0;
+    lensprof_status status = lensprof_lcp_write(profiles, 1, 0, 0, text, sizeof text, &needed, NULL);
+    assert_true((strcmp(text, "untouched") == 0) == (status != LENSPROF_OK));
+    return status;
+}
+
+static lensprof_status read_drone_xmp(world *w)
+{
+    (void)w;
+    const char text[] = "<rdf:RDF><rdf:Description tiff:Make=\"A long name of a maker\" drone-dji:VignettingData=\"0.001, "
+                        "0.00001, 0.000001\"/></rdf:RDF>";
+    int entries = 0;
+    lensprof_status status = lensprof_drone_xmp_read(text, sizeof text - 1, 60, 40, "a file", count_entry, &entries, NULL);
+    assert_int_equal(entries, status == LENSPROF_OK);
+    return status;
+}
+
+static lensprof_status read_opcodes(world *w)
+{
+    (void)w;
+    /* a FixVignetteRadial of gain 1 about (0, 0), and a GainMap of one point, gain 1.5 */
+    static const uint8_t list[4 + 16 + 56 + 16 + 76 + 4] = {
+        [3] = 2, [7] = 3, [19] = 56, [4 + 72 + 3] = 9, [4 + 72 + 15] = 80, [103] = 12, [107] = 18, [115] = 1, [119] = 1,
+        [123] = 1, [127] = 1, [131] = 1, [167] = 1, [168] = 0x3F, [169] = 0xC0};
+    int entries = 0;
+    lensprof_status status = lensprof_dng_opcodes_read(list, sizeof list, 18, 12, LENSPROF_LAYOUT_RGB, "a file",
+                                                       count_entry, &entries, NULL);
+    assert_int_equal(entries, status == LENSPROF_OK);
+    return status;
+}
+
+static lensprof_status write_opcodes(world *w)
+{
+    uint8_t bytes[16384] = {7};
+    size_t needed = 0;
+    lensprof_status status = lensprof_dng_opcodes_write(w->profile, 18, 12, LENSPROF_LAYOUT_RGB, LENSPROF_DNG_GAIN_MAP,
+                                                        bytes, sizeof bytes, &needed, NULL, NULL);
+    assert_true((bytes[0] == 7) == (status != LENSPROF_OK));
+    return status;
+}
+
 static lensprof_status read_points(world *w)
 {
     (void)w;
@@ -136,6 +257,17 @@ static void test_out_of_memory(void **state)
     fail_each(w, write_points, 1);
     fail_each(w, read_lensfun, 5);
     fail_each(w, write_lensfun, 5);
+    fail_each(w, read_lcp, 5);
+    fail_each(w, write_lcp, 5);
+    fail_each(w, read_drone_xmp, 5);
+    fail_each(w, read_opcodes, 5);
+    fail_each(w, write_opcodes, 5);
+    fail_each(w, read_json, 5);
+    fail_each(w, read_wrong_json, 5);
+    fail_each(w, write_json, 5);
+    fail_each(w, read_pcalib, 2);
+    fail_each(w, read_curves, 5);
+    fail_each(w, write_tables, 10);
     fail_each(w, read_points, 0); /* needs no memory at all */
     lensprof_pto_destroy(w->pto);
     free(w->profile);

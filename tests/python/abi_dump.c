@@ -417,6 +417,18 @@ static void print_formats_structs(void)
     FIELD(lensprof_import_entry, usable);
     FIELD(lensprof_import_entry, reserved);
     end_struct();
+    BEGIN(lensprof_frame_time);
+    FIELD(lensprof_frame_time, id);
+    FIELD(lensprof_frame_time, time_s);
+    FIELD(lensprof_frame_time, exposure_ms);
+    end_struct();
+    BEGIN(lensprof_map);
+    FIELD(lensprof_map, columns);
+    FIELD(lensprof_map, rows);
+    FIELD(lensprof_map, channels);
+    FIELD(lensprof_map, sense);
+    FIELD(lensprof_map, values);
+    end_struct();
     BEGIN(lensprof_pto_image);
     FIELD(lensprof_pto_image, camera);
     FIELD(lensprof_pto_image, exposure);
@@ -530,6 +542,8 @@ static void print_enumerations(void)
     VALUE(LENSPROF_PROCESSING_JPEG);
     VALUE(LENSPROF_PROCESSING_CORRECTED);
     VALUE(LENSPROF_PACK_COVARIANCE);
+    VALUE(LENSPROF_DNG_RADIAL);
+    VALUE(LENSPROF_DNG_GAIN_MAP);
     VALUE(LENSPROF_SAMPLING_BALANCED);
     VALUE(LENSPROF_SAMPLING_PAPER);
     VALUE(LENSPROF_SAMPLING_BRACKET);
@@ -564,6 +578,12 @@ static void print_enumerations(void)
     VALUE(LENSPROF_STORE_CREATE);
     VALUE(LENSPROF_DISTANCE_WEAKEST);
     VALUE(LENSPROF_DISTANCE_FARTHEST);
+    VALUE(LENSPROF_MAP_ATTENUATION);
+    VALUE(LENSPROF_MAP_GAIN);
+    VALUE(LENSPROF_CURVE_INVERSE);
+    VALUE(LENSPROF_CURVE_LOG);
+    VALUE(LENSPROF_CURVE_LOG10);
+    VALUE(LENSPROF_CURVE_FORWARD);
     VALUE(LENSPROF_LOOKUP_ROWS);
     VALUE(LENSPROF_STATS_GROUPS);
 }

@@ -10,8 +10,8 @@ import unittest
 from lensprof import _abi, _library
 
 PACKAGE = pathlib.Path(_abi.__file__).parent
-SCALARS = {"double": ctypes.c_double, "int": ctypes.c_int, "uint32_t": ctypes.c_uint32, "int64_t": ctypes.c_int64,
-           "size_t": ctypes.c_size_t, "ptrdiff_t": ctypes.c_ssize_t, "lensprof_status": ctypes.c_int, "void": None}
+SCALARS = {"double": ctypes.c_double, "float": ctypes.c_float, "int": ctypes.c_int, "uint32_t": ctypes.c_uint32,
+           "int64_t": ctypes.c_int64, "size_t": ctypes.c_size_t, "ptrdiff_t": ctypes.c_ssize_t, "lensprof_status": ctypes.c_int, "void": None}
 POINTERS = {"char": ctypes.c_char_p, "void": ctypes.c_void_p, "uint8_t": ctypes.POINTER(ctypes.c_uint8)}
 
 

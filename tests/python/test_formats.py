@@ -226,5 +226,154 @@ class Lensfun(unittest.TestCase):
             lp.lensfun_read(LENSFUN, "a\0b")
 
 
+class Json(unittest.TestCase):
+    def test_round_trip(self):
+        profile = lp.Profile()
+        profile.key = lp.ProfileKey(lens="L \u00e9", focal_mm=1 / 3, distance_m=math.inf, unit="7")
+        profile.vignetting = lp.Vignetting(k=(-0.1 - 0.2, 0, 0), center=(1 / 7, 0))
+        profile.response = lp.Response.from_emor([0.1, -1 / 3])
+        text = lp.json_write([profile])
+        self.assertEqual(bytes(lp.json_read(text)[0]), bytes(profile))
+        both = lp.json_read(lp.json_write([profile, lp.Profile()]))
+        self.assertEqual([p.key.lens for p in both], ["L \u00e9", ""])
+        self.assertEqual(lp.json_read(lp.json_write([])), [])
+
+    def test_refused(self):
+        text = lp.json_write([lp.Profile()])
+        with refused(self, lp.Status.ERROR_SYNTAX) as caught:
+            lp.json_read(text.replace('"center"', '"centre"').replace('"k"', '"K"'))
+        self.assertIn('vignetting has no "k"', caught.exception.text)
+        with self.assertRaises(TypeError):
+            lp.json_write([lp.Vignetting()])
+
+
+class Tables(unittest.TestCase):
+    def test_pcalib(self):
+        text = lp.pcalib_write(lp.Response.from_gamma(2.2))
+        values = np.array(text.split(), dtype=np.float32)
+        self.assertEqual(len(values), 256)
+        self.assertTrue((np.diff(values) > 0).all())
+        grey = np.arange(256) / 255
+        np.testing.assert_allclose(lp.pcalib_read(text).invert(grey), grey**2.2, atol=3e-4)
+        with refused(self, lp.Status.ERROR_RESPONSE) as caught:
+            lp.pcalib_read("0 1 1 2")
+        self.assertIn("value 2 (1)", caught.exception.text)
+
+    def test_times(self):
+        frames = lp.times_read("00001 12.5 0.25\n00002 13.5\n")
+        self.assertEqual(frames, [lp.FrameTime(id="00001", time_s=12.5, exposure_ms=0.25),
+                                  lp.FrameTime(id="00002", time_s=13.5, exposure_ms=lp.UNKNOWN)])
+        self.assertEqual(lp.times_write(frames), "00001 12.5 0.25\n00002 13.5\n")
+        with refused(self, lp.Status.ERROR_SYNTAX):
+            lp.times_read("1\n")
+
+    def test_curves(self):
+        given = [lp.Response.from_gamma(g) for g in (1.8, 2.0, 2.2)]
+        for kind in lp.CurveKind:
+            again = lp.curves_read(lp.curves_write(given, kind, rows=4096), kind)
+            for a, b in zip(given, again):
+                np.testing.assert_allclose(a.table, b.table, atol=3e-4)
+        self.assertEqual(len(lp.curves_read(lp.curves_write(given[0]))), 1)
+        with refused(self, lp.Status.ERROR_RESPONSE) as caught:
+            lp.curves_read("0\n3\n2\n")
+        self.assertIn("line 3", caught.exception.text)
+
+
+class Maps(unittest.TestCase):
+    def test_round_trip(self):
+        profile = lp.Profile()
+        profile.key = lp.ProfileKey(lens="L")
+        profile.vignetting = [lp.Vignetting(k=(k, 0.1, 0), center=(0.05, 0)) for k in (-0.5, -0.4, -0.3)]
+        for sense in lp.MapSense:
+            values = lp.map_write(profile, (640, 480), (64, 48), 3, sense)
+            self.assertEqual(values.shape, (48, 64, 3))
+            found, worst = lp.map_read(values, sense, (640, 480), profile)
+            self.assertLess(worst, 1e-6)
+            self.assertEqual(found.key.lens, "L")
+            np.testing.assert_allclose([v.k for v in found.vignetting], [v.k for v in profile.vignetting], atol=1e-4)
+        grey = lp.map_write(profile, (64, 48))
+        self.assertEqual((grey.shape, grey.dtype, grey.max()), ((48, 64), np.float32, 1))
+        self.assertEqual(len(lp.map_read(grey)[0].vignetting), 1)
+        with refused(self, lp.Status.ERROR_NOT_FINITE):
+            lp.map_read(np.full((9, 9), math.nan))
+        with self.assertRaises(ValueError):
+            lp.map_read(np.ones(9))
+
+    def test_radical(self):
+        profile = lp.Profile()
+        profile.vignetting = [lp.Vignetting(k=(k, 0.1, 0), center=(0.05, 0)) for k in (-0.5, -0.4, -0.3)]
+        found, worst = lp.radical_vignetting_read(lp.radical_vignetting_write(profile, 640, 480))
+        self.assertEqual(worst, 0)
+        np.testing.assert_allclose([v.k for v in found.vignetting], [v.k for v in profile.vignetting], rtol=1e-12)
+        given = [lp.Response.from_gamma(g) for g in (1.8, 2.0, 2.2)]
+        for a, b in zip(given, lp.radical_response_read(lp.radical_response_write(given))):
+            np.testing.assert_allclose(a.table, b.table, atol=1e-3)
+        for read in (lp.radical_response_read, lp.radical_vignetting_read):
+            with refused(self, lp.Status.ERROR_SYNTAX):
+                read(b"")
+
+
+class DngOpcodes(unittest.TestCase):
+    def test_round_trip(self):
+        profile = lp.Profile()
+        profile.vignetting = lp.Vignetting(k=(-0.4, 0.1, -0.05), center=(0.05, 0))
+        for form in lp.DngForm:
+            data, worst = lp.dng_opcodes_write(profile, 600, 400, lp.Layout.RGGB, form)
+            self.assertEqual(data[:8], bytes([0, 0, 0, 1, 0, 0, 0, 9 if form == lp.DngForm.GAIN_MAP else 3]))
+            self.assertLess(worst, 2e-3)
+            again, usable = lp.dng_opcodes_read(data, 600, 400, lp.Layout.RGGB, "a.dng")
+            self.assertTrue(usable)
+            np.testing.assert_allclose(again.vignetting[0].k, profile.vignetting[0].k, atol=0.03)
+            self.assertEqual(again.provenance.source, "a.dng; DNG opcodes")
+
+    def test_refused(self):
+        with refused(self, lp.Status.ERROR_SYNTAX) as caught:
+            lp.dng_opcodes_read(b"\0\0\0\1", 600, 400)
+        self.assertIn("fewer bytes", caught.exception.text)
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            lp.dng_opcodes_write(lp.Profile(), 600, 400, lp.Layout.RGBA)
+        with self.assertRaises(TypeError):
+            lp.dng_opcodes_write(lp.Vignetting(), 600, 400)
+
+
+class Lcp(unittest.TestCase):
+    def test_round_trip(self):
+        profile = lp.Profile()
+        profile.key = lp.ProfileKey(camera_maker="Acme", camera_model="One", lens="A <lens>", crop_factor=1.5, focal_mm=35,
+                                    aperture=1.4, distance_m=math.inf, processing=lp.Processing.RAW)
+        profile.vignetting = lp.Vignetting(k=(-0.3, 0.1, 0), center=(0.05, 0))
+        for size in ((), (6000, 4000)):
+            text = lp.lcp_write([profile], *size)
+            self.assertIn("<stCamera:Lens>A &lt;lens&gt;</stCamera:Lens>", text)
+            (again, usable), = lp.lcp_read(text, "my.lcp")
+            self.assertTrue(usable)
+            self.assertEqual(again.key, profile.key)
+            np.testing.assert_allclose(again.vignetting[0].k, profile.vignetting[0].k, rtol=1e-12)
+            self.assertEqual(again.provenance.source, "my.lcp; Adobe lens profile")
+
+    def test_refused(self):
+        with refused(self, lp.Status.ERROR_SYNTAX):
+            lp.lcp_read("<rdf:RDF/>")
+        with refused(self, lp.Status.ERROR_ARGUMENT) as caught:
+            lp.lcp_write([lp.Profile()])
+        self.assertIn("profile 0: its lens is unknown", caught.exception.text)
+
+
+class DroneXmp(unittest.TestCase):
+    PACKET = """<rdf:RDF><rdf:Description tiff:Make="MicaSense"><Camera:VignettingPolynomial><rdf:Seq>%s</rdf:Seq>
+</Camera:VignettingPolynomial></rdf:Description></rdf:RDF>"""
+
+    def test_read(self):
+        text = self.PACKET % "<rdf:li>0</rdf:li><rdf:li>-2e-6</rdf:li>"  # 1 - 2e-6 r^2, 1 - 0.5 in the corner
+        profile, usable = lp.drone_xmp_read(text, 800, 600, "a.tif")
+        self.assertTrue(usable)
+        np.testing.assert_allclose(profile.vignetting[0].k, (-0.5, 0, 0), atol=1e-9)
+        self.assertEqual(profile.key.camera_maker, "MicaSense")
+
+    def test_refused(self):
+        with refused(self, lp.Status.ERROR_NOT_FOUND):
+            lp.drone_xmp_read("<rdf:RDF/>", 800, 600)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -131,6 +131,12 @@ class Pack(IntFlag):
     COVARIANCE = 1
 
 
+class DngForm(IntEnum):
+    """Opcode of DNG that a falloff is written as: FixVignetteRadial or GainMap."""
+    RADIAL = 0
+    GAIN_MAP = 1
+
+
 class Sampling(IntEnum):
     """Balanced over image pairs, radius and grey level; or as in d'Angelo 2007, section 5.1."""
     BALANCED = 0
@@ -217,6 +223,20 @@ class DistanceRule(IntEnum):
     FARTHEST = 1
 
 
+class CurveKind(IntEnum):
+    """What a table of a response holds: grey value to irradiance, to a logarithm of it, or irradiance to grey value."""
+    INVERSE = 0
+    LOG = 1
+    LOG10 = 2
+    FORWARD = 3
+
+
+class MapSense(IntEnum):
+    """A picture is corrected by division by a map, or by multiplication."""
+    ATTENUATION = 0
+    GAIN = 1
+
+
 # Prefix of the names in C; a member's C name is prefix + name.
 ENUMS = {
     "LENSPROF_": Status,
@@ -229,6 +249,7 @@ ENUMS = {
     "LENSPROF_SATURATED_": Saturated,
     "LENSPROF_PROCESSING_": Processing,
     "LENSPROF_PACK_": Pack,
+    "LENSPROF_DNG_": DngForm,
     "LENSPROF_SAMPLING_": Sampling,
     "LENSPROF_FREE_": Free,
     "LENSPROF_METHOD_": Method,
@@ -240,6 +261,8 @@ ENUMS = {
     "LENSPROF_FLAT_GRID_": FlatGrid,
     "LENSPROF_STORE_": StoreMode,
     "LENSPROF_DISTANCE_": DistanceRule,
+    "LENSPROF_CURVE_": CurveKind,
+    "LENSPROF_MAP_": MapSense,
 }
 
 
@@ -428,6 +451,15 @@ class PtoImage(Structure):
                 ("blue_of", c_uint32), ("crop", c_int32 * 4), ("crop_circular", c_uint32), ("reserved", c_uint32)]
 
 
+class FrameTime(Structure):
+    _fields_ = [("id", c_char * 64), ("time_s", c_double), ("exposure_ms", c_double)]
+
+
+class Map(Structure):
+    _fields_ = [("columns", c_uint32), ("rows", c_uint32), ("channels", c_uint32), ("sense", c_uint32),
+                ("values", POINTER(c_float))]
+
+
 class Store(Structure):
     """Opaque."""
 
@@ -494,6 +526,8 @@ STRUCTS = {
     "lensprof_flat_spot": FlatSpot,
     "lensprof_flat_result": FlatResult,
     "lensprof_pto_image": PtoImage,
+    "lensprof_frame_time": FrameTime,
+    "lensprof_map": Map,
     "lensprof_store_row": StoreRow,
     "lensprof_store_fault": StoreFault,
     "lensprof_store_group": StoreGroup,
@@ -611,6 +645,32 @@ FUNCTIONS = {
     "lensprof_points_write": (_status, [_pairs, c_uint32, _camera, c_uint32, c_char_p, c_size_t, _size_out]),
     "lensprof_lensfun_read": (_status, [c_char_p, c_size_t, c_char_p, ImportVisitor, c_void_p, _error]),
     "lensprof_lensfun_write": (_status, [POINTER(_profile), c_uint32, c_char_p, c_size_t, _size_out, _error]),
+    "lensprof_json_write": (_status, [POINTER(_profile), c_uint32, c_char_p, c_size_t, _size_out, _error]),
+    "lensprof_json_read": (_status, [c_char_p, c_size_t, c_char_p, ImportVisitor, c_void_p, _error]),
+    "lensprof_pcalib_read": (_status, [c_char_p, c_size_t, _response, _error]),
+    "lensprof_pcalib_write": (_status, [_response, c_char_p, c_size_t, _size_out, _error]),
+    "lensprof_times_read": (_status, [c_char_p, c_size_t, POINTER(FrameTime), c_uint32, _u32_out, _error]),
+    "lensprof_times_write": (_status, [POINTER(FrameTime), c_uint32, c_char_p, c_size_t, _size_out, _error]),
+    "lensprof_curves_read": (_status, [c_char_p, c_size_t, c_uint32, _response, _u32_out, _error]),
+    "lensprof_curves_write": (_status, [_response, c_uint32, c_uint32, c_uint32, c_char_p, c_size_t, _size_out,
+                                        _error]),
+    "lensprof_map_read": (_status, [POINTER(Map), c_uint32, c_uint32, _profile, _doubles, _error]),
+    "lensprof_map_write": (_status, [_profile, c_uint32, c_uint32, c_uint32, c_uint32, c_uint32, c_uint32,
+                                     POINTER(c_float), _error]),
+    "lensprof_radical_response_read": (_status, [c_void_p, c_size_t, _response, _error]),
+    "lensprof_radical_response_write": (_status, [_response, c_uint32, c_void_p, c_size_t, _size_out, _error]),
+    "lensprof_radical_vignetting_read": (_status, [c_void_p, c_size_t, _profile, _doubles, _error]),
+    "lensprof_radical_vignetting_write": (_status, [_profile, c_uint32, c_uint32, c_void_p, c_size_t, _size_out,
+                                                    _error]),
+    "lensprof_dng_opcodes_read": (_status, [c_void_p, c_size_t, c_uint32, c_uint32, c_uint32, c_char_p, ImportVisitor,
+                                            c_void_p, _error]),
+    "lensprof_dng_opcodes_write": (_status, [_profile, c_uint32, c_uint32, c_uint32, c_uint32, c_void_p, c_size_t,
+                                             _size_out, _doubles, _error]),
+    "lensprof_lcp_read": (_status, [c_char_p, c_size_t, c_char_p, ImportVisitor, c_void_p, _error]),
+    "lensprof_lcp_write": (_status, [POINTER(_profile), c_uint32, c_uint32, c_uint32, c_char_p, c_size_t, _size_out,
+                                     _error]),
+    "lensprof_drone_xmp_read": (_status, [c_char_p, c_size_t, c_uint32, c_uint32, c_char_p, ImportVisitor, c_void_p,
+                                          _error]),
     # store.h
     "lensprof_store_open": (_status, [c_char_p, c_uint32, POINTER(_store), _error]),
     "lensprof_store_close": (None, [_store]),

@@ -1,15 +1,15 @@
-"""Other tools' files, from and to memory: Hugin projects and point files, Lensfun databases; see lensprof/formats.h."""
+"""Other tools' files, from and to memory; see lensprof/formats.h."""
 from __future__ import annotations
 
-from ctypes import POINTER, byref, c_size_t, c_uint32, cast, create_string_buffer
-from typing import Any, Callable, Iterable, Sequence, Union
+from ctypes import POINTER, byref, c_double, c_float, c_size_t, c_uint32, cast, create_string_buffer
+from typing import Any, Callable, Iterable, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import Free, Status
+from ._abi import CurveKind, DngForm, Free, Layout, MapSense, Status
 from ._library import Handle, check, lib
-from ._struct import Enumerated, Flag, Nested, Value, Vector, integer
+from ._struct import Enumerated, Flag, Nested, Text, Value, Vector, integer, one_or_three
 from .geometry import Camera
 from .model import Exposure, Response, Vignetting
 from .profile import Profile
@@ -19,14 +19,14 @@ def _bytes(text: Union[str, bytes]) -> bytes:
     return text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
 
 
-def _written(write: Callable[[Any, int, Any], int], what: str) -> bytes:
+def _written(write: Callable[[Any, int, Any], int], what: str, error: Optional[_abi.ErrorText] = None) -> bytes:
     """Asks for the size, then for the text."""
     needed = c_size_t()
     status = write(None, 0, byref(needed))
     if status != Status.ERROR_CAPACITY:
-        check(status, what)
+        check(status, what, error)
     buffer = create_string_buffer(needed.value)
-    check(write(buffer, needed.value, byref(needed)), what)
+    check(write(buffer, needed.value, byref(needed)), what, error)
     return buffer.raw
 
 
@@ -157,13 +157,9 @@ def points_write(pairs: np.ndarray, cameras: Sequence[Camera]) -> bytes:
                     "numbers finite")
 
 
-def lensfun_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profile, bool]]:
-    """The falloffs of a Lensfun database (.xml) as profiles of about 50 kB each, in the order of the file.
-
-    False stands beside those that are no falloff, which cannot be stored or applied; provenance.doubt says why, and may
-    warn of others. source: where the text is from, for provenance.source.
-    """
-    data, error, name = _bytes(text), _abi.ErrorText(), _bytes(source)
+def _imported(read: Callable[..., int], source: str, what: str) -> list[tuple[Profile, bool]]:
+    """Calls read(source, visitor, user, error) and gathers the entries."""
+    error, name = _abi.ErrorText(), _bytes(source)
     if b"\0" in name:
         raise ValueError(f"{source!r}: a source holds no zero bytes")
     found: list[tuple[Profile, bool]] = []
@@ -177,25 +173,231 @@ def lensfun_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profil
             raised.append(exception)
             return Status.ERROR_CANCELLED
 
-    status = lib.lensprof_lensfun_read(data, len(data), name, _abi.ImportVisitor(visit), None, byref(error))
+    status = read(name, _abi.ImportVisitor(visit), None, byref(error))
     if raised:
         raise raised[0]
-    check(status, "the database cannot be read", error)
+    check(status, what, error)
     return found
+
+
+def _database(write: Callable[..., int], profiles: Iterable[Profile], settings: tuple, what: str) -> str:
+    """Calls write(profiles, count, *settings, text, capacity, needed, error)."""
+    given, error = list(profiles), _abi.ErrorText()
+    if not all(isinstance(profile, Profile) for profile in given):
+        raise TypeError("profiles takes an iterable of Profile")
+    kind = POINTER(_abi.Profile)
+    pointers = (kind * len(given))(*(cast(byref(profile), kind) for profile in given))
+    return _written(lambda *buffer: write(pointers, len(given), *settings, *buffer, byref(error)), what, error).decode()
+
+
+def lensfun_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profile, bool]]:
+    """The falloffs of a Lensfun database (.xml) as profiles of about 50 kB each, in the order of the file.
+
+    False stands beside those that are no falloff, which cannot be stored or applied; provenance.doubt says why, and may
+    warn of others. source: where the text is from, for provenance.source.
+    """
+    data = _bytes(text)
+    return _imported(lambda *rest: lib.lensprof_lensfun_read(data, len(data), *rest), source,
+                     "the database cannot be read")
 
 
 def lensfun_write(profiles: Iterable[Profile]) -> str:
     """A Lensfun database (.xml) of the falloffs of profiles, whose lens, crop factor, focal length and aperture are
     known."""
-    given, error = list(profiles), _abi.ErrorText()
-    if not all(isinstance(profile, Profile) for profile in given):
-        raise TypeError("profiles takes an iterable of Profile")
-    kind, needed = POINTER(_abi.Profile), c_size_t()
-    pointers = (kind * len(given))(*(cast(byref(profile), kind) for profile in given))
-    status = lib.lensprof_lensfun_write(pointers, len(given), None, 0, byref(needed), byref(error))
-    if status != Status.ERROR_CAPACITY:
-        check(status, "the database cannot be written", error)
-    buffer = create_string_buffer(needed.value)
-    check(lib.lensprof_lensfun_write(pointers, len(given), buffer, needed.value, byref(needed), byref(error)),
-          "the database cannot be written", error)
-    return buffer.raw.decode()
+    return _database(lib.lensprof_lensfun_write, profiles, (), "the database cannot be written")
+
+
+def json_read(text: Union[str, bytes], source: str = "") -> list[Profile]:
+    """The profiles of what `lensprof profile show --json` prints, or json_write made.
+
+    source: where the text is from, for provenance.source where the text has none.
+    """
+    data = _bytes(text)
+    found = _imported(lambda *rest: lib.lensprof_json_read(data, len(data), *rest), source, "the profiles cannot be read")
+    return [profile for profile, _ in found]
+
+
+def json_write(profiles: Iterable[Profile]) -> str:
+    """Profiles as JSON (docs/json.md), from which json_read makes the same."""
+    return _database(lib.lensprof_json_write, profiles, (), "the profiles cannot be written")
+
+
+def pcalib_read(text: Union[str, bytes]) -> Response:
+    """The response of a pcalib.txt of TUM's tools, DSO and its kin: 256 (or 2 to 65536) increasing irradiances."""
+    data, response, error = _bytes(text), Response(), _abi.ErrorText()
+    check(lib.lensprof_pcalib_read(data, len(data), byref(response), byref(error)), "pcalib cannot be read", error)
+    return response
+
+
+def pcalib_write(response: Response) -> str:
+    """A pcalib.txt: 256 irradiances from 0 to 255, strictly increasing."""
+    error = _abi.ErrorText()
+    return _written(lambda *buffer: lib.lensprof_pcalib_write(byref(response), *buffer, byref(error)),
+                    "pcalib cannot be written", error).decode()
+
+
+class FrameTime(Value, _abi.FrameTime):
+    """A line of times.txt: id as written, time_s, exposure_ms (UNKNOWN where there is none)."""
+
+    id = Text()
+    time_s: float
+    exposure_ms: float
+
+
+def times_read(text: Union[str, bytes]) -> list[FrameTime]:
+    """The frames of a times.txt: name, time stamp and, if known, exposure time on each line."""
+    data, found, error = _bytes(text), c_uint32(), _abi.ErrorText()
+    check(lib.lensprof_times_read(data, len(data), None, 0, byref(found), byref(error)), "times cannot be read", error)
+    frames = (_abi.FrameTime * found.value)()
+    check(lib.lensprof_times_read(data, len(data), frames, len(frames), byref(found), byref(error)),
+          "times cannot be read", error)
+    return [FrameTime.from_buffer_copy(frame) for frame in frames]
+
+
+def times_write(frames: Iterable[FrameTime]) -> str:
+    """A times.txt of frames."""
+    given, error = list(frames), _abi.ErrorText()
+    array = (_abi.FrameTime * len(given))(*given)
+    return _written(lambda *buffer: lib.lensprof_times_write(array, len(given), *buffer, byref(error)),
+                    "times cannot be written", error).decode()
+
+
+def curves_read(text: Union[str, bytes], kind: CurveKind = CurveKind.INVERSE) -> list[Response]:
+    """One or three responses of a table of text (CSV, or .m of pfstools), of which nothing in it says what it holds."""
+    data, found, error = _bytes(text), c_uint32(), _abi.ErrorText()
+    responses = (_abi.Response * 3)()
+    check(lib.lensprof_curves_read(data, len(data), int(CurveKind(kind)), responses, byref(found), byref(error)),
+          "the table cannot be read", error)
+    return [Response.from_buffer_copy(responses[i]) for i in range(found.value)]
+
+
+def curves_write(responses: Union[Response, Iterable[Response]], kind: CurveKind = CurveKind.INVERSE,
+                 rows: int = 256) -> str:
+    """One or three responses as CSV."""
+    given, error = one_or_three(responses, Response, "responses"), _abi.ErrorText()
+    array = (_abi.Response * len(given))(*given)
+    return _written(lambda *buffer: lib.lensprof_curves_write(array, len(given), int(CurveKind(kind)),
+                                                              integer(rows, "rows"), *buffer, byref(error)),
+                    "the table cannot be written", error).decode()
+
+
+def _refitted(read: Callable[..., int], profile: Optional[Profile], what: str) -> tuple[Profile, float]:
+    """A copy of the profile (or a new one) with the falloff that was read, and its largest relative error."""
+    found, worst, error = profile.copy() if profile is not None else Profile(), c_double(), _abi.ErrorText()
+    check(read(byref(found), byref(worst), byref(error)), what, error)
+    return found, worst.value
+
+
+def map_read(values: np.ndarray, sense: MapSense = MapSense.ATTENUATION, frame: Optional[tuple[int, int]] = None,
+             profile: Optional[Profile] = None) -> tuple[Profile, float]:
+    """The falloff of a map (rows, columns) or (rows, columns, 3), and the largest relative error that is left.
+
+    Values are linear, to any scale; 0 is not known. frame: width and height of the pictures it is for, px; that of the
+    map by default. profile: what the rest of the result is a copy of.
+    """
+    array = np.ascontiguousarray(values, dtype=np.float32)
+    if array.ndim not in (2, 3):
+        raise ValueError(f"a map of shape {array.shape}; give (rows, columns) or (rows, columns, 3)")
+    rows, columns = array.shape[:2]
+    given = _abi.Map(columns, rows, array.shape[2] if array.ndim == 3 else 1, int(MapSense(sense)),
+                     _arrays.address(array, c_float))
+    width, height = frame if frame is not None else (columns, rows)
+    return _refitted(lambda *out: lib.lensprof_map_read(byref(given), integer(width, "width"), integer(height, "height"),
+                                                        *out), profile, "the map cannot be read")
+
+
+def map_write(profile: Profile, frame: tuple[int, int], size: Optional[tuple[int, int]] = None, channels: int = 1,
+              sense: MapSense = MapSense.ATTENUATION) -> np.ndarray:
+    """Falloff and gain grid as a float32 map of size (columns, rows), that of the frame (width, height) by default.
+
+    The largest attenuation is 1. Of one channel: (rows, columns), the mean of the profile's; of 3: (rows, columns, 3).
+    """
+    columns, rows = size if size is not None else frame
+    values = np.empty((integer(rows, "rows"), integer(columns, "columns"), integer(channels, "channels")), np.float32)
+    error = _abi.ErrorText()
+    check(lib.lensprof_map_write(byref(profile), integer(frame[0], "width"), integer(frame[1], "height"), columns, rows,
+                                 channels, int(MapSense(sense)), _arrays.address(values, c_float), byref(error)),
+          "the map cannot be written", error)
+    return values[:, :, 0] if channels == 1 else values
+
+
+def radical_response_read(data: bytes) -> list[Response]:
+    """The responses of red, green and blue of a .crf file of radical."""
+    responses, error = (_abi.Response * 3)(), _abi.ErrorText()
+    check(lib.lensprof_radical_response_read(data, len(data), responses, byref(error)), "the file cannot be read", error)
+    return [Response.from_buffer_copy(response) for response in responses]
+
+
+def radical_response_write(responses: Union[Response, Iterable[Response]]) -> bytes:
+    """A .crf file of radical."""
+    given, error = one_or_three(responses, Response, "responses"), _abi.ErrorText()
+    array = (_abi.Response * len(given))(*given)
+    return _written(lambda *buffer: lib.lensprof_radical_response_write(array, len(given), *buffer, byref(error)),
+                    "the file cannot be written", error)
+
+
+def radical_vignetting_read(data: bytes, profile: Optional[Profile] = None) -> tuple[Profile, float]:
+    """The falloff of a .vgn file of radical, and the largest relative error that is left; as map_read."""
+    return _refitted(lambda *out: lib.lensprof_radical_vignetting_read(data, len(data), *out), profile,
+                     "the file cannot be read")
+
+
+def radical_vignetting_write(profile: Profile, width: int, height: int) -> bytes:
+    """A .vgn file of radical for pictures of width x height px."""
+    error = _abi.ErrorText()
+    return _written(lambda *buffer: lib.lensprof_radical_vignetting_write(byref(profile), integer(width, "width"),
+                                                                          integer(height, "height"), *buffer,
+                                                                          byref(error)),
+                    "the file cannot be written", error)
+
+
+def dng_opcodes_read(data: bytes, width: int, height: int, layout: Layout = Layout.RGB,
+                     source: str = "") -> tuple[Profile, bool]:
+    """The falloff of a DNG opcode list, the bytes of the tag OpcodeList2 or OpcodeList3, and whether it is usable.
+
+    width, height: of the frame that the opcodes work on. layout: RGGB, GRBG, GBRG or BGGR for a mosaic (OpcodeList2),
+    RGB for three planes (OpcodeList3), GREY for one. provenance.doubt names opcodes that are left out.
+    """
+    given = bytes(data)
+    (entry,) = _imported(
+        lambda *rest: lib.lensprof_dng_opcodes_read(given, len(given), integer(width, "width"), integer(height, "height"),
+                                                    integer(layout, "layout"), *rest),
+        source, "the opcodes cannot be read")
+    return entry
+
+
+def dng_opcodes_write(profile: Profile, width: int, height: int, layout: Layout = Layout.RGB,
+                      form: DngForm = DngForm.GAIN_MAP) -> tuple[bytes, float]:
+    """The falloff of a profile as a DNG opcode list, and the largest relative error of its gains within the frame."""
+    if not isinstance(profile, Profile):
+        raise TypeError("profile takes a Profile")
+    error, worst = _abi.ErrorText(), c_double()
+    numbers = (integer(width, "width"), integer(height, "height"), integer(layout, "layout"), integer(form, "form"))
+    text = _written(lambda *buffer: lib.lensprof_dng_opcodes_write(byref(profile), *numbers, *buffer, byref(worst),
+                                                                   byref(error)), "the opcodes cannot be written", error)
+    return text, worst.value
+
+
+def lcp_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profile, bool]]:
+    """The falloffs of an Adobe lens profile (.lcp), as lensfun_read gives those of a database."""
+    data = _bytes(text)
+    return _imported(lambda *rest: lib.lensprof_lcp_read(data, len(data), *rest), source,
+                     "the lens profile cannot be read")
+
+
+def lcp_write(profiles: Iterable[Profile], width: int = 0, height: int = 0) -> str:
+    """An Adobe lens profile (.lcp) of the falloffs of profiles of one camera and lens, whose crop factor, focal length
+    and aperture are known. width, height: of the frames; both 0 = not known, of 3:2."""
+    return _database(lib.lensprof_lcp_write, profiles, (integer(width, "width"), integer(height, "height")),
+                     "the lens profile cannot be written")
+
+
+def drone_xmp_read(text: Union[str, bytes], width: int, height: int, source: str = "") -> tuple[Profile, bool]:
+    """The falloff that a MicaSense, Parrot Sequoia or DJI camera writes into the XMP packet of a picture of width x
+    height pixels, and whether it is usable."""
+    data = _bytes(text)
+    (entry,) = _imported(
+        lambda *rest: lib.lensprof_drone_xmp_read(data, len(data), integer(width, "width"), integer(height, "height"),
+                                                  *rest),
+        source, "the XMP packet cannot be read")
+    return entry

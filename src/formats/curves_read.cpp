@@ -1,0 +1,199 @@
+// Response curves as tables of text: CSV of OpenCV, AliceVision and others, and pfstools' .m.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <lensprof/formats.h>
+
+#include "curve_table.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr size_t kMostBytes = size_t{64} << 20;
+constexpr double kEven = 1e-4;  // of a step, that the first column may be off by rounding
+
+struct Row {
+    size_t line;
+    std::vector<double> values;
+};
+
+// One table, or one a channel of pfstools.
+struct Table {
+    std::string name;
+    std::vector<Row> rows;
+};
+
+bool is_separator(char c) {
+    return is_blank(c) || c == ',' || c == ';' || c == '[' || c == ']';
+}
+
+std::vector<std::string_view> split(std::string_view line) {
+    std::vector<std::string_view> words;
+    for (size_t at = 0; at < line.size();) {
+        if (is_separator(line[at])) {
+            at++;
+            continue;
+        }
+        const size_t begin = at;
+        while (at < line.size() && !is_separator(line[at])) at++;
+        words.push_back(line.substr(begin, at - begin));
+    }
+    return words;
+}
+
+class CurveText {
+public:
+    explicit CurveText(std::string_view text) {
+        if (text.size() > kMostBytes) throw FormatFailure{LENSPROF_ERROR_SIZE, "over 64 MiB; give a table of a response"};
+        LineReader lines(text);
+        while (lines.next()) add_line(lines.line, lines.number);
+        tables_.erase(std::remove_if(tables_.begin(), tables_.end(), [](const Table &t) { return t.rows.empty(); }),
+                      tables_.end());
+        if (tables_.empty())
+            throw FormatFailure{LENSPROF_ERROR_SYNTAX, "no row of numbers; give a table of a response"};
+    }
+
+    const std::vector<Table> &tables() const { return tables_; }
+    bool blue_first() const { return blue_first_; }
+
+private:
+    void add_line(std::string_view line, size_t number) {
+        const std::vector<std::string_view> words = split(line);
+        if (words.empty()) return;
+        if (words[0][0] == '#' || words[0][0] == '%' || words[0].substr(0, 2) == "//") {
+            if (words[0] == "#" && words.size() == 3 && words[1] == "name:") tables_.push_back({std::string(words[2]), {}});
+            return;
+        }
+        Row row{number, {}};
+        for (const std::string_view word : words) {
+            double value;
+            if (!read_number(word, value)) {
+                if (tables_.empty() && row.values.empty()) return read_header(words, number);
+                fail_at_line(number, quoted(word) + " is not a finite number; correct it");
+            }
+            row.values.push_back(value);
+        }
+        if (tables_.empty()) tables_.push_back({});
+        std::vector<Row> &rows = tables_.back().rows;
+        if (!rows.empty() && rows[0].values.size() != row.values.size())
+            fail_at_line(number, std::to_string(row.values.size()) + " columns, where the first row has "
+                                     + std::to_string(rows[0].values.size()) + "; correct it");
+        if (rows.size() == kMostCurveRows) fail_at_line(number, "over 65536 rows; give a shorter table", LENSPROF_ERROR_SIZE);
+        rows.push_back(std::move(row));
+    }
+
+    // Names of columns, once, before the first row.
+    void read_header(const std::vector<std::string_view> &words, size_t number) {
+        if (header_) fail_at_line(number, quoted(words[0]) + " is not a finite number; correct it");
+        header_ = true;
+        const auto is = [](std::string_view word, char small) {
+            while (!word.empty() && word[0] == '"') word.remove_prefix(1);
+            return !word.empty() && (word[0] | 0x20) == small;
+        };
+        blue_first_ = words.size() >= 3 && is(words[words.size() - 3], 'b') && is(words.back(), 'r');
+    }
+
+    std::vector<Table> tables_;
+    bool header_ = false, blue_first_ = false;
+};
+
+std::vector<double> column(const Table &table, size_t index) {
+    std::vector<double> values;
+    for (const Row &row : table.rows) values.push_back(row.values[index]);
+    return values;
+}
+
+// The first column of 2 or 4 counts the rows, or is evenly spaced from 0.
+void check_index(const Table &table, size_t index) {
+    const std::vector<double> values = column(table, index);
+    const double step = values.back() / static_cast<double>(values.size() - 1);
+    for (size_t i = 0; i < values.size(); i++)
+        if (!(step > 0.0 && std::fabs(values[i] - step * static_cast<double>(i)) <= kEven * step))
+            fail_at_line(table.rows[i].line, "column " + std::to_string(index + 1)
+                                                 + ", which counts the rows, is not evenly spaced from 0; correct it");
+}
+
+// The values of a channel as a response.
+lensprof_response read_curve(const Table &table, std::vector<double> values, uint32_t curve) {
+    if (values.size() < 2) fail_at_line(table.rows[0].line, "a single row; give one for each grey value");
+    const size_t fall = find_fall(values, false);
+    if (fall < values.size())
+        fail_at_line(table.rows[fall].line,
+                     number_text(values[fall]) + " is below the " + number_text(values[fall - 1])
+                         + " before it, and a response does not decrease; smooth it, or check the kind of table",
+                     LENSPROF_ERROR_RESPONSE);
+    const double first = values.front(), last = values.back();
+    if (curve == LENSPROF_CURVE_INVERSE && first < 0.0)
+        fail_at_line(table.rows[0].line, number_text(first) + " is below 0, as no irradiance is; is the table logarithmic?",
+                     LENSPROF_ERROR_RESPONSE);
+    const bool is_log = curve == LENSPROF_CURVE_LOG || curve == LENSPROF_CURVE_LOG10;
+    if (is_log ? !(last > first) : !(last > 0.0 && last > first))
+        fail_at_line(table.rows.back().line, "the last value is not above the first, or not above 0; give another table",
+                     LENSPROF_ERROR_RESPONSE);
+    for (double &value : values) {
+        if (curve == LENSPROF_CURVE_LOG) value = std::exp(value - last);
+        else if (curve == LENSPROF_CURVE_LOG10) value = std::pow(10.0, value - last);
+        else if (curve == LENSPROF_CURVE_FORWARD) value = std::clamp(value / (last - first) - first / (last - first), 0.0, 1.0);
+        else value /= last;
+    }
+    if (curve != LENSPROF_CURVE_FORWARD) return response_of_irradiances(values);
+    values.back() = 1.0;
+    lensprof_response response;
+    const lensprof_status status =
+        lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size()));
+    if (status != LENSPROF_OK) throw FormatFailure{status, "not a response; check the kind of table"};
+    return response;
+}
+
+struct Curves {
+    std::array<lensprof_response, 3> response;
+    uint32_t count;
+};
+
+// pfstools: a table a channel, of log10(irradiance), grey value and irradiance.
+void read_matrices(const std::vector<Table> &tables, Curves &curves) {
+    if (tables.size() != 1 && tables.size() != 3)
+        throw FormatFailure{LENSPROF_ERROR_SYNTAX, std::to_string(tables.size())
+                                                       + " matrices; give one, or one for each of red, green and blue"};
+    curves.count = static_cast<uint32_t>(tables.size());
+    for (uint32_t c = 0; c < curves.count; c++) {
+        if (tables[c].rows[0].values.size() != 3)
+            fail_at_line(tables[c].rows[0].line, "a matrix without 3 columns: log10, grey value and irradiance; correct it");
+        check_index(tables[c], 1);
+        curves.response[c] = read_curve(tables[c], column(tables[c], 2), LENSPROF_CURVE_INVERSE);
+    }
+}
+
+void read_columns(const Table &table, bool blue_first, uint32_t curve, Curves &curves) {
+    const size_t columns = table.rows[0].values.size();
+    if (columns > 4)
+        fail_at_line(table.rows[0].line, std::to_string(columns) + " columns; give 1 or 3, or these after one that counts");
+    curves.count = columns <= 2 ? 1 : 3;
+    const size_t skipped = columns - curves.count;
+    if (skipped && table.rows.size() > 1) check_index(table, 0);
+    for (uint32_t c = 0; c < curves.count; c++)
+        curves.response[blue_first ? curves.count - 1 - c : c] = read_curve(table, column(table, skipped + c), curve);
+}
+
+}  // namespace
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_curves_read(const char *text, size_t bytes, uint32_t curve, lensprof_response *responses,
+                                     uint32_t *count, lensprof_error *error) {
+    if ((!text && bytes) || !responses || !count || curve > LENSPROF_CURVE_FORWARD) {
+        set_error(error, "lensprof_curves_read: text, responses or count is NULL, or an unknown kind; see lensprof_curve");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return at_boundary(error, [&] {
+        const CurveText file(std::string_view(bytes ? text : "", bytes));
+        Curves curves{};
+        if (!file.tables()[0].name.empty()) read_matrices(file.tables(), curves);
+        else read_columns(file.tables()[0], file.blue_first(), curve, curves);
+        std::copy_n(curves.response.begin(), curves.count, responses);
+        *count = curves.count;
+    });
+}

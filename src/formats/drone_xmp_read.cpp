@@ -1,0 +1,279 @@
+// Falloffs in the XMP packets of drones' cameras to profiles: MicaSense, Parrot and DJI.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <lensprof/formats.h>
+
+#include "import.hpp"
+#include "radius.hpp"
+#include "rdf.hpp"
+#include "refit.hpp"
+#include "text.hpp"
+#include "xml.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr const char *kCamera = "pix4d.com/camera/", *kDji = "dji.com/drone-dji/", *kTiff = "ns.adobe.com/tiff/";
+constexpr size_t kMostTerms = 16;   // of a radial polynomial
+constexpr size_t kMost2d = 64;      // of one in x and y
+constexpr uint32_t kMapCells = 128;  // of the frame, along the longer side: enough for a plane at each node of a grid
+constexpr double kGridFrom = 0.01;  // relative error of a radial falloff of even powers that a grid is for
+constexpr double kLowest = 0.001;   // as lensprof_vignetting_validate
+
+struct PixelSize {
+    uint32_t width, height;
+};
+
+// Properties of one namespace, in all rdf:Description of a packet.
+class Packet {
+public:
+    explicit Packet(const XmlText &xml) : xml_(xml) {
+        const pugi::xml_node root = xml.root();
+        const pugi::xml_node rdf = local_name(root.name()) == "RDF" ? root : local_child(root, "RDF");
+        if (!rdf) fail(root, "no rdf:RDF; give an XMP packet");
+        for (pugi::xml_node node : rdf.children())
+            if (local_name(node.name()) == "Description") descriptions_.push_back(node);
+    }
+
+    [[noreturn]] void fail(const pugi::xml_node &node, const std::string &text,
+                           lensprof_status status = LENSPROF_ERROR_SYNTAX) const {
+        fail_at_line(xml_.line_of(node), text, status);
+    }
+
+    pugi::xml_node first() const { return xml_.root(); }
+
+    // The value, of a list its first item; empty where there is none.
+    std::string text(const char *space, std::string_view name) const {
+        const std::vector<std::string> all = texts(space, name);
+        return all.empty() ? std::string() : all.front();
+    }
+
+    // A list's numbers, from rdf:li or between commas. Throws SYNTAX.
+    std::vector<double> numbers(const char *space, std::string_view name, size_t most) const;
+
+private:
+    std::vector<std::string> texts(const char *space, std::string_view name) const;
+
+    const XmlText &xml_;
+    std::vector<pugi::xml_node> descriptions_;
+};
+
+// By what the prefix stands for; an undeclared one by the name that everybody gives it.
+bool in_space(const pugi::xml_node &node, std::string_view name, std::string_view space) {
+    const std::string_view declared = namespace_of(node, name);
+    if (!declared.empty()) return declared.find(space.substr(0, space.size() - 1)) != std::string_view::npos;
+    const std::string_view prefix = name.substr(0, name.find(':'));
+    return prefix == (space == kCamera ? "Camera" : space == kDji ? "drone-dji" : "tiff");
+}
+
+std::vector<std::string> Packet::texts(const char *space, std::string_view name) const {
+    std::vector<std::string> found;
+    for (const pugi::xml_node &description : descriptions_) {
+        for (const pugi::xml_attribute &attribute : description.attributes())
+            if (local_name(attribute.name()) == name && in_space(description, attribute.name(), space))
+                return {one_line(attribute.value())};
+        for (const pugi::xml_node &child : description.children()) {
+            if (local_name(child.name()) != name || !in_space(child, child.name(), space)) continue;
+            for (const pugi::xml_node &item : rdf_items(child)) found.push_back(one_line(item.child_value()));
+            if (found.empty()) found.push_back(one_line(child.child_value()));
+            return found;
+        }
+    }
+    return found;
+}
+
+std::vector<double> Packet::numbers(const char *space, std::string_view name, size_t most) const {
+    std::vector<double> values;
+    for (const std::string &text : texts(space, name)) {
+        std::string_view rest = text;
+        while (!rest.empty()) {
+            const size_t comma = std::min(rest.find(','), rest.size());
+            const std::string word = one_line(rest.substr(0, comma));
+            double value = 0.0;
+            if (!read_number(word, value) || std::fabs(value) > 1e100)
+                fail(first(), std::string(name) + " has " + quoted(word) + ", not a number; correct it");
+            if (values.size() == most)
+                fail(first(), std::string(name) + " has over " + std::to_string(most) + " numbers; give what a camera wrote",
+                     LENSPROF_ERROR_SIZE);
+            values.push_back(value);
+            rest.remove_prefix(std::min(comma + 1, rest.size()));
+        }
+    }
+    return values;
+}
+
+// 1 + c0 r + c1 r^2 + ..., r in px from the centre; a gain, or an attenuation.
+struct RadialPolynomial {
+    std::vector<double> terms;
+    double center[2];  // px, pixel centres at integers
+    bool gain;
+
+    double attenuation(double r) const {
+        double sum = 0.0;
+        for (size_t n = terms.size(); n-- > 0;) sum = (sum + terms[n]) * r;
+        const double value = 1.0 + sum;
+        if (!(value > 0.0)) throw FormatFailure{LENSPROF_ERROR_VIGNETTING, "its polynomial is not above 0; correct it"};
+        return gain ? 1.0 / value : value;
+    }
+};
+
+// An attenuation, to any scale, over the frame.
+double fit_frame(const std::function<double(double x, double y)> &attenuation, PixelSize frame, lensprof_profile &profile) {
+    const uint32_t longer = std::max(frame.width, frame.height);
+    const auto cells = [&](uint32_t side) {
+        return std::min(side, static_cast<uint32_t>(std::ceil(double(kMapCells) * side / longer)));
+    };
+    FalloffMap map{frame.width, frame.height, cells(frame.width), cells(frame.height), 1, 0, 0, 0, 0, {}};
+    place_as_cells(map);
+    for (uint32_t j = 0; j < map.rows; j++)
+        for (uint32_t i = 0; i < map.columns; i++) {
+            const double value = attenuation(map.x0 + i * map.dx, map.y0 + j * map.dy);
+            if (!(value >= kLowest) || !std::isfinite(value))
+                throw FormatFailure{LENSPROF_ERROR_VIGNETTING, "its polynomial is not above 0; correct it"};
+            map.attenuation.push_back(value);
+        }
+    return fit_map(map, profile);
+}
+
+// Odd powers of r have a tip in the centre, which even ones have not: where these come no nearer than 1 %, there is a gain
+// grid as well.
+double fit_radial(const RadialPolynomial &polynomial, PixelSize frame, lensprof_profile &profile) {
+    const double sides[2] = {double(frame.width), double(frame.height)}, rho = std::hypot(sides[0], sides[1]) / 2.0;
+    lensprof_vignetting &v = profile.vignetting[0];
+    for (int axis = 0; axis < 2; axis++) v.center[axis] = (polynomial.center[axis] - (sides[axis] - 1.0) / 2.0) / rho;
+    const RadialRefit refit = refit_radial([&](double r2) { return polynomial.attenuation(std::sqrt(r2) * rho); },
+                                           farthest_corner(v.center, sides[0], sides[1]));
+    std::copy(refit.k.begin(), refit.k.end(), v.k);
+    if (!(refit.worst > kGridFrom)) return refit.worst;
+    return fit_frame(
+        [&](double x, double y) {
+            return polynomial.attenuation(std::hypot(x - polynomial.center[0], y - polynomial.center[1]));
+        },
+        frame, profile);
+}
+
+// sum c x^i y^j, x and y the pixel's column and row over the frame's sides.
+double fit_2d(const std::vector<double> &powers, const std::vector<double> &terms, PixelSize frame,
+              lensprof_profile &profile) {
+    return fit_frame(
+        [&](double column, double row) {
+            const double x = std::max(column, 0.0) / frame.width, y = std::max(row, 0.0) / frame.height;
+            double value = 0.0;
+            for (size_t n = 0; n < terms.size(); n++)
+                value += terms[n] * std::pow(x, powers[2 * n]) * std::pow(y, powers[2 * n + 1]);
+            return value;
+        },
+        frame, profile);
+}
+
+class DroneXmpReader {
+public:
+    DroneXmpReader(std::string_view text, PixelSize frame)
+        : xml_(text, {"x:xmpmeta", "x:xapmeta", "rdf:RDF"}), packet_(xml_), frame_(frame) {}
+
+    // Fills the profile; returns what its doubt says.
+    std::string read(const char *source, lensprof_profile &profile) const;
+
+private:
+    // The centre as written; of a frame without one its middle.
+    std::array<double, 2> center(const std::vector<double> &given, const char *name) const;
+    double read_2d(lensprof_profile &profile) const;
+    void read_key(const char *maker, lensprof_profile_key &key) const;
+
+    XmlText xml_;
+    Packet packet_;
+    PixelSize frame_;
+};
+
+std::array<double, 2> DroneXmpReader::center(const std::vector<double> &given, const char *name) const {
+    if (given.empty()) return {(frame_.width - 1.0) / 2.0, (frame_.height - 1.0) / 2.0};
+    if (given.size() != 2) packet_.fail(packet_.first(), std::string(name) + " has not two numbers; correct it");
+    if (!(given[0] >= 0.0 && given[0] <= frame_.width && given[1] >= 0.0 && given[1] <= frame_.height))
+        packet_.fail(packet_.first(), std::string(name) + " is outside a frame of " + std::to_string(frame_.width) + " x "
+                                          + std::to_string(frame_.height) + " px; pass the size of this picture");
+    return {given[0], given[1]};
+}
+
+double DroneXmpReader::read_2d(lensprof_profile &profile) const {
+    const std::vector<double> powers = packet_.numbers(kCamera, "VignettingPolynomial2DName", 2 * kMost2d),
+                              terms = packet_.numbers(kCamera, "VignettingPolynomial2D", kMost2d);
+    if (powers.size() != 2 * terms.size())
+        packet_.fail(packet_.first(), "VignettingPolynomial2DName has not two powers for each number of "
+                                      "VignettingPolynomial2D; correct it");
+    for (double power : powers)
+        if (power != std::floor(power) || power < 0.0 || power > 20.0)
+            packet_.fail(packet_.first(), "VignettingPolynomial2DName has " + number_text(power)
+                                              + ", not a whole power of 0 to 20; correct it");
+    return fit_2d(powers, terms, frame_, profile);
+}
+
+void DroneXmpReader::read_key(const char *maker, lensprof_profile_key &key) const {
+    key.processing = LENSPROF_PROCESSING_RAW;
+    const std::string make = packet_.text(kTiff, "Make"), model = packet_.text(kTiff, "Model");
+    const std::string shown = make.empty() ? maker : make;
+    xml_.check_key_text(packet_.first(), "tiff:Make: ", shown, sizeof key.camera_maker);
+    xml_.check_key_text(packet_.first(), "tiff:Model: ", model, sizeof key.camera_model);
+    put_text(key.camera_maker, sizeof key.camera_maker, shown);
+    put_text(key.camera_model, sizeof key.camera_model, model);
+}
+
+std::string DroneXmpReader::read(const char *source, lensprof_profile &profile) const {
+    std::vector<double> own = packet_.numbers(kDji, "VignettingData", kMostTerms);
+    std::vector<double> radial = packet_.numbers(kCamera, "VignettingPolynomial", kMostTerms);
+    const std::vector<double> flat = packet_.numbers(kCamera, "VignettingPolynomial2D", kMost2d);
+    const std::string make = packet_.text(kTiff, "Make");
+    const bool dji = !own.empty() || make == "DJI" || !packet_.text(kDji, "Version").empty();
+    read_key(dji ? "DJI" : "", profile.key);
+    set_import_provenance(profile, source, dji ? "XMP of DJI" : "XMP of a camera");
+    double worst = 0.0;
+    if (!own.empty() || !radial.empty()) {
+        std::vector<double> place = packet_.numbers(kDji, "CalibratedOpticalCenterX", 1);
+        const std::vector<double> below = packet_.numbers(kDji, "CalibratedOpticalCenterY", 1);
+        place.insert(place.end(), below.begin(), below.end());
+        const bool use_own = !own.empty();
+        const std::array<double, 2> c =
+            use_own ? center(place, "CalibratedOpticalCenter")
+                    : center(packet_.numbers(kCamera, "VignettingCenter", 2), "VignettingCenter");
+        worst = fit_radial({use_own ? std::move(own) : std::move(radial), {c[0], c[1]}, dji}, frame_, profile);
+    } else if (!flat.empty()) {
+        worst = read_2d(profile);
+    } else {
+        throw FormatFailure{LENSPROF_ERROR_NOT_FOUND,
+                            "no Camera:VignettingPolynomial, Camera:VignettingPolynomial2D or drone-dji:VignettingData; give "
+                            "the XMP of a picture that has one"};
+    }
+    if (dji && packet_.text(kDji, "VignettingFlag") == "1") return "VignettingFlag: the camera corrected this picture itself";
+    return refit_remark(worst);
+}
+
+}  // namespace
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_drone_xmp_read(const char *text, size_t bytes, uint32_t width, uint32_t height,
+                                        const char *source, lensprof_import_visitor visit, void *user,
+                                        lensprof_error *error) {
+    if ((!text && bytes) || !visit || !width || !height) {
+        set_error(error, "lensprof_drone_xmp_read: text or visit is NULL, or a side is 0; pass a packet, its picture's size "
+                         "and a function");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    lensprof_status visited = LENSPROF_OK;
+    const lensprof_status status = at_boundary(error, [&] {
+        const auto profile = std::make_unique<lensprof_profile>();
+        lensprof_profile_init(profile.get());
+        std::string_view packet(bytes ? text : "", bytes);
+        while (!packet.empty() && packet.back() == '\0') packet.remove_suffix(1);  // padding of the tag
+        const DroneXmpReader reader(packet, {width, height});
+        const std::string remark = reader.read(source, *profile);
+        visited = visit_entry(*profile, remark, visit, user);
+    });
+    return status == LENSPROF_OK ? visited : status;
+}

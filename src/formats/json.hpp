@@ -1,0 +1,19 @@
+// What reader and writer of profiles as JSON share: the names of the schema (docs/json.md).
+#pragma once
+
+#include <string>
+
+#include <lensprof/profile.h>
+
+#include "json_text.hpp"
+
+namespace lensprof {
+
+constexpr int64_t kJsonSchema = 1;
+constexpr const char *kJsonResponseKinds[] = {"linear", "gamma", "emor", "table"};
+constexpr const char *kJsonProcessings[] = {"raw", "jpeg", "corrected"};
+
+// The object of one valid profile.
+void write_profile(JsonWriter &json, const lensprof_profile &profile);
+
+}  // namespace lensprof

@@ -1,0 +1,191 @@
+// Profiles to JSON.
+#include <cmath>
+
+#include <lensprof/formats.h>
+
+#include "json.hpp"
+
+namespace lensprof {
+namespace {
+
+void write_text(JsonWriter &json, const char *name, const char *value) {
+    json.name(name);
+    json.text(value);
+}
+
+void write_known(JsonWriter &json, const char *name, double value) {
+    json.name(name);
+    if (value == LENSPROF_UNKNOWN) json.word("null");
+    else json.number(value);
+}
+
+void write_key(JsonWriter &json, const lensprof_profile_key &key) {
+    json.name("key");
+    json.open('{');
+    write_text(json, "camera_maker", key.camera_maker);
+    write_text(json, "camera_model", key.camera_model);
+    write_text(json, "lens", key.lens);
+    write_text(json, "unit", key.unit);
+    write_known(json, "crop_factor", key.crop_factor);
+    write_known(json, "focal_mm", key.focal_mm);
+    write_known(json, "aperture", key.aperture);
+    if (std::isinf(key.distance_m)) write_text(json, "distance_m", "infinity");
+    else write_known(json, "distance_m", key.distance_m);
+    write_text(json, "processing", kJsonProcessings[key.processing]);
+    json.close('}');
+}
+
+void write_vignetting(JsonWriter &json, const lensprof_profile &profile) {
+    json.name("vignetting");
+    json.open('{');
+    json.name("k");
+    json.open('[');
+    for (uint32_t c = 0; c < profile.vignettings; c++) json.numbers(profile.vignetting[c].k, 3);
+    json.close(']');
+    json.name("center");
+    json.numbers(profile.vignetting[0].center, 2);
+    json.close('}');
+}
+
+void write_grid(JsonWriter &json, const lensprof_gain_grid &grid) {
+    json.name("gain_grid");
+    if (!grid.columns) return json.word("null");
+    json.open('{');
+    json.name("columns");
+    json.whole(grid.columns);
+    json.name("rows");
+    json.whole(grid.rows);
+    json.name("attenuation");
+    json.open('[');
+    const float *node = grid.attenuation;
+    for (uint32_t c = 0; c < grid.channels; c++) {
+        json.open('[');
+        for (uint32_t j = 0; j < grid.rows; j++) {
+            json.open('[');
+            for (uint32_t i = 0; i < grid.columns; i++) json.number(double(*node++));
+            json.close(']');
+        }
+        json.close(']');
+    }
+    json.close(']');
+    json.close('}');
+}
+
+// kind, and the numbers that make the curve where it is not a table.
+void write_kind(JsonWriter &json, const lensprof_response &response) {
+    write_text(json, "kind", kJsonResponseKinds[response.kind]);
+    if (response.kind == LENSPROF_RESPONSE_EMOR) {
+        json.name("emor");
+        json.numbers(response.emor, response.modes);
+    }
+    if (response.kind == LENSPROF_RESPONSE_GAMMA) {
+        json.name("gamma");
+        json.number(response.gamma);
+    }
+}
+
+void write_response(JsonWriter &json, const lensprof_profile &profile) {
+    json.name("response");
+    json.open('{');
+    write_kind(json, profile.response[0]);
+    json.name("values");
+    json.open('[');
+    for (uint32_t c = 0; c < profile.responses; c++)
+        json.numbers(profile.response[c].table, LENSPROF_RESPONSE_SAMPLES);
+    json.close(']');
+    if (profile.responses > 1) {
+        json.name("curves");
+        json.open('[');
+        for (uint32_t c = 0; c < profile.responses; c++) {
+            json.open('{');
+            write_kind(json, profile.response[c]);
+            json.close('}');
+        }
+        json.close(']');
+    }
+    json.close('}');
+}
+
+void write_covariance(JsonWriter &json, const lensprof_profile &profile) {
+    const uint32_t n = profile.covariance_size;
+    json.name("covariance");
+    json.open('[');
+    for (uint32_t i = 0; i < n; i++) json.numbers(profile.covariance + i * n, n);
+    json.close(']');
+}
+
+void write_provenance(JsonWriter &json, const lensprof_provenance &provenance) {
+    json.name("provenance");
+    json.open('{');
+    write_text(json, "method", provenance.method);
+    write_text(json, "software", provenance.software);
+    write_text(json, "source", provenance.source);
+    json.name("created_unix_s");
+    json.whole(provenance.created_unix_s);
+    json.name("images");
+    json.whole(provenance.images);
+    json.name("pairs");
+    json.whole(provenance.pairs);
+    write_known(json, "heldout_rms", provenance.heldout_rms);
+    write_known(json, "inlier_share", provenance.inlier_share);
+    write_text(json, "doubt", provenance.doubt);
+    json.close('}');
+}
+
+void write_schema(JsonWriter &json) {
+    json.name("schema");
+    json.whole(kJsonSchema);
+}
+
+std::string profiles_text(const lensprof_profile *const *profiles, uint32_t count) {
+    JsonWriter json;
+    if (count != 1) {
+        json.open('{');
+        write_schema(json);
+        json.name("profiles");
+        json.open('[');
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        const lensprof_status status = profiles[i] ? lensprof_profile_validate(profiles[i]) : LENSPROF_ERROR_ARGUMENT;
+        if (status != LENSPROF_OK)
+            throw FormatFailure{status, "profile " + std::to_string(i) + ": is not valid ("
+                                            + lensprof_status_name(status) + "); see lensprof_profile_validate"};
+        if (count != 1) json.line();
+        write_profile(json, *profiles[i]);
+    }
+    if (count != 1) {
+        json.close(']');
+        json.close('}');
+    }
+    json.line();
+    return json.all();
+}
+
+}  // namespace
+
+void write_profile(JsonWriter &json, const lensprof_profile &profile) {
+    json.open('{');
+    write_schema(json);
+    json.name("id");
+    json.word("null");
+    write_key(json, profile.key);
+    write_vignetting(json, profile);
+    write_grid(json, profile.grid);
+    write_response(json, profile);
+    write_covariance(json, profile);
+    write_provenance(json, profile.provenance);
+    json.close('}');
+}
+
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_json_write(const lensprof_profile *const *profiles, uint32_t count, char *text,
+                                    size_t capacity, size_t *needed, lensprof_error *error) {
+    if ((!profiles && count) || (!text && capacity)) {
+        set_error(error, "lensprof_json_write: profiles or text is NULL; pass a buffer");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return write_at_boundary(text, capacity, needed, error, [&] { return profiles_text(profiles, count); });
+}

@@ -1,0 +1,76 @@
+// TUM's pcalib.txt, which DSO and its kin read: the inverse response at evenly spaced grey values.
+#include <algorithm>
+
+#include <lensprof/formats.h>
+
+#include "curve_table.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr size_t kRows = 256;
+constexpr double kFull = 255.0;
+// Between two values: three units of single precision, in which they are read, at 255.
+constexpr double kLeastStep = 1e-4;
+
+lensprof_response read_pcalib(std::string_view text) {
+    std::vector<double> values;
+    LineReader lines(text);
+    while (lines.next())
+        for (std::string_view rest = lines.line, word = next_word(rest); !word.empty(); word = next_word(rest)) {
+            double value;
+            if (!read_number(word, value))
+                fail_at_line(lines.number, "value " + std::to_string(values.size()) + " is " + quoted(word)
+                                               + ", not a finite number; interpolate grey values that were not seen");
+            if (values.size() == kMostCurveRows)
+                throw FormatFailure{LENSPROF_ERROR_SIZE, "over 65536 values; give one for each grey value"};
+            values.push_back(value);
+        }
+    if (values.size() < 2)
+        throw FormatFailure{LENSPROF_ERROR_SYNTAX, std::to_string(values.size())
+                                                       + " values; give one for each grey value, 256 for 8 bit"};
+    const size_t fall = find_fall(values, true);
+    if (fall < values.size())
+        throw FormatFailure{LENSPROF_ERROR_RESPONSE,
+                            "value " + std::to_string(fall) + " (" + number_text(values[fall])
+                                + ") is not above the one before (" + number_text(values[fall - 1])
+                                + "), and an inverse response must increase; smooth it, or write it with lensprof"};
+    const double first = values.front(), range = values.back() - first;
+    for (double &value : values) value = std::max((value - first) / range, 0.0);
+    return response_of_irradiances(values);
+}
+
+std::string pcalib_text(const lensprof_response &response) {
+    check_response(response, "the response");
+    std::vector<double> values = irradiances_of(response, kRows);
+    values[0] = 0.0;
+    for (size_t i = 1; i < kRows; i++) values[i] = std::max(values[i] * kFull, values[i - 1] + kLeastStep);
+    values[kRows - 1] = kFull;
+    for (size_t i = kRows - 1; i-- > 0 && values[i + 1] - values[i] < kLeastStep / 2.0;) values[i] = values[i + 1] - kLeastStep;
+    std::string text;
+    for (size_t i = 0; i < kRows; i++) text += (i ? " " : "") + number_text(values[i]);
+    return text + "\n";
+}
+
+}  // namespace
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_pcalib_read(const char *text, size_t bytes, lensprof_response *response,
+                                     lensprof_error *error) {
+    if ((!text && bytes) || !response) {
+        set_error(error, "lensprof_pcalib_read: text or response is NULL; pass a buffer and a response");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return at_boundary(error, [&] { *response = read_pcalib(std::string_view(bytes ? text : "", bytes)); });
+}
+
+lensprof_status lensprof_pcalib_write(const lensprof_response *response, char *text, size_t capacity, size_t *needed,
+                                      lensprof_error *error) {
+    if (!response || (!text && capacity)) {
+        set_error(error, "lensprof_pcalib_write: response or text is NULL; pass a response and a buffer");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return write_at_boundary(text, capacity, needed, error, [&] { return pcalib_text(*response); });
+}

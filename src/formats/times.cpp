@@ -1,0 +1,109 @@
+// TUM's times.txt: name, time stamp and exposure time of every frame.
+#include <cmath>
+#include <cstring>
+
+#include <lensprof/formats.h>
+
+#include "text.hpp"
+
+namespace lensprof {
+namespace {
+
+double read_field(std::string_view word, const char *what, size_t line) {
+    double value;
+    if (!read_number(word, value))
+        fail_at_line(line, std::string(what) + " is " + quoted(word) + ", not a finite number; correct it");
+    return value;
+}
+
+lensprof_frame_time read_frame(std::string_view line, size_t number) {
+    lensprof_frame_time frame{};
+    const std::string_view id = next_word(line), time = next_word(line), exposure = next_word(line);
+    if (time.empty()) fail_at_line(number, "a frame without a time; give name, time and exposure of each");
+    if (!next_word(line).empty()) fail_at_line(number, "more than name, time and exposure; give another file");
+    if (id.size() >= sizeof frame.id)
+        fail_at_line(number, "the name " + quoted(id) + " is longer than 63 bytes; shorten it");
+    for (char c : id)
+        if ((c >= 0 && c < ' ') || c == 127) fail_at_line(number, "a name with control characters; take them out");
+    std::memcpy(frame.id, id.data(), id.size());
+    frame.time_s = read_field(time, "the time", number);
+    frame.exposure_ms = exposure.empty() ? 0.0 : read_field(exposure, "the exposure", number);
+    if (frame.exposure_ms < 0.0) fail_at_line(number, "an exposure below 0; correct it");
+    if (frame.exposure_ms == 0.0) frame.exposure_ms = LENSPROF_UNKNOWN;
+    return frame;
+}
+
+// Calls use(index, frame) for every frame; returns their number.
+template <typename Use>
+uint32_t walk(std::string_view text, Use use) {
+    uint32_t count = 0;
+    LineReader lines(text);
+    while (lines.next()) {
+        std::string_view rest = lines.line;
+        const std::string_view first = next_word(rest);
+        if (first.empty() || first[0] == '#') continue;
+        const lensprof_frame_time frame = read_frame(lines.line, lines.number);
+        if (count == UINT32_MAX) throw FormatFailure{LENSPROF_ERROR_SIZE, "over 4 billion frames; split the file"};
+        use(count++, frame);
+    }
+    return count;
+}
+
+void check_frame(const lensprof_frame_time &frame, uint32_t index) {
+    const auto demand = [&](bool holds, const char *what, lensprof_status status) {
+        if (!holds) throw FormatFailure{status, "frame " + std::to_string(index) + ": " + what};
+    };
+    const size_t length = strnlen(frame.id, sizeof frame.id);
+    demand(length > 0 && length < sizeof frame.id, "its name is empty or not terminated; set id", LENSPROF_ERROR_ARGUMENT);
+    for (size_t i = 0; i < length; i++)
+        demand((frame.id[i] < 0 || frame.id[i] > ' ') && frame.id[i] != 127 && (i || frame.id[i] != '#'),
+               "its name has blanks or control characters, or begins with #; change id", LENSPROF_ERROR_ARGUMENT);
+    demand(std::isfinite(frame.time_s), "its time is not finite; correct it", LENSPROF_ERROR_NOT_FINITE);
+    demand(frame.exposure_ms == LENSPROF_UNKNOWN || (frame.exposure_ms > 0.0 && std::isfinite(frame.exposure_ms)),
+           "its exposure is not above 0; correct it, or make it unknown", LENSPROF_ERROR_EXPOSURE);
+}
+
+std::string times_text(const lensprof_frame_time *frames, uint32_t count) {
+    std::string text;
+    for (uint32_t i = 0; i < count; i++) {
+        check_frame(frames[i], i);
+        text += frames[i].id;
+        text += ' ';
+        text += number_text(frames[i].time_s);
+        if (frames[i].exposure_ms != LENSPROF_UNKNOWN) text += " " + number_text(frames[i].exposure_ms);
+        text += '\n';
+    }
+    return text;
+}
+
+}  // namespace
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_times_read(const char *text, size_t bytes, lensprof_frame_time *frames, uint32_t capacity,
+                                    uint32_t *found, lensprof_error *error) {
+    if ((!text && bytes) || (!frames && capacity) || !found) {
+        set_error(error, "lensprof_times_read: text, frames or found is NULL; pass buffers");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    const std::string_view all(bytes ? text : "", bytes);
+    return at_boundary(error, [&] {
+        const uint32_t count = walk(all, [](uint32_t, const lensprof_frame_time &) {});
+        *found = count;
+        if (!capacity) return;
+        if (count > capacity)
+            throw FormatFailure{LENSPROF_ERROR_CAPACITY, std::to_string(count) + " frames for a buffer of "
+                                                             + std::to_string(capacity) + "; pass a larger one"};
+        walk(all, [&](uint32_t index, const lensprof_frame_time &frame) { frames[index] = frame; });
+    });
+}
+
+lensprof_status lensprof_times_write(const lensprof_frame_time *frames, uint32_t count, char *text, size_t capacity,
+                                     size_t *needed, lensprof_error *error) {
+    if ((!frames && count) || (!text && capacity)) {
+        set_error(error, "lensprof_times_write: frames or text is NULL; pass buffers");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return write_at_boundary(text, capacity, needed, error, [&] { return times_text(frames, count); });
+}

@@ -1,0 +1,96 @@
+// Fuzzing tables of responses and frame times: pcalib.txt, times.txt, CSV and pfstools' .m. What must hold for any bytes: a
+// text with an error has one of the statuses of formats.h and a text that says why, and the outputs are untouched; of others
+// every response is valid, and what is written of it reads back.
+#include <memory>
+
+#include <lensprof/formats.h>
+
+#include "fuzz_main.hpp"
+
+namespace {
+
+const char *const kTarget = "fuzz_curves";
+const std::vector<std::string> kWords = {
+    ",", ";", " ", "\t", "\n", "\r\n", "[", "]", "#", "# name: IR\n", "%", "//", "0", "-0", "1", "-1", "0.5", "255", "1e308",
+    "-1e308", "1e-320", "5e-324", "nan", "inf", "r,g,b\n", "blue,green,red\n", "0 0\n", "1,1,1\n", "\xC3\xA9", "\xFF", ".", "+"};
+
+struct Responses {
+    lensprof_response r[3];
+};
+
+void check_outcome(lensprof_status status, const lensprof_error &error) {
+    demand(status == LENSPROF_OK || status == LENSPROF_ERROR_SYNTAX || status == LENSPROF_ERROR_RESPONSE, "another status");
+    demand((status == LENSPROF_OK) == !error.text[0], "an error without a text, or the other way round");
+}
+
+template <typename Write>
+std::vector<char> written(Write write) {
+    size_t bytes = 0;
+    demand(write(nullptr, 0, &bytes) == LENSPROF_ERROR_CAPACITY, "not written");
+    std::vector<char> text(bytes);
+    demand(write(text.data(), bytes, &bytes) == LENSPROF_OK, "not written");
+    return text;
+}
+
+bool try_pcalib(const std::vector<char> &bytes) {
+    auto responses = std::make_unique<Responses>();
+    lensprof_response &response = responses->r[0];
+    lensprof_error error;
+    response.kind = 99;
+    const lensprof_status status = lensprof_pcalib_read(bytes.data(), bytes.size(), &response, &error);
+    check_outcome(status, error);
+    demand(status == LENSPROF_OK || response.kind == 99, "an output of a failed call");
+    if (status != LENSPROF_OK) return false;
+    demand(lensprof_response_validate(&response) == LENSPROF_OK, "a response that is not valid");
+    const std::vector<char> text = written([&](char *to, size_t capacity, size_t *needed) {
+        return lensprof_pcalib_write(&response, to, capacity, needed, nullptr);
+    });
+    demand(lensprof_pcalib_read(text.data(), text.size(), &responses->r[1], nullptr) == LENSPROF_OK, "not read again");
+    return true;
+}
+
+bool try_curves(const std::vector<char> &bytes, uint32_t curve) {
+    auto responses = std::make_unique<Responses>(), again = std::make_unique<Responses>();
+    uint32_t count = 99, same = 0;
+    lensprof_error error;
+    const lensprof_status status = lensprof_curves_read(bytes.data(), bytes.size(), curve, responses->r, &count, &error);
+    check_outcome(status, error);
+    demand((status == LENSPROF_OK) == (count != 99), "an output of a failed call, or none");
+    if (status != LENSPROF_OK) return false;
+    for (uint32_t c = 0; c < count; c++)
+        demand(lensprof_response_validate(&responses->r[c]) == LENSPROF_OK, "a response that is not valid");
+    const std::vector<char> text = written([&](char *to, size_t capacity, size_t *needed) {
+        return lensprof_curves_write(responses->r, count, curve, 64, to, capacity, needed, nullptr);
+    });
+    // A response that is black but at its end has no irradiance that a table of logarithms could hold.
+    const lensprof_status read = lensprof_curves_read(text.data(), text.size(), curve, again->r, &same, nullptr);
+    demand(read == LENSPROF_OK ? same == count : read == LENSPROF_ERROR_RESPONSE, "not read again");
+    return true;
+}
+
+bool try_times(const std::vector<char> &bytes) {
+    uint32_t count = 99;
+    lensprof_error error;
+    const lensprof_status status = lensprof_times_read(bytes.data(), bytes.size(), nullptr, 0, &count, &error);
+    check_outcome(status, error);
+    if (status != LENSPROF_OK) return false;
+    std::vector<lensprof_frame_time> frames(count + 1), again(count + 1);
+    demand(lensprof_times_read(bytes.data(), bytes.size(), frames.data(), count + 1, &count, nullptr) == LENSPROF_OK,
+           "not read twice");
+    if (count == 0) return true;
+    const std::vector<char> text = written([&](char *to, size_t capacity, size_t *needed) {
+        return lensprof_times_write(frames.data(), count, to, capacity, needed, nullptr);
+    });
+    uint32_t same = 0;
+    demand(lensprof_times_read(text.data(), text.size(), again.data(), count + 1, &same, nullptr) == LENSPROF_OK
+               && same == count, "not read again");
+    return true;
+}
+
+bool try_bytes(const std::vector<char> &bytes) {
+    bool read = try_pcalib(bytes);
+    for (uint32_t curve = 0; curve <= LENSPROF_CURVE_FORWARD; curve++) read |= try_curves(bytes, curve);
+    return try_times(bytes) || read;
+}
+
+}  // namespace
