@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply install clean
+.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply bench-store install clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -44,10 +44,14 @@ sanitize: ## build and run the C and C++ tests under address and undefined behav
 bench: test-deps build ## measure accuracy and speed beside the peers
 	tests/bench/run.sh
 	$(MAKE) bench-apply
+	$(MAKE) bench-store
 
 bench-apply: build ## measure how fast profiles are applied, beside memcpy, Lensfun, OpenCV and a plain loop
 	@cmake/install-packages.sh packages-bench.txt
 	tests/bench/apply.sh
+
+bench-store: build ## measure the store with 100 000 profiles
+	tests/bench/store.sh
 
 install: build ## install under PREFIX (default /usr/local)
 	cmake --install build --prefix $(PREFIX)

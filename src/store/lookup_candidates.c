@@ -73,16 +73,28 @@ static double score_of(const row *r, const lensprof_profile_key *key, bool by_wo
     return by_words ? lp_words_score(r->key.lens, key->lens, key->camera_maker) : lp_name_score(r->key.lens, key->lens);
 }
 
+/* Into found->last_...: comparing names takes longer than reading the row. */
+static void compare_names(const row *r, const lensprof_profile_key *key, lp_candidates *found)
+{
+    lensprof_profile_key *last = &found->last;
+    if (found->last_score > 0.0 && !strcmp(last->lens, r->key.lens) && !strcmp(last->camera_model, r->key.camera_model)) return;
+    memcpy(last->lens, r->key.lens, sizeof last->lens);
+    memcpy(last->camera_model, r->key.camera_model, sizeof last->camera_model);
+    found->last_score = score_of(r, key, found->by_words);
+    found->last_camera = fits(r->key.camera_model, key->camera_model);
+}
+
 /* Takes a row that fits the key; its first curve comes first. False without memory. */
 static bool take_row(const row *r, const lensprof_profile_key *key, lp_candidates *found)
 {
     lp_candidate *one = found->count ? &found->all[found->count - 1] : NULL;
     if (!one || one->node.id != r->id) {
-        const int unit = fits(r->key.unit, key->unit), camera = fits(r->key.camera_model, key->camera_model);
+        compare_names(r, key, found);
+        const int unit = fits(r->key.unit, key->unit), camera = found->last_camera;
         if (unit < 0 || (camera < 0 && *key->camera_model) || r->curve != 0) return true;
         if (!is_known(key->lens) && camera <= 0) return true; /* the camera's own only */
         if (!(one = add(found))) return false;
-        found->name_score = fmax(found->name_score, score_of(r, key, found->by_words));
+        found->name_score = fmax(found->name_score, found->last_score);
         one->is_fixed = !is_known(key->lens) || !is_known(r->key.lens);
         one->of_unit = unit, one->of_camera = camera, one->has_covariance = r->covariance_size > 0;
         one->crop = r->key.crop_factor;

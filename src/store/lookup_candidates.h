@@ -17,6 +17,9 @@ typedef struct lp_candidates {
     lp_candidate *all; /* free it */
     uint32_t count, room;
     double name_score;
+    lensprof_profile_key last; /* names of the row before, which most rows share, and what they were found to be */
+    double last_score;
+    int last_camera;
     bool by_words;   /* the lens was found by the words of its name */
     bool has_lenses; /* nothing was found, since the camera has several lenses and none was asked for */
 } lp_candidates;

@@ -158,17 +158,46 @@ static lensprof_status refuse(lensprof_store *store, lensprof_lookup *lookup, co
     return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile for this setting", reason, error);
 }
 
-/* Variance of M in the corner of a stored profile by its covariance, mean of its curves; 0 = not known. */
-static double corner_variance(const lensprof_profile *p)
+/* Variance of M in the corner by a covariance whose first k stands at `first`; 0 = not known. */
+static double corner_variance(const double *covariance, uint32_t size, uint32_t first)
+{
+    double sum = 0.0;
+    if (size < first + 3) return 0.0;
+    for (uint32_t i = first; i < first + 3; i++)
+        for (uint32_t j = first; j < first + 3; j++) sum += covariance[i * size + j];
+    return sum > 0.0 && isfinite(sum) ? sum : 0.0;
+}
+
+/* Of a stored profile. */
+static double variance_of(const lensprof_profile *p)
 {
     uint32_t first = 0;
-    double sum = 0.0;
     for (uint32_t c = 0; c < p->responses; c++)
         if (p->response[c].kind == LENSPROF_RESPONSE_EMOR) first += p->response[c].modes;
-    if (p->covariance_size < first + 3) return 0.0;
-    for (uint32_t i = first; i < first + 3; i++)
-        for (uint32_t j = first; j < first + 3; j++) sum += p->covariance[i * p->covariance_size + j];
-    return sum > 0.0 ? sum : 0.0;
+    return corner_variance(p->covariance, p->covariance_size, first);
+}
+
+/* The same without the rest of the profile, which takes longer to read. */
+static lensprof_status read_variance(lensprof_store *store, int64_t id, double *variance, lensprof_error *error)
+{
+    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    lensprof_status status = lp_store_prepare(
+        store, "SELECT covariance_size, covariance, CAST(total(emor_modes) AS INTEGER) AS emor_modes FROM profiles"
+               " JOIN responses ON profile_id = id WHERE id = ?1", &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_bind_integer(&binder, id);
+    const int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
+    if (rc == SQLITE_ROW) {
+        lp_store_reader reader = {binder.statement, 0, NULL};
+        const uint32_t size = (uint32_t)lp_read_integer(&reader, 1, LENSPROF_COVARIANCE_MAX);
+        lp_read_doubles(&reader, covariance, size * size);
+        const uint32_t first = (uint32_t)lp_read_integer(&reader, 0, 3 * LENSPROF_EMOR_MODES);
+        if (reader.bad) status = lp_store_fail_profile(store, id, reader.bad, error);
+        else *variance = corner_variance(covariance, size, first);
+    } else status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, binder.statement);
+    return status;
 }
 
 /* The profile that the prediction makes, of the nearest stored one. */
@@ -202,8 +231,7 @@ static lensprof_status weigh(lensprof_store *store, lp_candidates *found, lenspr
     lensprof_status status = LENSPROF_OK;
     for (uint32_t i = 0; i < found->count && status == LENSPROF_OK; i++) {
         if (!found->all[i].has_covariance) continue;
-        status = lp_store_fetch(store, found->all[i].node.id, error);
-        if (status == LENSPROF_OK) found->all[i].node.variance = corner_variance(&store->scratch);
+        status = read_variance(store, found->all[i].node.id, &found->all[i].node.variance, error);
     }
     return status;
 }
@@ -293,7 +321,7 @@ static lensprof_status answer(lensprof_store *store, const lensprof_profile_key 
         lookup->exact = lookup->rows = 1;
         lookup->id[0] = same, lookup->weight[0] = 1.0;
         lensprof_status status = lp_store_fetch(store, same, error);
-        const double variance = status == LENSPROF_OK ? corner_variance(&store->scratch) : 0.0;
+        const double variance = status == LENSPROF_OK ? variance_of(&store->scratch) : 0.0;
         lookup->sigma = variance > 0.0 ? sqrt(variance) : LENSPROF_UNKNOWN;
         return status;
     }
@@ -317,7 +345,7 @@ lensprof_status lensprof_store_lookup(lensprof_store *store, const lensprof_prof
                                       lensprof_lookup *lookup, lensprof_error *error)
 {
     lensprof_lookup result;
-    lp_candidates found = {NULL, 0, 0, 0.0, false, false};
+    lp_candidates found;
     lp_store_clear(error);
     if (!store || !key || !options || !profile || !lookup)
         return lp_store_fail_argument("store, key, options, profile or lookup is NULL", error);
@@ -327,6 +355,7 @@ lensprof_status lensprof_store_lookup(lensprof_store *store, const lensprof_prof
     if (lensprof_profile_key_validate(key) != LENSPROF_OK)
         return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
     memset(&result, 0, sizeof result);
+    memset(&found, 0, sizeof found);
     lensprof_status status = lp_store_begin(store, false, error);
     if (status != LENSPROF_OK) return status;
     status = lp_find_candidates(store, key, options, &found, error);

@@ -25,7 +25,7 @@ static int configure(sqlite3 *db, uint32_t mode, int busy_ms)
     sqlite3_limit(db, SQLITE_LIMIT_LENGTH, LARGEST_VALUE);
     sqlite3_limit(db, SQLITE_LIMIT_ATTACHED, 0);
     if (rc == SQLITE_OK)
-        rc = sqlite3_exec(db, "PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY", NULL, NULL, NULL);
+        rc = sqlite3_exec(db, "PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY; PRAGMA cache_size = -16000", NULL, NULL, NULL);
     if (rc == SQLITE_OK)
         rc = sqlite3_exec(db, mode == LENSPROF_STORE_READ ? "PRAGMA query_only = ON" : "PRAGMA synchronous = FULL", NULL,
                           NULL, NULL);

@@ -316,7 +316,7 @@ void test_store_query_show_remove(void **) {
                                            "--maker", "lensprof", "--processing", "jpeg"})["matches"]
                          .get<int>(),
                      2);
-    for (const Words &other : {Words{"--camera", "Simulated"}, Words{"--camera", "Simulated Camera", "--aperture", "4"},
+    for (const Words &other : {Words{"--camera", "Simulated"}, Words{"--camera", "Simulated Camera", "--aperture", "32"},
                                Words{"--camera", "Simulated Camera", "--processing", "raw"}})
         assert_refused(not_found, query + other, {"no profile for", work("profiles.db")});
 
