@@ -6,7 +6,7 @@
 #include <time.h>
 
 #ifndef ROUNDS
-#define ROUNDS 20 /* kills; the slow variant has more */
+#define ROUNDS 20 /* kills of each kind; the slow variant has more */
 #endif
 
 /* What the child reports after a call came back. */
@@ -128,11 +128,104 @@ static void test_killed_while_creating(void **state)
     }
 }
 
+/* Puts batches of BATCH profiles, all with the batch's number, for ever, and reports each after its commit. */
+enum { BATCH = 7 };
+
+static void work_in_batches(const char *path, int pipe_end, uint32_t number)
+{
+    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_store *store = NULL;
+    fill_profile(profile);
+    if (lensprof_store_open(path, LENSPROF_STORE_CREATE, &store, NULL)) _exit(1);
+    for (;; number++) {
+        profile->provenance.images = number;
+        if (lensprof_store_begin(store, NULL)) _exit(2);
+        for (int i = 0; i < BATCH; i++)
+            if (lensprof_store_put(store, profile, NULL, NULL)) _exit(3);
+        if (lensprof_store_commit(store, NULL)) _exit(4);
+        if (write(pipe_end, &number, sizeof number) != sizeof number) _exit(5);
+    }
+}
+
+/* Looks up and checks for ever; nothing that it sees may be half of a batch. */
+static void read_for_ever(const char *path)
+{
+    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile_key key;
+    lensprof_lookup_options options;
+    lensprof_lookup how;
+    lensprof_error error;
+    uint32_t found;
+    fill_profile(profile);
+    key = profile->key;
+    lensprof_lookup_options_init(&options);
+    for (;;) {
+        lensprof_store *store = NULL;
+        if (lensprof_store_open(path, LENSPROF_STORE_READ, &store, &error)) _exit(11);
+        for (int i = 0; i < 20; i++) {
+            if (lensprof_store_list(store, NULL, NULL, 0, &found, &error) || found % BATCH) _exit(12);
+            const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile, &how, &error);
+            if (status != (found ? LENSPROF_OK : LENSPROF_ERROR_NOT_FOUND) && found) _exit(13);
+        }
+        lensprof_store_close(store);
+    }
+}
+
+/* How many profiles of a batch there are; all of them, or none. */
+static uint32_t count_batch(sqlite3 *db, uint32_t number)
+{
+    char sql[80];
+    int64_t count = -1;
+    snprintf(sql, sizeof sql, "SELECT count(*) FROM profiles WHERE images = %u", number);
+    assert_int_equal(lp_store_number(db, sql, &count), SQLITE_OK);
+    return (uint32_t)count;
+}
+
+/* One writer of batches and two readers, all killed at a random moment:
+ * every batch that was reported is whole, the next one whole or not there, and the readers saw nothing else. */
+static void test_batches_beside_readers(void **state)
+{
+    const place *here = *state;
+    uint64_t seed = 9;
+    uint32_t number, reported = 0;
+    lensprof_store_close(store_at(here->path, LENSPROF_STORE_CREATE));
+    for (int round = 0; round < ROUNDS; round++) {
+        int ends[2], status;
+        pid_t children[3];
+        assert_int_equal(pipe(ends), 0);
+        for (int i = 0; i < 3; i++)
+            if ((children[i] = fork()) == 0) {
+                close(ends[0]);
+                if (i) read_for_ever(here->path);
+                work_in_batches(here->path, ends[1], (uint32_t)round * 100000 + 1);
+            }
+        close(ends[1]);
+        struct timespec pause = {0, (long)(1e6 + 5e7 * lp_random(&seed))};
+        nanosleep(&pause, NULL);
+        for (int i = 0; i < 3; i++) assert_int_equal(kill(children[(round + i) % 3], SIGKILL), 0);
+        for (int i = 0; i < 3; i++) {
+            assert_int_equal(waitpid(children[i], &status, 0), children[i]);
+            if (!WIFSIGNALED(status)) fail_msg("child %d ended with %d", i, WEXITSTATUS(status));
+        }
+        lensprof_store *store = store_at(here->path, (uint32_t)round % 3);
+        uint32_t last = (uint32_t)round * 100000;
+        for (; read(ends[0], &number, sizeof number) == sizeof number; last = number, reported++)
+            assert_int_equal(count_batch(store->db, number), BATCH);
+        close(ends[0]);
+        assert_true(count_batch(store->db, last + 1) % BATCH == 0);
+        assert_int_equal(count_at(store) % BATCH, 0);
+        lensprof_store_close(store);
+        assert_integrity(here->path);
+    }
+    assert_true(reported > (uint32_t)ROUNDS / 4); /* else nothing was tested */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         store_test(test_killed_at_random_moments),
         store_test(test_killed_while_creating),
+        store_test(test_batches_beside_readers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
