@@ -253,6 +253,67 @@ static void test_triggers_are_ignored(void **state)
     free(profile);
 }
 
+static void use_everything(lensprof_store *store)
+{
+    static lensprof_profile found, asked;
+    lensprof_lookup_options options;
+    lensprof_lookup how;
+    lensprof_error error;
+    lensprof_store_stats stats;
+    uint32_t count;
+    fill_profile(&asked);
+    lensprof_lookup_options_init(&options);
+    if (lensprof_store_lookup(store, &asked.key, &options, &found, &how, &error) == LENSPROF_OK)
+        assert_ok(lensprof_profile_validate(&found));
+    (void)!lensprof_store_check(store, NULL, NULL, NULL, &count, &error);
+    (void)!lensprof_store_get_stats(store, &stats, &error);
+    (void)!lensprof_store_list(store, NULL, NULL, 0, &count, &error);
+    (void)!lensprof_store_put(store, &asked, NULL, &error);
+    (void)!lensprof_store_remove(store, 2, &error);
+}
+
+/* Schemas that would run something, fail everything or take up all memory: no crash, no file made, no wrong profile. */
+static void test_crafted_schemas(void **state)
+{
+    static const char *const schemas[] = {
+        "ALTER TABLE profiles RENAME TO p; CREATE VIEW profiles AS SELECT *, load_extension('/tmp/evil') AS e FROM p",
+        "ALTER TABLE vignettings RENAME TO v; CREATE VIEW vignettings AS SELECT * FROM v",
+        "CREATE TRIGGER t BEFORE INSERT ON profiles BEGIN SELECT RAISE(ABORT, 'no'); END",
+        "CREATE TRIGGER t BEFORE DELETE ON profiles BEGIN SELECT RAISE(ROLLBACK, 'no'); END",
+        "CREATE TRIGGER t AFTER INSERT ON vignettings BEGIN INSERT INTO vignettings SELECT * FROM vignettings; END",
+        "ALTER TABLE profiles ADD COLUMN g TEXT GENERATED ALWAYS AS (printf('%.900000c', lens)) VIRTUAL",
+        "ALTER TABLE vignettings ADD COLUMN g REAL GENERATED ALWAYS AS (abs(-9223372036854775807 - 1)) VIRTUAL",
+        "CREATE INDEX i ON profiles (printf('%.900000c', lens)) WHERE id > 100",
+        "UPDATE responses SET samples = zeroblob(3000000) WHERE profile_id = 1",
+        "UPDATE profiles SET covariance = zeroblob(3000000), covariance_size = 36 WHERE id = 1",
+        "UPDATE profiles SET lens = CAST(zeroblob(3000000) AS TEXT), lens_name = CAST(zeroblob(3000000) AS TEXT)",
+        "UPDATE profiles SET created_unix_s = -9223372036854775807 - 1, images = 9223372036854775807",
+        "CREATE TABLE sqlite_stat (a); CREATE VIRTUAL TABLE f USING fts5(a)",
+        "UPDATE profiles SET unit = NULL, doubt = lens_name || 'x' WHERE id = 2",
+    };
+    const place *here = *state;
+    for (size_t i = 0; i < sizeof schemas / sizeof *schemas; i++) {
+        size_t size;
+        char text[1200];
+        sqlite3 *db;
+        lensprof_store *store = NULL;
+        unlink(here->path);
+        free(make_three(here, &size));
+        snprintf(text, sizeof text, "PRAGMA ignore_check_constraints = ON; PRAGMA foreign_keys = OFF; %s", schemas[i]);
+        assert_int_equal(sqlite3_open(here->path, &db), SQLITE_OK);
+        (void)sqlite3_exec(db, text, NULL, NULL, NULL); /* what STRICT tables or this SQLite refuse is not there */
+        sqlite3_close(db);
+        for (uint32_t mode = 0; mode < 2; mode++) {
+            lensprof_error error = {""};
+            const lensprof_status status = lensprof_store_open(here->path, mode, &store, &error);
+            if (status == LENSPROF_OK) use_everything(store);
+            else if (status != LENSPROF_ERROR_CORRUPT) fail_msg("%s: %s", schemas[i], error.text);
+            if (status == LENSPROF_OK) lensprof_store_close(store);
+            if (i < 2) assert_int_equal(status, LENSPROF_ERROR_CORRUPT); /* views are no tables */
+        }
+    }
+}
+
 /* A constraint of somebody else's fails the put and leaves nothing of it. */
 static void test_foreign_constraint(void **state)
 {
@@ -379,6 +440,7 @@ int main(void)
         store_test(test_missing_column),
         store_test(test_triggers_are_ignored),
         store_test(test_foreign_constraint),
+        store_test(test_crafted_schemas),
         store_test(test_truncated),
         store_test(test_random_damage),
     };
