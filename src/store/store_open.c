@@ -25,7 +25,7 @@ static int configure(sqlite3 *db, uint32_t mode, int busy_ms)
     sqlite3_limit(db, SQLITE_LIMIT_LENGTH, LARGEST_VALUE);
     sqlite3_limit(db, SQLITE_LIMIT_ATTACHED, 0);
     if (rc == SQLITE_OK)
-        rc = sqlite3_exec(db, "PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY; PRAGMA cache_size = -16000", NULL, NULL, NULL);
+        rc = sqlite3_exec(db, "PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY", NULL, NULL, NULL);
     if (rc == SQLITE_OK)
         rc = sqlite3_exec(db, mode == LENSPROF_STORE_READ ? "PRAGMA query_only = ON" : "PRAGMA synchronous = FULL", NULL,
                           NULL, NULL);
@@ -103,7 +103,10 @@ static lensprof_status connect(lensprof_store *store, const char *full, lensprof
         return lp_store_fail_sql(store->path, NULL, SQLITE_READONLY, error);
     lensprof_status status = LENSPROF_OK;
     if (store->mode == LENSPROF_STORE_CREATE) status = create_when_empty(store, error);
-    return status == LENSPROF_OK ? check_tables(store, error) : status;
+    if (status == LENSPROF_OK) status = check_tables(store, error);
+    if (status == LENSPROF_OK) /* KiB; it reads the file, whose failures check_tables has told */
+        (void)sqlite3_exec(store->db, "PRAGMA cache_size = -16000", NULL, NULL, NULL);
+    return status;
 }
 
 /* A full disk has no room for the index of a log either. Then what is in the file can still be read: where nothing can be
