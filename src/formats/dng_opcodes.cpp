@@ -217,8 +217,8 @@ uint32_t mosaic_channel(uint32_t layout, uint32_t column, uint32_t row) {
 
 uint32_t opcode_channels(uint32_t layout) {
     if (layout == LENSPROF_LAYOUT_GREY) return 1;
-    demand(layout == LENSPROF_LAYOUT_RGB || is_mosaic(layout), "a layout that raw pictures have not; pass GREY, RGB or a "
-           "mosaic's", LENSPROF_ERROR_ARGUMENT);
+    demand(layout == LENSPROF_LAYOUT_RGB || is_mosaic(layout),
+           "a layout that raw pictures have not; pass GREY, RGB or a mosaic's", LENSPROF_ERROR_ARGUMENT);
     return 3;
 }
 

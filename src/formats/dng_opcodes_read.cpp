@@ -130,7 +130,8 @@ std::string remark_on(double worst, const std::string &left_out) {
 // Returns what provenance.doubt says.
 std::string read_gains(const OpcodeGains &gains, PixelFrame frame, uint32_t layout, lensprof_profile &profile) {
     const uint32_t channels = opcode_channels(layout);
-    if (!frame.width || !frame.height) fail(LENSPROF_ERROR_ARGUMENT, "a frame without pixels; pass its width and height");
+    if (!frame.width || !frame.height)
+        fail(LENSPROF_ERROR_ARGUMENT, "a frame without pixels; pass its width and height");
     if (gains.radial.empty() && gains.maps.empty())
         fail(LENSPROF_ERROR_NOT_FOUND, "no FixVignetteRadial and no GainMap among " + std::to_string(gains.count)
                                            + " opcodes" + (gains.left_out.empty() ? "" : " (" + gains.left_out + ")")
