@@ -50,7 +50,7 @@ double radial_gain(const RadialGain &gain, const PixelFrame &frame, double x, do
 // The gain of a map for a plane: bilinear, beyond the outermost points as at the nearest of them.
 double map_gain(const GainMap &map, const PixelFrame &frame, double x, double y, uint32_t plane);
 
-// Columns (j = 0, 1) and rows of a mosaic's square of 2 x 2 pixels that show a channel; its layout is one of lensprof_layout.
+// Whether a lensprof_layout is a mosaic; and the channel of a site of its squares of 2 x 2 pixels.
 bool is_mosaic(uint32_t layout);
 uint32_t mosaic_channel(uint32_t layout, uint32_t column, uint32_t row);
 

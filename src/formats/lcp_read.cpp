@@ -22,7 +22,7 @@ namespace lensprof {
 namespace {
 
 constexpr size_t kMostEntries = 20000, kMostKnots = 1000;
-constexpr uint32_t kMapCells = 128;  // along the longer side, where the two focal lengths differ: a plane at each node of a grid
+constexpr uint32_t kMapCells = 128;  // along the longer side: enough for a plane at each node of a grid
 constexpr double kLowest = 0.001;   // as lensprof_vignetting_validate
 
 // A radius in focal lengths and the attenuation there.

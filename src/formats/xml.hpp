@@ -14,8 +14,8 @@ namespace lensprof {
 class XmlText {
 public:
     // `text` must outlive this. Throws SIZE over 64 MiB or 2 million elements or attributes; SYNTAX for what is not
-    // UTF-8, not well-formed or has another document element than one of these. Document types, comments and processing instructions are
-    // skipped; entities but the five of XML stay as they are.
+    // UTF-8, not well-formed or has another document element than one of these. Document types, comments and processing
+    // instructions are skipped; entities but the five of XML stay as they are.
     XmlText(std::string_view text, const std::vector<std::string_view> &document_elements);
 
     pugi::xml_node root() const { return root_; }

@@ -226,7 +226,9 @@ void test_written_golden(void **) {
         if (at == std::string::npos) fail_msg("missing: %s in %s", piece, text.c_str());
     }
     // 36 mm is the longer side: the focal length in it is 1, and -0.25 of half diagonals is -0.25 (36 / 21.633)^2 of it.
-    const auto number = [&](const std::string &name) { return std::stod(text.substr(text.rfind(name + ">", text.rfind("</" + name)) + name.size() + 1)); };
+    const auto number = [&](const std::string &name) {
+        return std::stod(text.substr(text.rfind("<" + name + ">") + name.size() + 2));
+    };
     assert_close(number("stCamera:FocalLengthX"), 1.0, 1e-12);
     assert_close(number("stCamera:VignetteModelParam1"), -0.25 * 36 * 36 / 468, 1e-12);
 }
