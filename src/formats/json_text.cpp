@@ -227,7 +227,8 @@ void JsonValue::fail(const std::string &what, lensprof_status status) const {
 
 void JsonWriter::separate() {
     if (!first_) all_ += ',';
-    first_ = false;
+    if (broken_) all_ += '\n';
+    first_ = broken_ = false;
 }
 
 void JsonWriter::open(char bracket) {

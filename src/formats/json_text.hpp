@@ -84,7 +84,7 @@ private:
     std::string texts_;  // each after its length, 4 bytes
 };
 
-// Appends JSON to a text, on one line; the caller opens and closes what it opens in turn.
+// Appends JSON to a text, on one line but for what begins another; the caller opens and closes what it opens in turn.
 class JsonWriter {
 public:
     void open(char bracket);   // '{' or '['
@@ -95,15 +95,15 @@ public:
     void text(const char *value);  // bytes that are not UTF-8 as U+FFFD
     void word(const char *value);  // true, false, null
     void numbers(const double *values, size_t count);
-    void line() { all_ += '\n'; }
+    void line() { broken_ = true; }  // what is written next begins a line
 
-    const std::string &all() const { return all_; }
+    std::string all() const { return all_ + '\n'; }
 
 private:
     void separate();
 
     std::string all_;
-    bool first_ = true;
+    bool first_ = true, broken_ = false;
 };
 
 }  // namespace lensprof

@@ -157,7 +157,6 @@ std::string profiles_text(const lensprof_profile *const *profiles, uint32_t coun
         json.close(']');
         json.close('}');
     }
-    json.line();
     return json.all();
 }
 

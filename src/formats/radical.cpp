@@ -20,7 +20,7 @@ constexpr uint32_t kMagic = 0xC4A1FDD9;
 constexpr uint32_t kFloat3 = 21, kDouble3 = 22;  // OpenCV's CV_32FC3 and CV_64FC3
 constexpr uint32_t kGreys = 256;
 constexpr uint32_t kTerms = 5;       // centre x, y, and coefficients of r^2, r^4, r^6, r in px
-constexpr uint32_t kSamples = 192;   // a side, of the surfaces of centres that differ
+constexpr uint32_t kSamples = 96;   // a side, of the surfaces of centres that differ
 constexpr double kSameCenter = 1e-6;  // px
 constexpr const char *kPolynomial = "PolynomialVignettingModel", *kMap = "NonparametricVignettingModel";
 

@@ -210,6 +210,46 @@ static lensprof_status write_opcodes(world *w)
     return status;
 }
 
+/* A map, a polynomial of radical with a centre a channel, a tuning file: to a profile that stays as it was. */
+static lensprof_status read_falloffs(world *w)
+{
+    static float values[16 * 12];
+    static char radical[1000];
+    const lensprof_map map = {16, 12, 1, LENSPROF_MAP_ATTENUATION, values};
+    lensprof_profile *before = malloc(sizeof *before);
+    memcpy(before, w->profile, sizeof *before);
+    for (int i = 0; i < 16 * 12; i++)
+        values[i] = 1 - 0.002f * (float)((i % 16 - 7) * (i % 16 - 7) + (i / 16 - 5) * (i / 16 - 5));
+    size_t bytes = 0;
+    const char tuning[] = "{\"luminance_lut\":[1.1,1.05,1.1,1.05,1,1.05,1.1,1.05,1.1],\"calibrations_Cr\":[{\"ct\":3000,\"table\":"
+                          "[1.1,1.05,1.1,1.05,1,1.05,1.1,1.05,1.1]}]}";
+    lensprof_status status = lensprof_map_read(&map, 16, 12, w->profile, NULL, NULL);
+    if (status == LENSPROF_OK)
+        status = lensprof_radical_vignetting_write(before, 16, 12, radical, sizeof radical, &bytes, NULL);
+    if (status == LENSPROF_OK)
+        status = lensprof_radical_vignetting_read(radical, bytes, w->profile, NULL, NULL);
+    if (status == LENSPROF_OK)
+        status = lensprof_alsc_read(tuning, sizeof tuning - 1, 3000, 3, 3, 30, 30, w->profile, NULL, NULL);
+    else
+        assert_int_equal(status, LENSPROF_ERROR_MEMORY);
+    memcpy(w->profile, before, sizeof *before);
+    free(before);
+    return status;
+}
+
+static lensprof_status write_falloffs(world *w)
+{
+    static float values[16 * 12 * 3];
+    static char text[30000];
+    values[0] = 99;
+    lensprof_status status = lensprof_map_write(w->profile, 16, 12, 16, 12, 3, LENSPROF_MAP_GAIN, values, NULL);
+    assert_true((values[0] == 99) == (status != LENSPROF_OK));
+    if (status != LENSPROF_OK) return status;
+    status = lensprof_radical_response_write(&w->response, 1, text, sizeof text, NULL, NULL);
+    if (status != LENSPROF_OK) return status;
+    return lensprof_alsc_write(w->profile, 5000, 16, 12, 160, 120, text, sizeof text, NULL, NULL);
+}
+
 static lensprof_status read_points(world *w)
 {
     (void)w;
@@ -268,6 +308,8 @@ static void test_out_of_memory(void **state)
     fail_each(w, read_pcalib, 2);
     fail_each(w, read_curves, 5);
     fail_each(w, write_tables, 10);
+    fail_each(w, read_falloffs, 10);
+    fail_each(w, write_falloffs, 10);
     fail_each(w, read_points, 0); /* needs no memory at all */
     lensprof_pto_destroy(w->pto);
     free(w->profile);

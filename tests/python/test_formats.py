@@ -299,6 +299,18 @@ class Maps(unittest.TestCase):
         with self.assertRaises(ValueError):
             lp.map_read(np.ones(9))
 
+    def test_alsc(self):
+        profile = lp.Profile()
+        profile.vignetting = [lp.Vignetting(k=(k, 0.1, 0), center=(0.05, 0)) for k in (-0.5, -0.4, -0.3)]
+        text = lp.alsc_write(profile, (3280, 2464), 5000)
+        found, worst = lp.alsc_read('{"algorithms":[{"rpi.dpc":{}},' + text + "]}", (3280, 2464))
+        self.assertLess(worst, 2e-3)
+        frames = [lp.map_write(p, (3280, 2464), (16, 12), 3) for p in (profile, found)]
+        np.testing.assert_allclose(frames[0], frames[1], rtol=3e-3)
+        with refused(self, lp.Status.ERROR_SYNTAX) as caught:
+            lp.alsc_read(text, (3280, 2464), size=(10, 10))
+        self.assertIn("luminance_lut has 192 values", caught.exception.text)
+
     def test_radical(self):
         profile = lp.Profile()
         profile.vignetting = [lp.Vignetting(k=(k, 0.1, 0), center=(0.05, 0)) for k in (-0.5, -0.4, -0.3)]

@@ -15,9 +15,9 @@ from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_bytes, simulate
 from .fit import FitImage, FitOptions, FitResult, fit_overlap, fit_radiance, transfer_rms
 from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
-from .formats import (FrameTime, Pto, PtoImage, curves_read, curves_write, dng_opcodes_read, dng_opcodes_write,
-                      drone_xmp_read, json_read, json_write, lcp_read, lcp_write, lensfun_read, lensfun_write,
-                      map_read, map_write, pcalib_read, pcalib_write, points_read, points_write,
+from .formats import (FrameTime, Pto, PtoImage, alsc_read, alsc_write, curves_read, curves_write, dng_opcodes_read,
+                      dng_opcodes_write, drone_xmp_read, json_read, json_write, lcp_read, lcp_write, lensfun_read,
+                      lensfun_write, map_read, map_write, pcalib_read, pcalib_write, points_read, points_write,
                       radical_response_read, radical_response_write, radical_vignetting_read,
                       radical_vignetting_write, times_read, times_write)
 from .geometry import Camera
@@ -35,11 +35,11 @@ __all__ = [
     "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey",
     "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Response", "ResponseKind",
     "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault",
-    "StoreMode", "StoreRow", "StoreStats", "UNKNOWN", "Vignetting", "correct", "curves_read", "curves_write",
-    "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table", "fit_flat", "fit_overlap",
-    "fit_radiance", "json_read", "json_write", "layout_channels", "layout_samples", "lcp_read", "lcp_write",
-    "lensfun_read", "lensfun_write", "map_read", "map_write", "pcalib_read", "pcalib_write", "points_read",
-    "points_write", "radical_response_read", "radical_response_write", "radical_vignetting_read",
+    "StoreMode", "StoreRow", "StoreStats", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct",
+    "curves_read", "curves_write", "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table",
+    "fit_flat", "fit_overlap", "fit_radiance", "json_read", "json_write", "layout_channels", "layout_samples",
+    "lcp_read", "lcp_write", "lensfun_read", "lensfun_write", "map_read", "map_write", "pcalib_read", "pcalib_write",
+    "points_read", "points_write", "radical_response_read", "radical_response_write", "radical_vignetting_read",
     "radical_vignetting_write", "sample_bytes", "sample_overlap", "sample_tracks", "simulate", "status_name",
     "times_read", "times_write", "transfer_rms", "version",
 ]

@@ -671,6 +671,10 @@ FUNCTIONS = {
                                      _error]),
     "lensprof_drone_xmp_read": (_status, [c_char_p, c_size_t, c_uint32, c_uint32, c_char_p, ImportVisitor, c_void_p,
                                           _error]),
+    "lensprof_alsc_read": (_status, [c_char_p, c_size_t, c_double, c_uint32, c_uint32, c_uint32, c_uint32, _profile,
+                                     _doubles, _error]),
+    "lensprof_alsc_write": (_status, [_profile, c_double, c_uint32, c_uint32, c_uint32, c_uint32, c_char_p, c_size_t,
+                                      _size_out, _error]),
     # store.h
     "lensprof_store_open": (_status, [c_char_p, c_uint32, POINTER(_store), _error]),
     "lensprof_store_close": (None, [_store]),

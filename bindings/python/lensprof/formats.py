@@ -401,3 +401,23 @@ def drone_xmp_read(text: Union[str, bytes], width: int, height: int, source: str
                                                   *rest),
         source, "the XMP packet cannot be read")
     return entry
+
+
+def alsc_read(text: Union[str, bytes], frame: tuple[int, int], ct: float = _abi.UNKNOWN,
+              size: tuple[int, int] = (0, 0), profile: Optional[Profile] = None) -> tuple[Profile, float]:
+    """The falloff of a tuning file of libcamera for the Raspberry Pi, and the largest relative error that is left.
+
+    frame: width and height of the sensor, px. ct: colour temperature, K; the file's own by default. size: columns and rows
+    of other tables than 16 x 12 and 32 x 32. profile: as map_read.
+    """
+    data, numbers = _bytes(text), [integer(n, "columns, rows, width or height") for n in (*size, *frame)]
+    return _refitted(lambda *out: lib.lensprof_alsc_read(data, len(data), ct, *numbers, *out), profile,
+                     "the tables cannot be read")
+
+
+def alsc_write(profile: Profile, frame: tuple[int, int], ct: float = _abi.UNKNOWN,
+               size: tuple[int, int] = (16, 12)) -> str:
+    """Falloff and gain grid as the "rpi.alsc" of a tuning file, with tables of size (columns, rows)."""
+    numbers, error = [integer(n, "columns, rows, width or height") for n in (*size, *frame)], _abi.ErrorText()
+    return _written(lambda *buffer: lib.lensprof_alsc_write(byref(profile), ct, *numbers, *buffer, byref(error)),
+                    "the tables cannot be written", error).decode()

@@ -1,0 +1,122 @@
+// Lens shading tables of libcamera's Raspberry Pi tuning files, to a falloff.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <lensprof/formats.h>
+
+#include "alsc.hpp"
+#include "json_text.hpp"
+#include "map.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kMostGain = 1000.0;
+constexpr size_t kMostValues = 65536;
+
+// The algorithm's object: the text itself, a member of it, or one of the algorithms of a tuning file.
+JsonValue find_alsc(const JsonValue &root) {
+    if (!root.is_object()) root.fail("is no object; give a tuning file of libcamera, or its \"rpi.alsc\"");
+    if (const JsonValue direct = root[kAlscName]) return direct;
+    if (const JsonValue list = root["algorithms"]) {
+        for (JsonValue item = list.first(); item; item = item.next())
+            if (item.is_object() && item[kAlscName]) return item[kAlscName];
+        list.fail("has no \"rpi.alsc\"; give another file");
+    }
+    return root;
+}
+
+// Columns and rows of a table of so many values.
+void find_shape(const JsonValue &table, size_t count, uint32_t &columns, uint32_t &rows) {
+    if (!columns && !rows) {
+        if (count == 16 * 12) columns = 16, rows = 12;
+        else if (count == 32 * 32) columns = rows = 32;
+        else table.fail("has " + std::to_string(count) + " values, not 16 x 12 or 32 x 32; give columns and rows");
+    }
+    if (uint64_t{columns} * rows != count)
+        table.fail("has " + std::to_string(count) + " values, not " + std::to_string(columns) + " x " + std::to_string(rows)
+                   + "; give other columns and rows");
+}
+
+std::vector<double> gains_of(const JsonValue &table) {
+    const std::vector<double> gains = table.numbers(4, kMostValues);
+    for (size_t i = 0; i < gains.size(); i++)
+        if (!(gains[i] >= 1.0 / kMostGain && gains[i] <= kMostGain))
+            table.fail("has " + number_text(gains[i]) + " at " + std::to_string(i) + ", which is no gain; correct it",
+                       LENSPROF_ERROR_VIGNETTING);
+    return gains;
+}
+
+// The table of a colour temperature, as libcamera finds it: between the two nearest ones linearly, beyond the ends as there.
+// All 1 where there is none.
+std::vector<double> ratios_at(const JsonValue &calibrations, double ct, size_t count) {
+    std::vector<double> ratios(count, 1.0);
+    if (!calibrations) return ratios;
+    if (!calibrations.is_array()) calibrations.fail("is no array; correct it");
+    double before_ct = 0.0;
+    std::vector<double> before;
+    for (JsonValue item = calibrations.first(); item; item = item.next()) {
+        const double item_ct = item.required("ct").number_within(1.0, 1e6);
+        const JsonValue table = item.required("table");
+        const std::vector<double> gains = gains_of(table);
+        if (gains.size() != count)
+            table.fail("has " + std::to_string(gains.size()) + " values, the luminance " + std::to_string(count) + "; correct it");
+        if (item_ct <= before_ct) item.fail("is not of a higher ct than the one before; sort them");
+        const double share = before.empty() ? 1.0 : std::clamp((ct - before_ct) / (item_ct - before_ct), 0.0, 1.0);
+        if (before.empty() || ct > before_ct)
+            for (size_t i = 0; i < count; i++) ratios[i] = before.empty() ? gains[i] : before[i] + share * (gains[i] - before[i]);
+        before = gains, before_ct = item_ct;
+    }
+    return ratios;
+}
+
+struct Shape {
+    uint32_t columns, rows, width, height;
+};
+
+double read_alsc(std::string_view text, double ct, Shape shape, lensprof_profile &profile) {
+    const JsonText json(text);
+    const JsonValue alsc = find_alsc(json.root());
+    if (alsc.is_object() && alsc["corner_strength"])
+        alsc["corner_strength"].fail("makes libcamera ignore \"luminance_lut\"; take it out to read the table",
+                                     LENSPROF_ERROR_UNSUPPORTED);
+    const JsonValue table = alsc.required("luminance_lut");
+    const std::vector<double> luminance = gains_of(table);
+    const size_t count = luminance.size();
+    find_shape(table, count, shape.columns, shape.rows);
+    if (ct == LENSPROF_UNKNOWN)
+        ct = alsc["default_ct"] ? alsc["default_ct"].number_within(1.0, 1e6) : kAlscTemperatureK;
+    const std::vector<double> red = ratios_at(alsc["calibrations_Cr"], ct, count),
+                              blue = ratios_at(alsc["calibrations_Cb"], ct, count);
+    const bool grey = !alsc["calibrations_Cr"] && !alsc["calibrations_Cb"];
+    std::vector<float> gains;
+    for (size_t i = 0; i < count; i++) {
+        if (!grey) gains.push_back(static_cast<float>(luminance[i] * red[i]));
+        gains.push_back(static_cast<float>(luminance[i]));
+        if (!grey) gains.push_back(static_cast<float>(luminance[i] * blue[i]));
+    }
+    return fit_values({shape.columns, shape.rows, grey ? 1u : 3u, true, {0, 1, 2}}, gains.data(), shape.width, shape.height,
+                      profile);
+}
+
+}  // namespace
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_alsc_read(const char *text, size_t bytes, double ct, uint32_t columns, uint32_t rows,
+                                   uint32_t width, uint32_t height, lensprof_profile *profile, double *worst,
+                                   lensprof_error *error) {
+    if ((!text && bytes) || !profile || !(ct == LENSPROF_UNKNOWN || (ct > 0.0 && std::isfinite(ct)))) {
+        set_error(error, "lensprof_alsc_read: give a buffer, a profile and a colour temperature above 0 or unknown");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return at_boundary(error, [&] {
+        auto found = std::make_unique<lensprof_profile>(*profile);
+        const double error_found = read_alsc({bytes ? text : "", bytes}, ct, {columns, rows, width, height}, *found);
+        *profile = *found;
+        if (worst) *worst = error_found;
+    });
+}

@@ -1,0 +1,172 @@
+// Lens shading tables of the Raspberry Pi.
+#include <algorithm>
+
+#include "profile_support.hpp"
+
+namespace {
+
+constexpr uint32_t kWidth = 3280, kHeight = 2464;
+
+struct Found {
+    lensprof_status status;
+    std::string error;
+    double worst;
+    Profile profile;
+};
+
+Found read(const std::string &text, double ct = LENSPROF_UNKNOWN, uint32_t columns = 0, uint32_t rows = 0) {
+    Found found{};
+    found.profile = full_profile();
+    const Profile before = copy_of(*found.profile);
+    lensprof_error error;
+    const std::vector<char> bytes = exact(text);
+    found.status = lensprof_alsc_read(bytes.data(), bytes.size(), ct, columns, rows, kWidth, kHeight, found.profile.get(),
+                                      &found.worst, &error);
+    found.error = error.text;
+    if (found.status != LENSPROF_OK) assert_memory_equal(found.profile.get(), before.get(), sizeof *before);
+    else assert_ok(lensprof_profile_validate(found.profile.get()));
+    return found;
+}
+
+std::string write(const lensprof_profile &profile, double ct = 5000, uint32_t columns = 16, uint32_t rows = 12) {
+    return written([&](char *text, size_t capacity, size_t *needed, lensprof_error *error) {
+        return lensprof_alsc_write(&profile, ct, columns, rows, kWidth, kHeight, text, capacity, needed, error);
+    });
+}
+
+Profile lens() {
+    Profile profile = new_profile();
+    profile->vignettings = 3;
+    for (int c = 0; c < 3; c++) profile->vignetting[c] = {{-0.55 + 0.05 * c, 0.1, 0}, {0.03, -0.02}};
+    return profile;
+}
+
+// M of a channel over that in the middle, at a share of the way from the middle to the first corner.
+double shade(const lensprof_profile &profile, uint32_t channel, double way) {
+    std::vector<float> values(201 * 151 * 3);
+    assert_ok(lensprof_map_write(&profile, kWidth, kHeight, 201, 151, 3, 0, values.data(), nullptr));
+    const auto at = [&](int x, int y) { return double(values[(size_t(y) * 201 + x) * 3 + channel]); };
+    return at(int(100 - 100 * way), int(75 - 75 * way)) / at(100, 75);
+}
+
+// 3 decimals: within a thousandth where the gain is 1. The outermost cells' middles are what the tables know.
+void test_round_trip(void **) {
+    const Profile truth = lens();
+    for (const uint32_t columns : {16u, 32u, 20u}) {
+        const uint32_t rows = columns == 16 ? 12 : columns == 32 ? 32 : 10;
+        const Found found = read(write(*truth, 5000, columns, rows), LENSPROF_UNKNOWN, columns == 20 ? 20 : 0, columns == 20 ? 10 : 0);
+        assert_string_equal(found.error.c_str(), "");
+        assert_true(found.worst < 2e-3);
+        assert_int_equal(found.profile->vignettings, 3);
+        assert_int_equal(found.profile->covariance_size, 0);
+        for (uint32_t c = 0; c < 3; c++)
+            for (const double way : {0.3, 0.6, 0.9}) assert_close(shade(*found.profile, c, way), shade(*truth, c, way), 2e-3);
+    }
+}
+
+std::string table(double first, double others, size_t count = 192) {
+    std::string text = "[" + std::to_string(first);
+    for (size_t i = 1; i < count; i++) text += "," + std::to_string(others);
+    return text + "]";
+}
+
+// A green that is darker in the corner; red and blue by their ratios, in a tuning file.
+std::string tuning_file() {
+    const std::string text = write(*lens());
+    return "{\"version\":2.0,\"target\":\"bcm2835\",\"algorithms\":[{\"rpi.dpc\":{}}," + text + "]}";
+}
+
+// Cr is what red's gain is multiplied by: where it is large, red is dark beside green.
+void test_sense(void **) {
+    const std::string text = write(*lens());
+    assert_int_equal(text.find("{\"rpi.alsc\":{\n\"omega\":1.3,\"n_iter\":100,\"luminance_strength\":1.0,\n\"calibrations_Cr\":[{\"ct\":5000,\"table\":[\n1."), 0);
+    assert_true(text.find("corner_strength") == std::string::npos);  // it would replace the table
+    const double red = std::stod(text.substr(text.find("table\":[") + 8)),
+                 luminance = std::stod(text.substr(text.find("luminance_lut\":[") + 16));
+    assert_close(luminance, 1 / shade(*lens(), 1, 0.94), 0.05);
+    assert_true(red > 1.02 && red < 1.2);  // red's falloff is the strongest
+    const Found found = read(tuning_file());
+    assert_string_equal(found.error.c_str(), "");
+    assert_close(shade(*found.profile, 0, 0.9), shade(*lens(), 0, 0.9), 2e-3);
+}
+
+std::string with_two(double low, double high) {
+    return "{\"luminance_lut\":" + table(1, 1) + ",\"default_ct\":4000,\"calibrations_Cr\":[{\"ct\":3000,\"table\":" + table(low, 1)
+         + "},{\"ct\":5000,\"table\":" + table(high, 1) + "}]}";
+}
+
+// Between two tables linearly, beyond them as the nearer; without one as default_ct says.
+void test_temperature(void **) {
+    const auto corner = [&](double ct) {
+        const Found found = read(with_two(1.2, 1.6), ct);
+        assert_string_equal(found.error.c_str(), "");
+        assert_int_equal(found.profile->vignettings, 3);
+        return found.profile->grid.attenuation[0] * lensprof_vignetting_eval(&found.profile->vignetting[0], 1.0, nullptr);
+    };
+    const double low = corner(3000), high = corner(5000);
+    assert_true(low > high + 0.03);
+    assert_true(corner(1000) == low && corner(9000) == high);
+    const double middle = corner(4000);
+    assert_true(middle < low && middle > high);
+    assert_true(corner(LENSPROF_UNKNOWN) == middle);
+    assert_true(corner(3500) > middle && corner(3500) < low);
+    const Found grey = read("{\"luminance_lut\":" + table(1, 1) + "}");
+    assert_int_equal(grey.profile->vignettings, 1);
+}
+
+void test_refused(void **) {
+    const std::string good = with_two(1.2, 1.6);
+    const struct {
+        std::string text;
+        lensprof_status status;
+        const char *words;
+    } cases[] = {
+        {"", LENSPROF_ERROR_SYNTAX, "line 1: not JSON"},
+        {"[]", LENSPROF_ERROR_SYNTAX, "is no object"},
+        {"{}", LENSPROF_ERROR_SYNTAX, "has no \"luminance_lut\""},
+        {"{\"algorithms\":[{\"rpi.dpc\":{}}]}", LENSPROF_ERROR_SYNTAX, "algorithms has no \"rpi.alsc\""},
+        {"{\"algorithms\":7}", LENSPROF_ERROR_SYNTAX, "algorithms is no array"},
+        {"{\"rpi.alsc\":[]}", LENSPROF_ERROR_SYNTAX, "rpi.alsc is no object"},
+        {"{\"corner_strength\":2.0," + good.substr(1), LENSPROF_ERROR_UNSUPPORTED, "corner_strength makes"},
+        {with(good, "[1.000000,", "["), LENSPROF_ERROR_SYNTAX, "luminance_lut has 191 values, not 16 x 12"},
+        {with(good, "[1.2", "[1,1.2"), LENSPROF_ERROR_SYNTAX, "calibrations_Cr[0].table has 193 values"},
+        {with(good, "[1.200000", "[0"), LENSPROF_ERROR_VIGNETTING, "calibrations_Cr[0].table has 0 at 0"},
+        {with(good, "[1.200000", "[-1"), LENSPROF_ERROR_VIGNETTING, "no gain"},
+        {with(good, "[1.200000", "[1e9"), LENSPROF_ERROR_VIGNETTING, "no gain"},
+        {with(good, "[1.200000", "[null"), LENSPROF_ERROR_SYNTAX, "calibrations_Cr[0].table[0] is no number"},
+        {with(good, "\"ct\":5000", "\"ct\":3000"), LENSPROF_ERROR_SYNTAX, "calibrations_Cr[1] is not of a higher ct"},
+        {with(good, "\"ct\":5000,", ""), LENSPROF_ERROR_SYNTAX, "calibrations_Cr[1] has no \"ct\""},
+        {good.substr(0, good.size() / 2), LENSPROF_ERROR_SYNTAX, "not JSON"},
+        {with(good, "[1.2", "[\xff"), LENSPROF_ERROR_SYNTAX, "not UTF-8"},
+    };
+    for (const auto &c : cases) {
+        const Found found = read(c.text);
+        if (found.error.find(c.words) == std::string::npos)
+            fail_msg("\"%s\" instead of \"%s\"", found.error.c_str(), c.words);
+        assert_int_equal(found.status, c.status);
+    }
+    assert_non_null(strstr(read(good, 4000, 10, 10).error.c_str(), "192 values, not 10 x 10"));
+    assert_int_equal(read(good, 0).status, LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(read(good, NAN).status, LENSPROF_ERROR_ARGUMENT);
+    const Profile p = lens();
+    const auto status = [&](double ct, uint32_t columns, uint32_t width) {
+        return lensprof_alsc_write(p.get(), ct, columns, 12, width, 10, nullptr, 0, nullptr, nullptr);
+    };
+    assert_int_equal(status(5000, 1, 10), LENSPROF_ERROR_SIZE);
+    assert_int_equal(status(5000, 257, 10), LENSPROF_ERROR_SIZE);
+    assert_int_equal(status(5000, 16, 0), LENSPROF_ERROR_SIZE);
+    assert_int_equal(status(0, 16, 10), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(status(5000, 16, 10), LENSPROF_ERROR_CAPACITY);
+    p->vignetting[1].k[0] = -9;
+    assert_int_equal(status(5000, 16, 10), LENSPROF_ERROR_VIGNETTING);
+}
+
+}  // namespace
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_sense), cmocka_unit_test(test_temperature),
+        cmocka_unit_test(test_refused),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
