@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t kRows = 256;
 constexpr double kFull = 255.0;
-// Between two values: three units of single precision, in which they are read, at 255.
+// Between two values: six units of single precision, in which they are read, at 255.
 constexpr double kLeastStep = 1e-4;
 
 lensprof_response read_pcalib(std::string_view text) {

