@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "library.hpp"
 #include "report.hpp"
 
 namespace lensprof {
@@ -28,11 +29,6 @@ struct Chart {
     std::string title; /* what the curves share */
     std::string note;  /* what they leave out; empty = nothing */
     std::vector<ChartCurve> curves;
-};
-
-struct StoredProfile {
-    int64_t id; /* 0: of a blob, alone */
-    std::unique_ptr<lensprof_profile> profile;
 };
 
 /* Curves of these profiles, for those with three of one channel (0..2) or of all (-1). Failure (usage) when there are

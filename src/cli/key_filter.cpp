@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "library.hpp"
 #include "report.hpp"
@@ -55,6 +56,21 @@ std::vector<lensprof_store_row> KeyFilter::rows(lensprof_store *store, const std
                               [=](const lensprof_store_row &row) { return row.key.processing != processing; }),
                rows.end());
     return rows;
+}
+
+std::vector<StoredProfile> KeyFilter::profiles(const std::string &db, std::vector<int64_t> ids) const {
+    Store store = open_store(db, LENSPROF_STORE_READ);
+    if (ids.empty())
+        for (const auto &row : rows(store.get(), db)) ids.push_back(row.id);
+    if (ids.empty()) throw Failure(ExitCode::not_found, nothing_found(db));
+    std::vector<StoredProfile> profiles;
+    for (int64_t id : ids) {
+        auto profile = std::make_unique<lensprof_profile>();
+        lensprof_error error{};
+        check(lensprof_store_get(store.get(), id, profile.get(), &error), store_path(db), &error);
+        profiles.push_back({id, std::move(profile)});
+    }
+    return profiles;
 }
 
 std::string KeyFilter::nothing_found(const std::string &db) const {

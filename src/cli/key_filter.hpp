@@ -9,6 +9,8 @@
 
 #include <lensprof/lensprof.h>
 
+#include "library.hpp"
+
 namespace lensprof {
 
 /* Camera, lens and setting as asked for; what is not given may be anything. */
@@ -28,6 +30,9 @@ public:
 
     /* Rows of the profiles that match, in the order of lensprof_store_list; `db` as given, for texts. */
     std::vector<lensprof_store_row> rows(lensprof_store *store, const std::string &db) const;
+
+    /* The profiles with these ids, or where there are none all that match; Failure (not_found). */
+    std::vector<StoredProfile> profiles(const std::string &db, std::vector<int64_t> ids) const;
 
     /* "no profile for CAMERA with this setting in FILE; what to do". */
     std::string nothing_found(const std::string &db) const;

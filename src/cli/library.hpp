@@ -21,6 +21,11 @@ struct StoreClose {
 };
 using Store = std::unique_ptr<lensprof_store, StoreClose>;
 
+struct StoredProfile {
+    int64_t id; /* 0: of a file, alone */
+    std::unique_ptr<lensprof_profile> profile;
+};
+
 /* The database to use: `path`, or where that is empty the user's own, $XDG_DATA_HOME/lensprof/profiles.db (else under
  * ~/.local/share), whose folder is made when `mode` may create it. */
 Store open_store(const std::string &path, lensprof_store_mode mode);

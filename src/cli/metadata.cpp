@@ -428,6 +428,10 @@ PictureMetadata read_metadata(const std::string &path) {
     return metadata;
 }
 
+std::string read_xmp_packet(const std::string &path) {
+    return is_big_tiff(path) ? std::string() : open_image(path)->xmpPacket();
+}
+
 bool copy_metadata(const std::string &source, const std::string &target) {
     if (is_big_tiff(source) || is_big_tiff(target))
         return false;

@@ -34,6 +34,9 @@ PictureMetadata unknown_metadata();
  * when the file cannot be opened, is no picture or is damaged. */
 PictureMetadata read_metadata(const std::string &path);
 
+/* The XMP packet as it is in the picture; empty where there is none. Throws as read_metadata. */
+std::string read_xmp_packet(const std::string &path);
+
 /* Copies EXIF, maker notes, IPTC, XMP and comment of one picture to another (JPEG, PNG or TIFF) and replaces that
  * file, complete or not at all. Left out is what would no longer be true: the thumbnail, sizes of the old file, and in
  * TIFF all tags that describe how pixels are stored. Pixels, colour profile and resolution of the target stay.

@@ -47,24 +47,8 @@ struct ProfileOptions {
     std::vector<int64_t> ids;
     KeyFilter filter;
     std::string db, blob, chart_out, channel;
-    bool json = false, chart = false, covariance = false;
+    bool json = false, chart = false;
 };
-
-std::vector<StoredProfile> read_profiles(const ProfileOptions &o) {
-    Store store = open_store(o.db, LENSPROF_STORE_READ);
-    std::vector<int64_t> ids = o.ids;
-    if (ids.empty())
-        for (const auto &row : o.filter.rows(store.get(), o.db)) ids.push_back(row.id);
-    if (ids.empty()) throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db));
-    std::vector<StoredProfile> profiles;
-    for (int64_t id : ids) {
-        auto profile = std::make_unique<lensprof_profile>();
-        lensprof_error error{};
-        check(lensprof_store_get(store.get(), id, profile.get(), &error), store_path(o.db), &error);
-        profiles.push_back({id, std::move(profile)});
-    }
-    return profiles;
-}
 
 /* One curve a profile where there are several, so that they can be compared. */
 int channel_of(const ProfileOptions &o, size_t profiles) {
@@ -128,7 +112,7 @@ int show(const ProfileOptions &o, Streams &streams) {
                                            + "; give --chart-out another name");
     std::vector<StoredProfile> profiles;
     BlobStamp stamp{};
-    if (o.blob.empty()) profiles = read_profiles(o);
+    if (o.blob.empty()) profiles = o.filter.profiles(o.db, o.ids);
     else profiles.push_back({0, read_blob(o.blob, stamp)});
     if (!o.chart && o.chart_out.empty()) {
         if (o.blob.empty()) print_profiles(profiles, o.json, streams);
@@ -153,25 +137,6 @@ int remove(const std::string &db, int64_t id, bool json, Streams &streams) {
     return 0;
 }
 
-int export_blob(const ProfileOptions &o, Streams &streams) {
-    if (is_same_file(o.blob, store_path(o.db)))
-        throw Failure(ExitCode::usage, o.blob + ": is the profile database; give --blob another name");
-    const std::vector<StoredProfile> profiles = read_profiles(o);
-    const lensprof_profile &profile = *profiles[0].profile;
-    const BlobStamp stamp = write_blob(profile, o.covariance, o.blob);
-    if (o.json) {
-        print_json(Json{{"schema", 1}, {"profile", o.ids[0]},
-                        {"blob", {{"file", o.blob}, {"bytes", stamp.bytes}, {"crc32", stamp.crc32}}},
-                        {"covariance_size", o.covariance ? profile.covariance_size : 0}},
-                   streams.out);
-        return 0;
-    }
-    streams.out << format("wrote %s: profile %lld, %zu bytes, CRC-32 %s\n", o.blob.c_str(),
-                          static_cast<long long>(o.ids[0]), stamp.bytes, stamp.crc32.c_str());
-    if (o.covariance && !profile.covariance_size) streams.out << "its covariance is not known: there is none in it\n";
-    return 0;
-}
-
 /* Options that a verb would not look at are mistakes. */
 void check_verb(const std::string &verb, const ProfileOptions &o) {
     if (verb != "show" && (o.chart || !o.chart_out.empty() || !o.channel.empty()))
@@ -182,33 +147,29 @@ void check_verb(const std::string &verb, const ProfileOptions &o) {
         throw Failure(ExitCode::usage, "profile " + verb + ": --camera, --lens and the like belong to show");
     if (verb == "list" && !o.ids.empty())
         throw Failure(ExitCode::usage, "profile list: lists all profiles, without an id; `profile show` takes ids");
-    if ((verb == "remove" || verb == "export") && o.ids.size() != 1)
-        throw Failure(ExitCode::usage, "profile " + verb + ": give the id, one, that `lensprof profile list` shows");
-    if ((verb == "list" || verb == "remove") && !o.blob.empty())
+    if (verb == "remove" && o.ids.size() != 1)
+        throw Failure(ExitCode::usage, "profile remove: give the id, one, that `lensprof profile list` shows");
+    if (verb != "show" && !o.blob.empty())
         throw Failure(ExitCode::usage, "profile " + verb + ": --blob belongs to show and export");
-    if (verb == "export" && o.blob.empty())
-        throw Failure(ExitCode::usage, "profile export: name the file to be written with --blob");
-    if (verb != "export" && o.covariance)
-        throw Failure(ExitCode::usage, "profile " + verb + ": --covariance belongs to export");
 }
 
 }  // namespace
 
 int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
-    static const Command others[] = {{"import", "", run_profile_import}, {"merge", "", run_profile_merge},
+    static const Command others[] = {{"import", "", run_profile_import}, {"export", "", run_profile_export}, {"merge", "", run_profile_merge},
                                      {"check", "", run_profile_check}, {"stats", "", run_profile_stats}};
     for (const Command &other : others)
         if (!arguments.empty() && arguments[0] == other.name)
             return other.run({arguments.begin() + 1, arguments.end()}, streams);
     std::string verb;
     ProfileOptions o;
-    CLI::App app("Lists, shows, removes or exports profiles of the database. `lensprof profile import`, `merge`, "
-                 "`check` and `stats` have options of their own.",
+    CLI::App app("Lists, shows or removes profiles of the database. `lensprof profile import`, `export`, `merge`, `check` "
+                 "and `stats` have options of their own.",
                  "lensprof profile");
-    app.add_option("VERB", verb, "list, show, remove or export")
+    app.add_option("VERB", verb, "list, show or remove")
         ->required()
-        ->check(CLI::IsMember({"list", "show", "remove", "export"}));
-    app.add_option("ID", o.ids, "profiles to show, or the one to remove or export")->check(CLI::PositiveNumber);
+        ->check(CLI::IsMember({"list", "show", "remove"}));
+    app.add_option("ID", o.ids, "profiles to show, or the one to remove")->check(CLI::PositiveNumber);
     app.add_option("--db", o.db, "profile database; default the user's own");
     app.add_flag("--json", o.json, "print one JSON object");
     app.add_flag("--chart", o.chart, "show: relative illuminance, M over r, as a chart and a table instead");
@@ -217,17 +178,13 @@ int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
                    "in charts, of profiles with a falloff a channel: red, green, blue or all; default all for one "
                    "profile, green for several")
         ->check(CLI::IsMember({"red", "green", "blue", "all"}));
-    app.add_option("--blob", o.blob,
-                   "export: the file to write, for firmware to read in place; show: a file to read instead of the "
-                   "database");
-    app.add_flag("--covariance", o.covariance, "export: the covariance as well, which a camera has no use for");
+    app.add_option("--blob", o.blob, "show: a blob (docs/blob.md) to read instead of the database");
     app.option_defaults()->group("What to show, instead of ids");
     o.filter.add_options(app);
     if (!parse(app, arguments, streams)) return 0;
     check_verb(verb, o);
     o.filter.check_words();
     if (verb == "list") return list(o.db, o.json, streams);
-    if (verb == "export") return export_blob(o, streams);
     return verb == "show" ? show(o, streams) : remove(o.db, o.ids[0], o.json, streams);
 }
 

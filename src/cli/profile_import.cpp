@@ -1,14 +1,33 @@
-/* `lensprof profile import`: falloffs of other programs' databases. */
+/* `lensprof profile import`: profiles, responses and falloffs from the files of other programs. */
 #include <algorithm>
+#include <cstring>
+#include <filesystem>
 #include <set>
 
+#include "foreign_file.hpp"
+#include "foreign_options.hpp"
+#include "key_filter.hpp"
 #include "library.hpp"
-#include "progress.hpp"
 #include "report.hpp"
 #include "run.hpp"
 
 namespace lensprof {
 namespace {
+
+/* What the command is asked for. */
+struct Options {
+    std::vector<std::string> files;
+    KeyFilter key; /* of what files do not say themselves */
+    ForeignOptions foreign;
+    std::string db, format;
+    bool json = false;
+};
+
+/* A file and how it is read. */
+struct Input {
+    std::string file;
+    const ForeignRule *rule;
+};
 
 /* What one call imports. */
 struct Import {
@@ -21,15 +40,21 @@ struct Import {
     lensprof_error error{};
 };
 
-/* Whether the newest profile of this key is the same falloff from the same place. */
+/* Whether the newest profile of this key is the same, from the same place. */
 bool is_there(Import &import, const lensprof_profile &profile) {
     auto found = std::make_unique<lensprof_profile>();
     const lensprof_status status = lensprof_store_find(import.store, &profile.key, found.get(), nullptr, &import.error);
     if (status == LENSPROF_ERROR_NOT_FOUND) return false;
     check(status, store_path(import.db), &import.error);
-    return std::equal(profile.vignetting[0].k, profile.vignetting[0].k + 3, found->vignetting[0].k)
-        && std::equal(profile.vignetting[0].center, profile.vignetting[0].center + 2, found->vignetting[0].center)
-        && std::string(profile.provenance.source) == found->provenance.source;
+    bool same = profile.responses == found->responses && profile.vignettings == found->vignettings
+             && std::memcmp(&profile.grid, &found->grid, sizeof profile.grid) == 0
+             && std::string(profile.provenance.source) == found->provenance.source;
+    for (uint32_t c = 0; c < profile.responses && same; c++)
+        same = std::memcmp(profile.response[c].table, found->response[c].table, sizeof found->response[c].table) == 0;
+    for (uint32_t c = 0; c < profile.vignettings && same; c++)
+        same = std::equal(profile.vignetting[c].k, profile.vignetting[c].k + 3, found->vignetting[c].k)
+            && std::equal(profile.vignetting[c].center, profile.vignetting[c].center + 2, found->vignetting[c].center);
+    return same;
 }
 
 lensprof_status take(void *user, const lensprof_import_entry *entry) {
@@ -50,20 +75,53 @@ lensprof_status take(void *user, const lensprof_import_entry *entry) {
 
 lensprof_status ignore(void *, const lensprof_import_entry *) { return LENSPROF_OK; }
 
-void read_file(Import &import, const std::string &file, lensprof_import_visitor visit) {
-    const std::string text = read_text(file, uint64_t(64) << 20);
-    const size_t slash = file.rfind('/');
-    const std::string name = slash == std::string::npos ? file : file.substr(slash + 1);
-    import.file = file;
-    import.error.text[0] = 0;
-    check(lensprof_lensfun_read(text.data(), text.size(), name.c_str(), visit, &import, &import.error), file,
-          &import.error);
+/* Files that hold a response or a falloff alone make one profile, whose key the command line gives. */
+std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector<Input> &inputs) {
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    std::string response, falloff, names;
+    for (const Input &input : inputs) {
+        if (input.rule->part == ForeignPart::profiles) continue;
+        std::string &taken = input.rule->part == ForeignPart::response ? response : falloff;
+        if (!taken.empty())
+            throw Failure(ExitCode::usage, input.file + ": holds a " + (&taken == &response ? "response" : "falloff") + ", as "
+                                               + taken + " does; import the one profile after the other");
+        taken = input.file;
+        names += (names.empty() ? "" : "; ") + std::filesystem::path(input.file).filename().string();
+    }
+    if (names.empty()) return nullptr;
+    profile->key = o.key.key(response.empty() ? LENSPROF_PROCESSING_RAW : LENSPROF_PROCESSING_JPEG);
+    for (const Input &input : inputs)
+        if (input.rule->part != ForeignPart::profiles) read_part(*input.rule, input.file, o.foreign, *profile);
+    if (!*profile->key.camera_model && !*profile->key.lens)
+        throw Failure(ExitCode::usage, (response.empty() ? falloff : response)
+                                           + ": does not say which camera and lens it is of; give --camera or --lens");
+    set_text(profile->provenance.method, sizeof profile->provenance.method, "import");
+    set_text(profile->provenance.software, sizeof profile->provenance.software, std::string("lensprof ") + lensprof_version());
+    set_text(profile->provenance.source, sizeof profile->provenance.source, names);
+    check(lensprof_profile_validate(profile.get()), response.empty() ? falloff : response);
+    return profile;
+}
+
+/* Every profile of every file. */
+void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts,
+               lensprof_import_visitor visit) {
+    for (const Input &input : inputs) {
+        if (input.rule->part != ForeignPart::profiles) continue;
+        import.file = input.file;
+        import.error.text[0] = 0;
+        read_profiles(*input.rule, input.file, visit, &import);
+    }
+    if (!of_parts) return;
+    const lensprof_import_entry entry = {of_parts, 1, 0};
+    import.file = of_parts->provenance.source;
+    check(visit(&import, &entry), import.file, &import.error);
 }
 
 void print_import(const Import &import, size_t files, Streams &streams) {
     const size_t refused = static_cast<size_t>(
         std::count_if(import.flagged.begin(), import.flagged.end(), [](const Json &one) { return !one["stored"]; }));
-    streams.out << format("imported %u falloffs of %zu lenses from %zu file%s into %s\n", import.stored,
+    streams.out << format("imported %u profiles of %zu lenses from %zu file%s into %s\n", import.stored,
                           import.lenses.size(), files, files == 1 ? "" : "s", store_path(import.db).c_str());
     if (import.known) streams.out << format("%u were there already\n", import.known);
     if (!import.flagged.empty())
@@ -75,31 +133,43 @@ void print_import(const Import &import, size_t files, Streams &streams) {
 }  // namespace
 
 int run_profile_import(const std::vector<std::string> &arguments, Streams &streams) {
-    std::string db;
-    std::vector<std::string> files;
-    bool json = false;
-    CLI::App app("Stores the falloffs of other programs' databases: Lensfun (.xml). All files or none.",
+    Options o;
+    CLI::App app("Stores what other programs' files hold, all of them or none. Their content, else their name, tells the format.",
                  "lensprof profile import");
-    app.add_option("FILES", files, "databases to read")->required();
-    app.add_option("--db", db, "profile database, made where there is none; default the user's own");
-    app.add_flag("--json", json, "print one JSON object");
+    app.add_option("FILES", o.files, "files of profiles; or one with a response, one with a falloff, or both, for one profile")
+        ->required();
+    app.add_option("--format", o.format, "of all the files, where it is not what they look like")
+        ->check(CLI::IsMember(foreign_names(false)));
+    declare_foreign(app, o.foreign, false);
+    app.add_option("--db", o.db, "profile database, made where there is none; default the user's own");
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.option_defaults()->group("Whose response or falloff it is");
+    o.key.add_options(app);
+    app.footer(about_foreign(false));
     if (!parse(app, arguments, streams)) return 0;
+    o.key.check_words();
+    std::vector<Input> inputs;
+    for (const std::string &file : o.files) inputs.push_back({file, &format_to_read(file, o.format)});
+    const std::unique_ptr<lensprof_profile> of_parts = read_parts(o, inputs);
+    if (!of_parts && !o.key.is_empty())
+        throw Failure(ExitCode::usage, "profile import: these files say themselves whose profiles they hold; leave --camera, "
+                                       "--lens and the like out");
     Import import;
-    for (const std::string &file : files) read_file(import, file, ignore); /* before a database is made */
-    Store store = open_store(db, LENSPROF_STORE_CREATE);
+    visit_all(import, inputs, of_parts.get(), ignore); /* before a database is made */
+    Store store = open_store(o.db, LENSPROF_STORE_CREATE);
     import.store = store.get();
-    import.db = db;
+    import.db = o.db;
     uint32_t before = 0;
-    check(lensprof_store_list(store.get(), nullptr, nullptr, 0, &before, &import.error), store_path(db), &import.error);
+    check(lensprof_store_list(store.get(), nullptr, nullptr, 0, &before, &import.error), store_path(o.db), &import.error);
     import.was_empty = before == 0;
-    check(lensprof_store_begin(store.get(), &import.error), store_path(db), &import.error);
-    for (const std::string &file : files) read_file(import, file, take); /* a failure closes the store, and rolls back */
-    check(lensprof_store_commit(store.get(), &import.error), store_path(db), &import.error);
-    if (json)
+    check(lensprof_store_begin(store.get(), &import.error), store_path(o.db), &import.error);
+    visit_all(import, inputs, of_parts.get(), take); /* a failure closes the store, and rolls back */
+    check(lensprof_store_commit(store.get(), &import.error), store_path(o.db), &import.error);
+    if (o.json)
         print_json(Json{{"schema", 1}, {"stored", import.stored}, {"known", import.known},
                         {"lenses", import.lenses.size()}, {"flagged", import.flagged}},
                    streams.out);
-    else print_import(import, files.size(), streams);
+    else print_import(import, inputs.size(), streams);
     return 0;
 }
 

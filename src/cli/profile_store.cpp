@@ -18,6 +18,8 @@ void declare_store(CLI::App &app, StoreOptions &o) {
     app.add_option("--lens", o.lens, "lens");
     app.add_option("--unit", o.unit,
                    "the profile is of one camera and lens alone: their serial numbers, or exif for those of the picture");
+    app.add_option("--crop-factor", o.crop_factor, "43.27 mm over the diagonal of the camera's sensor")
+        ->check(in_range(0.01, 1e4));
     app.add_option("--focal", o.focal, "focal length, mm")->check(in_range(0.01, 1e5));
     app.add_option("--aperture", o.aperture, "f-number")->check(in_range(0.01, 1e4));
     app.add_option("--distance", o.distance, "focus distance, m")->check(in_range(1e-6, INFINITY));
@@ -35,6 +37,7 @@ lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &
     if (o.unit == "exif" && !*key.unit)
         throw Failure(ExitCode::usage, file + ": its EXIF has no serial numbers; give them with --unit");
     if (o.unit != "exif") set_text(key.unit, sizeof key.unit, o.unit); /* of all of the model, where none is given */
+    if (o.crop_factor != LENSPROF_UNKNOWN) key.crop_factor = o.crop_factor;
     if (o.focal != LENSPROF_UNKNOWN) key.focal_mm = o.focal;
     if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;
     if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;

@@ -14,7 +14,7 @@ namespace lensprof {
 /* The options of every command that stores a profile. */
 struct StoreOptions {
     std::string db, maker, camera, lens, unit, processing;
-    double focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN, distance = LENSPROF_UNKNOWN;
+    double crop_factor = LENSPROF_UNKNOWN, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN, distance = LENSPROF_UNKNOWN;
     bool no_store = false, force = false;
 };
 

@@ -30,6 +30,7 @@ int run_bracket(const std::vector<std::string> &arguments, Streams &streams);
 int run_build(const std::vector<std::string> &arguments, Streams &streams);
 int run_flat(const std::vector<std::string> &arguments, Streams &streams);
 int run_profile(const std::vector<std::string> &arguments, Streams &streams);
+int run_profile_export(const std::vector<std::string> &arguments, Streams &streams); /* behind `profile export` */
 int run_profile_import(const std::vector<std::string> &arguments, Streams &streams); /* behind `profile import` */
 int run_profile_check(const std::vector<std::string> &arguments, Streams &streams);  /* behind `profile check` */
 int run_profile_stats(const std::vector<std::string> &arguments, Streams &streams);  /* behind `profile stats` */

@@ -2,6 +2,7 @@
 #include "store_private.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "store_names.h"
@@ -34,6 +35,15 @@ static lensprof_status report_failure(inspection *all, int rc, const char *what,
     return report(all, 0, reason);
 }
 
+/* Where SQLite could not read on (no memory, an I/O error) its check says so in a text, as of damage: the result code in
+ * it, or SQLITE_OK. */
+static int code_in(const char *text)
+{
+    const char *at = strstr(text, "error code");
+    const int code = at ? (int)strtol(at + strlen("error code") + 1, NULL, 10) : SQLITE_OK;
+    return (code & 0xff) == SQLITE_CORRUPT ? SQLITE_OK : code;
+}
+
 /* What SQLite finds in the file itself: pages, indexes, types and constraints. */
 static lensprof_status check_file(inspection *all, lensprof_error *error)
 {
@@ -43,9 +53,10 @@ static lensprof_status check_file(inspection *all, lensprof_error *error)
     int rc = sqlite3_step(statement);
     while (rc == SQLITE_ROW && status == LENSPROF_OK) {
         const char *text = (const char *)sqlite3_column_text(statement, 0);
-        if (!text) rc = SQLITE_NOMEM;
+        const int code = text ? code_in(text) : SQLITE_NOMEM;
+        if (code != SQLITE_OK) rc = code;
         else if (strcmp(text, "ok")) status = report(all, 0, text);
-        if (text && status == LENSPROF_OK) rc = sqlite3_step(statement);
+        if (code == SQLITE_OK && status == LENSPROF_OK) rc = sqlite3_step(statement);
     }
     if (status == LENSPROF_OK && rc != SQLITE_DONE)
         status = report_failure(all, rc, "its structure cannot be checked", error);
@@ -88,11 +99,13 @@ static lensprof_status check_orphans(inspection *all, const struct orphans *kind
 }
 
 /* Whether lookups find the profile that is in store->scratch. */
-static lensprof_status check_lens_name(inspection *all, int64_t id, sqlite3_stmt *statement)
+static lensprof_status check_lens_name(inspection *all, int64_t id, sqlite3_stmt *statement, lensprof_error *error)
 {
     char expected[LP_NAME_BYTES];
     const char *found = all->store->layout < 3 ? NULL : (const char *)sqlite3_column_text(statement, 1);
     if (all->store->layout < 3) return LENSPROF_OK;
+    if (!found && sqlite3_errcode(all->store->db) == SQLITE_NOMEM)
+        return lp_store_fail_sql(all->store->path, NULL, SQLITE_NOMEM, error);
     lp_squeeze(all->store->scratch.key.lens, expected);
     return found && !strcmp(found, expected) ? LENSPROF_OK : report(all, id, "lens_name is not that of lens");
 }
@@ -104,7 +117,7 @@ static lensprof_status check_profile(inspection *all, sqlite3_stmt *statement, l
     all->profiles++;
     *all->store->damage = 0;
     const lensprof_status status = lp_store_fetch(all->store, id, error);
-    if (status == LENSPROF_OK) return check_lens_name(all, id, statement);
+    if (status == LENSPROF_OK) return check_lens_name(all, id, statement, error);
     if (status != LENSPROF_ERROR_CORRUPT && status != LENSPROF_ERROR_NOT_FOUND) return status;
     if (*all->store->damage) snprintf(reason, sizeof reason, "%s", all->store->damage);
     else snprintf(reason, sizeof reason, "cannot be read (%.100s)", sqlite3_errmsg(all->store->db));

@@ -3,7 +3,7 @@
 #include "store_fixture.h"
 
 #ifndef STEP
-#define STEP 101 /* every 101st operation is made to fail; in the slow variant every 11th */
+#define STEP 101 /* every 101st operation is made to fail; in the slow variant every 47th */
 #endif
 
 static int countdown = -1; /* faults when it comes to 0; negative = never */

@@ -1,0 +1,143 @@
+/* `lensprof profile export` and `import` of other programs' files: written by name, read by content. */
+#include "cli/opcode_tag.hpp"
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+using namespace picture_files;
+
+namespace {
+
+/* A database of one profile whose every number is known. */
+void make_db() {
+    save_text(work("one.json"),
+              R"({"schema":1,"key":{"camera_maker":"Maker","camera_model":"Model 1","lens":"Lens 35mm","crop_factor":1.5,)"
+              R"("focal_mm":35,"aperture":2,"distance_m":"infinity","processing":"jpeg"},"vignetting":{"k":[[-0.4,0.1,-0.1]],)"
+              R"("center":[0.02,-0.01]},"response":{"kind":"gamma","gamma":2.0}})");
+    must_exit(done, {"profile", "import", work("one.json"), "--db", work("p.db")});
+}
+
+Json show(const std::string &db) { return json_of({"profile", "show", "1", "--db", work(db), "--json"}); }
+
+/* Light in the corner, and the grey value at a fifth of full irradiance. */
+void assert_same_curves(const Json &json, bool falloff, bool response, double tolerance = 2e-3) {
+    double m = 1.0;
+    for (const Json &k : json["vignetting"]["k"][0]) m += k.get<double>();
+    assert_close(m, falloff ? 0.6 : 1.0, tolerance);
+    const double grey = json["response"]["values"][0][205].get<double>();
+    assert_close(grey, response ? std::sqrt(205 / 1023.0) : 205 / 1023.0, tolerance);
+}
+
+Words export_to(const std::string &file, const Words &more = {}) {
+    return Words{"profile", "export", "1", "--db", work("p.db"), "-o", file} + more;
+}
+
+/* What names a file's format, then what is read back from it. */
+void test_round_trips(void **) {
+    const Words frame = {"--frame", "600x400"}, camera = {"--camera", "Other"};
+    const struct {
+        const char *file;
+        Words written, read;
+        bool falloff, response;
+    } cases[] = {
+        {"a.json", {}, {}, true, true},
+        {"a.xml", {}, {}, true, false},
+        {"a.lcp", {}, {}, true, false},
+        {"a.blob", {}, {}, true, true},
+        {"pcalib.txt", {}, camera, false, true},
+        {"a.csv", {}, camera, false, true},
+        {"log.csv", {"--curve", "log"}, camera + Words{"--curve", "log"}, false, true},
+        {"a.crf", {}, camera, false, true},
+        {"a.vgn", frame, camera, true, false},
+        {"vignette.png", frame, camera, true, false},
+        {"eight.png", frame + Words{"--depth", "8"}, camera, true, false},
+        {"gain.tif", frame, camera, true, false},
+        {"small.tif", frame + Words{"--grid", "60x40"}, camera + frame, true, false},
+        {"alsc.json", frame + Words{"--format", "alsc"}, camera + frame, true, false},
+    };
+    make_db();
+    for (const auto &one : cases) {
+        must_exit(done, export_to(work(one.file), one.written));
+        fs::remove(work("q.db"));
+        must_exit(done, Words{"profile", "import", work(one.file), "--db", work("q.db")} + one.read);
+        assert_same_curves(show("q.db"), one.falloff, one.response, std::string(one.file) == "eight.png" ? 6e-3 : 2e-3);
+    }
+}
+
+/* A response and a falloff of two files are one profile. */
+void test_two_files_one_profile(void **) {
+    make_db();
+    must_exit(done, export_to(work("pcalib.txt")));
+    must_exit(done, export_to(work("vignette.png"), {"--frame", "640x480"}));
+    must_exit(done, {"profile", "import", work("pcalib.txt"), work("vignette.png"), "--camera", "Odometer", "--lens", "Wide",
+                     "--focal", "8", "--db", work("q.db")});
+    const Json json = show("q.db");
+    assert_same_curves(json, true, true);
+    assert_string_equal(json["key"]["camera_model"].get<std::string>().c_str(), "Odometer");
+    assert_string_equal(json["provenance"]["source"].get<std::string>().c_str(), "pcalib.txt; vignette.png");
+    const Words again = {"profile", "import", work("pcalib.txt"), work("vignette.png"), "--camera", "Odometer", "--lens", "Wide",
+                         "--focal", "8", "--db", work("q.db"), "--json"};
+    assert_int_equal(json_of(again)["known"], 1);
+}
+
+/* Opcodes go into a picture that is there; all else in it stays. */
+void test_opcodes(void **) {
+    make_db();
+    const Picture picture = make_smooth(300, 200, LENSPROF_LAYOUT_RGB);
+    for (const char *form : {"auto", "radial", "map"}) {
+        write_picture(work("raw.tif"), picture);
+        must_exit(done, export_to(work("raw.tif"), {"--format", "opcodes", "--opcode", form}));
+        assert_false(lensprof::read_opcode_lists(work("raw.tif")).list3.empty());
+        assert_near_pixels(picture, read_picture(work("raw.tif")), 0);
+        fs::remove(work("q.db"));
+        must_exit(done, {"profile", "import", work("raw.tif"), "--camera", "Raw", "--db", work("q.db")});
+        assert_same_curves(show("q.db"), true, false, 3e-3);
+    }
+}
+
+void test_several_profiles(void **) {
+    make_db();
+    must_exit(done, {"profile", "import", work("one.json"), "--db", work("p.db")});
+    must_exit(done, {"profile", "export", "--all", "--db", work("p.db"), "-o", work("all.json")});
+    must_exit(done, {"profile", "export", "--lens", "Lens 35mm", "--db", work("p.db"), "-o", work("lens.xml")});
+    assert_int_equal(json_of({"profile", "import", work("all.json"), "--db", work("q.db"), "--json"})["stored"], 1);
+    assert_refused(not_found, {"profile", "export", "--lens", "None", "--db", work("p.db"), "-o", work("a.json")}, {"None"});
+}
+
+/* Nothing is stored or written by what is refused. */
+void test_refused(void **) {
+    make_db();
+    must_exit(done, export_to(work("pcalib.txt")));
+    must_exit(done, export_to(work("curve.csv")));
+    const Words to = {"--db", work("p.db")};
+    const auto import = [&](const Words &words) { return Words{"profile", "import"} + words + to; };
+    assert_refused(usage, import({work("pcalib.txt")}), {"pcalib.txt", "--camera"});
+    assert_refused(usage, import({work("pcalib.txt"), work("curve.csv"), "--camera", "C"}), {"curve.csv", "pcalib.txt"});
+    assert_refused(usage, import({work("one.json"), "--camera", "C"}), {"leave --camera"});
+    save_text(work("notes"), "nothing of any format\n");
+    assert_refused(usage, import({work("notes"), "--camera", "C"}), {"notes", "--format"});
+    assert_refused(unreadable, import({work("notes"), "--format", "pcalib", "--camera", "C"}), {"notes"});
+    assert_refused(unreadable, import({work("none.csv"), "--camera", "C"}), {"none.csv"});
+    save_text(work("falling.csv"), "0,0\n1,0.5\n2,0.4\n3,1\n");
+    assert_refused(unreadable, import({work("falling.csv"), "--camera", "C"}), {"falling.csv", "line"});
+    save_text(work("cut.json"), text_of(work("one.json")).substr(0, 100));
+    assert_refused(unreadable, import({work("one.json"), work("cut.json")}), {"cut.json"});
+    save_text(work("nan.lcp"), "<x><CameraProfiles");
+    assert_refused(unreadable, import({work("nan.lcp")}), {"nan.lcp"});
+    save_text(work("tuning.json"), "{\"rpi.alsc\":{\"luminance_lut\":[1,1,1,1]}}");
+    assert_refused(usage, import({work("tuning.json"), "--camera", "C"}), {"tuning.json", "--frame"});
+    assert_refused(unreadable, import({work("tuning.json"), "--camera", "C", "--frame", "60x40"}), {"tuning.json"});
+    assert_refused(usage, import({work("one.json"), "--frame", "60"}), {"--frame", "WIDTHxHEIGHT"});
+    assert_refused(usage, export_to(work("v.png")), {"v.png", "--frame"});
+    assert_refused(usage, export_to(work("v.png"), {"--frame", "60x40", "--sense", "gain"}), {"v.png", ".tif"});
+    assert_refused(unreadable, export_to(work("none.dng")), {"none.dng"});
+    assert_refused(unreadable, export_to(work("one.json"), {"--format", "opcodes"}), {"one.json"});
+    assert_refused(failed, export_to(work("none/a.json")), {"none/a.json"});
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {CLI_TEST(test_round_trips), CLI_TEST(test_two_files_one_profile), CLI_TEST(test_opcodes),
+                                CLI_TEST(test_several_profiles), CLI_TEST(test_refused)};
+    return cmocka_run_group_tests(tests, make_scene, remove_folder);
+}
