@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply bench-store install clean
+.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply bench-store bench-lookup install clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -45,6 +45,7 @@ bench: test-deps build ## measure accuracy and speed beside the peers
 	tests/bench/run.sh
 	$(MAKE) bench-apply
 	$(MAKE) bench-store
+	$(MAKE) bench-lookup
 
 bench-apply: build ## measure how fast profiles are applied, beside memcpy, Lensfun, OpenCV and a plain loop
 	@cmake/install-packages.sh packages-bench.txt
@@ -52,6 +53,10 @@ bench-apply: build ## measure how fast profiles are applied, beside memcpy, Lens
 
 bench-store: build ## measure the store with 100 000 profiles
 	tests/bench/store.sh
+
+bench-lookup: build ## measure lookups between stored settings on Lensfun's data, beside Lensfun's own rule
+	@cmake/install-packages.sh packages-test.txt
+	tests/bench/run.sh --lookup
 
 install: build ## install under PREFIX (default /usr/local)
 	cmake --install build --prefix $(PREFIX)

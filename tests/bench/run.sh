@@ -5,17 +5,25 @@
 #   tests/bench/run.sh [--quick] [--real DIR] [--only PARTS] [--match TEXT] [--repeat N] [--jobs N] [--keep]
 #                      PARTS, with commas: points, pictures, refusals, flat, static, scale, speed, radiance, real
 #   tests/bench/run.sh --self-test      the scorer against known errors; needs no program; exit 77: NumPy is missing
+#   tests/bench/run.sh --lookup [DIR]   lookups between stored settings beside Lensfun's, also to build/bench/lookup.md;
+#                                       exit 1: worse than its target; 77: NumPy or Lensfun's data is missing
 #
 # LENSPROF=program measures another program than build/lensprof.
-set -eu
+set -eu -o pipefail
 folder=$(cd "$(dirname "$0")" && pwd)
 for python in /usr/bin/python3 python3 ""; do
     [ -n "$python" ] && "$python" -c 'import sys, numpy; sys.exit(sys.version_info < (3, 9))' 2>/dev/null && break
 done
 if [ -z "$python" ]; then
     echo "run.sh: skipped: needs Python 3.9 with NumPy; install python3-numpy (make test-deps)" >&2
-    [ "${1:-}" = --self-test ] && exit 77
+    case "${1:-}" in --self-test | --lookup) exit 77 ;; esac
     exit 1
 fi
 [ "${1:-}" = --self-test ] && exec "$python" -B "$folder/test_scorer.py"
+if [ "${1:-}" = --lookup ]; then
+    shift
+    mkdir -p "$folder/../../build/bench"
+    "$python" -B "$folder/lookup.py" "$@" | tee "$folder/../../build/bench/lookup.md"
+    exit 0
+fi
 exec "$python" -B "$folder/bench.py" "$@"

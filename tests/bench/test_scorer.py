@@ -8,6 +8,7 @@ import unittest
 import numpy as np
 
 import cases
+import lensfun_rule
 import real
 import report
 import scorer
@@ -216,6 +217,26 @@ class Tables(unittest.TestCase):
         self.assertEqual((bad.sum(), images), (12, [2]))
         self.assertEqual(real.disagreeing(pairs, [residual, np.ones((40, 2, 3))])[1], [])
         self.assertAlmostEqual(real.figures(residual)["clipped_rms"], np.sqrt((28 + 12 * 400) / 40))
+
+
+class LensfunRule(unittest.TestCase):
+    """The peer of lookup.py, against weights by hand."""
+    KNOWN = [(20.0, 4.0, np.inf), (40.0, 4.0, 1000.0), (40.0, 2.0, 0.5)]
+    K = [(-0.8, 0.1, 0.0), (-0.4, 0.3, 0.2), (-1.6, 0.5, 0.4)]
+
+    def test_a_calibration_is_the_answer(self):
+        self.assertEqual(tuple(lensfun_rule.predict(self.KNOWN, self.K, (20.0, 4.0, 1000.0), 20.0)), self.K[0])
+
+    def test_weights(self):
+        at = lensfun_rule.predict(self.KNOWN, self.K, (25.0, 4.0, 1000.0), 20.0)  # distances: 1/4, 3/4, the third by hand
+        third = ((15 / 20) ** 2 + (2.0 - 1.0) ** 2 + (0.1 / 0.5 - 0.1 / 1000) ** 2) ** 0.5
+        weights = [0.25 ** -3.5, 0.75 ** -3.5, third ** -3.5]
+        np.testing.assert_allclose(at, [sum(w * k[i] for w, k in zip(weights, self.K)) / sum(weights) for i in range(3)])
+
+    def test_refusal(self):
+        self.assertIsNone(lensfun_rule.predict(self.KNOWN, self.K, (61.0, 4.0, 1000.0), 20.0))
+        self.assertIsNotNone(lensfun_rule.predict(self.KNOWN, self.K, (60.0, 4.0, 1000.0), 20.0))
+        self.assertIsNotNone(lensfun_rule.predict([(50.0, 2.0, 1.0)], [self.K[0]], (50.0, 4.0, 1.0), 0.0))
 
 
 if __name__ == "__main__":
