@@ -1,10 +1,10 @@
 """Lensfun's own rule between its calibrations, in NumPy: the peer of lookup.py.
 
-lfLens::InterpolateVignetting and __vignetting_dist in libs/lensfun/lens.cpp: inverse distance weighting (Shepard) of the
-coefficients k1, k2, k3 of all calibrations of one lens, with power 3.5 and
+lfLens::InterpolateVignetting and __vignetting_dist in libs/lensfun/lens.cpp: inverse distance weighting (Shepard) of
+the coefficients k1, k2, k3 of all calibrations of one lens, with power 3.5 and
     d^2 = ((f - f_i) / (f_max - f_min))^2 + (4/N - 4/N_i)^2 + (0.1 m/D - 0.1 m/D_i)^2,
-focal length f, f-number N, focus distance D. A calibration within 1e-4 is the answer; beyond 1 from all of them there is
-none. Lensfun may take f_max and f_min from the lens's name; here they are those of its calibrations.
+focal length f, f-number N, focus distance D. A calibration within 1e-4 is the answer; beyond 1 from all of them there
+is none. Lensfun may take f_max and f_min from the lens's name; here they are those of its calibrations.
 """
 import numpy as np
 

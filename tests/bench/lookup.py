@@ -8,8 +8,8 @@ transaction, their settings are looked up (lensprof_store_lookup), and the trans
 Rows with a doubt, which lookups leave out by default, are neither used nor asked for, by both. A lens with one focal
 length and aperture has nothing left and is not asked for.
 
-Two halves: the constants of the prediction were chosen on lenses whose CRC-32 of the text ('lens', crop factor,
-'camera'), as Python prints it, is even; the odd ones are the test.
+Two halves: the axes and most constants of the prediction were chosen on the lenses whose CRC-32 of
+"maker|model|mount,mount|crop factor", as the file has these, is even; the test half are lenses with none of those.
 
 Exit code 1: on the test half the mean error is not at least a quarter below Lensfun's; 77: there is no data.
 """
@@ -20,6 +20,7 @@ import re
 import sys
 import tempfile
 import zlib
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -31,14 +32,14 @@ sys.path.insert(0, str(tools.ROOT / "bindings" / "python"))
 os.environ.setdefault("LENSPROF_LIBRARY", str(tools.ROOT / "build" / "liblensprof.so"))
 import lensprof  # noqa: E402
 
-TEST, CHOSEN, ALL = "test half", "half of the choice", "all"
+TEST, CHOSEN, ALL = "test half", "other half", "all"
 TARGET = 0.75  # of Lensfun's mean error
 INSTALLED = "/usr/share/lensfun/version_1"
 RADII = np.linspace(0.0, 1.0, 33)
 REASON = re.compile(r".*?has no profile for this setting[^a-z]*(.*?)( \(LENSPROF_[A-Z_]*\))?$", re.S)
 POWERS = np.stack([RADII ** 2, RADII ** 4, RADII ** 6])
 
-Row = collections.namedtuple("Row", "id key setting k")
+Row = collections.namedtuple("Row", "id key setting k is_test")
 # ours, theirs, corner: errors, None where refused for `reason`; foreign: rows of another lens were used.
 Asked = collections.namedtuple("Asked", "ours theirs corner sigma foreign reason")
 
@@ -47,15 +48,32 @@ class Undo(Exception):
     """Ends a transaction without storing it."""
 
 
+def halves_of(text):
+    """For every falloff of a file, in its order: is its lens of the test half?"""
+    for lens in ElementTree.fromstring(text).findall("lens"):
+        mounts = ",".join(mount.text or "" for mount in lens.findall("mount"))
+        name = "|".join((lens.findtext("maker") or "", lens.findtext("model") or "", mounts,
+                         str(lens.findtext("cropfactor"))))
+        for _ in lens.iterfind("calibration/vignetting"):
+            yield zlib.crc32(name.encode()) & 1 == 1
+
+
 def fill(store, folder):
-    """Imports a folder's databases in one transaction -> ({id: k of what is stored}, entries, unusable, doubtful)."""
+    """Imports a folder's databases in one transaction -> ({id: (k, is_test)}, entries, unusable, doubtful)."""
     stored, entries, doubtful = {}, 0, 0
     with store.transaction():
         for file in sorted(folder.glob("*.xml")):
-            for profile, usable in lensprof.lensfun_read(file.read_bytes(), file.name):
-                entries += 1
+            text = file.read_bytes()
+            try:
+                found, tests = lensprof.lensfun_read(text, file.name), list(halves_of(text))
+            except lensprof.Error as error:
+                sys.exit("lookup.py: %s: %s" % (file, error))
+            if len(found) != len(tests):
+                sys.exit("lookup.py: %s has %d falloffs, of which %d were read" % (file, len(tests), len(found)))
+            entries += len(found)
+            for (profile, usable), is_test in zip(found, tests):
                 if usable:
-                    stored[store.put(profile)] = tuple(profile.vignetting[0].k)
+                    stored[store.put(profile)] = tuple(profile.vignetting[0].k), is_test
                     doubtful += bool(profile.provenance.doubt)
     return stored, entries, entries - len(stored), doubtful
 
@@ -67,12 +85,8 @@ def lenses(store, stored):
         key = one.key
         if not one.provenance.doubt:
             found[key.lens, key.crop_factor, key.camera_model].append(
-                Row(one.id, key, (key.focal_mm, key.aperture, key.distance_m), stored[one.id]))
+                Row(one.id, key, (key.focal_mm, key.aperture, key.distance_m), *stored[one.id]))
     return found
-
-
-def is_test(lens):
-    return zlib.crc32(str(lens).encode()) & 1 == 1
 
 
 def our_answer(store, key):
@@ -145,10 +159,12 @@ def cells(name, half):
 def document(halves, counts):
     asked = halves[ALL]["asked"]
     reasons = collections.Counter(a.reason for a in asked if a.reason)
-    lines = ["%d entries, %d of them unusable, %d stored with a doubt; %d stand alone. %d answers used rows of another lens,"
-             " crop factor or camera. Pairs are lensprof / Lensfun's rule." % (*counts, sum(a.foreign for a in asked)), ""]
+    lines = ["%d entries, %d of them unusable, %d stored with a doubt; %d stand alone. %d answers used rows of another"
+             " lens, crop factor or camera. Pairs are lensprof / Lensfun's rule."
+             % (*counts, sum(a.foreign for a in asked)), ""]
     lines += header("lenses", "number", "asked", "refused", "compared", "error of M, mean", "median", "90 %",
-                    "ratio of means", "with what lensprof refuses at Lensfun's error", "corners within 1 sigma", "2 sigma")
+                    "ratio of means", "with what lensprof refuses at Lensfun's error", "corners within 1 sigma",
+                    "2 sigma")
     lines += [row(*cells(name, half)) for name, half in halves.items()]
     lines += ["", "Refused by lensprof:"] + ["- %d: %s" % (n, reason) for reason, n in reasons.most_common()]
     return "\n".join(lines) + "\n"
@@ -164,16 +180,18 @@ def main():
     with tempfile.TemporaryDirectory() as scratch, \
             lensprof.Store(pathlib.Path(scratch) / "lensfun.db", lensprof.StoreMode.CREATE) as store:
         stored, *counts = fill(store, folder)
-        for lens, rows in lenses(store, stored).items():
+        for rows in lenses(store, stored).values():
             asked = leave_out(store, rows)
             alone += 0 if asked else len(rows)
-            for half in (halves[TEST if is_test(lens) else CHOSEN], halves[ALL]):
+            for half in (halves[TEST if all(one.is_test for one in rows) else CHOSEN], halves[ALL]):
                 half["lenses"] += bool(asked)
                 half["asked"] += asked
         profiles, faults = store.check()
     if faults or profiles != len(stored):
         sys.exit("lookup.py: the database is not as it was before the lookups: %d of %d profiles, %d faults"
                  % (profiles, len(stored), len(faults)))
+    if not all(errors_of_both(half["asked"])[0] for half in halves.values()):
+        sys.exit("lookup.py: %s: too few lenses with several settings; both halves need some" % folder)
     text = document(halves, [*counts, alone])
     print(text, end="")
     if not ratio_of_means(halves[TEST]["asked"]) <= TARGET:

@@ -228,10 +228,11 @@ class LensfunRule(unittest.TestCase):
         self.assertEqual(tuple(lensfun_rule.predict(self.KNOWN, self.K, (20.0, 4.0, 1000.0), 20.0)), self.K[0])
 
     def test_weights(self):
-        at = lensfun_rule.predict(self.KNOWN, self.K, (25.0, 4.0, 1000.0), 20.0)  # distances: 1/4, 3/4, the third by hand
+        at = lensfun_rule.predict(self.KNOWN, self.K, (25.0, 4.0, 1000.0), 20.0)  # distances: 1/4, 3/4, and by hand
         third = ((15 / 20) ** 2 + (2.0 - 1.0) ** 2 + (0.1 / 0.5 - 0.1 / 1000) ** 2) ** 0.5
         weights = [0.25 ** -3.5, 0.75 ** -3.5, third ** -3.5]
-        np.testing.assert_allclose(at, [sum(w * k[i] for w, k in zip(weights, self.K)) / sum(weights) for i in range(3)])
+        mean = [sum(w * k[i] for w, k in zip(weights, self.K)) / sum(weights) for i in range(3)]
+        np.testing.assert_allclose(at, mean)
 
     def test_refusal(self):
         self.assertIsNone(lensfun_rule.predict(self.KNOWN, self.K, (61.0, 4.0, 1000.0), 20.0))
