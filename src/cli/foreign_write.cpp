@@ -91,7 +91,8 @@ std::string text_of(const ForeignRule &rule, const std::string &path, const Fore
         case ForeignFormat::lcp:
             return lensprof_lcp_write(profiles.data(), count, o.width, o.height, bytes, capacity, needed, error);
         case ForeignFormat::json: return lensprof_json_write(profiles.data(), count, bytes, capacity, needed, error);
-        case ForeignFormat::pcalib: return lensprof_pcalib_write(&first.response[first.responses / 2], bytes, capacity, needed, error);
+        case ForeignFormat::pcalib: /* one curve: green's of three */
+            return lensprof_pcalib_write(&first.response[first.responses / 2], bytes, capacity, needed, error);
         case ForeignFormat::curves:
             return lensprof_curves_write(first.response, first.responses, o.curve, o.rows ? o.rows : 256, bytes, capacity,
                                          needed, error);

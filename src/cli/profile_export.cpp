@@ -21,7 +21,8 @@ struct Options {
 
 void declare(CLI::App &app, Options &o) {
     app.add_option("ID", o.ids, "profiles that `lensprof profile list` shows")->check(CLI::PositiveNumber);
-    app.add_option("-o,--output", o.output, "file to write; its name chooses the format. DNG opcodes go into a file that is there");
+    app.add_option("-o,--output", o.output,
+                   "file to write; its name chooses the format. DNG opcodes go into a file that is there");
     app.add_option("--format", o.format, "another format than the name's")->check(CLI::IsMember(foreign_names(true)));
     app.add_option("--blob", o.blob, "the same as --format blob -o FILE: for firmware to read in place (docs/blob.md)");
     app.add_flag("--covariance", o.covariance, "blob: the covariance as well, which a camera has no use for");

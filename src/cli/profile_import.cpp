@@ -136,7 +136,8 @@ int run_profile_import(const std::vector<std::string> &arguments, Streams &strea
     Options o;
     CLI::App app("Stores what other programs' files hold, all of them or none. Their content, else their name, tells the format.",
                  "lensprof profile import");
-    app.add_option("FILES", o.files, "files of profiles; or one with a response, one with a falloff, or both, for one profile")
+    app.add_option("FILES", o.files,
+                   "files of profiles; or one with a response, one with a falloff, or both, for one profile")
         ->required();
     app.add_option("--format", o.format, "of all the files, where it is not what they look like")
         ->check(CLI::IsMember(foreign_names(false)));
