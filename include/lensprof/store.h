@@ -86,9 +86,10 @@ typedef struct lensprof_lookup {
  * (docs/database.md says how). The lens's name decides, then the camera, unit and sensor - without a lens the camera, whose profiles without a
  * lens, or of its only lens, count (their focal lengths to 2 % or 0.1 mm, for such cameras round them); profiles of the key's unit
  * before those of any, of the key's camera before those of a lens alone; of these, those of the smallest sensor that is
- * not smaller than the key's, their radii rescaled. A predicted profile has key `key`, the response of the nearest
- * profile, no gain grid, and provenance method "lookup". Nothing is written. NOT_FOUND, with *lookup filled as far as it
- * goes, where there is no such lens, or nothing near enough; profile is then untouched. */
+ * not smaller than the key's, their radii rescaled, and of the smallest of all where the key's is not known. A predicted
+ * profile has key `key`, the response of the nearest profile, no gain grid, and provenance method "lookup". Nothing is
+ * written. NOT_FOUND, with *lookup filled as far as it goes, where there is no such lens, or nothing near enough; profile
+ * is then untouched. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup(lensprof_store *store,
                                                                      const lensprof_profile_key *key,
                                                                      const lensprof_lookup_options *options,

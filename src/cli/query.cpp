@@ -1,4 +1,7 @@
 /* `lensprof query`: the profile of a camera, lens and setting. */
+#include <algorithm>
+#include <cmath>
+
 #include "key_filter.hpp"
 #include "library.hpp"
 #include "lookup_report.hpp"
@@ -28,6 +31,15 @@ void declare(CLI::App &app, Options &o) {
     app.add_flag("--json", o.json, "print one JSON object");
     app.footer("When no profile is stored for the setting, the falloff is predicted from those of the same lens at other\n"
                "settings; the answer says from which, how far away they are, and how sure it is.");
+}
+
+/* Profiles of another sensor are those of a lookup, which converts them. */
+void keep_sensor(double crop_factor, std::vector<lensprof_store_row> &rows) {
+    constexpr double same = 0.02; /* as lensprof_store_lookup */
+    const auto is_other = [=](const lensprof_store_row &row) {
+        return row.key.crop_factor != LENSPROF_UNKNOWN && std::fabs(row.key.crop_factor / crop_factor - 1.0) > same;
+    };
+    rows.erase(std::remove_if(rows.begin(), rows.end(), is_other), rows.end());
 }
 
 /* The newest of the profiles that match. */
@@ -86,7 +98,8 @@ int run_query(const std::vector<std::string> &arguments, Streams &streams) {
     o.filter.check_words();
     if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
     Store store = open_store(o.db, LENSPROF_STORE_READ);
-    const auto rows = o.filter.rows(store.get(), o.db);
+    auto rows = o.filter.rows(store.get(), o.db);
+    if (o.crop_factor != LENSPROF_UNKNOWN) keep_sensor(o.crop_factor, rows);
     if (rows.empty()) answer_predicted(o, store.get(), streams);
     else answer_stored(o, store.get(), rows, streams);
     return 0;

@@ -168,6 +168,18 @@ static void combine(const lp_falloff_node *nodes, const point *points, uint32_t 
     }
 }
 
+/* Range of the neighbours' corners, beyond which a prediction does not go (restrain). */
+static double corner_span(const lp_falloff_node *nodes, const point *points, uint32_t used)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (uint32_t i = 0; i < used; i++)
+        for (int c = 0; c < 3; c++) {
+            const double *k = nodes[points[i].node].k[c];
+            low = fmin(low, k[0] + k[1] + k[2]), high = fmax(high, k[0] + k[1] + k[2]);
+        }
+    return high - low;
+}
+
 /* Variance of the process by what the neighbours' corners show. */
 static double process_variance(const lp_falloff_node *nodes, const point *points, uint32_t used,
                                double a[LP_NEIGHBOURS][LP_NEIGHBOURS])
@@ -214,7 +226,8 @@ int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_fa
     }
     combine(nodes, points, used, &here, weight, prediction->k);
     const double left = 1.0 + ANY_LEVEL + OWN_NOISE - explained;
-    prediction->sigma = sqrt(process_variance(nodes, points, used, a) * fmax(left, OWN_NOISE));
+    const double sigma = sqrt(process_variance(nodes, points, used, a) * fmax(left, OWN_NOISE));
+    prediction->sigma = fmin(sigma, corner_span(nodes, points, used) + PRIOR_SIGMA);
     prediction->used = used;
     free(points);
     return 1;

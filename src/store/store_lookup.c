@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define SAME_SENSOR 0.02    /* crop factors that differ by so much are of one sensor: EXIF rounds */
 #define CROP_TOLERANCE 0.96 /* a sensor may be larger by so much than the one that was measured */
 #define SAME_FOCAL 0.02     /* of a lens that cannot be changed */
 #define SAME_FOCAL_MM 0.1
@@ -25,11 +26,23 @@ static int is_sensor_covered(const lp_candidate *c, const lensprof_profile_key *
            || key->crop_factor / c->crop >= CROP_TOLERANCE;
 }
 
-/* Larger is better: unit, camera, then the sensor nearest to the key's. */
+/* Larger is better: unit, camera, then the sensor nearest to the key's; where that is not known, the smallest, whose
+ * falloff is the weakest. */
 static double rank_of(const lp_candidate *c, const lensprof_profile_key *key)
 {
-    const int is_known = c->crop != LENSPROF_UNKNOWN && key->crop_factor != LENSPROF_UNKNOWN;
-    return 100.0 * c->of_unit + 10.0 * c->of_camera + (is_known ? fmin(c->crop / key->crop_factor, 1.0) : 0.5);
+    const int own = c->crop != LENSPROF_UNKNOWN, asked = key->crop_factor != LENSPROF_UNKNOWN;
+    const double sensor = !own ? 0.5 : asked ? fmin(c->crop / key->crop_factor, 1.0) : 1.0 - 1.0 / (1.0 + c->crop);
+    return 100.0 * c->of_unit + 10.0 * c->of_camera + sensor;
+}
+
+static int has_several_sensors(const lp_candidates *found)
+{
+    double low = INFINITY, high = 0.0;
+    for (uint32_t i = 0; i < found->count; i++) {
+        const double crop = found->all[i].crop;
+        if (crop != LENSPROF_UNKNOWN) low = fmin(low, crop), high = fmax(high, crop);
+    }
+    return high > low * (1.0 + SAME_SENSOR);
 }
 
 /* Keeps the best group; returns how many there are. */
@@ -40,7 +53,7 @@ static uint32_t keep_best(lp_candidates *found, const lensprof_profile_key *key)
     for (uint32_t i = 0; i < found->count; i++)
         if (is_sensor_covered(&found->all[i], key)) best = fmax(best, rank_of(&found->all[i], key));
     for (uint32_t i = 0; i < found->count; i++)
-        if (is_sensor_covered(&found->all[i], key) && rank_of(&found->all[i], key) >= best - 1e-3)
+        if (is_sensor_covered(&found->all[i], key) && rank_of(&found->all[i], key) >= best - SAME_SENSOR)
             found->all[kept++] = found->all[i];
     return found->count = kept;
 }
@@ -294,7 +307,7 @@ static int64_t find_exact(const lp_candidates *found, const lp_falloff_node *at,
     for (uint32_t i = 0; i < found->count; i++) {
         const lp_candidate *c = &found->all[i];
         const int same_sensor = c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
-                                || is_same(c->crop, key->crop_factor);
+                                || fabs(c->crop / key->crop_factor - 1.0) <= SAME_SENSOR;
         if (same_sensor && is_same(c->node.focal_mm, at->focal_mm) && is_same(c->node.aperture, at->aperture)
             && is_same(c->node.distance_m, at->distance_m) && c->node.id > newest)
             newest = c->node.id;
@@ -313,7 +326,10 @@ static lensprof_status answer(lensprof_store *store, const lensprof_profile_key 
                       key->lens[strspn(key->lens, " ")] || !*key->camera_model
                           ? "no profile of a lens of this name; list the profiles to see which there are"
                           : "no profile of this camera; list the profiles to see which there are", error);
+    const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
     if (!keep_best(found, key)) return refuse(store, lookup, "this lens was measured on smaller sensors only", error);
+    if (several)
+        mind(lookup, "the sensor's size is not known: of those measured the smallest is taken");
     if (found->by_words) mind(lookup, "the lens was found by the words and numbers of its name, in another order or form");
     round_focal(found, &at, lookup);
     const int64_t same = find_exact(found, &at, key);

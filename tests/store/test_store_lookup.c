@@ -219,6 +219,35 @@ static void test_which_rows(void **state)
     lensprof_store_close(store);
 }
 
+/* A sensor that is not known is taken as the smallest measured, so that not too much is taken out; curves of sensors are not
+ * mixed, and one whose crop factor EXIF rounds is the same. */
+static void test_unknown_sensor(void **state)
+{
+    const place *here = *state;
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    for (int a = 0; a < 4; a++)
+        for (int small = 0; small < 2; small++) {
+            lensprof_profile *p = zoom_profile("Lens", 50, 2.0 * (1 << a), INFINITY);
+            p->key.crop_factor = small ? 1.5 : 1.0;
+            p->vignetting[0].k[0] = (small ? -0.2 : -0.5) / (1 << a);
+            put_at(store, p);
+        }
+    lensprof_profile_key key = zoom_profile("Lens", 50, 2.8, INFINITY)->key;
+    key.crop_factor = LENSPROF_UNKNOWN;
+    assert_ok(ask_with(store, &key, &options));
+    assert_int_equal(how.rows, 4);
+    assert_true(answered.vignetting[0].k[0] > -0.2);
+    assert_true(how.sigma < 0.1);
+    assert_non_null(strstr(how.reason, "the sensor's size is not known"));
+    key.crop_factor = 1.51;
+    key.aperture = 2.0;
+    assert_ok(ask_with(store, &key, &options));
+    assert_int_equal(how.exact, 1);
+    lensprof_store_close(store);
+}
+
 /* Nothing that was not there is taken out. */
 static void test_unknown_distance(void **state)
 {
@@ -358,6 +387,7 @@ int main(void)
         store_test(test_refusals),
         store_test(test_names),
         store_test(test_which_rows),
+        store_test(test_unknown_sensor),
         store_test(test_unknown_distance),
         store_test(test_doubt_and_processing),
         store_test(test_damaged_rows),
