@@ -315,17 +315,37 @@ static int64_t find_exact(const lp_candidates *found, const lp_falloff_node *at,
     return newest;
 }
 
+/* No row: the lens or camera is not there at all, or only with what the options leave out. */
+static lensprof_status refuse_unknown(lensprof_store *store, const lensprof_profile_key *key,
+                                      const lensprof_lookup_options *o, lensprof_lookup *lookup, lensprof_error *error)
+{
+    static const char *const reasons[] = {
+        "the profiles of this lens are of pictures processed otherwise (raw, jpeg, corrected), and so are their curves",
+        "the profiles of this lens are doubtful ones; ask for these, too, to have them",
+        "no profile of a lens of this name; list the profiles to see which there are",
+        "no profile of this camera; list the profiles to see which there are"};
+    lensprof_lookup_options wider = *o;
+    for (int which = 0; which < 2; which++) {
+        lp_candidates others;
+        memset(&others, 0, sizeof others);
+        if (which) wider.with_doubt = 1;
+        else wider.any_processing = 1;
+        const lensprof_status status = lp_find_candidates(store, key, &wider, &others, error);
+        const uint32_t count = others.count;
+        free(others.all);
+        if (status != LENSPROF_OK) return status;
+        if (count) return refuse(store, lookup, reasons[which], error);
+    }
+    return refuse(store, lookup, reasons[key->lens[strspn(key->lens, " ")] || !*key->camera_model ? 2 : 3], error);
+}
+
 static lensprof_status answer(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
                               lp_candidates *found, lensprof_lookup *lookup, lensprof_error *error)
 {
     lp_falloff_node at = {0, key->focal_mm, key->aperture, key->distance_m, {{0}}, 0.0};
     lookup->name_score = found->name_score;
     if (found->has_lenses) return refuse(store, lookup, "this camera has profiles of several lenses; give the lens", error);
-    if (!found->count)
-        return refuse(store, lookup,
-                      key->lens[strspn(key->lens, " ")] || !*key->camera_model
-                          ? "no profile of a lens of this name; list the profiles to see which there are"
-                          : "no profile of this camera; list the profiles to see which there are", error);
+    if (!found->count) return refuse_unknown(store, key, o, lookup, error);
     const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
     if (!keep_best(found, key)) return refuse(store, lookup, "this lens was measured on smaller sensors only", error);
     if (several)

@@ -248,6 +248,28 @@ static void test_unknown_sensor(void **state)
     lensprof_store_close(store);
 }
 
+/* What there is, but was not asked for, is said. */
+static void test_left_out_is_said(void **state)
+{
+    const place *here = *state;
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    put_falloff(store, "Lens 50mm", 50, 2.0, INFINITY);
+    lensprof_profile *p = zoom_profile("Lens 35mm", 35, 2.0, INFINITY);
+    snprintf(p->provenance.doubt, sizeof p->provenance.doubt, "odd");
+    put_at(store, p);
+    lensprof_profile_key key = zoom_profile("Lens 50mm", 50, 2.0, INFINITY)->key;
+    key.processing = LENSPROF_PROCESSING_JPEG;
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
+    assert_non_null(strstr(how.reason, "processed otherwise"));
+    assert_int_equal(ask(store, "Lens 35mm", 35, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
+    assert_non_null(strstr(how.reason, "doubtful"));
+    assert_int_equal(ask(store, "Lens 85mm", 85, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
+    assert_non_null(strstr(how.reason, "of this name"));
+    lensprof_store_close(store);
+}
+
 /* Nothing that was not there is taken out. */
 static void test_unknown_distance(void **state)
 {
@@ -388,6 +410,7 @@ int main(void)
         store_test(test_names),
         store_test(test_which_rows),
         store_test(test_unknown_sensor),
+        store_test(test_left_out_is_said),
         store_test(test_unknown_distance),
         store_test(test_doubt_and_processing),
         store_test(test_damaged_rows),
