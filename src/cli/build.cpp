@@ -208,7 +208,7 @@ Fitted fit_for_project(const Options &o, FitInput &input, const Fitted &best, ui
 }
 
 BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                  const StoredPrior &prior, OutputFiles &outputs, Streams &streams) {
+                  const EarlierProfile &prior, OutputFiles &outputs, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
@@ -257,7 +257,7 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
     check_store(o.store);
     OutputFiles outputs;
-    StoredPrior prior;
+    EarlierProfile prior;
     if (o.fit.wants_stored_prior()) prior = find_stored_prior(o.store, key, o.pto);
     BuildReport report = build(o, project, metadata, prior, outputs, streams);
     int code = finish_fit(report, key, o.store, {o.fit.method, o.pto, o.json, &outputs, &prior}, streams);

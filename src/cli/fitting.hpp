@@ -78,7 +78,7 @@ struct Finish {
     std::string source;             /* what it was made from */
     bool json = false;
     OutputFiles *outputs = nullptr; /* committed once the profile is stored; or NULL */
-    const StoredPrior *prior = nullptr; /* that the fit was given; or NULL */
+    const EarlierProfile *prior = nullptr; /* that the fit was given; or NULL */
 };
 
 /* Stores a result that is usable or forced, prints it, says on standard error what is wrong with it. Returns the exit

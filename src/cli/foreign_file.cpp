@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <fstream>
 
 #include "library.hpp"
@@ -70,6 +71,7 @@ const ForeignRule *rule_of_content(const std::string &path, const std::string &h
         if (lists.raw || !lists.list2.empty() || !lists.list3.empty()) return &rule_of(ForeignFormat::opcodes);
         return has(read_xmp_packet(path), "Vignetting") ? &rule_of(ForeignFormat::xmp) : nullptr;
     }
+    if (extension_of(path) == "lcp") return &rule_of(ForeignFormat::lcp);
     if (begins(head, "\xFF\xD8", 2) || has(head, "<x:xmpmeta") || has(head, "<?xpacket"))
         return &rule_of(ForeignFormat::xmp);
     const size_t first = head.find_first_not_of(" \t\r\n");
@@ -122,6 +124,8 @@ std::string about_foreign(bool written_only) {
 }
 
 const ForeignRule &format_to_read(const std::string &path, const std::string &wanted) {
+    if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path) && !std::filesystem::is_directory(path))
+        throw Failure(ExitCode::unreadable, path + ": is no ordinary file, and is read more than once; copy it to one first");
     if (!wanted.empty()) return rule_of_word(wanted);
     const std::string head = head_of(path);
     if (const ForeignRule *rule = rule_of_content(path, head)) return *rule;
@@ -133,6 +137,8 @@ const ForeignRule &format_to_read(const std::string &path, const std::string &wa
 const ForeignRule &format_to_write(const std::string &path, const std::string &wanted) {
     const ForeignRule *rule = wanted.empty() ? rule_of_name(path) : &rule_of_word(wanted);
     if (!rule) throw Failure(ExitCode::usage, path + ": its name does not tell a format; name it with --format");
+    if (extension_of(path) == "m" && rule->format == ForeignFormat::curves)
+        throw Failure(ExitCode::usage, path + ": pfstools' tables are read only; give it the ending .csv");
     if (!rule->is_written)
         throw Failure(ExitCode::usage, path + ": " + rule->name + " is read only; choose another --format");
     return *rule;

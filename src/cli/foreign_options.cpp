@@ -1,6 +1,6 @@
 #include "foreign_options.hpp"
 
-#include <map>
+#include <cstdio>
 
 #include "run.hpp"
 
@@ -17,6 +17,13 @@ std::string read_size(const std::string &text, uint32_t &width, uint32_t &height
     return "";
 }
 
+uint32_t curve_of(const std::string &word) {
+    return word == "log"       ? LENSPROF_CURVE_LOG
+           : word == "log10"   ? LENSPROF_CURVE_LOG10
+           : word == "forward" ? LENSPROF_CURVE_FORWARD
+                               : LENSPROF_CURVE_INVERSE;
+}
+
 CLI::Option *add_size(CLI::App &app, const char *name, uint32_t &width, uint32_t &height, const char *about) {
     return app.add_option_function<std::string>(
                   name,
@@ -31,18 +38,14 @@ CLI::Option *add_size(CLI::App &app, const char *name, uint32_t &width, uint32_t
 }  // namespace
 
 void declare_foreign(CLI::App &app, ForeignOptions &o, bool written) {
-    static const std::map<std::string, uint32_t> curves = {{"inverse", LENSPROF_CURVE_INVERSE},
-                                                           {"log", LENSPROF_CURVE_LOG},
-                                                           {"log10", LENSPROF_CURVE_LOG10},
-                                                           {"forward", LENSPROF_CURVE_FORWARD}};
     add_size(app, "--frame", o.width, o.height, "size of the pictures, px, for formats that depend on it and do not say it");
     add_size(app, "--grid", o.columns, o.rows, written ? "columns and rows of maps (that of the frame) and of alsc (16x12)"
                                                        : "alsc: columns and rows of tables other than 16x12 and 32x32");
-    app.add_option("--curve", o.curve,
+    app.add_option_function<std::string>(
+           "--curve", [&o](const std::string &word) { o.curve = curve_of(word); },
                    "curves: what the table holds: inverse (grey value to irradiance; default), log or log10 of that, or "
                    "forward (irradiance to grey value)")
-        ->transform(CLI::CheckedTransformer(curves))
-        ->type_name("TEXT");
+        ->check(CLI::IsMember({"inverse", "log", "log10", "forward"}));
     app.add_option("--sense", o.sense,
                    "maps: attenuation (divide; default for PNG) or gain (multiply; default for float TIFF)")
         ->check(CLI::IsMember({"attenuation", "gain"}));

@@ -1,4 +1,5 @@
 /* Files of other programs, read. */
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "opcode_tag.hpp"
 #include "picture.hpp"
 #include "profile_blob.hpp"
+#include "report.hpp"
 
 namespace lensprof {
 namespace {
@@ -49,6 +51,18 @@ void set_worst(double worst, lensprof_profile &profile) {
                  "its refit is off by up to " + std::to_string(std::lround(100.0 * worst)) + " %");
 }
 
+/* An attenuation that rises is seldom one: a gain may have been taken for it. */
+void set_rise(lensprof_profile &profile) {
+    constexpr double risen = 1.05;
+    double highest = 1.0;
+    for (uint32_t c = 0; c < profile.vignettings; c++)
+        for (int i = 1; i <= 20; i++)
+            highest = std::max(highest, lensprof_vignetting_eval(&profile.vignetting[c], i / 20.0, nullptr));
+    if (highest > risen)
+        set_text(profile.provenance.doubt, sizeof profile.provenance.doubt,
+                 "M rises to " + format("%.2f", highest) + ": is it a gain?");
+}
+
 /* Width and height of the frame, which some files do not say. */
 void demand_frame(const std::string &path, const ForeignOptions &o) {
     if (!o.width || !o.height)
@@ -81,6 +95,9 @@ void read_map(const std::string &path, const ForeignOptions &o, lensprof_profile
     const uint32_t channels = lensprof_layout_channels(picture.layout) == 3 ? 3 : 1;
     const std::vector<float> values = values_of(picture, channels);
     const bool is_gain = o.sense.empty() ? picture.sample == LENSPROF_SAMPLE_F32 : o.sense == "gain";
+    const double shape = double(picture.width) / picture.height, wanted = o.width ? double(o.width) / o.height : shape;
+    if (std::fabs(shape / wanted - 1.0) > 0.01)
+        throw Failure(ExitCode::usage, path + ": has another shape than --frame; give the size of the pictures that it is for");
     const lensprof_map map = {picture.width, picture.height, channels,
                               is_gain ? LENSPROF_MAP_GAIN : LENSPROF_MAP_ATTENUATION, values.data()};
     double worst = 0.0;
@@ -110,6 +127,8 @@ void read_xmp(const std::string &path, const ForeignOptions &o, lensprof_profile
     const bool is_packet = path.size() > 4 && path.compare(path.size() - 4, 4, ".xmp") == 0;
     if (is_packet) demand_frame(path, o);
     const std::string packet = is_packet ? read_text(path, most_bytes) : read_xmp_packet(path);
+    if (packet.empty())
+        throw Failure(ExitCode::unreadable, path + ": has no XMP, in which drones' cameras describe their falloff");
     const PictureSize size = is_packet || o.width ? PictureSize{o.width, o.height} : read_size(path);
     lensprof_error error{};
     check(lensprof_drone_xmp_read(packet.data(), packet.size(), size.width, size.height, nullptr, take_falloff, &profile,
@@ -150,7 +169,9 @@ void read_profiles(const ForeignRule &rule, const std::string &path, lensprof_im
     check(read(text.data(), text.size(), name.c_str(), visit, user, &error), path, &error);
 }
 
-void read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &o, lensprof_profile &profile) {
+namespace {
+
+void read_any_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &o, lensprof_profile &profile) {
     if (rule.format == ForeignFormat::map) return read_map(path, o, profile);
     if (rule.format == ForeignFormat::opcodes) return read_opcodes(path, profile);
     if (rule.format == ForeignFormat::xmp) return read_xmp(path, o, profile);
@@ -180,6 +201,13 @@ void read_part(const ForeignRule &rule, const std::string &path, const ForeignOp
     check(status, path, &error);
     if (rule.part == ForeignPart::response) set_responses(responses.get(), count, profile);
     else set_worst(worst, profile);
+}
+
+}  // namespace
+
+void read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &o, lensprof_profile &profile) {
+    read_any_part(rule, path, o, profile);
+    if (rule.part == ForeignPart::falloff) set_rise(profile);
 }
 
 }  // namespace lensprof

@@ -12,6 +12,9 @@
 namespace lensprof {
 namespace {
 
+constexpr uint64_t most_map_values = 100000000;
+constexpr size_t most_bytes = size_t(64) << 20; /* of a file of profiles, as read_profiles */
+
 /* What a writer of the library makes, by asking for the size first: write(buffer, capacity, &needed, &error). */
 template <typename Write> std::string bytes_of(const std::string &path, const Write &write) {
     size_t needed = 0;
@@ -32,11 +35,15 @@ void demand_frame(const std::string &path, const ForeignRule &rule, const Foreig
 void write_map(const std::string &path, const ForeignOptions &o, const lensprof_profile &profile) {
     const bool is_tiff = format_of_name(path) == FileFormat::tiff;
     const bool is_gain = o.sense.empty() ? is_tiff : o.sense == "gain";
-    if (!is_tiff && (is_gain || format_of_name(path) == FileFormat::jpeg))
+    if (format_of_name(path) == FileFormat::jpeg)
+        throw Failure(ExitCode::usage, path + ": JPEG is not exact; give a map the ending .png or .tif");
+    if (!is_tiff && is_gain)
         throw Failure(ExitCode::usage, path + ": gains go beyond 1 and need a float TIFF; give it the ending .tif");
     const bool has_channels = profile.vignettings == 3 || profile.grid.channels == 3;
     const uint32_t channels = is_tiff && has_channels ? 3 : 1;
     const uint32_t columns = o.columns ? o.columns : o.width, rows = o.rows ? o.rows : o.height;
+    if (uint64_t(columns) * rows > most_map_values)
+        throw Failure(ExitCode::usage, path + ": a map of over 100 million values; give a smaller --grid");
     std::vector<float> values(size_t(columns) * rows * channels);
     lensprof_error error{};
     check(lensprof_map_write(&profile, o.width, o.height, columns, rows, channels,
@@ -59,10 +66,33 @@ void write_map(const std::string &path, const ForeignOptions &o, const lensprof_
     write_picture(path, picture);
 }
 
+/* Whether a list has an opcode that `is_one` is true of. */
+template <typename Is> bool has_opcode(const std::vector<uint8_t> &list, const Is &is_one) {
+    const auto word = [&](size_t at) {
+        uint32_t value = 0;
+        for (size_t i = 0; i < 4; i++) value = value << 8 | (at + i < list.size() ? list[at + i] : 0);
+        return value;
+    };
+    for (size_t at = 4; at + 16 <= list.size(); at += 16 + size_t(word(at + 12)))
+        if (is_one(word(at))) return true;
+    return false;
+}
+
+/* What else a picture's lists do must stay, and a falloff must not be corrected twice. */
+void demand_no_others(const std::string &path, const OpcodeLists &lists) {
+    const auto is_gain = [](uint32_t id) { return id == 3 || id == 9; }; /* FixVignetteRadial, GainMap */
+    if (has_opcode(lists.list2, is_gain))
+        throw Failure(ExitCode::usage, path + ": its OpcodeList2 corrects the falloff already; take another picture");
+    if (has_opcode(lists.list3, [&](uint32_t id) { return !is_gain(id); }))
+        throw Failure(ExitCode::usage, path + ": its OpcodeList3 does other things, too, which would be lost (as a correction of "
+                                              "distortion); take a picture without");
+}
+
 /* One opcode of a radial falloff where that comes near enough, else a map. */
 void write_opcodes(const std::string &path, const ForeignOptions &o, const lensprof_profile &profile) {
     constexpr double near_enough = 0.005;
     const OpcodeLists lists = read_opcode_lists(path);
+    demand_no_others(path, lists);
     /* after demosaicing there are three channels; linear raw images and plain TIFF have them from the start */
     const uint32_t layout = lists.layout == LENSPROF_LAYOUT_GREY ? LENSPROF_LAYOUT_GREY : LENSPROF_LAYOUT_RGB;
     const auto written = [&](uint32_t form, double &worst) {
@@ -122,6 +152,9 @@ void write_foreign(const ForeignRule &rule, const std::string &path, const Forei
     if (format == ForeignFormat::map) return write_map(path, o, *profiles[0]);
     if (format == ForeignFormat::opcodes) return write_opcodes(path, o, *profiles[0]);
     const std::string text = text_of(rule, path, o, profiles);
+    if (holds_many && text.size() > most_bytes)
+        throw Failure(ExitCode::usage, path + ": would be larger than the 64 MiB that are read; export fewer profiles, or use "
+                                              "`lensprof profile merge`");
     write_file(path, text.data(), text.size());
 }
 

@@ -16,14 +16,9 @@ std::string number_or(double value, const char *pattern) {
     return value == LENSPROF_UNKNOWN ? std::string("-") : format(pattern, value);
 }
 
-int list(const std::string &db, bool json, Streams &streams) {
+int list(const std::string &db, const KeyFilter &filter, bool json, Streams &streams) {
     Store store = open_store(db, LENSPROF_STORE_READ);
-    lensprof_error error{};
-    uint32_t found = 0;
-    check(lensprof_store_list(store.get(), nullptr, nullptr, 0, &found, &error), store_path(db), &error);
-    std::vector<lensprof_store_row> rows(found);
-    check(lensprof_store_list(store.get(), nullptr, rows.data(), found, &found, &error), store_path(db), &error);
-    rows.resize(std::min<size_t>(rows.size(), found));
+    const std::vector<lensprof_store_row> rows = filter.rows(store.get(), db);
     if (json) {
         Json profiles = Json::array();
         for (const auto &row : rows)
@@ -32,12 +27,14 @@ int list(const std::string &db, bool json, Streams &streams) {
         print_json(Json{{"schema", 1}, {"profiles", profiles}}, streams.out);
         return 0;
     }
-    streams.out << format("%6s  %-28s %-32s %7s %6s %9s  %s\n", "id", "camera", "lens", "mm", "f/", "focus m", "state");
+    streams.out << format("%6s  %-28s %-32s %5s %7s %6s %9s  %s\n", "id", "camera", "lens", "crop", "mm", "f/", "focus m",
+                          "state");
     for (const auto &row : rows) {
         const auto &k = row.key;
-        streams.out << format("%6lld  %-28s %-32s %7s %6s %9s  %s\n", static_cast<long long>(row.id), k.camera_model,
-                              k.lens, number_or(k.focal_mm, "%g").c_str(), number_or(k.aperture, "%g").c_str(),
-                              number_or(k.distance_m, "%g").c_str(), processing_name(k.processing));
+        streams.out << format("%6lld  %-28s %-32s %5s %7s %6s %9s  %s%s%s\n", static_cast<long long>(row.id), k.camera_model,
+                              k.lens, number_or(k.crop_factor, "%.3g").c_str(), number_or(k.focal_mm, "%g").c_str(), number_or(k.aperture, "%g").c_str(),
+                              number_or(k.distance_m, "%g").c_str(), processing_name(k.processing),
+                              *k.unit ? ", unit " : "", k.unit);
     }
     return 0;
 }
@@ -143,10 +140,10 @@ void check_verb(const std::string &verb, const ProfileOptions &o) {
         throw Failure(ExitCode::usage, "profile " + verb + ": --chart, --chart-out and --channel belong to show");
     if (verb == "show" && !o.channel.empty() && !o.chart && o.chart_out.empty())
         throw Failure(ExitCode::usage, "profile show: --channel belongs to --chart and --chart-out; add one of them");
-    if (verb != "show" && !o.filter.is_empty())
-        throw Failure(ExitCode::usage, "profile " + verb + ": --camera, --lens and the like belong to show");
+    if (verb == "remove" && !o.filter.is_empty())
+        throw Failure(ExitCode::usage, "profile remove: --camera, --lens and the like belong to list and show");
     if (verb == "list" && !o.ids.empty())
-        throw Failure(ExitCode::usage, "profile list: lists all profiles, without an id; `profile show` takes ids");
+        throw Failure(ExitCode::usage, "profile list: lists profiles without ids; `profile show` takes ids");
     if (verb == "remove" && o.ids.size() != 1)
         throw Failure(ExitCode::usage, "profile remove: give the id, one, that `lensprof profile list` shows");
     if (verb != "show" && !o.blob.empty())
@@ -179,12 +176,12 @@ int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
                    "profile, green for several")
         ->check(CLI::IsMember({"red", "green", "blue", "all"}));
     app.add_option("--blob", o.blob, "show: a blob (docs/blob.md) to read instead of the database");
-    app.option_defaults()->group("What to show, instead of ids");
+    app.option_defaults()->group("What to list or show, instead of ids");
     o.filter.add_options(app);
     if (!parse(app, arguments, streams)) return 0;
     check_verb(verb, o);
     o.filter.check_words();
-    if (verb == "list") return list(o.db, o.json, streams);
+    if (verb == "list") return list(o.db, o.filter, o.json, streams);
     return verb == "show" ? show(o, streams) : remove(o.db, o.ids[0], o.json, streams);
 }
 

@@ -37,16 +37,17 @@ struct Import {
     uint32_t stored = 0, known = 0;
     std::set<std::string> lenses;
     Json flagged = Json::array(); /* file, key, doubt, stored */
+    lensprof_status store_status = LENSPROF_OK; /* of the last call, and its text */
     lensprof_error error{};
 };
 
 /* Whether the newest profile of this key is the same, from the same place. */
-bool is_there(Import &import, const lensprof_profile &profile) {
+lensprof_status find_same(Import &import, const lensprof_profile &profile, bool &same) {
     auto found = std::make_unique<lensprof_profile>();
+    same = false;
     const lensprof_status status = lensprof_store_find(import.store, &profile.key, found.get(), nullptr, &import.error);
-    if (status == LENSPROF_ERROR_NOT_FOUND) return false;
-    check(status, store_path(import.db), &import.error);
-    bool same = profile.responses == found->responses && profile.vignettings == found->vignettings
+    if (status != LENSPROF_OK) return status == LENSPROF_ERROR_NOT_FOUND ? LENSPROF_OK : status;
+    same = profile.responses == found->responses && profile.vignettings == found->vignettings
              && std::memcmp(&profile.grid, &found->grid, sizeof profile.grid) == 0
              && std::string(profile.provenance.source) == found->provenance.source;
     for (uint32_t c = 0; c < profile.responses && same; c++)
@@ -54,7 +55,7 @@ bool is_there(Import &import, const lensprof_profile &profile) {
     for (uint32_t c = 0; c < profile.vignettings && same; c++)
         same = std::equal(profile.vignetting[c].k, profile.vignetting[c].k + 3, found->vignetting[c].k)
             && std::equal(profile.vignetting[c].center, profile.vignetting[c].center + 2, found->vignetting[c].center);
-    return same;
+    return LENSPROF_OK;
 }
 
 lensprof_status take(void *user, const lensprof_import_entry *entry) {
@@ -64,13 +65,13 @@ lensprof_status take(void *user, const lensprof_import_entry *entry) {
         import.flagged.push_back({{"file", import.file}, {"key", key_json(profile.key)},
                                   {"doubt", profile.provenance.doubt}, {"stored", entry->usable != 0}});
     if (!entry->usable) return LENSPROF_OK;
-    if (!import.was_empty && is_there(import, profile)) {
-        import.known++;
-        return LENSPROF_OK;
-    }
-    const lensprof_status status = lensprof_store_put(import.store, &profile, nullptr, &import.error);
+    bool same = false;
+    lensprof_status status = import.was_empty ? LENSPROF_OK : find_same(import, profile, same);
+    if (same) import.known++;
+    if (same || status != LENSPROF_OK) return import.store_status = status;
+    status = lensprof_store_put(import.store, &profile, nullptr, &import.error);
     if (status == LENSPROF_OK) import.stored++, import.lenses.insert(profile.key.lens);
-    return status;
+    return import.store_status = status;
 }
 
 lensprof_status ignore(void *, const lensprof_import_entry *) { return LENSPROF_OK; }
@@ -109,13 +110,17 @@ void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_
     for (const Input &input : inputs) {
         if (input.rule->part != ForeignPart::profiles) continue;
         import.file = input.file;
-        import.error.text[0] = 0;
-        read_profiles(*input.rule, input.file, visit, &import);
+        try {
+            read_profiles(*input.rule, input.file, visit, &import);
+        } catch (const Failure &) {
+            check(import.store_status, store_path(import.db), &import.error); /* the store's failure, and not the file's */
+            throw;
+        }
     }
     if (!of_parts) return;
     const lensprof_import_entry entry = {of_parts, 1, 0};
     import.file = of_parts->provenance.source;
-    check(visit(&import, &entry), import.file, &import.error);
+    check(visit(&import, &entry), store_path(import.db), &import.error);
 }
 
 void print_import(const Import &import, size_t files, Streams &streams) {
@@ -150,7 +155,10 @@ int run_profile_import(const std::vector<std::string> &arguments, Streams &strea
     if (!parse(app, arguments, streams)) return 0;
     o.key.check_words();
     std::vector<Input> inputs;
-    for (const std::string &file : o.files) inputs.push_back({file, &format_to_read(file, o.format)});
+    std::set<std::string> seen;
+    for (const std::string &file : o.files)
+        if (seen.insert(std::filesystem::weakly_canonical(file).string()).second)
+            inputs.push_back({file, &format_to_read(file, o.format)});
     const std::unique_ptr<lensprof_profile> of_parts = read_parts(o, inputs);
     if (!of_parts && !o.key.is_empty())
         throw Failure(ExitCode::usage, "profile import: these files say themselves whose profiles they hold; leave --camera, "
@@ -161,9 +169,9 @@ int run_profile_import(const std::vector<std::string> &arguments, Streams &strea
     import.store = store.get();
     import.db = o.db;
     uint32_t before = 0;
+    check(lensprof_store_begin(store.get(), &import.error), store_path(o.db), &import.error);
     check(lensprof_store_list(store.get(), nullptr, nullptr, 0, &before, &import.error), store_path(o.db), &import.error);
     import.was_empty = before == 0;
-    check(lensprof_store_begin(store.get(), &import.error), store_path(o.db), &import.error);
     visit_all(import, inputs, of_parts.get(), take); /* a failure closes the store, and rolls back */
     check(lensprof_store_commit(store.get(), &import.error), store_path(o.db), &import.error);
     if (o.json)

@@ -64,12 +64,14 @@ void check_store(const StoreOptions &o) {
 void remove_empty_store(const std::string &file) {
     lensprof_store *store = nullptr;
     uint32_t profiles = 0;
+    std::error_code ignored;
     if (lensprof_store_open(file.c_str(), LENSPROF_STORE_READ, &store, nullptr) == LENSPROF_OK) {
         Store closing(store);
-        if (lensprof_store_list(store, nullptr, nullptr, 0, &profiles, nullptr) != LENSPROF_OK) return;
+        if (lensprof_store_list(store, nullptr, nullptr, 0, &profiles, nullptr) != LENSPROF_OK || profiles) return;
+    } else if (std::filesystem::file_size(file, ignored) != 0) {
+        return; /* somebody else's */
     }
-    std::error_code ignored;
-    if (profiles == 0) std::filesystem::remove(file, ignored);
+    std::filesystem::remove(file, ignored);
 }
 
 std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit) {
@@ -86,13 +88,17 @@ std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit) {
     return profile;
 }
 
+std::string source_of(const std::string &file) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file)).string();
+}
+
 int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const std::string &method, bool usable,
                       const std::string &source) {
     auto &p = profile.provenance;
     const std::string forced = usable ? "" : " (forced)";
     set_text(p.method, sizeof p.method, method.substr(0, sizeof p.method - 1 - forced.size()) + forced);
     set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
-    set_text(p.source, sizeof p.source, std::filesystem::absolute(source).string());
+    set_text(p.source, sizeof p.source, source_of(source));
     p.created_unix_s = static_cast<int64_t>(std::time(nullptr));
     bool is_new = !std::filesystem::exists(store_path(o.db));
     try {

@@ -36,7 +36,10 @@ void remove_empty_store(const std::string &file);
 /* A profile of what a fit found, its key and provenance but the result's numbers still empty. */
 std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit);
 
-/* Completes the provenance (method, whether it was forced, this program, `source` as absolute path, time) and stores
+/* A file as provenances name it: one name, however it was written. */
+std::string source_of(const std::string &file);
+
+/* Completes the provenance (method, whether it was forced, this program, source_of(`source`), time) and stores
  * the profile. A new database that could not take it is not left behind. Returns its number. */
 int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const std::string &method, bool usable,
                       const std::string &source);

@@ -42,6 +42,12 @@ void keep_sensor(double crop_factor, std::vector<lensprof_store_row> &rows) {
     rows.erase(std::remove_if(rows.begin(), rows.end(), is_other), rows.end());
 }
 
+/* As lookups do. */
+void leave_out_doubtful(std::vector<lensprof_store_row> &rows) {
+    const auto has_doubt = [](const lensprof_store_row &row) { return *row.provenance.doubt != 0; };
+    rows.erase(std::remove_if(rows.begin(), rows.end(), has_doubt), rows.end());
+}
+
 /* The newest of the profiles that match. */
 void answer_stored(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows,
                    Streams &streams) {
@@ -61,8 +67,8 @@ void answer_stored(const Options &o, lensprof_store *store, const std::vector<le
         streams.out << rows.size() << " profiles match; this is the newest. Give more of the setting to choose.\n";
 }
 
-/* The falloff between what is stored. */
-void answer_predicted(const Options &o, lensprof_store *store, Streams &streams) {
+/* The profile for the setting: stored, or between what is stored. False where the setting leaves open which of `rows`. */
+bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows, Streams &streams) {
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
     options.distance_rule = o.rule == "weakest" ? LENSPROF_DISTANCE_WEAKEST : LENSPROF_DISTANCE_FARTHEST;
@@ -74,18 +80,20 @@ void answer_predicted(const Options &o, lensprof_store *store, Streams &streams)
     lensprof_error error{};
     auto profile = std::make_unique<lensprof_profile>();
     const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
+    if (status == LENSPROF_ERROR_NOT_FOUND && !rows.empty()) return false;
     if (status == LENSPROF_ERROR_NOT_FOUND)
         throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db) + "; nor can it be predicted: " + how.reason);
     check(status, store_path(o.db), &error);
     if (o.json) {
         Json object = profile_json(how.exact ? how.id[0] : 0, *profile);
-        object["matches"] = 0;
+        object["matches"] = rows.size();
         object["lookup"] = lookup_json(how);
         print_json(object, streams.out);
-        return;
+        return true;
     }
     print_profile(how.exact ? how.id[0] : 0, *profile, streams.out);
     print_lookup(how, streams.out);
+    return true;
 }
 
 }  // namespace
@@ -100,8 +108,8 @@ int run_query(const std::vector<std::string> &arguments, Streams &streams) {
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     auto rows = o.filter.rows(store.get(), o.db);
     if (o.crop_factor != LENSPROF_UNKNOWN) keep_sensor(o.crop_factor, rows);
-    if (rows.empty()) answer_predicted(o, store.get(), streams);
-    else answer_stored(o, store.get(), rows, streams);
+    if (!o.doubtful) leave_out_doubtful(rows);
+    if (rows.size() == 1 || !answer_lookup(o, store.get(), rows, streams)) answer_stored(o, store.get(), rows, streams);
     return 0;
 }
 

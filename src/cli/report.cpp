@@ -359,6 +359,7 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
         << " pairs";
     if (p.heldout_rms != LENSPROF_UNKNOWN) out << format(", residual %.2f levels", p.heldout_rms);
     out << (*p.source ? std::string(", ") + p.source : std::string()) << "\n";
+    if (*p.doubt) out << "doubt     " << p.doubt << "\n";
 }
 
 TrueValues read_truth(const std::string &path, size_t images) {

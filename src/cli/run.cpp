@@ -41,7 +41,11 @@ const Command *find_command(const std::string &name) {
 
 int run_help(const std::vector<std::string> &arguments, Streams &streams) {
     const Command *command = arguments.empty() ? nullptr : find_command(arguments[0]);
-    if (command && command->run != run_help && command->run != run_version) return command->run({"--help"}, streams);
+    if (command && command->run != run_help && command->run != run_version) {
+        std::vector<std::string> words(arguments.begin() + 1, arguments.end());
+        words.push_back("--help");
+        return command->run(words, streams);
+    }
     if (!arguments.empty() && !command)
         throw Failure(ExitCode::usage, arguments[0] + ": no such command; `lensprof help` lists them");
     streams.out << "lensprof - what the camera did to the light, and how to undo it\n\n"

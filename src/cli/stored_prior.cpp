@@ -13,17 +13,17 @@ int64_t prior_of(const std::string &method) {
     return plus == std::string::npos ? 0 : std::strtoll(method.c_str() + plus + 1, nullptr, 10);
 }
 
-/* Whether the profile, or one that is in it, was made from `source`. */
+/* Whether a profile that is in this one was made from `source`. */
 bool holds(lensprof_store *store, const lensprof_profile &profile, const std::string &source) {
     auto next = std::make_unique<lensprof_profile>(profile);
     std::set<int64_t> seen;
-    while (source != next->provenance.source) {
+    for (;;) {
         const int64_t id = prior_of(next->provenance.method);
         if (id <= 0 || !seen.insert(id).second
             || lensprof_store_get(store, id, next.get(), nullptr) != LENSPROF_OK)
             return false;
+        if (source == next->provenance.source) return true;
     }
-    return true;
 }
 
 bool is_uncertain(const lensprof_profile &profile) {
@@ -34,7 +34,7 @@ bool is_uncertain(const lensprof_profile &profile) {
 
 }  // namespace
 
-StoredPrior find_stored_prior(const StoreOptions &o, const lensprof_profile_key &key, const std::string &source) {
+EarlierProfile find_stored_prior(const StoreOptions &o, const lensprof_profile_key &key, const std::string &source) {
     const std::string file = store_path(o.db);
     if (!std::filesystem::exists(file)) return {0, nullptr, "there is no database yet"};
     Store store = open_store(o.db, LENSPROF_STORE_READ);
@@ -48,9 +48,19 @@ StoredPrior find_stored_prior(const StoreOptions &o, const lensprof_profile_key 
     if (status != LENSPROF_OK || !how.exact) return {0, nullptr, "no profile is stored for this lens and setting"};
     const std::string named = "profile " + std::to_string(how.id[0]);
     if (!is_uncertain(*profile)) return {0, nullptr, named + " has no covariance"};
-    if (holds(store.get(), *profile, std::filesystem::absolute(source).string()))
-        return {0, nullptr, named + " holds these pictures already"};
-    return {how.id[0], std::move(profile), ""};
+    if (std::string(profile->provenance.method).find("(forced)") != std::string::npos)
+        return {0, nullptr, named + " was stored by --force, of a fit that was not usable"};
+    const std::string own = source_of(source);
+    int64_t id = how.id[0];
+    if (own == profile->provenance.source) { /* fitted again: what it was given then is the prior again */
+        id = prior_of(profile->provenance.method);
+        if (id <= 0 || lensprof_store_get(store.get(), id, profile.get(), nullptr) != LENSPROF_OK || !is_uncertain(*profile))
+            return {0, nullptr, named + " is of these pictures alone, which are fitted again"};
+    }
+    if (own == profile->provenance.source || holds(store.get(), *profile, own))
+        throw Failure(ExitCode::usage, source + ": profile " + std::to_string(id) + " holds these pictures already, and others "
+                                           "that came later; nothing would be gained. Leave --prior auto out to fit them alone");
+    return {id, std::move(profile), ""};
 }
 
 std::string fused_method(const std::string &method, int64_t prior) {

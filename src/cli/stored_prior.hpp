@@ -9,15 +9,16 @@
 
 namespace lensprof {
 
-struct StoredPrior {
+struct EarlierProfile {
     int64_t id = 0;                            /* 0: there is none */
     std::unique_ptr<lensprof_profile> profile; /* or NULL */
     std::string reason;                        /* why there is none */
 };
 
-/* The profile that is stored for the key, unless it has no covariance or was made from `source` already, which would
- * then count twice: its provenance tells (`transfer+12`: profile 12 is in it). */
-StoredPrior find_stored_prior(const StoreOptions &o, const lensprof_profile_key &key, const std::string &source);
+/* The profile that is stored for the key, unless it has no covariance or is of a fit that was not usable. No pictures count
+ * twice: where it was made from `source`, the one that is in it (its method `transfer+12` names it) is the prior again;
+ * Failure (usage) where `source` is deeper in it. */
+EarlierProfile find_stored_prior(const StoreOptions &o, const lensprof_profile_key &key, const std::string &source);
 
 /* The method of a profile that holds another one. */
 std::string fused_method(const std::string &method, int64_t prior);

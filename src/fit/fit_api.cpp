@@ -6,6 +6,7 @@
 #include "fail.hpp"
 #include "overlap.hpp"
 #include "residual.hpp"
+#include "stored_prior.hpp"
 #include "tracks.hpp"
 #include "transfer_function.hpp"
 
@@ -30,6 +31,10 @@ lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *err
     bool knows = false;
     for (uint32_t i = 0; i < o.profile->covariance_size; i++)
         knows = knows || o.profile->covariance[i * o.profile->covariance_size + i] > 0.0;
+    if (knows && !is_covariance(*o.profile))
+        return fail(LENSPROF_ERROR_ARGUMENT, error,
+                    "fit options: the profile's covariance is none (a combination of parameters has a variance below 0); "
+                    "leave it out");
     return knows ? LENSPROF_OK
                  : fail(LENSPROF_ERROR_ARGUMENT, error,
                         "fit options: the profile has no covariance, and says nothing of how sure it is; leave it out");

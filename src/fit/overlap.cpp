@@ -82,12 +82,12 @@ private:
         prior_ = make_prior(options_.prior_weight, count, all_.by_radiance);
         if (stored_) stored_->put_into(prior_, count, options_.prior_weight);
     }
-    // Fewer modes than the profile's would leave out what is known of the others.
     int first_vignettings() const {
         const bool three =
             options_.vignettings == 3 || (options_.vignettings == 0 && stored_ && stored_->vignettings() == 3);
         return three && options_.channels == 3 ? 3 : 1;
     }
+    // Fewer modes than the profile's would leave out what is known of the others.
     int start_modes() const { return stored_ ? std::max(kStartModes, stored_->modes()) : kStartModes; }
     Estimate best_start(int modes);
     void reconsider(const Problem &problem, const Loss &used, Estimate &estimate);
@@ -356,24 +356,30 @@ void run_fits(const lensprof_fit_options &options, uint32_t image_count, const F
               lensprof_exposure *exposures, lensprof_fit_result &result) {
     constexpr double kClearly = 3.0, kFarApart = 5.0;  // standard errors
     auto began = std::chrono::steady_clock::now();
+    std::vector<lensprof_exposure> found(image_count);  // the caller's stay as they are until all is done
+    std::vector<lensprof_fit_image_quality> quality(image_count);
+    lensprof_fit_result r = result;
+    r.image_quality = quality.data();
+    r.profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
     Fit alone(options, image_count, make, count, nullptr, 0.0, options.profile ? 0.5 : 1.0);
     alone.run();
-    lensprof_fit_result r = result;
-    alone.describe(exposures, r);
-    r.profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
+    alone.describe(found.data(), r);
     if (options.profile) {
         Fit informed(options, image_count, make, count, options.profile, 0.5, 1.0);
         informed.run();
         const double worse = informed.worse_than(alone), apart = informed.falloff_distance(r);
         const bool overruled = worse > kClearly || apart > kFarApart;
         r.profile_prior = overruled ? LENSPROF_PROFILE_PRIOR_OVERRULED : LENSPROF_PROFILE_PRIOR_USED;
-        if (!overruled) informed.describe(exposures, r);
+        if (!overruled) informed.describe(found.data(), r);
         else if (r.usable)
             std::snprintf(r.reason, sizeof r.reason,
                           "the profile given as the prior contradicts the pictures (its falloff is %.1f, held-out pairs "
                           "%.1f standard errors off) and was left out: is it of this lens and setting?", apart, worse);
     }
     r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    r.image_quality = result.image_quality;
+    if (r.image_quality) std::copy(quality.begin(), quality.end(), r.image_quality);
+    std::copy(found.begin(), found.end(), exposures);
     result = r;
 }
 

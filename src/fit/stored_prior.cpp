@@ -1,8 +1,10 @@
 #include "stored_prior.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "core/response.h"
 #include "gauge.hpp"
@@ -23,6 +25,23 @@ int modes_before_falloff(const lensprof_profile &profile) {
 }
 
 }  // namespace
+
+bool is_covariance(const lensprof_profile &profile) {
+    const auto n = static_cast<Eigen::Index>(profile.covariance_size);
+    Eigen::VectorXd sigma(n);
+    for (Eigen::Index i = 0; i < n; i++) sigma[i] = std::sqrt(profile.covariance[i * n + i]);
+    Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index i = 0; i < n; i++)
+        for (Eigen::Index j = 0; j < n; j++) {
+            const double value = profile.covariance[i * n + j];
+            if (i != j && sigma[i] > 0.0 && sigma[j] > 0.0) correlation(i, j) = value / sigma[i] / sigma[j];
+            else if (i != j && value != 0.0) return false;
+        }
+    if (!correlation.allFinite()) return false;
+    constexpr double kRounding = 1e-6;
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation, Eigen::EigenvaluesOnly).eigenvalues().minCoeff()
+         > -kRounding;
+}
 
 StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem, int most_modes)
     : vignettings_(static_cast<int>(profile.vignettings)) {
@@ -139,7 +158,9 @@ void StoredPrior::put_into(Prior &prior, int vignettings, double weight) const {
         if (tied && row >= kFalloff && row < kCenter)  // the other channels' curves are expected where green's is
             for (int c = 0; c < 3; c++) prior.mean[kFalloff + 3 * c + (row - kFalloff) % 3] = prior.mean[row];
     }
-    if (tied) tie_channels(weight, vignettings, prior);
+    const bool has_falloff = std::any_of(places.to.begin(), places.to.end(),
+                                         [](int row) { return row >= kFalloff && row < kCenter; });
+    if (tied && has_falloff) tie_channels(weight, vignettings, prior);
     const Eigen::MatrixXd precision = precision_of(places.from);
     for (size_t i = 0; i < places.to.size(); i++)
         for (size_t j = 0; j < places.to.size(); j++)

@@ -6,6 +6,9 @@
 
 namespace lensprof {
 
+// Whether the covariance of a valid profile is one: no combination of parameters has a variance below 0.
+bool is_covariance(const lensprof_profile &profile);
+
 class StoredPrior {
 public:
     // `profile` is valid and has a covariance; at most `most_modes` of its response's modes are of use. `problem` tells

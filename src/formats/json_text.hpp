@@ -48,7 +48,6 @@ public:
 private:
     friend class JsonText;
     JsonValue(const JsonText *owner, uint32_t index) : owner_(owner), index_(index) {}
-    JsonValue begin(const char *kind) const;
 
     const JsonText *owner_;
     uint32_t index_;

@@ -49,7 +49,7 @@ public:
     LensfunReader(std::string_view text, const char *source)
         : xml_(text, {"lensdatabase"}), profile_(new lensprof_profile) {
         lensprof_profile_init(profile_.get());
-        set_import_provenance(*profile_, source, kLicence);
+        set_import_provenance(*profile_, source, text.find(kLensfunRemark) == text.npos ? kLicence : "");
         check_version();
         for (pugi::xml_node camera : xml_.root().children("camera")) add_camera(camera);
     }

@@ -66,7 +66,7 @@ void append_entry(WrittenLens &lens, const lensprof_profile &profile, uint32_t i
 
 std::string database_text(const lensprof_profile *const *profiles, uint32_t count) {
     pugi::xml_document document;
-    const std::string remark = std::string(" written by lensprof ") + lensprof_version()
+    const std::string remark = std::string(kLensfunRemark) + lensprof_version()
                                + "; <mount> may be made that of your camera ";
     append_remark(document, remark);
     const pugi::xml_node root = append_element(document, "lensdatabase");

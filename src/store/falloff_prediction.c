@@ -27,12 +27,15 @@ static double covariance(const point *a, const point *b)
     return (1.0 + d) * exp(-d) + ANY_LEVEL;
 }
 
-/* The smallest f-number at this focal length or a longer one. */
+/* The smallest f-number at this focal length or a longer one; beyond the longest that is known, at that. */
 static double widest_at(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at, double focal_mm)
 {
-    double widest = at->focal_mm >= 0.999 * focal_mm ? at->aperture : INFINITY;
+    double longest = 0.0;
+    for (uint32_t i = 0; i < count; i++) longest = fmax(longest, nodes[i].focal_mm);
+    const double from = 0.999 * fmin(focal_mm, longest);
+    double widest = at->focal_mm >= from ? at->aperture : INFINITY;
     for (uint32_t i = 0; i < count; i++)
-        if (nodes[i].focal_mm >= 0.999 * focal_mm && nodes[i].aperture < widest) widest = nodes[i].aperture;
+        if (nodes[i].focal_mm >= from && nodes[i].aperture < widest) widest = nodes[i].aperture;
     return widest;
 }
 

@@ -94,6 +94,32 @@ void test_opcodes(void **) {
     }
 }
 
+/* What a picture's lists do beside is not lost, and no falloff corrected twice. */
+void test_opcodes_of_others_stay(void **) {
+    make_db();
+    const auto list_of = [](uint8_t id) {
+        std::vector<uint8_t> list(4 + 16, 0);
+        list[3] = 1, list[7] = id, list[9] = 3;
+        return list;
+    };
+    write_picture(work("warp.tif"), make_smooth(300, 200, LENSPROF_LAYOUT_RGB));
+    lensprof::write_opcode_list(work("warp.tif"), work("warp.tif"), lensprof::tag_opcode_list3, list_of(1));
+    assert_refused(usage, export_to(work("warp.tif"), {"--format", "opcodes"}), {"warp.tif", "would be lost"});
+    write_picture(work("gain.tif"), make_smooth(300, 200, LENSPROF_LAYOUT_RGB));
+    lensprof::write_opcode_list(work("gain.tif"), work("gain.tif"), lensprof::tag_opcode_list2, list_of(9));
+    assert_refused(usage, export_to(work("gain.tif"), {"--format", "opcodes"}), {"gain.tif", "already"});
+}
+
+/* A gain that was taken for an attenuation is doubted, and not looked up. */
+void test_wrong_sense_is_doubted(void **) {
+    make_db();
+    must_exit(done, export_to(work("gain.tif"), {"--frame", "60x40"}));
+    const Json json = json_of({"profile", "import", work("gain.tif"), "--sense", "attenuation", "--camera", "C", "--lens",
+                               "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db"), "--json"});
+    assert_true(contains(json["flagged"][0]["doubt"].get<std::string>(), "is it a gain?"));
+    assert_refused(not_found, {"query", "--lens", "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db")}, {"doubtful"});
+}
+
 void test_several_profiles(void **) {
     make_db();
     must_exit(done, {"profile", "import", work("one.json"), "--db", work("p.db")});
@@ -117,6 +143,10 @@ void test_refused(void **) {
     assert_refused(usage, import({work("notes"), "--camera", "C"}), {"notes", "--format"});
     assert_refused(unreadable, import({work("notes"), "--format", "pcalib", "--camera", "C"}), {"notes"});
     assert_refused(unreadable, import({work("none.csv"), "--camera", "C"}), {"none.csv"});
+    assert_refused(unreadable, import({"/dev/zero", "--format", "json"}), {"/dev/zero", "ordinary"});
+    assert_refused(usage, export_to(work("a.m")), {"a.m", ".csv"});
+    assert_refused(usage, export_to(work("q.jpg"), {"--frame", "60x40", "--format", "map"}), {"q.jpg", "JPEG"});
+    assert_refused(usage, export_to(work("q.tif"), {"--frame", "60000x60000"}), {"q.tif", "--grid"});
     save_text(work("falling.csv"), "0,0\n1,0.5\n2,0.4\n3,1\n");
     assert_refused(unreadable, import({work("falling.csv"), "--camera", "C"}), {"falling.csv", "line"});
     save_text(work("cut.json"), text_of(work("one.json")).substr(0, 100));
@@ -138,6 +168,7 @@ void test_refused(void **) {
 
 int main() {
     const CMUnitTest tests[] = {CLI_TEST(test_round_trips), CLI_TEST(test_two_files_one_profile), CLI_TEST(test_opcodes),
+                                CLI_TEST(test_opcodes_of_others_stay), CLI_TEST(test_wrong_sense_is_doubted),
                                 CLI_TEST(test_several_profiles), CLI_TEST(test_refused)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -50,16 +50,21 @@ void test_next_sequences(void **) {
     assert_true(contains(said, "prior     profile 3, which the result holds"));
 }
 
-/* Not even as what is in another profile. */
+/* Not even as what is in another profile, or under another name. */
 void test_pictures_count_once(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2");
     json_of(build(a));
     json_of(build(b));
-    for (const std::string &again : {a, b}) {
+    for (const std::string &again : {b, work("a/../b/./pano.pto")}) {
         const Json json = json_of(build(again, {"--no-store"}));
-        assert_true(contains(json["prior"]["reason"].get<std::string>(), "profile 2 holds these pictures already"));
-        assert_false(json["prior"]["used"].get<bool>());
+        assert_int_equal(json["prior"]["profile"], 1);
+        assert_true(json["prior"]["used"].get<bool>());
     }
+    assert_refused(usage, build(a), {a, "profile 2 holds these pictures already"});
+    must_exit(done, {"profile", "remove", "2", "--db", work("l.db")});
+    const Json alone = json_of(build(a, {"--no-store"}));
+    assert_true(contains(alone["prior"]["reason"].get<std::string>(), "profile 1 is of these pictures alone"));
+    json_of(build(b));
     must_exit(done, {"profile", "remove", "1", "--db", work("l.db")}); /* the chain ends: nothing is known of it */
     assert_true(json_of(build(a, {"--no-store"}))["prior"]["used"].get<bool>());
 }

@@ -219,6 +219,24 @@ static void test_which_rows(void **state)
     lensprof_store_close(store);
 }
 
+/* Beyond the last focal length the aperture counts as it does at it. */
+static void test_aperture_beyond_the_last_focal_length(void **state)
+{
+    const place *here = *state;
+    lensprof_store *store = zoom_store(here);
+    double corner[3];
+    const double apertures[3] = {1.8, 2.8, 8.0};
+    for (int i = 0; i < 3; i++) {
+        const double *k = answered.vignetting[0].k;
+        assert_ok(ask(store, zoom, 71.0, apertures[i], INFINITY));
+        corner[i] = 1.0 + k[0] + k[1] + k[2];
+        assert_ok(ask(store, zoom, 70.0, apertures[i], INFINITY));
+        assert_close(corner[i], 1.0 + k[0] + k[1] + k[2], 0.01);
+    }
+    assert_true(corner[0] < corner[1] - 0.05 && corner[1] < corner[2] - 0.05);
+    lensprof_store_close(store);
+}
+
 /* A sensor that is not known is taken as the smallest measured, so that not too much is taken out; curves of sensors are not
  * mixed, and one whose crop factor EXIF rounds is the same. */
 static void test_unknown_sensor(void **state)
@@ -409,6 +427,7 @@ int main(void)
         store_test(test_refusals),
         store_test(test_names),
         store_test(test_which_rows),
+        store_test(test_aperture_beyond_the_last_focal_length),
         store_test(test_unknown_sensor),
         store_test(test_left_out_is_said),
         store_test(test_unknown_distance),
