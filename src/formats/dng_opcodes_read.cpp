@@ -7,6 +7,7 @@
 
 #include "dng_opcodes.hpp"
 #include "import.hpp"
+#include "map_fit.hpp"
 #include "radius.hpp"
 #include "refit.hpp"
 #include "text.hpp"
@@ -14,8 +15,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kMostCells = 128;  // of the frame, along the longer side: enough for a plane at each node of a grid
-constexpr double kSame = 1e-6;       // relative; a map's gains are in single precision
+constexpr double kSame = 1e-6;  // relative; a map's gains are in single precision
 
 [[noreturn]] void fail(lensprof_status status, const std::string &text) {
     throw FormatFailure{status, text};
@@ -103,16 +103,9 @@ double fit_radial(const std::vector<RadialGain> &radial, PixelFrame frame, lensp
 }
 
 double fit_field(const GainField &field, PixelFrame frame, uint32_t channels, lensprof_profile &profile) {
-    const uint32_t longer = std::max(frame.width, frame.height);
-    const auto cells = [&](uint32_t side) {
-        return std::min(side, static_cast<uint32_t>(std::ceil(double(kMostCells) * side / longer)));
-    };
-    FalloffMap map{frame.width, frame.height, cells(frame.width), cells(frame.height), channels, 0, 0, 0, 0, {}};
-    place_as_cells(map);
-    for (uint32_t c = 0; c < channels; c++)
-        for (uint32_t j = 0; j < map.rows; j++)
-            for (uint32_t i = 0; i < map.columns; i++)
-                map.attenuation.push_back(field.attenuation(map.x0 + i * map.dx, map.y0 + j * map.dy, c));
+    FalloffMap map = sampled_map(frame.width, frame.height, channels, [&](double x, double y, uint32_t channel) {
+        return field.attenuation(x, y, channel);
+    });
     const size_t size = size_t(map.columns) * map.rows;
     bool same = true;
     for (size_t i = size; i < map.attenuation.size(); i++)

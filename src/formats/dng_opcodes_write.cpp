@@ -6,6 +6,7 @@
 #include <lensprof/formats.h>
 
 #include "dng_opcodes.hpp"
+#include "map_fit.hpp"
 #include "radius.hpp"
 #include "refit.hpp"
 #include "text.hpp"

@@ -9,7 +9,9 @@
 
 #include <lensprof/formats.h>
 
+#include "falloff_doubt.hpp"
 #include "import.hpp"
+#include "map_fit.hpp"
 #include "radius.hpp"
 #include "rdf.hpp"
 #include "refit.hpp"
@@ -20,11 +22,9 @@ namespace lensprof {
 namespace {
 
 constexpr const char *kCamera = "pix4d.com/camera/", *kDji = "dji.com/drone-dji/", *kTiff = "ns.adobe.com/tiff/";
-constexpr size_t kMostTerms = 16;   // of a radial polynomial
-constexpr size_t kMost2d = 64;      // of one in x and y
-constexpr uint32_t kMapCells = 128;  // of the frame, along the longer side: enough for a plane at each node of a grid
+constexpr size_t kMostTerms = 16;  // of a radial polynomial
+constexpr size_t kMost2d = 64;     // of one in x and y
 constexpr double kGridFrom = 0.01;  // relative error of a radial falloff of even powers that a grid is for
-constexpr double kLowest = 0.001;   // as lensprof_vignetting_validate
 
 struct PixelSize {
     uint32_t width, height;
@@ -125,20 +125,13 @@ struct RadialPolynomial {
 
 // An attenuation, to any scale, over the frame.
 double fit_frame(const std::function<double(double x, double y)> &attenuation, PixelSize frame, lensprof_profile &profile) {
-    const uint32_t longer = std::max(frame.width, frame.height);
-    const auto cells = [&](uint32_t side) {
-        return std::min(side, static_cast<uint32_t>(std::ceil(double(kMapCells) * side / longer)));
+    const auto checked = [&](double x, double y, uint32_t) {
+        const double value = attenuation(x, y);
+        if (!(value >= kLowestFalloff) || !std::isfinite(value))
+            throw FormatFailure{LENSPROF_ERROR_VIGNETTING, "its polynomial is not above 0; correct it"};
+        return value;
     };
-    FalloffMap map{frame.width, frame.height, cells(frame.width), cells(frame.height), 1, 0, 0, 0, 0, {}};
-    place_as_cells(map);
-    for (uint32_t j = 0; j < map.rows; j++)
-        for (uint32_t i = 0; i < map.columns; i++) {
-            const double value = attenuation(map.x0 + i * map.dx, map.y0 + j * map.dy);
-            if (!(value >= kLowest) || !std::isfinite(value))
-                throw FormatFailure{LENSPROF_ERROR_VIGNETTING, "its polynomial is not above 0; correct it"};
-            map.attenuation.push_back(value);
-        }
-    return fit_map(map, profile);
+    return fit_map(sampled_map(frame.width, frame.height, 1, checked), profile);
 }
 
 // Odd powers of r have a tip in the centre, which even ones have not: where these come no nearer than 1 %, there is a gain

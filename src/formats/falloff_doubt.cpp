@@ -9,7 +9,6 @@ namespace {
 
 constexpr int kSteps = 1000;       // radii between the centre and the corner farthest from it
 constexpr double kRise = 0.05;     // of M, which is 1 at the centre: what a lens hardly does, and a noisy fit does
-constexpr double kLowest = 0.001;  // as lensprof_vignetting_validate
 
 std::string with_numbers(const char *format, double a, double b = 0.0, double c = 0.0) {
     char text[64];
@@ -28,9 +27,9 @@ void walk_outwards(const lensprof_vignetting &vignetting, Use use) {
 }
 
 std::string why_unusable(const lensprof_vignetting &vignetting) {
-    double at = -1.0, lowest = kLowest;
+    double at = -1.0, lowest = kLowestFalloff;
     walk_outwards(vignetting, [&](double r, double m) {
-        if (m < kLowest && at < 0.0) at = r;
+        if (m < kLowestFalloff && at < 0.0) at = r;
         lowest = std::min(lowest, m);
         return false;
     });

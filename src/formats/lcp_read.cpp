@@ -10,8 +10,10 @@
 
 #include <lensprof/formats.h>
 
+#include "falloff_doubt.hpp"
 #include "import.hpp"
 #include "lcp.hpp"
+#include "map_fit.hpp"
 #include "radius.hpp"
 #include "rdf.hpp"
 #include "refit.hpp"
@@ -22,8 +24,6 @@ namespace lensprof {
 namespace {
 
 constexpr size_t kMostEntries = 20000, kMostKnots = 1000;
-constexpr uint32_t kMapCells = 128;  // along the longer side: enough for a plane at each node of a grid
-constexpr double kLowest = 0.001;   // as lensprof_vignetting_validate
 
 // A radius in focal lengths and the attenuation there.
 using Knot = std::pair<double, double>;
@@ -209,20 +209,14 @@ lensprof_status LcpReader::walk(Use use) {
 // Ellipses of the same attenuation: a map of the frame. Returns the largest relative error.
 double fit_ellipses(const LcpFalloff &falloff, lensprof_profile &profile) {
     const uint32_t longer = std::max(falloff.width, falloff.height);
-    const auto cells = [&](uint32_t side) {
-        return std::min(side, static_cast<uint32_t>(std::ceil(double(kMapCells) * side / longer)));
+    const auto attenuation = [&](double column, double row, uint32_t) {
+        const double x = (column + 0.5 - falloff.center[0] * falloff.width) / falloff.focal[0];
+        const double y = (row + 0.5 - falloff.center[1] * falloff.height) / falloff.focal[1];
+        const double value = falloff.attenuation(std::hypot(x, y) / longer);
+        if (!(value >= kLowestFalloff)) throw FormatFailure{LENSPROF_ERROR_VIGNETTING, "M falls below 0.001"};
+        return value;
     };
-    FalloffMap map{falloff.width, falloff.height, cells(falloff.width), cells(falloff.height), 1, 0, 0, 0, 0, {}};
-    place_as_cells(map);
-    for (uint32_t j = 0; j < map.rows; j++)
-        for (uint32_t i = 0; i < map.columns; i++) {
-            const double x = (map.x0 + i * map.dx + 0.5 - falloff.center[0] * falloff.width) / falloff.focal[0];
-            const double y = (map.y0 + j * map.dy + 0.5 - falloff.center[1] * falloff.height) / falloff.focal[1];
-            const double value = falloff.attenuation(std::hypot(x, y) / longer);
-            if (!(value >= kLowest)) throw FormatFailure{LENSPROF_ERROR_VIGNETTING, "M falls below 0.001"};
-            map.attenuation.push_back(value);
-        }
-    return fit_map(map, profile);
+    return fit_map(sampled_map(falloff.width, falloff.height, 1, attenuation), profile);
 }
 
 // Sets the vignetting; returns the largest relative error.

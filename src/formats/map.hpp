@@ -6,7 +6,7 @@
 
 #include <lensprof/formats.h>
 
-#include "refit.hpp"
+#include "map_fit.hpp"
 
 namespace lensprof {
 

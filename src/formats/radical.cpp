@@ -19,8 +19,7 @@ namespace {
 constexpr uint32_t kMagic = 0xC4A1FDD9;
 constexpr uint32_t kFloat3 = 21, kDouble3 = 22;  // OpenCV's CV_32FC3 and CV_64FC3
 constexpr uint32_t kGreys = 256;
-constexpr uint32_t kTerms = 5;       // centre x, y, and coefficients of r^2, r^4, r^6, r in px
-constexpr uint32_t kSamples = 96;   // a side, of the surfaces of centres that differ
+constexpr uint32_t kTerms = 5;        // centre x, y, and coefficients of r^2, r^4, r^6, r in px
 constexpr double kSameCenter = 1e-6;  // px
 constexpr const char *kPolynomial = "PolynomialVignettingModel", *kMap = "NonparametricVignettingModel";
 
@@ -150,15 +149,11 @@ void set_falloffs(const Polynomials &terms, uint32_t width, uint32_t height, len
 
 // A centre a channel: the surfaces, refitted with one.
 double refit_falloffs(const Polynomials &terms, uint32_t width, uint32_t height, lensprof_profile &profile) {
-    FalloffMap map{width, height, std::min(width, kSamples), std::min(height, kSamples), 3, 0, 0, 0, 0, {}};
-    place_as_cells(map);
-    for (const std::array<double, kTerms> &t : terms)
-        for (uint32_t j = 0; j < map.rows; j++)
-            for (uint32_t i = 0; i < map.columns; i++) {
-                const double x = map.x0 + i * map.dx - t[0], y = map.y0 + j * map.dy - t[1], r2 = x * x + y * y;
-                map.attenuation.push_back(std::max(1.0 + r2 * (t[2] + r2 * (t[3] + r2 * t[4])), 0.0));
-            }
-    return fit_map(map, profile);
+    return fit_map(sampled_map(width, height, 3, [&](double column, double row, uint32_t channel) {
+        const std::array<double, kTerms> &t = terms[channel];
+        const double x = column - t[0], y = row - t[1], r2 = x * x + y * y;
+        return std::max(1.0 + r2 * (t[2] + r2 * (t[3] + r2 * t[4])), 0.0);
+    }), profile);
 }
 
 double read_polynomial(std::string_view header, std::string_view data, lensprof_profile &profile) {

@@ -4,6 +4,7 @@
 
 #include <lensprof/formats.h>
 
+#include "formats/map_fit.hpp"
 #include "formats/refit.hpp"
 #include "formats/text.hpp"
 

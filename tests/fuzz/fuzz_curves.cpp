@@ -23,15 +23,6 @@ void check_outcome(lensprof_status status, const lensprof_error &error) {
     demand((status == LENSPROF_OK) == !error.text[0], "an error without a text, or the other way round");
 }
 
-template <typename Write>
-std::vector<char> written(Write write) {
-    size_t bytes = 0;
-    demand(write(nullptr, 0, &bytes) == LENSPROF_ERROR_CAPACITY, "not written");
-    std::vector<char> text(bytes);
-    demand(write(text.data(), bytes, &bytes) == LENSPROF_OK, "not written");
-    return text;
-}
-
 bool try_pcalib(const std::vector<char> &bytes) {
     auto responses = std::make_unique<Responses>();
     lensprof_response &response = responses->r[0];

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include <lensprof/base.h>
+
 namespace {
 
 extern const char *const kTarget;
@@ -29,6 +31,16 @@ void demand(bool holds, const char *what) {
     if (holds) return;
     std::fprintf(stderr, "%s: %s\n", kTarget, what);
     std::abort();
+}
+
+// What a writer writes: asked for the size first.
+template <typename Write>
+[[maybe_unused]] std::vector<char> written(Write write) {
+    size_t bytes = 0;
+    demand(write(nullptr, 0, &bytes) == LENSPROF_ERROR_CAPACITY, "not written");
+    std::vector<char> data(bytes);
+    demand(write(data.data(), bytes, &bytes) == LENSPROF_OK, "not written");
+    return data;
 }
 
 }  // namespace

@@ -45,15 +45,6 @@ bool check_falloff(lensprof_status status, const lensprof_error &error, const le
     return true;
 }
 
-template <typename Write>
-std::vector<char> written(Write write) {
-    size_t bytes = 0;
-    demand(write(nullptr, 0, &bytes) == LENSPROF_ERROR_CAPACITY, "not written");
-    std::vector<char> data(bytes);
-    demand(write(data.data(), bytes, &bytes) == LENSPROF_OK, "not written");
-    return data;
-}
-
 bool try_responses(const std::vector<char> &bytes) {
     auto responses = std::make_unique<lensprof_response[]>(6);
     lensprof_error error;
