@@ -99,9 +99,7 @@ Estimate with_exponent(const Problem &problem, const Estimate &estimate, double 
 }
 
 Gauge::Gauge(const lensprof_fit_options &options, const Problem &problem, const StoredPrior *stored)
-    : prior_(&gamma_prior(options.camera_kind)), is_stored_(stored && stored->gamma_sigma() > 0.0),
-      stored_position_(is_stored_ ? stored->gamma_position() : 0.0),
-      prior_sigma_(is_stored_ ? stored->gamma_sigma() : prior_->sigma),
+    : prior_(&gamma_prior(options.camera_kind)), stored_(stored && stored->gamma_sigma() > 0.0 ? stored : nullptr),
       wanted_(static_cast<lensprof_gamma_from>(options.gamma_from)) {
     bool is_family = nothing_fixes_gamma(options, problem);
     open_ = is_family && options.prior_weight > 0.0;
@@ -112,8 +110,10 @@ Gauge::Gauge(const lensprof_fit_options &options, const Problem &problem, const 
 }
 
 double Gauge::expected(const double *table) const {
-    return is_stored_ ? stored_position_ : expected_position(*prior_, table);
+    return stored_ ? stored_->gamma_position() : expected_position(*prior_, table);
 }
+
+double Gauge::prior_sigma() const { return stored_ ? stored_->gamma_sigma() : prior_->sigma; }
 
 Gauge Gauge::unheld() const {
     Gauge other = *this;
@@ -183,14 +183,16 @@ double Gauge::distance(const Problem &problem, const Estimate &estimate) {
     const double *table = estimate.curve.table.data();
     double offset = gamma_position(table) - expected(table);
     bool says = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;
-    double prior_precision = 1.0 / (prior_sigma_ * prior_sigma_);
+    double prior_precision = 1.0 / (prior_sigma() * prior_sigma());
     if (says) {  // errors of the prior have heavy tails: where exposures contradict it, it counts for less
-        double z = (offset - std::log(slope_)) / std::hypot(prior_sigma_, slope_sigma_);
-        if (is_stored_) z /= kDoubtful;  // those of a profile's have not
+        double z = (offset - std::log(slope_)) / std::hypot(prior_sigma(), slope_sigma_);
+        if (stored_) z /= kDoubtful;  // those of a profile's have not
         prior_precision *= wanted_ == LENSPROF_GAMMA_EXPOSURES ? 0.0 : 1.0 / (1.0 + z * z);
     }
     double precision = says ? 1.0 / (slope_sigma_ * slope_sigma_) : 0.0;
-    from_ = precision > prior_precision ? LENSPROF_GAMMA_EXPOSURES : is_stored_ ? LENSPROF_GAMMA_PROFILE : LENSPROF_GAMMA_PRIOR;
+    from_ = precision > prior_precision ? LENSPROF_GAMMA_EXPOSURES
+            : stored_                   ? LENSPROF_GAMMA_PROFILE
+                                        : LENSPROF_GAMMA_PRIOR;
     sigma_ = 1.0 / std::sqrt(precision + prior_precision);
     return (prior_precision * offset + precision * std::log(slope_)) / (precision + prior_precision);
 }
@@ -219,7 +221,7 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
         prior.pin = gamma_slope(estimate);
         double pairs = static_cast<double>(std::max<size_t>(problem.pairs.size(), 1));
         double hold = std::min(kLargestPinSigma, kPinSigma * std::sqrt(kPinPairs / pairs));
-        hold = std::max(hold * std::pow(sigma_ / prior_sigma_, 4), kSmallestPinSigma);
+        hold = std::max(hold * std::pow(sigma_ / prior_sigma(), 4), kSmallestPinSigma);
         prior.pin_precision = 1.0 / (hold * hold);
         prior.pin_value = prior.pin.dot(Eigen::Map<const Eigen::VectorXd>(estimate.emor.data(), kMaxModes)) - here;
     } else {

@@ -17,7 +17,8 @@ constexpr double kKnownSigma = 0.02;
 
 class Gauge {
 public:
-    // `stored` (NULL where there is none): a profile whose gamma is expected in place of that of most cameras.
+    // `stored` (NULL where there is none, else it outlives this): a profile whose gamma is expected in place of that of
+    // most cameras.
     Gauge(const lensprof_fit_options &options, const Problem &problem, const StoredPrior *stored = nullptr);
 
     // False where parameters held fixed settle gamma, or where no prior is wanted (the paper's method).
@@ -52,10 +53,10 @@ private:
     void compare_known(const Problem &problem, const Estimate &estimate);
 
     double expected(const double *table) const;  // position within the family
+    double prior_sigma() const;                  // standard error of that
 
     const GammaPrior *prior_;
-    bool is_stored_ = false;         // the prior's gamma is that of a profile
-    double stored_position_ = 0.0, prior_sigma_;
+    const StoredPrior *stored_;  // where it knows gamma, it is asked instead
     lensprof_gamma_from wanted_, from_ = LENSPROF_GAMMA_KNOWN;
     bool open_ = false;
     double sigma_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
