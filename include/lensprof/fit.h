@@ -119,7 +119,8 @@ typedef struct lensprof_fit_options {
                                           that of all cameras, by its covariance, which it must have, where a response
                                           of EMoR modes and a falloff have one; TRANSFER and RADIANCE, a prior_weight
                                           above 0. Overruled where held-out pairs are clearly worse for it (three
-                                          standard errors), or its falloff is far from theirs (five). NULL = none. Read during the call */
+                                          standard errors), or its falloff is far from theirs (five). NULL = none. Read
+                                          during the call */
     const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
     lensprof_vignetting vignetting;   /* the value where fixed */
     lensprof_progress progress;       /* or NULL */

@@ -88,7 +88,8 @@ typedef enum lensprof_pack {
  * vignettings, gain grid, and of the provenance all but source and doubt: 132 bytes and the texts for a linear response,
  * 4 kB more for each curve of samples. The same profile gives the same bytes on every machine. `flags`: lensprof_pack,
  * 0 = none. *bytes receives the size of a valid profile's blob, whatever the capacity; CAPACITY when the buffer is
- * smaller (capacity 0 asks for the size, blob may be NULL then), and nothing is written to it. Errors: what lensprof_profile_validate says; ARGUMENT for unknown flags. */
+ * smaller (capacity 0 asks for the size, blob may be NULL then), and nothing is written to it. Errors: what
+ * lensprof_profile_validate says; ARGUMENT for unknown flags. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags,
                                                                      void *blob, size_t capacity, size_t *bytes);
 

@@ -1,9 +1,10 @@
 /* lensprof/store.h - the profile database (SQLite).
  *
  * Every call is one transaction, or part of the caller's: it happens whole or not at all, also when the process is
- * killed or the power fails. The file is in write-ahead mode: readers and a writer do not hinder each other, and calls wait up
- * to 5 s for another writer (then BUSY). While it is open a -wal and a -shm lie beside it; the last to close removes
- * them. A file of an older layout is read as it is; the first call that writes brings it up to date, which older versions then refuse.
+ * killed or the power fails. The file is in write-ahead mode: readers and a writer do not hinder each other, and calls
+ * wait up to 5 s for another writer (then BUSY). While it is open a -wal and a -shm lie beside it; the last to close
+ * removes them. A file of an older layout is read as it is; the first call that writes brings it up to date, which older
+ * versions then refuse.
  * Threads: a handle belongs to one thread at a time; several processes may open the same file. */
 #ifndef LENSPROF_STORE_H
 #define LENSPROF_STORE_H
@@ -83,13 +84,13 @@ typedef struct lensprof_lookup {
 } lensprof_lookup;
 
 /* The profile for a setting: a stored one, or the falloff predicted from those of the same lens at other settings
- * (docs/database.md says how). The lens's name decides, then the camera, unit and sensor - without a lens the camera, whose profiles without a
- * lens, or of its only lens, count (their focal lengths to 2 % or 0.1 mm, for such cameras round them); profiles of the key's unit
- * before those of any, of the key's camera before those of a lens alone; of these, those of the smallest sensor that is
- * not smaller than the key's, their radii rescaled, and of the smallest of all where the key's is not known. A predicted
- * profile has key `key`, the response of the nearest profile, no gain grid, and provenance method "lookup". Nothing is
- * written. NOT_FOUND, with *lookup filled as far as it goes, where there is no such lens, or nothing near enough; profile
- * is then untouched. */
+ * (docs/database.md says how). The lens's name decides, then the camera, unit and sensor - without a lens the camera,
+ * whose profiles without a lens, or of its only lens, count (their focal lengths to 2 % or 0.1 mm, for such cameras round
+ * them); profiles of the key's unit before those of any, of the key's camera before those of a lens alone; of these,
+ * those of the smallest sensor that is not smaller than the key's, their radii rescaled, and of the smallest of all where
+ * the key's is not known. A predicted profile has key `key`, the response of the nearest profile, no gain grid, and
+ * provenance method "lookup". Nothing is written. NOT_FOUND, with *lookup filled as far as it goes, where there is no
+ * such lens, or nothing near enough; profile is then untouched. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup(lensprof_store *store,
                                                                      const lensprof_profile_key *key,
                                                                      const lensprof_lookup_options *options,
@@ -121,11 +122,25 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list(lensprof_stor
                                                                    lensprof_store_row *rows, uint32_t capacity,
                                                                    uint32_t *found, lensprof_error *error);
 
-/* Adds every profile of `other`, another open database, that is not there yet with the same key, content and provenance,
- * with its provenance as it is; the oldest first. All or none, and never twice: merged again, nothing is added. *added
- * and *known (may be NULL) receive how many were and how many were there. `other` is only read, whatever its layout.
- * Errors: ARGUMENT for the database itself; what lensprof_store_put and, of `other`, lensprof_store_get say: the text
- * names the file and the damaged profile. */
+/* Whether a profile is stored already: *id receives that of one with the same key, content and provenance, whatever its
+ * method and software, or 0. For those who import, before a put: the store must be open for writing. Errors: those of
+ * lensprof_store_put. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find_same(lensprof_store *store,
+                                                                        const lensprof_profile *profile, int64_t *id,
+                                                                        lensprof_error *error);
+
+/* The profile of the same database that one holds, the prior of its fit, whose pictures are in it: the number behind the
+ * method ("transfer+12"); 0 = none. Ids are a database's own: who copies a profile to another one sets what it is there,
+ * or 0, as lensprof_store_merge does. ARGUMENT for an id below 0; CAPACITY, and nothing is changed, where the method
+ * leaves no room. */
+LENSPROF_API int64_t lensprof_provenance_prior(const lensprof_provenance *provenance);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_provenance_set_prior(lensprof_provenance *provenance, int64_t id);
+
+/* Adds every profile of `other`, another open database, that lensprof_store_find_same does not find, with its provenance as
+ * it is, but that what it holds is named by its id here; the oldest first. All or none, and never twice: merged again,
+ * nothing is added. *added and *known (may be NULL) receive how many were and how many were there. `other` is only read,
+ * whatever its layout. Errors: ARGUMENT for the database itself; what lensprof_store_put and, of `other`,
+ * lensprof_store_get say: the text names the file and the damaged profile. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *other,
                                                                     uint32_t *added, uint32_t *known,
                                                                     lensprof_error *error);

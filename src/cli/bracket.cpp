@@ -213,8 +213,8 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     auto place = std::find(members.begin(), members.end(), report.reference);
     if (place == members.end() && !o.reference.empty())
         throw Failure(ExitCode::not_usable,
-                      project.names[report.reference] + ": shows hardly anything between black and white that another picture shows, too; "
-                                    "choose another reference");
+                      project.names[report.reference] + ": shows hardly anything between black and white that another picture "
+                                                        "shows, too; choose another reference");
     if (place == members.end()) place = members.begin();
     report.reference = *place;
     keep_only(members, input);

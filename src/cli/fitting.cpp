@@ -192,13 +192,13 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
         auto profile = profile_of(report.fit);
         profile->key = key;
         profile->provenance.images = static_cast<uint32_t>(report.names.size());
-        std::string method = finish.method;
+        int64_t held = 0;
         if (finish.prior && report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED) {
-            method = fused_method(method, finish.prior->id);
+            held = finish.prior->id;
             profile->provenance.images += finish.prior->profile->provenance.images;
             profile->provenance.pairs += finish.prior->profile->provenance.pairs;
         }
-        report.profile_id = store_profile(store, *profile, method, report.fit.usable, finish.source);
+        report.profile_id = store_profile(store, *profile, {finish.method, finish.source, report.fit.usable, held});
     }
     if (finish.outputs) finish.outputs->commit();
     if (finish.json) print_json(build_json(report), streams.out);

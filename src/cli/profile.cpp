@@ -32,9 +32,9 @@ int list(const std::string &db, const KeyFilter &filter, bool json, Streams &str
     for (const auto &row : rows) {
         const auto &k = row.key;
         streams.out << format("%6lld  %-28s %-32s %5s %7s %6s %9s  %s%s%s\n", static_cast<long long>(row.id), k.camera_model,
-                              k.lens, number_or(k.crop_factor, "%.3g").c_str(), number_or(k.focal_mm, "%g").c_str(), number_or(k.aperture, "%g").c_str(),
-                              number_or(k.distance_m, "%g").c_str(), processing_name(k.processing),
-                              *k.unit ? ", unit " : "", k.unit);
+                              k.lens, number_or(k.crop_factor, "%.3g").c_str(), number_or(k.focal_mm, "%g").c_str(),
+                              number_or(k.aperture, "%g").c_str(), number_or(k.distance_m, "%g").c_str(),
+                              processing_name(k.processing), *k.unit ? ", unit " : "", k.unit);
     }
     return 0;
 }
@@ -153,8 +153,9 @@ void check_verb(const std::string &verb, const ProfileOptions &o) {
 }  // namespace
 
 int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
-    static const Command others[] = {{"import", "", run_profile_import}, {"export", "", run_profile_export}, {"merge", "", run_profile_merge},
-                                     {"check", "", run_profile_check}, {"stats", "", run_profile_stats}};
+    static const Command others[] = {{"import", "", run_profile_import}, {"export", "", run_profile_export},
+                                     {"merge", "", run_profile_merge}, {"check", "", run_profile_check},
+                                     {"stats", "", run_profile_stats}};
     for (const Command &other : others)
         if (!arguments.empty() && arguments[0] == other.name)
             return other.run({arguments.begin() + 1, arguments.end()}, streams);

@@ -1,6 +1,5 @@
 /* `lensprof profile import`: profiles, responses and falloffs from the files of other programs. */
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <set>
 
@@ -8,6 +7,7 @@
 #include "foreign_options.hpp"
 #include "key_filter.hpp"
 #include "library.hpp"
+#include "profile_store.hpp"
 #include "report.hpp"
 #include "run.hpp"
 
@@ -33,30 +33,12 @@ struct Input {
 struct Import {
     lensprof_store *store = nullptr;
     std::string db, file;
-    bool was_empty = true; /* nothing can be there twice */
     uint32_t stored = 0, known = 0;
     std::set<std::string> lenses;
     Json flagged = Json::array(); /* file, key, doubt, stored */
     lensprof_status store_status = LENSPROF_OK; /* of the last call, and its text */
     lensprof_error error{};
 };
-
-/* Whether the newest profile of this key is the same, from the same place. */
-lensprof_status find_same(Import &import, const lensprof_profile &profile, bool &same) {
-    auto found = std::make_unique<lensprof_profile>();
-    same = false;
-    const lensprof_status status = lensprof_store_find(import.store, &profile.key, found.get(), nullptr, &import.error);
-    if (status != LENSPROF_OK) return status == LENSPROF_ERROR_NOT_FOUND ? LENSPROF_OK : status;
-    same = profile.responses == found->responses && profile.vignettings == found->vignettings
-             && std::memcmp(&profile.grid, &found->grid, sizeof profile.grid) == 0
-             && std::string(profile.provenance.source) == found->provenance.source;
-    for (uint32_t c = 0; c < profile.responses && same; c++)
-        same = std::memcmp(profile.response[c].table, found->response[c].table, sizeof found->response[c].table) == 0;
-    for (uint32_t c = 0; c < profile.vignettings && same; c++)
-        same = std::equal(profile.vignetting[c].k, profile.vignetting[c].k + 3, found->vignetting[c].k)
-            && std::equal(profile.vignetting[c].center, profile.vignetting[c].center + 2, found->vignetting[c].center);
-    return LENSPROF_OK;
-}
 
 lensprof_status take(void *user, const lensprof_import_entry *entry) {
     Import &import = *static_cast<Import *>(user);
@@ -65,11 +47,13 @@ lensprof_status take(void *user, const lensprof_import_entry *entry) {
         import.flagged.push_back({{"file", import.file}, {"key", key_json(profile.key)},
                                   {"doubt", profile.provenance.doubt}, {"stored", entry->usable != 0}});
     if (!entry->usable) return LENSPROF_OK;
-    bool same = false;
-    lensprof_status status = import.was_empty ? LENSPROF_OK : find_same(import, profile, same);
+    int64_t same = 0;
+    lensprof_status status = lensprof_store_find_same(import.store, &profile, &same, &import.error);
     if (same) import.known++;
     if (same || status != LENSPROF_OK) return import.store_status = status;
-    status = lensprof_store_put(import.store, &profile, nullptr, &import.error);
+    auto own = std::make_unique<lensprof_profile>(profile);
+    status = lensprof_provenance_set_prior(&own->provenance, 0); /* it is of another database */
+    if (status == LENSPROF_OK) status = lensprof_store_put(import.store, own.get(), nullptr, &import.error);
     if (status == LENSPROF_OK) import.stored++, import.lenses.insert(profile.key.lens);
     return import.store_status = status;
 }
@@ -85,8 +69,8 @@ std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector
         if (input.rule->part == ForeignPart::profiles) continue;
         std::string &taken = input.rule->part == ForeignPart::response ? response : falloff;
         if (!taken.empty())
-            throw Failure(ExitCode::usage, input.file + ": holds a " + (&taken == &response ? "response" : "falloff") + ", as "
-                                               + taken + " does; import the one profile after the other");
+            throw Failure(ExitCode::usage, input.file + ": holds a " + (&taken == &response ? "response" : "falloff")
+                                               + ", as " + taken + " does; import the one profile after the other");
         taken = input.file;
         names += (names.empty() ? "" : "; ") + std::filesystem::path(input.file).filename().string();
     }
@@ -98,7 +82,8 @@ std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector
         throw Failure(ExitCode::usage, (response.empty() ? falloff : response)
                                            + ": does not say which camera and lens it is of; give --camera or --lens");
     set_text(profile->provenance.method, sizeof profile->provenance.method, "import");
-    set_text(profile->provenance.software, sizeof profile->provenance.software, std::string("lensprof ") + lensprof_version());
+    set_text(profile->provenance.software, sizeof profile->provenance.software,
+             std::string("lensprof ") + lensprof_version());
     set_text(profile->provenance.source, sizeof profile->provenance.source, names);
     check(lensprof_profile_validate(profile.get()), response.empty() ? falloff : response);
     return profile;
@@ -123,6 +108,16 @@ void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_
     check(visit(&import, &entry), store_path(import.db), &import.error);
 }
 
+/* A failure closes the store, and rolls back. */
+void store_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts) {
+    const std::string db = store_path(import.db);
+    Store store = open_store(import.db, LENSPROF_STORE_CREATE);
+    import.store = store.get();
+    check(lensprof_store_begin(store.get(), &import.error), db, &import.error);
+    visit_all(import, inputs, of_parts, take);
+    check(lensprof_store_commit(store.get(), &import.error), db, &import.error);
+}
+
 void print_import(const Import &import, size_t files, Streams &streams) {
     const size_t refused = static_cast<size_t>(
         std::count_if(import.flagged.begin(), import.flagged.end(), [](const Json &one) { return !one["stored"]; }));
@@ -139,7 +134,8 @@ void print_import(const Import &import, size_t files, Streams &streams) {
 
 int run_profile_import(const std::vector<std::string> &arguments, Streams &streams) {
     Options o;
-    CLI::App app("Stores what other programs' files hold, all of them or none. Their content, else their name, tells the format.",
+    CLI::App app("Stores what other programs' files hold, all of them or none. Their content, else their name, tells the "
+                 "format.",
                  "lensprof profile import");
     app.add_option("FILES", o.files,
                    "files of profiles; or one with a response, one with a falloff, or both, for one profile")
@@ -164,16 +160,15 @@ int run_profile_import(const std::vector<std::string> &arguments, Streams &strea
         throw Failure(ExitCode::usage, "profile import: these files say themselves whose profiles they hold; leave --camera, "
                                        "--lens and the like out");
     Import import;
-    visit_all(import, inputs, of_parts.get(), ignore); /* before a database is made */
-    Store store = open_store(o.db, LENSPROF_STORE_CREATE);
-    import.store = store.get();
     import.db = o.db;
-    uint32_t before = 0;
-    check(lensprof_store_begin(store.get(), &import.error), store_path(o.db), &import.error);
-    check(lensprof_store_list(store.get(), nullptr, nullptr, 0, &before, &import.error), store_path(o.db), &import.error);
-    import.was_empty = before == 0;
-    visit_all(import, inputs, of_parts.get(), take); /* a failure closes the store, and rolls back */
-    check(lensprof_store_commit(store.get(), &import.error), store_path(o.db), &import.error);
+    visit_all(import, inputs, of_parts.get(), ignore); /* before a database is made */
+    const bool is_new = !std::filesystem::exists(store_path(o.db));
+    try {
+        store_all(import, inputs, of_parts.get());
+    } catch (const Failure &) {
+        if (is_new) remove_empty_store(store_path(o.db));
+        throw;
+    }
     if (o.json)
         print_json(Json{{"schema", 1}, {"stored", import.stored}, {"known", import.known},
                         {"lenses", import.lenses.size()}, {"flagged", import.flagged}},

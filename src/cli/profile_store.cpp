@@ -92,13 +92,12 @@ std::string source_of(const std::string &file) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(file)).string();
 }
 
-int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const std::string &method, bool usable,
-                      const std::string &source) {
+int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin) {
     auto &p = profile.provenance;
-    const std::string forced = usable ? "" : " (forced)";
-    set_text(p.method, sizeof p.method, method.substr(0, sizeof p.method - 1 - forced.size()) + forced);
+    set_text(p.method, sizeof p.method, origin.method + (origin.usable ? "" : " (forced)"));
+    check(lensprof_provenance_set_prior(&p, origin.held), store_path(o.db));
     set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
-    set_text(p.source, sizeof p.source, source_of(source));
+    set_text(p.source, sizeof p.source, source_of(origin.source));
     p.created_unix_s = static_cast<int64_t>(std::time(nullptr));
     bool is_new = !std::filesystem::exists(store_path(o.db));
     try {

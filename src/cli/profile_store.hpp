@@ -39,10 +39,16 @@ std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit);
 /* A file as provenances name it: one name, however it was written. */
 std::string source_of(const std::string &file);
 
-/* Completes the provenance (method, whether it was forced, this program, source_of(`source`), time) and stores
- * the profile. A new database that could not take it is not left behind. Returns its number. */
-int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const std::string &method, bool usable,
-                      const std::string &source);
+/* What a provenance says of a profile that was made now. */
+struct Origin {
+    std::string method, source;
+    bool usable;      /* else stored by --force */
+    int64_t held = 0; /* the profile that is in it; 0 = none */
+};
+
+/* Completes the provenance, with this program, source_of(source) and the time, and stores the profile. A new database
+ * that could not take it is not left behind. Returns its number. */
+int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin);
 
 }  // namespace lensprof
 

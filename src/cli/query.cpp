@@ -100,7 +100,8 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
 
 int run_query(const std::vector<std::string> &arguments, Streams &streams) {
     Options o;
-    CLI::App app("Prints the newest profile that matches; what is not given may be anything.", "lensprof query");
+    CLI::App app("Prints the profile for a camera, lens and setting: the newest that is stored, or one predicted from those of "
+                 "the lens's other settings, and how sure it is.", "lensprof query");
     declare(app, o);
     if (!parse(app, arguments, streams)) return 0;
     o.filter.check_words();

@@ -1,24 +1,17 @@
 #include "stored_prior.hpp"
 
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 
 namespace lensprof {
 namespace {
 
-/* The profile that is in one with this method; 0 = none. */
-int64_t prior_of(const std::string &method) {
-    const size_t plus = method.find('+');
-    return plus == std::string::npos ? 0 : std::strtoll(method.c_str() + plus + 1, nullptr, 10);
-}
-
 /* Whether a profile that is in this one was made from `source`. */
 bool holds(lensprof_store *store, const lensprof_profile &profile, const std::string &source) {
     auto next = std::make_unique<lensprof_profile>(profile);
     std::set<int64_t> seen;
     for (;;) {
-        const int64_t id = prior_of(next->provenance.method);
+        const int64_t id = lensprof_provenance_prior(&next->provenance);
         if (id <= 0 || !seen.insert(id).second
             || lensprof_store_get(store, id, next.get(), nullptr) != LENSPROF_OK)
             return false;
@@ -53,18 +46,15 @@ EarlierProfile find_stored_prior(const StoreOptions &o, const lensprof_profile_k
     const std::string own = source_of(source);
     int64_t id = how.id[0];
     if (own == profile->provenance.source) { /* fitted again: what it was given then is the prior again */
-        id = prior_of(profile->provenance.method);
+        id = lensprof_provenance_prior(&profile->provenance);
         if (id <= 0 || lensprof_store_get(store.get(), id, profile.get(), nullptr) != LENSPROF_OK || !is_uncertain(*profile))
             return {0, nullptr, named + " is of these pictures alone, which are fitted again"};
     }
     if (own == profile->provenance.source || holds(store.get(), *profile, own))
-        throw Failure(ExitCode::usage, source + ": profile " + std::to_string(id) + " holds these pictures already, and others "
-                                           "that came later; nothing would be gained. Leave --prior auto out to fit them alone");
+        throw Failure(ExitCode::usage, source + ": profile " + std::to_string(id)
+                                           + " holds these pictures already, and others that came later; nothing would be "
+                                             "gained. Leave --prior auto out to fit them alone");
     return {id, std::move(profile), ""};
-}
-
-std::string fused_method(const std::string &method, int64_t prior) {
-    return method + "+" + std::to_string(prior);
 }
 
 }  // namespace lensprof

@@ -15,13 +15,10 @@ struct EarlierProfile {
     std::string reason;                        /* why there is none */
 };
 
-/* The profile that is stored for the key, unless it has no covariance or is of a fit that was not usable. No pictures count
- * twice: where it was made from `source`, the one that is in it (its method `transfer+12` names it) is the prior again;
+/* The profile that is stored for the key, unless it has no covariance or is of a fit that was not usable. No pictures
+ * count twice: where it was made from `source`, the one that is in it (lensprof_provenance_prior) is the prior again;
  * Failure (usage) where `source` is deeper in it. */
 EarlierProfile find_stored_prior(const StoreOptions &o, const lensprof_profile_key &key, const std::string &source);
-
-/* The method of a profile that holds another one. */
-std::string fused_method(const std::string &method, int64_t prior);
 
 }  // namespace lensprof
 

@@ -8,9 +8,9 @@
 
 #include "store_names.h"
 
-
 #define ROWS_OF_LENS(name, unit, crop, doubt) \
-    "SELECT id, camera_model, lens, " unit ", " crop ", focal_mm, aperture, distance_m, curve, k1, k2, k3, vignetting_curves, covariance_size FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
+    "SELECT id, camera_model, lens, " unit ", " crop ", focal_mm, aperture, distance_m, curve, k1, k2, k3," \
+    " vignetting_curves, covariance_size FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
     " = ?1 AND (?2 OR " doubt " = '') AND (?3 OR processing = ?4) ORDER BY id, curve"
 
 static const char *const rows_sql[2] = {
@@ -128,7 +128,6 @@ static lensprof_status read_rows(lensprof_store *store, const char *name, const 
     lp_store_release(store, binder.statement);
     return status;
 }
-
 
 /* Every name of a lens once; the first through the index profiles_by_lens, name by name. */
 static const char *const lenses_sql[2] = {

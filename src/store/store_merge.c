@@ -1,78 +1,82 @@
 /* Profiles of another database, as they are. */
 #include "store_private.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-#include "store_names.h"
+/* A profile of the other database, and what it is here. */
+typedef struct arrival {
+    int64_t from, to;
+} arrival;
 
-/* Rows of `profiles` with every column as lp_store_bind_profile binds it: the first three lines are the way through the
- * index profiles_by_key, the others are to the letter and bit. */
-static const char equal_rows[] =
-    "SELECT id FROM profiles WHERE trim(camera_maker) COLLATE NOCASE = trim(?1)"
-    " AND trim(camera_model) COLLATE NOCASE = trim(?2) AND trim(lens) COLLATE NOCASE = trim(?3)"
-    " AND focal_mm IS ?4 AND aperture IS ?5 AND distance_m IS ?6"
-    " AND camera_maker = ?1 AND camera_model = ?2 AND lens = ?3 AND processing = ?7 AND method = ?8 AND software = ?9"
-    " AND source = ?10 AND created_unix_s IS ?11 AND images = ?12 AND pairs = ?13 AND heldout_rms IS ?14"
-    " AND inlier_share IS ?15 AND response_curves = ?16 AND vignetting_curves = ?17 AND covariance_size = ?18"
-    " AND covariance IS ?19 AND gain_grids = ?20 AND unit = ?21 AND crop_factor IS ?22 AND doubt = ?23 AND lens_name = ?24";
+typedef struct merging {
+    lensprof_store *store, *other;
+    arrival *all; /* by rising `from` */
+    size_t count, room;
+    uint32_t added, known;
+} merging;
 
-static bool have_same_curves(const lensprof_profile *a, const lensprof_profile *b)
+/* False without memory. */
+static bool remember(merging *m, int64_t from, int64_t to)
 {
-    return !memcmp(a->response, b->response, a->responses * sizeof *a->response)
-        && !memcmp(a->vignetting, b->vignetting, a->vignettings * sizeof *a->vignetting)
-        && !memcmp(&a->grid, &b->grid, sizeof a->grid);
+    if (m->count == m->room) {
+        const size_t room = m->room ? 2 * m->room : 256;
+        arrival *all = realloc(m->all, room * sizeof *all);
+        if (!all) return false;
+        m->all = all, m->room = room;
+    }
+    m->all[m->count++] = (arrival){from, to};
+    return true;
 }
 
-/* Whether the store has this profile, with the same provenance. */
-static lensprof_status is_there(lensprof_store *store, const lensprof_profile *profile, bool *there,
-                                lensprof_error *error)
+/* The profile here; 0 for one that the other database has no more. */
+static int64_t arrived(const merging *m, int64_t from)
 {
-    lp_store_binder binder = {NULL, 0, SQLITE_OK};
-    char lens_name[LP_NAME_BYTES];
-    *there = false;
-    lensprof_status status = lp_store_prepare(store, equal_rows, &binder.statement, error);
-    if (status != LENSPROF_OK) return status;
-    lp_squeeze(profile->key.lens, lens_name);
-    lp_store_bind_profile(&binder, profile, lens_name);
-    int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
-    while (rc == SQLITE_ROW && status == LENSPROF_OK && !*there) {
-        status = lp_store_fetch(store, sqlite3_column_int64(binder.statement, 0), error);
-        if (status != LENSPROF_OK) break;
-        *there = have_same_curves(&store->scratch, profile);
-        if (!*there) rc = sqlite3_step(binder.statement);
+    size_t low = 0, high = m->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (m->all[middle].from < from) low = middle + 1;
+        else high = middle;
     }
-    if (status == LENSPROF_OK && rc != SQLITE_ROW && rc != SQLITE_DONE)
-        status = lp_store_fail_sql(store->path, store->db, rc, error);
-    lp_store_release(store, binder.statement);
+    return low < m->count && m->all[low].from == from ? m->all[low].to : 0;
+}
+
+/* What is in the profile has another number here: an older one, which has arrived. */
+static void renumber_prior(const merging *m, lensprof_provenance *provenance)
+{
+    const int64_t prior = lensprof_provenance_prior(provenance);
+    if (!prior || lensprof_provenance_set_prior(provenance, arrived(m, prior)) == LENSPROF_OK) return;
+    (void)lensprof_provenance_set_prior(provenance, 0); /* no room for the number: shorter always has */
+}
+
+static lensprof_status take(merging *m, int64_t id, lensprof_error *error)
+{
+    int64_t here = 0;
+    lensprof_profile *profile = &m->other->scratch;
+    lensprof_status status = lp_store_fetch(m->other, id, error);
+    if (status == LENSPROF_OK) status = lp_store_find_same(m->store, profile, &here, error);
+    if (status != LENSPROF_OK) return status;
+    if (here) m->known++;
+    else {
+        renumber_prior(m, &profile->provenance);
+        status = lp_store_insert(m->store, profile, &here, error);
+        m->added++;
+    }
+    if (status == LENSPROF_OK && !remember(m, id, here))
+        return lp_store_fail_sql(m->store->path, NULL, SQLITE_NOMEM, error);
     return status;
 }
 
-typedef struct counts {
-    uint32_t added, known;
-} counts;
-
-static lensprof_status take(lensprof_store *store, lensprof_store *other, int64_t id, counts *count,
-                            lensprof_error *error)
-{
-    bool there;
-    int64_t made;
-    lensprof_status status = lp_store_fetch(other, id, error);
-    if (status == LENSPROF_OK) status = is_there(store, &other->scratch, &there, error);
-    if (status != LENSPROF_OK) return status;
-    if (there) count->known++;
-    else count->added++;
-    return there ? LENSPROF_OK : lp_store_insert(store, &other->scratch, &made, error);
-}
-
 /* The oldest first, so that the newest of a key stays the newest. */
-static lensprof_status take_all(lensprof_store *store, lensprof_store *other, counts *count, lensprof_error *error)
+static lensprof_status take_all(merging *m, lensprof_error *error)
 {
+    lensprof_store *other = m->other;
     sqlite3_stmt *statement;
     lensprof_status status = lp_store_prepare(other, "SELECT id FROM profiles ORDER BY id", &statement, error);
     if (status != LENSPROF_OK) return status;
     int rc = sqlite3_step(statement);
     while (rc == SQLITE_ROW && status == LENSPROF_OK) {
-        status = take(store, other, sqlite3_column_int64(statement, 0), count, error);
+        status = take(m, sqlite3_column_int64(statement, 0), error);
         if (status == LENSPROF_OK) rc = sqlite3_step(statement);
     }
     if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(other->path, other->db, rc, error);
@@ -83,7 +87,6 @@ static lensprof_status take_all(lensprof_store *store, lensprof_store *other, co
 lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *other, uint32_t *added, uint32_t *known,
                                      lensprof_error *error)
 {
-    counts count = {0, 0};
     lp_store_clear(error);
     if (!store || !other) return lp_store_fail_argument("store or other is NULL", error);
     if (store == other || !strcmp(sqlite3_db_filename(store->db, "main"), sqlite3_db_filename(other->db, "main")))
@@ -92,13 +95,15 @@ lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *othe
     lensprof_status status = lp_store_begin(store, true, error);
     if (status != LENSPROF_OK) return status;
     status = lp_store_begin(other, false, error);
+    merging m = {store, other, NULL, 0, 0, 0, 0};
     if (status == LENSPROF_OK) {
-        status = take_all(store, other, &count, error);
+        status = take_all(&m, error);
         lp_store_rollback(other);
+        free(m.all);
     }
     if (status == LENSPROF_OK) status = lp_store_commit(store, error);
     else lp_store_rollback(store);
-    if (status == LENSPROF_OK && added) *added = count.added;
-    if (status == LENSPROF_OK && known) *known = count.known;
+    if (status == LENSPROF_OK && added) *added = m.added;
+    if (status == LENSPROF_OK && known) *known = m.known;
     return status;
 }

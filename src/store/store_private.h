@@ -127,6 +127,10 @@ lensprof_status lp_store_insert(lensprof_store *store, const lensprof_profile *p
                                 lensprof_error *error);
 void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *profile, const char *lens_name);
 
+/* store_same.c: the id of the same valid profile, 0 where there is none; within a transaction that writes. */
+lensprof_status lp_store_find_same(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
+                                   lensprof_error *error);
+
 /* Words of the database for enum values; the position is the value. They are part of the layout. */
 #define LP_STORE_PROCESSINGS 3
 #define LP_STORE_KINDS 4

@@ -3,12 +3,16 @@
 
 #include <string.h>
 
+/* Those that hold another profile ("transfer+12") are one group, "transfer+". */
+#define METHOD "CASE WHEN method GLOB '*+[0-9]*' THEN substr(method, 1, instr(method, '+')) ELSE method END"
+
 /* One row: columns in the order of read_counts. Layouts 1 and 2 lack some. */
 #define COUNTS(grids, units, doubts) \
     "SELECT count(*), (SELECT count(*) FROM (SELECT DISTINCT lower(trim(camera_maker)), lower(trim(camera_model))" \
-    " FROM profiles WHERE trim(camera_model) <> '')), (SELECT count(DISTINCT lower(trim(lens))) FROM profiles WHERE trim(lens) <> ''), " \
-    units ", total(processing = 'raw'), total(processing = 'jpeg'), total(processing = 'corrected')," \
-    " total(covariance_size > 0), " grids ", " doubts ", count(DISTINCT method), count(DISTINCT source)," \
+    " FROM profiles WHERE trim(camera_model) <> ''))," \
+    " (SELECT count(DISTINCT lower(trim(lens))) FROM profiles WHERE trim(lens) <> ''), " units "," \
+    " total(processing = 'raw'), total(processing = 'jpeg'), total(processing = 'corrected')," \
+    " total(covariance_size > 0), " grids ", " doubts ", count(DISTINCT " METHOD "), count(DISTINCT source)," \
     " min(focal_mm), max(focal_mm), min(aperture), max(aperture), min(distance_m), max(distance_m) FROM profiles"
 
 static const char *const counts_sql[LP_STORE_LAYOUT] = {
@@ -79,7 +83,7 @@ static lensprof_status read_all(lensprof_store *store, lensprof_store_stats *sta
     int64_t pages = 0, page = 0;
     lensprof_status status = read_counts(store, stats, error);
     if (status == LENSPROF_OK)
-        status = read_groups(store, "SELECT method, count(*) AS n FROM profiles GROUP BY method ORDER BY n DESC, method",
+        status = read_groups(store, "SELECT " METHOD " AS kind, count(*) AS n FROM profiles GROUP BY kind ORDER BY n DESC, kind",
                              stats->method, error);
     if (status == LENSPROF_OK)
         status = read_groups(store, "SELECT source, count(*) AS n FROM profiles GROUP BY source ORDER BY n DESC, source",

@@ -207,6 +207,21 @@ inline void edit(const std::string &path, const std::string &pattern, const std:
 
 inline void save_text(const std::string &path, const std::string &text) { save(path, Bytes(text.begin(), text.end())); }
 
+/* A Lensfun database of one lens, "Example NAME", for a crop factor of 1.5. */
+struct LensfunEntry {
+    double focal_mm, aperture, k1, k2 = 0.0, distance_m = 1000.0;
+};
+inline std::string lensfun_text(const std::string &lens, const std::vector<LensfunEntry> &entries) {
+    std::ostringstream text;
+    text << "<lensdatabase version=\"1\"><lens><maker>Example</maker><model>Example " << lens
+         << "</model><mount>Generic</mount><cropfactor>1.5</cropfactor><calibration>\n";
+    for (const LensfunEntry &e : entries)
+        text << "<vignetting model=\"pa\" focal=\"" << e.focal_mm << "\" aperture=\"" << e.aperture << "\" distance=\""
+             << e.distance_m << "\" k1=\"" << e.k1 << "\" k2=\"" << e.k2 << "\" k3=\"0\"/>\n";
+    text << "</calibration></lens></lensdatabase>\n";
+    return text.str();
+}
+
 /* `scene` holds four PNG and `mixed` one picture of every kind, rendered once; `work` is empty before every test. */
 constexpr const char *mixed_names[] = {"img000.png", "img001.png", "img002.tif",
                                        "img003.tif", "img004.tif", "img005.jpg"};

@@ -6,24 +6,12 @@ using namespace picture_files;
 
 namespace {
 
-std::string entry(double focal, double aperture, double k1, double k2 = 0.0) {
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "<vignetting model=\"pa\" focal=\"%g\" aperture=\"%g\" distance=\"1000\" k1=\"%g\" k2=\"%g\" k3=\"0\"/>\n",
-                  focal, aperture, k1, k2);
-    return text;
-}
-
-std::string database(const std::string &entries) {
-    return "<lensdatabase version=\"1\"><lens><maker>Example</maker><model>Example 24-70mm f/2.8</model>"
-           "<mount>Generic</mount><cropfactor>1.5</cropfactor><calibration>" + entries +
-           "</calibration></lens></lensdatabase>\n";
-}
+constexpr const char *kLens = "24-70mm f/2.8";
 
 std::string make_file() {
     save_text(work("lenses.xml"),
-              database(entry(24, 2.8, -0.6) + entry(24, 4, -0.35) + entry(24, 8, -0.15) + entry(70, 2.8, -0.4) +
-                       entry(70, 4, -0.25) + entry(70, 8, -0.1) + entry(50, 2.8, -0.3) + entry(50, 4, -1.9, 0.1)));
+              lensfun_text(kLens, {{24, 2.8, -0.6}, {24, 4, -0.35}, {24, 8, -0.15}, {70, 2.8, -0.4}, {70, 4, -0.25},
+                                   {70, 8, -0.1}, {50, 2.8, -0.3}, {50, 4, -1.9, 0.1}}));
     return work("lenses.xml");
 }
 
@@ -66,7 +54,7 @@ void test_query_between(void **) {
 /* All files or none. */
 void test_import_refuses(void **) {
     const std::string good = make_file();
-    save_text(work("cut.xml"), database(entry(24, 2.8, -0.6)).substr(0, 150));
+    save_text(work("cut.xml"), lensfun_text(kLens, {{24, 2.8, -0.6}}).substr(0, 150));
     assert_refused(unreadable, import_words() + Words{good, work("cut.xml")}, {work("cut.xml")});
     must_exit(done, import_words() + Words{good});
     assert_refused(unreadable, import_words() + Words{good, work("cut.xml")}, {work("cut.xml")});

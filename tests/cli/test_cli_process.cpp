@@ -123,6 +123,10 @@ void test_full_disk(void **) {
 void test_full_disk_for_a_new_database(void **) {
     for (rlim_t bytes : {0, 512, 8192, 20000})
         assert_refused_when_full(bytes, build_quick({"--db", work("new.db")}), store_failed, work("new.db"));
+    save_text(work("lens.xml"), lensfun_text("50mm", {{50, 2, -0.4}}));
+    for (rlim_t bytes : {512, 8192, 40000}) /* the last is enough for the tables */
+        assert_refused_when_full(bytes, {"profile", "import", work("lens.xml"), "--db", work("new.db")}, store_failed,
+                                 work("new.db"));
 }
 
 /* The program itself, as a process. */

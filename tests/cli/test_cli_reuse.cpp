@@ -69,6 +69,29 @@ void test_pictures_count_once(void **) {
     assert_true(json_of(build(a, {"--no-store"}))["prior"]["used"].get<bool>());
 }
 
+/* In another database, where they have other numbers, it is still known what is in which. */
+void test_merged_profiles_count_once(void **) {
+    const std::string a = pictures("a", "1"), b = pictures("b", "2");
+    json_of(build(a));
+    json_of(build(b));
+    const Words all = {"--db", work("all.db")};
+    must_exit(done, Words{"build", pictures("c", "3"), "--aperture", "11"} + all);
+    must_exit(done, Words{"profile", "merge", work("l.db")} + all);
+    const Json merged = json_of(Words{"profile", "show", "3", "--json"} + all);
+    assert_string_equal(merged["provenance"]["method"].get<std::string>().c_str(), "transfer+2");
+    const Words again = all + Words{"--prior", "auto", "--json", "--no-store"};
+    assert_int_equal(json_of(Words{"build", b} + again)["prior"]["profile"], 2);
+    assert_refused(usage, Words{"build", a} + again, {a, "profile 3 holds these pictures already"});
+    /* What is in a file has no numbers of ours. */
+    must_exit(done, Words{"profile", "export", "3", "-o", work("one.json")} + all);
+    must_exit(done, {"profile", "import", work("one.json"), "--db", work("one.db")});
+    const Json alone = json_of({"profile", "show", "1", "--json", "--db", work("one.db")});
+    assert_string_equal(alone["provenance"]["method"].get<std::string>().c_str(), "transfer");
+    assert_int_equal(alone["provenance"]["images"], 4);
+    const std::string said = must_exit(done, {"profile", "import", work("one.json"), "--db", work("one.db")});
+    assert_true(contains(said, "1 were there already"));
+}
+
 void test_wrong_profile_is_overruled(void **) {
     json_of(build(pictures("a", "1", "-0.05,0,0")));
     const Outcome outcome = run_words(build(pictures("b", "2")));
@@ -142,8 +165,9 @@ void test_apply_between_settings(void **) {
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_next_sequences),          CLI_TEST(test_pictures_count_once),
-                                CLI_TEST(test_wrong_profile_is_overruled), CLI_TEST(test_no_prior_for_this),
-                                CLI_TEST(test_units),                   CLI_TEST(test_apply_between_settings)};
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_next_sequences),             CLI_TEST(test_pictures_count_once), CLI_TEST(test_merged_profiles_count_once),
+        CLI_TEST(test_wrong_profile_is_overruled), CLI_TEST(test_no_prior_for_this),   CLI_TEST(test_units),
+        CLI_TEST(test_apply_between_settings)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -8,19 +8,9 @@ using namespace picture_files;
 
 namespace {
 
-std::string entry(double focal, double aperture, double k1, double distance = 1000.0) {
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "<vignetting model=\"pa\" focal=\"%g\" aperture=\"%g\" distance=\"%g\" k1=\"%g\" k2=\"0\" k3=\"0\"/>\n",
-                  focal, aperture, distance, k1);
-    return text;
-}
-
 /* A database of one imported lens with these falloffs. */
-std::string make_db(const std::string &name, const std::string &lens, const std::string &entries) {
-    save_text(work(name + ".xml"), "<lensdatabase version=\"1\"><lens><maker>Example</maker><model>Example " + lens
-                                       + "</model><mount>Generic</mount><cropfactor>1.5</cropfactor><calibration>"
-                                       + entries + "</calibration></lens></lensdatabase>\n");
+std::string make_db(const std::string &name, const std::string &lens, const std::vector<LensfunEntry> &entries) {
+    save_text(work(name + ".xml"), lensfun_text(lens, entries));
     must_exit(done, {"profile", "import", "--db", work(name), work(name + ".xml")});
     return work(name);
 }
@@ -39,8 +29,8 @@ size_t profiles_in(const std::string &file) {
 Words merge_into(const std::string &db) { return {"profile", "merge", "--db", db}; }
 
 void test_merge(void **) {
-    const std::string a = make_db("a.db", "50mm", entry(50, 2, -0.4) + entry(50, 4, -0.2));
-    const std::string b = make_db("b.db", "85mm", entry(85, 2, -0.4)), all = work("all.db");
+    const std::string a = make_db("a.db", "50mm", {{50, 2, -0.4}, {50, 4, -0.2}});
+    const std::string b = make_db("b.db", "85mm", {{85, 2, -0.4}}), all = work("all.db");
     const std::string said = must_exit(done, merge_into(all) + Words{a, b});
     assert_true(contains(said, a + ": 2 profiles added to " + all + ", 0 were there"));
     assert_true(contains(said, b + ": 1 profiles added"));
@@ -54,8 +44,8 @@ void test_merge(void **) {
 }
 
 void test_merge_refuses(void **) {
-    const std::string a = make_db("a.db", "50mm", entry(50, 2, -0.4)), b = make_db("b.db", "85mm", entry(85, 2, -0.4));
-    const std::string all = make_db("all.db", "24mm", entry(24, 2, -0.4)), fresh = work("fresh.db");
+    const std::string a = make_db("a.db", "50mm", {{50, 2, -0.4}}), b = make_db("b.db", "85mm", {{85, 2, -0.4}});
+    const std::string all = make_db("all.db", "24mm", {{24, 2, -0.4}}), fresh = work("fresh.db");
     fs::create_hard_link(a, work("hard.db"));
     for (const std::string &db : {all, fresh}) {
         assert_refused(usage, merge_into(db) + Words{b, db}, {db, "is the database itself"});
@@ -73,7 +63,7 @@ void test_merge_refuses(void **) {
 }
 
 void test_check(void **) {
-    const std::string a = make_db("a.db", "50mm", entry(50, 2, -0.4) + entry(50, 4, -0.2) + entry(50, 8, -0.1));
+    const std::string a = make_db("a.db", "50mm", {{50, 2, -0.4}, {50, 4, -0.2}, {50, 8, -0.1}});
     const Words check = {"profile", "check", "--db", a};
     const Disk before = disk();
     assert_string_equal(must_exit(done, check).c_str(), (a + ": 3 profiles read, 0 faults\n").c_str());
@@ -96,7 +86,7 @@ void test_check(void **) {
 }
 
 void test_stats(void **) {
-    const std::string a = make_db("a.db", "50mm", entry(50, 2, -0.4, 0.45) + entry(50, 4, -0.2) + entry(24, 4, -0.6));
+    const std::string a = make_db("a.db", "50mm", {{50, 2, -0.4, 0.0, 0.45}, {50, 4, -0.2}, {24, 4, -0.6}});
     const std::string said = must_exit(done, {"profile", "stats", "--db", a});
     for (const char *line : {"layout 3", "3 of 0 cameras, 1 lenses, 0 single units", "3 raw, 0 jpeg", "24 mm to 50 mm",
                              "f/2 to f/4", "0.45 m to inf m", "import", "a.db.xml"})

@@ -114,6 +114,22 @@ class Stores(unittest.TestCase):
             with lp.Store(self.path) as same, refused(self, lp.Status.ERROR_ARGUMENT):
                 same.merge(other)
 
+    def test_prior_and_find_same(self):
+        profile = sample_profile("a")
+        with lp.Store(self.path, lp.StoreMode.CREATE) as store:
+            self.assertEqual(store.find_same(profile), 0)
+            first = store.put(profile)
+            profile.provenance.method = "transfer"
+            profile.provenance.prior = first
+            self.assertEqual((profile.provenance.prior, profile.provenance.method), (first, f"transfer+{first}"))
+            self.assertEqual(store.find_same(profile), first)
+            profile.provenance.prior = 0
+            self.assertEqual(profile.provenance.method, "transfer")
+            with refused(self, lp.Status.ERROR_ARGUMENT):
+                profile.provenance.prior = -1
+            with self.assertRaises(TypeError):
+                profile.provenance.prior = "1"
+
     def test_check_and_stats(self):
         numbers = self.make(sample_profile("a"), sample_profile("A "), sample_profile("b", unit="1"))
         with lp.Store(self.path) as store:

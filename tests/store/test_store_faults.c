@@ -60,8 +60,6 @@ static int faulty_sync(sqlite3_file *file, int flags)
 static int faulty_size(sqlite3_file *file, sqlite3_int64 *size) { FORWARD(xFileSize)(real(file), size); }
 static int faulty_lock(sqlite3_file *file, int kind) { FORWARD(xLock)(real(file), kind); }
 
-
-
 static int plain_close(sqlite3_file *file) { PLAIN(xClose)(real(file)); }
 static int plain_unlock(sqlite3_file *file, int kind) { PLAIN(xUnlock)(real(file), kind); }
 static int plain_reserved(sqlite3_file *file, int *out) { PLAIN(xCheckReservedLock)(real(file), out); }

@@ -145,6 +145,104 @@ static void test_older_layout_is_read_as_it_is(void **state)
     free(bytes);
 }
 
+static void set_method(lensprof_profile *profile, const char *method)
+{
+    memset(profile->provenance.method, 0, sizeof profile->provenance.method);
+    strcpy(profile->provenance.method, method);
+}
+
+/* The number behind a method, and the method with another one. */
+static void test_prior_of_a_method(void **state)
+{
+    static const struct {
+        const char *method;
+        int64_t prior, next;
+        const char *then;
+    } rows[] = {{"transfer", 0, 7, "transfer+7"},
+                {"transfer+12", 12, 7, "transfer+7"},
+                {"transfer+12", 12, 0, "transfer"},
+                {"transfer+12 (forced)", 12, 9000, "transfer+9000 (forced)"},
+                {"transfer (forced)", 0, 3, "transfer+3 (forced)"},
+                {"a+b", 0, 5, "a+b+5"},
+                {"a+1b", 0, 5, "a+1b+5"},
+                {"", 0, 0, ""},
+                {"x+99999999999999999999", 0, 1, "x+1"}, /* no number that an id could be */
+                {"transfer-function", 0, INT64_MAX - 1, NULL},
+                {"transfer+12 (forced)", 12, INT64_MAX - 1, NULL}};
+    lensprof_provenance provenance;
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        memset(&provenance, 0, sizeof provenance);
+        strcpy(provenance.method, rows[i].method);
+        assert_int_equal(lensprof_provenance_prior(&provenance), rows[i].prior);
+        const lensprof_status status = lensprof_provenance_set_prior(&provenance, rows[i].next);
+        assert_int_equal(status, rows[i].then ? LENSPROF_OK : LENSPROF_ERROR_CAPACITY);
+        assert_string_equal(provenance.method, rows[i].then ? rows[i].then : rows[i].method);
+        assert_int_equal(lensprof_provenance_prior(&provenance), rows[i].then ? rows[i].next : rows[i].prior);
+    }
+    assert_int_equal(lensprof_provenance_set_prior(&provenance, -1), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_provenance_set_prior(NULL, 1), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_provenance_prior(NULL), 0);
+}
+
+/* What is in a profile has another number here, also where it was here before. */
+static void test_priors_are_renumbered(void **state)
+{
+    const place *here = *state;
+    static const char *const methods[] = {"transfer", "transfer+1", "transfer+2 (forced)", "transfer+99", "transfer+5"};
+    static const char *const here_as[] = {"transfer+3", "transfer+4 (forced)", "transfer", "transfer"};
+    fill_samples();
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_CREATE);
+    put_at(store, &sample[1]);
+    put_at(store, &sample[2]);
+    for (int i = 0; i < 5; i++) {
+        sample[0].provenance.images = (uint32_t)(10 + i);
+        set_method(&sample[0], methods[i]);
+        put_at(other, &sample[0]);
+        if (i == 0) put_at(store, &sample[0]); /* 3 */
+    }
+    assert_merged(store, other, 4, 1);
+    for (int i = 0; i < 4; i++) {
+        assert_ok(lensprof_store_get(store, 4 + i, &found, NULL));
+        assert_string_equal(found.provenance.method, here_as[i]);
+        assert_int_equal(found.provenance.images, 11 + i);
+    }
+    assert_merged(store, other, 0, 5);
+    lensprof_store_close(other);
+    lensprof_store_close(store);
+}
+
+/* The same rule for importers: not the newest alone, and whatever made it. */
+static void test_find_same(void **state)
+{
+    const place *here = *state;
+    lensprof_error error;
+    int64_t id = 77;
+    fill_samples();
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    sample[0].vignetting[0].center[0] = -0.0; /* which a database keeps as 0 */
+    put_at(store, &sample[0]);
+    sample[0].provenance.images++;
+    put_at(store, &sample[0]);
+    sample[0].provenance.images--;
+    assert_ok(lensprof_store_find_same(store, &sample[1], &id, NULL));
+    assert_int_equal(id, 0);
+    strcpy(sample[0].provenance.software, "lensprof 99");
+    set_method(&sample[0], "transfer+1");
+    assert_ok(lensprof_store_find_same(store, &sample[0], &id, NULL));
+    assert_int_equal(id, 1);
+    sample[0].vignettings = 7;
+    assert_int_equal(lensprof_store_find_same(store, &sample[0], &id, &error), lensprof_profile_validate(&sample[0]));
+    assert_non_null(strstr(error.text, "not valid"));
+    assert_int_equal(lensprof_store_find_same(store, NULL, &id, &error), LENSPROF_ERROR_ARGUMENT);
+    lensprof_store_close(store);
+    store = store_at(here->path, LENSPROF_STORE_READ);
+    assert_int_equal(lensprof_store_find_same(store, &sample[1], &id, &error), LENSPROF_ERROR_READ_ONLY);
+    assert_int_equal(id, 1);
+    lensprof_store_close(store);
+}
+
 static void test_damaged_row_takes_everything_back(void **state)
 {
     const place *here = *state;
@@ -225,6 +323,9 @@ int main(void)
         store_test(test_what_differs_is_added),
         store_test(test_order_and_repetitions),
         store_test(test_older_layout_is_read_as_it_is),
+        cmocka_unit_test(test_prior_of_a_method),
+        store_test(test_priors_are_renumbered),
+        store_test(test_find_same),
         store_test(test_damaged_row_takes_everything_back),
         store_test(test_one_transaction_for_several),
         store_test(test_refusals),

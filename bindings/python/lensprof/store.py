@@ -133,9 +133,16 @@ class Store(Handle):
             raise
         self._call(lib.lensprof_store_commit)
 
+    def find_same(self, profile: Profile) -> int:
+        """The id of a stored profile with the same key, content and provenance, whatever its method and software; 0
+        where there is none. For importers, before put(): the store must be open for writing."""
+        found = c_int64()
+        self._call(lib.lensprof_store_find_same, byref(profile), byref(found))
+        return found.value
+
     def merge(self, other: Store) -> tuple[int, int]:
-        """Adds the profiles of another open database that are not there yet with the same key, content and provenance;
-        returns how many were added and how many were there. All or none."""
+        """Adds the profiles of another open database that find_same() does not find; returns how many were added and how
+        many were there. All or none."""
         if not isinstance(other, Store):
             raise TypeError(f"merge takes a Store, not {type(other).__name__}")
         if other is self:
