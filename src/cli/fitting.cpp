@@ -1,5 +1,6 @@
 #include "fitting.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <regex>
 
@@ -53,6 +54,9 @@ int on_progress(double done, void *progress) {
     static_cast<Progress *>(progress)->update("fitting", done);
     return interrupted();
 }
+
+/* Of counts, which do not run over. */
+uint32_t sum_of(uint32_t a, uint32_t b) { return a + std::min(b, UINT32_MAX - a); }
 
 }  // namespace
 
@@ -195,10 +199,11 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
         int64_t held = 0;
         if (finish.prior && report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED) {
             held = finish.prior->id;
-            profile->provenance.images += finish.prior->profile->provenance.images;
-            profile->provenance.pairs += finish.prior->profile->provenance.pairs;
+            const lensprof_provenance &earlier = finish.prior->profile->provenance;
+            profile->provenance.images = sum_of(profile->provenance.images, earlier.images);
+            profile->provenance.pairs = sum_of(profile->provenance.pairs, earlier.pairs);
         }
-        report.profile_id = store_profile(store, *profile, {finish.method, finish.source, report.fit.usable, held});
+        report.profile_id = store_profile(store, *profile, {finish.method, finish.source, report.fit.usable != 0, held});
     }
     if (finish.outputs) finish.outputs->commit();
     if (finish.json) print_json(build_json(report), streams.out);

@@ -25,22 +25,28 @@ double attenuation_of(float value, bool gain, uint32_t i, uint32_t j) {
     return gain ? (value > 0.0f ? 1.0 / double(value) : 0.0) : double(value);
 }
 
-// Sets a map's attenuations to the means over blocks of `side` x `side` values, of those that are known.
-void fill(const MapValues &form, const float *values, uint32_t side, FalloffMap &map) {
+// Values that become one.
+struct Block {
+    uint32_t columns, rows;
+};
+
+// Sets a map's attenuations to the means over blocks of values, of those that are known.
+void fill(const MapValues &form, const float *values, Block side, FalloffMap &map) {
     std::vector<double> sum(size_t(map.columns) * map.channels);
     std::vector<uint32_t> count(sum.size());
     map.attenuation.assign(size_t(map.columns) * map.rows * map.channels, 0.0);
     for (uint32_t j = 0; j < form.rows; j++) {
-        const uint32_t row = j / side;
+        const uint32_t row = j / side.rows;
         for (uint32_t i = 0; i < form.columns; i++)
             for (uint32_t c = 0; c < form.channels; c++) {
                 const float value = values[(size_t(j) * form.columns + i) * form.channels + form.order[c]];
                 const double attenuation = attenuation_of(value, form.gain, i, j);
-                if (attenuation == 0.0 || i / side >= map.columns || row >= map.rows) continue;
-                sum[size_t(i / side) * form.channels + c] += attenuation;
-                count[size_t(i / side) * form.channels + c]++;
+                const uint32_t column = i / side.columns;
+                if (attenuation == 0.0 || column >= map.columns || row >= map.rows) continue;
+                sum[size_t(column) * form.channels + c] += attenuation;
+                count[size_t(column) * form.channels + c]++;
             }
-        if ((j + 1) % side || row >= map.rows) continue;
+        if ((j + 1) % side.rows || row >= map.rows) continue;
         for (uint32_t i = 0; i < map.columns; i++)
             for (uint32_t c = 0; c < form.channels; c++) {
                 const size_t at = size_t(i) * form.channels + c;
@@ -68,12 +74,12 @@ void check_profile(const lensprof_profile &profile) {
 double fit_values(const MapValues &form, const float *values, uint32_t width, uint32_t height, lensprof_profile &profile) {
     check_frame(form.columns, form.rows);
     check_frame(width, height);
-    const uint32_t side = (std::max(form.columns, form.rows) + kKeptSide - 1) / kKeptSide;
+    const Block side{(form.columns + kKeptSide - 1) / kKeptSide, (form.rows + kKeptSide - 1) / kKeptSide};
     FalloffMap map{width, height, form.columns, form.rows, form.channels, 0, 0, 0, 0, {}};
     place_as_cells(map);
-    map.columns = std::max(form.columns / side, 1u), map.rows = std::max(form.rows / side, 1u);
-    map.x0 += map.dx * (side - 1) / 2.0, map.y0 += map.dy * (side - 1) / 2.0;
-    map.dx *= side, map.dy *= side;
+    map.columns = form.columns / side.columns, map.rows = form.rows / side.rows;
+    map.x0 += map.dx * (side.columns - 1) / 2.0, map.y0 += map.dy * (side.rows - 1) / 2.0;
+    map.dx *= side.columns, map.dy *= side.rows;
     fill(form, values, side, map);
     const double worst = fit_map(map, profile);
     profile.covariance_size = 0;

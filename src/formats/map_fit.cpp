@@ -1,8 +1,8 @@
 #include "map_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
@@ -261,7 +261,7 @@ void place_as_cells(FalloffMap &map) {
 FalloffMap sampled_map(uint32_t width, uint32_t height, uint32_t channels, const Attenuation &attenuation) {
     const double longer = std::max(width, height);
     const auto cells = [&](uint32_t side) {
-        return std::min(side, static_cast<uint32_t>(std::ceil(kMostSamples * side / longer)));
+        return std::min(side, static_cast<uint32_t>(std::ceil(kMostSamples * (side / longer))));
     };
     FalloffMap map{width, height, cells(width), cells(height), channels, 0, 0, 0, 0, {}};
     place_as_cells(map);

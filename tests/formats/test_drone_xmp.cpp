@@ -104,16 +104,30 @@ void test_dji(void **) {
 }
 
 // Corrected = picture / sum c (x / width)^i (y / height)^j: a Sequoia's, whose numbers are in one item of a list.
+const std::string k2d = "<Camera:VignettingPolynomial2DName><rdf:Seq><rdf:li>0,0,1,0,2,0,0,1,0,2,1,1</rdf:li>"
+                        "</rdf:Seq></Camera:VignettingPolynomial2DName><Camera:VignettingPolynomial2D><rdf:Seq>"
+                        "<rdf:li>0.6,0.9,-1.0,0.8,-0.9,0.1</rdf:li></rdf:Seq></Camera:VignettingPolynomial2D>";
+
 void test_2d(void **) {
-    const std::string elements = "<Camera:VignettingPolynomial2DName><rdf:Seq><rdf:li>0,0,1,0,2,0,0,1,0,2,1,1</rdf:li>"
-                                 "</rdf:Seq></Camera:VignettingPolynomial2DName><Camera:VignettingPolynomial2D><rdf:Seq>"
-                                 "<rdf:li>0.6,0.9,-1.0,0.8,-0.9,0.1</rdf:li></rdf:Seq></Camera:VignettingPolynomial2D>";
-    const Imported imported = read(packet("tiff:Make=\"Parrot\"", elements));
+    const Imported imported = read(packet("tiff:Make=\"Parrot\"", k2d));
     assert_string_equal(imported.error.c_str(), "");
     assert_same(*imported.profiles.at(0), 1280, 960, 8e-3, [](double px, double py) {
         const double x = px / 1280, y = py / 960;
         return 0.6 + 0.9 * x - x * x + 0.8 * y - 0.9 * y * y + 0.1 * x * y;
     });
+}
+
+// In the frame's own units the polynomial is the same in frames of any size.
+void test_huge_frames(void **) {
+    const Imported small = read(packet("", k2d), 4000, 3000);
+    const uint32_t sizes[][2] = {{40000000, 30000000}, {1u << 25, 3u << 23}, {UINT32_MAX, UINT32_MAX / 4 * 3}};
+    for (const auto &size : sizes) {
+        const Imported huge = read(packet("", k2d), size[0], size[1]);
+        assert_string_equal(huge.error.c_str(), "");
+        const lensprof_profile &p = *huge.profiles.at(0), &q = *small.profiles.at(0);
+        assert_int_equal(p.grid.columns, q.grid.columns);
+        for (int n = 0; n < 3; n++) assert_close(p.vignetting[0].k[n], q.vignetting[0].k[n], 5e-3);
+    }
 }
 
 void test_refused(void **) {
@@ -160,7 +174,7 @@ void test_refused(void **) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_micasense), cmocka_unit_test(test_dji), cmocka_unit_test(test_2d),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_huge_frames), cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -89,6 +89,19 @@ void test_grid(void **) {
     assert_close(again[at] / again[at + 300], values[at] / values[at + 300], 0.01);
 }
 
+// Maps of hardly any rows or columns, beside many that are averaged.
+void test_narrow(void **) {
+    const Profile truth = lens(1);
+    const uint32_t shapes[][2] = {{60000, 2}, {2100, 2}, {2, 5000}, {5000, 4}};
+    for (const auto &shape : shapes) {
+        const std::vector<float> values = write(*truth, shape[0], shape[1], 1, 0);
+        const lensprof_map map = {shape[0], shape[1], 1, 0, values.data()};
+        Profile found = new_profile();
+        assert_ok(lensprof_map_read(&map, kWidth, kHeight, found.get(), nullptr, nullptr));
+        assert_true(worst_beside(*found, *truth) < 0.02);
+    }
+}
+
 // One channel of three curves is their mean.
 void test_mean(void **) {
     const Profile truth = lens(3);
@@ -140,7 +153,7 @@ void test_refused(void **) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_trip), cmocka_unit_test(test_coded),   cmocka_unit_test(test_grid),
-        cmocka_unit_test(test_mean),       cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_narrow),     cmocka_unit_test(test_mean),    cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
