@@ -123,22 +123,22 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list(lensprof_stor
                                                                    uint32_t *found, lensprof_error *error);
 
 /* Whether a profile is stored already: *id receives that of one with the same key, content and provenance, whatever its
- * method and software, or 0. For those who import, before a put: the store must be open for writing. Errors: those of
- * lensprof_store_put. */
+ * method and software, or 0. Numbers must be equal; of responses those that their kind has. For those who import, before
+ * a put: the store must be open for writing. Errors: what lensprof_profile_validate says; the store's. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find_same(lensprof_store *store,
                                                                         const lensprof_profile *profile, int64_t *id,
                                                                         lensprof_error *error);
 
-/* The profile of the same database that one holds, the prior of its fit, whose pictures are in it: the number behind the
- * method ("transfer+12"); 0 = none. Ids are a database's own: who copies a profile to another one sets what it is there,
- * or 0, as lensprof_store_merge does. ARGUMENT for an id below 0; CAPACITY, and nothing is changed, where the method
- * leaves no room. */
+/* The profile of the same database that one holds, the prior of its fit, whose pictures are in it: the number at the end of
+ * the method, as in "transfer+12" and "transfer+12 (forced)"; 0 = none. Ids are a database's own: who copies a profile to
+ * another one sets what it is there, or 0, as lensprof_store_merge does. ARGUMENT for an id below 0; CAPACITY, and nothing
+ * is changed, where the method leaves no room. */
 LENSPROF_API int64_t lensprof_provenance_prior(const lensprof_provenance *provenance);
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_provenance_set_prior(lensprof_provenance *provenance, int64_t id);
 
 /* Adds every profile of `other`, another open database, that lensprof_store_find_same does not find, with its provenance as
- * it is, but that what it holds is named by its id here; the oldest first. All or none, and never twice: merged again,
- * nothing is added. *added and *known (may be NULL) receive how many were and how many were there. `other` is only read,
+ * it is, but that what it holds is named by its id here; the oldest first. A known one keeps its method, unless only the
+ * other database knows what it holds. All or none, and never twice: merged again, nothing is added. *added and *known (may be NULL) receive how many were and how many were there. `other` is only read,
  * whatever its layout. Errors: ARGUMENT for the database itself; what lensprof_store_put and, of `other`,
  * lensprof_store_get say: the text names the file and the damaged profile. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *other,
@@ -167,7 +167,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_check(lensprof_sto
 
 #define LENSPROF_STATS_GROUPS 8
 
-/* Profiles with the same text. */
+/* Profiles with the same text; of methods that name a profile ("transfer+12") without its number ("transfer+"). */
 typedef struct lensprof_store_group {
     char name[256];
     uint32_t profiles; /* 0 beyond the last group */

@@ -28,7 +28,7 @@ void declare(CLI::App &app, Options &o) {
                  "predicted, as by `lensprof query`");
     app.add_option("--pto", o.pto,
                    "take exposures (and, without --profile or --from-db, the curves) from this project");
-    app.add_option("--db", o.db, "profile database; default the user's own");
+    declare_db(app, o.db);
     app.add_option("--output-exposure", o.exposure,
                    "mean: all like the geometric mean of the project (default with --pto); reference: like its 0 EV; "
                    "keep: each its own (default without --pto)")

@@ -121,7 +121,7 @@ int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &re
     profile->provenance.images = static_cast<uint32_t>(input.images.size());
     profile->provenance.pairs = fit.cells;
     profile->provenance.inlier_share = fit.inlier_share;
-    return store_profile(o.store, *profile, {"flat", o.files.front(), fit.usable});
+    return store_profile(o.store, *profile, {"flat", o.files.front(), fit.usable != 0});
 }
 
 }  // namespace

@@ -168,7 +168,7 @@ int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
         ->required()
         ->check(CLI::IsMember({"list", "show", "remove"}));
     app.add_option("ID", o.ids, "profiles to show, or the one to remove")->check(CLI::PositiveNumber);
-    app.add_option("--db", o.db, "profile database; default the user's own");
+    declare_db(app, o.db);
     app.add_flag("--json", o.json, "print one JSON object");
     app.add_flag("--chart", o.chart, "show: relative illuminance, M over r, as a chart and a table instead");
     app.add_option("--chart-out", o.chart_out, "show: draw that chart into this .svg or .png");

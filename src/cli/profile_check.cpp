@@ -22,7 +22,7 @@ struct Options {
     bool json = false;
 
     bool read(CLI::App &app, const std::vector<std::string> &arguments, Streams &streams) {
-        app.add_option("--db", db, "profile database; default the user's own");
+        declare_db(app, db);
         app.add_flag("--json", json, "print one JSON object");
         return parse(app, arguments, streams);
     }

@@ -31,7 +31,7 @@ void declare(CLI::App &app, Options &o) {
     app.add_option("--crop-factor", o.crop_factor,
                    "43.27 mm over the sensor's diagonal, for profiles that do not know it; lensfun and lcp need it")
         ->check(in_range(0.01, 1e4));
-    app.add_option("--db", o.db, "profile database; default the user's own");
+    declare_db(app, o.db);
     app.add_flag("--json", o.json, "print one JSON object");
     app.option_defaults()->group("Which profiles, instead of ids");
     o.filter.add_options(app);

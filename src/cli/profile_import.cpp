@@ -5,6 +5,7 @@
 
 #include "foreign_file.hpp"
 #include "foreign_options.hpp"
+#include "interrupt.hpp"
 #include "key_filter.hpp"
 #include "library.hpp"
 #include "profile_store.hpp"
@@ -40,20 +41,39 @@ struct Import {
     lensprof_error error{};
 };
 
+/* Samples that a file has rounded: the numbers of their kind count. */
+lensprof_status remake_curve(lensprof_response &response) {
+    const std::vector<double> terms(response.emor, response.emor + response.modes);
+    switch (response.kind) {
+    case LENSPROF_RESPONSE_GAMMA: return lensprof_response_set_gamma(&response, response.gamma);
+    case LENSPROF_RESPONSE_EMOR: return lensprof_response_set_emor(&response, terms.data(), response.modes);
+    case LENSPROF_RESPONSE_LINEAR: lensprof_response_set_linear(&response); return LENSPROF_OK;
+    default: return LENSPROF_OK;
+    }
+}
+
+/* The profile as it is stored here: what it holds is of another database. */
+lensprof_status make_own(lensprof_profile &profile) {
+    lensprof_status status = lensprof_provenance_set_prior(&profile.provenance, 0);
+    for (uint32_t c = 0; c < profile.responses && status == LENSPROF_OK; c++) status = remake_curve(profile.response[c]);
+    return status;
+}
+
 lensprof_status take(void *user, const lensprof_import_entry *entry) {
     Import &import = *static_cast<Import *>(user);
     const lensprof_profile &profile = *entry->profile;
     if (*profile.provenance.doubt)
         import.flagged.push_back({{"file", import.file}, {"key", key_json(profile.key)},
                                   {"doubt", profile.provenance.doubt}, {"stored", entry->usable != 0}});
+    if (interrupted()) return LENSPROF_ERROR_CANCELLED;
     if (!entry->usable) return LENSPROF_OK;
+    auto own = std::make_unique<lensprof_profile>(profile);
     int64_t same = 0;
-    lensprof_status status = lensprof_store_find_same(import.store, &profile, &same, &import.error);
+    lensprof_status status = make_own(*own);
+    if (status == LENSPROF_OK) status = lensprof_store_find_same(import.store, own.get(), &same, &import.error);
     if (same) import.known++;
     if (same || status != LENSPROF_OK) return import.store_status = status;
-    auto own = std::make_unique<lensprof_profile>(profile);
-    status = lensprof_provenance_set_prior(&own->provenance, 0); /* it is of another database */
-    if (status == LENSPROF_OK) status = lensprof_store_put(import.store, own.get(), nullptr, &import.error);
+    status = lensprof_store_put(import.store, own.get(), nullptr, &import.error);
     if (status == LENSPROF_OK) import.stored++, import.lenses.insert(profile.key.lens);
     return import.store_status = status;
 }
@@ -98,6 +118,7 @@ void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_
         try {
             read_profiles(*input.rule, input.file, visit, &import);
         } catch (const Failure &) {
+            stop_if_interrupted();
             check(import.store_status, store_path(import.db), &import.error); /* the store's failure, and not the file's */
             throw;
         }
@@ -143,7 +164,7 @@ int run_profile_import(const std::vector<std::string> &arguments, Streams &strea
     app.add_option("--format", o.format, "of all the files, where it is not what they look like")
         ->check(CLI::IsMember(foreign_names(false)));
     declare_foreign(app, o.foreign, false);
-    app.add_option("--db", o.db, "profile database, made where there is none; default the user's own");
+    declare_db(app, o.db, ", made where there is none");
     app.add_flag("--json", o.json, "print one JSON object");
     app.option_defaults()->group("Whose response or falloff it is");
     o.key.add_options(app);

@@ -1,6 +1,7 @@
 /* `lensprof profile merge`: profiles of other databases. */
 #include <filesystem>
 
+#include "interrupt.hpp"
 #include "library.hpp"
 #include "profile_store.hpp"
 #include "report.hpp"
@@ -32,6 +33,7 @@ void merge_all(const std::string &db, std::vector<Other> &others) {
     lensprof_error error{};
     check(lensprof_store_begin(store.get(), &error), store_path(db), &error);
     for (Other &other : others) { /* a failure closes the store, and rolls back */
+        stop_if_interrupted();
         const auto status = lensprof_store_merge(store.get(), other.store.get(), &other.added, &other.known, &error);
         check(status, error.text[0] ? "" : other.file, &error);
     }
@@ -48,7 +50,7 @@ int run_profile_merge(const std::vector<std::string> &arguments, Streams &stream
                  "is. All files or none.",
                  "lensprof profile merge");
     app.add_option("OTHER.db", files, "databases to read; they stay as they are")->required();
-    app.add_option("--db", db, "profile database, made where there is none; default the user's own");
+    declare_db(app, db, ", made where there is none");
     app.add_flag("--json", json, "print one JSON object");
     if (!parse(app, arguments, streams)) return 0;
     std::vector<Other> others = open_others(db, files);

@@ -10,7 +10,7 @@
 namespace lensprof {
 
 void declare_store(CLI::App &app, StoreOptions &o) {
-    app.add_option("--db", o.db, "profile database; default the user's own");
+    declare_db(app, o.db);
     app.add_flag("--no-store", o.no_store, "do not store the profile");
     app.add_flag("--force", o.force, "store a result that is not usable");
     app.add_option("--maker", o.maker, "camera maker, instead of EXIF's");
@@ -65,13 +65,14 @@ void remove_empty_store(const std::string &file) {
     lensprof_store *store = nullptr;
     uint32_t profiles = 0;
     std::error_code ignored;
-    if (lensprof_store_open(file.c_str(), LENSPROF_STORE_READ, &store, nullptr) == LENSPROF_OK) {
-        Store closing(store);
-        if (lensprof_store_list(store, nullptr, nullptr, 0, &profiles, nullptr) != LENSPROF_OK || profiles) return;
-    } else if (std::filesystem::file_size(file, ignored) != 0) {
-        return; /* somebody else's */
+    if (lensprof_store_open(file.c_str(), LENSPROF_STORE_WRITE, &store, nullptr) != LENSPROF_OK) {
+        if (std::filesystem::file_size(file, ignored) == 0) std::filesystem::remove(file, ignored);
+        return; /* else somebody else's */
     }
-    std::filesystem::remove(file, ignored);
+    Store closing(store); /* nobody writes to it while it is counted and removed */
+    if (lensprof_store_begin(store, nullptr) != LENSPROF_OK) return;
+    if (lensprof_store_list(store, nullptr, nullptr, 0, &profiles, nullptr) != LENSPROF_OK || profiles) return;
+    for (const char *end : {"", "-wal", "-shm"}) std::filesystem::remove(file + end, ignored);
 }
 
 std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit) {

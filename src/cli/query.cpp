@@ -27,7 +27,7 @@ void declare(CLI::App &app, Options &o) {
                    "much (default), or farthest")
         ->check(CLI::IsMember({"weakest", "farthest"}));
     app.add_flag("--doubtful", o.doubtful, "predict also from profiles that were imported with a doubt");
-    app.add_option("--db", o.db, "profile database; default the user's own");
+    declare_db(app, o.db);
     app.add_flag("--json", o.json, "print one JSON object");
     app.footer("When no profile is stored for the setting, the falloff is predicted from those of the same lens at other\n"
                "settings; the answer says from which, how far away they are, and how sure it is.");

@@ -75,6 +75,13 @@ bool parse(CLI::App &app, const std::vector<std::string> &arguments, Streams &st
     }
 }
 
+void declare_db(CLI::App &app, std::string &path, const std::string &more) {
+    app.add_option("--db", path, "profile database" + more + "; default the user's own")
+        ->check([](const std::string &name) {
+            return name.empty() ? std::string("names no file; leave it out for the user's own database") : std::string();
+        });
+}
+
 std::function<std::string(const std::string &)> in_range(double low, double high) {
     return [low, high](const std::string &word) {
         char *end = nullptr;

@@ -45,6 +45,10 @@ int run(const std::vector<std::string> &words, Streams &streams);
  * Words that do not fit are a Failure (usage). */
 bool parse(CLI::App &app, const std::vector<std::string> &arguments, Streams &streams);
 
+/* --db FILE, a profile database; `more` is said of it. An empty name, which is what a shell makes of a variable that is not
+ * set, is refused. */
+void declare_db(CLI::App &app, std::string &path, const std::string &more = "");
+
 /* Check of an option's word: a number from low to high, both included; neither "nan" nor "inf" beyond them. */
 std::function<std::string(const std::string &)> in_range(double low, double high);
 

@@ -1,41 +1,62 @@
-/* The profile that is in another one: the number behind the method, as in "transfer+12" and "transfer+12 (forced)". */
+/* The profile that is in another one, at the end of the method: BASE, "+" and its id, and perhaps " (forced)". */
 #include <lensprof/store.h>
 
 #include <inttypes.h>
+#include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* "+12" of the method, and how long it is; NULL where there is none. */
-static const char *find_prior(const char *method, size_t *length)
+#define FORCED " (forced)"
+
+/* How long a method's parts are: all of it, what is before " (forced)", and what is before "+" and digits there. */
+typedef struct parts {
+    size_t all, named, base;
+} parts;
+
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/* Length of text[length] without a "+" and digits at its end. */
+static size_t without_number(const char *text, size_t length)
 {
-    const char *plus = strrchr(method, '+');
-    if (!plus) return NULL;
-    const size_t digits = strspn(plus + 1, "0123456789");
-    const char after = plus[1 + digits];
-    *length = 1 + digits;
-    return digits && (!after || after == ' ') ? plus : NULL;
+    size_t plus = length;
+    while (plus > 0 && is_digit(text[plus - 1])) plus--;
+    return plus < length && plus > 0 && text[plus - 1] == '+' ? plus - 1 : length;
+}
+
+static parts parts_of(const lensprof_provenance *provenance)
+{
+    const char *method = provenance->method, *end = memchr(method, 0, sizeof provenance->method);
+    const size_t forced = strlen(FORCED);
+    parts p;
+    p.named = p.all = end ? (size_t)(end - method) : sizeof provenance->method;
+    if (p.all >= forced && !memcmp(method + p.all - forced, FORCED, forced)) p.named -= forced;
+    p.base = without_number(method, p.named);
+    return p;
 }
 
 int64_t lensprof_provenance_prior(const lensprof_provenance *provenance)
 {
-    size_t length;
-    const char *prior = provenance ? find_prior(provenance->method, &length) : NULL;
-    const long long id = prior ? strtoll(prior + 1, NULL, 10) : 0;
-    return id < INT64_MAX ? id : 0; /* what is too large for a number is none */
+    int64_t id = 0;
+    if (!provenance) return 0;
+    const parts p = parts_of(provenance);
+    for (size_t i = p.base + 1; i < p.named; i++) {
+        const int digit = provenance->method[i] - '0';
+        if (id > (INT64_MAX - digit) / 10) return 0; /* no number that an id could be */
+        id = 10 * id + digit;
+    }
+    return id;
 }
 
 lensprof_status lensprof_provenance_set_prior(lensprof_provenance *provenance, int64_t id)
 {
     char method[2 * sizeof provenance->method], number[24] = "";
     if (!provenance || id < 0) return LENSPROF_ERROR_ARGUMENT;
-    size_t length = 0;
-    const char *old = find_prior(provenance->method, &length);
-    const char *forced = old ? NULL : strstr(provenance->method, " (");
-    const char *place = old ? old : forced ? forced : provenance->method + strlen(provenance->method);
+    const parts p = parts_of(provenance);
+    size_t base = p.base;
+    for (size_t shorter; (shorter = without_number(provenance->method, base)) < base;) base = shorter; /* "+1+2" */
     if (id) snprintf(number, sizeof number, "+%" PRId64, id);
-    const int size = snprintf(method, sizeof method, "%.*s%s%s", (int)(place - provenance->method), provenance->method,
-                              number, place + length);
+    const int size = snprintf(method, sizeof method, "%.*s%s%.*s", (int)base, provenance->method, number,
+                              (int)(p.all - p.named), provenance->method + p.named);
     if (size < 0 || (size_t)size >= sizeof provenance->method) return LENSPROF_ERROR_CAPACITY;
     memset(provenance->method, 0, sizeof provenance->method);
     memcpy(provenance->method, method, (size_t)size);

@@ -15,7 +15,8 @@ static const char equal_rows[] =
     " AND camera_maker = ?1 AND camera_model = ?2 AND lens = ?3 AND processing = ?7"
     " AND source = ?10 AND created_unix_s IS ?11 AND images = ?12 AND pairs = ?13 AND heldout_rms IS ?14"
     " AND inlier_share IS ?15 AND response_curves = ?16 AND vignetting_curves = ?17 AND covariance_size = ?18"
-    " AND covariance IS ?19 AND gain_grids = ?20 AND unit = ?21 AND crop_factor IS ?22 AND doubt = ?23 AND lens_name = ?24";
+    " AND covariance IS ?19 AND gain_grids = ?20 AND unit = ?21 AND crop_factor IS ?22 AND doubt = ?23 AND lens_name = ?24"
+    " AND EXISTS (SELECT 1 FROM vignettings WHERE profile_id = id AND curve = 0 AND k1 = ?25 AND k2 = ?26 AND k3 = ?27)";
 
 /* Values, not bits: a database has no -0. */
 static bool are_equal(const double *a, const double *b, uint32_t count)
@@ -29,9 +30,12 @@ static bool have_same_curves(const lensprof_profile *a, const lensprof_profile *
 {
     for (uint32_t c = 0; c < a->responses; c++) {
         const lensprof_response *r = &a->response[c], *s = &b->response[c];
-        if (r->kind != s->kind || r->modes != s->modes || r->gamma != s->gamma || !are_equal(r->emor, s->emor, r->modes)
-            || !are_equal(r->table, s->table, LENSPROF_RESPONSE_SAMPLES))
+        if (r->kind != s->kind) return false;
+        if (r->kind == LENSPROF_RESPONSE_GAMMA && r->gamma != s->gamma) return false;
+        if (r->kind == LENSPROF_RESPONSE_EMOR && (r->modes != s->modes || !are_equal(r->emor, s->emor, r->modes)))
             return false;
+        if (r->kind == LENSPROF_RESPONSE_TABLE && !are_equal(r->table, s->table, LENSPROF_RESPONSE_SAMPLES))
+            return false; /* of other kinds the numbers say it */
     }
     for (uint32_t c = 0; c < a->vignettings; c++) {
         const lensprof_vignetting *v = &a->vignetting[c], *w = &b->vignetting[c];
@@ -50,6 +54,7 @@ lensprof_status lp_store_find_same(lensprof_store *store, const lensprof_profile
     if (status != LENSPROF_OK) return status;
     lp_squeeze(profile->key.lens, lens_name);
     lp_store_bind_profile(&binder, profile, lens_name);
+    for (int n = 0; n < 3; n++) lp_bind_real(&binder, profile->vignetting[0].k[n]);
     int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
     while (rc == SQLITE_ROW && status == LENSPROF_OK && !same) {
         *id = sqlite3_column_int64(binder.statement, 0);

@@ -3,8 +3,10 @@
 
 #include <string.h>
 
-/* Those that hold another profile ("transfer+12") are one group, "transfer+". */
-#define METHOD "CASE WHEN method GLOB '*+[0-9]*' THEN substr(method, 1, instr(method, '+')) ELSE method END"
+/* Those that hold another profile ("transfer+12") are one group, "transfer+"; forced ones are not many. */
+#define DIGITS "'0123456789'"
+#define METHOD "CASE WHEN rtrim(method, " DIGITS ") <> method AND rtrim(method, " DIGITS ") LIKE '%+'" \
+               " THEN rtrim(method, " DIGITS ") ELSE method END"
 
 /* One row: columns in the order of read_counts. Layouts 1 and 2 lack some. */
 #define COUNTS(grids, units, doubts) \

@@ -1,4 +1,6 @@
 /* `lensprof profile import`, and `lensprof query` for settings that are not stored. */
+#include <cmath>
+
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
@@ -51,6 +53,25 @@ void test_query_between(void **) {
     assert_refused(usage, query + Words{"--unknown-distance", "nearest"}, {"--unknown-distance"});
 }
 
+/* Samples that were rounded on the way; several profiles of one key; none is stored twice. */
+void test_json_again(void **) {
+    Json all = Json::array();
+    for (double k1 : {-0.1, -0.2}) {
+        Json curve = Json::array();
+        for (int j = 0; j < 1024; j++) curve.push_back(std::round(std::pow(j / 1023.0, 1.0 / 2.2) * 1e7) / 1e7);
+        all.push_back({{"key", {{"lens", "one"}, {"processing", "jpeg"}}},
+                       {"vignetting", {{"k", Json::array({Json::array({k1, 0.0, 0.0})})}}},
+                       {"response", {{"kind", "gamma"}, {"gamma", 2.2}, {"values", Json::array({curve})}}}});
+    }
+    save_text(work("two.json"), Json{{"schema", 1}, {"profiles", all}}.dump());
+    assert_int_equal(json_of(import_words() + Words{"--json", work("two.json")})["stored"], 2);
+    const Json again = json_of(import_words() + Words{"--json", work("two.json")});
+    assert_int_equal(again["stored"], 0);
+    assert_int_equal(again["known"], 2);
+    const Json shown = json_of({"profile", "show", "1", "--json", "--db", work("l.db")});
+    assert_true(std::fabs(shown["response"]["values"][0][511].get<double>() - std::pow(511 / 1023.0, 1.0 / 2.2)) < 1e-12);
+}
+
 /* All files or none. */
 void test_import_refuses(void **) {
     const std::string good = make_file();
@@ -66,6 +87,7 @@ void test_import_refuses(void **) {
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_import), CLI_TEST(test_query_between), CLI_TEST(test_import_refuses)};
+    const CMUnitTest tests[] = {CLI_TEST(test_import), CLI_TEST(test_query_between), CLI_TEST(test_json_again),
+                                CLI_TEST(test_import_refuses)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -167,17 +167,30 @@ static void test_prior_of_a_method(void **state)
                 {"a+1b", 0, 5, "a+1b+5"},
                 {"", 0, 0, ""},
                 {"x+99999999999999999999", 0, 1, "x+1"}, /* no number that an id could be */
+                {"x+9223372036854775807", INT64_MAX, 0, "x"},
+                {"x+9223372036854775808", 0, 0, "x"},
+                {"x+1+2", 2, 0, "x"},
+                {"x+1 +2", 2, 0, "x+1 "},
+                {"+5", 5, 6, "+6"},
+                {"transfer+0012", 12, 1, "transfer+1"},
+                {"transfer+-3", 0, 4, "transfer+-3+4"},
+                {"a+b (forced)", 0, 7, "a+b+7 (forced)"},
+                {"c++", 0, 0, "c++"},
+                {"radiance (EMoR+falloff)", 0, 0, "radiance (EMoR+falloff)"},
+                {"radiance:EMoR+falloff,3 curves!", 0, 0, "radiance:EMoR+falloff,3 curves!"},
+                {"radiance:EMoR+falloff,3 curves!", 0, 1, NULL},
                 {"transfer-function", 0, INT64_MAX - 1, NULL},
                 {"transfer+12 (forced)", 12, INT64_MAX - 1, NULL}};
     lensprof_provenance provenance;
     (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        memset(&provenance, 0, sizeof provenance);
+        memset(&provenance, '7', sizeof provenance); /* what is behind the end does not count */
         strcpy(provenance.method, rows[i].method);
         assert_int_equal(lensprof_provenance_prior(&provenance), rows[i].prior);
         const lensprof_status status = lensprof_provenance_set_prior(&provenance, rows[i].next);
         assert_int_equal(status, rows[i].then ? LENSPROF_OK : LENSPROF_ERROR_CAPACITY);
         assert_string_equal(provenance.method, rows[i].then ? rows[i].then : rows[i].method);
+        assert_int_equal(provenance.software[0], '7');
         assert_int_equal(lensprof_provenance_prior(&provenance), rows[i].then ? rows[i].next : rows[i].prior);
     }
     assert_int_equal(lensprof_provenance_set_prior(&provenance, -1), LENSPROF_ERROR_ARGUMENT);
@@ -213,6 +226,33 @@ static void test_priors_are_renumbered(void **state)
     lensprof_store_close(store);
 }
 
+/* A known profile learns what is in it; what it says itself stays. */
+static void test_known_profiles_learn_their_priors(void **state)
+{
+    const place *here = *state;
+    static const char *const own[] = {"transfer", "transfer", "transfer+1"}, *const theirs[] = {"transfer", "transfer+1", "transfer+2"};
+    fill_samples();
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_CREATE);
+    put_at(store, &sample[1]);
+    for (int i = 0; i < 3; i++) {
+        sample[0].provenance.images = (uint32_t)(10 + i);
+        set_method(&sample[0], own[i]);
+        put_at(store, &sample[0]);
+        set_method(&sample[0], theirs[i]);
+        put_at(other, &sample[0]);
+    }
+    for (int again = 0; again < 2; again++) {
+        assert_merged(store, other, 0, 3);
+        assert_ok(lensprof_store_get(store, 3, &found, NULL));
+        assert_string_equal(found.provenance.method, "transfer+2");
+        assert_ok(lensprof_store_get(store, 4, &found, NULL));
+        assert_string_equal(found.provenance.method, "transfer+1");
+    }
+    lensprof_store_close(other);
+    lensprof_store_close(store);
+}
+
 /* The same rule for importers: not the newest alone, and whatever made it. */
 static void test_find_same(void **state)
 {
@@ -232,6 +272,15 @@ static void test_find_same(void **state)
     set_method(&sample[0], "transfer+1");
     assert_ok(lensprof_store_find_same(store, &sample[0], &id, NULL));
     assert_int_equal(id, 1);
+    assert_ok(lensprof_response_set_gamma(&sample[2].response[0], 1.8)); /* the number says it, and not the table */
+    put_at(store, &sample[2]);
+    sample[2].response[0].table[500] += 1e-11;
+    assert_ok(lensprof_store_find_same(store, &sample[2], &id, NULL));
+    assert_int_equal(id, 3);
+    sample[2].response[0].gamma = 1.8001;
+    assert_ok(lensprof_store_find_same(store, &sample[2], &id, NULL));
+    assert_int_equal(id, 0);
+    id = 1;
     sample[0].vignettings = 7;
     assert_int_equal(lensprof_store_find_same(store, &sample[0], &id, &error), lensprof_profile_validate(&sample[0]));
     assert_non_null(strstr(error.text, "not valid"));
@@ -325,6 +374,7 @@ int main(void)
         store_test(test_older_layout_is_read_as_it_is),
         cmocka_unit_test(test_prior_of_a_method),
         store_test(test_priors_are_renumbered),
+        store_test(test_known_profiles_learn_their_priors),
         store_test(test_find_same),
         store_test(test_damaged_row_takes_everything_back),
         store_test(test_one_transaction_for_several),
