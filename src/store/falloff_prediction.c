@@ -39,12 +39,11 @@ static double widest_at(const lp_falloff_node *nodes, uint32_t count, const lp_f
     return widest;
 }
 
-static point point_of(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
-                      const lp_falloff_node *node)
+static point point_of(const lp_falloff_node *node, double widest)
 {
     point p;
     p.x = 0.5 * log2(node->focal_mm);
-    p.t = widest_at(nodes, count, at, node->focal_mm) / node->aperture;
+    p.t = widest / node->aperture;
     p.z = fmin(0.2 / node->distance_m, 6.0);
     p.d = 0.0;
     p.node = 0;
@@ -58,31 +57,38 @@ static int is_nearer(const void *a, const void *b)
     return p->node < q->node ? -1 : p->node > q->node; /* one order, whatever the library's sort does */
 }
 
-/* Another node says the same and is focused farther away (or, where that is the same too, comes later). */
-static int is_repeated(const lp_falloff_node *nodes, uint32_t count, uint32_t i)
+/* `other` says the same as `node` and is focused at least as far away. */
+static int repeats(const lp_falloff_node *other, const lp_falloff_node *node)
 {
-    for (uint32_t j = 0; j < count; j++)
-        if (j != i && nodes[j].focal_mm == nodes[i].focal_mm && nodes[j].aperture == nodes[i].aperture
-            && !memcmp(nodes[j].k, nodes[i].k, sizeof nodes[i].k)
-            && (nodes[j].distance_m > nodes[i].distance_m || (nodes[j].distance_m == nodes[i].distance_m && j > i)))
-            return 1;
-    return 0;
+    return other->focal_mm == node->focal_mm && other->aperture == node->aperture
+        && !memcmp(other->k, node->k, sizeof node->k) && other->distance_m >= node->distance_m;
+}
+
+uint32_t lp_drop_repeated(lp_falloff_node *nodes, uint32_t count)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        int is_repeated = 0;
+        for (uint32_t j = 0; j < kept; j++) is_repeated |= repeats(&nodes[j], &nodes[i]);
+        for (uint32_t j = i + 1; j < count && !is_repeated; j++) is_repeated = repeats(&nodes[j], &nodes[i]);
+        if (!is_repeated) nodes[kept++] = nodes[i];
+    }
+    return kept;
 }
 
 /* The nearest nodes, nearest first, to points[count]; returns how many are used. */
 static uint32_t find_neighbours(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
                                 const point *here, point *points)
 {
-    uint32_t kept = 0;
+    double focal_mm = -1.0, widest = 0.0;
     for (uint32_t i = 0; i < count; i++) {
-        if (is_repeated(nodes, count, i)) continue;
-        point p = point_of(nodes, count, at, &nodes[i]);
-        p.d = distance(&p, here);
-        p.node = i;
-        points[kept++] = p;
+        if (nodes[i].focal_mm != focal_mm) widest = widest_at(nodes, count, at, focal_mm = nodes[i].focal_mm);
+        points[i] = point_of(&nodes[i], widest);
+        points[i].d = distance(&points[i], here);
+        points[i].node = i;
     }
-    qsort(points, kept, sizeof *points, is_nearer);
-    return kept < LP_NEIGHBOURS ? kept : LP_NEIGHBOURS;
+    qsort(points, count, sizeof *points, is_nearer);
+    return count < LP_NEIGHBOURS ? count : LP_NEIGHBOURS;
 }
 
 /* Cholesky factor of a, in its lower half. The matrix is positive definite by OWN_NOISE. */
@@ -207,7 +213,7 @@ int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_fa
     prediction->nearest = INFINITY;
     point *points = malloc(count * sizeof *points);
     if (!points) return -1;
-    const point here = point_of(nodes, count, at, at);
+    const point here = point_of(at, widest_at(nodes, count, at, at->focal_mm));
     const uint32_t used = find_neighbours(nodes, count, at, &here, points);
     prediction->nearest = points[0].d;
     if (points[0].d > LP_FALLOFF_REACH) {

@@ -28,8 +28,11 @@ typedef struct lp_falloff_prediction {
 /* Beyond this distance nothing is predicted: two stops from wide open, or a factor 2 in focal length. */
 #define LP_FALLOFF_REACH 0.5
 
-/* The falloff at a setting; `count` > 0 nodes. 0 where the nearest node is beyond LP_FALLOFF_REACH; then only `nearest`
- * is set. Nodes with the same focal length, aperture and curves are one, the one focused farthest.
+/* Leaves of nodes with the same focal length, aperture and curves the one focused farthest; returns how many are left. */
+uint32_t lp_drop_repeated(lp_falloff_node *nodes, uint32_t count);
+
+/* The falloff at a setting; `count` > 0 nodes, none repeated. 0 where the nearest node is beyond LP_FALLOFF_REACH; then
+ * only `nearest` is set.
  *
  * Kriging of curves: with x = log2(f)/2, t = N0/N, z = 0.2 m/D and the distance d between settings in these, the
  * covariance of M is (1 + d) e^-d + const; N0 is the smallest f-number known at this focal length or a longer one, so

@@ -8,9 +8,12 @@
 
 #include "store_names.h"
 
+#define BUILT_IN_SCORE 0.6 /* of a lens that was found by its camera */
+#define SHORTEST_CAMERA 3  /* characters of a name that says something within another one */
+
 #define ROWS_OF_LENS(name, unit, crop, doubt) \
     "SELECT id, camera_model, lens, " unit ", " crop ", focal_mm, aperture, distance_m, curve, k1, k2, k3," \
-    " vignetting_curves, covariance_size FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
+    " vignetting_curves, covariance_size, processing FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
     " = ?1 AND (?2 OR " doubt " = '') AND (?3 OR processing = ?4) ORDER BY id, curve"
 
 static const char *const rows_sql[2] = {
@@ -60,6 +63,7 @@ static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r)
     for (int n = 0; n < 3; n++) r->k[n] = lp_read_real(reader);
     r->curves = lp_read_integer(reader, 1, 3);
     r->covariance_size = lp_read_integer(reader, 0, LENSPROF_COVARIANCE_MAX);
+    r->key.processing = lp_read_name(reader, lp_store_processings, LP_STORE_PROCESSINGS);
     if (!reader->bad && lensprof_profile_key_validate(&r->key) != LENSPROF_OK) reader->bad = "key";
     return !reader->bad;
 }
@@ -67,9 +71,10 @@ static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r)
 static bool is_known(const char *text) { return text[strspn(text, " ")] != 0; }
 
 /* Of the lens's name, or of the camera's where no lens is asked for. */
-static double score_of(const row *r, const lensprof_profile_key *key, bool by_words)
+static double score_of(const row *r, const lensprof_profile_key *key, bool by_words, bool by_camera)
 {
     if (!is_known(key->lens)) return lp_name_score(r->key.camera_model, key->camera_model);
+    if (by_camera) return BUILT_IN_SCORE;
     return by_words ? lp_words_score(r->key.lens, key->lens, key->camera_maker) : lp_name_score(r->key.lens, key->lens);
 }
 
@@ -80,7 +85,7 @@ static void compare_names(const row *r, const lensprof_profile_key *key, lp_cand
     if (found->last_score > 0.0 && !strcmp(last->lens, r->key.lens) && !strcmp(last->camera_model, r->key.camera_model)) return;
     memcpy(last->lens, r->key.lens, sizeof last->lens);
     memcpy(last->camera_model, r->key.camera_model, sizeof last->camera_model);
-    found->last_score = score_of(r, key, found->by_words);
+    found->last_score = score_of(r, key, found->by_words, found->by_camera);
     found->last_camera = fits(r->key.camera_model, key->camera_model);
 }
 
@@ -90,13 +95,14 @@ static bool take_row(const row *r, const lensprof_profile_key *key, lp_candidate
     lp_candidate *one = found->count ? &found->all[found->count - 1] : NULL;
     if (!one || one->node.id != r->id) {
         compare_names(r, key, found);
-        const int unit = fits(r->key.unit, key->unit), camera = found->last_camera;
+        const int unit = found->any_unit ? 0 : fits(r->key.unit, key->unit), camera = found->last_camera;
         if (unit < 0 || (camera < 0 && *key->camera_model) || r->curve != 0) return true;
-        if (!is_known(key->lens) && camera <= 0) return true; /* the camera's own only */
+        if ((!is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
         if (!(one = add(found))) return false;
         found->name_score = fmax(found->name_score, found->last_score);
-        one->is_fixed = !is_known(key->lens) || !is_known(r->key.lens);
-        one->of_unit = unit, one->of_camera = camera, one->has_covariance = r->covariance_size > 0;
+        one->is_fixed = !is_known(key->lens) || !is_known(r->key.lens) || found->by_camera;
+        one->of_unit = unit, one->of_camera = camera > 0, one->has_covariance = r->covariance_size > 0;
+        one->processing = r->key.processing;
         one->crop = r->key.crop_factor;
         one->node.id = r->id;
         one->node.focal_mm = r->key.focal_mm;
@@ -157,26 +163,41 @@ static lensprof_status find_by_words(lensprof_store *store, const lensprof_profi
     return status;
 }
 
-/* The squeezed name of the only lens of a camera. *lenses: how many there are, 2 for more. */
+/* Whether a lens is named after its camera, which it is built in then: "Canon PowerShot S110 & compatibles". */
+static bool is_built_in(const char *squeezed_lens, const char *camera)
+{
+    char squeezed[LP_NAME_BYTES];
+    lp_squeeze(camera, squeezed);
+    const char *bare = lp_without_maker(squeezed);
+    return strlen(bare) >= SHORTEST_CAMERA && strstr(squeezed_lens, bare) != NULL;
+}
+
+/* The squeezed name of the only lens of a camera. *lenses: how many there are, 2 for more. Where a lens is asked for, one
+ * that is built in. */
 static lensprof_status find_only_lens(lensprof_store *store, const lensprof_profile_key *key, char *name, int *lenses,
                                       lensprof_error *error)
 {
-    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    lp_store_reader reader = {NULL, 0, NULL};
     *lenses = 0;
-    lensprof_status status = lp_store_prepare(
-        store, "SELECT DISTINCT lens FROM profiles WHERE trim(camera_model) COLLATE NOCASE = trim(?1) LIMIT 2",
-        &binder.statement, error);
+    lensprof_status status =
+        lp_store_prepare(store, "SELECT DISTINCT camera_model, lens FROM profiles WHERE camera_model <> '' AND lens <> ''",
+                         &reader.statement, error);
     if (status != LENSPROF_OK) return status;
-    lp_bind_text(&binder, key->camera_model);
-    int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
-    for (; rc == SQLITE_ROW; rc = sqlite3_step(binder.statement)) {
-        lp_store_reader reader = {binder.statement, 0, NULL};
-        char lens[LP_NAME_BYTES];
+    int rc = sqlite3_step(reader.statement);
+    for (; rc == SQLITE_ROW && *lenses < 2; rc = sqlite3_step(reader.statement)) {
+        char camera[LP_NAME_BYTES], lens[LP_NAME_BYTES], squeezed[LP_NAME_BYTES];
+        reader.column = 0, reader.bad = NULL;
+        lp_read_text(&reader, camera, sizeof camera);
         lp_read_text(&reader, lens, sizeof lens);
-        if (!reader.bad && ++*lenses == 1) lp_squeeze(lens, name);
+        if (reader.bad || lp_name_score(camera, key->camera_model) < 0.8) continue;
+        lp_squeeze(lens, squeezed);
+        if (is_known(key->lens) && !is_built_in(squeezed, camera)) continue;
+        if (*lenses && !strcmp(name, squeezed)) continue; /* of a camera by another of its names */
+        memcpy(name, squeezed, sizeof squeezed);
+        ++*lenses;
     }
-    if (rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
-    lp_store_release(store, binder.statement);
+    if (rc != SQLITE_DONE && rc != SQLITE_ROW) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, reader.statement);
     return status;
 }
 
@@ -185,10 +206,11 @@ static lensprof_status find_camera(lensprof_store *store, const lensprof_profile
 {
     char name[LP_NAME_BYTES] = "";
     int lenses = 0;
-    lensprof_status status = read_rows(store, "", key, o, found, error);
+    lensprof_status status = is_known(key->lens) ? LENSPROF_OK : read_rows(store, "", key, o, found, error);
     if (status != LENSPROF_OK || found->count) return status;
     status = find_only_lens(store, key, name, &lenses, error);
-    found->has_lenses = lenses > 1;
+    found->has_lenses = lenses > 1 && !is_known(key->lens);
+    found->by_camera = lenses == 1 && is_known(key->lens);
     return status == LENSPROF_OK && lenses == 1 ? read_rows(store, name, key, o, found, error) : status;
 }
 
@@ -206,5 +228,6 @@ lensprof_status lp_find_candidates(lensprof_store *store, const lensprof_profile
     if (status != LENSPROF_OK || found->count) return status;
     status = find_by_words(store, key, name, error);
     found->by_words = *name != 0;
-    return status == LENSPROF_OK && *name ? read_rows(store, name, key, o, found, error) : status;
+    if (status == LENSPROF_OK && *name) return read_rows(store, name, key, o, found, error);
+    return status == LENSPROF_OK && is_known(key->camera_model) ? find_camera(store, key, o, found, error) : status;
 }

@@ -58,6 +58,19 @@ static uint32_t keep_best(lp_candidates *found, const lensprof_profile_key *key)
     return found->count = kept;
 }
 
+/* Curves of pictures that were processed otherwise are others: where any will do, those of the newest profile. */
+static void keep_one_processing(lp_candidates *found)
+{
+    const lp_candidate *newest = &found->all[0];
+    uint32_t kept = 0;
+    for (uint32_t i = 1; i < found->count; i++)
+        if (found->all[i].node.id > newest->node.id) newest = &found->all[i];
+    const uint32_t processing = newest->processing;
+    for (uint32_t i = 0; i < found->count; i++)
+        if (found->all[i].processing == processing) found->all[kept++] = found->all[i];
+    found->count = kept;
+}
+
 /* k in half diagonals of the key's sensor: r there is r times the ratio here. */
 static void rescale(lp_candidate *c, const lensprof_profile_key *key)
 {
@@ -77,6 +90,24 @@ static double setting(const lp_falloff_node *node, int which) { return which ? n
 static void set(lp_falloff_node *node, int which, double value) { *(which ? &node->aperture : &node->focal_mm) = value; }
 
 static int is_same(double a, double b) { return a == b || fabs(a - b) <= 1e-6 * fmin(a, b); }
+
+static int is_same_setting(const lp_falloff_node *a, const lp_falloff_node *b)
+{
+    return is_same(a->focal_mm, b->focal_mm) && is_same(a->aperture, b->aperture) && is_same(a->distance_m, b->distance_m);
+}
+
+/* Of profiles of one setting the newest counts, as everywhere: it may hold the others, or have overruled them. They come
+ * by rising id. */
+static uint32_t keep_newest(lp_falloff_node *nodes, uint32_t count)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t j = i + 1;
+        while (j < count && !is_same_setting(&nodes[i], &nodes[j])) j++;
+        if (j == count) nodes[kept++] = nodes[i];
+    }
+    return kept;
+}
 
 /* Rows that lack a number which the key has are of no use; one that the key lacks must be the same in all rows. Returns
  * NULL, or what is wrong. */
@@ -101,9 +132,10 @@ static const char *settle(lp_candidates *found, lp_falloff_node *at, int which)
     return kept ? NULL : useless[which];
 }
 
-/* Nothing is predicted more than one node beyond the last: the outermost two nodes' spacing (in stops or octaves), or a
- * twelfth of an octave in focal length and a third of a stop where there is one node only. */
-static int is_beyond(const lp_candidates *found, const lp_falloff_node *at, int which)
+/* 0 within the stored settings, 1 outside, 2 too far. Nothing is predicted more than one node beyond the last: the
+ * outermost two nodes' spacing (in stops or octaves), or a twelfth of an octave in focal length and a third of a stop
+ * where there is one node only. */
+static int place_of(const lp_candidates *found, const lp_falloff_node *at, int which)
 {
     double low = INFINITY, high = 0.0, above_low = INFINITY, below_high = 0.0;
     const double single = which ? 1.0 / 6.0 : 1.0 / 12.0; /* log2; of the f-number half a stop counts as 1/4 */
@@ -119,7 +151,8 @@ static int is_beyond(const lp_candidates *found, const lp_falloff_node *at, int 
     const double asked = log2(setting(at, which)), least = 1e-6;
     const double before = high - low > 1e-6 ? fmax(above_low - low, single) : single;
     const double behind = high - low > 1e-6 ? fmax(high - below_high, single) : single;
-    return asked < low - before - least || asked > high + behind + least;
+    if (asked < low - before - least || asked > high + behind + least) return 2;
+    return asked < low - least || asked > high + least;
 }
 
 /* ---- predictions ---- */
@@ -260,8 +293,9 @@ static lensprof_status predict(lensprof_store *store, const lensprof_profile_key
         nodes[i] = found->all[i].node;
         if (nodes[i].distance_m == LENSPROF_UNKNOWN) nodes[i].distance_m = INFINITY;
     }
-    const int done = at.distance_m == LENSPROF_UNKNOWN ? predict_any_distance(nodes, found->count, at, o->distance_rule, &p)
-                                                       : lp_predict_falloff(nodes, found->count, &at, &p);
+    const uint32_t count = lp_drop_repeated(nodes, keep_newest(nodes, found->count));
+    const int done = at.distance_m == LENSPROF_UNKNOWN ? predict_any_distance(nodes, count, at, o->distance_rule, &p)
+                                                       : lp_predict_falloff(nodes, count, &at, &p);
     if (done > 0) {
         lookup->rows = p.used;
         lookup->sigma = p.sigma;
@@ -322,21 +356,79 @@ static lensprof_status refuse_unknown(lensprof_store *store, const lensprof_prof
     static const char *const reasons[] = {
         "the profiles of this lens are of pictures processed otherwise (raw, jpeg, corrected), and so are their curves",
         "the profiles of this lens are doubtful ones; ask for these, too, to have them",
+        "the profiles of this lens are of other cameras, or of single units of it; ask for these",
         "no profile of a lens of this name; list the profiles to see which there are",
         "no profile of this camera; list the profiles to see which there are"};
+    const bool has_lens = key->lens[strspn(key->lens, " ")] != 0;
     lensprof_lookup_options wider = *o;
-    for (int which = 0; which < 2; which++) {
+    lensprof_profile_key any = *key;
+    for (int which = 0; which < 3; which++) {
         lp_candidates others;
         memset(&others, 0, sizeof others);
-        if (which) wider.with_doubt = 1;
-        else wider.any_processing = 1;
-        const lensprof_status status = lp_find_candidates(store, key, &wider, &others, error);
+        if (which == 0) wider.any_processing = 1;
+        if (which == 1) wider.with_doubt = 1;
+        if (which == 2) memset(any.camera_model, 0, sizeof any.camera_model);
+        others.any_unit = which == 2;
+        if (which == 2 && !has_lens) break;
+        const lensprof_status status = lp_find_candidates(store, &any, &wider, &others, error);
         const uint32_t count = others.count;
         free(others.all);
         if (status != LENSPROF_OK) return status;
         if (count) return refuse(store, lookup, reasons[which], error);
     }
-    return refuse(store, lookup, reasons[key->lens[strspn(key->lens, " ")] || !*key->camera_model ? 2 : 3], error);
+    return refuse(store, lookup, reasons[has_lens || !*key->camera_model ? 3 : 4], error);
+}
+
+static lensprof_status answer_exact(lensprof_store *store, int64_t id, lensprof_lookup *lookup, lensprof_error *error)
+{
+    lookup->exact = lookup->rows = 1;
+    lookup->id[0] = id, lookup->weight[0] = 1.0;
+    const lensprof_status status = lp_store_fetch(store, id, error);
+    const double variance = status == LENSPROF_OK ? variance_of(&store->scratch) : 0.0;
+    lookup->sigma = variance > 0.0 ? sqrt(variance) : LENSPROF_UNKNOWN;
+    return status;
+}
+
+/* Focal length and aperture, where they are not given and the same everywhere. Returns NULL, or why not. */
+static const char *settle_all(lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup)
+{
+    static const char *const beyond[] = {"the focal length is beyond those at which this lens is known",
+                                         "the aperture is beyond those at which this lens is known"};
+    static const char *const outside[] = {"the focal length is outside those that are stored",
+                                          "the aperture is outside those that are stored"};
+    for (int which = 0; which < 2; which++) {
+        const char *wrong = settle(found, at, which);
+        if (wrong) return wrong;
+        const int side = place_of(found, at, which);
+        if (side > 1) return beyond[which];
+        if (side > 0) mind(lookup, outside[which]);
+    }
+    return NULL;
+}
+
+/* What those that are used have in common, where the key leaves it open. */
+static lensprof_profile_key complete_key(const lensprof_profile_key *key, const lp_candidates *found)
+{
+    lensprof_profile_key whole = *key;
+    whole.processing = found->all[0].processing;
+    for (uint32_t i = 0; i < found->count && whole.crop_factor == LENSPROF_UNKNOWN; i++)
+        whole.crop_factor = found->all[i].crop;
+    return whole;
+}
+
+/* The candidates that count. Returns NULL, or why there are none. */
+static const char *choose(lp_candidates *found, const lensprof_profile_key *key, lensprof_lookup *lookup)
+{
+    char text[200];
+    const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
+    if (!keep_best(found, key)) return "this lens was measured on smaller sensors only";
+    keep_one_processing(found);
+    if (several) mind(lookup, "the sensor's size is not known: of those measured the smallest is taken");
+    snprintf(text, sizeof text, found->by_words ? "the lens was found by the words and numbers of its name: %s"
+                                                : "no lens of this name; that of the camera is built in: %s",
+             found->last.lens);
+    if (found->by_words || found->by_camera) mind(lookup, text);
+    return NULL;
 }
 
 static lensprof_status answer(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
@@ -346,34 +438,23 @@ static lensprof_status answer(lensprof_store *store, const lensprof_profile_key 
     lookup->name_score = found->name_score;
     if (found->has_lenses) return refuse(store, lookup, "this camera has profiles of several lenses; give the lens", error);
     if (!found->count) return refuse_unknown(store, key, o, lookup, error);
-    const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
-    if (!keep_best(found, key)) return refuse(store, lookup, "this lens was measured on smaller sensors only", error);
-    if (several)
-        mind(lookup, "the sensor's size is not known: of those measured the smallest is taken");
-    if (found->by_words) mind(lookup, "the lens was found by the words and numbers of its name, in another order or form");
+    const char *wrong = choose(found, key, lookup);
+    if (wrong) return refuse(store, lookup, wrong, error);
     round_focal(found, &at, lookup);
-    const int64_t same = find_exact(found, &at, key);
-    if (same > 0) {
-        lookup->exact = lookup->rows = 1;
-        lookup->id[0] = same, lookup->weight[0] = 1.0;
-        lensprof_status status = lp_store_fetch(store, same, error);
-        const double variance = status == LENSPROF_OK ? variance_of(&store->scratch) : 0.0;
-        lookup->sigma = variance > 0.0 ? sqrt(variance) : LENSPROF_UNKNOWN;
-        return status;
-    }
-    for (int which = 0; which < 2; which++) {
-        const char *wrong = settle(found, &at, which);
+    int64_t same = find_exact(found, &at, key);
+    if (same < 0) {
+        wrong = settle_all(found, &at, lookup);
         if (wrong) return refuse(store, lookup, wrong, error);
-        if (is_beyond(found, &at, which))
-            return refuse(store, lookup, which ? "the aperture is beyond those at which this lens is known"
-                                               : "the focal length is beyond those at which this lens is known", error);
+        same = find_exact(found, &at, key);
     }
+    if (same > 0) return answer_exact(store, same, lookup, error);
     if (at.distance_m == LENSPROF_UNKNOWN)
         mind(lookup, o->distance_rule == LENSPROF_DISTANCE_WEAKEST
                          ? "the focus distance is not known: the weakest falloff of those stored is taken"
                          : "the focus distance is not known: the falloff at the farthest one stored is taken");
+    const lensprof_profile_key whole = complete_key(key, found);
     lensprof_status status = weigh(store, found, error);
-    return status == LENSPROF_OK ? predict(store, key, o, found, at, lookup, error) : status;
+    return status == LENSPROF_OK ? predict(store, &whole, o, found, at, lookup, error) : status;
 }
 
 lensprof_status lensprof_store_lookup(lensprof_store *store, const lensprof_profile_key *key,

@@ -127,6 +127,12 @@ static const char *without_maker(const char *squeezed, const char **maker)
     return squeezed;
 }
 
+const char *lp_without_maker(const char *squeezed)
+{
+    const char *maker;
+    return without_maker(squeezed, &maker);
+}
+
 static int is_same_but_for_case(const char *a, const char *b)
 {
     while (*a == ' ') a++;

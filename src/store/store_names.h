@@ -13,12 +13,16 @@ void lp_squeeze(const char *name, char *text);
  * spelling ("NIKON CORPORATION"), or a camera's name elsewhere ("EOS REBEL T3i", "EOS 600D"); else 0. */
 double lp_name_score(const char *a, const char *b);
 
+/* Behind the maker's name in front of a squeezed one, or the whole. */
+const char *lp_without_maker(const char *squeezed);
+
 /* The maker whose name this squeezed word is, or begins with, in one spelling for all; NULL = none. */
 const char *lp_maker_of(const char *word);
 const char *lp_maker_in_front(const char *squeezed);
 
 /* 0.6: the same words in another order, but for what says nothing of the lens ("lens", "mm", "for Canon EF"), of the same
- * maker where both name one, and of that of the camera (empty = any) where one does; all numbers (focal lengths, f-numbers) and generations (II, III) agree. Else 0. */
+ * maker where both name one, and of that of the camera (empty = any) where one does; all numbers (focal lengths,
+ * f-numbers) and generations (II, III) agree. Else 0. */
 double lp_words_score(const char *a, const char *b, const char *camera_maker);
 
 /* The squeezed names under which a lens may be stored: its own, without a maker in front, with the camera's maker, with
