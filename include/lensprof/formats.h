@@ -173,10 +173,10 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_json_read(const char *te
 
 /* ---- Photometric calibration of visual odometry (pcalib.txt, times.txt) ------------------------------------- */
 
-/* Inverse response of TUM's tools, DSO and its kin: the irradiances of 256 evenly spaced grey values (or of 2 to 65536),
+/* Inverse response of TUM's tools, DSO and its kin: the irradiances of 256 evenly spaced grey values (or of up to 65536),
  * strictly increasing, separated by blanks and line ends. They are rescaled by the first and last, as those tools do, to a
  * TABLE.
- * Errors (the text names the value, counted from 0): ARGUMENT; SYNTAX for fewer than 2 or what is not a finite number;
+ * Errors (the text names the value, counted from 0): ARGUMENT; SYNTAX for fewer than 256 or what is not a finite number;
  * SIZE for over 65536; RESPONSE for a value that is not above the one before; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pcalib_read(const char *text, size_t bytes,
                                                                     lensprof_response *response, lensprof_error *error);

@@ -22,7 +22,7 @@ struct Options {
 };
 
 void declare(CLI::App &app, Options &o) {
-    app.add_option("--profile", o.profile, "id of the profile to use")->check(CLI::PositiveNumber);
+    app.add_option("--profile", o.profile, "id of the profile to use")->check(is_profile_id);
     app.add_flag("--from-db", o.from_db,
                  "look each picture's profile up by its EXIF; between the settings that are stored its falloff is "
                  "predicted, as by `lensprof query`");

@@ -14,6 +14,7 @@ void KeyFilter::add_options(CLI::App &app) {
     app.add_option("--camera", camera_, "camera model");
     app.add_option("--maker", maker_, "camera maker");
     app.add_option("--lens", lens_, "lens");
+    app.add_option("--unit", unit_, "serial numbers of the one camera and lens that a profile is of");
     app.add_option("--focal", focal_, "focal length, mm")->check(in_range(0.01, 1e5));
     app.add_option("--aperture", aperture_, "f-number")->check(in_range(0.01, 1e4));
     app.add_option("--distance", distance_, "focus distance, m")->check(in_range(1e-6, INFINITY));
@@ -25,7 +26,7 @@ void KeyFilter::check_words() const {
 }
 
 bool KeyFilter::is_empty() const {
-    return maker_.empty() && !has_camera_or_lens() && processing_.empty() && focal_ == LENSPROF_UNKNOWN
+    return maker_.empty() && !has_camera_or_lens() && unit_.empty() && processing_.empty() && focal_ == LENSPROF_UNKNOWN
            && aperture_ == LENSPROF_UNKNOWN && distance_ == LENSPROF_UNKNOWN;
 }
 
@@ -35,6 +36,7 @@ lensprof_profile_key KeyFilter::key(uint32_t processing) const {
     set_text(key.camera_maker, sizeof key.camera_maker, maker_);
     set_text(key.camera_model, sizeof key.camera_model, camera_);
     set_text(key.lens, sizeof key.lens, lens_);
+    set_text(key.unit, sizeof key.unit, unit_);
     key.focal_mm = focal_;
     key.aperture = aperture_;
     key.distance_m = distance_;

@@ -38,7 +38,7 @@ public:
     std::string nothing_found(const std::string &db) const;
 
 private:
-    std::string maker_, camera_, lens_, processing_;
+    std::string maker_, camera_, lens_, unit_, processing_;
     double focal_ = LENSPROF_UNKNOWN, aperture_ = LENSPROF_UNKNOWN, distance_ = LENSPROF_UNKNOWN;
 };
 

@@ -167,7 +167,7 @@ int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
     app.add_option("VERB", verb, "list, show or remove")
         ->required()
         ->check(CLI::IsMember({"list", "show", "remove"}));
-    app.add_option("ID", o.ids, "profiles to show, or the one to remove")->check(CLI::PositiveNumber);
+    app.add_option("ID", o.ids, "profiles to show, or the one to remove")->check(is_profile_id);
     declare_db(app, o.db);
     app.add_flag("--json", o.json, "print one JSON object");
     app.add_flag("--chart", o.chart, "show: relative illuminance, M over r, as a chart and a table instead");

@@ -1,4 +1,6 @@
 /* `lensprof profile export`: profiles as files of other programs, and as blobs for firmware. */
+#include <cstdlib>
+
 #include "foreign_file.hpp"
 #include "foreign_options.hpp"
 #include "key_filter.hpp"
@@ -20,7 +22,7 @@ struct Options {
 };
 
 void declare(CLI::App &app, Options &o) {
-    app.add_option("ID", o.ids, "profiles that `lensprof profile list` shows")->check(CLI::PositiveNumber);
+    app.add_option("ID", o.ids, "profiles that `lensprof profile list` shows")->check(is_profile_id);
     app.add_option("-o,--output", o.output,
                    "file to write; its name chooses the format. DNG opcodes go into a file that is there");
     app.add_option("--format", o.format, "another format than the name's")->check(CLI::IsMember(foreign_names(true)));
@@ -68,6 +70,30 @@ void export_blob(const Options &o, const StoredProfile &stored, Streams &streams
     if (o.covariance && !profile.covariance_size) streams.out << "its covariance is not known: there is none in it\n";
 }
 
+/* Writers count the profiles that they are given from 0; here they have numbers. */
+Failure with_ids(const Failure &failure, const std::vector<StoredProfile> &chosen) {
+    std::string text = failure.what();
+    const std::string word = "profile ";
+    const size_t at = text.find(": " + word), from = at + 2 + word.size();
+    if (at == std::string::npos) return failure;
+    const size_t to = text.find_first_not_of("0123456789", from), index = std::strtoul(text.c_str() + from, nullptr, 10);
+    if (to == from || to == std::string::npos || text[to] != ':' || index >= chosen.size()) return failure;
+    return Failure(failure.code, text.replace(from, to - from, std::to_string(chosen[index].id)));
+}
+
+/* What a format cannot hold and is not refused. */
+void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<StoredProfile> &chosen, Streams &streams) {
+    const bool has_channels = rule.format == ForeignFormat::map && o.output.size() > 4
+                           && o.output.compare(o.output.size() - 4, 4, ".png") != 0;
+    if ((rule.format != ForeignFormat::lensfun && rule.format != ForeignFormat::lcp && rule.format != ForeignFormat::map)
+        || has_channels)
+        return;
+    for (const StoredProfile &one : chosen)
+        if (one.profile->vignettings == 3)
+            streams.err << "profile " << one.id << ": has a falloff for each channel, of which " << rule.name
+                        << " holds the mean\n";
+}
+
 void export_foreign(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
                     Streams &streams) {
     std::vector<const lensprof_profile *> profiles;
@@ -81,7 +107,12 @@ void export_foreign(const Options &o, const ForeignRule &rule, const std::vector
                                                + " is not known; give --crop-factor");
         profiles.push_back(one.profile.get()), ids.push_back(one.id);
     }
-    write_foreign(rule, o.output, o.foreign, profiles);
+    try {
+        write_foreign(rule, o.output, o.foreign, profiles);
+    } catch (const Failure &failure) {
+        throw with_ids(failure, chosen);
+    }
+    warn_of_means(rule, o, chosen, streams);
     if (o.json)
         print_json(Json{{"schema", 1}, {"profiles", ids}, {"format", rule.name}, {"file", o.output}}, streams.out);
     else

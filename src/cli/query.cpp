@@ -67,6 +67,11 @@ void answer_stored(const Options &o, lensprof_store *store, const std::vector<le
         streams.out << rows.size() << " profiles match; this is the newest. Give more of the setting to choose.\n";
 }
 
+/* Of these the newest that matches will do. */
+bool is_open(const lensprof_profile_key &key) {
+    return !*key.lens || key.focal_mm == LENSPROF_UNKNOWN || key.aperture == LENSPROF_UNKNOWN;
+}
+
 /* The profile for the setting: stored, or between what is stored. False where the setting leaves open which of `rows`. */
 bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows, Streams &streams) {
     lensprof_lookup_options options;
@@ -80,7 +85,7 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
     lensprof_error error{};
     auto profile = std::make_unique<lensprof_profile>();
     const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
-    if (status == LENSPROF_ERROR_NOT_FOUND && !rows.empty()) return false;
+    if (status == LENSPROF_ERROR_NOT_FOUND && !rows.empty() && is_open(key)) return false;
     if (status == LENSPROF_ERROR_NOT_FOUND)
         throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db) + "; nor can it be predicted: " + how.reason);
     check(status, store_path(o.db), &error);

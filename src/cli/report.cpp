@@ -352,6 +352,7 @@ std::string describe_key(const lensprof_profile_key &key) {
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
     const auto &p = profile.provenance;
     out << "profile   " << (id ? std::to_string(id) + ": " : std::string()) << describe_key(profile.key) << "\n";
+    if (*profile.key.unit) out << "unit      " << profile.key.unit << ", and no other\n";
     print_vignettings(profile.vignetting, profile.vignettings, certainty_of(profile), out);
     print_gain_grid(profile.grid, out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);

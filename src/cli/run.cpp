@@ -82,6 +82,12 @@ void declare_db(CLI::App &app, std::string &path, const std::string &more) {
         });
 }
 
+std::string is_profile_id(const std::string &word) {
+    const bool digits = !word.empty() && word.size() < 19 && word.find_first_not_of("0123456789") == std::string::npos;
+    if (digits && word.find_first_not_of('0') != std::string::npos) return "";
+    return word + " is no number of a profile; `lensprof profile list` shows them";
+}
+
 std::function<std::string(const std::string &)> in_range(double low, double high) {
     return [low, high](const std::string &word) {
         char *end = nullptr;

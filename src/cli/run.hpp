@@ -49,6 +49,9 @@ bool parse(CLI::App &app, const std::vector<std::string> &arguments, Streams &st
  * set, is refused. */
 void declare_db(CLI::App &app, std::string &path, const std::string &more = "");
 
+/* Check of an option's word: what `lensprof profile list` shows as id. */
+std::string is_profile_id(const std::string &word);
+
 /* Check of an option's word: a number from low to high, both included; neither "nan" nor "inf" beyond them. */
 std::function<std::string(const std::string &)> in_range(double low, double high);
 

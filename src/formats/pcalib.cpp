@@ -26,15 +26,15 @@ lensprof_response read_pcalib(std::string_view text) {
                 throw FormatFailure{LENSPROF_ERROR_SIZE, "over 65536 values; give one for each grey value"};
             values.push_back(value);
         }
-    if (values.size() < 2)
-        throw FormatFailure{LENSPROF_ERROR_SYNTAX, std::to_string(values.size())
-                                                       + " values; give one for each grey value, 256 for 8 bit"};
     const size_t fall = find_fall(values, true);
     if (fall < values.size())
         throw FormatFailure{LENSPROF_ERROR_RESPONSE,
                             "value " + std::to_string(fall) + " (" + number_text(values[fall])
                                 + ") is not above the one before (" + number_text(values[fall - 1])
                                 + "), and an inverse response must increase; smooth it, or write it with lensprof"};
+    if (values.size() < kRows)
+        throw FormatFailure{LENSPROF_ERROR_SYNTAX, std::to_string(values.size())
+                                                       + " values, not 256 or more; give the whole file, with one for each grey value"};
     const double first = values.front(), range = values.back() - first;
     for (double &value : values) value = std::max((value - first) / range, 0.0);
     return response_of_irradiances(values);

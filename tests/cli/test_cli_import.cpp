@@ -72,6 +72,28 @@ void test_json_again(void **) {
     assert_true(std::fabs(shown["response"]["values"][0][511].get<double>() - std::pow(511 / 1023.0, 1.0 / 2.2)) < 1e-12);
 }
 
+/* Profiles of one unit say so; a full setting is never answered by another one's profile; formats and ids in words. */
+void test_units_and_settings(void **) {
+    Json all = Json::array();
+    for (double aperture : {2.0, 4.0})
+        all.push_back({{"key", {{"lens", "one"}, {"unit", "SN1"}, {"focal_mm", 50}, {"aperture", aperture}, {"processing", "raw"},
+                                {"crop_factor", 1.0}}},
+                       {"vignetting", {{"k", {{-0.4, 0, 0}, {-0.3, 0, 0}, {-0.2, 0, 0}}}}}});
+    save_text(work("unit.json"), Json{{"schema", 1}, {"profiles", all}}.dump());
+    must_exit(done, import_words() + Words{work("unit.json")});
+    const Words query = {"query", "--db", work("l.db"), "--lens", "one", "--focal", "50"};
+    assert_true(contains(must_exit(done, query + Words{"--aperture", "2"}), "unit      SN1"));
+    assert_true(contains(must_exit(done, query + Words{"--aperture", "2.8", "--unit", "sn1"}), "predicted from 2 profiles"));
+    assert_refused(not_found, query + Words{"--aperture", "2.8"}, {"single units"});
+    assert_true(contains(must_exit(done, query), "2 profiles match"));
+    assert_refused(usage, {"profile", "show", "abc", "--db", work("l.db")}, {"abc is no number of a profile"});
+    const Outcome written = run_words({"profile", "export", "2", "-o", work("one.xml"), "--db", work("l.db")});
+    assert_int_equal(written.code, done);
+    assert_true(contains(written.err, "profile 2: has a falloff for each channel, of which lensfun holds the mean"));
+    assert_refused(usage, {"profile", "export", "2", "-o", work("one.lcp"), "--db", work("l.db"), "--all"}, {"--all"});
+    must_exit(done, {"profile", "export", "2", "-o", work("one.csv"), "--grid", "2x1024", "--db", work("l.db")});
+}
+
 /* All files or none. */
 void test_import_refuses(void **) {
     const std::string good = make_file();
@@ -88,6 +110,7 @@ void test_import_refuses(void **) {
 
 int main() {
     const CMUnitTest tests[] = {CLI_TEST(test_import), CLI_TEST(test_query_between), CLI_TEST(test_json_again),
+                                CLI_TEST(test_units_and_settings),
                                 CLI_TEST(test_import_refuses)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

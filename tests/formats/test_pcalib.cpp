@@ -39,8 +39,8 @@ std::string gamma_text(double gamma, int count, double low, double high) {
 
 // Any scale and number of values; the curve is sampled on 1024 irradiances, so that the darkest greys are what differs.
 void test_read(void **) {
-    for (int count : {2, 256, 1024, 65536}) {
-        const double gamma = count == 2 ? 1.0 : 2.2;
+    for (int count : {256, 1024, 65536}) {
+        const double gamma = 2.2;
         lensprof_response response;
         assert_ok(read_pcalib(gamma_text(gamma, count, 3.0, 1000.0), &response));
         assert_ok(lensprof_response_validate(&response));
@@ -97,6 +97,7 @@ void test_pcalib_refused(void **) {
     } cases[] = {
         {"", LENSPROF_ERROR_SYNTAX, "0 values"},
         {"7", LENSPROF_ERROR_SYNTAX, "1 values"},
+        {gamma_text(2.2, 255, 0, 255), LENSPROF_ERROR_SYNTAX, "255 values, not 256 or more"},
         {"0 1\n2 nan 4", LENSPROF_ERROR_SYNTAX, "line 2: value 3 is \"nan\""},
         {"0 1 inf", LENSPROF_ERROR_SYNTAX, "value 2"},
         {"0 1 2,5", LENSPROF_ERROR_SYNTAX, "value 2"},
