@@ -68,12 +68,20 @@ std::string store_path(const std::string &path) {
     throw Failure(ExitCode::usage, "no home folder for the profile database; name one with --db FILE");
 }
 
+void demand_folder(const std::string &path) {
+    const std::filesystem::path folder = std::filesystem::absolute(store_path(path)).parent_path();
+    std::error_code ignored;
+    if (!path.empty() && !std::filesystem::is_directory(folder, ignored))
+        throw Failure(ExitCode::store, path + ": there is no folder " + folder.string() + " for the database; make it first");
+}
+
 Store open_store(const std::string &path, lensprof_store_mode mode) {
     std::string file = store_path(path);
     if (path.empty() && mode == LENSPROF_STORE_CREATE) {
         std::error_code ignored;  // a folder that cannot be made shows when the database is opened
         std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
     }
+    if (mode == LENSPROF_STORE_CREATE) demand_folder(path);
     lensprof_store *store = nullptr;
     lensprof_error error{};
     check(lensprof_store_open(file.c_str(), mode, &store, &error), file, &error);

@@ -31,6 +31,9 @@ struct StoredProfile {
 Store open_store(const std::string &path, lensprof_store_mode mode);
 std::string store_path(const std::string &path);
 
+/* Failure (store) where the folder of a database that is named is not there. */
+void demand_folder(const std::string &path);
+
 struct PtoDestroy {
     void operator()(lensprof_pto *pto) const { lensprof_pto_destroy(pto); }
 };

@@ -54,11 +54,10 @@ void check_store(const StoreOptions &o) {
     if (std::filesystem::exists(file)
         && !(std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) == 0))
         open_store(o.db, LENSPROF_STORE_WRITE);
-    else if (!o.db.empty() && !std::filesystem::is_directory(folder))
-        throw Failure(ExitCode::store,
-                      o.db + ": there is no folder " + folder.string() + " for the database; make it first");
-    else
+    else {
+        demand_folder(o.db);
         check_folder(folder.string(), file.string(), ExitCode::store);
+    }
 }
 
 void remove_empty_store(const std::string &file) {

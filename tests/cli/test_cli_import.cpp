@@ -104,6 +104,8 @@ void test_import_refuses(void **) {
     assert_refused(unreadable, import_words() + Words{work("none.xml")}, {work("none.xml")});
     assert_refused(unreadable, import_words() + Words{work("")}, {"is a folder"});
     assert_refused(usage, {"profile", "import"}, {"FILES"});
+    assert_refused(store_failed, {"profile", "import", good, "--db", work("none/l.db")}, {"there is no folder", "make it first"});
+    assert_refused(store_failed, {"profile", "merge", work("l.db"), "--db", work("none/l.db")}, {"there is no folder"});
 }
 
 }  // namespace
