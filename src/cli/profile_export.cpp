@@ -5,6 +5,7 @@
 #include "foreign_options.hpp"
 #include "key_filter.hpp"
 #include "library.hpp"
+#include "picture.hpp"
 #include "profile_blob.hpp"
 #include "report.hpp"
 #include "run.hpp"
@@ -83,11 +84,9 @@ Failure with_ids(const Failure &failure, const std::vector<StoredProfile> &chose
 
 /* What a format cannot hold and is not refused. */
 void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<StoredProfile> &chosen, Streams &streams) {
-    const bool has_channels = rule.format == ForeignFormat::map && o.output.size() > 4
-                           && o.output.compare(o.output.size() - 4, 4, ".png") != 0;
-    if ((rule.format != ForeignFormat::lensfun && rule.format != ForeignFormat::lcp && rule.format != ForeignFormat::map)
-        || has_channels)
-        return;
+    const bool is_mean = rule.format == ForeignFormat::lensfun || rule.format == ForeignFormat::lcp
+                      || (rule.format == ForeignFormat::map && format_of_name(o.output) == FileFormat::png);
+    if (!is_mean) return;
     for (const StoredProfile &one : chosen)
         if (one.profile->vignettings == 3)
             streams.err << "profile " << one.id << ": has a falloff for each channel, of which " << rule.name

@@ -68,14 +68,14 @@ static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r)
     return !reader->bad;
 }
 
-static bool is_known(const char *text) { return text[strspn(text, " ")] != 0; }
+bool lp_is_known(const char *text) { return text[strspn(text, " ")] != 0; }
 
 /* Of the lens's name, or of the camera's where no lens is asked for. */
-static double score_of(const row *r, const lensprof_profile_key *key, bool by_words, bool by_camera)
+static double score_of(const row *r, const lensprof_profile_key *key, const lp_candidates *found)
 {
-    if (!is_known(key->lens)) return lp_name_score(r->key.camera_model, key->camera_model);
-    if (by_camera) return BUILT_IN_SCORE;
-    return by_words ? lp_words_score(r->key.lens, key->lens, key->camera_maker) : lp_name_score(r->key.lens, key->lens);
+    if (!lp_is_known(key->lens)) return lp_name_score(r->key.camera_model, key->camera_model);
+    if (found->by_camera) return BUILT_IN_SCORE;
+    return found->by_words ? lp_words_score(r->key.lens, key->lens, key->camera_maker) : lp_name_score(r->key.lens, key->lens);
 }
 
 /* Into found->last_...: comparing names takes longer than reading the row. */
@@ -85,7 +85,7 @@ static void compare_names(const row *r, const lensprof_profile_key *key, lp_cand
     if (found->last_score > 0.0 && !strcmp(last->lens, r->key.lens) && !strcmp(last->camera_model, r->key.camera_model)) return;
     memcpy(last->lens, r->key.lens, sizeof last->lens);
     memcpy(last->camera_model, r->key.camera_model, sizeof last->camera_model);
-    found->last_score = score_of(r, key, found->by_words, found->by_camera);
+    found->last_score = score_of(r, key, found);
     found->last_camera = fits(r->key.camera_model, key->camera_model);
 }
 
@@ -97,10 +97,10 @@ static bool take_row(const row *r, const lensprof_profile_key *key, lp_candidate
         compare_names(r, key, found);
         const int unit = found->any_unit ? 0 : fits(r->key.unit, key->unit), camera = found->last_camera;
         if (unit < 0 || (camera < 0 && *key->camera_model) || r->curve != 0) return true;
-        if ((!is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
+        if ((!lp_is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
         if (!(one = add(found))) return false;
         found->name_score = fmax(found->name_score, found->last_score);
-        one->is_fixed = !is_known(key->lens) || !is_known(r->key.lens) || found->by_camera;
+        one->is_fixed = !lp_is_known(key->lens) || !lp_is_known(r->key.lens) || found->by_camera;
         one->of_unit = unit, one->of_camera = camera > 0, one->has_covariance = r->covariance_size > 0;
         one->processing = r->key.processing;
         one->crop = r->key.crop_factor;
@@ -191,7 +191,7 @@ static lensprof_status find_only_lens(lensprof_store *store, const lensprof_prof
         lp_read_text(&reader, lens, sizeof lens);
         if (reader.bad || lp_name_score(camera, key->camera_model) < 0.8) continue;
         lp_squeeze(lens, squeezed);
-        if (is_known(key->lens) && !is_built_in(squeezed, camera)) continue;
+        if (lp_is_known(key->lens) && !is_built_in(squeezed, camera)) continue;
         if (*lenses && !strcmp(name, squeezed)) continue; /* of a camera by another of its names */
         memcpy(name, squeezed, sizeof squeezed);
         ++*lenses;
@@ -206,11 +206,11 @@ static lensprof_status find_camera(lensprof_store *store, const lensprof_profile
 {
     char name[LP_NAME_BYTES] = "";
     int lenses = 0;
-    lensprof_status status = is_known(key->lens) ? LENSPROF_OK : read_rows(store, "", key, o, found, error);
+    lensprof_status status = lp_is_known(key->lens) ? LENSPROF_OK : read_rows(store, "", key, o, found, error);
     if (status != LENSPROF_OK || found->count) return status;
     status = find_only_lens(store, key, name, &lenses, error);
-    found->has_lenses = lenses > 1 && !is_known(key->lens);
-    found->by_camera = lenses == 1 && is_known(key->lens);
+    found->has_lenses = lenses > 1 && !lp_is_known(key->lens);
+    found->by_camera = lenses == 1 && lp_is_known(key->lens);
     return status == LENSPROF_OK && lenses == 1 ? read_rows(store, name, key, o, found, error) : status;
 }
 
@@ -220,8 +220,8 @@ lensprof_status lp_find_candidates(lensprof_store *store, const lensprof_profile
     lp_names names;
     char name[LP_NAME_BYTES];
     lensprof_status status = LENSPROF_OK;
-    if (!is_known(key->lens))
-        return is_known(key->camera_model) ? find_camera(store, key, o, found, error) : LENSPROF_OK;
+    if (!lp_is_known(key->lens))
+        return lp_is_known(key->camera_model) ? find_camera(store, key, o, found, error) : LENSPROF_OK;
     lp_name_variants(key->lens, key->camera_maker, &names);
     for (uint32_t i = 0; i < names.count && status == LENSPROF_OK && !found->count; i++)
         status = read_rows(store, names.name[i], key, o, found, error);
@@ -229,5 +229,5 @@ lensprof_status lp_find_candidates(lensprof_store *store, const lensprof_profile
     status = find_by_words(store, key, name, error);
     found->by_words = *name != 0;
     if (status == LENSPROF_OK && *name) return read_rows(store, name, key, o, found, error);
-    return status == LENSPROF_OK && is_known(key->camera_model) ? find_camera(store, key, o, found, error) : status;
+    return status == LENSPROF_OK && lp_is_known(key->camera_model) ? find_camera(store, key, o, found, error) : status;
 }

@@ -25,7 +25,10 @@ typedef struct lp_candidates {
     bool by_camera;  /* no lens has the name: it is that which the camera has built in */
     bool any_unit;   /* asked for: profiles of single units, whatever the key's */
     bool has_lenses; /* nothing was found, since the camera has several lenses and none was asked for */
-} lp_candidates;
+} lp_candidates; /* by rising id */
+
+/* Not blanks alone. */
+bool lp_is_known(const char *text);
 
 /* All rows of the lens under the first of its names that any has, else of the lens with the same words; without a lens
  * those of the camera, its own or those of the only lens it has; these, too, where no lens has the name and the camera's

@@ -58,14 +58,12 @@ static uint32_t keep_best(lp_candidates *found, const lensprof_profile_key *key)
     return found->count = kept;
 }
 
-/* Curves of pictures that were processed otherwise are others: where any will do, those of the newest profile. */
+/* Curves of pictures that were processed otherwise are others: where any will do, those of the newest profile, which is
+ * the last. */
 static void keep_one_processing(lp_candidates *found)
 {
-    const lp_candidate *newest = &found->all[0];
+    const uint32_t processing = found->all[found->count - 1].processing;
     uint32_t kept = 0;
-    for (uint32_t i = 1; i < found->count; i++)
-        if (found->all[i].node.id > newest->node.id) newest = &found->all[i];
-    const uint32_t processing = newest->processing;
     for (uint32_t i = 0; i < found->count; i++)
         if (found->all[i].processing == processing) found->all[kept++] = found->all[i];
     found->count = kept;
@@ -359,17 +357,16 @@ static lensprof_status refuse_unknown(lensprof_store *store, const lensprof_prof
         "the profiles of this lens are of other cameras, or of single units of it; ask for these",
         "no profile of a lens of this name; list the profiles to see which there are",
         "no profile of this camera; list the profiles to see which there are"};
-    const bool has_lens = key->lens[strspn(key->lens, " ")] != 0;
+    const bool has_lens = lp_is_known(key->lens);
     lensprof_lookup_options wider = *o;
     lensprof_profile_key any = *key;
-    for (int which = 0; which < 3; which++) {
+    for (int which = 0; which < (has_lens ? 3 : 2); which++) {
         lp_candidates others;
         memset(&others, 0, sizeof others);
         if (which == 0) wider.any_processing = 1;
         if (which == 1) wider.with_doubt = 1;
         if (which == 2) memset(any.camera_model, 0, sizeof any.camera_model);
         others.any_unit = which == 2;
-        if (which == 2 && !has_lens) break;
         const lensprof_status status = lp_find_candidates(store, &any, &wider, &others, error);
         const uint32_t count = others.count;
         free(others.all);

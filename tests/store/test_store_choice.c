@@ -10,7 +10,7 @@ typedef struct entry {
     uint32_t processing;
 } entry;
 
-static int64_t put(lensprof_store *store, const entry *e)
+static void put(lensprof_store *store, const entry *e)
 {
     lensprof_profile_init(&shared);
     strcpy(shared.key.camera_model, e->camera);
@@ -19,7 +19,14 @@ static int64_t put(lensprof_store *store, const entry *e)
     shared.key.focal_mm = 50.0, shared.key.aperture = e->aperture, shared.key.distance_m = INFINITY;
     shared.key.crop_factor = e->crop, shared.key.processing = e->processing;
     shared.vignetting[0].k[0] = e->k1;
-    return put_at(store, &shared);
+    put_at(store, &shared);
+}
+
+static lensprof_store *store_of(const place *here, const entry *entries, int count)
+{
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    for (int i = 0; i < count; i++) put(store, &entries[i]);
+    return store;
 }
 
 static lensprof_status ask(lensprof_store *store, const char *camera, const char *lens, double focal, double aperture,
@@ -44,9 +51,7 @@ static void test_one_processing(void **state)
 {
     static const entry entries[] = {{"", "A 50mm", "", 2.0, 1.5, -0.5, RAW}, {"", "A 50mm", "", 4.0, 1.5, -0.3, RAW},
                                     {"", "A 50mm", "", 2.0, 1.5, -0.1, JPEG}, {"", "A 50mm", "", 4.0, 1.5, -0.05, JPEG}};
-    const place *here = *state;
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    for (int i = 0; i < 4; i++) put(store, &entries[i]);
+    lensprof_store *store = store_of(*state, entries, 4);
     assert_ok(ask(store, "", "A 50mm", 50, 2.8, 1));
     assert_int_equal(how.rows, 2);
     assert_int_equal(answered.key.processing, JPEG);
@@ -63,9 +68,7 @@ static void test_newest_of_a_setting(void **state)
 {
     static const entry entries[] = {{"", "A 50mm", "", 2.0, 1, -0.9, RAW}, {"", "A 50mm", "", 2.0, 1, -0.4, RAW},
                                     {"", "A 50mm", "", 4.0, 1, -0.9, RAW}, {"", "A 50mm", "", 4.0, 1, -0.3, RAW}};
-    const place *here = *state;
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    for (int i = 0; i < 4; i++) put(store, &entries[i]);
+    lensprof_store *store = store_of(*state, entries, 4);
     assert_ok(ask(store, "", "A 50mm", 50, 2.8, 0));
     assert_int_equal(how.rows, 2);
     assert_true(answered.vignetting[0].k[0] > -0.4 && answered.vignetting[0].k[0] < -0.3);
@@ -80,9 +83,7 @@ static void test_lens_of_cameras(void **state)
 {
     static const entry entries[] = {{"EOS 5D", "A 50mm", "", 2.0, 1, -0.5, RAW}, {"EOS 5D", "A 50mm", "", 4.0, 1, -0.3, RAW},
                                     {"", "B 50mm", "77", 2.0, 1, -0.5, RAW}};
-    const place *here = *state;
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    for (int i = 0; i < 3; i++) put(store, &entries[i]);
+    lensprof_store *store = store_of(*state, entries, 3);
     assert_ok(ask(store, "", "A 50mm", 50, 2.8, 0));
     assert_int_equal(how.rows, 2);
     assert_ok(ask(store, "EOS 5D", "A 50mm", 50, 2.8, 0));
@@ -99,9 +100,7 @@ static void test_built_in_lens(void **state)
     static const entry entries[] = {{"Canon PowerShot S110", "Canon PowerShot S110 & compatibles", "", 2.0, 4.6, -0.5, RAW},
                                     {"Canon PowerShot S110", "Canon PowerShot S110 & compatibles", "", 4.0, 4.6, -0.3, RAW},
                                     {"EOS 5D", "Canon 50mm f/2", "", 2.0, 1, -0.4, RAW}};
-    const place *here = *state;
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    for (int i = 0; i < 3; i++) put(store, &entries[i]);
+    lensprof_store *store = store_of(*state, entries, 3);
     for (int i = 0; i < 4; i++) {
         static const char *const names[] = {"canon powershot s110", "PowerShot S110", "CANON PowerShot-S110", "PowerShot S110"};
         assert_ok(ask(store, names[i], i == 3 ? "5.2-26.0 mm" : "", 50, 2.8, 0));
@@ -119,9 +118,7 @@ static void test_outside_is_said(void **state)
 {
     static const entry entries[] = {{"", "A 50mm", "", 2.0, 1, -0.5, RAW}, {"", "A 50mm", "", 2.8, 1, -0.4, RAW},
                                     {"", "A 50mm", "", 4.0, 1, -0.3, RAW}};
-    const place *here = *state;
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    for (int i = 0; i < 3; i++) put(store, &entries[i]);
+    lensprof_store *store = store_of(*state, entries, 3);
     assert_ok(ask(store, "", "A 50mm", 50, 5.0, 0));
     assert_non_null(strstr(how.reason, "the aperture is outside those that are stored"));
     assert_ok(ask(store, "", "A 50mm", 50, 3.2, 0));
