@@ -1,10 +1,12 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply bench-store bench-lookup install clean
+.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply bench-store bench-lookup install format clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
+# Made by profiles/tools; never formatted.
+TABLES := (emor|prior)_table\.
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20
@@ -60,6 +62,9 @@ bench-lookup: build ## measure lookups between stored settings on Lensfun's data
 
 install: build ## install under PREFIX (default /usr/local)
 	cmake --install build --prefix $(PREFIX)
+
+format: ## format C and C++ as .clang-format says (package clang-format)
+	git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' | grep -vE '$(TABLES)' | xargs clang-format -i
 
 clean: ## remove build/
 	rm -rf build

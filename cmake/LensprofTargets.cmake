@@ -11,10 +11,16 @@ if(LENSPROF_SANITIZE)
   target_link_options(lensprof_settings INTERFACE -fsanitize=address,undefined)
 endif()
 
-# lensprof_layer(name SOURCES... LINK...): an object library lensprof_<name> with hidden symbols.
+# lensprof_layer(name [ONLY] SOURCES... LINK...): an object library lensprof_<name> with hidden symbols, of all sources in its
+# folder (with ONLY of none but those named) and the generated SOURCES. Includes name private headers from src on.
 function(lensprof_layer name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "ONLY" "" "SOURCES;LINK" ${ARGN})
+  if(NOT ARG_ONLY)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS *.c *.cpp)
+    list(APPEND ARG_SOURCES ${found})
+  endif()
   add_library(lensprof_${name} OBJECT ${ARG_SOURCES})
+  target_include_directories(lensprof_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(lensprof_${name} PUBLIC lensprof_settings PRIVATE ${ARG_LINK})
   set_target_properties(lensprof_${name} PROPERTIES
     C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF

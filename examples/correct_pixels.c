@@ -11,15 +11,13 @@ static lensprof_profile profile;      /* 50 kB: not for a small stack */
 static uint64_t plan_memory[1 << 14]; /* see lensprof_plan_bytes; 64-bit elements are aligned as it needs */
 
 /* A white wall as this camera records it: sRGB-like gamma, a fifth of the light lost in the corners. */
-static int make_profile(void)
-{
+static int make_profile(void) {
     lensprof_profile_init(&profile);
     profile.vignetting[0].k[0] = -0.2;
     return lensprof_response_set_gamma(&profile.response[0], 2.2) == LENSPROF_OK;
 }
 
-static int correct(uint8_t pixels[HEIGHT][WIDTH][3])
-{
+static int correct(uint8_t pixels[HEIGHT][WIDTH][3]) {
     const lensprof_plan *plan;
     lensprof_apply_options options;
     lensprof_image view = {pixels, WIDTH * 3, WIDTH, HEIGHT, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
@@ -39,8 +37,7 @@ static int correct(uint8_t pixels[HEIGHT][WIDTH][3])
     return status == LENSPROF_OK;
 }
 
-int main(void)
-{
+int main(void) {
     static uint8_t pixels[HEIGHT][WIDTH][3];
     int x, y, c;
 

@@ -7,14 +7,12 @@
 static lensprof_profile profile, found; /* 50 kB each: not for a small stack */
 
 /* Prints what went wrong, when something did. */
-static int failed(lensprof_status status, const lensprof_error *error)
-{
+static int failed(lensprof_status status, const lensprof_error *error) {
     if (status != LENSPROF_OK) printf("%s: %s\n", lensprof_status_name(status), error->text);
     return status != LENSPROF_OK;
 }
 
-static int put_and_find(lensprof_store *store)
-{
+static int put_and_find(lensprof_store *store) {
     lensprof_profile_key key;
     lensprof_error error;
     int64_t id;
@@ -43,8 +41,7 @@ static int put_and_find(lensprof_store *store)
     return 0;
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     lensprof_store *store;
     lensprof_error error;
     int code;

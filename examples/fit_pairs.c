@@ -21,14 +21,12 @@ static double random_number(void) /* 0..1, the same every time */
 }
 
 /* B = f( L M(r) e ), equation 1 of the header model.h, in a frame of 640 x 480. */
-static double grey_value(double radiance, const double xy[2], uint32_t image)
-{
+static double grey_value(double radiance, const double xy[2], uint32_t image) {
     double dx = xy[0] - 319.5, dy = xy[1] - 239.5, r2 = (dx * dx + dy * dy) / (400.0 * 400.0);
     return pow(radiance * (1.0 + true_k1 * r2) * pow(2.0, true_ev[image]), 1.0 / gamma_exponent);
 }
 
-static void make_pairs(void)
-{
+static void make_pairs(void) {
     int count = 0, side, c;
     while (count < PAIRS) {
         lensprof_pair pair;
@@ -44,8 +42,7 @@ static void make_pairs(void)
     }
 }
 
-int main(void)
-{
+int main(void) {
     lensprof_fit_image images[IMAGES] = {{0}};
     lensprof_exposure exposures[IMAGES];
     lensprof_fit_options options;

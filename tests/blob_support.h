@@ -8,8 +8,7 @@
 #include <lensprof/profile.h>
 
 /* CRC-32 bit by bit, as the standard has it: not the library's. */
-static inline uint32_t slow_crc32(const uint8_t *bytes, size_t count)
-{
+static inline uint32_t slow_crc32(const uint8_t *bytes, size_t count) {
     uint32_t crc = 0xFFFFFFFFu;
     for (size_t i = 0; i < count; i++) {
         crc ^= bytes[i];
@@ -18,35 +17,30 @@ static inline uint32_t slow_crc32(const uint8_t *bytes, size_t count)
     return ~crc;
 }
 
-static inline void put_number(uint8_t *at, uint64_t value, size_t bytes)
-{
+static inline void put_number(uint8_t *at, uint64_t value, size_t bytes) {
     for (size_t i = 0; i < bytes; i++) at[i] = (uint8_t)(value >> 8 * i);
 }
 
-static inline void put_double(uint8_t *at, double value)
-{
+static inline void put_double(uint8_t *at, double value) {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     put_number(at, bits, 8);
 }
 
-static inline void put_float(uint8_t *at, float value)
-{
+static inline void put_float(uint8_t *at, float value) {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     put_number(at, bits, 4);
 }
 
 /* Makes length and CRC right again. */
-static inline void seal(uint8_t *blob, size_t bytes)
-{
+static inline void seal(uint8_t *blob, size_t bytes) {
     put_number(blob + 8, bytes, 4);
     put_number(blob + bytes - 4, slow_crc32(blob, bytes - 4), 4);
 }
 
 /* A blob of its own size, so that a sanitizer sees every byte too far. */
-static inline uint8_t *pack(const lensprof_profile *profile, uint32_t flags, size_t *bytes)
-{
+static inline uint8_t *pack(const lensprof_profile *profile, uint32_t flags, size_t *bytes) {
     *bytes = 0;
     assert_int_equal(lensprof_profile_pack(profile, flags, NULL, 0, bytes), LENSPROF_ERROR_CAPACITY);
     const size_t asked = *bytes;
@@ -56,8 +50,7 @@ static inline uint8_t *pack(const lensprof_profile *profile, uint32_t flags, siz
     return blob;
 }
 
-static inline void random_response(lensprof_response *r, uint64_t *random)
-{
+static inline void random_response(lensprof_response *r, uint64_t *random) {
     const uint32_t kind = (uint32_t)(4 * lp_random(random));
     if (kind == LENSPROF_RESPONSE_LINEAR) lensprof_response_set_linear(r);
     if (kind == LENSPROF_RESPONSE_GAMMA) assert_ok(lensprof_response_set_gamma(r, 0.2 + 4.0 * lp_random(random)));
@@ -82,15 +75,13 @@ static inline void random_response(lensprof_response *r, uint64_t *random)
     }
 }
 
-static inline void random_text(char *text, size_t capacity, uint64_t *random)
-{
+static inline void random_text(char *text, size_t capacity, uint64_t *random) {
     const size_t length = (size_t)((double)capacity * lp_random(random)); /* as long as it may be at times */
     for (size_t i = 0; i < length; i++) text[i] = (char)(0x20 + (int)(94.0 * lp_random(random)));
     if (length > 1) text[0] = '\xc3', text[1] = '\xa4'; /* beyond ASCII */
 }
 
-static inline void random_key(lensprof_profile *p, uint64_t *random)
-{
+static inline void random_key(lensprof_profile *p, uint64_t *random) {
     random_text(p->key.camera_maker, sizeof p->key.camera_maker, random);
     random_text(p->key.camera_model, sizeof p->key.camera_model, random);
     random_text(p->key.lens, sizeof p->key.lens, random);
@@ -107,8 +98,7 @@ static inline void random_key(lensprof_profile *p, uint64_t *random)
     if (lp_random(random) < 0.7) p->provenance.inlier_share = lp_random(random);
 }
 
-static inline void random_grid(lensprof_gain_grid *grid, uint64_t *random)
-{
+static inline void random_grid(lensprof_gain_grid *grid, uint64_t *random) {
     grid->columns = 2 + (uint32_t)(31 * lp_random(random)), grid->rows = 2 + (uint32_t)(31 * lp_random(random));
     grid->channels = lp_random(random) < 0.5 ? 1 : 3;
     for (uint32_t i = 0; i < grid->channels * grid->rows * grid->columns; i++)
@@ -116,8 +106,7 @@ static inline void random_grid(lensprof_gain_grid *grid, uint64_t *random)
 }
 
 /* Everything a profile may hold but `source`, which is not packed. */
-static inline void random_profile(lensprof_profile *p, uint64_t *random)
-{
+static inline void random_profile(lensprof_profile *p, uint64_t *random) {
     lensprof_profile_init(p);
     random_key(p, random);
     p->responses = lp_random(random) < 0.5 ? 1 : 3;
@@ -125,8 +114,8 @@ static inline void random_profile(lensprof_profile *p, uint64_t *random)
     for (uint32_t c = 0; c < p->responses; c++) random_response(&p->response[c], random);
     const double x = 0.1 * lp_normal(random), y = 0.1 * lp_normal(random);
     for (uint32_t c = 0; c < p->vignettings; c++)
-        p->vignetting[c] = (lensprof_vignetting){{-0.3 * lp_random(random), 0.1 * lp_random(random),
-                                                  -0.1 * lp_random(random)}, {x, y}};
+        p->vignetting[c] = (lensprof_vignetting){
+            {-0.3 * lp_random(random), 0.1 * lp_random(random), -0.1 * lp_random(random)}, {x, y}};
     if (lp_random(random) < 0.5) random_grid(&p->grid, random);
     const uint32_t n = p->covariance_size = (uint32_t)(37 * lp_random(random));
     for (uint32_t i = 0; i < n; i++)

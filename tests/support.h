@@ -2,11 +2,11 @@
 #ifndef LENSPROF_TESTS_SUPPORT_H
 #define LENSPROF_TESTS_SUPPORT_H
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,8 +16,7 @@
 /* Fails unless |a - b| <= tolerance (NaN fails). */
 #define assert_close(a, b, tolerance) lp_assert_close((a), (b), (tolerance), #a, __FILE__, __LINE__)
 
-static inline void lp_assert_close(double a, double b, double tolerance, const char *what, const char *file, int line)
-{
+static inline void lp_assert_close(double a, double b, double tolerance, const char *what, const char *file, int line) {
     if (!(fabs(a - b) <= tolerance)) {
         print_error("%s is %.17g, not %.17g within %g\n", what, a, b, tolerance);
         _fail(file, line);
@@ -27,8 +26,7 @@ static inline void lp_assert_close(double a, double b, double tolerance, const c
 #define assert_ok(call) assert_int_equal((call), LENSPROF_OK)
 
 /* A small generator with a fixed sequence: uniform in [0,1). */
-static inline double lp_random(uint64_t *state)
-{
+static inline double lp_random(uint64_t *state) {
     *state = *state * 6364136223846793005ull + 1442695040888963407ull;
     uint64_t x = *state ^ (*state >> 29);
     x *= 0xbf58476d1ce4e5b9ull;
@@ -37,8 +35,7 @@ static inline double lp_random(uint64_t *state)
 }
 
 /* Standard normal, from the same generator. */
-static inline double lp_normal(uint64_t *state)
-{
+static inline double lp_normal(uint64_t *state) {
     double u = lp_random(state), v = lp_random(state);
     return sqrt(-2.0 * log(1.0 - u)) * cos(6.283185307179586 * v);
 }

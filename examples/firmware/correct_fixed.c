@@ -5,8 +5,7 @@
 #ifdef PREPARE_HERE
 static uint32_t memory[1 << 10]; /* 4 KiB; see lensprof_fixed_plan_bytes */
 
-static lensprof_status get_plan(const lensprof_fixed_plan **plan)
-{
+static lensprof_status get_plan(const lensprof_fixed_plan **plan) {
     lensprof_apply_options options;
     set_options(&options);
     options.blob = camera_blob;
@@ -15,14 +14,12 @@ static lensprof_status get_plan(const lensprof_fixed_plan **plan)
     return lensprof_fixed_plan_init(memory, sizeof memory, &options, plan);
 }
 #else
-static lensprof_status get_plan(const lensprof_fixed_plan **plan)
-{
+static lensprof_status get_plan(const lensprof_fixed_plan **plan) {
     return lensprof_fixed_plan_open(fixed_plan, fixed_plan_bytes, plan);
 }
 #endif
 
-int main(void)
-{
+int main(void) {
     static uint8_t row[3 * STRIP_WIDTH];
     const lensprof_fixed_plan *plan;
     lensprof_status status;
@@ -33,7 +30,8 @@ int main(void)
     put_number("plan: stack ", deepest_stack());
     paint_stack();
     for (uint32_t y = 0; y < STRIP_ROWS && status == LENSPROF_OK; y++) {
-        lensprof_image source = {(void *)(strip + y * sizeof row), 0, STRIP_WIDTH, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
+        lensprof_image source = {
+            (void *)(strip + y * sizeof row), 0, STRIP_WIDTH, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
         lensprof_image target = source;
         target.data = row;
         const uint32_t before = clock_ticks();

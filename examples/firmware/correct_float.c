@@ -4,8 +4,7 @@
 static uint64_t plan_memory[1 << 10]; /* 8 KiB; see lensprof_plan_bytes */
 
 /* With a response, or with the profile of the blob when it is NULL. */
-static lensprof_status correct(const char *name, const lensprof_response *response)
-{
+static lensprof_status correct(const char *name, const lensprof_response *response) {
     static uint8_t row[3 * STRIP_WIDTH];
     const lensprof_plan *plan;
     lensprof_apply_options options;
@@ -27,7 +26,8 @@ static lensprof_status correct(const char *name, const lensprof_response *respon
     put_number("plan: stack ", deepest_stack());
     paint_stack();
     for (uint32_t y = 0; y < STRIP_ROWS && status == LENSPROF_OK; y++) {
-        lensprof_image source = {(void *)(strip + y * sizeof row), 0, STRIP_WIDTH, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
+        lensprof_image source = {
+            (void *)(strip + y * sizeof row), 0, STRIP_WIDTH, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
         lensprof_image target = source;
         target.data = row;
         const uint32_t before = clock_ticks();
@@ -40,8 +40,7 @@ static lensprof_status correct(const char *name, const lensprof_response *respon
     return status;
 }
 
-int main(void)
-{
+int main(void) {
     if (correct("table", NULL) != LENSPROF_OK || correct("gamma", &camera_gamma) != LENSPROF_OK) {
         put_text("cannot correct\n");
         return 1;

@@ -5,7 +5,12 @@
 #include <lensprof/fixed.h>
 
 /* The upper left of a frame, as the camera recorded it. */
-enum { FRAME_WIDTH = 640, FRAME_HEIGHT = 480, STRIP_WIDTH = 160, STRIP_ROWS = 16 };
+enum {
+    FRAME_WIDTH = 640,
+    FRAME_HEIGHT = 480,
+    STRIP_WIDTH = 160,
+    STRIP_ROWS = 16
+};
 extern const uint8_t strip[STRIP_ROWS * STRIP_WIDTH * 3];
 
 /* The camera's profile as a blob; and nearly the same response as a power, which needs pow(). */

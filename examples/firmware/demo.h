@@ -6,8 +6,7 @@
 #include "data.h"
 
 /* All but the profile. Exposures are whole stops: 2^ev is exact on every machine. */
-static inline void set_options(lensprof_apply_options *options)
-{
+static inline void set_options(lensprof_apply_options *options) {
     lensprof_apply_options_init(options);
     options->frame_width = FRAME_WIDTH;
     options->frame_height = FRAME_HEIGHT;
@@ -16,8 +15,7 @@ static inline void set_options(lensprof_apply_options *options)
     options->gain_cap = 4.0;
 }
 
-static inline void put_number(const char *before, uint32_t number)
-{
+static inline void put_number(const char *before, uint32_t number) {
     char text[12], *p = text + sizeof text;
     for (*--p = '\0'; number || p == text + sizeof text - 1; number /= 10) *--p = (char)('0' + number % 10);
     put_text(before);
@@ -26,8 +24,7 @@ static inline void put_number(const char *before, uint32_t number)
 }
 
 /* "name: hexadecimal bytes" */
-static inline void put_row(const char *name, const uint8_t *row)
-{
+static inline void put_row(const char *name, const uint8_t *row) {
     static const char digits[] = "0123456789abcdef";
     char text[7] = {0};
     put_text(name);

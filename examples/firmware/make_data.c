@@ -13,14 +13,12 @@ static size_t blob_bytes;
 static lensprof_profile profile;
 static lensprof_response gamma_made;
 
-const lensprof_vignetting camera_falloff[3] = {
-    {{-0.375, -0.0625, -0.03125}, {0.015625, -0.03125}},
-    {{-0.40625, -0.0625, -0.03125}, {0.015625, -0.03125}},
-    {{-0.4375, -0.0625, -0.03125}, {0.015625, -0.03125}}};
+const lensprof_vignetting camera_falloff[3] = {{{-0.375, -0.0625, -0.03125}, {0.015625, -0.03125}},
+                                               {{-0.40625, -0.0625, -0.03125}, {0.015625, -0.03125}},
+                                               {{-0.4375, -0.0625, -0.03125}, {0.015625, -0.03125}}};
 
 /* Light at a pixel: sky, sun, clouds, a ridge with trees. */
-static double light_at(double x, double y, int channel)
-{
+static double light_at(double x, double y, int channel) {
     static const double sky[3] = {0.30, 0.38, 0.55}, hill[3] = {0.05, 0.08, 0.03}, sun[3] = {1.0, 0.8, 0.5};
     const double ridge = 10.0 + 2.0 * sin(0.11 * x) + 1.5 * sin(0.37 * x + 1.0) + sin(1.7 * x);
     const double away2 = (x - 96.0) * (x - 96.0) + 6.0 * (y - 4.0) * (y - 4.0);
@@ -30,8 +28,7 @@ static double light_at(double x, double y, int channel)
     return sky[channel] + cloud + grain + 1.2 * sun[channel] * exp(-away2 / 300.0);
 }
 
-static int render(uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3])
-{
+static int render(uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3]) {
     static float light[STRIP_ROWS][STRIP_WIDTH][3];
     static uint64_t memory[1 << 12];
     lensprof_image from = {light, sizeof light[0], STRIP_WIDTH, STRIP_ROWS, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB};
@@ -53,15 +50,13 @@ static int render(uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3])
 }
 
 /* Hexadecimal floating point: exact. */
-static void print_response(const char *name, const lensprof_response *r)
-{
+static void print_response(const char *name, const lensprof_response *r) {
     printf("\nconst lensprof_response %s = {%u, 0, %a, {0.0}, {", name, r->kind, r->gamma);
     for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) printf("%s%a,", j % 6 ? " " : "\n    ", r->table[j]);
     printf("}};\n");
 }
 
-static int print_plan(void)
-{
+static int print_plan(void) {
     static uint32_t memory[1 << 10];
     lensprof_apply_options options;
     const lensprof_fixed_plan *plan;
@@ -79,8 +74,7 @@ static int print_plan(void)
 }
 
 /* The profile of the blob; 0 when something is wrong with it. */
-static int pack(void)
-{
+static int pack(void) {
     double values[129];
     for (int i = 0; i <= 128; i++) values[i] = pow(i / 128.0, 1.0 / 2.2);
     lensprof_profile_init(&profile);
@@ -92,15 +86,13 @@ static int pack(void)
     return 1;
 }
 
-static void print_bytes(const char *name, const uint8_t *bytes, size_t count)
-{
+static void print_bytes(const char *name, const uint8_t *bytes, size_t count) {
     printf("\nconst uint8_t %s[] = {", name);
     for (size_t i = 0; i < count; i++) printf("%s%d,", i % 24 ? " " : "\n    ", bytes[i]);
     printf("};\n");
 }
 
-int main(void)
-{
+int main(void) {
     static uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3];
     if (!pack() || lensprof_response_set_gamma(&gamma_made, 2.2) != LENSPROF_OK || !render(rows)) return 1;
     printf("/* Written by make_data. */\n#include \"data.h\"\n\nconst lensprof_vignetting camera_falloff[3] = {\n");

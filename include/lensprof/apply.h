@@ -5,11 +5,11 @@
  *
  * M: the falloff, times the gain grid where there is one. e, w: the picture's own exposure and white balance; e', w':
  * the wanted ones.
- * A plan is prepared once per picture in memory that the caller provides, then applied to any tile. Vector units are used
- * where the processor has them (SSE4.1, AVX2, AVX-512, NEON); every one gives the same bytes.
- * No heap, no I/O. On a microcontroller, where the kernel works on one sample at a time, lensprof_apply takes at most
- * 2.5 KiB of stack and lensprof_plan_init 2 KiB (docs/firmware.md). Threads: a plan is immutable after init and may be
- * used by several threads on different tiles. */
+ * A plan is prepared once per picture in memory that the caller provides, then applied to any tile. Vector units are
+ * used where the processor has them (SSE4.1, AVX2, AVX-512, NEON); every one gives the same bytes. No heap, no I/O. On
+ * a microcontroller, where the kernel works on one sample at a time, lensprof_apply takes at most 2.5 KiB of stack and
+ * lensprof_plan_init 2 KiB (docs/firmware.md). Threads: a plan is immutable after init and may be used by several
+ * threads on different tiles. */
 #ifndef LENSPROF_APPLY_H
 #define LENSPROF_APPLY_H
 
@@ -45,8 +45,8 @@ typedef struct lensprof_image {
     void *data;          /* upper left sample of the view */
     ptrdiff_t row_bytes; /* from one row to the next; negative for bottom-up images */
     uint32_t width, height;
-    uint32_t sample;     /* lensprof_sample */
-    uint32_t layout;     /* lensprof_layout */
+    uint32_t sample; /* lensprof_sample */
+    uint32_t layout; /* lensprof_layout */
 } lensprof_image;
 
 /* Samples per pixel (1..4; of a plane or mosaic 1) and colour channels (1 or 3) of a layout; 0 for an unknown one. */
@@ -80,30 +80,31 @@ typedef enum lensprof_saturated {
 
 typedef struct lensprof_apply_options {
     uint32_t struct_size;
-    uint32_t direction;                     /* lensprof_direction */
-    uint32_t input, output;                 /* lensprof_encoding */
-    uint32_t frame_width, frame_height;     /* the full frame that tiles belong to, px */
-    uint32_t source_sample, source_layout;  /* pixel format of the pictures to come */
-    uint32_t target_sample;                 /* sample type written; the layout is the source's */
-    uint32_t saturated; /* lensprof_saturated; NEUTRAL acts where direction is CORRECT and both input
-                           and output are encoded */
-    uint32_t responses, vignettings;        /* 1 for all channels, or 3: red, green, blue; grey is treated as green */
-    const lensprof_response *response;      /* read during plan init only; a linear one where nothing is encoded */
-    const lensprof_vignetting *vignetting;  /* read during plan init only. Single precision holds M to some
-                                               1e-7 (1 + |k1| + |k2| + |k3|) */
-    lensprof_exposure source;               /* what the picture received */
-    lensprof_exposure target;               /* what it shall look like; equal to source = keep */
-    const lensprof_gain_grid *grid;         /* multiplied to the vignetting; NULL = none; read during plan init only */
-    double strength; /* 0..1: M counts as 1 + strength (M - 1); 0 leaves the falloff alone */
+    uint32_t direction;                    /* lensprof_direction */
+    uint32_t input, output;                /* lensprof_encoding */
+    uint32_t frame_width, frame_height;    /* the full frame that tiles belong to, px */
+    uint32_t source_sample, source_layout; /* pixel format of the pictures to come */
+    uint32_t target_sample;                /* sample type written; the layout is the source's */
+    uint32_t saturated;                    /* lensprof_saturated; NEUTRAL acts where direction is CORRECT and both input
+                                              and output are encoded */
+    uint32_t responses, vignettings;       /* 1 for all channels, or 3: red, green, blue; grey is treated as green */
+    const lensprof_response *response;     /* read during plan init only; a linear one where nothing is encoded */
+    const lensprof_vignetting *vignetting; /* read during plan init only. Single precision holds M to some
+                                              1e-7 (1 + |k1| + |k2| + |k3|) */
+    lensprof_exposure source;              /* what the picture received */
+    lensprof_exposure target;              /* what it shall look like; equal to source = keep */
+    const lensprof_gain_grid *grid;        /* multiplied to the vignetting; NULL = none; read during plan init only */
+    double strength;                       /* 0..1: M counts as 1 + strength (M - 1); 0 leaves the falloff alone */
     double gain_cap; /* M counts as no less than 1 / gain_cap, which is 1..1e6: corners get at most this; 0 = no cap */
     uint32_t dither; /* 1: ordered 8 x 8 dither in place of rounding, where U8 is written; 0: none */
     uint32_t reserved; /* 0 */
-    const void *blob;  /* instead of response, vignetting and grid, which are NULL then: a profile blob (profile.h), at any
-                          address, read during plan init only; its own counts stand for responses and vignettings */
+    const void *blob;  /* instead of response, vignetting and grid, which are NULL then: a profile blob (profile.h), at
+                          any address, read during plan init only; its own counts stand for responses and vignettings */
     size_t blob_bytes;
 } lensprof_apply_options;
 
-/* Correct, encoded in and out, u8 RGB in and out, exposures 0 EV, strength 1; the rest zero, to be set by the caller. */
+/* Correct, encoded in and out, u8 RGB in and out, exposures 0 EV, strength 1; the rest zero, to be set by the caller.
+ */
 LENSPROF_API void lensprof_apply_options_init(lensprof_apply_options *options);
 
 typedef struct lensprof_plan lensprof_plan;

@@ -36,31 +36,31 @@ extern "C" {
  * 40-49 store, 50-59 format, 90 internal. */
 typedef enum lensprof_status {
     LENSPROF_OK = 0,
-    LENSPROF_ERROR_ARGUMENT = 1,      /* NULL, unknown enum value, index out of range */
-    LENSPROF_ERROR_STRUCT_SIZE = 2,   /* struct_size not set by the _init function of this version */
-    LENSPROF_ERROR_SIZE = 3,          /* zero or overflowing size, stride too small, tile outside the frame */
-    LENSPROF_ERROR_CAPACITY = 4,      /* the caller's buffer is too small; the needed size is reported */
-    LENSPROF_ERROR_NOT_FINITE = 5,    /* NaN or infinity where a finite number is needed */
-    LENSPROF_ERROR_MEMORY = 10,       /* out of memory */
-    LENSPROF_ERROR_CANCELLED = 11,    /* the progress callback asked to stop */
-    LENSPROF_ERROR_RESPONSE = 20,     /* not a response: decreasing, or ends not at 0 and 1 */
-    LENSPROF_ERROR_VIGNETTING = 21,   /* not a falloff: not positive on the whole frame */
-    LENSPROF_ERROR_EXPOSURE = 22,     /* exposure or white balance not positive and finite */
-    LENSPROF_ERROR_GEOMETRY = 23,     /* camera that cannot be evaluated */
-    LENSPROF_ERROR_NO_OVERLAP = 30,   /* no two images see the same point */
-    LENSPROF_ERROR_NO_SAMPLES = 31,   /* images overlap but every sample is saturated, black or masked */
-    LENSPROF_ERROR_NO_UNKNOWNS = 32,  /* nothing was asked to be estimated */
-    LENSPROF_ERROR_STORE = 40,        /* the database could not be opened or used */
-    LENSPROF_ERROR_NOT_FOUND = 41,    /* no such profile */
-    LENSPROF_ERROR_CORRUPT = 42,      /* not a lensprof database or profile blob, or damaged */
-    LENSPROF_ERROR_LAYOUT = 43,       /* written by a newer lensprof */
-    LENSPROF_ERROR_READ_ONLY = 44,    /* the database cannot be written */
-    LENSPROF_ERROR_FULL = 45,         /* no space left for the database */
-    LENSPROF_ERROR_BUSY = 46,         /* another process holds the database */
-    LENSPROF_ERROR_SYNTAX = 50,       /* malformed file; the error text gives the line */
-    LENSPROF_ERROR_VARIABLE = 51,     /* unknown or unusable variable name on a `v` line */
-    LENSPROF_ERROR_UNSUPPORTED = 52,  /* valid, but not supported by this version */
-    LENSPROF_ERROR_INTERNAL = 90      /* a defect of lensprof; please report */
+    LENSPROF_ERROR_ARGUMENT = 1,     /* NULL, unknown enum value, index out of range */
+    LENSPROF_ERROR_STRUCT_SIZE = 2,  /* struct_size not set by the _init function of this version */
+    LENSPROF_ERROR_SIZE = 3,         /* zero or overflowing size, stride too small, tile outside the frame */
+    LENSPROF_ERROR_CAPACITY = 4,     /* the caller's buffer is too small; the needed size is reported */
+    LENSPROF_ERROR_NOT_FINITE = 5,   /* NaN or infinity where a finite number is needed */
+    LENSPROF_ERROR_MEMORY = 10,      /* out of memory */
+    LENSPROF_ERROR_CANCELLED = 11,   /* the progress callback asked to stop */
+    LENSPROF_ERROR_RESPONSE = 20,    /* not a response: decreasing, or ends not at 0 and 1 */
+    LENSPROF_ERROR_VIGNETTING = 21,  /* not a falloff: not positive on the whole frame */
+    LENSPROF_ERROR_EXPOSURE = 22,    /* exposure or white balance not positive and finite */
+    LENSPROF_ERROR_GEOMETRY = 23,    /* camera that cannot be evaluated */
+    LENSPROF_ERROR_NO_OVERLAP = 30,  /* no two images see the same point */
+    LENSPROF_ERROR_NO_SAMPLES = 31,  /* images overlap but every sample is saturated, black or masked */
+    LENSPROF_ERROR_NO_UNKNOWNS = 32, /* nothing was asked to be estimated */
+    LENSPROF_ERROR_STORE = 40,       /* the database could not be opened or used */
+    LENSPROF_ERROR_NOT_FOUND = 41,   /* no such profile */
+    LENSPROF_ERROR_CORRUPT = 42,     /* not a lensprof database or profile blob, or damaged */
+    LENSPROF_ERROR_LAYOUT = 43,      /* written by a newer lensprof */
+    LENSPROF_ERROR_READ_ONLY = 44,   /* the database cannot be written */
+    LENSPROF_ERROR_FULL = 45,        /* no space left for the database */
+    LENSPROF_ERROR_BUSY = 46,        /* another process holds the database */
+    LENSPROF_ERROR_SYNTAX = 50,      /* malformed file; the error text gives the line */
+    LENSPROF_ERROR_VARIABLE = 51,    /* unknown or unusable variable name on a `v` line */
+    LENSPROF_ERROR_UNSUPPORTED = 52, /* valid, but not supported by this version */
+    LENSPROF_ERROR_INTERNAL = 90     /* a defect of lensprof; please report */
 } lensprof_status;
 
 /* Text of the first thing that went wrong, always terminated; empty when nothing did. */

@@ -6,12 +6,11 @@
  *   log2 g(B) + log2(e' w' / (e w)) - log2 M   ->   the grey value whose light that is     apply.h, correct
  *
  * A plan is prepared with floating point (software will do: some 100 ms on a Cortex-M0+ at 48 MHz), or on another
- * machine and copied: it holds no address. Pixels then need no floating point, no heap, no I/O, and at most 512 bytes of
- * stack; lensprof_fixed_plan_init takes up to 2 KiB.
- * Formats: U8 and U16 in layouts GREY to BGRA and mosaics, the sample type written being the one read; U16 where input
- * and output are linear (by their encoding, or because the response is). A plan takes about 150 bytes, and for U8 2 KiB
- * more a response. No gain grid, no dither, no planes: UNSUPPORTED.
- * Threads: a plan is immutable after init and may be used by several threads on different tiles. */
+ * machine and copied: it holds no address. Pixels then need no floating point, no heap, no I/O, and at most 512 bytes
+ * of stack; lensprof_fixed_plan_init takes up to 2 KiB. Formats: U8 and U16 in layouts GREY to BGRA and mosaics, the
+ * sample type written being the one read; U16 where input and output are linear (by their encoding, or because the
+ * response is). A plan takes about 150 bytes, and for U8 2 KiB more a response. No gain grid, no dither, no planes:
+ * UNSUPPORTED. Threads: a plan is immutable after init and may be used by several threads on different tiles. */
 #ifndef LENSPROF_FIXED_H
 #define LENSPROF_FIXED_H
 
@@ -33,10 +32,10 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_init(void *me
                                                                         const lensprof_apply_options *options,
                                                                         const lensprof_fixed_plan **plan);
 
-/* A plan that was prepared elsewhere: the lensprof_fixed_plan_bytes bytes of its memory, copied to memory[bytes] (4-byte
- * aligned; may be read-only), on machines of one byte order. Errors: NULL or unaligned ARGUMENT, fewer bytes than the
- * plan has CAPACITY, of another version LAYOUT, damaged CORRUPT (by its CRC-32, or because no plan holds such numbers:
- * a plan that opens is safe to apply, whoever made its bytes). */
+/* A plan that was prepared elsewhere: the lensprof_fixed_plan_bytes bytes of its memory, copied to memory[bytes]
+ * (4-byte aligned; may be read-only), on machines of one byte order. Errors: NULL or unaligned ARGUMENT, fewer bytes
+ * than the plan has CAPACITY, of another version LAYOUT, damaged CORRUPT (by its CRC-32, or because no plan holds such
+ * numbers: a plan that opens is safe to apply, whoever made its bytes). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_open(const void *memory, size_t bytes,
                                                                         const lensprof_fixed_plan **plan);
 

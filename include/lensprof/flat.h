@@ -11,8 +11,8 @@
  * about its axis tell them apart: the light stays with the scene, the falloff with the frame. What stays unknown is how
  * the light itself falls off evenly in all directions; a card at several places of the frame does not need it even.
  *
- * Threads: calls are independent of each other; the pictures are only read. One call uses as many threads as its options
- * say, all gone when it returns; the result does not depend on their number: same input, same bytes. */
+ * Threads: calls are independent of each other; the pictures are only read. One call uses as many threads as its
+ * options say, all gone when it returns; the result does not depend on their number: same input, same bytes. */
 #ifndef LENSPROF_FLAT_H
 #define LENSPROF_FLAT_H
 
@@ -63,13 +63,13 @@ typedef struct lensprof_flat_options {
     uint32_t own_light;   /* 0: one light for all shots, fixed to the scene; 1: every shot has a light of its own */
     uint32_t several;     /* 0: every shot fills the frame, its brightness is free; 1: one card at several places of the
                              frame, with one brightness in all shots, whose exposures are known */
-    uint32_t find_card;   /* 1: the card covers a part of the frame, and is looked for: the largest even bright region */
-    uint32_t grid;        /* lensprof_flat_grid */
-    uint32_t responses;   /* 1 for all channels, or 3 */
-    uint32_t threads;     /* at most so many, the caller's included; 0 = one a core */
-    uint32_t reserved;    /* 0 */
-    double ev_sigma;      /* SEVERAL: standard error of an exposure, 0.001..1 EV */
-    double prior_weight;  /* weight of the priors on falloff and centre (docs/model.md); 0 = none, 1 = default */
+    uint32_t find_card;  /* 1: the card covers a part of the frame, and is looked for: the largest even bright region */
+    uint32_t grid;       /* lensprof_flat_grid */
+    uint32_t responses;  /* 1 for all channels, or 3 */
+    uint32_t threads;    /* at most so many, the caller's included; 0 = one a core */
+    uint32_t reserved;   /* 0 */
+    double ev_sigma;     /* SEVERAL: standard error of an exposure, 0.001..1 EV */
+    double prior_weight; /* weight of the priors on falloff and centre (docs/model.md); 0 = none, 1 = default */
     const lensprof_response *response; /* `responses` of them; NULL = linear. Read during the call */
     lensprof_vignetting vignetting;    /* the value where fixed */
     lensprof_progress progress;        /* or NULL; the fraction never falls */
@@ -83,14 +83,14 @@ LENSPROF_API void lensprof_flat_options_init(lensprof_flat_options *options);
 /* What one picture gave. Frozen value struct. Shares are of the card's part of the frame. */
 typedef struct lensprof_flat_image_quality {
     double white_share, black_share; /* of its cells that hold samples beyond the limits */
-    double noise_levels;    /* noise of a pixel of the view, levels of 255; median over the cells */
-    double ev_residual;     /* its light less what the others of its shot say, EV; 0 for a single picture */
-    double residual;        /* of its shot: rms of what the model leaves, share of the light */
-    double gradient[2];     /* of its shot: light to the right and down in the frame, share a half diagonal */
-    double radius;          /* of its shot: largest r of a cell used, half diagonals */
-    uint32_t card[4];       /* of its shot: left, top, width, height of the card, px of the frame */
-    uint32_t cells;         /* of its shot: cells used */
-    uint32_t reserved;      /* 0 */
+    double noise_levels;             /* noise of a pixel of the view, levels of 255; median over the cells */
+    double ev_residual;              /* its light less what the others of its shot say, EV; 0 for a single picture */
+    double residual;                 /* of its shot: rms of what the model leaves, share of the light */
+    double gradient[2];              /* of its shot: light to the right and down in the frame, share a half diagonal */
+    double radius;                   /* of its shot: largest r of a cell used, half diagonals */
+    uint32_t card[4];                /* of its shot: left, top, width, height of the card, px of the frame */
+    uint32_t cells;                  /* of its shot: cells used */
+    uint32_t reserved;               /* 0 */
 } lensprof_flat_image_quality;
 
 /* Dust, or a mark on the card: a small dark place that was left out. Frozen value struct. */
@@ -104,29 +104,29 @@ typedef struct lensprof_flat_spot {
 
 typedef struct lensprof_flat_result {
     uint32_t struct_size;
-    uint32_t usable;         /* 1, or 0 with the reason in words */
-    char reason[256];        /* why not usable; when usable empty, or what to mind */
+    uint32_t usable;                   /* 1, or 0 with the reason in words */
+    char reason[256];                  /* why not usable; when usable empty, or what to mind */
     lensprof_vignetting vignetting[3]; /* of the channels; all alike when `vignettings` is 1; they share one centre */
-    uint32_t vignettings;    /* 1 or 3 */
-    uint32_t light;          /* EVEN, PLANE or QUADRATIC */
+    uint32_t vignettings;              /* 1 or 3 */
+    uint32_t light;                    /* EVEN, PLANE or QUADRATIC */
     uint32_t shots;
-    uint32_t cells;          /* cells used, of all shots */
-    uint32_t separated;      /* 1: the pictures tell the light's gradient from the centre; 0: the prior on the centre
-                                does, or it is held */
+    uint32_t cells;     /* cells used, of all shots */
+    uint32_t separated; /* 1: the pictures tell the light's gradient from the centre; 0: the prior on the centre
+                           does, or it is held */
     uint32_t iterations;
     uint32_t converged;
-    uint32_t spots;          /* found; the largest LENSPROF_FLAT_SPOTS of them follow */
+    uint32_t spots; /* found; the largest LENSPROF_FLAT_SPOTS of them follow */
     lensprof_flat_spot spot[LENSPROF_FLAT_SPOTS];
-    double radius;           /* largest r of a cell used, half diagonals */
-    double noise;            /* of a cell, expected from that of its pixels: share of the light */
-    double residual;         /* of a cell: rms of what the model leaves, share of the light */
-    double texture;          /* of it, finer than some cells and beyond the noise: the card is not even */
-    double frame_residual;   /* of it, coarser, at the same place of the frame in all shots: the falloff is not radial
-                                (of a single shot: or the light is not even) */
-    double shot_residual;    /* of it, coarser, of each shot's own: the light is not what the model says; 0 for one shot */
-    double inlier_share;     /* of cells: within 3 sigma */
-    double corner_sigma;     /* standard error of M at r = 1 */
-    double grid_residual;    /* what falloff and grid together leave of frame_residual; 0 without a grid */
+    double radius;         /* largest r of a cell used, half diagonals */
+    double noise;          /* of a cell, expected from that of its pixels: share of the light */
+    double residual;       /* of a cell: rms of what the model leaves, share of the light */
+    double texture;        /* of it, finer than some cells and beyond the noise: the card is not even */
+    double frame_residual; /* of it, coarser, at the same place of the frame in all shots: the falloff is not radial
+                              (of a single shot: or the light is not even) */
+    double shot_residual; /* of it, coarser, of each shot's own: the light is not what the model says; 0 for one shot */
+    double inlier_share;  /* of cells: within 3 sigma */
+    double corner_sigma;  /* standard error of M at r = 1 */
+    double grid_residual; /* what falloff and grid together leave of frame_residual; 0 without a grid */
     uint32_t covariance_size; /* order as in profile.h; parameters held fixed have zero rows; 0 = not determined */
     uint32_t reserved;
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];

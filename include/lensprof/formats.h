@@ -1,6 +1,6 @@
-/* lensprof/formats.h - other programs' files, from and to memory: Hugin projects and points, Lensfun databases, Adobe lens
- * profiles, DNG opcodes, XMP of drones' cameras, radical's files, pcalib.txt, times.txt, tables of responses, falloffs as
- * maps; and profiles as JSON.
+/* lensprof/formats.h - other programs' files, from and to memory: Hugin projects and points, Lensfun databases, Adobe
+ * lens profiles, DNG opcodes, XMP of drones' cameras, radical's files, pcalib.txt, times.txt, tables of responses,
+ * falloffs as maps; and profiles as JSON.
  *
  * No function here opens a file. Threads: a handle belongs to one thread at a time. */
 #ifndef LENSPROF_FORMATS_H
@@ -27,12 +27,12 @@ typedef struct lensprof_pto_image {
     lensprof_vignetting vignetting; /* Vb/Va, Vc/Va, Vd/Va; Vx, Vy in half diagonals; none where Vm asks for none */
     double emor[5];                 /* Ra..Re */
     uint32_t response_type;         /* Rt: 0 EMoR, 1 linear */
-    uint32_t free; /* LENSPROF_FREE_* that the `v` lines ask for on this image or on the one it is linked to */
-    uint32_t response_of;           /* index of the image at the end of the link, own index when not linked */
+    uint32_t free;        /* LENSPROF_FREE_* that the `v` lines ask for on this image or on the one it is linked to */
+    uint32_t response_of; /* index of the image at the end of the link, own index when not linked */
     uint32_t vignetting_of, center_of, ev_of, red_of, blue_of;
-    int32_t crop[4];                /* left, top, right, bottom (right and bottom exclusive), the frame when none */
+    int32_t crop[4];        /* left, top, right, bottom (right and bottom exclusive), the frame when none */
     uint32_t crop_circular; /* 1 when only the circle about the crop's middle that touches its nearer sides counts */
-    uint32_t reserved;              /* 0 */
+    uint32_t reserved;      /* 0 */
 } lensprof_pto_image;
 
 /* Parses a project. *pto is created and must be destroyed by the caller.
@@ -74,9 +74,11 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_draw_mask(const lens
  * EMoR with at most 5 modes is written as its least squares projection on Hugin's 5 modes. Every image receives the
  * response and vignetting of the fit; links are kept. exposures and white balance are taken relative to those of image
  * `reference`, whose Eev, Er and Eb stay. Errors: ARGUMENT, what the model's validate functions say, MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_pto_set_result(lensprof_pto *pto, const lensprof_response *response, const lensprof_vignetting *vignetting,
-                        const lensprof_exposure *exposures, uint32_t count, uint32_t reference);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_result(lensprof_pto *pto,
+                                                                       const lensprof_response *response,
+                                                                       const lensprof_vignetting *vignetting,
+                                                                       const lensprof_exposure *exposures,
+                                                                       uint32_t count, uint32_t reference);
 
 /* The project as text: everything that was read, unchanged but for what was set. Returns CAPACITY when the buffer is
  * too small (capacity 0 asks for the size); *needed receives the bytes without terminator, which is added where there
@@ -94,17 +96,17 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_read(const char *
                                                                     uint32_t *found, lensprof_error *error);
 
 /* Writes the same. cameras[count] give the frame sizes for the radius columns. Sizes as lensprof_pto_write. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_points_write(const lensprof_pair *pairs, uint32_t pair_count, const lensprof_camera *cameras, uint32_t count,
-                      char *text, size_t capacity, size_t *needed);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_write(const lensprof_pair *pairs, uint32_t pair_count,
+                                                                     const lensprof_camera *cameras, uint32_t count,
+                                                                     char *text, size_t capacity, size_t *needed);
 
 /* ---- Falloffs of other programs' databases ---------------------------------------------------------------- */
 
 /* One falloff of a file. Frozen value struct. */
 typedef struct lensprof_import_entry {
     const lensprof_profile *profile; /* until the visitor returns: key, provenance, vignetting; a linear response */
-    uint32_t usable; /* 0: what the file has is no falloff (provenance.doubt says why), and lensprof_profile_validate
-                      * refuses it; 1: a valid profile, which provenance.doubt may still warn of */
+    uint32_t usable;   /* 0: what the file has is no falloff (provenance.doubt says why), and lensprof_profile_validate
+                        * refuses it; 1: a valid profile, which provenance.doubt may still warn of */
     uint32_t reserved; /* 0 */
 } lensprof_import_entry;
 
@@ -129,9 +131,9 @@ typedef lensprof_status (*lensprof_import_visitor)(void *user, const lensprof_im
  * All of the text is checked before the first entry is visited. Document types are skipped and entities not expanded.
  * Errors (the text names line and lens): ARGUMENT; SIZE over 64 MiB, or over 2 million elements or attributes; SYNTAX;
  * UNSUPPORTED for another version or model; MEMORY; what the visitor returns. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_read(const char *text, size_t bytes,
-                                                                     const char *source, lensprof_import_visitor visit,
-                                                                     void *user, lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_read(const char *text, size_t bytes, const char *source,
+                                                                     lensprof_import_visitor visit, void *user,
+                                                                     lensprof_error *error);
 
 /* The falloffs of profiles as a database of version 1, which every Lensfun reads: model "pa", one <lens> for each lens
  * and crop factor. Sizes as lensprof_pto_write. Doubles are written so that they read back the same.
@@ -151,60 +153,58 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_write(const lens
 /* ---- Profiles as JSON ------------------------------------------------------------------------------------- */
 
 /* Profiles as `lensprof profile show --json` prints them (docs/json.md): the object of one, or {"schema": 1,
- * "profiles": [...]} of none and of several. Doubles, and the floats of gain grids, are written so that they read back the
- * same; bytes of texts that are not UTF-8 become U+FFFD. Sizes as lensprof_pto_write.
- * Errors (the text names the profile, counted from 0): ARGUMENT; what lensprof_profile_validate says; CAPACITY;
- * MEMORY. */
+ * "profiles": [...]} of none and of several. Doubles, and the floats of gain grids, are written so that they read back
+ * the same; bytes of texts that are not UTF-8 become U+FFFD. Sizes as lensprof_pto_write. Errors (the text names the
+ * profile, counted from 0): ARGUMENT; what lensprof_profile_validate says; CAPACITY; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_json_write(const lensprof_profile *const *profiles,
                                                                    uint32_t count, char *text, size_t capacity,
                                                                    size_t *needed, lensprof_error *error);
 
 /* Reads them: what lensprof_json_write wrote gives the same profiles, in every bit. Each must have `key` with
- * `processing`, and `vignetting` with `k`; without `gain_grid`, `covariance`, `provenance` and `response` it has none, the
- * last being linear. Texts and numbers of a key that are missing or null are unknown. Other members are ignored.
+ * `processing`, and `vignetting` with `k`; without `gain_grid`, `covariance`, `provenance` and `response` it has none,
+ * the last being linear. Texts and numbers of a key that are missing or null are unknown. Other members are ignored.
  * provenance.source is that of the file, or `source` where it has none (may be NULL, cut where it is too long).
  * All profiles are checked before the first is visited; they are all usable.
- * Errors (the text names the line, or the path, as "profiles[2].vignetting.k[0]"): ARGUMENT; SIZE over 64 MiB or 4 million
- * values; SYNTAX, also for more than 32 levels; UNSUPPORTED for another schema; what the model's validate functions say;
- * MEMORY; what the visitor returns. */
+ * Errors (the text names the line, or the path, as "profiles[2].vignetting.k[0]"): ARGUMENT; SIZE over 64 MiB or 4
+ * million values; SYNTAX, also for more than 32 levels; UNSUPPORTED for another schema; what the model's validate
+ * functions say; MEMORY; what the visitor returns. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_json_read(const char *text, size_t bytes, const char *source,
                                                                   lensprof_import_visitor visit, void *user,
                                                                   lensprof_error *error);
 
 /* ---- Photometric calibration of visual odometry (pcalib.txt, times.txt) ------------------------------------- */
 
-/* Inverse response of TUM's tools, DSO and its kin: the irradiances of 256 evenly spaced grey values (or of up to 65536),
- * strictly increasing, separated by blanks and line ends. They are rescaled by the first and last, as those tools do, to a
- * TABLE.
- * Errors (the text names the value, counted from 0): ARGUMENT; SYNTAX for fewer than 256 or what is not a finite number;
- * SIZE for over 65536; RESPONSE for a value that is not above the one before; MEMORY. */
+/* Inverse response of TUM's tools, DSO and its kin: the irradiances of 256 evenly spaced grey values (or of up to
+ * 65536), strictly increasing, separated by blanks and line ends. They are rescaled by the first and last, as those
+ * tools do, to a TABLE. Errors (the text names the value, counted from 0): ARGUMENT; SYNTAX for fewer than 256 or what
+ * is not a finite number; SIZE for over 65536; RESPONSE for a value that is not above the one before; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pcalib_read(const char *text, size_t bytes,
                                                                     lensprof_response *response, lensprof_error *error);
 
-/* Writes 256 of them, from 0 to 255, on one line. Two are never closer than 1e-4, so that they increase strictly in single
- * precision too; where the response is so steep that they would be, it is less so by that much. Sizes as
+/* Writes 256 of them, from 0 to 255, on one line. Two are never closer than 1e-4, so that they increase strictly in
+ * single precision too; where the response is so steep that they would be, it is less so by that much. Sizes as
  * lensprof_pto_write. Errors: ARGUMENT, what lensprof_response_validate says, CAPACITY, MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pcalib_write(const lensprof_response *response, char *text,
                                                                      size_t capacity, size_t *needed,
                                                                      lensprof_error *error);
 
-/* A line of times.txt. lensprof_exposure.ev of a frame, where only its exposure time differs from that of another frame:
- * log2(exposure_ms / exposure_ms of the other). Frozen value struct. */
+/* A line of times.txt. lensprof_exposure.ev of a frame, where only its exposure time differs from that of another
+ * frame: log2(exposure_ms / exposure_ms of the other). Frozen value struct. */
 typedef struct lensprof_frame_time {
     char id[64];        /* as written, with leading zeros */
     double time_s;      /* time stamp */
     double exposure_ms; /* > 0 or LENSPROF_UNKNOWN */
 } lensprof_frame_time;
 
-/* Lines of name, time and exposure, of which the last may be missing or 0 (unknown); empty lines and those that begin with
- * # are skipped. *found receives the number of frames; with capacity 0 nothing else is done. Errors (the text names the
- * line): ARGUMENT; SYNTAX; CAPACITY when there are more than capacity. */
+/* Lines of name, time and exposure, of which the last may be missing or 0 (unknown); empty lines and those that begin
+ * with # are skipped. *found receives the number of frames; with capacity 0 nothing else is done. Errors (the text
+ * names the line): ARGUMENT; SYNTAX; CAPACITY when there are more than capacity. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_times_read(const char *text, size_t bytes,
                                                                    lensprof_frame_time *frames, uint32_t capacity,
                                                                    uint32_t *found, lensprof_error *error);
 
-/* Writes the same; numbers read back the same. Sizes as lensprof_pto_write. Errors (the text names the frame): ARGUMENT for
- * a name that is empty, has blanks or begins with #; NOT_FINITE; EXPOSURE; CAPACITY; MEMORY. */
+/* Writes the same; numbers read back the same. Sizes as lensprof_pto_write. Errors (the text names the frame): ARGUMENT
+ * for a name that is empty, has blanks or begins with #; NOT_FINITE; EXPOSURE; CAPACITY; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_times_write(const lensprof_frame_time *frames, uint32_t count,
                                                                     char *text, size_t capacity, size_t *needed,
                                                                     lensprof_error *error);
@@ -213,27 +213,28 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_times_write(const lenspr
 
 /* What a table holds, on an even grid of what it is a function of. Nothing in such files says it. */
 typedef enum lensprof_curve {
-    LENSPROF_CURVE_INVERSE = 0, /* grey value -> irradiance, to any scale: OpenCV's Debevec and Robertson, AliceVision */
-    LENSPROF_CURVE_LOG = 1,     /* grey value -> natural logarithm of it: Debevec's g */
-    LENSPROF_CURVE_LOG10 = 2,   /* grey value -> decadic logarithm of it */
-    LENSPROF_CURVE_FORWARD = 3  /* irradiance -> grey value, rescaled by the first and last */
+    LENSPROF_CURVE_INVERSE =
+        0,                     /* grey value -> irradiance, to any scale: OpenCV's Debevec and Robertson, AliceVision */
+    LENSPROF_CURVE_LOG = 1,    /* grey value -> natural logarithm of it: Debevec's g */
+    LENSPROF_CURVE_LOG10 = 2,  /* grey value -> decadic logarithm of it */
+    LENSPROF_CURVE_FORWARD = 3 /* irradiance -> grey value, rescaled by the first and last */
 } lensprof_curve;
 
 /* Reads 2 to 65536 rows of 1 or 3 numbers (red, green, blue; the other way round where names of columns say so), or of
  * these after one that counts the rows or is evenly spaced from 0. Between them stand blanks, commas, semicolons or
  * brackets; lines that begin with #, % or // and a first line of names are skipped. To one or three TABLEs, in which
- * irradiance 1 is that of the last grey value and what is darker than the first gives 0. `# name:` lines make it a file of
- * pfstools, with a matrix a channel, whatever `curve`. responses: 3 of them, of which *count are written.
- * Errors (the text names the line): ARGUMENT; SIZE over 65536 rows or 64 MiB; SYNTAX; RESPONSE for a value below that of the
+ * irradiance 1 is that of the last grey value and what is darker than the first gives 0. `# name:` lines make it a file
+ * of pfstools, with a matrix a channel, whatever `curve`. responses: 3 of them, of which *count are written. Errors
+ * (the text names the line): ARGUMENT; SIZE over 65536 rows or 64 MiB; SYNTAX; RESPONSE for a value below that of the
  * row before, or an irradiance below 0; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_curves_read(const char *text, size_t bytes, uint32_t curve,
                                                                     lensprof_response *responses, uint32_t *count,
                                                                     lensprof_error *error);
 
-/* Writes `rows` (2 to 65536; 256 for pictures of 8 bit) rows of 1 or 3 responses as a lensprof_curve, after a line of names:
- * the number of the row (FORWARD: irradiance), then the values, which read back the same; irradiances are 0 to 1. Logarithms
- * are of at least 1e-6 of them. Sizes as lensprof_pto_write. Errors: ARGUMENT, what lensprof_response_validate says,
- * CAPACITY, MEMORY. */
+/* Writes `rows` (2 to 65536; 256 for pictures of 8 bit) rows of 1 or 3 responses as a lensprof_curve, after a line of
+ * names: the number of the row (FORWARD: irradiance), then the values, which read back the same; irradiances are 0
+ * to 1. Logarithms are of at least 1e-6 of them. Sizes as lensprof_pto_write. Errors: ARGUMENT, what
+ * lensprof_response_validate says, CAPACITY, MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_curves_write(const lensprof_response *responses, uint32_t count,
                                                                      uint32_t curve, uint32_t rows, char *text,
                                                                      size_t capacity, size_t *needed,
@@ -246,8 +247,8 @@ typedef enum lensprof_map_sense {
     LENSPROF_MAP_GAIN = 1         /* by multiplication */
 } lensprof_map_sense;
 
-/* A map in the caller's memory, linear, to any scale; 0 = not known. Values are the means of equal cells of the frame, as
- * the pixels of a reduced picture are: all of a picture's pixels make the map of its frame. Frozen value struct. */
+/* A map in the caller's memory, linear, to any scale; 0 = not known. Values are the means of equal cells of the frame,
+ * as the pixels of a reduced picture are: all of a picture's pixels make the map of its frame. Frozen value struct. */
 typedef struct lensprof_map {
     uint32_t columns, rows; /* 2..65536 each */
     uint32_t channels;      /* 1 or 3 (red, green, blue) */
@@ -255,19 +256,20 @@ typedef struct lensprof_map {
     const float *values;    /* [row][column][channel], without gaps */
 } lensprof_map;
 
-/* The falloff of a map, in a frame of width x height px: one polynomial a channel with a common centre, by least squares of
- * the relative error, and a gain grid where they leave more than 0.2 %. Sets vignetting and grid of *profile, which must be
- * an initialised one, removes its covariance and leaves the rest. *worst (may be NULL) receives the largest relative error
- * left, of means over up to 64 values a side in maps of more than 1024. Errors: ARGUMENT, also for values below 0; SIZE;
- * NOT_FINITE; VIGNETTING for a map of which too little is known or that no falloff comes near; MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_map_read(const lensprof_map *map, uint32_t width, uint32_t height,
-                                                                 lensprof_profile *profile, double *worst,
-                                                                 lensprof_error *error);
+/* The falloff of a map, in a frame of width x height px: one polynomial a channel with a common centre, by least
+ * squares of the relative error, and a gain grid where they leave more than 0.2 %. Sets vignetting and grid of
+ * *profile, which must be an initialised one, removes its covariance and leaves the rest. *worst (may be NULL) receives
+ * the largest relative error left, of means over up to 64 values a side in maps of more than 1024. Errors: ARGUMENT,
+ * also for values below 0; SIZE; NOT_FINITE; VIGNETTING for a map of which too little is known or that no falloff comes
+ * near; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_map_read(const lensprof_map *map, uint32_t width,
+                                                                 uint32_t height, lensprof_profile *profile,
+                                                                 double *worst, lensprof_error *error);
 
-/* Falloff and gain grid of a profile as columns x rows values for a frame of width x height px, as in lensprof_map; of 1
- * channel it is the mean of the profile's. The largest attenuation of all channels is 1, so that gains are 1 and more. To
- * write vignette.png, multiply by 65535 (or 255) and round, but to no less than 1.
- * Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; MEMORY. */
+/* Falloff and gain grid of a profile as columns x rows values for a frame of width x height px, as in lensprof_map; of
+ * 1 channel it is the mean of the profile's. The largest attenuation of all channels is 1, so that gains are 1 and
+ * more. To write vignette.png, multiply by 65535 (or 255) and round, but to no less than 1. Errors: ARGUMENT; SIZE;
+ * what lensprof_profile_validate says; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_map_write(const lensprof_profile *profile, uint32_t width,
                                                                   uint32_t height, uint32_t columns, uint32_t rows,
                                                                   uint32_t channels, uint32_t sense, float *values,
@@ -276,8 +278,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_map_write(const lensprof
 /* ---- radical (.crf, .vgn) ------------------------------------------------------------------------------------ */
 
 /* The response file of radical: irradiances of 256 greys in three channels, to any scale; to three TABLEs as
- * lensprof_curves_read. Errors: ARGUMENT; SYNTAX; UNSUPPORTED for a matrix of another type; SIZE; RESPONSE for irradiances
- * that decrease or are none; MEMORY. */
+ * lensprof_curves_read. Errors: ARGUMENT; SYNTAX; UNSUPPORTED for a matrix of another type; SIZE; RESPONSE for
+ * irradiances that decrease or are none; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_response_read(const void *data, size_t bytes,
                                                                               lensprof_response *responses,
                                                                               lensprof_error *error);
@@ -289,15 +291,15 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_response_write(c
                                                                                size_t capacity, size_t *needed,
                                                                                lensprof_error *error);
 
-/* The vignetting file of radical, polynomial of degree 3 or nonparametric. Polynomials whose channels share a centre are
- * rescaled exactly; others, which have one each, and maps are refitted as by lensprof_map_read, in the frame that the file
- * names. profile, *worst (0 where exact) and errors as there; SYNTAX; UNSUPPORTED for other models. */
+/* The vignetting file of radical, polynomial of degree 3 or nonparametric. Polynomials whose channels share a centre
+ * are rescaled exactly; others, which have one each, and maps are refitted as by lensprof_map_read, in the frame that
+ * the file names. profile, *worst (0 where exact) and errors as there; SYNTAX; UNSUPPORTED for other models. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_vignetting_read(const void *data, size_t bytes,
-                                                                                lensprof_profile *profile, double *worst,
-                                                                                lensprof_error *error);
+                                                                                lensprof_profile *profile,
+                                                                                double *worst, lensprof_error *error);
 
-/* Writes a profile for pictures of width x height px: a polynomial, or where it has a gain grid a map of 12 bytes a pixel.
- * Sizes as lensprof_pto_write. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
+/* Writes a profile for pictures of width x height px: a polynomial, or where it has a gain grid a map of 12 bytes a
+ * pixel. Sizes as lensprof_pto_write. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_vignetting_write(const lensprof_profile *profile,
                                                                                  uint32_t width, uint32_t height,
                                                                                  void *data, size_t capacity,
@@ -321,12 +323,14 @@ typedef enum lensprof_dng_form {
  *    channels differ; each is 1 in its centre, so that a gain for all of a channel is left out.
  *  - doubt: a largest relative error above 1 %, and the opcodes of other kinds, which are left out.
  * Visited once, or not at all. Errors (the text names the opcode, from 0): ARGUMENT; SYNTAX; SIZE over 64 gains or
- * 1 Mi points of maps; NOT_FOUND where no opcode is a gain; UNSUPPORTED for an opcode that DNG 1.7 has not and that is not
- * optional, for gains after TrimBounds, and for a map of every 2nd pixel where the layout is none of a mosaic, or of fewer;
- * VIGNETTING for gains not above 0 and for what no falloff comes near; MEMORY; what the visitor returns. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_dng_opcodes_read(const void *bytes, size_t size, uint32_t width, uint32_t height, uint32_t layout,
-                          const char *source, lensprof_import_visitor visit, void *user, lensprof_error *error);
+ * 1 Mi points of maps; NOT_FOUND where no opcode is a gain; UNSUPPORTED for an opcode that DNG 1.7 has not and that is
+ * not optional, for gains after TrimBounds, and for a map of every 2nd pixel where the layout is none of a mosaic, or
+ * of fewer; VIGNETTING for gains not above 0 and for what no falloff comes near; MEMORY; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_dng_opcodes_read(const void *bytes, size_t size, uint32_t width,
+                                                                         uint32_t height, uint32_t layout,
+                                                                         const char *source,
+                                                                         lensprof_import_visitor visit, void *user,
+                                                                         lensprof_error *error);
 
 /* The falloff of a profile as such a list, with one optional opcode, or four. `form`, a lensprof_dng_form:
  *  - RADIAL: 5 coefficients by least squares of the gain's relative error.
@@ -336,73 +340,75 @@ lensprof_dng_opcodes_read(const void *bytes, size_t size, uint32_t width, uint32
  * bytes and without a terminator; on CAPACITY *worst is set too. Errors: ARGUMENT; what lensprof_profile_validate says;
  * UNSUPPORTED for pictures corrected in camera, for RADIAL with falloffs a channel, a gain grid or a centre outside the
  * frame, and for falloffs a channel where layout is GREY; CAPACITY; MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_dng_opcodes_write(const lensprof_profile *profile, uint32_t width, uint32_t height, uint32_t layout,
-                           uint32_t form, void *bytes, size_t capacity, size_t *needed, double *worst,
-                           lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_dng_opcodes_write(const lensprof_profile *profile,
+                                                                          uint32_t width, uint32_t height,
+                                                                          uint32_t layout, uint32_t form, void *bytes,
+                                                                          size_t capacity, size_t *needed,
+                                                                          double *worst, lensprof_error *error);
 
 /* ---- Adobe lens profile (.lcp) ---------------------------------------------------------------------------- */
 
 /* Every entry with a VignetteModel, its properties as attributes or elements, as a profile (docs/formats.md):
- *  - key: Make, Model, Lens (LensPrettyName where there is none), SensorFormatFactor, FocalLength, FocusDistance (INFINITY
- *    from 10 km on), and from the APEX ApertureValue Av the f-number 2^(Av / 2). RAW where CameraRawProfile is True, else
- *    JPEG. Texts, sensor and frame that an entry does not say are those of the first one.
- *  - vignetting: VignetteModelParam1..3 with radii in FocalLengthX longer sides of the frame, rescaled; or, where there are
- *    VignetteModelPiecewiseParam, their refit. Frames without ImageWidth and ImageLength are taken as 3:2. Where
+ *  - key: Make, Model, Lens (LensPrettyName where there is none), SensorFormatFactor, FocalLength, FocusDistance
+ * (INFINITY from 10 km on), and from the APEX ApertureValue Av the f-number 2^(Av / 2). RAW where CameraRawProfile is
+ * True, else JPEG. Texts, sensor and frame that an entry does not say are those of the first one.
+ *  - vignetting: VignetteModelParam1..3 with radii in FocalLengthX longer sides of the frame, rescaled; or, where there
+ * are VignetteModelPiecewiseParam, their refit. Frames without ImageWidth and ImageLength are taken as 3:2. Where
  *    FocalLengthY differs, a map of the frame is fitted, with a gain grid for what is not radial.
- *  - provenance and what is checked first: as lensprof_lensfun_read. doubt, also: a refit that is off by more than 1 %. Of
- *    entries that are not usable, k may be NaN.
- * Errors (the text names the line): ARGUMENT; SIZE over 64 MiB, 2 million elements or attributes, 20000 entries or 1000
- * knots; SYNTAX; MEMORY; what the visitor returns. */
+ *  - provenance and what is checked first: as lensprof_lensfun_read. doubt, also: a refit that is off by more than 1 %.
+ * Of entries that are not usable, k may be NaN. Errors (the text names the line): ARGUMENT; SIZE over 64 MiB, 2 million
+ * elements or attributes, 20000 entries or 1000 knots; SYNTAX; MEMORY; what the visitor returns. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lcp_read(const char *text, size_t bytes, const char *source,
                                                                  lensprof_import_visitor visit, void *user,
                                                                  lensprof_error *error);
 
-/* The falloffs of profiles of one camera, lens, crop factor and processing as a lens profile, with VignetteModelParam1..3
- * and centre. width, height: of the frames; both 0 = not known, of 3:2. Sizes as lensprof_pto_write. Numbers read back
- * within 1e-9 of themselves. Of falloffs a channel the mean is written; distances that are not known are left out. Errors
- * (the text names the profile, counted from 0): as lensprof_lensfun_write; ARGUMENT also for profiles of several cameras
- * or lenses; SIZE for a side of over a million pixels. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lcp_write(const lensprof_profile *const *profiles, uint32_t count,
-                                                                  uint32_t width, uint32_t height, char *text,
-                                                                  size_t capacity, size_t *needed, lensprof_error *error);
+/* The falloffs of profiles of one camera, lens, crop factor and processing as a lens profile, with
+ * VignetteModelParam1..3 and centre. width, height: of the frames; both 0 = not known, of 3:2. Sizes as
+ * lensprof_pto_write. Numbers read back within 1e-9 of themselves. Of falloffs a channel the mean is written; distances
+ * that are not known are left out. Errors (the text names the profile, counted from 0): as lensprof_lensfun_write;
+ * ARGUMENT also for profiles of several cameras or lenses; SIZE for a side of over a million pixels. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lcp_write(const lensprof_profile *const *profiles,
+                                                                  uint32_t count, uint32_t width, uint32_t height,
+                                                                  char *text, size_t capacity, size_t *needed,
+                                                                  lensprof_error *error);
 
 /* ---- Falloffs in the XMP packets of drones' cameras -------------------------------------------------------- */
 
-/* The polynomial that a MicaSense, Parrot Sequoia or DJI camera writes about itself into its pictures, from the picture's
- * XMP packet, as one profile of raw pictures (docs/formats.md). width, height: of the picture, in px.
- *  - Camera:VignettingPolynomial, about Camera:VignettingCenter: 1 + c0 r + c1 r^2 + ..., r in px. An attenuation; of DJI
- *    a gain.
+/* The polynomial that a MicaSense, Parrot Sequoia or DJI camera writes about itself into its pictures, from the
+ * picture's XMP packet, as one profile of raw pictures (docs/formats.md). width, height: of the picture, in px.
+ *  - Camera:VignettingPolynomial, about Camera:VignettingCenter: 1 + c0 r + c1 r^2 + ..., r in px. An attenuation; of
+ * DJI a gain.
  *  - drone-dji:VignettingData, about CalibratedOpticalCenterX and Y: such a gain. It counts before the other one.
- *  - Camera:VignettingPolynomial2D with the powers in ...2DName: an attenuation, sum of c x^i y^j with x, y in 0..1 of the
- *    frame; fitted as a map, with a gain grid.
- * Radial ones are refitted; where even powers come no nearer than 1 %, a gain grid holds the rest. Without a centre that
- * of the frame. key: tiff:Make and tiff:Model. doubt: a refit that is off by more than 1 %; a
- * picture that DJI's VignettingFlag says is corrected already.
- * Visited once, or not at all. Errors: ARGUMENT; SIZE as lensprof_lensfun_read, or over 16 (2D: 64) coefficients; SYNTAX;
- * NOT_FOUND where the packet has none of them; VIGNETTING for a polynomial that is not above 0 in the frame or that no
- * falloff comes near; NOT_FINITE; MEMORY; what the visitor returns. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_drone_xmp_read(const char *text, size_t bytes, uint32_t width, uint32_t height, const char *source,
-                        lensprof_import_visitor visit, void *user, lensprof_error *error);
+ *  - Camera:VignettingPolynomial2D with the powers in ...2DName: an attenuation, sum of c x^i y^j with x, y in 0..1 of
+ * the frame; fitted as a map, with a gain grid. Radial ones are refitted; where even powers come no nearer than 1 %, a
+ * gain grid holds the rest. Without a centre that of the frame. key: tiff:Make and tiff:Model. doubt: a refit that is
+ * off by more than 1 %; a picture that DJI's VignettingFlag says is corrected already. Visited once, or not at all.
+ * Errors: ARGUMENT; SIZE as lensprof_lensfun_read, or over 16 (2D: 64) coefficients; SYNTAX; NOT_FOUND where the packet
+ * has none of them; VIGNETTING for a polynomial that is not above 0 in the frame or that no falloff comes near;
+ * NOT_FINITE; MEMORY; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_drone_xmp_read(const char *text, size_t bytes, uint32_t width,
+                                                                       uint32_t height, const char *source,
+                                                                       lensprof_import_visitor visit, void *user,
+                                                                       lensprof_error *error);
 
 /* ---- Lens shading tables of the Raspberry Pi (libcamera's rpi.alsc) -------------------------------------------- */
 
 /* The falloff of a tuning file of libcamera, of its {"rpi.alsc": ...} or of that object itself, for a sensor of width x
- * height px: gains luminance_lut, times calibrations_Cr for red and calibrations_Cb for blue, at colour temperature `ct`
- * (K; LENSPROF_UNKNOWN: the file's default_ct, else 4500), between the two nearest tables linearly as libcamera does.
- * luminance_strength is not applied: the tables are what was measured. Without both calibrations one curve, else three.
- * columns, rows: of the tables; 0 and 0 for those of 16 x 12 and 32 x 32. profile, *worst and errors as
- * lensprof_map_read; SYNTAX names line or path; UNSUPPORTED for a file with corner_strength, which replaces the table. */
+ * height px: gains luminance_lut, times calibrations_Cr for red and calibrations_Cb for blue, at colour temperature
+ * `ct` (K; LENSPROF_UNKNOWN: the file's default_ct, else 4500), between the two nearest tables linearly as libcamera
+ * does. luminance_strength is not applied: the tables are what was measured. Without both calibrations one curve, else
+ * three. columns, rows: of the tables; 0 and 0 for those of 16 x 12 and 32 x 32. profile, *worst and errors as
+ * lensprof_map_read; SYNTAX names line or path; UNSUPPORTED for a file with corner_strength, which replaces the table.
+ */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_read(const char *text, size_t bytes, double ct,
                                                                   uint32_t columns, uint32_t rows, uint32_t width,
                                                                   uint32_t height, lensprof_profile *profile,
                                                                   double *worst, lensprof_error *error);
 
-/* Writes falloff and gain grid of a profile as {"rpi.alsc": ...}, to be put into a tuning file's `algorithms` in place of
- * its own: tables of columns x rows (16 x 12, or 32 x 32 for a Pi 5; 2 to 256 each) for a sensor of width x height px, to 3
- * decimals as the tuning tool does, of one colour temperature (K; LENSPROF_UNKNOWN: 4500). Sizes as lensprof_pto_write.
- * Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
+/* Writes falloff and gain grid of a profile as {"rpi.alsc": ...}, to be put into a tuning file's `algorithms` in place
+ * of its own: tables of columns x rows (16 x 12, or 32 x 32 for a Pi 5; 2 to 256 each) for a sensor of width x height
+ * px, to 3 decimals as the tuning tool does, of one colour temperature (K; LENSPROF_UNKNOWN: 4500). Sizes as
+ * lensprof_pto_write. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_write(const lensprof_profile *profile, double ct,
                                                                    uint32_t columns, uint32_t rows, uint32_t width,
                                                                    uint32_t height, char *text, size_t capacity,

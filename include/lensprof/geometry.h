@@ -17,8 +17,8 @@ extern "C" {
 typedef enum lensprof_projection {
     LENSPROF_PROJECTION_RECTILINEAR = 0,
     LENSPROF_PROJECTION_CYLINDRICAL = 1,
-    LENSPROF_PROJECTION_CIRCULAR_FISHEYE = 2,   /* equidistant */
-    LENSPROF_PROJECTION_FULLFRAME_FISHEYE = 3,  /* equidistant */
+    LENSPROF_PROJECTION_CIRCULAR_FISHEYE = 2,  /* equidistant */
+    LENSPROF_PROJECTION_FULLFRAME_FISHEYE = 3, /* equidistant */
     LENSPROF_PROJECTION_EQUIRECTANGULAR = 4,
     LENSPROF_PROJECTION_ORTHOGRAPHIC = 8,
     LENSPROF_PROJECTION_STEREOGRAPHIC = 10,
@@ -28,15 +28,15 @@ typedef enum lensprof_projection {
 
 /* One picture's camera. Frozen value struct; all angles in degrees. */
 typedef struct lensprof_camera {
-    uint32_t projection;         /* lensprof_projection */
-    uint32_t width, height;      /* full frame, px */
-    double hfov_deg;             /* horizontal field of view of `width` */
+    uint32_t projection;    /* lensprof_projection */
+    uint32_t width, height; /* full frame, px */
+    double hfov_deg;        /* horizontal field of view of `width` */
     double yaw_deg, pitch_deg, roll_deg;
-    double radial[3];            /* a, b, c of R (a R^3 + b R^2 + c R + 1-a-b-c), R = 1 at half the smaller side */
-    double shift_px[2];          /* d, e: centre shift */
-    double shear_px[2];          /* g, t */
-    double translation[3];       /* TrX, TrY, TrZ */
-    double plane_deg[2];         /* Tpy, Tpp: yaw and pitch of the remapping plane, used with a translation */
+    double radial[3];      /* a, b, c of R (a R^3 + b R^2 + c R + 1-a-b-c), R = 1 at half the smaller side */
+    double shift_px[2];    /* d, e: centre shift */
+    double shear_px[2];    /* g, t */
+    double translation[3]; /* TrX, TrY, TrZ */
+    double plane_deg[2];   /* Tpy, Tpp: yaw and pitch of the remapping plane, used with a translation */
 } lensprof_camera;
 
 /* LENSPROF_OK when the camera can be evaluated: known projection, sizes > 0, finite numbers, field of view

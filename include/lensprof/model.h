@@ -31,11 +31,11 @@ typedef enum lensprof_response_kind {
 /* A response curve. Fill it with one of the _set_ functions, which leave it valid. Frozen value struct.
  * table[] holds f on the grid x = j/1023 for every kind, so that a reader may ignore the rest. */
 typedef struct lensprof_response {
-    uint32_t kind;                            /* lensprof_response_kind */
-    uint32_t modes;                           /* EMOR: modes in use, 0..25; else 0 */
-    double gamma;                             /* GAMMA: exponent > 0; else 1 */
-    double emor[LENSPROF_EMOR_MODES];         /* EMOR: coefficients, 0 beyond `modes` */
-    double table[LENSPROF_RESPONSE_SAMPLES];  /* f(j/1023) */
+    uint32_t kind;                           /* lensprof_response_kind */
+    uint32_t modes;                          /* EMOR: modes in use, 0..25; else 0 */
+    double gamma;                            /* GAMMA: exponent > 0; else 1 */
+    double emor[LENSPROF_EMOR_MODES];        /* EMOR: coefficients, 0 beyond `modes` */
+    double table[LENSPROF_RESPONSE_SAMPLES]; /* f(j/1023) */
 } lensprof_response;
 
 /* f(x) = x. */
@@ -46,13 +46,13 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_gamma(lensp
 
 /* f = f0 + sum coefficients[l] h_l for `modes` (0..25) coefficients of the EMoR model (linear domain).
  * LENSPROF_ERROR_RESPONSE when the curve decreases anywhere on its grid. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_response_set_emor(lensprof_response *response, const double *coefficients, uint32_t modes);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_emor(lensprof_response *response,
+                                                                          const double *coefficients, uint32_t modes);
 
 /* Piecewise linear curve through `count` >= 2 values on a uniform grid of irradiance, resampled to the 1024
  * grid. values[0] must be 0 and values[count-1] must be 1, each within 1e-6; they become exact. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_response_set_table(lensprof_response *response, const double *values, uint32_t count);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_table(lensprof_response *response,
+                                                                           const double *values, uint32_t count);
 
 /* LENSPROF_OK when kind and its numbers are in range and the table is finite, non-decreasing on all 1024 samples, with
  * ends 0 and 1. Whether the table is the curve of its kind is not checked. */
@@ -87,8 +87,7 @@ LENSPROF_API double lensprof_vignetting_r2(const lensprof_vignetting *vignetting
 
 /* LENSPROF_OK when finite, |k| <= 1e6, |center| <= 1 in each coordinate, and M >= 0.001 for every r from the centre to
  * the corner farthest from it (in any frame shape: r <= 1 + |center|). */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_vignetting_validate(const lensprof_vignetting *vignetting);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_vignetting_validate(const lensprof_vignetting *vignetting);
 
 /* Attenuation on a grid over the frame, multiplied to M: what a radial polynomial leaves (a tilted sensor, a hood, a
  * fisheye's rim). Bilinear between nodes; node (0, 0) lies at the frame's first pixel, node (columns-1, rows-1) at its

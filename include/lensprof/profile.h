@@ -26,11 +26,11 @@ typedef struct lensprof_profile_key {
     char camera_maker[64];
     char camera_model[64];
     char lens[128];
-    char unit[64];      /* serial numbers, of one camera and lens; empty = any of the model */
-    double crop_factor; /* 43.27 mm over the diagonal of the sensor, > 0 or LENSPROF_UNKNOWN */
-    double focal_mm;    /* focal length, > 0 or LENSPROF_UNKNOWN */
-    double aperture;    /* f-number, > 0 or LENSPROF_UNKNOWN */
-    double distance_m;  /* focus distance, > 0 (INFINITY allowed) or LENSPROF_UNKNOWN */
+    char unit[64];       /* serial numbers, of one camera and lens; empty = any of the model */
+    double crop_factor;  /* 43.27 mm over the diagonal of the sensor, > 0 or LENSPROF_UNKNOWN */
+    double focal_mm;     /* focal length, > 0 or LENSPROF_UNKNOWN */
+    double aperture;     /* f-number, > 0 or LENSPROF_UNKNOWN */
+    double distance_m;   /* focus distance, > 0 (INFINITY allowed) or LENSPROF_UNKNOWN */
     uint32_t processing; /* lensprof_processing */
     uint32_t reserved;   /* 0 */
 } lensprof_profile_key;
@@ -85,10 +85,10 @@ typedef enum lensprof_pack {
 
 /* The profile as a blob (docs/blob.md): little-endian, with a version and a CRC-32, for lensprof_plan_init (apply.h) to
  * read in place. It holds the key but its unit and crop factor, the responses (samples in single precision),
- * vignettings, gain grid, and of the provenance all but source and doubt: 132 bytes and the texts for a linear response,
- * 4 kB more for each curve of samples. The same profile gives the same bytes on every machine. `flags`: lensprof_pack,
- * 0 = none. *bytes receives the size of a valid profile's blob, whatever the capacity; CAPACITY when the buffer is
- * smaller (capacity 0 asks for the size, blob may be NULL then), and nothing is written to it. Errors: what
+ * vignettings, gain grid, and of the provenance all but source and doubt: 132 bytes and the texts for a linear
+ * response, 4 kB more for each curve of samples. The same profile gives the same bytes on every machine. `flags`:
+ * lensprof_pack, 0 = none. *bytes receives the size of a valid profile's blob, whatever the capacity; CAPACITY when the
+ * buffer is smaller (capacity 0 asks for the size, blob may be NULL then), and nothing is written to it. Errors: what
  * lensprof_profile_validate says; ARGUMENT for unknown flags. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags,
                                                                      void *blob, size_t capacity, size_t *bytes);

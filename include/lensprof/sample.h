@@ -1,7 +1,7 @@
 /* lensprof/sample.h - correspondences: the same scene point seen in two pictures.
  *
- * Threads: calls are independent of each other; the pictures are only read. One call uses as many threads as its options
- * say, all gone when it returns; the pairs do not depend on their number: same input, same bytes. */
+ * Threads: calls are independent of each other; the pictures are only read. One call uses as many threads as its
+ * options say, all gone when it returns; the pairs do not depend on their number: same input, same bytes. */
 #ifndef LENSPROF_SAMPLE_H
 #define LENSPROF_SAMPLE_H
 
@@ -33,18 +33,18 @@ typedef struct lensprof_observation {
  * pixels from (u, v) * reduction on, or of some pixels of it whose places vary from square to square. Frozen value
  * struct. */
 typedef struct lensprof_sample_image {
-    lensprof_image view;    /* the frame, reduced or not; layouts with alpha: alpha below half = excluded */
-    lensprof_camera camera; /* full frame */
-    uint32_t reduction;     /* side of that square, px; 1 = full size. view.width * reduction <= camera.width */
-    uint32_t every_pixel;   /* 1: no pixel of a patch may be outside [black, white]; 0: its robust mean counts */
-    const uint8_t *mask;    /* one byte a view pixel, 0 = excluded; NULL = all included */
+    lensprof_image view;      /* the frame, reduced or not; layouts with alpha: alpha below half = excluded */
+    lensprof_camera camera;   /* full frame */
+    uint32_t reduction;       /* side of that square, px; 1 = full size. view.width * reduction <= camera.width */
+    uint32_t every_pixel;     /* 1: no pixel of a patch may be outside [black, white]; 0: its robust mean counts */
+    const uint8_t *mask;      /* one byte a view pixel, 0 = excluded; NULL = all included */
     ptrdiff_t mask_row_bytes; /* at least the width of the view, or at most minus that; unused without a mask */
-    double black, white;    /* samples outside [black, white] in any channel are not used; 0..1 */
+    double black, white;      /* samples outside [black, white] in any channel are not used; 0..1 */
 } lensprof_sample_image;
 
 typedef enum lensprof_sampling {
     LENSPROF_SAMPLING_BALANCED = 0, /* balanced over image pairs, radius and grey level; quiet patches preferred */
-    LENSPROF_SAMPLING_PAPER = 1,  /* d'Angelo 2007 section 5.1: 5n random points, 10 radius bins, n/10 lowest gradient */
+    LENSPROF_SAMPLING_PAPER = 1, /* d'Angelo 2007 section 5.1: 5n random points, 10 radius bins, n/10 lowest gradient */
     LENSPROF_SAMPLING_BRACKET = 2 /* balanced, without asking whether two places look alike: near black and white they
                                      do not. For pictures by a camera that did not move */
 } lensprof_sampling;
@@ -66,25 +66,25 @@ typedef struct lensprof_sample_options {
 LENSPROF_API void lensprof_sample_options_init(lensprof_sample_options *options);
 
 /* Finds correspondences between `count` pictures. Balanced sampling corrects the cameras first, between neighbours and
- * for its own use, where the pictures show that they are some pixels off, leaves out places whose surroundings differ in
- * the two, and all places of two pictures that hardly show the same anywhere.
- * pairs[capacity] is the caller's; *found receives the number written. With capacity 0, *found receives the number
- * wanted, which is the capacity to give, and nothing is sampled; a smaller one is refused with CAPACITY, whatever the
- * overlaps hold. Errors: fewer than two images ARGUMENT; NaN in a float view NOT_FINITE (the text names image and
- * pixel); NO_OVERLAP; NO_SAMPLES when overlaps exist but every sample is masked, black or saturated, or does not show
- * the same; CANCELLED; MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_sample_overlap(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
-                        lensprof_pair *pairs, uint32_t capacity, uint32_t *found, lensprof_error *error);
+ * for its own use, where the pictures show that they are some pixels off, leaves out places whose surroundings differ
+ * in the two, and all places of two pictures that hardly show the same anywhere. pairs[capacity] is the caller's;
+ * *found receives the number written. With capacity 0, *found receives the number wanted, which is the capacity to
+ * give, and nothing is sampled; a smaller one is refused with CAPACITY, whatever the overlaps hold. Errors: fewer than
+ * two images ARGUMENT; NaN in a float view NOT_FINITE (the text names image and pixel); NO_OVERLAP; NO_SAMPLES when
+ * overlaps exist but every sample is masked, black or saturated, or does not show the same; CANCELLED; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sample_overlap(const lensprof_sample_options *options,
+                                                                       const lensprof_sample_image *images,
+                                                                       uint32_t count, lensprof_pair *pairs,
+                                                                       uint32_t capacity, uint32_t *found,
+                                                                       lensprof_error *error);
 
 /* Finds points that two pictures or more see, each in up to 16 of those that see it, for lensprof_fit_radiance.
  * Balanced: spread evenly over what the pictures see, of those near each other the quietest, balanced over radius and
- * grey level; with the same corrections as lensprof_sample_overlap. Paper (Goldman & Chen 2005, section 5): uniform in a
- * cylindrical system, single points, the cameras as they are. A channel above white in all of a patch has the value 1:
- * it is saturated, and that is kept; a patch partly above white is not used. Every point has an observation that is not
- * saturated.
- * observations[capacity] is the caller's, by point; *found receives the number written, with capacity 0 the capacity to
- * give. Errors: as lensprof_sample_overlap. */
+ * grey level; with the same corrections as lensprof_sample_overlap. Paper (Goldman & Chen 2005, section 5): uniform in
+ * a cylindrical system, single points, the cameras as they are. A channel above white in all of a patch has the value
+ * 1: it is saturated, and that is kept; a patch partly above white is not used. Every point has an observation that is
+ * not saturated. observations[capacity] is the caller's, by point; *found receives the number written, with capacity 0
+ * the capacity to give. Errors: as lensprof_sample_overlap. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_sample_tracks(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
                        lensprof_observation *observations, uint32_t capacity, uint32_t *found, lensprof_error *error);

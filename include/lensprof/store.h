@@ -3,9 +3,9 @@
  * Every call is one transaction, or part of the caller's: it happens whole or not at all, also when the process is
  * killed or the power fails. The file is in write-ahead mode: readers and a writer do not hinder each other, and calls
  * wait up to 5 s for another writer (then BUSY). While it is open a -wal and a -shm lie beside it; the last to close
- * removes them. A file of an older layout is read as it is; the first call that writes brings it up to date, which older
- * versions then refuse.
- * Threads: a handle belongs to one thread at a time; several processes may open the same file. */
+ * removes them. A file of an older layout is read as it is; the first call that writes brings it up to date, which
+ * older versions then refuse. Threads: a handle belongs to one thread at a time; several processes may open the same
+ * file. */
 #ifndef LENSPROF_STORE_H
 #define LENSPROF_STORE_H
 
@@ -18,9 +18,8 @@ extern "C" {
 typedef struct lensprof_store lensprof_store;
 
 typedef enum lensprof_store_mode {
-    LENSPROF_STORE_READ =
-        0, /* the file must exist; nothing is written (but what a killed writer left is completed or undone); works on
-            * read-only media, where the file was closed */
+    LENSPROF_STORE_READ = 0,  /* the file must exist; nothing is written (but what a killed writer left is completed or
+                               * undone); works on  read-only media, where the file was closed */
     LENSPROF_STORE_WRITE = 1, /* the file must exist */
     LENSPROF_STORE_CREATE = 2 /* write, and make the file when there is none */
 } lensprof_store_mode;
@@ -49,8 +48,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find(lensprof_stor
 
 /* What stands for a focus distance that is not known. */
 typedef enum lensprof_distance_rule {
-    LENSPROF_DISTANCE_WEAKEST = 0, /* of the falloffs at all stored distances the weakest, radius by radius: what is taken
-                                      out was there, whatever the distance */
+    LENSPROF_DISTANCE_WEAKEST = 0, /* of the falloffs at all stored distances the weakest, radius by radius: what is
+                                      taken out was there, whatever the distance */
     LENSPROF_DISTANCE_FARTHEST = 1 /* that at the farthest one */
 } lensprof_distance_rule;
 
@@ -68,34 +67,34 @@ LENSPROF_API void lensprof_lookup_options_init(lensprof_lookup_options *options)
 
 /* How a lookup came to its answer. Frozen value struct. */
 typedef struct lensprof_lookup {
-    uint32_t exact;        /* 1: a stored profile, as it is */
-    uint32_t rows;         /* profiles that were used, 1..LENSPROF_LOOKUP_ROWS */
+    uint32_t exact;                      /* 1: a stored profile, as it is */
+    uint32_t rows;                       /* profiles that were used, 1..LENSPROF_LOOKUP_ROWS */
     int64_t id[LENSPROF_LOOKUP_ROWS];    /* of them, nearest first */
     double weight[LENSPROF_LOOKUP_ROWS]; /* of each; they add up to about 1, and may be below 0 */
-    double distance;       /* from the setting to the nearest one; 0 = the same, refused beyond 0.5: two stops from wide
-                              open, a factor 2 in focal length, 0.4 m focus against infinity */
-    double sigma;          /* standard error of M in the corner, a 68 % band; LENSPROF_UNKNOWN for an exact one without
-                              covariance */
-    double name_score;     /* of the lens's name (of the camera's, where no lens was asked for): 1 the same but for case and
-                              outer blanks, 0.9 but for signs and blanks, 0.8 but for a maker in front or its spelling, or
-                              a camera's name in another country; 0.6 the same words in another order or form, all
-                              numbers and generations the same, where nothing better is stored */
-    char reason[256];      /* what to mind; where nothing is found, why */
+    double distance;   /* from the setting to the nearest one; 0 = the same, refused beyond 0.5: two stops from wide
+                          open, a factor 2 in focal length, 0.4 m focus against infinity */
+    double sigma;      /* standard error of M in the corner, a 68 % band; LENSPROF_UNKNOWN for an exact one without
+                          covariance */
+    double name_score; /* of the lens's name (of the camera's, where no lens was asked for): 1 the same but for case and
+                          outer blanks, 0.9 but for signs and blanks, 0.8 but for a maker in front or its spelling, or
+                          a camera's name in another country; 0.6 the same words in another order or form, all
+                          numbers and generations the same, where nothing better is stored */
+    char reason[256];  /* what to mind; where nothing is found, why */
 } lensprof_lookup;
 
 /* The profile for a setting: a stored one, or the falloff predicted from those of the same lens at other settings
  * (docs/database.md says how). The lens's name decides, then the camera, unit and sensor - without a lens the camera,
- * whose profiles without a lens, or of its only lens, count (their focal lengths to 2 % or 0.1 mm, for such cameras round
- * them); profiles of the key's unit before those of any, of the key's camera before those of a lens alone; of these,
- * those of the smallest sensor that is not smaller than the key's, their radii rescaled, and of the smallest of all where
- * the key's is not known. A predicted profile has key `key`, the response of the nearest profile, no gain grid, and
- * provenance method "lookup". Nothing is written. NOT_FOUND, with *lookup filled as far as it goes, where there is no
- * such lens, or nothing near enough; profile is then untouched. */
+ * whose profiles without a lens, or of its only lens, count (their focal lengths to 2 % or 0.1 mm, for such cameras
+ * round them); profiles of the key's unit before those of any, of the key's camera before those of a lens alone; of
+ * these, those of the smallest sensor that is not smaller than the key's, their radii rescaled, and of the smallest of
+ * all where the key's is not known. A predicted profile has key `key`, the response of the nearest profile, no gain
+ * grid, and provenance method "lookup". Nothing is written. NOT_FOUND, with *lookup filled as far as it goes, where
+ * there is no such lens, or nothing near enough; profile is then untouched. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup(lensprof_store *store,
                                                                      const lensprof_profile_key *key,
                                                                      const lensprof_lookup_options *options,
-                                                                     lensprof_profile *profile,
-                                                                     lensprof_lookup *lookup, lensprof_error *error);
+                                                                     lensprof_profile *profile, lensprof_lookup *lookup,
+                                                                     lensprof_error *error);
 
 /* From here to commit or rollback all calls on this handle are one transaction, which makes thousands of them fast.
  * Closing the store rolls back. Errors: READ_ONLY, BUSY, ... ; ARGUMENT for a second begin, or an end without one. */
@@ -123,24 +122,26 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list(lensprof_stor
                                                                    uint32_t *found, lensprof_error *error);
 
 /* Whether a profile is stored already: *id receives that of one with the same key, content and provenance, whatever its
- * method and software, or 0. Numbers must be equal; of responses those that their kind has. For those who import, before
- * a put: the store must be open for writing. Errors: what lensprof_profile_validate says; the store's. */
+ * method and software, or 0. Numbers must be equal; of responses those that their kind has. For those who import,
+ * before a put: the store must be open for writing. Errors: what lensprof_profile_validate says; the store's. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find_same(lensprof_store *store,
                                                                         const lensprof_profile *profile, int64_t *id,
                                                                         lensprof_error *error);
 
-/* The profile of the same database that one holds, the prior of its fit, whose pictures are in it: the number at the end of
- * the method, as in "transfer+12" and "transfer+12 (forced)"; 0 = none. Ids are a database's own: who copies a profile to
- * another one sets what it is there, or 0, as lensprof_store_merge does. ARGUMENT for an id below 0; CAPACITY, and nothing
- * is changed, where the method leaves no room. */
+/* The profile of the same database that one holds, the prior of its fit, whose pictures are in it: the number at the
+ * end of the method, as in "transfer+12" and "transfer+12 (forced)"; 0 = none. Ids are a database's own: who copies a
+ * profile to another one sets what it is there, or 0, as lensprof_store_merge does. ARGUMENT for an id below 0;
+ * CAPACITY, and nothing is changed, where the method leaves no room. */
 LENSPROF_API int64_t lensprof_provenance_prior(const lensprof_provenance *provenance);
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_provenance_set_prior(lensprof_provenance *provenance, int64_t id);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_provenance_set_prior(lensprof_provenance *provenance,
+                                                                             int64_t id);
 
-/* Adds every profile of `other`, another open database, that lensprof_store_find_same does not find, with its provenance as
- * it is, but that what it holds is named by its id here; the oldest first. A known one keeps its method, unless only the
- * other database knows what it holds. All or none, and never twice: merged again, nothing is added. *added and *known (may be NULL) receive how many were and how many were there. `other` is only read,
- * whatever its layout. Errors: ARGUMENT for the database itself; what lensprof_store_put and, of `other`,
- * lensprof_store_get say: the text names the file and the damaged profile. */
+/* Adds every profile of `other`, another open database, that lensprof_store_find_same does not find, with its
+ * provenance as it is, but that what it holds is named by its id here; the oldest first. A known one keeps its method,
+ * unless only the other database knows what it holds. All or none, and never twice: merged again, nothing is added.
+ * *added and *known (may be NULL) receive how many were and how many were there. `other` is only read, whatever its
+ * layout. Errors: ARGUMENT for the database itself; what lensprof_store_put and, of `other`, lensprof_store_get say:
+ * the text names the file and the damaged profile. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *other,
                                                                     uint32_t *added, uint32_t *known,
                                                                     lensprof_error *error);
@@ -160,9 +161,8 @@ typedef lensprof_status (*lensprof_fault_visitor)(void *user, const lensprof_sto
  * named more than once. *profiles and *faults (may be NULL) receive how many there are; faults are no error. One
  * transaction, which writes nothing. visit may be NULL. Errors: the store's, but not for damage that it could get
  * past; what the visitor returns. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_check(lensprof_store *store,
-                                                                    lensprof_fault_visitor visit, void *user,
-                                                                    uint32_t *profiles, uint32_t *faults,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_check(lensprof_store *store, lensprof_fault_visitor visit,
+                                                                    void *user, uint32_t *profiles, uint32_t *faults,
                                                                     lensprof_error *error);
 
 #define LENSPROF_STATS_GROUPS 8
@@ -177,18 +177,18 @@ typedef struct lensprof_store_group {
 /* What is in a database. Names that differ in ASCII case or outer blanks are one. Frozen value struct. */
 typedef struct lensprof_store_stats {
     uint32_t profiles;
-    uint32_t cameras, lenses, units; /* different ones that are known */
-    uint32_t processing[3];          /* profiles, by lensprof_processing */
+    uint32_t cameras, lenses, units;                 /* different ones that are known */
+    uint32_t processing[3];                          /* profiles, by lensprof_processing */
     uint32_t with_covariance, with_grid, with_doubt; /* profiles */
     uint32_t methods, sources;                       /* different ones */
-    double focal_mm[2];              /* smallest and largest that is known; LENSPROF_UNKNOWN where none is */
+    double focal_mm[2]; /* smallest and largest that is known; LENSPROF_UNKNOWN where none is */
     double aperture[2];
     double distance_m[2];
     lensprof_store_group method[LENSPROF_STATS_GROUPS]; /* those with the most profiles, largest first */
     lensprof_store_group source[LENSPROF_STATS_GROUPS];
-    int64_t bytes;                   /* of the file, what a log beside it holds included */
-    uint32_t layout;                 /* number of profiles/schema */
-    uint32_t reserved;               /* 0 */
+    int64_t bytes;     /* of the file, what a log beside it holds included */
+    uint32_t layout;   /* number of profiles/schema */
+    uint32_t reserved; /* 0 */
 } lensprof_store_stats;
 
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_get_stats(lensprof_store *store,

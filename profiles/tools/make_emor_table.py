@@ -23,7 +23,7 @@ if len(curves) != 1 + MODES or any(len(c) != SAMPLES for c in curves):
 print("""/* Made by profiles/tools/make_emor_table.py from emor.txt; do not edit.
  * Empirical Model of Response (EMoR), (c) 2004 Computer Vision Laboratory, Columbia University; see NOTICE.
  * Row 0 is the mean curve f0, row l is the mode h_l, on the uniform irradiance grid j/1023. */
-#include "emor_table.h"
+#include "core/emor_table.h"
 
 const double lp_emor_table[1 + LENSPROF_EMOR_MODES][LENSPROF_RESPONSE_SAMPLES] = {""")
 for curve in curves:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures how the exponent gamma of a camera follows from the shape of its response.
 
-    make_gamma_prior.py dorfCurves.txt > src/fit/gamma_prior_table.hpp          (needs numpy)
+    make_gamma_prior.py dorfCurves.txt > src/fit/prior/gamma_prior_table.hpp          (needs numpy)
 
 Pictures leave a common exponent of response, falloff and exposures open, but not the response's shape, by which we mean
 what all members of the family f(x^(1/gamma)) share. Every curve of the Database of Response Functions (Grossberg &
@@ -83,7 +83,7 @@ names, curves = read(sys.argv[1])
 group = groups(names, curves)
 position, shape = map(np.array, zip(*[position_and_shape(c) for c in curves]))
 print("// Made by profiles/tools/make_gamma_prior.py; do not edit.\n#pragma once\n")
-print("#include \"gamma_prior.hpp\"\n\nnamespace lensprof {\n")
+print("#include \"fit/prior/gamma_prior.hpp\"\n\nnamespace lensprof {\n")
 print("constexpr double kGaugeIrradiance = %g, kShapePoints[3] = {%s}, kLargestShape = %g;\n"
       % (IRRADIANCE, numbers(POINTS), LARGEST))
 print("// By lensprof_camera_kind.\nconstexpr GammaPrior kGammaPriors[3] = {")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the basis of the logarithm of inverse responses that the method `transfer-function` fits.
 
-    make_log_emor.py dorfCurves.txt > src/fit/log_emor_table.cpp          (needs numpy)
+    make_log_emor.py dorfCurves.txt > src/fit/methods/transfer_function/log_emor_table.cpp          (needs numpy)
 
 Kim & Pollefeys 2004, section 2.3: principal components of g(I) = ln f^-1(I) over the curves of the Database of Response
 Functions (Grossberg & Nayar, Columbia University), at the grey levels 1..255 of 255: at level 0 every logarithm is minus
@@ -43,7 +43,7 @@ def rows(values):
 
 print("""// Made by profiles/tools/make_log_emor.py from dorfCurves.txt; do not edit.
 // Principal components of ln f^-1 over the Database of Response Functions; see NOTICE.
-#include "log_inverse.hpp"
+#include "fit/methods/transfer_function/log_inverse.hpp"
 
 namespace lensprof {
 

@@ -6,8 +6,8 @@ correlations.
 
 emor.txt: see make_emor_table.py. dorfCurves.txt: the Database of Response Functions (Grossberg & Nayar, Columbia University),
 six lines a curve (name, kind, "I =", 1024 irradiances, "B =", 1024 grey values). The curves themselves are not part of
-lensprof; of the numbers printed here the first 25 are kEmorSigma in src/fit/prior.cpp, the others, of all pairs of modes
-below the diagonal, kEmorCorrelation in src/fit/response_prior_table.cpp.
+lensprof; of the numbers printed here the first 25 are kEmorSigma in src/fit/prior/prior.cpp, the others, of all pairs of modes
+below the diagonal, kEmorCorrelation in src/fit/prior/response_prior_table.cpp.
 """
 import re
 import sys

@@ -1,20 +1,20 @@
 /* Reading profile blobs (docs/blob.md) where they lie: nothing is trusted, nothing is kept but the view. */
-#include "blob.h"
+#include "core/blob.h"
 
 #include <math.h>
 
-#include "gain_grid.h"
-#include "profile.h"
-#include "response.h"
+#include "core/gain_grid.h"
+#include "core/profile.h"
+#include "core/response.h"
 
 #define CRC_BYTES 4
 #define FRAME_BYTES (LP_BLOB_BYTES + 4 + CRC_BYTES) /* what every layout has: magic, layout, length, CRC */
 
-uint32_t lp_crc32(const uint8_t *bytes, size_t count)
-{
-    static const uint32_t of_nibble[16] = { /* the remainder of each: half a byte a step, 64 bytes of table */
-        0x00000000, 0x1DB71064, 0x3B6E20C8, 0x26D930AC, 0x76DC4190, 0x6B6B51F4, 0x4DB26158, 0x5005713C,
-        0xEDB88320, 0xF00F9344, 0xD6D6A3E8, 0xCB61B38C, 0x9B64C2B0, 0x86D3D2D4, 0xA00AE278, 0xBDBDF21C};
+uint32_t lp_crc32(const uint8_t *bytes, size_t count) {
+    static const uint32_t of_nibble[16] = {/* the remainder of each: half a byte a step, 64 bytes of table */
+                                           0x00000000, 0x1DB71064, 0x3B6E20C8, 0x26D930AC, 0x76DC4190, 0x6B6B51F4,
+                                           0x4DB26158, 0x5005713C, 0xEDB88320, 0xF00F9344, 0xD6D6A3E8, 0xCB61B38C,
+                                           0x9B64C2B0, 0x86D3D2D4, 0xA00AE278, 0xBDBDF21C};
     uint32_t crc = 0xFFFFFFFF;
     for (size_t i = 0; i < count; i++) {
         crc ^= bytes[i];
@@ -31,8 +31,7 @@ typedef struct reader {
 } reader;
 
 /* The next `count` bytes; NULL when there are not so many. */
-static const uint8_t *take(reader *r, size_t count)
-{
+static const uint8_t *take(reader *r, size_t count) {
     if (count > r->left) return NULL;
     const uint8_t *at = r->at;
     r->at += count;
@@ -42,8 +41,7 @@ static const uint8_t *take(reader *r, size_t count)
 
 /* ---- parts ---- */
 
-static int open_falloff(lp_blob *blob, reader *r)
-{
+static int open_falloff(lp_blob *blob, reader *r) {
     lp_model *m = &blob->model;
     m->vignettings = blob->bytes[LP_BLOB_VIGNETTINGS];
     if (m->vignettings != 1 && m->vignettings != 3) return 0;
@@ -58,8 +56,7 @@ static int open_falloff(lp_blob *blob, reader *r)
 }
 
 /* From 0 to 1 and nowhere down. */
-static int is_curve(const struct lp_model_response *response)
-{
+static int is_curve(const struct lp_model_response *response) {
     double last = 0.0;
     for (uint32_t j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) {
         const double value = lp_model_sample(response, j);
@@ -69,8 +66,7 @@ static int is_curve(const struct lp_model_response *response)
     return last == 1.0;
 }
 
-static int open_response(lp_blob *blob, uint32_t c, reader *r)
-{
+static int open_response(lp_blob *blob, uint32_t c, reader *r) {
     struct lp_model_response *response = &blob->model.response[c];
     const uint8_t *head = take(r, 4);
     if (!head || head[2] || head[3]) return 0;
@@ -92,8 +88,7 @@ static int open_response(lp_blob *blob, uint32_t c, reader *r)
     return is_curve(response);
 }
 
-static int open_responses(lp_blob *blob, reader *r)
-{
+static int open_responses(lp_blob *blob, reader *r) {
     const uint32_t responses = blob->bytes[LP_BLOB_RESPONSES];
     if (responses != 1 && responses != 3) return 0;
     blob->model.responses = responses;
@@ -102,8 +97,7 @@ static int open_responses(lp_blob *blob, reader *r)
     return 1;
 }
 
-static int open_grid(lp_blob *blob, reader *r)
-{
+static int open_grid(lp_blob *blob, reader *r) {
     lp_model *m = &blob->model;
     const uint8_t *grid = blob->bytes + LP_BLOB_GRID;
     m->channels = grid[0], m->columns = grid[1], m->rows = grid[2];
@@ -117,8 +111,7 @@ static int open_grid(lp_blob *blob, reader *r)
     return 1;
 }
 
-static int open_covariance(lp_blob *blob, reader *r)
-{
+static int open_covariance(lp_blob *blob, reader *r) {
     const uint32_t n = blob->bytes[LP_BLOB_COVARIANCE];
     if (n > LENSPROF_COVARIANCE_MAX) return 0;
     const uint8_t *at = blob->covariance = take(r, 8 * n * (n + 1) / 2);
@@ -132,8 +125,7 @@ static int open_covariance(lp_blob *blob, reader *r)
 /* ---- texts ---- */
 
 /* Text number `index` of the five. The validate functions look at it; that no 0 is inside is seen here. */
-static int copy_text(const lp_blob *blob, uint32_t index, char *text, size_t capacity)
-{
+static int copy_text(const lp_blob *blob, uint32_t index, char *text, size_t capacity) {
     const uint8_t *lengths = blob->bytes + LP_BLOB_TEXTS, *from = blob->text;
     const uint32_t length = lengths[index];
     if (length >= capacity) return 0;
@@ -146,8 +138,7 @@ static int copy_text(const lp_blob *blob, uint32_t index, char *text, size_t cap
     return 1;
 }
 
-int lp_blob_key(const lp_blob *blob, lensprof_profile_key *key)
-{
+int lp_blob_key(const lp_blob *blob, lensprof_profile_key *key) {
     const uint8_t *b = blob->bytes;
     memset(key->unit, 0, sizeof key->unit);
     key->crop_factor = LENSPROF_UNKNOWN;
@@ -161,8 +152,7 @@ int lp_blob_key(const lp_blob *blob, lensprof_profile_key *key)
            && copy_text(blob, 2, key->lens, sizeof key->lens);
 }
 
-int lp_blob_provenance(const lp_blob *blob, lensprof_provenance *provenance)
-{
+int lp_blob_provenance(const lp_blob *blob, lensprof_provenance *provenance) {
     const uint8_t *b = blob->bytes;
     memset(provenance->source, 0, sizeof provenance->source);
     memset(provenance->doubt, 0, sizeof provenance->doubt);
@@ -175,22 +165,19 @@ int lp_blob_provenance(const lp_blob *blob, lensprof_provenance *provenance)
            && copy_text(blob, 4, provenance->software, sizeof provenance->software);
 }
 
-static int open_texts(lp_blob *blob, reader *r)
-{
+static int open_texts(lp_blob *blob, reader *r) {
     const uint8_t *lengths = blob->bytes + LP_BLOB_TEXTS;
     blob->text = take(r, (size_t)lengths[0] + lengths[1] + lengths[2] + lengths[3] + lengths[4]);
     return blob->text != NULL;
 }
 
 /* A function of its own: it is the one that needs room on the stack, a few hundred bytes. */
-static int is_key(const lp_blob *blob)
-{
+static int is_key(const lp_blob *blob) {
     lensprof_profile_key key;
     return lp_blob_key(blob, &key) && lensprof_profile_key_validate(&key) == LENSPROF_OK;
 }
 
-static int is_provenance(const lp_blob *blob)
-{
+static int is_provenance(const lp_blob *blob) {
     lensprof_provenance provenance;
     return lp_blob_provenance(blob, &provenance) && lp_provenance_validate(&provenance) == LENSPROF_OK;
 }
@@ -198,8 +185,7 @@ static int is_provenance(const lp_blob *blob)
 /* ---- the whole ---- */
 
 /* The frame, which all layouts share, tells what is damaged from what is only newer. */
-static lensprof_status check_frame(const uint8_t *b, size_t count)
-{
+static lensprof_status check_frame(const uint8_t *b, size_t count) {
     if (count < FRAME_BYTES || b[0] != 'L' || b[1] != 'P' || b[2] != 'R' || b[3] != 'F') return LENSPROF_ERROR_CORRUPT;
     if (lp_u32_at(b + LP_BLOB_BYTES) != count) return LENSPROF_ERROR_CORRUPT;
     if (lp_crc32(b, count - CRC_BYTES) != lp_u32_at(b + count - CRC_BYTES)) return LENSPROF_ERROR_CORRUPT;
@@ -208,15 +194,13 @@ static lensprof_status check_frame(const uint8_t *b, size_t count)
     return layout == LP_BLOB_LAYOUT ? LENSPROF_OK : LENSPROF_ERROR_CORRUPT;
 }
 
-static int is_zero(const uint8_t *bytes, uint32_t count)
-{
+static int is_zero(const uint8_t *bytes, uint32_t count) {
     for (uint32_t i = 0; i < count; i++)
         if (bytes[i]) return 0;
     return 1;
 }
 
-lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob)
-{
+lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob) {
     const uint8_t *b = bytes;
     const lensprof_status status = check_frame(b, count);
     if (status != LENSPROF_OK) return status;

@@ -13,40 +13,37 @@
 /* Byte offsets of the fixed part. */
 enum lp_blob_offset {
     LP_BLOB_MAGIC = 0,
-    LP_BLOB_VERSION = 4,        /* u16, then u16 0 */
-    LP_BLOB_BYTES = 8,          /* u32: of the whole blob */
-    LP_BLOB_PROCESSING = 12,    /* bytes from here on */
+    LP_BLOB_VERSION = 4,     /* u16, then u16 0 */
+    LP_BLOB_BYTES = 8,       /* u32: of the whole blob */
+    LP_BLOB_PROCESSING = 12, /* bytes from here on */
     LP_BLOB_RESPONSES = 13,
     LP_BLOB_VIGNETTINGS = 14,
-    LP_BLOB_GRID = 15,          /* channels, columns, rows */
-    LP_BLOB_COVARIANCE = 18,    /* its size n, then 0 */
-    LP_BLOB_TEXTS = 20,         /* lengths of the five texts, then three 0 */
-    LP_BLOB_KEY = 28,           /* focal_mm, aperture, distance_m */
-    LP_BLOB_CENTER = 52,        /* x, y */
-    LP_BLOB_CREATED = 68,       /* i64 */
-    LP_BLOB_COUNTS = 76,        /* images, pairs: u32 */
-    LP_BLOB_QUALITY = 84        /* heldout_rms, inlier_share */
+    LP_BLOB_GRID = 15,       /* channels, columns, rows */
+    LP_BLOB_COVARIANCE = 18, /* its size n, then 0 */
+    LP_BLOB_TEXTS = 20,      /* lengths of the five texts, then three 0 */
+    LP_BLOB_KEY = 28,        /* focal_mm, aperture, distance_m */
+    LP_BLOB_CENTER = 52,     /* x, y */
+    LP_BLOB_CREATED = 68,    /* i64 */
+    LP_BLOB_COUNTS = 76,     /* images, pairs: u32 */
+    LP_BLOB_QUALITY = 84     /* heldout_rms, inlier_share */
 };
 
 /* ---- numbers: little-endian, at any address ---- */
 
-static inline uint32_t lp_u32_at(const uint8_t *p)
-{
+static inline uint32_t lp_u32_at(const uint8_t *p) {
     return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
 static inline uint64_t lp_u64_at(const uint8_t *p) { return lp_u32_at(p) | (uint64_t)lp_u32_at(p + 4) << 32; }
 
-static inline float lp_f32_at(const uint8_t *p)
-{
+static inline float lp_f32_at(const uint8_t *p) {
     uint32_t bits = lp_u32_at(p);
     float value;
     memcpy(&value, &bits, sizeof value);
     return value;
 }
 
-static inline double lp_f64_at(const uint8_t *p)
-{
+static inline double lp_f64_at(const uint8_t *p) {
     uint64_t bits = lp_u64_at(p);
     double value;
     memcpy(&value, &bits, sizeof value);
@@ -70,13 +67,11 @@ typedef struct lp_model {
     const uint8_t *packed_attenuation;
 } lp_model;
 
-static inline double lp_model_sample(const struct lp_model_response *response, uint32_t j)
-{
+static inline double lp_model_sample(const struct lp_model_response *response, uint32_t j) {
     return response->table ? response->table[j] : (double)lp_f32_at(response->packed + 4 * j);
 }
 
-static inline float lp_model_node(const lp_model *m, uint32_t i)
-{
+static inline float lp_model_node(const lp_model *m, uint32_t i) {
     return m->attenuation ? m->attenuation[i] : lp_f32_at(m->packed_attenuation + 4 * i);
 }
 

@@ -1,36 +1,31 @@
 /* Profiles to blobs and back (docs/blob.md). */
-#include "blob.h"
+#include "core/blob.h"
 
 /* ---- writing ---- */
 
-static void put(uint8_t **at, uint64_t value, uint32_t bytes)
-{
+static void put(uint8_t **at, uint64_t value, uint32_t bytes) {
     for (uint32_t i = 0; i < bytes; i++) *(*at)++ = (uint8_t)(value >> 8 * i);
 }
 
-static void put_f32(uint8_t **at, float value)
-{
+static void put_f32(uint8_t **at, float value) {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     put(at, bits, 4);
 }
 
-static void put_f64(uint8_t **at, double value)
-{
+static void put_f64(uint8_t **at, double value) {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     put(at, bits, 8);
 }
 
-static int has_samples(const lensprof_response *r)
-{
+static int has_samples(const lensprof_response *r) {
     return r->kind == LENSPROF_RESPONSE_EMOR || r->kind == LENSPROF_RESPONSE_TABLE;
 }
 
 static uint32_t modes_of(const lensprof_response *r) { return r->kind == LENSPROF_RESPONSE_EMOR ? r->modes : 0; }
 
-static size_t length_of(const char *text, size_t capacity)
-{
+static size_t length_of(const char *text, size_t capacity) {
     size_t length = 0;
     while (length < capacity && text[length]) length++;
     return length;
@@ -42,8 +37,7 @@ typedef struct texts {
     size_t length[5];
 } texts;
 
-static texts texts_of(const lensprof_profile *p)
-{
+static texts texts_of(const lensprof_profile *p) {
     texts t = {{p->key.camera_maker, p->key.camera_model, p->key.lens, p->provenance.method, p->provenance.software},
                {0}};
     static const uint8_t capacity[5] = {sizeof p->key.camera_maker, sizeof p->key.camera_model, sizeof p->key.lens,
@@ -52,8 +46,7 @@ static texts texts_of(const lensprof_profile *p)
     return t;
 }
 
-static size_t bytes_of(const lensprof_profile *p, uint32_t covariance)
-{
+static size_t bytes_of(const lensprof_profile *p, uint32_t covariance) {
     const texts t = texts_of(p);
     size_t bytes = LP_BLOB_FIXED + p->vignettings * 3 * 8 + 4;
     for (uint32_t c = 0; c < p->responses; c++) {
@@ -66,8 +59,7 @@ static size_t bytes_of(const lensprof_profile *p, uint32_t covariance)
     return bytes;
 }
 
-static void put_fixed(uint8_t **at, const lensprof_profile *p, uint32_t covariance, size_t bytes)
-{
+static void put_fixed(uint8_t **at, const lensprof_profile *p, uint32_t covariance, size_t bytes) {
     const texts t = texts_of(p);
     put(at, 0x4652504C, 4); /* "LPRF" */
     put(at, LP_BLOB_LAYOUT, 4);
@@ -92,8 +84,7 @@ static void put_fixed(uint8_t **at, const lensprof_profile *p, uint32_t covarian
     put_f64(at, p->provenance.inlier_share);
 }
 
-static void put_response(uint8_t **at, const lensprof_response *r)
-{
+static void put_response(uint8_t **at, const lensprof_response *r) {
     put(at, r->kind, 1);
     put(at, modes_of(r), 3);
     if (r->kind == LENSPROF_RESPONSE_GAMMA) put_f64(at, r->gamma);
@@ -101,8 +92,7 @@ static void put_response(uint8_t **at, const lensprof_response *r)
     for (uint32_t j = 0; has_samples(r) && j < LENSPROF_RESPONSE_SAMPLES; j++) put_f32(at, (float)r->table[j]);
 }
 
-static void put_rest(uint8_t **at, const lensprof_profile *p, uint32_t covariance)
-{
+static void put_rest(uint8_t **at, const lensprof_profile *p, uint32_t covariance) {
     const texts t = texts_of(p);
     const uint32_t nodes = p->grid.channels * p->grid.rows * p->grid.columns;
     for (uint32_t c = 0; c < p->vignettings; c++)
@@ -116,8 +106,7 @@ static void put_rest(uint8_t **at, const lensprof_profile *p, uint32_t covarianc
 }
 
 lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags, void *blob, size_t capacity,
-                                      size_t *bytes)
-{
+                                      size_t *bytes) {
     if (!profile || !bytes || (!blob && capacity) || flags & ~(uint32_t)LENSPROF_PACK_COVARIANCE)
         return LENSPROF_ERROR_ARGUMENT;
     const lensprof_status status = lensprof_profile_validate(profile);
@@ -135,8 +124,7 @@ lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t 
 /* ---- reading ---- */
 
 /* Every number has been checked. */
-static void copy_response(const lp_blob *blob, uint32_t c, lensprof_response *r)
-{
+static void copy_response(const lp_blob *blob, uint32_t c, lensprof_response *r) {
     const struct lp_model_response *from = &blob->model.response[c];
     lensprof_response_set_linear(r);
     if (from->kind == LENSPROF_RESPONSE_GAMMA && lensprof_response_set_gamma(r, from->gamma) == LENSPROF_OK) return;
@@ -146,8 +134,7 @@ static void copy_response(const lp_blob *blob, uint32_t c, lensprof_response *r)
     for (uint32_t j = 0; from->packed && j < LENSPROF_RESPONSE_SAMPLES; j++) r->table[j] = lp_model_sample(from, j);
 }
 
-static void copy_covariance(const lp_blob *blob, lensprof_profile *profile)
-{
+static void copy_covariance(const lp_blob *blob, lensprof_profile *profile) {
     const uint32_t n = profile->covariance_size = blob->bytes[LP_BLOB_COVARIANCE];
     const uint8_t *at = blob->covariance;
     for (uint32_t i = 0; i < n; i++)
@@ -155,8 +142,7 @@ static void copy_covariance(const lp_blob *blob, lensprof_profile *profile)
             profile->covariance[i * n + j] = profile->covariance[j * n + i] = lp_f64_at(at);
 }
 
-lensprof_status lensprof_profile_unpack(const void *blob, size_t bytes, lensprof_profile *profile)
-{
+lensprof_status lensprof_profile_unpack(const void *blob, size_t bytes, lensprof_profile *profile) {
     lp_blob b;
     if (!blob || !profile) return LENSPROF_ERROR_ARGUMENT;
     const lensprof_status status = lp_blob_open(blob, bytes, &b);

@@ -1,5 +1,5 @@
 /* Applying a model to pixels in integers: logarithms of light, thresholds between codes (lensprof/fixed.h). */
-#include "fixed_plan.h"
+#include "core/fixed_plan.h"
 
 #include <string.h>
 
@@ -8,8 +8,7 @@
 /* ---- logarithms ---- */
 
 /* The place of the highest bit of v > 0. */
-static uint32_t top_bit(uint32_t v)
-{
+static uint32_t top_bit(uint32_t v) {
     uint32_t place = 0;
     for (uint32_t step = 16; step; step /= 2)
         if (v >> step) v >>= step, place += step;
@@ -17,16 +16,14 @@ static uint32_t top_bit(uint32_t v)
 }
 
 /* log2 of v > 0. */
-static int32_t log2_of(uint32_t v)
-{
+static int32_t log2_of(uint32_t v) {
     const uint32_t place = top_bit(v), mantissa = v << (31 - place), i = mantissa >> 23 & 255;
     const uint32_t rise = lp_log2_table[i + 1] - lp_log2_table[i]; /* 15 bits */
     return (int32_t)((place << LP_LOG_SHIFT) + lp_log2_table[i] + (rise * (mantissa >> 7 & 0xffff) >> 16));
 }
 
 /* 2^f in 2^-30, of the part of a logarithm behind the point. */
-static uint32_t exp2_of(uint32_t f)
-{
+static uint32_t exp2_of(uint32_t f) {
     const uint32_t i = f >> (LP_LOG_SHIFT - 8), rest = f & (FRACTION >> 8); /* 14 bits */
     const uint32_t rise = lp_exp2_table[i + 1] - lp_exp2_table[i];          /* 23 bits */
     return lp_exp2_table[i] + ((rise >> 5) * rest >> (LP_LOG_SHIFT - 8 - 5));
@@ -35,8 +32,7 @@ static uint32_t exp2_of(uint32_t f)
 /* ---- gains ---- */
 
 /* r^2 about the centre, in 2^-20 px^2. */
-static uint64_t r2_of(const lensprof_fixed_plan *plan, uint32_t x, uint32_t y)
-{
+static uint64_t r2_of(const lensprof_fixed_plan *plan, uint32_t x, uint32_t y) {
     const int64_t dx = (int64_t)((int32_t)(x << LP_CENTER_SHIFT) - plan->center[0]);
     const int64_t dy = (int64_t)((int32_t)(y << LP_CENTER_SHIFT) - plan->center[1]);
     return (uint64_t)(dx * dx + dy * dy);
@@ -45,23 +41,20 @@ static uint64_t r2_of(const lensprof_fixed_plan *plan, uint32_t x, uint32_t y)
 static int32_t times(int32_t a, uint32_t t) { return (int32_t)((int64_t)a * t >> 31); }
 
 /* log2 of the falloff M of a channel at t. */
-static int32_t falloff_at(const lensprof_fixed_plan *plan, uint32_t channel, uint32_t t)
-{
+static int32_t falloff_at(const lensprof_fixed_plan *plan, uint32_t channel, uint32_t t) {
     const int32_t *k = plan->k[channel];
     int32_t m = (1 << plan->falloff_shift) + times(k[0] + times(k[1] + times(k[2], t), t), t);
     if (m < plan->least) m = plan->least;
     return log2_of((uint32_t)m) - (int32_t)(plan->falloff_shift << LP_LOG_SHIFT);
 }
 
-static int32_t gain_of(const lensprof_fixed_plan *plan, uint32_t channel, int32_t falloff)
-{
+static int32_t gain_of(const lensprof_fixed_plan *plan, uint32_t channel, int32_t falloff) {
     const int32_t gain = plan->factor[channel] - falloff;
     return plan->simulate ? -gain : gain;
 }
 
 /* log2 of the gains of the channels at t. */
-static void find_gains(const lensprof_fixed_plan *plan, uint32_t t, int32_t *gain)
-{
+static void find_gains(const lensprof_fixed_plan *plan, uint32_t t, int32_t *gain) {
     int32_t falloff = falloff_at(plan, 0, t);
     gain[0] = gain_of(plan, 0, falloff);
     for (uint32_t c = 1; c < LP_CHANNELS; c++) {
@@ -77,16 +70,14 @@ static void find_gains(const lensprof_fixed_plan *plan, uint32_t t, int32_t *gai
 static uint32_t share_of(uint32_t a, uint32_t b) { return (uint32_t)((uint64_t)a * b >> 24); }
 
 /* 0 up to `low`, 1 at white, smooth between. v is of 65535, low of twice that; per_span: 2^40 over what is between. */
-static uint32_t ramp(uint32_t v, uint32_t low, uint32_t per_span)
-{
+static uint32_t ramp(uint32_t v, uint32_t low, uint32_t per_span) {
     if (2 * v <= low) return 0;
     const uint32_t t = (uint32_t)((uint64_t)(2 * v - low) * per_span >> 16);
     return share_of(share_of(t, t), 3 * ONE - 2 * t);
 }
 
 /* As in the row kernel: from 0.9 of the brightest and 0.6 of the darkest channel on, gains approach the largest. */
-static void approach_white(const uint32_t *value, int32_t *gain)
-{
+static void approach_white(const uint32_t *value, int32_t *gain) {
     uint32_t brightest = value[0], darkest = value[0];
     int32_t largest = gain[0];
     for (uint32_t c = 1; c < 3; c++) {
@@ -106,21 +97,18 @@ static void approach_white(const uint32_t *value, int32_t *gain)
 
 /* ---- samples ---- */
 
-static const int32_t *decode_table(const lensprof_fixed_plan *plan, uint32_t channel)
-{
+static const int32_t *decode_table(const lensprof_fixed_plan *plan, uint32_t channel) {
     const int32_t *tables = (const int32_t *)(const void *)(plan + 1);
     return tables + (plan->decode_curves == 3 ? channel * LP_CODES : 0);
 }
 
-static const int32_t *encode_table(const lensprof_fixed_plan *plan, uint32_t channel)
-{
+static const int32_t *encode_table(const lensprof_fixed_plan *plan, uint32_t channel) {
     const int32_t *tables = (const int32_t *)(const void *)(plan + 1) + plan->decode_curves * LP_CODES;
     return tables + (plan->encode_curves == 3 ? channel * LP_CODES : 0);
 }
 
 /* How many thresholds a light has reached: its code. */
-static uint8_t code_of(const int32_t *thresholds, int32_t light)
-{
+static uint8_t code_of(const int32_t *thresholds, int32_t light) {
     uint32_t code = 0;
     for (uint32_t step = LP_CODES / 2; step; step /= 2)
         if (thresholds[code + step - 1] <= light) code += step;
@@ -128,8 +116,7 @@ static uint8_t code_of(const int32_t *thresholds, int32_t light)
 }
 
 /* A linear code of 16 bit times 2^gain, to nearest, clipped. */
-static uint16_t multiplied(uint32_t code, int32_t gain)
-{
+static uint16_t multiplied(uint32_t code, int32_t gain) {
     const int32_t whole = gain >> LP_LOG_SHIFT; /* towards minus infinity */
     if (whole < -17 || !code) return 0;
     if (whole > 15) return 65535;
@@ -138,16 +125,14 @@ static uint16_t multiplied(uint32_t code, int32_t gain)
     return result < 65535 ? (uint16_t)result : 65535;
 }
 
-static uint32_t get_code(uint32_t sample, const uint8_t *p)
-{
+static uint32_t get_code(uint32_t sample, const uint8_t *p) {
     uint16_t code;
     if (sample == LENSPROF_SAMPLE_U8) return *p;
     memcpy(&code, p, sizeof code);
     return code;
 }
 
-static void put_sample(const lensprof_fixed_plan *plan, uint32_t code, uint32_t channel, int32_t gain, uint8_t *p)
-{
+static void put_sample(const lensprof_fixed_plan *plan, uint32_t code, uint32_t channel, int32_t gain, uint8_t *p) {
     if (plan->sample == LENSPROF_SAMPLE_U8)
         *p = code_of(encode_table(plan, channel), decode_table(plan, channel)[code] + gain);
     else {
@@ -159,14 +144,12 @@ static void put_sample(const lensprof_fixed_plan *plan, uint32_t code, uint32_t 
 /* ---- rows ---- */
 
 /* One sample a pixel: grey, or a mosaic. */
-static void do_single(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t *to, uint32_t channel, uint32_t t)
-{
+static void do_single(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t *to, uint32_t channel, uint32_t t) {
     const int32_t falloff = falloff_at(plan, plan->falloffs == 3 ? channel : 0, t);
     put_sample(plan, get_code(plan->sample, from), channel, gain_of(plan, channel, falloff), to);
 }
 
-static void do_pixel(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t *to, uint32_t t)
-{
+static void do_pixel(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t *to, uint32_t t) {
     const uint32_t bytes = plan->sample == LENSPROF_SAMPLE_U8 ? 1 : 2;
     uint32_t code[4], value[LP_CHANNELS];
     int32_t gain[LP_CHANNELS];
@@ -179,14 +162,15 @@ static void do_pixel(const lensprof_fixed_plan *plan, const uint8_t *from, uint8
     if (plan->neutral_white) approach_white(value, gain);
     for (uint32_t n = 0; n < plan->samples; n++) {
         const uint32_t channel = plan->channel_of_sample[n];
-        if (channel == LP_ALPHA) memmove(to + n * bytes, from + n * bytes, bytes);
-        else put_sample(plan, code[n], channel, gain[channel], to + n * bytes);
+        if (channel == LP_ALPHA)
+            memmove(to + n * bytes, from + n * bytes, bytes);
+        else
+            put_sample(plan, code[n], channel, gain[channel], to + n * bytes);
     }
 }
 
 static void do_row(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t *to, uint32_t x, uint32_t y,
-                   uint32_t count)
-{
+                   uint32_t count) {
     const uint32_t step = plan->samples * (plan->sample == LENSPROF_SAMPLE_U8 ? 1u : 2u);
     /* (x + 1)^2 - x^2 = 2 x + 1, in units of 2^-10 px */
     uint64_t r2 = r2_of(plan, x, y);
@@ -194,16 +178,17 @@ static void do_row(const lensprof_fixed_plan *plan, const uint8_t *from, uint8_t
                    + (1 << 2 * LP_CENTER_SHIFT);
     for (uint32_t i = 0; i < count; i++, from += step, to += step) {
         const uint32_t t = (uint32_t)(r2 << plan->reach_shift >> 32);
-        if (plan->samples == 1) do_single(plan, from, to, plan->site[y & 1][(x + i) & 1], t);
-        else do_pixel(plan, from, to, t);
+        if (plan->samples == 1)
+            do_single(plan, from, to, plan->site[y & 1][(x + i) & 1], t);
+        else
+            do_pixel(plan, from, to, t);
         r2 += (uint64_t)rise;
         rise += 2 << 2 * LP_CENTER_SHIFT;
     }
 }
 
 lensprof_status lensprof_fixed_apply(const lensprof_fixed_plan *plan, const lensprof_image *source,
-                                     const lensprof_image *target, uint32_t x0, uint32_t y0)
-{
+                                     const lensprof_image *target, uint32_t x0, uint32_t y0) {
     if (!plan || !source || !target) return LENSPROF_ERROR_ARGUMENT;
     const lp_tiles tiles = {plan->sample, plan->sample, plan->layout, plan->frame_width, plan->frame_height};
     const lensprof_status status = lp_tile_validate(&tiles, source, target, x0, y0);

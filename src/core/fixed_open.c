@@ -2,12 +2,11 @@
  * are, one that opens is applied without reading or writing beyond it and the pixels, and without overflow. */
 #include <string.h>
 
-#include "fixed_plan.h"
+#include "core/fixed_plan.h"
 
 #define LARGEST_FACTOR (41 << LP_LOG_SHIFT) /* options allow 1e12, and its inverse */
 
-uint32_t lp_fixed_check(const lensprof_fixed_plan *plan)
-{
+uint32_t lp_fixed_check(const lensprof_fixed_plan *plan) {
     const size_t before = offsetof(lensprof_fixed_plan, check) + sizeof plan->check;
     return lp_crc32((const uint8_t *)plan + before, plan->bytes - before);
 }
@@ -15,8 +14,7 @@ uint32_t lp_fixed_check(const lensprof_fixed_plan *plan)
 static int is_one_or_three(uint32_t count) { return count == 1 || count == 3; }
 
 /* What follows from the layout is what it says. */
-static int is_layout_sound(const lensprof_fixed_plan *plan)
-{
+static int is_layout_sound(const lensprof_fixed_plan *plan) {
     uint8_t channel_of_sample[4], site[2][2] = {{0, 0}, {0, 0}};
     const uint32_t samples = lensprof_layout_samples(plan->layout);
     if (!samples || plan->layout == LENSPROF_LAYOUT_PLANAR || plan->sample > LENSPROF_SAMPLE_U16) return 0;
@@ -28,8 +26,7 @@ static int is_layout_sound(const lensprof_fixed_plan *plan)
 }
 
 /* t stays below 2^31 anywhere in the frame: its centre and size against the power of 2 that r^2 counts in. */
-static int is_reach_sound(const lensprof_fixed_plan *plan)
-{
+static int is_reach_sound(const lensprof_fixed_plan *plan) {
     const uint32_t size[2] = {plan->frame_width, plan->frame_height};
     uint64_t r2 = 0;
     for (int d = 0; d < 2; d++) {
@@ -44,8 +41,7 @@ static int is_reach_sound(const lensprof_fixed_plan *plan)
 static uint32_t size_of(int32_t value) { return value < 0 ? 0u - (uint32_t)value : (uint32_t)value; }
 
 /* Sums of the falloff's terms stay within 31 bits, and so do those of gains and light. */
-static int are_gains_sound(const lensprof_fixed_plan *plan)
-{
+static int are_gains_sound(const lensprof_fixed_plan *plan) {
     if (!is_one_or_three(plan->falloffs) || !is_one_or_three(plan->gains)) return 0;
     if (plan->falloff_shift > 30 || plan->least <= 0 || plan->least > 1 << plan->falloff_shift) return 0;
     for (uint32_t c = 0; c < LP_CHANNELS; c++) {
@@ -56,8 +52,7 @@ static int are_gains_sound(const lensprof_fixed_plan *plan)
     return 1;
 }
 
-static int are_tables_sound(const lensprof_fixed_plan *plan)
-{
+static int are_tables_sound(const lensprof_fixed_plan *plan) {
     const uint32_t decode = plan->decode_curves, encode = plan->encode_curves;
     const int32_t *table = (const int32_t *)(const void *)(plan + 1);
     const int is_coded = plan->sample == LENSPROF_SAMPLE_U8;
@@ -68,8 +63,7 @@ static int are_tables_sound(const lensprof_fixed_plan *plan)
     return 1;
 }
 
-lensprof_status lensprof_fixed_plan_open(const void *memory, size_t bytes, const lensprof_fixed_plan **result)
-{
+lensprof_status lensprof_fixed_plan_open(const void *memory, size_t bytes, const lensprof_fixed_plan **result) {
     const lensprof_fixed_plan *plan = memory;
     if (!memory || !result || (uintptr_t)memory % 4) return LENSPROF_ERROR_ARGUMENT;
     if (bytes < sizeof *plan) return LENSPROF_ERROR_CAPACITY;

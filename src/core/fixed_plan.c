@@ -1,5 +1,5 @@
 /* Plans in integers (lensprof/fixed.h). What they hold is rounded from double precision. */
-#include "fixed_plan.h"
+#include "core/fixed_plan.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,22 +7,19 @@
 #define LEAST_FALLOFF_SHIFT 21 /* M in 2^-21: 1 / 2000 of the smallest one allowed */
 #define SMALLEST_M 0.0005      /* below the smallest one allowed, above 0 after rounding */
 
-static int is_linear(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding)
-{
+static int is_linear(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding) {
     int linear = 1;
     for (uint32_t c = 0; c < lp_curves(o, m) && encoding == LENSPROF_ENCODING_RESPONSE; c++)
         linear = linear && lp_response(o, m, c)->kind == LENSPROF_RESPONSE_LINEAR;
     return linear;
 }
 
-static uint32_t tables_of(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding)
-{
+static uint32_t tables_of(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding) {
     if (o->source_sample != LENSPROF_SAMPLE_U8) return 0;
     return is_linear(o, m, encoding) ? 1 : lp_curves(o, m);
 }
 
-static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m)
-{
+static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m) {
     return sizeof(lensprof_fixed_plan)
            + (tables_of(o, m, o->input) + tables_of(o, m, o->output)) * (LP_CODES * sizeof(int32_t));
 }
@@ -30,8 +27,7 @@ static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m)
 /* ---- falloff ---- */
 
 /* Centre, and the largest r^2 in the frame, px^2; at least that of a corner from the middle, in which k count. */
-static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m)
-{
+static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     const double unit = 1 << LP_CENTER_SHIFT, size[2] = {o->frame_width, o->frame_height};
     const double rho2 = 0.25 * (size[0] * size[0] + size[1] * size[1]);
     double reach2 = 0.0;
@@ -45,8 +41,7 @@ static double prepare_center(lensprof_fixed_plan *plan, const lensprof_apply_opt
 }
 
 /* Coefficients in powers of t = r^2 / R, R a power of 2 beyond the frame. 0 when integers do not hold them. */
-static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m)
-{
+static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     const double w = o->frame_width, h = o->frame_height, reach2 = prepare_center(plan, o, m);
     double k[LP_CHANNELS][3], largest = 0.0, reach = 1.0; /* R, px^2 */
     uint32_t shift = 63 - 2 * LP_CENTER_SHIFT;
@@ -75,19 +70,16 @@ static int prepare_falloffs(lensprof_fixed_plan *plan, const lensprof_apply_opti
 /* ---- logarithms ---- */
 
 /* In the plan's units, to nearest. */
-static int32_t log_of(double light)
-{
+static int32_t log_of(double light) {
     return light > 0.0 ? (int32_t)floor(log2(light) * (1 << LP_LOG_SHIFT) + 0.5) : LP_LOG_NONE;
 }
 
 static double light_of(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding, uint32_t curve,
-                       double value)
-{
+                       double value) {
     return encoding == LENSPROF_ENCODING_LINEAR ? value : lp_model_invert(lp_response(o, m, curve), value);
 }
 
-static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m)
-{
+static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     int32_t *table = (int32_t *)(void *)(plan + 1);
     for (uint32_t c = 0; c < plan->decode_curves; c++, table += LP_CODES)
         for (uint32_t code = 0; code < LP_CODES; code++)
@@ -101,8 +93,7 @@ static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_optio
 
 /* ---- plan ---- */
 
-static lensprof_status validate(const lensprof_apply_options *o, lp_model *m)
-{
+static lensprof_status validate(const lensprof_apply_options *o, lp_model *m) {
     const lensprof_status status = lp_options_validate(o, m);
     if (status != LENSPROF_OK) return status;
     if (o->source_sample > LENSPROF_SAMPLE_U16 || o->target_sample != o->source_sample
@@ -113,14 +104,12 @@ static lensprof_status validate(const lensprof_apply_options *o, lp_model *m)
     return LENSPROF_OK;
 }
 
-size_t lensprof_fixed_plan_bytes(const lensprof_apply_options *options)
-{
+size_t lensprof_fixed_plan_bytes(const lensprof_apply_options *options) {
     lp_model model;
     return options && validate(options, &model) == LENSPROF_OK ? bytes_of(options, &model) : 0;
 }
 
-static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m)
-{
+static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     plan->sample = (uint8_t)o->source_sample;
     plan->layout = (uint8_t)o->source_layout;
     plan->samples = (uint8_t)lensprof_layout_samples(plan->layout);
@@ -133,8 +122,7 @@ static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_optio
     plan->encode_curves = (uint8_t)tables_of(o, m, o->output);
 }
 
-static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_options *o)
-{
+static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_options *o) {
     plan->falloffs = plan->gains = 1;
     for (uint32_t c = 0; c < LP_CHANNELS; c++)
         plan->factor[c] = log_of(lp_exposure_ratio(o, plan->channels == 1 ? 1 : c)); /* grey is treated as green */
@@ -148,8 +136,7 @@ static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_option
 }
 
 lensprof_status lensprof_fixed_plan_init(void *memory, size_t bytes, const lensprof_apply_options *options,
-                                         const lensprof_fixed_plan **result)
-{
+                                         const lensprof_fixed_plan **result) {
     if (!memory || !options || !result) return LENSPROF_ERROR_ARGUMENT;
     lensprof_fixed_plan head;
     memset(&head, 0, sizeof head);

@@ -4,8 +4,8 @@
 
 #include <lensprof/fixed.h>
 
-#include "options.h"
-#include "plan.h"
+#include "core/options.h"
+#include "core/plan.h"
 
 #define LP_FIXED_MAGIC 0x3258464cu /* "LFX2" in memory; the last byte is the layout's version */
 #define LP_LOG_SHIFT 22            /* logarithms to base 2, in units of 2^-22 */
@@ -20,13 +20,13 @@ struct lensprof_fixed_plan {
     uint8_t sample, layout, samples, channels;
     uint8_t channel_of_sample[4];
     uint8_t site[2][2];
-    uint8_t simulate, neutral_white;   /* LENSPROF_SATURATED_NEUTRAL is in force */
+    uint8_t simulate, neutral_white;      /* LENSPROF_SATURATED_NEUTRAL is in force */
     uint8_t decode_curves, encode_curves; /* tables of each kind: 1 or 3; 0 for U16 */
-    uint8_t falloffs, gains;           /* 1, or 3 where the channels differ: in the falloff; in falloff or factor */
+    uint8_t falloffs, gains;              /* 1, or 3 where the channels differ: in the falloff; in falloff or factor */
     uint8_t reserved[2];
     int32_t center[2];
-    uint32_t reach_shift;   /* 2^reach_shift times r^2 in 2^-20 px^2 has t = r^2 / R, in 2^-31, in its upper word */
-    uint32_t falloff_shift; /* falloffs are in units of 2^-falloff_shift */
+    uint32_t reach_shift;      /* 2^reach_shift times r^2 in 2^-20 px^2 has t = r^2 / R, in 2^-31, in its upper word */
+    uint32_t falloff_shift;    /* falloffs are in units of 2^-falloff_shift */
     int32_t k[LP_CHANNELS][3]; /* M = 1 + k0 t + k1 t^2 + k2 t^3 */
     int32_t least;             /* M, after the gain cap */
     int32_t factor[LP_CHANNELS]; /* log2 of target over source exposure */

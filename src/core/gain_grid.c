@@ -1,18 +1,14 @@
 /* Attenuation on a grid over the frame: what a radial polynomial leaves. */
-#include "gain_grid.h"
+#include "core/gain_grid.h"
 
 #include <math.h>
 #include <string.h>
 
 #define NODES_MAX (3u * LENSPROF_GRID_SIDE * LENSPROF_GRID_SIDE)
 
-void lensprof_gain_grid_init(lensprof_gain_grid *grid)
-{
-    memset(grid, 0, sizeof *grid);
-}
+void lensprof_gain_grid_init(lensprof_gain_grid *grid) { memset(grid, 0, sizeof *grid); }
 
-lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid)
-{
+lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid) {
     if (!grid || grid->reserved) return LENSPROF_ERROR_ARGUMENT;
     int none = !grid->columns && !grid->rows;
     if (!none && (!lp_is_grid_side(grid->columns) || !lp_is_grid_side(grid->rows))) return LENSPROF_ERROR_SIZE;
@@ -28,8 +24,7 @@ lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid)
 }
 
 double lensprof_gain_grid_eval(const lensprof_gain_grid *grid, uint32_t width, uint32_t height, double x, double y,
-                               uint32_t channel)
-{
+                               uint32_t channel) {
     if (!grid->columns || channel > 2) return 1.0;
     const float *nodes = grid->attenuation + (grid->channels == 3 ? channel : 0) * grid->rows * grid->columns;
     return lp_grid_value(nodes, grid->columns, lp_grid_cell_at(x, width, grid->columns),

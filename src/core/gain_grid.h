@@ -17,8 +17,7 @@ typedef struct lp_grid_cell {
 } lp_grid_cell;
 
 /* `position` in pixels, the first and last pixel of `pixels` on the first and last of `nodes` >= 2; clamped to them. */
-static inline lp_grid_cell lp_grid_cell_at(double position, uint32_t pixels, uint32_t nodes)
-{
+static inline lp_grid_cell lp_grid_cell_at(double position, uint32_t pixels, uint32_t nodes) {
     double t = pixels > 1 ? position / (pixels - 1.0) : 0.0;
     t = (nodes - 1.0) * (t > 0.0 ? (t < 1.0 ? t : 1.0) : 0.0);
     lp_grid_cell cell = {(uint32_t)t, 0.0};
@@ -28,8 +27,7 @@ static inline lp_grid_cell lp_grid_cell_at(double position, uint32_t pixels, uin
 }
 
 /* Bilinear between four nodes of one channel, whose rows are `columns` apart. */
-static inline double lp_grid_value(const float *nodes, uint32_t columns, lp_grid_cell column, lp_grid_cell row)
-{
+static inline double lp_grid_value(const float *nodes, uint32_t columns, lp_grid_cell column, lp_grid_cell row) {
     const float *above = nodes + row.node * columns + column.node, *below = above + columns;
     double u = column.fraction, v = row.fraction;
     return (1.0 - v) * ((1.0 - u) * above[0] + u * above[1]) + v * ((1.0 - u) * below[0] + u * below[1]);

@@ -1,13 +1,12 @@
 /* Options of plans: what they may be, and the model they hold, in the caller's structs or in a blob. */
-#include "options.h"
+#include "core/options.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "response.h"
+#include "core/response.h"
 
-void lensprof_apply_options_init(lensprof_apply_options *options)
-{
+void lensprof_apply_options_init(lensprof_apply_options *options) {
     memset(options, 0, sizeof *options);
     options->struct_size = sizeof *options;
     options->source_layout = LENSPROF_LAYOUT_RGB;
@@ -17,16 +16,14 @@ void lensprof_apply_options_init(lensprof_apply_options *options)
     lensprof_exposure_init(&options->target);
 }
 
-static void view_response(struct lp_model_response *view, const lensprof_response *response)
-{
+static void view_response(struct lp_model_response *view, const lensprof_response *response) {
     view->kind = response->kind;
     view->gamma = response->kind == LENSPROF_RESPONSE_GAMMA ? response->gamma : 1.0;
     view->table = response->table;
 }
 
 /* The model in the caller's structs. Its size does not depend on the vignetting, which may not be there yet. */
-static lensprof_status view_structs(const lensprof_apply_options *o, lp_model *m)
-{
+static lensprof_status view_structs(const lensprof_apply_options *o, lp_model *m) {
     memset(m, 0, sizeof *m);
     if (!o->response || (o->responses != 1 && o->responses != 3)) return LENSPROF_ERROR_ARGUMENT;
     m->responses = o->responses;
@@ -39,8 +36,7 @@ static lensprof_status view_structs(const lensprof_apply_options *o, lp_model *m
     return lensprof_gain_grid_validate(o->grid);
 }
 
-lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m)
-{
+lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m) {
     if (!o->blob) return view_structs(o, m);
     if (o->response || o->vignetting || o->grid) return LENSPROF_ERROR_ARGUMENT;
     lp_blob blob;
@@ -49,34 +45,32 @@ lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m)
     return status;
 }
 
-uint32_t lp_curves(const lensprof_apply_options *o, const lp_model *m)
-{
+uint32_t lp_curves(const lensprof_apply_options *o, const lp_model *m) {
     return lensprof_layout_channels(o->source_layout) == 1 ? 1 : m->responses;
 }
 
-const struct lp_model_response *lp_response(const lensprof_apply_options *o, const lp_model *m, uint32_t curve)
-{
+const struct lp_model_response *lp_response(const lensprof_apply_options *o, const lp_model *m, uint32_t curve) {
     uint32_t channel = lensprof_layout_channels(o->source_layout) == 1 ? 1 : curve;
     return &m->response[m->responses == 3 ? channel : 0];
 }
 
-double lp_model_invert(const struct lp_model_response *response, double b)
-{
+double lp_model_invert(const struct lp_model_response *response, double b) {
     if (!(b > 0.0)) return 0.0;
     if (lp_is_power(response)) return lp_curve_power(b, response->gamma, NULL);
     uint32_t low = 0, high = LENSPROF_RESPONSE_SAMPLES - 1;
     if (b > lp_model_sample(response, high)) return 1.0;
     while (high - low > 1) {
         const uint32_t middle = (low + high) / 2;
-        if (lp_model_sample(response, middle) < b) low = middle;
-        else high = middle;
+        if (lp_model_sample(response, middle) < b)
+            low = middle;
+        else
+            high = middle;
     }
     return lp_curve_between(lp_model_sample(response, low), lp_model_sample(response, high), b, low);
 }
 
 /* The model in the caller's structs; lp_options_model checks the grid, and all of a blob. */
-static lensprof_status validate_structs(const lensprof_apply_options *o)
-{
+static lensprof_status validate_structs(const lensprof_apply_options *o) {
     lensprof_status status = LENSPROF_OK;
     if (!o->response || !o->vignetting || (o->responses != 1 && o->responses != 3)
         || (o->vignettings != 1 && o->vignettings != 3))
@@ -85,26 +79,24 @@ static lensprof_status validate_structs(const lensprof_apply_options *o)
         status = lensprof_response_validate(&o->response[c]);
     for (uint32_t c = 0; c < o->vignettings && status == LENSPROF_OK; c++) {
         status = lensprof_vignetting_validate(&o->vignetting[c]);
-        if (status == LENSPROF_OK && (o->vignetting[c].center[0] != o->vignetting[0].center[0]
-                                      || o->vignetting[c].center[1] != o->vignetting[0].center[1]))
+        if (status == LENSPROF_OK
+            && (o->vignetting[c].center[0] != o->vignetting[0].center[0]
+                || o->vignetting[c].center[1] != o->vignetting[0].center[1]))
             status = LENSPROF_ERROR_VIGNETTING; /* one centre for all channels */
     }
     return status;
 }
 
-double lp_center(const lensprof_apply_options *o, const lp_model *m, int axis)
-{
+double lp_center(const lensprof_apply_options *o, const lp_model *m, int axis) {
     const double w = o->frame_width, h = o->frame_height, rho = 0.5 * sqrt(w * w + h * h);
     return 0.5 * ((axis ? h : w) - 1.0) + rho * m->vignetting[0].center[axis];
 }
 
-double lp_exposure_ratio(const lensprof_apply_options *o, uint32_t channel)
-{
+double lp_exposure_ratio(const lensprof_apply_options *o, uint32_t channel) {
     return lensprof_exposure_factor(&o->target, channel) / lensprof_exposure_factor(&o->source, channel);
 }
 
-lensprof_status lp_options_validate(const lensprof_apply_options *o, lp_model *model)
-{
+lensprof_status lp_options_validate(const lensprof_apply_options *o, lp_model *model) {
     if (o->struct_size != sizeof *o) return LENSPROF_ERROR_STRUCT_SIZE;
     if (o->direction > LENSPROF_DIRECTION_SIMULATE || o->input > LENSPROF_ENCODING_LINEAR
         || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE

@@ -4,7 +4,7 @@
 
 #include <lensprof/apply.h>
 
-#include "blob.h"
+#include "core/blob.h"
 
 #define LP_LARGEST_SIDE (1u << 20) /* px */
 #define LP_LARGEST_GAIN_CAP 1e6    /* over all attenuations that are allowed */
@@ -21,8 +21,7 @@ const struct lp_model_response *lp_response(const lensprof_apply_options *option
                                             uint32_t curve);
 
 /* A power of light, the first included, and not a table. */
-static inline int lp_is_power(const struct lp_model_response *response)
-{
+static inline int lp_is_power(const struct lp_model_response *response) {
     return response->kind == LENSPROF_RESPONSE_LINEAR || response->kind == LENSPROF_RESPONSE_GAMMA;
 }
 

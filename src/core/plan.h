@@ -5,7 +5,7 @@
 #include <lensprof/apply.h>
 
 #define LP_CHANNELS 3
-#define LP_ALPHA 3         /* in the place of a channel */
+#define LP_ALPHA 3          /* in the place of a channel */
 #define LP_FORWARD_SHIFT 10 /* log2 of the samples of a response */
 #define LP_CELLS 1024       /* that values 0..1 are divided into, to find them among the samples */
 
@@ -26,14 +26,14 @@ typedef void lp_row_kernel(const lensprof_plan *plan, const uint8_t *const sourc
 struct lensprof_plan {
     lp_row_kernel *row;
     uint32_t source_sample, target_sample, layout;
-    uint32_t samples, channels;  /* of a pixel; colour channels */
-    uint32_t decode, encode;     /* lp_curve */
+    uint32_t samples, channels; /* of a pixel; colour channels */
+    uint32_t decode, encode;    /* lp_curve */
     uint32_t simulate, dither;
-    uint32_t neutral_white;      /* LENSPROF_SATURATED_NEUTRAL is in force */
+    uint32_t neutral_white; /* LENSPROF_SATURATED_NEUTRAL is in force */
     uint32_t frame_width, frame_height;
-    uint32_t gains;              /* 1 when all channels have the same gain, else 3 */
-    uint32_t curves;             /* 1 or 3 */
-    uint8_t site[2][2];          /* channel by row and column parity, of mosaics */
+    uint32_t gains;     /* 1 when all channels have the same gain, else 3 */
+    uint32_t curves;    /* 1 or 3 */
+    uint8_t site[2][2]; /* channel by row and column parity, of mosaics */
     uint8_t channel_of_sample[4];
     int32_t center_px[2];        /* of the falloff: whole pixels, */
     float center_part[2];        /* and the rest, -1/2..1/2, which single precision holds better */
@@ -43,13 +43,13 @@ struct lensprof_plan {
     float times[LP_CHANNELS];    /* the same where the gain is otherwise that of all channels; else 1 */
     float exponent[LP_CHANNELS]; /* of the response, for LP_CURVE_POWER and _MIXED; else 0 */
     float inverse_exponent[LP_CHANNELS];
-    uint32_t columns, rows;      /* of the gain grid; 0 = none */
-    uint32_t inverse_shift;      /* log2 of the codes that `inverse` has an entry for */
+    uint32_t columns, rows;          /* of the gain grid; 0 = none */
+    uint32_t inverse_shift;          /* log2 of the codes that `inverse` has an entry for */
     const float *nodes[LP_CHANNELS]; /* attenuation less 1 */
-    const float *forward;        /* curves x 1024 samples of f, and one number more */
-    const float *inverse;        /* curves x codes of g; NULL without */
-    const float *start;          /* for g of values: curves x LP_CELLS + 1, the last sample below cell / LP_CELLS */
-    int32_t step;                /* from there the first step up the samples is this, then half of it, ... */
+    const float *forward;            /* curves x 1024 samples of f, and one number more */
+    const float *inverse;            /* curves x codes of g; NULL without */
+    const float *start;              /* for g of values: curves x LP_CELLS + 1, the last sample below cell / LP_CELLS */
+    int32_t step;                    /* from there the first step up the samples is this, then half of it, ... */
 };
 
 /* What the tiles of a plan must be. */

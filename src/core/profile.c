@@ -1,19 +1,17 @@
 /* Profiles as values: defaults and validation. */
-#include "profile.h"
+#include "core/profile.h"
 
 #include <math.h>
 #include <string.h>
 
-void lensprof_profile_key_init(lensprof_profile_key *key)
-{
+void lensprof_profile_key_init(lensprof_profile_key *key) {
     memset(key, 0, sizeof *key);
     key->crop_factor = key->focal_mm = key->aperture = key->distance_m = LENSPROF_UNKNOWN;
     key->processing = LENSPROF_PROCESSING_JPEG;
 }
 
 /* Terminated, and without control characters, which would break listings. */
-static int is_text(const char *text, size_t capacity)
-{
+static int is_text(const char *text, size_t capacity) {
     for (size_t i = 0; i < capacity; i++) {
         unsigned char c = (unsigned char)text[i];
         if (c == 0) return 1;
@@ -22,25 +20,22 @@ static int is_text(const char *text, size_t capacity)
     return 0;
 }
 
-static int is_known_or_unknown(double value, double largest)
-{
+static int is_known_or_unknown(double value, double largest) {
     return value == LENSPROF_UNKNOWN || (value > 0.0 && value <= largest);
 }
 
-lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key)
-{
+lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key) {
     if (!key || key->processing > LENSPROF_PROCESSING_CORRECTED || key->reserved) return LENSPROF_ERROR_ARGUMENT;
     if (!is_text(key->camera_maker, sizeof key->camera_maker) || !is_text(key->camera_model, sizeof key->camera_model)
         || !is_text(key->lens, sizeof key->lens) || !is_text(key->unit, sizeof key->unit))
         return LENSPROF_ERROR_ARGUMENT;
-    if (!is_known_or_unknown(key->crop_factor, 1e4) || !is_known_or_unknown(key->focal_mm, 1e5) || !is_known_or_unknown(key->aperture, 1e4)
-        || !is_known_or_unknown(key->distance_m, INFINITY))
+    if (!is_known_or_unknown(key->crop_factor, 1e4) || !is_known_or_unknown(key->focal_mm, 1e5)
+        || !is_known_or_unknown(key->aperture, 1e4) || !is_known_or_unknown(key->distance_m, INFINITY))
         return LENSPROF_ERROR_ARGUMENT;
     return LENSPROF_OK;
 }
 
-void lensprof_profile_init(lensprof_profile *profile)
-{
+void lensprof_profile_init(lensprof_profile *profile) {
     memset(profile, 0, sizeof *profile);
     lensprof_profile_key_init(&profile->key);
     profile->provenance.heldout_rms = profile->provenance.inlier_share = LENSPROF_UNKNOWN;
@@ -49,8 +44,7 @@ void lensprof_profile_init(lensprof_profile *profile)
     for (int c = 0; c < 3; c++) lensprof_response_set_linear(&profile->response[c]);
 }
 
-lensprof_status lp_provenance_validate(const lensprof_provenance *p)
-{
+lensprof_status lp_provenance_validate(const lensprof_provenance *p) {
     if (!is_text(p->method, sizeof p->method) || !is_text(p->software, sizeof p->software)
         || !is_text(p->source, sizeof p->source) || !is_text(p->doubt, sizeof p->doubt))
         return LENSPROF_ERROR_ARGUMENT;
@@ -61,8 +55,7 @@ lensprof_status lp_provenance_validate(const lensprof_provenance *p)
     return LENSPROF_OK;
 }
 
-static lensprof_status validate_covariance(const double *covariance, uint32_t n)
-{
+static lensprof_status validate_covariance(const double *covariance, uint32_t n) {
     if (n > LENSPROF_COVARIANCE_MAX) return LENSPROF_ERROR_SIZE;
     for (uint32_t i = 0; i < n; i++) {
         if (!(covariance[i * n + i] >= 0.0)) return LENSPROF_ERROR_ARGUMENT;
@@ -75,16 +68,14 @@ static lensprof_status validate_covariance(const double *covariance, uint32_t n)
 }
 
 /* All channels look through one lens: one centre. */
-static lensprof_status validate_falloff(const lensprof_vignetting *vignetting, const lensprof_vignetting *first)
-{
+static lensprof_status validate_falloff(const lensprof_vignetting *vignetting, const lensprof_vignetting *first) {
     lensprof_status status = lensprof_vignetting_validate(vignetting);
     if (status != LENSPROF_OK) return status;
     int same = vignetting->center[0] == first->center[0] && vignetting->center[1] == first->center[1];
     return same ? LENSPROF_OK : LENSPROF_ERROR_VIGNETTING;
 }
 
-lensprof_status lensprof_profile_validate(const lensprof_profile *profile)
-{
+lensprof_status lensprof_profile_validate(const lensprof_profile *profile) {
     if (!profile || profile->reserved) return LENSPROF_ERROR_ARGUMENT;
     if ((profile->responses != 1 && profile->responses != 3)
         || (profile->vignettings != 1 && profile->vignettings != 3))

@@ -1,37 +1,31 @@
 /* Response curves: one table of 1024 samples, evaluated and inverted by linear interpolation; linear and gamma
  * curves by their formulas. The empirical model of response is f = f0 + sum alpha_l h_l (d'Angelo eq. 6). */
-#include "response.h"
+#include "core/response.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "emor_table.h"
+#include "core/emor_table.h"
 
 #define LAST LP_CURVE_LAST
 
-const double *lensprof_emor_table(uint32_t mode)
-{
-    return mode <= LENSPROF_EMOR_MODES ? lp_emor_table[mode] : NULL;
-}
+const double *lensprof_emor_table(uint32_t mode) { return mode <= LENSPROF_EMOR_MODES ? lp_emor_table[mode] : NULL; }
 
-static int is_curve(const double *table)
-{
+static int is_curve(const double *table) {
     if (table[0] != 0.0 || table[LAST] != 1.0) return 0;
     for (uint32_t j = 0; j < LAST; j++)
         if (!(table[j + 1] >= table[j])) return 0; /* also false for NaN */
     return 1;
 }
 
-void lensprof_response_set_linear(lensprof_response *response)
-{
+void lensprof_response_set_linear(lensprof_response *response) {
     memset(response, 0, sizeof *response);
     response->kind = LENSPROF_RESPONSE_LINEAR;
     response->gamma = 1.0;
     for (uint32_t j = 0; j <= LAST; j++) response->table[j] = (double)j / LAST;
 }
 
-lensprof_status lensprof_response_set_gamma(lensprof_response *response, double gamma)
-{
+lensprof_status lensprof_response_set_gamma(lensprof_response *response, double gamma) {
     if (!response) return LENSPROF_ERROR_ARGUMENT;
     if (!lp_is_gamma(gamma)) return LENSPROF_ERROR_RESPONSE;
     memset(response, 0, sizeof *response);
@@ -42,8 +36,7 @@ lensprof_status lensprof_response_set_gamma(lensprof_response *response, double 
     return LENSPROF_OK;
 }
 
-void lp_emor_curve(const double *coefficients, uint32_t modes, double *table)
-{
+void lp_emor_curve(const double *coefficients, uint32_t modes, double *table) {
     memcpy(table, lp_emor_table[0], sizeof lp_emor_table[0]);
     for (uint32_t l = 0; l < modes; l++)
         for (uint32_t j = 1; j < LAST; j++) table[j] += coefficients[l] * lp_emor_table[l + 1][j];
@@ -51,8 +44,7 @@ void lp_emor_curve(const double *coefficients, uint32_t modes, double *table)
     table[LAST] = 1.0;
 }
 
-lensprof_status lensprof_response_set_emor(lensprof_response *response, const double *coefficients, uint32_t modes)
-{
+lensprof_status lensprof_response_set_emor(lensprof_response *response, const double *coefficients, uint32_t modes) {
     double table[LENSPROF_RESPONSE_SAMPLES];
     if (!response || (modes && !coefficients) || modes > LENSPROF_EMOR_MODES) return LENSPROF_ERROR_ARGUMENT;
     for (uint32_t l = 0; l < modes; l++)
@@ -68,8 +60,7 @@ lensprof_status lensprof_response_set_emor(lensprof_response *response, const do
     return LENSPROF_OK;
 }
 
-lensprof_status lensprof_response_set_table(lensprof_response *response, const double *values, uint32_t count)
-{
+lensprof_status lensprof_response_set_table(lensprof_response *response, const double *values, uint32_t count) {
     double table[LENSPROF_RESPONSE_SAMPLES];
     if (!response || !values || count < 2 || count > (1u << 20)) return LENSPROF_ERROR_ARGUMENT;
     for (uint32_t i = 0; i < count; i++) {
@@ -94,12 +85,10 @@ lensprof_status lensprof_response_set_table(lensprof_response *response, const d
     return LENSPROF_OK;
 }
 
-lensprof_status lensprof_response_validate(const lensprof_response *response)
-{
+lensprof_status lensprof_response_validate(const lensprof_response *response) {
     if (!response || response->kind > LENSPROF_RESPONSE_TABLE) return LENSPROF_ERROR_ARGUMENT;
     if (response->modes > LENSPROF_EMOR_MODES) return LENSPROF_ERROR_RESPONSE;
-    if (response->kind == LENSPROF_RESPONSE_GAMMA && !lp_is_gamma(response->gamma))
-        return LENSPROF_ERROR_RESPONSE;
+    if (response->kind == LENSPROF_RESPONSE_GAMMA && !lp_is_gamma(response->gamma)) return LENSPROF_ERROR_RESPONSE;
     if (response->kind == LENSPROF_RESPONSE_EMOR)
         for (uint32_t l = 0; l < LENSPROF_EMOR_MODES; l++)
             if (!isfinite(response->emor[l]) || (l >= response->modes && response->emor[l] != 0.0))
@@ -107,8 +96,7 @@ lensprof_status lensprof_response_validate(const lensprof_response *response)
     return is_curve(response->table) ? LENSPROF_OK : LENSPROF_ERROR_RESPONSE;
 }
 
-double lp_curve_power(double x, double exponent, double *slope)
-{
+double lp_curve_power(double x, double exponent, double *slope) {
     if (slope) *slope = 0.0;
     if (!(x > 0.0)) return 0.0;
     if (x >= 1.0) return 1.0;
@@ -117,8 +105,7 @@ double lp_curve_power(double x, double exponent, double *slope)
     return y;
 }
 
-double lensprof_response_eval(const lensprof_response *response, double x, double *slope)
-{
+double lensprof_response_eval(const lensprof_response *response, double x, double *slope) {
     switch (response->kind) {
     case LENSPROF_RESPONSE_LINEAR: return lp_curve_power(x, 1.0, slope);
     case LENSPROF_RESPONSE_GAMMA: return lp_curve_power(x, 1.0 / response->gamma, slope);
@@ -126,8 +113,7 @@ double lensprof_response_eval(const lensprof_response *response, double x, doubl
     }
 }
 
-double lensprof_response_invert(const lensprof_response *response, double b, double *slope)
-{
+double lensprof_response_invert(const lensprof_response *response, double b, double *slope) {
     switch (response->kind) {
     case LENSPROF_RESPONSE_LINEAR: return lp_curve_power(b, 1.0, slope);
     case LENSPROF_RESPONSE_GAMMA: return lp_curve_power(b, response->gamma, slope);

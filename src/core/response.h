@@ -14,8 +14,7 @@ extern "C" {
 static inline int lp_is_gamma(double gamma) { return gamma >= 0.1 && gamma <= 10.0; }
 
 /* f(x) of a table of 1024 samples; slope as lensprof_response_eval. The table need not end at 1. */
-static inline double lp_curve_eval(const double *table, double x, double *slope)
-{
+static inline double lp_curve_eval(const double *table, double x, double *slope) {
     if (!(x > 0.0) || x >= 1.0) {
         if (slope) *slope = 0.0;
         return x > 0.0 ? table[LP_CURVE_LAST] : table[0];
@@ -28,26 +27,26 @@ static inline double lp_curve_eval(const double *table, double x, double *slope)
 }
 
 /* Where f is b, given its samples j and j + 1: below < b <= above. */
-static inline double lp_curve_between(double below, double above, double b, uint32_t j)
-{
+static inline double lp_curve_between(double below, double above, double b, uint32_t j) {
     return (j + (b - below) / (above - below)) / LP_CURVE_LAST;
 }
 
 /* Smallest x with f(x) >= b, where table[low] < b <= table[high]; slope dg/db as lensprof_response_invert. */
-static inline double lp_curve_invert_between(const double *table, double b, uint32_t low, uint32_t high, double *slope)
-{
+static inline double lp_curve_invert_between(const double *table, double b, uint32_t low, uint32_t high,
+                                             double *slope) {
     while (high - low > 1) {
         uint32_t middle = (low + high) / 2;
-        if (table[middle] < b) low = middle;
-        else high = middle;
+        if (table[middle] < b)
+            low = middle;
+        else
+            high = middle;
     }
     if (slope) *slope = 1.0 / ((table[high] - table[low]) * LP_CURVE_LAST);
     return lp_curve_between(table[low], table[high], b, low);
 }
 
 /* The same over the whole table, which must not decrease. */
-static inline double lp_curve_invert(const double *table, double b, double *slope)
-{
+static inline double lp_curve_invert(const double *table, double b, double *slope) {
     if (slope) *slope = 0.0;
     if (!(b > table[0])) return 0.0;
     if (b > table[LP_CURVE_LAST]) return 1.0;

@@ -6,16 +6,14 @@
 #define SMALLEST_M 0.001
 #define LARGEST_K 1e6 /* far beyond any lens; keeps the arithmetic below exact enough */
 
-double lensprof_vignetting_eval(const lensprof_vignetting *vignetting, double r2, double *slope)
-{
+double lensprof_vignetting_eval(const lensprof_vignetting *vignetting, double r2, double *slope) {
     const double *k = vignetting->k;
     if (slope) *slope = k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[2]);
     return 1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[2]));
 }
 
 double lensprof_vignetting_r2(const lensprof_vignetting *vignetting, uint32_t width, uint32_t height, double x,
-                              double y, double *gradient)
-{
+                              double y, double *gradient) {
     double w = width, h = height;
     double rho = 0.5 * sqrt(w * w + h * h);
     double dx = (x - 0.5 * (w - 1.0)) / rho - vignetting->center[0];
@@ -27,8 +25,7 @@ double lensprof_vignetting_r2(const lensprof_vignetting *vignetting, uint32_t wi
     return dx * dx + dy * dy;
 }
 
-lensprof_status lensprof_vignetting_validate(const lensprof_vignetting *vignetting)
-{
+lensprof_status lensprof_vignetting_validate(const lensprof_vignetting *vignetting) {
     if (!vignetting) return LENSPROF_ERROR_ARGUMENT;
     const double *k = vignetting->k, *c = vignetting->center;
     if (!isfinite(k[0]) || !isfinite(k[1]) || !isfinite(k[2])) return LENSPROF_ERROR_NOT_FINITE;
@@ -50,19 +47,16 @@ lensprof_status lensprof_vignetting_validate(const lensprof_vignetting *vignetti
     return LENSPROF_OK;
 }
 
-void lensprof_exposure_init(lensprof_exposure *exposure)
-{
+void lensprof_exposure_init(lensprof_exposure *exposure) {
     exposure->ev = 0.0;
     for (int c = 0; c < 3; c++) exposure->white_balance[c] = 1.0;
 }
 
-double lensprof_exposure_factor(const lensprof_exposure *exposure, uint32_t channel)
-{
+double lensprof_exposure_factor(const lensprof_exposure *exposure, uint32_t channel) {
     return channel < 3 ? exp2(exposure->ev) * exposure->white_balance[channel] : 0.0;
 }
 
-lensprof_status lensprof_exposure_validate(const lensprof_exposure *exposure)
-{
+lensprof_status lensprof_exposure_validate(const lensprof_exposure *exposure) {
     if (!exposure) return LENSPROF_ERROR_ARGUMENT;
     if (!(fabs(exposure->ev) <= 64.0)) return LENSPROF_ERROR_EXPOSURE;
     for (int c = 0; c < 3; c++)

@@ -6,9 +6,9 @@
 
 #include <lensprof/formats.h>
 
-#include "alsc.hpp"
-#include "json_text.hpp"
-#include "map.hpp"
+#include "formats/alsc.hpp"
+#include "formats/falloff/map.hpp"
+#include "formats/text/json_text.hpp"
 
 namespace lensprof {
 namespace {
@@ -31,13 +31,16 @@ JsonValue find_alsc(const JsonValue &root) {
 // Columns and rows of a table of so many values.
 void find_shape(const JsonValue &table, size_t count, uint32_t &columns, uint32_t &rows) {
     if (!columns && !rows) {
-        if (count == 16 * 12) columns = 16, rows = 12;
-        else if (count == 32 * 32) columns = rows = 32;
-        else table.fail("has " + std::to_string(count) + " values, not 16 x 12 or 32 x 32; give columns and rows");
+        if (count == 16 * 12)
+            columns = 16, rows = 12;
+        else if (count == 32 * 32)
+            columns = rows = 32;
+        else
+            table.fail("has " + std::to_string(count) + " values, not 16 x 12 or 32 x 32; give columns and rows");
     }
     if (uint64_t{columns} * rows != count)
-        table.fail("has " + std::to_string(count) + " values, not " + std::to_string(columns) + " x " + std::to_string(rows)
-                   + "; give other columns and rows");
+        table.fail("has " + std::to_string(count) + " values, not " + std::to_string(columns) + " x "
+                   + std::to_string(rows) + "; give other columns and rows");
 }
 
 std::vector<double> gains_of(const JsonValue &table) {
@@ -49,8 +52,8 @@ std::vector<double> gains_of(const JsonValue &table) {
     return gains;
 }
 
-// The table of a colour temperature, as libcamera finds it: between the two nearest ones linearly, beyond the ends as there.
-// All 1 where there is none.
+// The table of a colour temperature, as libcamera finds it: between the two nearest ones linearly, beyond the ends as
+// there. All 1 where there is none.
 std::vector<double> ratios_at(const JsonValue &calibrations, double ct, size_t count) {
     std::vector<double> ratios(count, 1.0);
     if (!calibrations) return ratios;
@@ -62,11 +65,13 @@ std::vector<double> ratios_at(const JsonValue &calibrations, double ct, size_t c
         const JsonValue table = item.required("table");
         const std::vector<double> gains = gains_of(table);
         if (gains.size() != count)
-            table.fail("has " + std::to_string(gains.size()) + " values, the luminance " + std::to_string(count) + "; correct it");
+            table.fail("has " + std::to_string(gains.size()) + " values, the luminance " + std::to_string(count)
+                       + "; correct it");
         if (item_ct <= before_ct) item.fail("is not of a higher ct than the one before; sort them");
         const double share = before.empty() ? 1.0 : std::clamp((ct - before_ct) / (item_ct - before_ct), 0.0, 1.0);
         if (before.empty() || ct > before_ct)
-            for (size_t i = 0; i < count; i++) ratios[i] = before.empty() ? gains[i] : before[i] + share * (gains[i] - before[i]);
+            for (size_t i = 0; i < count; i++)
+                ratios[i] = before.empty() ? gains[i] : before[i] + share * (gains[i] - before[i]);
         before = gains, before_ct = item_ct;
     }
     return ratios;
@@ -97,8 +102,8 @@ double read_alsc(std::string_view text, double ct, Shape shape, lensprof_profile
         gains.push_back(static_cast<float>(luminance[i]));
         if (!grey) gains.push_back(static_cast<float>(luminance[i] * blue[i]));
     }
-    return fit_values({shape.columns, shape.rows, grey ? 1u : 3u, true, {0, 1, 2}}, gains.data(), shape.width, shape.height,
-                      profile);
+    return fit_values({shape.columns, shape.rows, grey ? 1u : 3u, true, {0, 1, 2}}, gains.data(), shape.width,
+                      shape.height, profile);
 }
 
 }  // namespace

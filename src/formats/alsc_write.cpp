@@ -7,9 +7,9 @@
 
 #include <lensprof/formats.h>
 
-#include "alsc.hpp"
-#include "json_text.hpp"
-#include "map.hpp"
+#include "formats/alsc.hpp"
+#include "formats/falloff/map.hpp"
+#include "formats/text/json_text.hpp"
 
 namespace lensprof {
 namespace {
@@ -66,8 +66,8 @@ std::string alsc_text(const lensprof_profile &profile, double ct, const Shape &s
     check_profile(profile);
     check_frame(shape.width, shape.height);
     if (shape.columns < 2 || shape.rows < 2 || shape.columns > kMostSide || shape.rows > kMostSide)
-        throw FormatFailure{LENSPROF_ERROR_SIZE, "tables of " + std::to_string(shape.columns) + " x " + std::to_string(shape.rows)
-                                                     + "; give 16 x 12 or 32 x 32"};
+        throw FormatFailure{LENSPROF_ERROR_SIZE, "tables of " + std::to_string(shape.columns) + " x "
+                                                     + std::to_string(shape.rows) + "; give 16 x 12 or 32 x 32"};
     JsonWriter json;
     json.open('{');
     json.name(kAlscName);
@@ -95,7 +95,9 @@ lensprof_status lensprof_alsc_write(const lensprof_profile *profile, double ct, 
                                     uint32_t width, uint32_t height, char *text, size_t capacity, size_t *needed,
                                     lensprof_error *error) {
     if (!profile || !(ct == LENSPROF_UNKNOWN || (ct >= 1.0 && ct <= 1e6)) || (!text && capacity)) {
-        set_error(error, "lensprof_alsc_write: give a profile, a colour temperature of 1 to 1000000 K or unknown, and a buffer");
+        set_error(
+            error,
+            "lensprof_alsc_write: give a profile, a colour temperature of 1 to 1000000 K or unknown, and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return write_at_boundary(text, capacity, needed, error, [&] {

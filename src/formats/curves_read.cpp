@@ -6,7 +6,7 @@
 
 #include <lensprof/formats.h>
 
-#include "curve_table.hpp"
+#include "formats/falloff/curve_table.hpp"
 
 namespace lensprof {
 namespace {
@@ -25,9 +25,7 @@ struct Table {
     std::vector<Row> rows;
 };
 
-bool is_separator(char c) {
-    return is_blank(c) || c == ',' || c == ';' || c == '[' || c == ']';
-}
+bool is_separator(char c) { return is_blank(c) || c == ',' || c == ';' || c == '[' || c == ']'; }
 
 std::vector<std::string_view> split(std::string_view line) {
     std::vector<std::string_view> words;
@@ -46,7 +44,8 @@ std::vector<std::string_view> split(std::string_view line) {
 class CurveText {
 public:
     explicit CurveText(std::string_view text) {
-        if (text.size() > kMostBytes) throw FormatFailure{LENSPROF_ERROR_SIZE, "over 64 MiB; give a table of a response"};
+        if (text.size() > kMostBytes)
+            throw FormatFailure{LENSPROF_ERROR_SIZE, "over 64 MiB; give a table of a response"};
         LineReader lines(text);
         while (lines.next()) add_line(lines.line, lines.number);
         tables_.erase(std::remove_if(tables_.begin(), tables_.end(), [](const Table &t) { return t.rows.empty(); }),
@@ -63,7 +62,8 @@ private:
         const std::vector<std::string_view> words = split(line);
         if (words.empty()) return;
         if (words[0][0] == '#' || words[0][0] == '%' || words[0].substr(0, 2) == "//") {
-            if (words[0] == "#" && words.size() == 3 && words[1] == "name:") tables_.push_back({std::string(words[2]), {}});
+            if (words[0] == "#" && words.size() == 3 && words[1] == "name:")
+                tables_.push_back({std::string(words[2]), {}});
             return;
         }
         Row row{number, {}};
@@ -80,7 +80,8 @@ private:
         if (!rows.empty() && rows[0].values.size() != row.values.size())
             fail_at_line(number, std::to_string(row.values.size()) + " columns, where the first row has "
                                      + std::to_string(rows[0].values.size()) + "; correct it");
-        if (rows.size() == kMostCurveRows) fail_at_line(number, "over 65536 rows; give a shorter table", LENSPROF_ERROR_SIZE);
+        if (rows.size() == kMostCurveRows)
+            fail_at_line(number, "over 65536 rows; give a shorter table", LENSPROF_ERROR_SIZE);
         rows.push_back(std::move(row));
     }
 
@@ -126,17 +127,23 @@ lensprof_response read_curve(const Table &table, std::vector<double> values, uin
                      LENSPROF_ERROR_RESPONSE);
     const double first = values.front(), last = values.back();
     if (curve == LENSPROF_CURVE_INVERSE && first < 0.0)
-        fail_at_line(table.rows[0].line, number_text(first) + " is below 0, as no irradiance is; is the table logarithmic?",
+        fail_at_line(table.rows[0].line,
+                     number_text(first) + " is below 0, as no irradiance is; is the table logarithmic?",
                      LENSPROF_ERROR_RESPONSE);
     const bool is_log = curve == LENSPROF_CURVE_LOG || curve == LENSPROF_CURVE_LOG10;
     if (is_log ? !(last > first) : !(last > 0.0 && last > first))
-        fail_at_line(table.rows.back().line, "the last value is not above the first, or not above 0; give another table",
+        fail_at_line(table.rows.back().line,
+                     "the last value is not above the first, or not above 0; give another table",
                      LENSPROF_ERROR_RESPONSE);
     for (double &value : values) {
-        if (curve == LENSPROF_CURVE_LOG) value = std::exp(value - last);
-        else if (curve == LENSPROF_CURVE_LOG10) value = std::pow(10.0, value - last);
-        else if (curve == LENSPROF_CURVE_FORWARD) value = std::clamp(value / (last - first) - first / (last - first), 0.0, 1.0);
-        else value /= last;
+        if (curve == LENSPROF_CURVE_LOG)
+            value = std::exp(value - last);
+        else if (curve == LENSPROF_CURVE_LOG10)
+            value = std::pow(10.0, value - last);
+        else if (curve == LENSPROF_CURVE_FORWARD)
+            value = std::clamp(value / (last - first) - first / (last - first), 0.0, 1.0);
+        else
+            value /= last;
     }
     if (curve != LENSPROF_CURVE_FORWARD) return response_of_irradiances(values);
     values.back() = 1.0;
@@ -160,7 +167,8 @@ void read_matrices(const std::vector<Table> &tables, Curves &curves) {
     curves.count = static_cast<uint32_t>(tables.size());
     for (uint32_t c = 0; c < curves.count; c++) {
         if (tables[c].rows[0].values.size() != 3)
-            fail_at_line(tables[c].rows[0].line, "a matrix without 3 columns: log10, grey value and irradiance; correct it");
+            fail_at_line(tables[c].rows[0].line,
+                         "a matrix without 3 columns: log10, grey value and irradiance; correct it");
         check_index(tables[c], 1);
         curves.response[c] = read_curve(tables[c], column(tables[c], 2), LENSPROF_CURVE_INVERSE);
     }
@@ -169,7 +177,8 @@ void read_matrices(const std::vector<Table> &tables, Curves &curves) {
 void read_columns(const Table &table, bool blue_first, uint32_t curve, Curves &curves) {
     const size_t columns = table.rows[0].values.size();
     if (columns > 4)
-        fail_at_line(table.rows[0].line, std::to_string(columns) + " columns; give 1 or 3, or these after one that counts");
+        fail_at_line(table.rows[0].line,
+                     std::to_string(columns) + " columns; give 1 or 3, or these after one that counts");
     curves.count = columns <= 2 ? 1 : 3;
     const size_t skipped = columns - curves.count;
     if (skipped && table.rows.size() > 1) check_index(table, 0);
@@ -185,14 +194,17 @@ using namespace lensprof;
 lensprof_status lensprof_curves_read(const char *text, size_t bytes, uint32_t curve, lensprof_response *responses,
                                      uint32_t *count, lensprof_error *error) {
     if ((!text && bytes) || !responses || !count || curve > LENSPROF_CURVE_FORWARD) {
-        set_error(error, "lensprof_curves_read: text, responses or count is NULL, or an unknown kind; see lensprof_curve");
+        set_error(error,
+                  "lensprof_curves_read: text, responses or count is NULL, or an unknown kind; see lensprof_curve");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {
         const CurveText file(std::string_view(bytes ? text : "", bytes));
         Curves curves{};
-        if (!file.tables()[0].name.empty()) read_matrices(file.tables(), curves);
-        else read_columns(file.tables()[0], file.blue_first(), curve, curves);
+        if (!file.tables()[0].name.empty())
+            read_matrices(file.tables(), curves);
+        else
+            read_columns(file.tables()[0], file.blue_first(), curve, curves);
         std::copy_n(curves.response.begin(), curves.count, responses);
         *count = curves.count;
     });

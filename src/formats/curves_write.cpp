@@ -5,7 +5,7 @@
 
 #include <lensprof/formats.h>
 
-#include "curve_table.hpp"
+#include "formats/falloff/curve_table.hpp"
 
 namespace lensprof {
 namespace {

@@ -1,4 +1,4 @@
-#include "dng_opcodes.hpp"
+#include "formats/dng_opcodes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <lensprof/apply.h>
 
-#include "text.hpp"
+#include "formats/text/text.hpp"
 
 namespace lensprof {
 namespace {
@@ -14,10 +14,21 @@ namespace {
 constexpr uint32_t kTrimBounds = 6;
 constexpr size_t kMostGains = 64;
 constexpr uint64_t kMostPoints = 1u << 20;
-constexpr const char *kNames[] = {nullptr,        "WarpRectilinear",  "WarpFisheye",   "FixVignetteRadial",
-                                  "FixBadPixelsConstant", "FixBadPixelsList", "TrimBounds", "MapTable",
-                                  "MapPolynomial", "GainMap",          "DeltaPerRow",   "DeltaPerColumn",
-                                  "ScalePerRow",  "ScalePerColumn",   "WarpRectilinear2"};
+constexpr const char *kNames[] = {nullptr,
+                                  "WarpRectilinear",
+                                  "WarpFisheye",
+                                  "FixVignetteRadial",
+                                  "FixBadPixelsConstant",
+                                  "FixBadPixelsList",
+                                  "TrimBounds",
+                                  "MapTable",
+                                  "MapPolynomial",
+                                  "GainMap",
+                                  "DeltaPerRow",
+                                  "DeltaPerColumn",
+                                  "ScalePerRow",
+                                  "ScalePerColumn",
+                                  "WarpRectilinear2"};
 
 // Numbers of a range of bytes, which are checked to be there.
 class BigEndian {
@@ -151,9 +162,12 @@ private:
                LENSPROF_ERROR_UNSUPPORTED);
         demand(!gain || gains_.radial.size() + gains_.maps.size() < kMostGains, "over 64 gains; leave some out",
                LENSPROF_ERROR_SIZE);
-        if (id == kFixVignetteRadial) gains_.radial.push_back(read_radial(payload));
-        else if (id == kGainMap) gains_.maps.push_back(read_map(payload, points_left_));
-        else if (gains_.left_out.size() < 200) gains_.left_out += (gains_.left_out.empty() ? "" : ", ") + name;
+        if (id == kFixVignetteRadial)
+            gains_.radial.push_back(read_radial(payload));
+        else if (id == kGainMap)
+            gains_.maps.push_back(read_map(payload, points_left_));
+        else if (gains_.left_out.size() < 200)
+            gains_.left_out += (gains_.left_out.empty() ? "" : ", ") + name;
         trimmed_ = trimmed_ || id == kTrimBounds;
     }
 
@@ -178,9 +192,7 @@ Between between(double place, double side, double origin, double spacing, uint32
 
 }  // namespace
 
-OpcodeGains parse_opcodes(const uint8_t *bytes, size_t size) {
-    return ListReader(bytes, size).read();
-}
+OpcodeGains parse_opcodes(const uint8_t *bytes, size_t size) { return ListReader(bytes, size).read(); }
 
 double radial_gain(const RadialGain &gain, const PixelFrame &frame, double x, double y) {
     const double cx = gain.center[0] * frame.width, cy = gain.center[1] * frame.height;
@@ -205,9 +217,7 @@ double map_gain(const GainMap &map, const PixelFrame &frame, double x, double y,
     return along(down.low) + down.share * (along(down.high) - along(down.low));
 }
 
-bool is_mosaic(uint32_t layout) {
-    return layout >= LENSPROF_LAYOUT_RGGB && layout <= LENSPROF_LAYOUT_BGGR;
-}
+bool is_mosaic(uint32_t layout) { return layout >= LENSPROF_LAYOUT_RGGB && layout <= LENSPROF_LAYOUT_BGGR; }
 
 uint32_t mosaic_channel(uint32_t layout, uint32_t column, uint32_t row) {
     const uint32_t red_column = layout == LENSPROF_LAYOUT_GRBG || layout == LENSPROF_LAYOUT_BGGR,

@@ -1,4 +1,5 @@
-// The gains of a DNG opcode list (Adobe DNG specification, chapter 7): FixVignetteRadial and GainMap, in big-endian bytes.
+// The gains of a DNG opcode list (Adobe DNG specification, chapter 7): FixVignetteRadial and GainMap, in big-endian
+// bytes.
 #pragma once
 
 #include <array>
@@ -40,8 +41,8 @@ struct OpcodeGains {
     uint32_t count;        // opcodes of the list, of any kind
 };
 
-// Throws SYNTAX for bytes that are no opcode list, SIZE for over 64 gains or 1 Mi points in all, UNSUPPORTED for opcodes
-// without a name in the specification that are not optional, and for gains after TrimBounds.
+// Throws SYNTAX for bytes that are no opcode list, SIZE for over 64 gains or 1 Mi points in all, UNSUPPORTED for
+// opcodes without a name in the specification that are not optional, and for gains after TrimBounds.
 OpcodeGains parse_opcodes(const uint8_t *bytes, size_t size);
 
 // Gain at a place of the frame, pixel centres at integers.

@@ -5,21 +5,19 @@
 
 #include <lensprof/formats.h>
 
-#include "dng_opcodes.hpp"
-#include "import.hpp"
-#include "map_fit.hpp"
-#include "radius.hpp"
-#include "refit.hpp"
-#include "text.hpp"
+#include "formats/dng_opcodes.hpp"
+#include "formats/falloff/import.hpp"
+#include "formats/falloff/map_fit.hpp"
+#include "formats/falloff/radius.hpp"
+#include "formats/falloff/refit.hpp"
+#include "formats/text/text.hpp"
 
 namespace lensprof {
 namespace {
 
 constexpr double kSame = 1e-6;  // relative; a map's gains are in single precision
 
-[[noreturn]] void fail(lensprof_status status, const std::string &text) {
-    throw FormatFailure{status, text};
-}
+[[noreturn]] void fail(lensprof_status status, const std::string &text) { throw FormatFailure{status, text}; }
 
 double positive(double gain) {
     if (!(gain > 0.0) || !std::isfinite(gain))
@@ -35,9 +33,9 @@ public:
         for (const GainMap &map : gains.maps)
             if (is_mosaic(layout) ? bad_pitch(map.row_pitch) || bad_pitch(map.column_pitch)
                                   : map.row_pitch != 1 || map.column_pitch != 1)
-                fail(LENSPROF_ERROR_UNSUPPORTED,
-                     "a GainMap of every " + std::to_string(std::max(map.row_pitch, map.column_pitch))
-                         + "th pixel; pass the layout of the mosaic that the list is for");
+                fail(LENSPROF_ERROR_UNSUPPORTED, "a GainMap of every "
+                                                     + std::to_string(std::max(map.row_pitch, map.column_pitch))
+                                                     + "th pixel; pass the layout of the mosaic that the list is for");
     }
 
     // Of a channel, at a place between the pixels' centres too; of the two greens of a mosaic, their mean.
@@ -64,8 +62,7 @@ private:
             const bool site_in = (row + map.top) % map.row_pitch == 0 && (column + map.left) % map.column_pitch == 0;
             // A pixel of the square, or of the plane, nearest to the place.
             const bool inside = y >= map.top - (map.row_pitch - 0.5) && y < map.bottom + (map.row_pitch - 1.5)
-                                && x >= map.left - (map.column_pitch - 0.5)
-                                && x < map.right + (map.column_pitch - 1.5);
+                                && x >= map.left - (map.column_pitch - 0.5) && x < map.right + (map.column_pitch - 1.5);
             if (plane_in && site_in && inside) gain *= map_gain(map, frame_, x, y, plane);
         }
         return gain;
@@ -92,8 +89,8 @@ double fit_radial(const std::vector<RadialGain> &radial, PixelFrame frame, lensp
         double product = 1.0;
         for (const RadialGain &gain : radial) {
             const double along = std::sqrt(r2) * rho;  // px to the right of the centre
-            product *= positive(radial_gain(gain, frame, gain.center[0] * sides[0] - 0.5 + along,
-                                            gain.center[1] * sides[1] - 0.5));
+            product *= positive(
+                radial_gain(gain, frame, gain.center[0] * sides[0] - 0.5 + along, gain.center[1] * sides[1] - 0.5));
         }
         return 1.0 / product;
     };
@@ -131,9 +128,8 @@ std::string read_gains(const OpcodeGains &gains, PixelFrame frame, uint32_t layo
                                            + "; give the list that has one");
     profile.key.processing = LENSPROF_PROCESSING_RAW;
     const GainField field(gains, frame, layout);
-    const double worst = gains.maps.empty() && one_center(gains.radial)
-                             ? fit_radial(gains.radial, frame, profile)
-                             : fit_field(field, frame, channels, profile);
+    const double worst = gains.maps.empty() && one_center(gains.radial) ? fit_radial(gains.radial, frame, profile)
+                                                                        : fit_field(field, frame, channels, profile);
     return remark_on(worst, gains.left_out);
 }
 
@@ -143,8 +139,8 @@ std::string read_gains(const OpcodeGains &gains, PixelFrame frame, uint32_t layo
 using namespace lensprof;
 
 lensprof_status lensprof_dng_opcodes_read(const void *bytes, size_t size, uint32_t width, uint32_t height,
-                                          uint32_t layout, const char *source, lensprof_import_visitor visit, void *user,
-                                          lensprof_error *error) {
+                                          uint32_t layout, const char *source, lensprof_import_visitor visit,
+                                          void *user, lensprof_error *error) {
     if ((!bytes && size) || !visit) {
         set_error(error, "lensprof_dng_opcodes_read: bytes or visit is NULL; pass a buffer and a function");
         return LENSPROF_ERROR_ARGUMENT;

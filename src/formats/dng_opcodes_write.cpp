@@ -5,11 +5,11 @@
 
 #include <lensprof/formats.h>
 
-#include "dng_opcodes.hpp"
-#include "map_fit.hpp"
-#include "radius.hpp"
-#include "refit.hpp"
-#include "text.hpp"
+#include "formats/dng_opcodes.hpp"
+#include "formats/falloff/map_fit.hpp"
+#include "formats/falloff/radius.hpp"
+#include "formats/falloff/refit.hpp"
+#include "formats/text/text.hpp"
 
 namespace lensprof {
 namespace {
@@ -54,8 +54,10 @@ private:
 
 void check_profile(const lensprof_profile &profile) {
     const lensprof_status status = lensprof_profile_validate(&profile);
-    demand(status == LENSPROF_OK, std::string("the profile is not valid (") + lensprof_status_name(status)
-                                      + "); see lensprof_profile_validate", status);
+    demand(
+        status == LENSPROF_OK,
+        std::string("the profile is not valid (") + lensprof_status_name(status) + "); see lensprof_profile_validate",
+        status);
     demand(profile.key.processing != LENSPROF_PROCESSING_CORRECTED,
            "the profile is of pictures corrected in camera, and opcodes correct raw ones; give another",
            LENSPROF_ERROR_UNSUPPORTED);
@@ -76,8 +78,8 @@ double write_radial(const lensprof_profile &profile, PixelFrame frame, OpcodeByt
                LENSPROF_ERROR_UNSUPPORTED);
     }
     const double reach = farthest_corner(v.center, sides[0], sides[1]);
-    const EvenRefit refit = refit_even(
-        [&](double t) { return 1.0 / lensprof_vignetting_eval(&v, t * reach * reach, nullptr); }, 5);
+    const EvenRefit refit =
+        refit_even([&](double t) { return 1.0 / lensprof_vignetting_eval(&v, t * reach * reach, nullptr); }, 5);
     bytes.u32(1);
     bytes.head(kFixVignetteRadial, 56);
     for (double k : refit.terms) bytes.f64(k);
@@ -101,12 +103,14 @@ GainMap whole_map(PixelFrame frame, uint32_t planes) {
 }
 
 // Gains of channels first .. first + map_planes - 1. Between points a reader draws straight lines, which lie outside a
-// curve by up to its second difference over 8 in each direction: half of that is taken off the points, so that the errors
-// there and between are the same.
+// curve by up to its second difference over 8 in each direction: half of that is taken off the points, so that the
+// errors there and between are the same.
 void fill_gains(const lensprof_profile &profile, PixelFrame frame, uint32_t first, GainMap &map) {
     std::vector<double> exact(size_t(map.rows) * map.columns);
     map.gains.resize(exact.size() * map.map_planes);
-    const auto at = [&](uint32_t row, uint32_t column) -> double & { return exact[size_t(row) * map.columns + column]; };
+    const auto at = [&](uint32_t row, uint32_t column) -> double & {
+        return exact[size_t(row) * map.columns + column];
+    };
     for (uint32_t plane = 0; plane < map.map_planes; plane++) {
         for (uint32_t j = 0; j < map.rows; j++)
             for (uint32_t i = 0; i < map.columns; i++) {
@@ -117,7 +121,7 @@ void fill_gains(const lensprof_profile &profile, PixelFrame frame, uint32_t firs
             for (uint32_t i = 0; i < map.columns; i++) {
                 const uint32_t jj = std::clamp(j, 1u, map.rows - 2), ii = std::clamp(i, 1u, map.columns - 2);
                 const double bend = at(jj - 1, i) - 2.0 * at(jj, i) + at(jj + 1, i)  // of the nearest inner point
-                                  + at(j, ii - 1) - 2.0 * at(j, ii) + at(j, ii + 1);
+                                    + at(j, ii - 1) - 2.0 * at(j, ii) + at(j, ii + 1);
                 map.gains[(size_t(j) * map.columns + i) * map.map_planes + plane] =
                     static_cast<float>(std::max(at(j, i) - bend / 16.0, at(j, i) / 2.0));
             }
@@ -129,7 +133,8 @@ double worst_error(const lensprof_profile &profile, PixelFrame frame, uint32_t f
     for (uint32_t plane = 0; plane < map.map_planes; plane++)
         for (uint32_t j = 0; j < kChecked; j++)
             for (uint32_t i = 0; i < kChecked; i++) {
-                const double x = i * (frame.width - 1.0) / (kChecked - 1), y = j * (frame.height - 1.0) / (kChecked - 1);
+                const double x = i * (frame.width - 1.0) / (kChecked - 1),
+                             y = j * (frame.height - 1.0) / (kChecked - 1);
                 const double m = profile_attenuation(profile, frame.width, frame.height, x, y, first + plane);
                 worst = std::max(worst, std::fabs(map_gain(map, frame, x, y, plane) * m - 1.0));
             }
@@ -189,7 +194,8 @@ lensprof_status lensprof_dng_opcodes_write(const lensprof_profile *profile, uint
     OpcodeBytes list;
     double found = 0.0;
     const lensprof_status status = at_boundary(error, [&] {
-        demand(form == LENSPROF_DNG_RADIAL || form == LENSPROF_DNG_GAIN_MAP, "an unknown form; pass a lensprof_dng_form");
+        demand(form == LENSPROF_DNG_RADIAL || form == LENSPROF_DNG_GAIN_MAP,
+               "an unknown form; pass a lensprof_dng_form");
         demand(width && height, "a frame without pixels; pass its width and height");
         opcode_channels(layout);
         check_profile(*profile);

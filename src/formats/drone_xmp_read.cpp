@@ -9,21 +9,21 @@
 
 #include <lensprof/formats.h>
 
-#include "falloff_doubt.hpp"
-#include "import.hpp"
-#include "map_fit.hpp"
-#include "radius.hpp"
-#include "rdf.hpp"
-#include "refit.hpp"
-#include "text.hpp"
-#include "xml.hpp"
+#include "formats/falloff/falloff_doubt.hpp"
+#include "formats/falloff/import.hpp"
+#include "formats/falloff/map_fit.hpp"
+#include "formats/falloff/radius.hpp"
+#include "formats/falloff/refit.hpp"
+#include "formats/text/rdf.hpp"
+#include "formats/text/text.hpp"
+#include "formats/text/xml.hpp"
 
 namespace lensprof {
 namespace {
 
 constexpr const char *kCamera = "pix4d.com/camera/", *kDji = "dji.com/drone-dji/", *kTiff = "ns.adobe.com/tiff/";
-constexpr size_t kMostTerms = 16;  // of a radial polynomial
-constexpr size_t kMost2d = 64;     // of one in x and y
+constexpr size_t kMostTerms = 16;   // of a radial polynomial
+constexpr size_t kMost2d = 64;      // of one in x and y
 constexpr double kGridFrom = 0.01;  // relative error of a radial falloff of even powers that a grid is for
 
 struct PixelSize {
@@ -99,7 +99,8 @@ std::vector<double> Packet::numbers(const char *space, std::string_view name, si
             if (!read_number(word, value) || std::fabs(value) > 1e100)
                 fail(first(), std::string(name) + " has " + quoted(word) + ", not a number; correct it");
             if (values.size() == most)
-                fail(first(), std::string(name) + " has over " + std::to_string(most) + " numbers; give what a camera wrote",
+                fail(first(),
+                     std::string(name) + " has over " + std::to_string(most) + " numbers; give what a camera wrote",
                      LENSPROF_ERROR_SIZE);
             values.push_back(value);
             rest.remove_prefix(std::min(comma + 1, rest.size()));
@@ -124,7 +125,8 @@ struct RadialPolynomial {
 };
 
 // An attenuation, to any scale, over the frame.
-double fit_frame(const std::function<double(double x, double y)> &attenuation, PixelSize frame, lensprof_profile &profile) {
+double fit_frame(const std::function<double(double x, double y)> &attenuation, PixelSize frame,
+                 lensprof_profile &profile) {
     const auto checked = [&](double x, double y, uint32_t) {
         const double value = attenuation(x, y);
         if (!(value >= kLowestFalloff) || !std::isfinite(value))
@@ -134,8 +136,8 @@ double fit_frame(const std::function<double(double x, double y)> &attenuation, P
     return fit_map(sampled_map(frame.width, frame.height, 1, checked), profile);
 }
 
-// Odd powers of r have a tip in the centre, which even ones have not: where these come no nearer than 1 %, there is a gain
-// grid as well.
+// Odd powers of r have a tip in the centre, which even ones have not: where these come no nearer than 1 %, there is a
+// gain grid as well.
 double fit_radial(const RadialPolynomial &polynomial, PixelSize frame, lensprof_profile &profile) {
     const double sides[2] = {double(frame.width), double(frame.height)}, rho = std::hypot(sides[0], sides[1]) / 2.0;
     lensprof_vignetting &v = profile.vignetting[0];
@@ -188,8 +190,9 @@ std::array<double, 2> DroneXmpReader::center(const std::vector<double> &given, c
     if (given.empty()) return {(frame_.width - 1.0) / 2.0, (frame_.height - 1.0) / 2.0};
     if (given.size() != 2) packet_.fail(packet_.first(), std::string(name) + " has not two numbers; correct it");
     if (!(given[0] >= 0.0 && given[0] <= frame_.width && given[1] >= 0.0 && given[1] <= frame_.height))
-        packet_.fail(packet_.first(), std::string(name) + " is outside a frame of " + std::to_string(frame_.width) + " x "
-                                          + std::to_string(frame_.height) + " px; pass the size of this picture");
+        packet_.fail(packet_.first(), std::string(name) + " is outside a frame of " + std::to_string(frame_.width)
+                                          + " x " + std::to_string(frame_.height)
+                                          + " px; pass the size of this picture");
     return {given[0], given[1]};
 }
 
@@ -197,8 +200,9 @@ double DroneXmpReader::read_2d(lensprof_profile &profile) const {
     const std::vector<double> powers = packet_.numbers(kCamera, "VignettingPolynomial2DName", 2 * kMost2d),
                               terms = packet_.numbers(kCamera, "VignettingPolynomial2D", kMost2d);
     if (powers.size() != 2 * terms.size())
-        packet_.fail(packet_.first(), "VignettingPolynomial2DName has not two powers for each number of "
-                                      "VignettingPolynomial2D; correct it");
+        packet_.fail(packet_.first(),
+                     "VignettingPolynomial2DName has not two powers for each number of "
+                     "VignettingPolynomial2D; correct it");
     for (double power : powers)
         if (power != std::floor(power) || power < 0.0 || power > 20.0)
             packet_.fail(packet_.first(), "VignettingPolynomial2DName has " + number_text(power)
@@ -237,11 +241,13 @@ std::string DroneXmpReader::read(const char *source, lensprof_profile &profile) 
     } else if (!flat.empty()) {
         worst = read_2d(profile);
     } else {
-        throw FormatFailure{LENSPROF_ERROR_NOT_FOUND,
-                            "no Camera:VignettingPolynomial, Camera:VignettingPolynomial2D or drone-dji:VignettingData; give "
-                            "the XMP of a picture that has one"};
+        throw FormatFailure{
+            LENSPROF_ERROR_NOT_FOUND,
+            "no Camera:VignettingPolynomial, Camera:VignettingPolynomial2D or drone-dji:VignettingData; give "
+            "the XMP of a picture that has one"};
     }
-    if (dji && packet_.text(kDji, "VignettingFlag") == "1") return "VignettingFlag: the camera corrected this picture itself";
+    if (dji && packet_.text(kDji, "VignettingFlag") == "1")
+        return "VignettingFlag: the camera corrected this picture itself";
     return refit_remark(worst);
 }
 
@@ -254,8 +260,9 @@ lensprof_status lensprof_drone_xmp_read(const char *text, size_t bytes, uint32_t
                                         const char *source, lensprof_import_visitor visit, void *user,
                                         lensprof_error *error) {
     if ((!text && bytes) || !visit || !width || !height) {
-        set_error(error, "lensprof_drone_xmp_read: text or visit is NULL, or a side is 0; pass a packet, its picture's size "
-                         "and a function");
+        set_error(error,
+                  "lensprof_drone_xmp_read: text or visit is NULL, or a side is 0; pass a packet, its picture's size "
+                  "and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }
     lensprof_status visited = LENSPROF_OK;

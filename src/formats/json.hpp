@@ -5,7 +5,7 @@
 
 #include <lensprof/profile.h>
 
-#include "json_text.hpp"
+#include "formats/text/json_text.hpp"
 
 namespace lensprof {
 

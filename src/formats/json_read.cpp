@@ -7,7 +7,7 @@
 
 #include <lensprof/formats.h>
 
-#include "json.hpp"
+#include "formats/json.hpp"
 
 namespace lensprof {
 namespace {
@@ -16,8 +16,8 @@ constexpr double kSameCurve = 1e-6;  // between samples and the curve of their k
 constexpr size_t kMostSamples = 65536;
 
 void check(lensprof_status status, const JsonValue &value, const char *what) {
-    if (status != LENSPROF_OK) value.fail(std::string("is ") + what + " (" + lensprof_status_name(status) + "); correct it",
-                                          status);
+    if (status != LENSPROF_OK)
+        value.fail(std::string("is ") + what + " (" + lensprof_status_name(status) + "); correct it", status);
 }
 
 // A text of an object; empty where it is missing or null.
@@ -60,8 +60,10 @@ void read_key(const JsonValue &object, lensprof_profile_key &key) {
     key.focal_mm = read_known(object, "focal_mm");
     key.aperture = read_known(object, "aperture");
     const JsonValue distance = object["distance_m"];
-    if (distance.is_text() && distance.text() == "infinity") key.distance_m = INFINITY;
-    else key.distance_m = read_known(object, "distance_m");
+    if (distance.is_text() && distance.text() == "infinity")
+        key.distance_m = INFINITY;
+    else
+        key.distance_m = read_known(object, "distance_m");
     key.processing = read_word(object.required("processing"), kJsonProcessings);
     check(lensprof_profile_key_validate(&key), object, "no valid key");
 }
@@ -111,8 +113,8 @@ void read_curve(const JsonValue &object, const JsonValue &samples, lensprof_resp
     if (kind == LENSPROF_RESPONSE_TABLE) {
         if (!samples) object.fail("has no \"values\"; add them");
         const std::vector<double> values = samples.numbers(2, kMostSamples);
-        return check(lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size())), samples,
-                     "no response, which rises from 0 to 1");
+        return check(lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size())),
+                     samples, "no response, which rises from 0 to 1");
     }
     if (kind == LENSPROF_RESPONSE_GAMMA) {
         const JsonValue gamma = object.required("gamma");
@@ -138,7 +140,8 @@ void read_curve(const JsonValue &object, const JsonValue &samples, lensprof_resp
 void read_responses(const JsonValue &object, lensprof_profile &profile) {
     const JsonValue values = object["values"], curves = object["curves"];
     profile.responses = values ? count_of_curves(values) : curves ? count_of_curves(curves) : 1;
-    if (curves && count_of_curves(curves) != profile.responses) curves.fail("is not of as many as \"values\"; correct it");
+    if (curves && count_of_curves(curves) != profile.responses)
+        curves.fail("is not of as many as \"values\"; correct it");
     JsonValue samples = values ? values.first() : values, curve = curves ? curves.first() : object;
     for (uint32_t c = 0; c < profile.responses; c++) {
         if (values && !samples) values.fail("holds null; correct it");
@@ -162,11 +165,15 @@ void read_covariance(const JsonValue &rows, lensprof_profile &profile) {
 void read_provenance(const JsonValue &object, const char *source, lensprof_provenance &provenance) {
     read_text(object, "method", provenance.method);
     read_text(object, "software", provenance.software);
-    if (object["source"] && !object["source"].text().empty()) read_text(object, "source", provenance.source);
-    else put_name(provenance.source, sizeof provenance.source, source);
+    if (object["source"] && !object["source"].text().empty())
+        read_text(object, "source", provenance.source);
+    else
+        put_name(provenance.source, sizeof provenance.source, source);
     read_text(object, "doubt", provenance.doubt);
-    if (const JsonValue created = object["created_unix_s"]) provenance.created_unix_s = created.whole(INT64_MIN, INT64_MAX);
-    if (const JsonValue images = object["images"]) provenance.images = static_cast<uint32_t>(images.whole(0, UINT32_MAX));
+    if (const JsonValue created = object["created_unix_s"])
+        provenance.created_unix_s = created.whole(INT64_MIN, INT64_MAX);
+    if (const JsonValue images = object["images"])
+        provenance.images = static_cast<uint32_t>(images.whole(0, UINT32_MAX));
     if (const JsonValue pairs = object["pairs"]) provenance.pairs = static_cast<uint32_t>(pairs.whole(0, UINT32_MAX));
     if (const JsonValue rms = object["heldout_rms"]) provenance.heldout_rms = rms.number_within(0.0, 255.0);
     if (const JsonValue share = object["inlier_share"]) provenance.inlier_share = share.number_within(0.0, 1.0);
@@ -187,8 +194,10 @@ void read_profile(const JsonValue &object, const char *source, lensprof_profile 
     if (const JsonValue grid = object["gain_grid"]) read_grid(grid, profile.grid);
     if (const JsonValue response = object["response"]) read_responses(response, profile);
     if (const JsonValue covariance = object["covariance"]) read_covariance(covariance, profile);
-    if (const JsonValue provenance = object["provenance"]) read_provenance(provenance, source, profile.provenance);
-    else put_name(profile.provenance.source, sizeof profile.provenance.source, source);
+    if (const JsonValue provenance = object["provenance"])
+        read_provenance(provenance, source, profile.provenance);
+    else
+        put_name(profile.provenance.source, sizeof profile.provenance.source, source);
     check(lensprof_profile_validate(&profile), object, "no valid profile");
 }
 

@@ -3,7 +3,7 @@
 
 #include <lensprof/formats.h>
 
-#include "json.hpp"
+#include "formats/json.hpp"
 
 namespace lensprof {
 namespace {
@@ -15,8 +15,10 @@ void write_text(JsonWriter &json, const char *name, const char *value) {
 
 void write_known(JsonWriter &json, const char *name, double value) {
     json.name(name);
-    if (value == LENSPROF_UNKNOWN) json.word("null");
-    else json.number(value);
+    if (value == LENSPROF_UNKNOWN)
+        json.word("null");
+    else
+        json.number(value);
 }
 
 void write_key(JsonWriter &json, const lensprof_profile_key &key) {
@@ -29,8 +31,10 @@ void write_key(JsonWriter &json, const lensprof_profile_key &key) {
     write_known(json, "crop_factor", key.crop_factor);
     write_known(json, "focal_mm", key.focal_mm);
     write_known(json, "aperture", key.aperture);
-    if (std::isinf(key.distance_m)) write_text(json, "distance_m", "infinity");
-    else write_known(json, "distance_m", key.distance_m);
+    if (std::isinf(key.distance_m))
+        write_text(json, "distance_m", "infinity");
+    else
+        write_known(json, "distance_m", key.distance_m);
     write_text(json, "processing", kJsonProcessings[key.processing]);
     json.close('}');
 }
@@ -90,8 +94,7 @@ void write_response(JsonWriter &json, const lensprof_profile &profile) {
     write_kind(json, profile.response[0]);
     json.name("values");
     json.open('[');
-    for (uint32_t c = 0; c < profile.responses; c++)
-        json.numbers(profile.response[c].table, LENSPROF_RESPONSE_SAMPLES);
+    for (uint32_t c = 0; c < profile.responses; c++) json.numbers(profile.response[c].table, LENSPROF_RESPONSE_SAMPLES);
     json.close(']');
     if (profile.responses > 1) {
         json.name("curves");

@@ -10,15 +10,15 @@
 
 #include <lensprof/formats.h>
 
-#include "falloff_doubt.hpp"
-#include "import.hpp"
-#include "lcp.hpp"
-#include "map_fit.hpp"
-#include "radius.hpp"
-#include "rdf.hpp"
-#include "refit.hpp"
-#include "text.hpp"
-#include "xml.hpp"
+#include "formats/falloff/falloff_doubt.hpp"
+#include "formats/falloff/import.hpp"
+#include "formats/falloff/map_fit.hpp"
+#include "formats/falloff/radius.hpp"
+#include "formats/falloff/refit.hpp"
+#include "formats/lcp.hpp"
+#include "formats/text/rdf.hpp"
+#include "formats/text/text.hpp"
+#include "formats/text/xml.hpp"
 
 namespace lensprof {
 namespace {
@@ -31,17 +31,18 @@ using Knot = std::pair<double, double>;
 // A VignetteModel.
 struct LcpFalloff {
     std::array<double, 3> alpha{};
-    std::vector<Knot> knots;                            // instead of alpha where there are some
-    double focal[2] = {0, 0};                           // in longer sides of the frame
-    double center[2] = {0.5, 0.5};                      // in 0..1 of the frame
-    uint32_t width = kLcpWidth, height = kLcpHeight;    // of the frame, px
+    std::vector<Knot> knots;                          // instead of alpha where there are some
+    double focal[2] = {0, 0};                         // in longer sides of the frame
+    double center[2] = {0.5, 0.5};                    // in 0..1 of the frame
+    uint32_t width = kLcpWidth, height = kLcpHeight;  // of the frame, px
 
     double attenuation(double r) const;
 };
 
 double LcpFalloff::attenuation(double r) const {
     if (knots.empty()) return 1.0 + r * r * (alpha[0] + r * r * (alpha[1] + r * r * alpha[2]));
-    const auto above = std::upper_bound(knots.begin(), knots.end(), r, [](double a, const Knot &b) { return a < b.first; });
+    const auto above =
+        std::upper_bound(knots.begin(), knots.end(), r, [](double a, const Knot &b) { return a < b.first; });
     if (above == knots.begin()) return knots.front().second;
     if (above == knots.end()) return knots.back().second;
     const Knot &below = *(above - 1);
@@ -65,8 +66,7 @@ public:
             [](const pugi::xml_node &node) { return local_name(node.name()) == "CameraProfiles"; });
         if (!list) fail(xml_.root(), "no photoshop:CameraProfiles; give a lens profile (.lcp)");
         items_ = rdf_items(list);
-        if (items_.size() > kMostEntries)
-            fail(list, "over 20000 entries; split the file", LENSPROF_ERROR_SIZE);
+        if (items_.size() > kMostEntries) fail(list, "over 20000 entries; split the file", LENSPROF_ERROR_SIZE);
     }
 
     // Calls use(profile, falloff, remark) for every entry with a falloff until it does not return OK.
@@ -147,8 +147,9 @@ void LcpReader::read_focal(const RdfResource &entry, const RdfResource &model, L
     x = number(model, "FocalLengthX", 0.0, 1e3, 0.0);
     if (!(x > 0.0)) {
         if (key.focal_mm == LENSPROF_UNKNOWN || key.crop_factor == LENSPROF_UNKNOWN)
-            fail(entry.node(), "a VignetteModel without FocalLengthX, and no FocalLength and SensorFormatFactor to take "
-                               "it from; add one of them");
+            fail(entry.node(),
+                 "a VignetteModel without FocalLengthX, and no FocalLength and SensorFormatFactor to take "
+                 "it from; add one of them");
         x = key.focal_mm * key.crop_factor / 35.0;
     }
     y = number(model, "FocalLengthY", 0.0, 1e3, 0.0);
@@ -165,8 +166,8 @@ std::vector<Knot> LcpReader::read_knots(const RdfResource &model) const {
             || !read_number(one_line(item.substr(std::min(comma + 1, item.size()))), value))
             fail(model.node(), "VignetteModelPiecewiseParam has " + quoted(item) + ", not two numbers; correct it");
         if (r < 0.0 || (!knots.empty() && !(r > knots.back().first)))
-            fail(model.node(), "VignetteModelPiecewiseParam: the radius of " + quoted(item)
-                                   + " is not above that before; sort them");
+            fail(model.node(),
+                 "VignetteModelPiecewiseParam: the radius of " + quoted(item) + " is not above that before; sort them");
         if (knots.size() == kMostKnots)
             fail(model.node(), "VignetteModelPiecewiseParam: over 1000 knots; leave some out", LENSPROF_ERROR_SIZE);
         knots.emplace_back(r, value);
@@ -267,7 +268,8 @@ lensprof_status lensprof_lcp_read(const char *text, size_t bytes, const char *so
     lensprof_status visited = LENSPROF_OK;
     const lensprof_status status = at_boundary(error, [&] {
         LcpReader reader(std::string_view(bytes ? text : "", bytes), source);
-        reader.walk([](lensprof_profile &, const LcpFalloff &) { return LENSPROF_OK; });  // all entries are checked first
+        reader.walk(
+            [](lensprof_profile &, const LcpFalloff &) { return LENSPROF_OK; });  // all entries are checked first
         visited = reader.walk([&](lensprof_profile &profile, const LcpFalloff &falloff) {
             return visit_falloff(profile, falloff, visit, user);
         });

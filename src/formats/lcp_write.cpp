@@ -8,11 +8,11 @@
 
 #include <lensprof/formats.h>
 
-#include "export.hpp"
-#include "lcp.hpp"
-#include "radius.hpp"
-#include "text.hpp"
-#include "xml.hpp"
+#include "formats/falloff/export.hpp"
+#include "formats/falloff/radius.hpp"
+#include "formats/lcp.hpp"
+#include "formats/text/text.hpp"
+#include "formats/text/xml.hpp"
 
 namespace lensprof {
 namespace {
@@ -74,8 +74,9 @@ void LcpWriter::check_key(const lensprof_profile &profile, uint32_t index) {
         const bool same = !std::strcmp(key.camera_maker, first_.camera_maker)
                           && !std::strcmp(key.camera_model, first_.camera_model) && !std::strcmp(key.lens, first_.lens)
                           && key.crop_factor == first_.crop_factor && key.processing == first_.processing;
-        demand_of_profile(same, index, "another camera, lens or crop factor than profile 0, or rendered and not raw, and a "
-                                       "lens profile is of one; write a file for each");
+        demand_of_profile(same, index,
+                          "another camera, lens or crop factor than profile 0, or rendered and not raw, and a "
+                          "lens profile is of one; write a file for each");
     } else {
         first_ = key;
     }
@@ -138,7 +139,8 @@ void LcpWriter::append(const lensprof_profile &profile, uint32_t index) {
 using namespace lensprof;
 
 lensprof_status lensprof_lcp_write(const lensprof_profile *const *profiles, uint32_t count, uint32_t width,
-                                   uint32_t height, char *text, size_t capacity, size_t *needed, lensprof_error *error) {
+                                   uint32_t height, char *text, size_t capacity, size_t *needed,
+                                   lensprof_error *error) {
     if ((!profiles && count) || (!text && capacity)) {
         set_error(error, "lensprof_lcp_write: profiles or text is NULL; pass a buffer");
         return LENSPROF_ERROR_ARGUMENT;

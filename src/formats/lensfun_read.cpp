@@ -9,11 +9,11 @@
 
 #include <lensprof/formats.h>
 
-#include "import.hpp"
-#include "lensfun.hpp"
-#include "radius.hpp"
-#include "text.hpp"
-#include "xml.hpp"
+#include "formats/falloff/import.hpp"
+#include "formats/falloff/radius.hpp"
+#include "formats/lensfun.hpp"
+#include "formats/text/text.hpp"
+#include "formats/text/xml.hpp"
 
 namespace lensprof {
 namespace {
@@ -230,8 +230,8 @@ lensprof_status LensfunReader::walk(Use use) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_lensfun_read(const char *text, size_t bytes, const char *source,
-                                      lensprof_import_visitor visit, void *user, lensprof_error *error) {
+lensprof_status lensprof_lensfun_read(const char *text, size_t bytes, const char *source, lensprof_import_visitor visit,
+                                      void *user, lensprof_error *error) {
     if ((!text && bytes) || !visit) {
         set_error(error, "lensprof_lensfun_read: text or visit is NULL; pass a buffer and a function");
         return LENSPROF_ERROR_ARGUMENT;

@@ -8,11 +8,11 @@
 
 #include <lensprof/formats.h>
 
-#include "export.hpp"
-#include "lensfun.hpp"
-#include "radius.hpp"
-#include "text.hpp"
-#include "xml.hpp"
+#include "formats/falloff/export.hpp"
+#include "formats/falloff/radius.hpp"
+#include "formats/lensfun.hpp"
+#include "formats/text/text.hpp"
+#include "formats/text/xml.hpp"
 
 namespace lensprof {
 namespace {
@@ -66,8 +66,8 @@ void append_entry(WrittenLens &lens, const lensprof_profile &profile, uint32_t i
 
 std::string database_text(const lensprof_profile *const *profiles, uint32_t count) {
     pugi::xml_document document;
-    const std::string remark = std::string(kLensfunRemark) + lensprof_version()
-                               + "; <mount> may be made that of your camera ";
+    const std::string remark =
+        std::string(kLensfunRemark) + lensprof_version() + "; <mount> may be made that of your camera ";
     append_remark(document, remark);
     const pugi::xml_node root = append_element(document, "lensdatabase");
     append_attribute(root, "version", "1");

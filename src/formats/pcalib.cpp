@@ -3,7 +3,7 @@
 
 #include <lensprof/formats.h>
 
-#include "curve_table.hpp"
+#include "formats/falloff/curve_table.hpp"
 
 namespace lensprof {
 namespace {
@@ -33,8 +33,9 @@ lensprof_response read_pcalib(std::string_view text) {
                                 + ") is not above the one before (" + number_text(values[fall - 1])
                                 + "), and an inverse response must increase; smooth it, or write it with lensprof"};
     if (values.size() < kRows)
-        throw FormatFailure{LENSPROF_ERROR_SYNTAX, std::to_string(values.size())
-                                                       + " values, not 256 or more; give the whole file, with one for each grey value"};
+        throw FormatFailure{LENSPROF_ERROR_SYNTAX,
+                            std::to_string(values.size())
+                                + " values, not 256 or more; give the whole file, with one for each grey value"};
     const double first = values.front(), range = values.back() - first;
     for (double &value : values) value = std::max((value - first) / range, 0.0);
     return response_of_irradiances(values);
@@ -46,7 +47,8 @@ std::string pcalib_text(const lensprof_response &response) {
     values[0] = 0.0;
     for (size_t i = 1; i < kRows; i++) values[i] = std::max(values[i] * kFull, values[i - 1] + kLeastStep);
     values[kRows - 1] = kFull;
-    for (size_t i = kRows - 1; i-- > 0 && values[i + 1] - values[i] < kLeastStep / 2.0;) values[i] = values[i + 1] - kLeastStep;
+    for (size_t i = kRows - 1; i-- > 0 && values[i + 1] - values[i] < kLeastStep / 2.0;)
+        values[i] = values[i + 1] - kLeastStep;
     std::string text;
     for (size_t i = 0; i < kRows; i++) text += (i ? " " : "") + number_text(values[i]);
     return text + "\n";

@@ -1,5 +1,5 @@
-// radical's response (.crf) and vignetting (.vgn) files: OpenCV matrices, little-endian, blue first, the latter after a line
-// of text.
+// radical's response (.crf) and vignetting (.vgn) files: OpenCV matrices, little-endian, blue first, the latter after a
+// line of text.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +10,8 @@
 
 #include <lensprof/formats.h>
 
-#include "curve_table.hpp"
-#include "map.hpp"
+#include "formats/falloff/curve_table.hpp"
+#include "formats/falloff/map.hpp"
 
 namespace lensprof {
 namespace {
@@ -68,9 +68,11 @@ Matrix take_matrix(std::string_view data, uint32_t type) {
     matrix.rows = take_u32(data), matrix.columns = take_u32(data);
     if (matrix.type != type || dimensions > 2)
         fail("a matrix of type " + std::to_string(matrix.type) + " with " + std::to_string(dimensions)
-             + " dimensions, not of type " + std::to_string(type) + "; give another file", LENSPROF_ERROR_UNSUPPORTED);
+                 + " dimensions, not of type " + std::to_string(type) + "; give another file",
+             LENSPROF_ERROR_UNSUPPORTED);
     const uint64_t pixel = type == kFloat3 ? 12 : 24;
-    if (matrix.rows > 65536 || matrix.columns > 65536) fail("a matrix of over 65536 a side; give another file", LENSPROF_ERROR_SIZE);
+    if (matrix.rows > 65536 || matrix.columns > 65536)
+        fail("a matrix of over 65536 a side; give another file", LENSPROF_ERROR_SIZE);
     if (data.size() != uint64_t{matrix.rows} * matrix.columns * pixel)
         fail("a matrix of " + std::to_string(matrix.columns) + " x " + std::to_string(matrix.rows) + " in "
              + std::to_string(data.size()) + " bytes; give the whole file");
@@ -96,7 +98,8 @@ void put_matrix(std::string &data, uint32_t type, uint32_t rows, uint32_t column
 void read_responses(std::string_view data, lensprof_response *responses) {
     const Matrix matrix = take_matrix(data, kFloat3);
     if (uint64_t{matrix.rows} * matrix.columns != kGreys)
-        fail("a response of " + std::to_string(uint64_t{matrix.rows} * matrix.columns) + " greys, not of 256; give another file");
+        fail("a response of " + std::to_string(uint64_t{matrix.rows} * matrix.columns)
+             + " greys, not of 256; give another file");
     const std::vector<float> values = matrix.numbers<float>();
     static constexpr const char *kNames[3] = {"red", "green", "blue"};
     for (size_t c = 0; c < 3; c++) {
@@ -104,12 +107,14 @@ void read_responses(std::string_view data, lensprof_response *responses) {
         for (size_t i = 0; i < kGreys; i++) greys.push_back(double(values[3 * i + 2 - c]));
         for (size_t i = 0; i < kGreys; i++)
             if (!std::isfinite(greys[i]) || greys[i] < 0.0)
-                fail(std::string("grey ") + std::to_string(i) + " of " + kNames[c] + " is no irradiance; calibrate again",
+                fail(std::string("grey ") + std::to_string(i) + " of " + kNames[c]
+                         + " is no irradiance; calibrate again",
                      LENSPROF_ERROR_RESPONSE);
         const size_t fall = find_fall(greys, false);
         if (fall < kGreys || !(greys.back() > greys.front()))
             fail("grey " + std::to_string(std::min<size_t>(fall, kGreys - 1)) + " of " + kNames[c]
-                     + " is darker than the one before; smooth it, or calibrate again", LENSPROF_ERROR_RESPONSE);
+                     + " is darker than the one before; smooth it, or calibrate again",
+                 LENSPROF_ERROR_RESPONSE);
         responses[c] = response_of_irradiances(greys);
     }
 }
@@ -149,24 +154,29 @@ void set_falloffs(const Polynomials &terms, uint32_t width, uint32_t height, len
 
 // A centre a channel: the surfaces, refitted with one.
 double refit_falloffs(const Polynomials &terms, uint32_t width, uint32_t height, lensprof_profile &profile) {
-    return fit_map(sampled_map(width, height, 3, [&](double column, double row, uint32_t channel) {
-        const std::array<double, kTerms> &t = terms[channel];
-        const double x = column - t[0], y = row - t[1], r2 = x * x + y * y;
-        return std::max(1.0 + r2 * (t[2] + r2 * (t[3] + r2 * t[4])), 0.0);
-    }), profile);
+    return fit_map(sampled_map(width, height, 3,
+                               [&](double column, double row, uint32_t channel) {
+                                   const std::array<double, kTerms> &t = terms[channel];
+                                   const double x = column - t[0], y = row - t[1], r2 = x * x + y * y;
+                                   return std::max(1.0 + r2 * (t[2] + r2 * (t[3] + r2 * t[4])), 0.0);
+                               }),
+                   profile);
 }
 
 double read_polynomial(std::string_view header, std::string_view data, lensprof_profile &profile) {
     double size[3];
     for (double &value : size)
-        if (!read_whole(next_word(header), 1, 65536, value)) fail("line 1: no degree, width and height; give the whole file");
-    if (size[0] != 3.0) fail("line 1: a polynomial of degree " + number_text(size[0]) + ", not 3", LENSPROF_ERROR_UNSUPPORTED);
+        if (!read_whole(next_word(header), 1, 65536, value))
+            fail("line 1: no degree, width and height; give the whole file");
+    if (size[0] != 3.0)
+        fail("line 1: a polynomial of degree " + number_text(size[0]) + ", not 3", LENSPROF_ERROR_UNSUPPORTED);
     const Matrix matrix = take_matrix(data, kDouble3);
     if (uint64_t{matrix.rows} * matrix.columns != kTerms) fail("a polynomial without 5 rows; give another file");
     const std::vector<double> values = matrix.numbers<double>();
     Polynomials terms;
     for (size_t i = 0; i < values.size(); i++) {
-        if (!std::isfinite(values[i])) fail("a coefficient that is not finite; calibrate again", LENSPROF_ERROR_NOT_FINITE);
+        if (!std::isfinite(values[i]))
+            fail("a coefficient that is not finite; calibrate again", LENSPROF_ERROR_NOT_FINITE);
         terms[2 - i % 3][i / 3] = values[i];
     }
     const auto width = static_cast<uint32_t>(size[1]), height = static_cast<uint32_t>(size[2]);
@@ -191,9 +201,11 @@ double read_vignetting(std::string_view data, lensprof_profile &profile) {
     } else if (name == kMap) {
         const Matrix matrix = take_matrix(data, kFloat3);
         const std::vector<float> values = matrix.numbers<float>();
-        worst = fit_values({matrix.columns, matrix.rows, 3, false, {2, 1, 0}}, values.data(), matrix.columns, matrix.rows, profile);
+        worst = fit_values({matrix.columns, matrix.rows, 3, false, {2, 1, 0}}, values.data(), matrix.columns,
+                           matrix.rows, profile);
     } else {
-        fail("line 1: " + quoted(name) + " is no vignetting model of radical; give another file", LENSPROF_ERROR_UNSUPPORTED);
+        fail("line 1: " + quoted(name) + " is no vignetting model of radical; give another file",
+             LENSPROF_ERROR_UNSUPPORTED);
     }
     profile.covariance_size = 0;
     std::fill(std::begin(profile.covariance), std::end(profile.covariance), 0.0);
@@ -254,8 +266,8 @@ lensprof_status lensprof_radical_response_write(const lensprof_response *respons
                              [&] { return responses_data(responses, count); });
 }
 
-lensprof_status lensprof_radical_vignetting_read(const void *data, size_t bytes, lensprof_profile *profile, double *worst,
-                                                 lensprof_error *error) {
+lensprof_status lensprof_radical_vignetting_read(const void *data, size_t bytes, lensprof_profile *profile,
+                                                 double *worst, lensprof_error *error) {
     if ((!data && bytes) || !profile) {
         set_error(error, "lensprof_radical_vignetting_read: data or profile is NULL; pass a buffer and a profile");
         return LENSPROF_ERROR_ARGUMENT;

@@ -4,7 +4,7 @@
 
 #include <lensprof/formats.h>
 
-#include "text.hpp"
+#include "formats/text/text.hpp"
 
 namespace lensprof {
 namespace {
@@ -54,7 +54,8 @@ void check_frame(const lensprof_frame_time &frame, uint32_t index) {
         if (!holds) throw FormatFailure{status, "frame " + std::to_string(index) + ": " + what};
     };
     const size_t length = strnlen(frame.id, sizeof frame.id);
-    demand(length > 0 && length < sizeof frame.id, "its name is empty or not terminated; set id", LENSPROF_ERROR_ARGUMENT);
+    demand(length > 0 && length < sizeof frame.id, "its name is empty or not terminated; set id",
+           LENSPROF_ERROR_ARGUMENT);
     for (size_t i = 0; i < length; i++)
         demand((frame.id[i] < 0 || frame.id[i] > ' ') && frame.id[i] != 127 && (i || frame.id[i] != '#'),
                "its name has blanks or control characters, or begins with #; change id", LENSPROF_ERROR_ARGUMENT);

@@ -35,22 +35,26 @@ double attenuation(int x, int y) {
     return 1.0 + r2 * (kFalloff[0] + r2 * (kFalloff[1] + r2 * kFalloff[2]));
 }
 
-template <class T> struct Kind;
-template <> struct Kind<uint8_t> {
+template <class T>
+struct Kind;
+template <>
+struct Kind<uint8_t> {
     static constexpr const char *name = "u8";
     static constexpr double unit = 255.0;
     static constexpr uint32_t sample = LENSPROF_SAMPLE_U8;
     static constexpr lfPixelFormat lensfun = LF_PF_U8;
     static constexpr int opencv = CV_8UC3;
 };
-template <> struct Kind<uint16_t> {
+template <>
+struct Kind<uint16_t> {
     static constexpr const char *name = "u16";
     static constexpr double unit = 65535.0;
     static constexpr uint32_t sample = LENSPROF_SAMPLE_U16;
     static constexpr lfPixelFormat lensfun = LF_PF_U16;
     static constexpr int opencv = CV_16UC3;
 };
-template <> struct Kind<float> {
+template <>
+struct Kind<float> {
     static constexpr const char *name = "f32";
     static constexpr double unit = 1.0;
     static constexpr uint32_t sample = LENSPROF_SAMPLE_F32;
@@ -96,7 +100,8 @@ private:
 };
 
 // Response, falloff, white balance and response with tables and the falloff pixel by pixel, as it comes to mind.
-template <class T> class PlainLoop {
+template <class T>
+class PlainLoop {
 public:
     PlainLoop() : inverse_(Kind<T>::unit == 1.0 ? 4096 : static_cast<size_t>(Kind<T>::unit) + 1), forward_(4097) {
         for (size_t i = 0; i < inverse_.size(); i++)
@@ -109,7 +114,8 @@ public:
         const float per_r2 = 4.0f / (float(kWidth) * kWidth + float(kHeight) * kHeight);
         for (int y = 0; y < kHeight; y++)
             for (int x = 0; x < kWidth; x++) {
-                const float dx = x - 0.5f * (kWidth - 1), dy = y - 0.5f * (kHeight - 1), r2 = (dx * dx + dy * dy) * per_r2;
+                const float dx = x - 0.5f * (kWidth - 1), dy = y - 0.5f * (kHeight - 1),
+                            r2 = (dx * dx + dy * dy) * per_r2;
                 const float gain =
                     1.0f / (1.0f + r2 * (float(kFalloff[0]) + r2 * (float(kFalloff[1]) + r2 * float(kFalloff[2]))));
                 for (int c = 0; c < 3; c++) {
@@ -170,7 +176,8 @@ struct Contender {
 };
 
 // Largest distance from the falloff by double precision, of full scale.
-template <class T> double error_of(const std::vector<T> &source, const std::vector<T> &target) {
+template <class T>
+double error_of(const std::vector<T> &source, const std::vector<T> &target) {
     double worst = 0.0;
     for (int y = 7; y < kHeight; y += 97)
         for (int x = 5; x < kWidth; x += 89)
@@ -182,7 +189,8 @@ template <class T> double error_of(const std::vector<T> &source, const std::vect
     return worst;
 }
 
-template <class T> void measure() {
+template <class T>
+void measure() {
     std::vector<T> source(kSamples), target(kSamples);
     uint64_t random = 12345;
     for (T &value : source) {
@@ -205,10 +213,13 @@ template <class T> void measure() {
         {"memcpy", copy, {}},
         {"lensprof, falloff of linear samples", [&] { gain.apply(source.data(), target.data(), Kind<T>::sample); }, {}},
         {"lensprof, response → falloff, exposure, white balance → response",
-         [&] { chain.apply(source.data(), target.data(), Kind<T>::sample); }, {}},
+         [&] { chain.apply(source.data(), target.data(), Kind<T>::sample); },
+         {}},
         {"Lensfun, falloff, in place", [&] { lensfun.apply(target.data(), kWidth * 3 * int(sizeof(T))); }, {}},
         {"OpenCV multiply by a gain image", [&] { cv::multiply(from, gains, to, 1.0, to.type()); }, {}},
-        {"plain loop, response → falloff, white balance → response", [&] { loop.apply(source.data(), target.data()); }, {}},
+        {"plain loop, response → falloff, white balance → response",
+         [&] { loop.apply(source.data(), target.data()); },
+         {}},
     };
     for (int round = 0; round <= kRounds; round++)
         for (Contender &one : all) {
@@ -233,8 +244,8 @@ template <class T> void measure() {
 
 int main() {
     cv::setNumThreads(1);
-    std::printf("24 megapixel RGB, one thread, CPU time, medians of %d rounds. Lensfun %d.%d.%d, OpenCV %s.\n\n", kRounds,
-                LF_VERSION_MAJOR, LF_VERSION_MINOR, LF_VERSION_MICRO, CV_VERSION);
+    std::printf("24 megapixel RGB, one thread, CPU time, medians of %d rounds. Lensfun %d.%d.%d, OpenCV %s.\n\n",
+                kRounds, LF_VERSION_MAJOR, LF_VERSION_MINOR, LF_VERSION_MICRO, CV_VERSION);
     std::printf("| samples | | MP/s | x memcpy's time | x Lensfun's rate | x OpenCV's rate | x the loop's rate |\n");
     std::printf("|---|---|---:|---:|---:|---:|---:|\n");
     measure<float>();

@@ -15,22 +15,19 @@
 static lensprof_profile profile;
 static lensprof_error error;
 
-static double now(void)
-{
+static double now(void) {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void must(lensprof_status status)
-{
+static void must(lensprof_status status) {
     if (status == LENSPROF_OK) return;
     fprintf(stderr, "store: %s %s\n", lensprof_status_name(status), error.text);
     exit(1);
 }
 
-static void make_key(lensprof_profile_key *key, int number, int focals)
-{
+static void make_key(lensprof_profile_key *key, int number, int focals) {
     const int lens = number / (focals * APERTURES), focal = number / APERTURES % focals;
     lensprof_profile_key_init(key);
     snprintf(key->camera_maker, sizeof key->camera_maker, "Maker %d", lens % 20);
@@ -44,8 +41,7 @@ static void make_key(lensprof_profile_key *key, int number, int focals)
 }
 
 /* Every tenth with a covariance, all with a response of three modes. */
-static void put_all(lensprof_store *store, int profiles, int focals)
-{
+static void put_all(lensprof_store *store, int profiles, int focals) {
     static const double modes[3] = {0.1, 0.05, 0.01};
     must(lensprof_store_begin(store, &error));
     for (int i = 0; i < profiles; i++) {
@@ -61,15 +57,13 @@ static void put_all(lensprof_store *store, int profiles, int focals)
     must(lensprof_store_commit(store, &error));
 }
 
-static int is_less(const void *a, const void *b)
-{
+static int is_less(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return x < y ? -1 : x > y;
 }
 
 /* Median seconds of lookups of random profiles, `off` mm beside their focal lengths. */
-static double lookup_median(lensprof_store *store, int profiles, int focals, double off)
-{
+static double lookup_median(lensprof_store *store, int profiles, int focals, double off) {
     static double seconds[LOOKUPS];
     uint32_t random = 1;
     lensprof_lookup how;
@@ -89,8 +83,7 @@ static double lookup_median(lensprof_store *store, int profiles, int focals, dou
     return seconds[LOOKUPS / 2];
 }
 
-int main(int count, char **words)
-{
+int main(int count, char **words) {
     if (count < 2) return 2;
     const int profiles = count > 2 ? atoi(words[2]) : 100000, focals = count > 3 ? atoi(words[3]) : 5;
     lensprof_store *store = NULL;
@@ -102,12 +95,14 @@ int main(int count, char **words)
     lensprof_store_close(store);
     must(lensprof_store_open(words[1], LENSPROF_STORE_READ, &store, &error));
     uint32_t faults;
-    const double exact = lookup_median(store, profiles, focals, 0.0), predicted = lookup_median(store, profiles, focals, 2.0);
+    const double exact = lookup_median(store, profiles, focals, 0.0),
+                 predicted = lookup_median(store, profiles, focals, 2.0);
     const double before = now();
     must(lensprof_store_check(store, NULL, NULL, NULL, &faults, &error));
     const double check = now() - before;
     lensprof_store_close(store);
     printf("| profiles | a lens | put, s | lookup, ms | predicted, ms | check, s |\n|---|---|---|---|---|---|\n");
-    printf("| %d | %d | %.2f | %.3f | %.3f | %.2f |\n", profiles, focals * APERTURES, put, 1e3 * exact, 1e3 * predicted, check);
+    printf("| %d | %d | %.2f | %.3f | %.3f | %.2f |\n", profiles, focals * APERTURES, put, 1e3 * exact, 1e3 * predicted,
+           check);
     return faults ? 1 : 0;
 }

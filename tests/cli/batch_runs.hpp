@@ -1,6 +1,5 @@
-/* What tests of many or large pictures share: a lens to correct them with. */
-#ifndef LENSPROF_TESTS_CLI_BATCH_RUNS_HPP
-#define LENSPROF_TESTS_CLI_BATCH_RUNS_HPP
+// What tests of many or large pictures share: a lens to correct them with.
+#pragma once
 
 #include "cli_runs.hpp"
 
@@ -10,15 +9,14 @@ namespace batch_runs {
 
 using namespace cli_runs;
 
-/* A falloff, a response and a gain grid, so that every pixel's place matters. */
+// A falloff, a response and a gain grid, so that every pixel's place matters.
 inline std::unique_ptr<lensprof_profile> make_profile_of_lens() {
     auto p = std::make_unique<lensprof_profile>();
     lensprof_profile_init(p.get());
     p->vignetting[0].k[0] = -0.4;
     p->vignetting[0].k[1] = 0.1;
     p->grid.columns = 4, p->grid.rows = 3, p->grid.channels = 3;
-    for (int i = 0; i < 36; i++)
-        p->grid.attenuation[i] = 0.8f + 0.02f * float(i * 7 % 13);
+    for (int i = 0; i < 36; i++) p->grid.attenuation[i] = 0.8f + 0.02f * float(i * 7 % 13);
     return p;
 }
 
@@ -38,5 +36,3 @@ inline Words corrected_into(const std::string &out, const Words &more) {
 }
 
 }  // namespace batch_runs
-
-#endif

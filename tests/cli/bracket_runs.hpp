@@ -1,11 +1,10 @@
-/* What the tests of lensprof bracket share: pictures of one scene rendered through a known response, the command on
- * them, and how far what it finds is from the truth. */
-#ifndef LENSPROF_TESTS_CLI_BRACKET_RUNS_HPP
-#define LENSPROF_TESTS_CLI_BRACKET_RUNS_HPP
+// What the tests of lensprof bracket share: pictures of one scene rendered through a known response, the command on
+// them, and how far what it finds is from the truth.
+#pragma once
 
 #include "cli_runs.hpp"
 
-#include "cli/metadata.hpp"
+#include "cli/pictures/metadata.hpp"
 
 namespace bracket_runs {
 
@@ -15,7 +14,7 @@ constexpr uint32_t frame_width = 240, frame_height = 180;
 
 inline double srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; }
 
-/* Log2 radiance over some nine EV: slow waves, and a colour of its own everywhere. */
+// Log2 radiance over some nine EV: slow waves, and a colour of its own everywhere.
 inline double scene_ev(uint32_t number, uint32_t x, uint32_t y, uint32_t c) {
     const double u = x / 60.0 + 3.0 * number, v = y / 45.0 - 2.0 * number;
     return -4.0 + 3.2 * sin(u + 0.6 * cos(v)) + 1.2 * cos(1.7 * v + u) + 0.5 * sin(0.9 * u + 2.1 * c);
@@ -25,10 +24,10 @@ struct Shot {
     double ev = 0.0;
     uint32_t scene = 0;
     uint32_t sample = LENSPROF_SAMPLE_U8, layout = LENSPROF_LAYOUT_RGB;
-    double noise = 1.0; /* levels of 255; white stays white */
+    double noise = 1.0;  // levels of 255; white stays white
     uint32_t width = frame_width, height = frame_height;
     std::function<double(double)> response = srgb;
-    double waves_ev = 0.0; /* of light that is elsewhere in every picture */
+    double waves_ev = 0.0;  // of light that is elsewhere in every picture
 };
 
 inline void save_shot(const std::string &path, const Shot &shot) {
@@ -61,7 +60,7 @@ inline void save_shot(const std::string &path, const Shot &shot) {
 
 inline std::string shot_name(size_t i) { return work("shot" + std::to_string(i) + ".png"); }
 
-/* One picture an exposure; `like` says the rest. */
+// One picture an exposure; `like` says the rest.
 inline Words shots(const std::vector<double> &evs, Shot like = {}) {
     Words files;
     for (double ev : evs) {
@@ -72,7 +71,7 @@ inline Words shots(const std::vector<double> &evs, Shot like = {}) {
     return files;
 }
 
-/* What the camera wrote beside the picture. */
+// What the camera wrote beside the picture.
 inline void state_exposure(const std::string &path, double ev, bool camera = true) {
     PictureMetadata metadata = unknown_metadata();
     if (camera) {
@@ -93,8 +92,7 @@ inline Words bracket(const Words &files, const Words &more = no_store) { return 
 
 inline std::string list_of(const std::vector<double> &values) {
     std::string text;
-    for (double value : values)
-        text += (text.empty() ? "" : ",") + std::to_string(value);
+    for (double value : values) text += (text.empty() ? "" : ",") + std::to_string(value);
     return text;
 }
 
@@ -102,7 +100,7 @@ inline const std::vector<double> three = {2.0, 0.0, -2.0}, five = {3.0, 1.5, 0.0
 
 inline double found_ev(const Json &json, size_t i) { return json["images"][i]["ev"].get<double>(); }
 
-/* Slope of recovered on true exposures, gamma; the largest difference from it is `worst`. */
+// Slope of recovered on true exposures, gamma; the largest difference from it is `worst`.
 inline double slope(const Json &json, const std::vector<double> &truth, double &worst) {
     double cross = 0.0, square = 0.0, mean = 0.0, true_mean = 0.0;
     for (size_t i = 0; i < truth.size(); ++i)
@@ -118,7 +116,7 @@ inline double slope(const Json &json, const std::vector<double> &truth, double &
     return gamma;
 }
 
-/* Root mean square difference of two responses, levels of 255, but for scale and the exponent gamma. */
+// Root mean square difference of two responses, levels of 255, but for scale and the exponent gamma.
 inline double response_error(const Json &json, double gamma, const std::function<double(double)> &truth) {
     const auto values = json["response"]["values"][0].get<std::vector<double>>();
     assert_int_equal(values.size(), 1024);
@@ -128,13 +126,11 @@ inline double response_error(const Json &json, double gamma, const std::function
         int count = 0;
         for (size_t j = 1; j < 1023; ++j) {
             const double light = scale * std::pow(double(j) / 1023.0, 1.0 / gamma);
-            if (values[j] > 250.0 / 255.0 || light > 1.0)
-                continue;
+            if (values[j] > 250.0 / 255.0 || light > 1.0) continue;
             sum += std::pow(255.0 * (values[j] - truth(light)), 2);
             ++count;
         }
-        if (count > 500)
-            best = std::min(best, std::sqrt(sum / count));
+        if (count > 500) best = std::min(best, std::sqrt(sum / count));
     }
     return best;
 }
@@ -143,15 +139,13 @@ inline double heldout(const Json &json) { return json["residual"]["heldout_rms"]
 
 inline void assert_rises(const Json &json) {
     const auto values = json["response"]["values"][0].get<std::vector<double>>();
-    for (size_t j = 1; j < values.size(); ++j)
-        assert_true(values[j] > values[j - 1]);
+    for (size_t j = 1; j < values.size(); ++j) assert_true(values[j] > values[j - 1]);
 }
 
-/* Exposures and response are right, gamma apart; returns it. */
+// Exposures and response are right, gamma apart; returns it.
 inline double assert_recovered(const Json &json, const std::vector<double> &truth, double levels,
-                        const std::function<double(double)> &response = srgb) {
-    if (!json["usable"].get<bool>())
-        fail_msg("not usable: %s", json["reason"].get<std::string>().c_str());
+                               const std::function<double(double)> &response = srgb) {
+    if (!json["usable"].get<bool>()) fail_msg("not usable: %s", json["reason"].get<std::string>().c_str());
     double worst;
     const double gamma = slope(json, truth, worst), error = response_error(json, gamma, response);
     if (worst > 0.05 || error > levels)
@@ -161,5 +155,3 @@ inline double assert_recovered(const Json &json, const std::vector<double> &trut
 }
 
 }  // namespace bracket_runs
-
-#endif

@@ -1,6 +1,5 @@
-/* What the tests of the program share: commands run in process, the disk before and after, and a rendered sequence. */
-#ifndef LENSPROF_TESTS_CLI_CLI_RUNS_HPP
-#define LENSPROF_TESTS_CLI_CLI_RUNS_HPP
+// What the tests of the program share: commands run in process, the disk before and after, and a rendered sequence.
+#pragma once
 
 #include <cerrno>
 #include <csignal>
@@ -10,7 +9,7 @@
 #include <map>
 #include <sstream>
 
-#include <regex.h> /* <regex> draws false warnings from gcc under sanitizers */
+#include <regex.h>  // <regex> draws false warnings from gcc under sanitizers
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -18,7 +17,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/run.hpp"
+#include "cli/program/run.hpp"
 
 #include "picture_files.hpp"
 
@@ -29,12 +28,12 @@ using namespace picture_files;
 using Words = std::vector<std::string>;
 using Json = nlohmann::ordered_json;
 
-/* The numbers of the contract, written again: they must not follow a change of the program. */
+// The numbers of the contract, written again: they must not follow a change of the program.
 constexpr int done = 0, failed = 1, usage = 2, unreadable = 3, not_usable = 4, not_found = 5, store_failed = 6,
               stopped = 130;
 
 struct Outcome {
-    int code; /* 128 + number of the signal that ended a child */
+    int code;  // 128 + number of the signal that ended a child
     std::string out, err;
 };
 
@@ -45,8 +44,7 @@ inline Words operator+(Words words, const Words &more) {
 
 inline std::string joined(const Words &words) {
     std::string text;
-    for (const std::string &word : words)
-        text += word + " ";
+    for (const std::string &word : words) text += word + " ";
     return text;
 }
 
@@ -59,7 +57,7 @@ inline Outcome run_words(const Words &words) {
     return {code, out.str(), err.str()};
 }
 
-/* Runs and returns what was printed; the exit code must be `code`. */
+// Runs and returns what was printed; the exit code must be `code`.
 inline std::string must_exit(int code, const Words &words) {
     const Outcome outcome = run_words(words);
     if (outcome.code != code)
@@ -76,9 +74,10 @@ inline Json json_of(const Words &words, int code = done) {
     return json;
 }
 
-/* Runs in a child that `prepare` has changed: another user, another limit. Both outputs come back through a pipe, so
- * that a full disk does not hide them. */
-inline Outcome run_child(const Words &words, const std::function<void()> &prepare = [] {}) {
+// Runs in a child that `prepare` has changed: another user, another limit. Both outputs come back through a pipe, so
+// that a full disk does not hide them.
+inline Outcome run_child(
+    const Words &words, const std::function<void()> &prepare = [] {}) {
     int ends[2];
     assert_int_equal(pipe(ends), 0);
     const pid_t child = fork();
@@ -88,8 +87,7 @@ inline Outcome run_child(const Words &words, const std::function<void()> &prepar
         const std::string both = outcome.out + '\0' + outcome.err;
         for (size_t at = 0; at < both.size();) {
             const ssize_t written = write(ends[1], both.data() + at, both.size() - at);
-            if (written <= 0)
-                _exit(255);
+            if (written <= 0) _exit(255);
             at += size_t(written);
         }
         _exit(outcome.code);
@@ -97,8 +95,7 @@ inline Outcome run_child(const Words &words, const std::function<void()> &prepar
     close(ends[1]);
     std::string both;
     char buffer[4096];
-    for (ssize_t got; (got = read(ends[0], buffer, sizeof buffer)) > 0;)
-        both.append(buffer, size_t(got));
+    for (ssize_t got; (got = read(ends[0], buffer, sizeof buffer)) > 0;) both.append(buffer, size_t(got));
     close(ends[0]);
     int status = 0;
     assert_int_equal(waitpid(child, &status, 0), child);
@@ -107,7 +104,7 @@ inline Outcome run_child(const Words &words, const std::function<void()> &prepar
             both.substr(std::min(middle + 1, both.size()))};
 }
 
-/* Every file and folder below the tests' folder, with its bytes. */
+// Every file and folder below the tests' folder, with its bytes.
 using Disk = std::map<std::string, Bytes>;
 
 inline Disk disk() {
@@ -132,12 +129,11 @@ inline std::string difference(const Disk &before, const Disk &after) {
             text += " changed " + file.first;
     }
     for (const auto &file : after)
-        if (!before.count(file.first))
-            text += " left " + file.first;
+        if (!before.count(file.first)) text += " left " + file.first;
     return text;
 }
 
-/* The failure is told on standard error with the names it is about, and the disk is as it was. */
+// The failure is told on standard error with the names it is about, and the disk is as it was.
 inline void assert_refusal(const Words &words, const Outcome &outcome, int code, const Words &named,
                            const Disk &before) {
     const std::string what = joined(words);
@@ -149,8 +145,7 @@ inline void assert_refusal(const Words &words, const Outcome &outcome, int code,
         if (!contains(outcome.err, name))
             fail_msg("%s: '%s' does not name %s", what.c_str(), outcome.err.c_str(), name.c_str());
     const std::string changes = difference(before, disk());
-    if (!changes.empty())
-        fail_msg("%s: on the disk:%s", what.c_str(), changes.c_str());
+    if (!changes.empty()) fail_msg("%s: on the disk:%s", what.c_str(), changes.c_str());
 }
 
 inline void assert_refused(int code, const Words &words, const Words &named) {
@@ -161,8 +156,8 @@ inline void assert_refused(int code, const Words &words, const Words &named) {
         fail_msg("%s: printed %s", joined(words).c_str(), outcome.out.c_str());
 }
 
-/* Where an extended regular expression matches in `text` from `at` on, with its groups; empty when it does not. `.`
- * stays within a line. */
+// Where an extended regular expression matches in `text` from `at` on, with its groups; empty when it does not. `.`
+// stays within a line.
 inline std::vector<std::pair<size_t, size_t>> find_pattern(const std::string &pattern, const std::string &text,
                                                            size_t at = 0) {
     regex_t compiled;
@@ -177,15 +172,14 @@ inline std::vector<std::pair<size_t, size_t>> find_pattern(const std::string &pa
     return groups;
 }
 
-/* Every match replaced; $1 stands for the first group. */
+// Every match replaced; $1 stands for the first group.
 inline std::string replaced(const std::string &text, const std::string &pattern, const std::string &replacement) {
     std::string result;
     size_t at = 0;
     for (auto match = find_pattern(pattern, text); !match.empty(); match = find_pattern(pattern, text, at)) {
         std::string instead = replacement;
         const size_t group = instead.find("$1");
-        if (group != std::string::npos)
-            instead.replace(group, 2, text, match[1].first, match[1].second);
+        if (group != std::string::npos) instead.replace(group, 2, text, match[1].first, match[1].second);
         result.append(text, at, match[0].first - at).append(instead);
         at = match[0].first + match[0].second;
     }
@@ -197,17 +191,16 @@ inline std::string text_of(const std::string &path) {
     return std::string(bytes.begin(), bytes.end());
 }
 
-/* A text file changed by a regular expression, which must match. */
+// A text file changed by a regular expression, which must match.
 inline void edit(const std::string &path, const std::string &pattern, const std::string &replacement) {
     const std::string text = text_of(path), changed = replaced(text, pattern, replacement);
-    if (changed == text)
-        fail_msg("%s: nothing matches %s", path.c_str(), pattern.c_str());
+    if (changed == text) fail_msg("%s: nothing matches %s", path.c_str(), pattern.c_str());
     save(path, Bytes(changed.begin(), changed.end()));
 }
 
 inline void save_text(const std::string &path, const std::string &text) { save(path, Bytes(text.begin(), text.end())); }
 
-/* A Lensfun database of one lens, "Example NAME", for a crop factor of 1.5. */
+// A Lensfun database of one lens, "Example NAME", for a crop factor of 1.5.
 struct LensfunEntry {
     double focal_mm, aperture, k1, k2 = 0.0, distance_m = 1000.0;
 };
@@ -222,7 +215,7 @@ inline std::string lensfun_text(const std::string &lens, const std::vector<Lensf
     return text.str();
 }
 
-/* `scene` holds four PNG and `mixed` one picture of every kind, rendered once; `work` is empty before every test. */
+// `scene` holds four PNG and `mixed` one picture of every kind, rendered once; `work` is empty before every test.
 constexpr const char *mixed_names[] = {"img000.png", "img001.png", "img002.tif",
                                        "img003.tif", "img004.tif", "img005.jpg"};
 
@@ -230,24 +223,23 @@ inline std::string scene(const std::string &name) { return in_folder("scene/" + 
 inline std::string mixed(const std::string &name) { return in_folder("mixed/" + name); }
 inline std::string work(const std::string &name) { return in_folder("work/" + name); }
 
-/* A copy of a rendered folder that a test may change. */
+// A copy of a rendered folder that a test may change.
 inline std::string copy_of(const std::string &from, const std::string &to = "copy") {
     fs::copy(in_folder(from), work(to), fs::copy_options::recursive);
     return work(to);
 }
 
-/* Enough for what is not about accuracy. */
+// Enough for what is not about accuracy.
 inline const Words quick = {"--pairs", "600", "--modes", "3"};
 
 inline int make_scene(void **state) {
     umask(022);
-    if (make_folder(state) != 0)
-        return -1;
+    if (make_folder(state) != 0) return -1;
     setenv("XDG_DATA_HOME", in_folder("work/data").c_str(), 1);
     must_exit(done,
               {"simulate", "-o", in_folder("scene"), "--images", "4", "--size", "320x240", "--test-points", "1500"});
-    must_exit(done, {"simulate", "-o", in_folder("mixed"), "--images", "6", "--size", "200x150", "--exif",
-                     "--format", "png,png16,tiff,tiff16,tiff32,jpeg"});
+    must_exit(done, {"simulate", "-o", in_folder("mixed"), "--images", "6", "--size", "200x150", "--exif", "--format",
+                     "png,png16,tiff,tiff16,tiff32,jpeg"});
     return 0;
 }
 
@@ -260,5 +252,3 @@ inline int empty_work(void **) {
 }  // namespace cli_runs
 
 #define CLI_TEST(name) cmocka_unit_test_setup(name, cli_runs::empty_work)
-
-#endif

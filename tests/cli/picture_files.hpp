@@ -1,7 +1,6 @@
-/* What the tests of picture files share: a folder of their own, made up pictures, and files that the libraries
- * themselves write, so that nothing is checked against the code under test. */
-#ifndef LENSPROF_TESTS_CLI_PICTURE_FILES_HPP
-#define LENSPROF_TESTS_CLI_PICTURE_FILES_HPP
+// What the tests of picture files share: a folder of their own, made up pictures, and files that the libraries
+// themselves write, so that nothing is checked against the code under test.
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -20,10 +19,10 @@
 #include <png.h>
 #include <tiffio.h>
 
-#include "cli/error.hpp"
-#include "cli/picture.hpp"
+#include "cli/pictures/picture.hpp"
+#include "cli/program/error.hpp"
 
-/* cmocka 1.1.5 does not declare its functions as C; support.h includes it too, then for the second time. */
+// cmocka 1.1.5 does not declare its functions as C; support.h includes it too, then for the second time.
 extern "C" {
 #include <cmocka.h>
 }
@@ -39,9 +38,7 @@ using Bytes = std::vector<uint8_t>;
 
 inline fs::path folder;
 
-inline std::string in_folder(const std::string &name) {
-    return (folder / name).string();
-}
+inline std::string in_folder(const std::string &name) { return (folder / name).string(); }
 
 inline size_t files_in_folder() {
     return static_cast<size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
@@ -53,17 +50,16 @@ inline Bytes load(const std::string &path) {
 }
 
 inline void save(const std::string &path, const Bytes &bytes) {
-    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char *>(bytes.data()),
-                                                static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char *>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
-/* The text of the Failure that `call` must throw. */
+// The text of the Failure that `call` must throw.
 inline std::string failure_of(ExitCode code, const std::function<void()> &call) {
     try {
         call();
     } catch (const Failure &failure) {
-        if (failure.code != code)
-            fail_msg("%s: exit code %d", failure.what(), static_cast<int>(failure.code));
+        if (failure.code != code) fail_msg("%s: exit code %d", failure.what(), static_cast<int>(failure.code));
         return failure.what();
     }
     fail_msg("no Failure");
@@ -72,16 +68,14 @@ inline std::string failure_of(ExitCode code, const std::function<void()> &call) 
 
 inline void assert_failure(ExitCode code, const std::string &part, const std::function<void()> &call) {
     const std::string text = failure_of(code, call);
-    if (text.find(part) == std::string::npos)
-        fail_msg("'%s' does not say '%s'", text.c_str(), part.c_str());
+    if (text.find(part) == std::string::npos) fail_msg("'%s' does not say '%s'", text.c_str(), part.c_str());
 }
 
-/* The smallest profile that libpng accepts: a header and no tag (ICC.1:2010 section 7.2); padded to `size`. */
+// The smallest profile that libpng accepts: a header and no tag (ICC.1:2010 section 7.2); padded to `size`.
 inline Bytes make_profile(bool grey, size_t size) {
     Bytes profile(size, 0);
     const auto put = [&](size_t at, const char *text) { std::copy(text, text + 4, profile.begin() + long(at)); };
-    for (int i = 0; i < 4; ++i)
-        profile[size_t(i)] = static_cast<uint8_t>(size >> (24 - 8 * i));
+    for (int i = 0; i < 4; ++i) profile[size_t(i)] = static_cast<uint8_t>(size >> (24 - 8 * i));
     profile[8] = 2;
     put(12, "mntr");
     put(16, grey ? "GRAY" : "RGB ");
@@ -89,12 +83,11 @@ inline Bytes make_profile(bool grey, size_t size) {
     put(36, "acsp");
     const uint8_t d50[] = {0, 0, 0xf6, 0xd6, 0, 1, 0, 0, 0, 0, 0xd3, 0x2d};
     std::copy(std::begin(d50), std::end(d50), profile.begin() + 68);
-    for (size_t i = 132; i < size; ++i)
-        profile[i] = static_cast<uint8_t>(i * 7 + i / 256);
+    for (size_t i = 132; i < size; ++i) profile[i] = static_cast<uint8_t>(i * 7 + i / 256);
     return profile;
 }
 
-/* Every sample random: an exchange of bytes, rows or channels shows. */
+// Every sample random: an exchange of bytes, rows or channels shows.
 inline Picture make_noise(uint32_t width, uint32_t height, uint32_t sample, uint32_t layout) {
     Picture picture;
     picture.width = picture.frame_width = width;
@@ -104,8 +97,7 @@ inline Picture make_noise(uint32_t width, uint32_t height, uint32_t sample, uint
     picture.row_bytes = width * lensprof_layout_samples(layout) * lensprof_sample_bytes(sample);
     picture.pixels.resize(picture.row_bytes * height);
     uint64_t state = width + 31 * height + sample;
-    for (uint8_t &byte : picture.pixels)
-        byte = static_cast<uint8_t>(256 * lp_random(&state));
+    for (uint8_t &byte : picture.pixels) byte = static_cast<uint8_t>(256 * lp_random(&state));
     if (sample == LENSPROF_SAMPLE_F32) {
         float *values = reinterpret_cast<float *>(picture.pixels.data());
         for (size_t i = 0; i < picture.pixels.size() / 4; ++i)
@@ -114,7 +106,7 @@ inline Picture make_noise(uint32_t width, uint32_t height, uint32_t sample, uint
     return picture;
 }
 
-/* What JPEG is made for. */
+// What JPEG is made for.
 inline Picture make_smooth(uint32_t width, uint32_t height, uint32_t layout) {
     Picture picture = make_noise(width, height, LENSPROF_SAMPLE_U8, layout);
     const uint32_t samples = lensprof_layout_samples(layout);
@@ -140,27 +132,26 @@ inline void assert_same_pixels(const Picture &a, const Picture &b) {
 
 inline void assert_near_pixels(const Picture &a, const Picture &b, int levels) {
     assert_int_equal(a.pixels.size(), b.pixels.size());
-    for (size_t i = 0; i < a.pixels.size(); ++i)
-        assert_true(std::abs(a.pixels[i] - b.pixels[i]) <= levels);
+    for (size_t i = 0; i < a.pixels.size(); ++i) assert_true(std::abs(a.pixels[i] - b.pixels[i]) <= levels);
 }
 
-/* Files made by the libraries themselves. */
+// Files made by the libraries themselves.
 
 struct TiffKind {
     const char *mode = "w";
     uint16_t compression = COMPRESSION_NONE, planar = PLANARCONFIG_CONTIG, photometric = PHOTOMETRIC_MINISBLACK;
     uint32_t tile = 0, rows_per_strip = 7;
-    uint16_t bits = 0, format = SAMPLEFORMAT_UINT; /* bits 0: as the picture */
+    uint16_t bits = 0, format = SAMPLEFORMAT_UINT;  // bits 0: as the picture
 };
 
 inline void write_block(TIFF *tiff, const Picture &picture, uint32_t x0, uint32_t y0, uint32_t width, uint32_t height,
-                 int plane) {
+                        int plane) {
     const uint32_t samples = lensprof_layout_samples(picture.layout), bytes = lensprof_sample_bytes(picture.sample);
     Bytes block;
     for (uint32_t y = y0; y < y0 + height; ++y) {
         for (uint32_t x = x0; x < x0 + width; ++x) {
-            const uint8_t *pixel = picture.pixels.data() + std::min(y, picture.height - 1) * picture.row_bytes +
-                                   std::min(x, picture.width - 1) * size_t(samples) * bytes;
+            const uint8_t *pixel = picture.pixels.data() + std::min(y, picture.height - 1) * picture.row_bytes
+                                   + std::min(x, picture.width - 1) * size_t(samples) * bytes;
             if (plane < 0)
                 block.insert(block.end(), pixel, pixel + samples * bytes);
             else
@@ -194,8 +185,7 @@ inline void write_tiff_file(const std::string &path, const Picture &picture, con
         TIFFSetField(tiff, TIFFTAG_JPEGQUALITY, 95);
     }
     const uint16_t extra = EXTRASAMPLE_ASSOCALPHA;
-    if (samples % 2 == 0)
-        TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &extra);
+    if (samples % 2 == 0) TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &extra);
     if (kind.tile) {
         TIFFSetField(tiff, TIFFTAG_TILEWIDTH, kind.tile);
         TIFFSetField(tiff, TIFFTAG_TILELENGTH, kind.tile);
@@ -214,7 +204,7 @@ inline void write_tiff_file(const std::string &path, const Picture &picture, con
     TIFFClose(tiff);
 }
 
-/* Rows are given as the file packs them. */
+// Rows are given as the file packs them.
 struct PngKind {
     uint32_t width = 0, height = 0;
     int bits = 8, colour = PNG_COLOR_TYPE_RGB, interlace = PNG_INTERLACE_NONE;
@@ -230,8 +220,7 @@ inline void write_png_file(const std::string &path, const PngKind &kind, Bytes &
     kind.extra(png, info);
     png_write_info(png, info);
     std::vector<png_bytep> rows(kind.height);
-    for (size_t y = 0; y < kind.height; ++y)
-        rows[y] = packed.data() + y * (packed.size() / kind.height);
+    for (size_t y = 0; y < kind.height; ++y) rows[y] = packed.data() + y * (packed.size() / kind.height);
     png_write_image(png, rows.data());
     png_write_end(png, info);
     png_destroy_write_struct(&png, &info);
@@ -259,8 +248,7 @@ inline void write_jpeg_file(const std::string &path, const Picture &picture, con
     info.comp_info[0].h_samp_factor = info.input_components == 1 ? 1 : kind.step_x;
     info.comp_info[0].v_samp_factor = info.input_components == 1 ? 1 : kind.step_y;
     info.optimize_coding = kind.best_tables;
-    if (kind.progressive)
-        jpeg_simple_progression(&info);
+    if (kind.progressive) jpeg_simple_progression(&info);
     jpeg_start_compress(&info, TRUE);
     for (size_t y = 0; y < picture.height; ++y) {
         JSAMPROW row = const_cast<JSAMPROW>(picture.pixels.data() + y * picture.row_bytes);
@@ -271,11 +259,10 @@ inline void write_jpeg_file(const std::string &path, const Picture &picture, con
     std::fclose(file);
 }
 
-/* Group fixtures: a folder that is gone afterwards. */
+// Group fixtures: a folder that is gone afterwards.
 inline int make_folder(void **) {
     std::string name = (fs::temp_directory_path() / "lensprof-pictures-XXXXXX").string();
-    if (!mkdtemp(name.data()))
-        return -1;
+    if (!mkdtemp(name.data())) return -1;
     folder = name;
     return 0;
 }
@@ -285,13 +272,10 @@ inline int remove_folder(void **) {
     return 0;
 }
 
-/* Setup of a test: nothing left from the one before. */
+// Setup of a test: nothing left from the one before.
 inline int empty_folder(void **) {
-    for (const fs::directory_entry &entry : fs::directory_iterator(folder))
-        fs::remove_all(entry.path());
+    for (const fs::directory_entry &entry : fs::directory_iterator(folder)) fs::remove_all(entry.path());
     return 0;
 }
 
 }  // namespace picture_files
-
-#endif

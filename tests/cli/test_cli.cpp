@@ -1,12 +1,12 @@
-/* The program's commands, in process, on a rendered sequence. Bad input is in test_cli_faults.cpp, pictures that are
- * corrected in test_cli_apply.cpp. */
+// The program's commands, in process, on a rendered sequence. Bad input is in test_cli_faults.cpp, pictures that are
+// corrected in test_cli_apply.cpp.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
 
 namespace {
 
-/* The object without its time, as text: what must not differ from run to run. */
+// The object without its time, as text: what must not differ from run to run.
 std::string timeless(const std::string &json) {
     const std::string text = replaced(json, "\"seconds\":\\{[^}]*\\}", "");
     assert_true(text != json);
@@ -17,7 +17,7 @@ Words build_scene(const Words &more) {
     return Words{"build", scene("pano.pto"), "--no-store", "--json"} + quick + more;
 }
 
-/* Help and version. */
+// Help and version.
 
 void test_help(void **) {
     assert_true(contains(must_exit(usage, {}), "usage: lensprof COMMAND"));
@@ -47,7 +47,7 @@ void test_unknown_command(void **) {
     assert_refused(usage, {""}, {"no such command"});
 }
 
-/* build. */
+// build.
 
 void check_response(const Json &response) {
     assert_int_equal(response.at("values").size(), 1);
@@ -55,8 +55,7 @@ void check_response(const Json &response) {
     assert_int_equal(values.size(), 1024);
     assert_close(values[0].get<double>(), 0, 0);
     assert_close(values[1023].get<double>(), 1, 0);
-    for (size_t i = 1; i < 1024; ++i)
-        assert_true(values[i].get<double>() >= values[i - 1].get<double>());
+    for (size_t i = 1; i < 1024; ++i) assert_true(values[i].get<double>() >= values[i - 1].get<double>());
 }
 
 void test_build_keeps_its_contract(void **) {
@@ -79,12 +78,11 @@ void test_build_keeps_its_contract(void **) {
     for (const char *key : {"before_rms", "heldout_rms", "inlier_share"})
         assert_true(json.at("residual").at(key).is_number());
     assert_int_equal(json.at("pairs").get<int>(), 600);
-    for (const char *key : {"load", "sample", "solve"})
-        assert_true(json.at("seconds").at(key).get<double>() >= 0);
+    for (const char *key : {"load", "sample", "solve"}) assert_true(json.at("seconds").at(key).get<double>() >= 0);
 }
 
-/* What was rendered comes out, up to the exponent g that pictures alone leave open: with another response, EV times g
- * and falloff and white balance to the power g explain the same pictures (Grossberg & Nayar 2003). */
+// What was rendered comes out, up to the exponent g that pictures alone leave open: with another response, EV times g
+// and falloff and white balance to the power g explain the same pictures (Grossberg & Nayar 2003).
 void test_build_finds_the_truth(void **) {
     const Json truth = Json::parse(text_of(scene("truth.json"))),
                json = json_of({"build", scene("pano.pto"), "--no-store", "--json"});
@@ -138,8 +136,7 @@ void test_points_replace_pictures(void **) {
     const Words words = Words{"build", copy + "/pano.pto", "--no-store", "--json", "--exif-sigma", "0"} + quick;
     const std::string first = timeless(must_exit(done, words + Words{"--points-out", points}));
     assert_string_equal(timeless(must_exit(done, words + Words{"--points", points})).c_str(), first.c_str());
-    for (int i = 0; i < 4; ++i)
-        fs::remove(copy + "/img00" + std::to_string(i) + ".png");
+    for (int i = 0; i < 4; ++i) fs::remove(copy + "/img00" + std::to_string(i) + ".png");
     assert_string_equal(timeless(must_exit(done, words + Words{"--points", points})).c_str(), first.c_str());
 
     std::istringstream lines(text_of(points));
@@ -148,26 +145,23 @@ void test_points_replace_pictures(void **) {
     for (; std::getline(lines, line); ++count) {
         std::istringstream numbers(line);
         std::vector<double> column;
-        for (double number; numbers >> number;)
-            column.push_back(number);
+        for (double number; numbers >> number;) column.push_back(number);
         assert_int_equal(column.size(), 16);
         assert_true(column[0] >= 0 && column[0] < 4 && column[1] >= 0 && column[1] < 4 && column[0] != column[1]);
         assert_true(column[2] >= 0 && column[2] <= 319 && column[3] >= 0 && column[3] <= 239);
-        assert_close(column[13], std::hypot(column[2] - 159.5, column[3] - 119.5) / 200, 1e-9); /* half diagonals */
+        assert_close(column[13], std::hypot(column[2] - 159.5, column[3] - 119.5) / 200, 1e-9);  // half diagonals
     }
     assert_int_equal(count, 600);
 }
 
-/* The number behind `name` on the i line of an image of a project. */
+// The number behind `name` on the i line of an image of a project.
 double pto_number(const std::string &pto, int image, const std::string &name) {
     std::istringstream lines(pto);
     std::string line;
     while (std::getline(lines, line)) {
-        if (line.rfind("i ", 0) != 0 || image-- > 0)
-            continue;
+        if (line.rfind("i ", 0) != 0 || image-- > 0) continue;
         const auto match = find_pattern(" " + name + "(=?)([-+.0-9e]+)( |$)", line);
-        if (match.empty())
-            fail_msg("no %s in %s", name.c_str(), line.c_str());
+        if (match.empty()) fail_msg("no %s in %s", name.c_str(), line.c_str());
         const std::string number = line.substr(match[2].first, match[2].second);
         return match[1].second ? pto_number(pto, std::stoi(number), name) : std::stod(number);
     }
@@ -177,7 +171,7 @@ double pto_number(const std::string &pto, int image, const std::string &name) {
 
 void test_project_with_the_result(void **) {
     const std::string copy = copy_of("scene"), pto = copy + "/out.pto";
-    edit(copy + "/pano.pto", "Eev0( .*img000)", "Eev7.5$1"); /* Hugin counts from an absolute exposure value */
+    edit(copy + "/pano.pto", "Eev0( .*img000)", "Eev7.5$1");  // Hugin counts from an absolute exposure value
     const Json json = json_of(
         Words{"build", copy + "/pano.pto", "--no-store", "--json", "--modes", "5", "--pairs", "600", "--pto-out", pto});
     const std::string text = text_of(pto);
@@ -188,7 +182,7 @@ void test_project_with_the_result(void **) {
         assert_close(pto_number(text, i, "Eb"), image["white_balance"][2].get<double>(), 1e-9);
         assert_close(pto_number(text, i, "Vb"), json["vignetting"]["k"][0][0].get<double>(), 1e-9);
         assert_close(pto_number(text, i, "Vd"), json["vignetting"]["k"][0][2].get<double>(), 1e-9);
-        assert_close(pto_number(text, i, "Vx"), json["vignetting"]["center"][0].get<double>() * 200, 1e-6); /* px */
+        assert_close(pto_number(text, i, "Vx"), json["vignetting"]["center"][0].get<double>() * 200, 1e-6);  // px
         if (json["response"].at("emor").size() == 5) {
             assert_close(pto_number(text, i, "Ra"), json["response"]["emor"][0].get<double>(), 1e-9);
             assert_close(pto_number(text, i, "Re"), json["response"]["emor"][4].get<double>(), 1e-9);
@@ -203,7 +197,7 @@ void test_project_with_the_result(void **) {
     assert_int_equal(std::distance(fs::directory_iterator(work("corrected")), fs::directory_iterator()), 4);
 }
 
-/* Names in a project are relative to its folder. */
+// Names in a project are relative to its folder.
 void test_project_in_another_folder(void **) {
     const std::string copy = copy_of("scene", "pictures");
     fs::create_directories(work("projects/mine"));
@@ -214,7 +208,7 @@ void test_project_in_another_folder(void **) {
     assert_true(fs::exists(work("corrected/img003.png")));
 }
 
-/* Another reference is another zero, not another result. */
+// Another reference is another zero, not another result.
 void test_reference(void **) {
     const Json plain = json_of(build_scene({}));
     for (const char *wanted : {"2", "img002.png"}) {
@@ -229,14 +223,13 @@ void test_reference(void **) {
 }
 
 void test_what_is_free(void **) {
-    /* Exposures alone cannot explain this camera, and the program says so, with the result all the same. */
+    // Exposures alone cannot explain this camera, and the program says so, with the result all the same.
     const Outcome poor = run_words(build_scene({"--free", "ev"}));
     assert_int_equal(poor.code, not_usable);
     assert_true(contains(poor.err, "pano.pto: not usable: the pairs scatter by"));
     const Json ev = Json::parse(poor.out);
     assert_true(ev["usable"] == false);
-    for (const Json &k : ev["vignetting"]["k"][0])
-        assert_close(k.get<double>(), 0, 0);
+    for (const Json &k : ev["vignetting"]["k"][0]) assert_close(k.get<double>(), 0, 0);
     assert_close(ev["images"][1]["white_balance"][0].get<double>(), 1, 0);
     assert_true(std::fabs(ev["images"][1]["ev"].get<double>()) > 0.1);
     const Json falloff = json_of(build_scene({"--free", "falloff,ev,wb"}), not_usable);
@@ -257,9 +250,9 @@ void test_one_lens(void **) {
 void test_variants_of_the_fit(void **) {
     const std::string points = work("points.txt");
     must_exit(done, build_scene({"--points-out", points}));
-    for (const Words &words : {Words{"--loss", "huber"}, Words{"--loss", "huber", "--huber", "2"},
-                               Words{"--loss", "squared"}, Words{"--prior", "0.5"}, Words{"--method", "transfer"},
-                               Words{"--method", "radiance"}})
+    for (const Words &words :
+         {Words{"--loss", "huber"}, Words{"--loss", "huber", "--huber", "2"}, Words{"--loss", "squared"},
+          Words{"--prior", "0.5"}, Words{"--method", "transfer"}, Words{"--method", "radiance"}})
         json_of(build_scene(words + Words{"--points", points}));
     json_of(build_scene({"--sampling", "paper"}));
     json_of(build_scene({"--method", "radiance", "--sampling", "paper"}));
@@ -267,12 +260,12 @@ void test_variants_of_the_fit(void **) {
     json_of(build_scene({"--max-side", "0"}));
 }
 
-/* Tracks instead of pairs: as good, the profile says so, and what --points-out writes makes the same tracks again, less
- * what was saturated. */
+// Tracks instead of pairs: as good, the profile says so, and what --points-out writes makes the same tracks again, less
+// what was saturated.
 void test_method_radiance(void **) {
     const std::string points = work("tracks.txt"), db = work("tracks.db");
-    const Words words = Words{"build", scene("pano.pto"), "--json", "--method", "radiance", "--db", db, "--points-out",
-                              points, "--pairs", "800"};
+    const Words words = Words{"build", scene("pano.pto"), "--json", "--method", "radiance", "--db",
+                              db,      "--points-out",    points,   "--pairs",  "800"};
     const Json built = json_of(words), transfer = json_of(build_scene({}));
     assert_true(built["usable"].get<bool>());
     for (size_t i = 0; i < 4; ++i)
@@ -280,16 +273,16 @@ void test_method_radiance(void **) {
                      transfer["images"][i]["white_balance"][0].get<double>(), 0.03);
     const Json shown = json_of({"profile", "show", "1", "--json", "--db", db});
     assert_string_equal(shown["provenance"]["method"].get<std::string>().c_str(), "radiance");
-    const Json again = json_of({"build", scene("pano.pto"), "--json", "--no-store", "--method", "radiance", "--points",
-                                points});
-    assert_close(again["residual"]["heldout_median"].get<double>(),
-                 built["residual"]["heldout_median"].get<double>(), 0.3);
+    const Json again =
+        json_of({"build", scene("pano.pto"), "--json", "--no-store", "--method", "radiance", "--points", points});
+    assert_close(again["residual"]["heldout_median"].get<double>(), built["residual"]["heldout_median"].get<double>(),
+                 0.3);
     const Words tracks = {"--method", "radiance"};
     assert_string_equal(timeless(must_exit(done, build_scene(tracks))).c_str(),
                         timeless(must_exit(done, build_scene(tracks))).c_str());
 }
 
-/* The database. */
+// The database.
 
 void test_store_query_show_remove(void **) {
     const Words db = {"--db", work("profiles.db")};
@@ -299,7 +292,7 @@ void test_store_query_show_remove(void **) {
     assert_true(shown["response"]["values"] == built["response"]["values"]);
     assert_true(shown["vignetting"] == built["vignetting"]);
     assert_string_equal(shown["key"]["camera_model"].get<std::string>().c_str(), "Simulated Camera");
-    assert_close(shown["key"]["focal_mm"].get<double>(), 38.6, 1e-6); /* 18 mm / tan(25 degrees) */
+    assert_close(shown["key"]["focal_mm"].get<double>(), 38.6, 1e-6);  // 18 mm / tan(25 degrees)
     assert_close(shown["key"]["aperture"].get<double>(), 2.8, 1e-6);
     assert_true(shown["key"]["distance_m"].is_null());
     assert_int_equal(shown["provenance"]["images"].get<int>(), 4);
@@ -312,12 +305,14 @@ void test_store_query_show_remove(void **) {
     assert_int_equal(newest["id"].get<int>(), 3);
     assert_int_equal(newest["matches"].get<int>(), 3);
     assert_int_equal(json_of(query + Words{"--lens", "Simulated Lens", "--aperture", "8"})["id"].get<int>(), 2);
-    assert_int_equal(json_of(query + Words{"--lens", "Simulated Lens", "--aperture", "2.8", "--focal", "38.6",
-                                           "--maker", "lensprof", "--processing", "jpeg"})["matches"]
+    assert_int_equal(json_of(query
+                             + Words{"--lens", "Simulated Lens", "--aperture", "2.8", "--focal", "38.6", "--maker",
+                                     "lensprof", "--processing", "jpeg"})["matches"]
                          .get<int>(),
                      2);
-    for (const Words &other : {Words{"--camera", "Simulated"}, Words{"--camera", "Simulated Camera", "--aperture", "32"},
-                               Words{"--camera", "Simulated Camera", "--processing", "raw"}})
+    for (const Words &other :
+         {Words{"--camera", "Simulated"}, Words{"--camera", "Simulated Camera", "--aperture", "32"},
+          Words{"--camera", "Simulated Camera", "--processing", "raw"}})
         assert_refused(not_found, query + other, {"no profile for", work("profiles.db")});
 
     const Json list = json_of(Words{"profile", "list", "--json"} + db);
@@ -334,13 +329,15 @@ void test_store_query_show_remove(void **) {
 
 void test_key_from_the_command_line(void **) {
     const Words words = Words{"build", scene("pano.pto"), "--db", work("p.db")} + quick;
-    must_exit(done, words + Words{"--maker", "Maker", "--camera", "C\xc3\xa4mera", "--lens", "Lens", "--focal", "24",
-                                  "--aperture", "1.4", "--distance", "2.5", "--processing", "raw"});
+    must_exit(done, words
+                        + Words{"--maker", "Maker", "--camera", "C\xc3\xa4mera", "--lens", "Lens", "--focal", "24",
+                                "--aperture", "1.4", "--distance", "2.5", "--processing", "raw"});
     const Json key = json_of({"profile", "show", "1", "--json", "--db", work("p.db")})["key"];
     assert_true(
-        key ==
-        Json::parse(R"({"camera_maker":"Maker","camera_model":"Cämera","lens":"Lens","unit":"","crop_factor":null,"focal_mm":24.0,"aperture":1.4,)"
-                    R"("distance_m":2.5,"processing":"raw"})"));
+        key
+        == Json::parse(
+            R"({"camera_maker":"Maker","camera_model":"Cämera","lens":"Lens","unit":"","crop_factor":null,"focal_mm":24.0,"aperture":1.4,)"
+            R"("distance_m":2.5,"processing":"raw"})"));
 }
 
 void test_own_database(void **) {
@@ -353,7 +350,7 @@ void test_own_database(void **) {
 
 void test_forced(void **) {
     const std::string copy = copy_of("scene"), db = work("p.db");
-    edit(copy + "/pano.pto", " y[-.0-9]+( .*img00[23])", " y180$1"); /* over each other */
+    edit(copy + "/pano.pto", " y[-.0-9]+( .*img00[23])", " y180$1");  // over each other
     const Words words = Words{"build", copy + "/pano.pto", "--db", db, "--json"} + quick;
     const Json json = json_of(words, not_usable);
     assert_false(json["usable"].get<bool>());
@@ -364,12 +361,12 @@ void test_forced(void **) {
     assert_int_equal(json_of({"profile", "list", "--db", db, "--json"})["profiles"].size(), 1);
 }
 
-/* simulate. */
+// simulate.
 
 void test_simulate_is_repeatable(void **) {
-    const Words words = {"simulate", "--images", "3", "--size", "64x48",
-                         "--format", "png,tiff16,jpeg", "--points", "200", "--test-points",
-                         "100", "--outliers", "0.02", "-o"};
+    const Words words = {"simulate", "--images",        "3",        "--size", "64x48",
+                         "--format", "png,tiff16,jpeg", "--points", "200",    "--test-points",
+                         "100",      "--outliers",      "0.02",     "-o"};
     must_exit(done, words + Words{work("a")});
     must_exit(done, words + Words{work("b")});
     must_exit(done, Words{"simulate", "--seed", "2"} + Words(words.begin() + 1, words.end()) + Words{work("c")});
@@ -377,16 +374,15 @@ void test_simulate_is_repeatable(void **) {
     for (const fs::directory_entry &entry : fs::directory_iterator(work("a"))) {
         const std::string name = entry.path().filename().string();
         ++files;
-        if (load(work("a/" + name)) != load(work("b/" + name)))
-            fail_msg("%s differs", name.c_str());
+        if (load(work("a/" + name)) != load(work("b/" + name))) fail_msg("%s differs", name.c_str());
         same += load(work("a/" + name)) == load(work("c/" + name));
     }
-    assert_int_equal(files, 7); /* three pictures, project, truth, two point files */
+    assert_int_equal(files, 7);  // three pictures, project, truth, two point files
     assert_int_equal(same, 0);
 }
 
-/* The pictures follow B = f(L M e w): the ratio of two pictures at a point both see is that of the truth, with the sRGB
- * formula written out here. */
+// The pictures follow B = f(L M e w): the ratio of two pictures at a point both see is that of the truth, with the sRGB
+// formula written out here.
 void test_simulated_pairs_follow_the_model(void **) {
     const Json truth = Json::parse(text_of(scene("truth.json")));
     const auto linear = [](double b) { return b <= 0.04045 ? b / 12.92 : std::pow((b + 0.055) / 1.055, 2.4); };
@@ -396,19 +392,19 @@ void test_simulated_pairs_follow_the_model(void **) {
     for (std::string line; std::getline(lines, line); ++count) {
         std::istringstream numbers(line);
         double column[16], radiance[2][3];
-        for (double &number : column)
-            numbers >> number;
+        for (double &number : column) numbers >> number;
         for (size_t side = 0; side < 2; ++side) {
             const Json &image = truth["images"][size_t(column[side])];
             const double x = (column[2 + 2 * side] - 159.5) / 200 - centre[0].get<double>();
             const double y = (column[3 + 2 * side] - 119.5) / 200 - centre[1].get<double>(), r2 = x * x + y * y;
             const double m = 1 + r2 * (k[0].get<double>() + r2 * (k[1].get<double>() + r2 * k[2].get<double>()));
             for (size_t c = 0; c < 3; ++c)
-                radiance[side][c] = linear(column[6 + 3 * side + c]) / (m * std::exp2(image["ev"].get<double>()) *
-                                                                        image["white_balance"][c].get<double>());
+                radiance[side][c] =
+                    linear(column[6 + 3 * side + c])
+                    / (m * std::exp2(image["ev"].get<double>()) * image["white_balance"][c].get<double>());
         }
         for (size_t c = 0; c < 3; ++c)
-            assert_close(radiance[0][c] / radiance[1][c], 1, 0.02); /* near black the response's table is a chord */
+            assert_close(radiance[0][c] / radiance[1][c], 1, 0.02);  // near black the response's table is a chord
     }
     assert_int_equal(count, 1500);
 }

@@ -1,4 +1,4 @@
-/* `lensprof align`: frames of simulated sequences whose overlapping pixels must agree afterwards, and what is refused. */
+// `lensprof align`: frames of simulated sequences whose overlapping pixels must agree afterwards, and what is refused.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
@@ -10,7 +10,7 @@ constexpr double true_ev[frame_count] = {0.0, -0.8, 0.7, -1.4}, true_red[frame_c
 
 double response(double x) { return std::pow(std::min(std::max(x, 0.0), 1.0), 1 / 2.2); }
 
-/* Light of the scene in one channel: soft blobs over three decades. */
+// Light of the scene in one channel: soft blobs over three decades.
 double light(uint32_t x, uint32_t y, uint32_t c) {
     double u = x / 23.0, v = y / 17.0;
     return 0.09 * std::exp(1.3 * std::sin(u + 0.3 * c) * std::cos(v - 0.2 * c) + 1.1 * std::sin(0.7 * v + u / 3));
@@ -18,7 +18,7 @@ double light(uint32_t x, uint32_t y, uint32_t c) {
 
 std::string frame_name(size_t i) { return work("in/f" + std::to_string(i) + ".png"); }
 
-/* Frames of a camera that stands still; each with its exposure and red factor. */
+// Frames of a camera that stands still; each with its exposure and red factor.
 Words make_frames() {
     fs::create_directories(work("in"));
     Words files;
@@ -37,13 +37,12 @@ Words make_frames() {
     return files;
 }
 
-/* Root mean square difference of two pictures, levels, where both inputs were neither dark nor nearly saturated. */
+// Root mean square difference of two pictures, levels, where both inputs were neither dark nor nearly saturated.
 double rms_difference(const Picture &a, const Picture &b, const Picture &source_a, const Picture &source_b) {
     double sum = 0, count = 0;
     for (size_t s = 0; s < a.pixels.size(); ++s) {
         auto good = [&](const Picture &p) { return p.pixels[s] >= 15 && p.pixels[s] <= 235; };
-        if (!good(source_a) || !good(source_b) || !good(a) || !good(b))
-            continue;
+        if (!good(source_a) || !good(source_b) || !good(a) || !good(b)) continue;
         sum += std::pow(double(a.pixels[s]) - b.pixels[s], 2);
         count += 1;
     }
@@ -51,7 +50,7 @@ double rms_difference(const Picture &a, const Picture &b, const Picture &source_
     return std::sqrt(sum / count);
 }
 
-/* All aligned frames look like frame `like`, which changes by rounding alone. */
+// All aligned frames look like frame `like`, which changes by rounding alone.
 void check_alike(const std::string &out, size_t like) {
     const std::string name = out + "/f" + std::to_string(like) + ".png";
     const Picture wanted = read_picture(frame_name(like));
@@ -61,8 +60,7 @@ void check_alike(const std::string &out, size_t like) {
         const Picture after = read_picture(out + "/f" + std::to_string(i) + ".png");
         assert_int_equal(after.sample, LENSPROF_SAMPLE_U8);
         assert_true(rms_difference(after, wanted, source, wanted) < 1.2);
-        if (i != like)
-            assert_true(rms_difference(source, wanted, source, wanted) > 8);
+        if (i != like) assert_true(rms_difference(source, wanted, source, wanted) > 8);
     }
 }
 
@@ -80,7 +78,7 @@ void test_static_sequence(void **) {
     }
 }
 
-/* The mean is the geometric one: its frames are alike, and lie between the darkest and the brightest. */
+// The mean is the geometric one: its frames are alike, and lie between the darkest and the brightest.
 void test_mean_and_json(void **) {
     const Words frames = make_frames();
     const Json json = json_of(Words{"align", "--json", "-o", work("mean")} + frames);
@@ -96,26 +94,26 @@ void test_mean_and_json(void **) {
         product += ev * true_ev[i];
         scale += true_ev[i] * true_ev[i];
     }
-    for (size_t i = 0; i < frame_count; ++i) /* up to the exponent that pictures leave open */
+    for (size_t i = 0; i < frame_count; ++i)  // up to the exponent that pictures leave open
         assert_close(json["frames"][i]["ev"].get<double>(), product / scale * true_ev[i], 0.02);
     assert_true(json["residual"]["before_rms"].get<double>() > 10 * json["residual"]["noise"].get<double>());
 }
 
-/* A rendered panorama: the camera moves and has a falloff, which the result is free of. */
+// A rendered panorama: the camera moves and has a falloff, which the result is free of.
 void test_moving_camera(void **) {
     must_exit(done, {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--ev",
                      "1", "--noise", "1"});
     const std::string pto = work("pano/pano.pto");
     for (const char *method : {"transfer", "transfer-function"}) {
         const std::string out = work(std::string("aligned-") + method);
-        const Json json = json_of({"align", "--method", method, "--project", pto, "--to", "first", "-o", out, "--json"});
+        const Json json =
+            json_of({"align", "--method", method, "--project", pto, "--to", "first", "-o", out, "--json"});
         assert_int_equal(json["frames"].size(), 5);
         assert_true(json["residual"]["heldout_median"].get<double>() < 2.0);
-        /* What is left between aligned frames is a model without falloff and with equal exposures. */
+        // What is left between aligned frames is a model without falloff and with equal exposures.
         fs::copy(pto, out + "/pano.pto");
         const Json again = json_of({"build", out + "/pano.pto", "--no-store", "--json"});
-        for (const Json &image : again["images"])
-            assert_close(image["ev"].get<double>(), 0.0, 0.1);
+        for (const Json &image : again["images"]) assert_close(image["ev"].get<double>(), 0.0, 0.1);
         const Json &k = again["vignetting"]["k"][0];
         assert_close(k[0].get<double>() + k[1].get<double>() + k[2].get<double>(), 0.0, 0.08);
     }
@@ -123,7 +121,7 @@ void test_moving_camera(void **) {
     assert_int_equal(std::distance(fs::directory_iterator(work("one")), fs::directory_iterator()), 1);
 }
 
-/* What is white stays without what it was, and dark frames are noise: said of the frames they are true of. */
+// What is white stays without what it was, and dark frames are noise: said of the frames they are true of.
 void test_limits_are_said(void **) {
     Words frames = make_frames();
     const Outcome first = run_words(Words{"align", "--to", "last", "-o", work("dark")} + frames);
@@ -134,7 +132,8 @@ void test_limits_are_said(void **) {
     assert_false(contains(brightest.err, "keeps white"));
     fs::create_directories(work("pano"));
     must_exit(done, {"simulate", "-o", work("pano"), "--images", "3", "--size", "160x120", "--format", "png"});
-    assert_refused(not_usable, {"align", work("pano/img000.png"), work("pano/img001.png"), "-o", work("out")}, {"--project"});
+    assert_refused(not_usable, {"align", work("pano/img000.png"), work("pano/img001.png"), "-o", work("out")},
+                   {"--project"});
 }
 
 void test_refusals(void **) {
@@ -164,7 +163,7 @@ void test_refusals(void **) {
     refuse(failed, two + Words{"-o", work("in/text.png/deeper")}, "text.png is not a folder");
 }
 
-/* No picture of the call may be written over, however its name is written. */
+// No picture of the call may be written over, however its name is written.
 void test_inputs_stay(void **) {
     const Words frames = make_frames();
     fs::create_directories(work("other"));
@@ -178,7 +177,7 @@ void test_inputs_stay(void **) {
     refuse({frames[0], work("other/f0.png"), "-o", work("out")}, "two pictures");
     must_exit(done, {"simulate", "-o", work("pano"), "--images", "3", "--size", "160x120", "--format", "png"});
     fs::create_directories(work("far"));
-    fs::copy(work("pano/img000.png"), work("far/img001.png")); /* a picture of the project under another one's name */
+    fs::copy(work("pano/img000.png"), work("far/img001.png"));  // a picture of the project under another one's name
     std::string pto = text_of(work("pano/pano.pto"));
     pto.replace(pto.find("img000.png"), 10, "../far/img001.png");
     save_text(work("pano/far.pto"), pto);
@@ -186,10 +185,10 @@ void test_inputs_stay(void **) {
 }
 
 void test_build_by_transfer_functions(void **) {
-    must_exit(done, {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--ev",
-                     "1"});
-    const Json json = json_of({"build", work("pano/pano.pto"), "--db", work("p.db"), "--method", "transfer-function",
-                               "--json"});
+    must_exit(done,
+              {"simulate", "-o", work("pano"), "--images", "5", "--size", "320x240", "--format", "png", "--ev", "1"});
+    const Json json =
+        json_of({"build", work("pano/pano.pto"), "--db", work("p.db"), "--method", "transfer-function", "--json"});
     assert_true(json["usable"].get<bool>());
     assert_true(json["residual"]["heldout_median"].get<double>() < 2.0);
     const Json profile = json_of({"profile", "show", "1", "--db", work("p.db"), "--json"});
@@ -200,8 +199,13 @@ void test_build_by_transfer_functions(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_static_sequence), CLI_TEST(test_mean_and_json), CLI_TEST(test_moving_camera),
-        CLI_TEST(test_limits_are_said), CLI_TEST(test_refusals), CLI_TEST(test_inputs_stay),        CLI_TEST(test_build_by_transfer_functions),
+        CLI_TEST(test_static_sequence),
+        CLI_TEST(test_mean_and_json),
+        CLI_TEST(test_moving_camera),
+        CLI_TEST(test_limits_are_said),
+        CLI_TEST(test_refusals),
+        CLI_TEST(test_inputs_stay),
+        CLI_TEST(test_build_by_transfer_functions),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

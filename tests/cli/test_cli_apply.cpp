@@ -1,4 +1,4 @@
-/* `lensprof apply`: pixels against formulas written out here, and what is kept of a picture beside its pixels. */
+// `lensprof apply`: pixels against formulas written out here, and what is kept of a picture beside its pixels.
 #include "cli_runs.hpp"
 
 #include <lensprof/store.h>
@@ -7,7 +7,7 @@ using namespace cli_runs;
 
 namespace {
 
-/* A project of pictures with a linear response and a known falloff and exposures, so that every pixel has a formula. */
+// A project of pictures with a linear response and a known falloff and exposures, so that every pixel has a formula.
 constexpr uint32_t width = 40, height = 30;
 constexpr double k1 = -0.3, k2 = 0.1, true_ev[3] = {0, 0.7, -0.4}, true_red[3] = {1, 1.1, 0.9},
                  true_blue[3] = {1, 0.95, 1.2};
@@ -23,31 +23,27 @@ double exposure(size_t image, size_t channel) {
 
 std::string picture_name(size_t image) { return work("in/p" + std::to_string(image) + ".tif"); }
 
-/* Grey values of the middle range: nothing is near saturation. */
+// Grey values of the middle range: nothing is near saturation.
 Picture make_picture(size_t image, uint32_t sample = LENSPROF_SAMPLE_U16) {
     Picture picture = make_noise(width, height, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB);
     uint64_t state = image + 1;
     auto *values = reinterpret_cast<float *>(picture.pixels.data());
-    for (size_t i = 0; i < width * height * 3; ++i)
-        values[i] = static_cast<float>(0.1 + 0.25 * lp_random(&state));
-    if (sample == LENSPROF_SAMPLE_F32)
-        return picture;
+    for (size_t i = 0; i < width * height * 3; ++i) values[i] = static_cast<float>(0.1 + 0.25 * lp_random(&state));
+    if (sample == LENSPROF_SAMPLE_F32) return picture;
     Picture whole = make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
     auto *codes = reinterpret_cast<uint16_t *>(whole.pixels.data());
-    for (size_t i = 0; i < width * height * 3; ++i)
-        codes[i] = static_cast<uint16_t>(values[i] * 65535);
+    for (size_t i = 0; i < width * height * 3; ++i) codes[i] = static_cast<uint16_t>(values[i] * 65535);
     return whole;
 }
 
 double value_of(const Picture &picture, size_t i) {
     if (picture.sample == LENSPROF_SAMPLE_U16)
         return reinterpret_cast<const uint16_t *>(picture.pixels.data())[i] / 65535.0;
-    if (picture.sample == LENSPROF_SAMPLE_F32)
-        return double(reinterpret_cast<const float *>(picture.pixels.data())[i]);
+    if (picture.sample == LENSPROF_SAMPLE_F32) return double(reinterpret_cast<const float *>(picture.pixels.data())[i]);
     return picture.pixels[i] / 255.0;
 }
 
-/* Writes pictures and project; the project's exposures begin at an absolute value, as Hugin's do. */
+// Writes pictures and project; the project's exposures begin at an absolute value, as Hugin's do.
 std::string make_project() {
     fs::create_directories(work("in"));
     std::ostringstream pto;
@@ -63,7 +59,7 @@ std::string make_project() {
     return work("in/pano.pto");
 }
 
-/* Every pixel of every output is `wanted(image, channel)` times the input over falloff and exposure. */
+// Every pixel of every output is `wanted(image, channel)` times the input over falloff and exposure.
 void check_pixels(const std::string &out, uint32_t sample, const std::function<double(size_t, size_t)> &wanted) {
     for (size_t i = 0; i < 3; ++i) {
         const Picture before = read_picture(picture_name(i)),
@@ -80,8 +76,7 @@ void check_pixels(const std::string &out, uint32_t sample, const std::function<d
 
 double mean_exposure(size_t, size_t channel) {
     double product = 1;
-    for (size_t i = 0; i < 3; ++i)
-        product *= exposure(i, channel);
+    for (size_t i = 0; i < 3; ++i) product *= exposure(i, channel);
     return std::cbrt(product);
 }
 
@@ -120,7 +115,7 @@ void test_simulate_undoes_correct(void **) {
     }
 }
 
-/* A folder is its pictures, in order; what else there is in it is left alone. */
+// A folder is its pictures, in order; what else there is in it is left alone.
 void test_folder(void **) {
     make_project();
     write_picture(work("in/.hidden.tif"), make_picture(0));
@@ -138,10 +133,11 @@ void test_folder(void **) {
     for (size_t i = 0; i < 3; ++i)
         assert_string_equal(json["pictures"][i]["file"].get<std::string>().c_str(), picture_name(i).c_str());
     fs::create_directory(work("empty"));
-    assert_true(contains(run_words(words + Words{work("empty")}).err, work("empty") + ": is a folder without pictures"));
+    assert_true(
+        contains(run_words(words + Words{work("empty")}).err, work("empty") + ": is a folder without pictures"));
 }
 
-/* --strength and --gain-cap change what the falloff counts as; --dither keeps the mean of what rounding would lose. */
+// --strength and --gain-cap change what the falloff counts as; --dither keeps the mean of what rounding would lose.
 void test_strength_cap_and_dither(void **) {
     auto p = std::make_unique<lensprof_profile>();
     lensprof_profile_init(p.get());
@@ -162,8 +158,8 @@ void test_strength_cap_and_dither(void **) {
     double sum[2] = {0, 0};
     for (uint32_t y = 0; y < 48; y++)
         for (uint32_t x = 0; x < 64; x++) {
-            const double m = lensprof_vignetting_eval(p->vignetting,
-                                                      lensprof_vignetting_r2(p->vignetting, 64, 48, x, y, nullptr), nullptr);
+            const double m = lensprof_vignetting_eval(
+                p->vignetting, lensprof_vignetting_r2(p->vignetting, 64, 48, x, y, nullptr), nullptr);
             const size_t at = y * half.row_bytes + 3 * x;
             assert_close(half.pixels[at], 40 / (1 + 0.5 * (m - 1)), 0.6);
             assert_close(capped.pixels[at], 40 / std::max(m, 1 / 1.25), 0.6);
@@ -185,18 +181,16 @@ void test_some_pictures_of_a_project(void **) {
     assert_int_equal(std::distance(fs::directory_iterator(work("out")), fs::directory_iterator()), 2);
 }
 
-/* What both pictures see agrees better afterwards: at points that the simulation knows, not the fit. */
+// What both pictures see agrees better afterwards: at points that the simulation knows, not the fit.
 double disagreement(const std::string &pictures) {
     std::vector<Picture> held;
-    for (int i = 0; i < 4; ++i)
-        held.push_back(read_picture(pictures + "/img00" + std::to_string(i) + ".png"));
+    for (int i = 0; i < 4; ++i) held.push_back(read_picture(pictures + "/img00" + std::to_string(i) + ".png"));
     std::istringstream lines(text_of(scene("test_points.txt")));
     std::vector<double> squares;
     for (std::string line; std::getline(lines, line);) {
         std::istringstream numbers(line);
         double column[6];
-        for (double &number : column)
-            numbers >> number;
+        for (double &number : column) numbers >> number;
         for (size_t c = 0; c < 3; ++c) {
             double value[2];
             for (size_t side = 0; side < 2; ++side) {
@@ -207,7 +201,7 @@ double disagreement(const std::string &pictures) {
         }
     }
     std::nth_element(squares.begin(), squares.begin() + long(squares.size() / 2), squares.end());
-    return std::sqrt(squares[squares.size() / 2]); /* the median forgives edges */
+    return std::sqrt(squares[squares.size() / 2]);  // the median forgives edges
 }
 
 void test_overlaps_agree_better(void **) {
@@ -221,7 +215,7 @@ void test_overlaps_agree_better(void **) {
     }
 }
 
-/* Depth, size, format, colour profile, EXIF. */
+// Depth, size, format, colour profile, EXIF.
 void check_kept(const std::string &from, const std::string &to) {
     const Picture before = read_header(from), after = read_header(to);
     assert_int_equal(after.sample, before.sample);
@@ -236,8 +230,7 @@ void check_kept(const std::string &from, const std::string &to) {
     assert_memory_equal(&a.key, &b.key, sizeof a.key);
     assert_true(a.exif_ev.has_value() && b.exif_ev.has_value());
     assert_close(*a.exif_ev, *b.exif_ev, 0);
-    if (after.traits.format == FileFormat::jpeg)
-        assert_true(after.traits.quantisation == before.traits.quantisation);
+    if (after.traits.format == FileFormat::jpeg) assert_true(after.traits.quantisation == before.traits.quantisation);
 }
 
 void test_pictures_keep_their_nature(void **) {
@@ -268,16 +261,15 @@ void test_profile_by_id_or_exif(void **) {
     must_exit(done, Words{"build", scene("pano.pto")} + quick + db);
     must_exit(done, Words{"build", scene("pano.pto"), "--seed", "2"} + quick + db);
     const Json by_exif = json_of(Words{"apply", "--from-db", "--json", "-o", work("exif"), scene("img001.png")} + db);
-    assert_int_equal(by_exif["pictures"][0]["profile"].get<int>(), 2); /* the newest */
+    assert_int_equal(by_exif["pictures"][0]["profile"].get<int>(), 2);  // the newest
     must_exit(done, Words{"apply", "--profile", "2", "-o", work("two"), scene("img001.png")} + db);
     must_exit(done, Words{"apply", "--profile", "1", "-o", work("one"), scene("img001.png")} + db);
     assert_true(load(work("exif/img001.png")) == load(work("two/img001.png")));
     assert_true(load(work("exif/img001.png")) != load(work("one/img001.png")));
-    /* One picture alone keeps its exposure: the middle stays, the corner gains what the falloff took, about 0.6 EV. */
+    // One picture alone keeps its exposure: the middle stays, the corner gains what the falloff took, about 0.6 EV.
     const Picture before = read_picture(scene("img001.png")), after = read_picture(work("two/img001.png"));
     const size_t middle = (119 * 320 + 160) * 3;
-    for (size_t c = 0; c < 3; ++c)
-        assert_true(std::abs(before.pixels[middle + c] - after.pixels[middle + c]) <= 1);
+    for (size_t c = 0; c < 3; ++c) assert_true(std::abs(before.pixels[middle + c] - after.pixels[middle + c]) <= 1);
     double sum[2] = {0, 0};
     for (size_t y = 0; y < 10; ++y)
         for (size_t s = 0; s < 30; ++s) {
@@ -287,7 +279,7 @@ void test_profile_by_id_or_exif(void **) {
     assert_true(sum[1] > 1.1 * sum[0]);
 }
 
-/* The gain grid of a stored profile: undone, or made, in every pixel and channel. */
+// The gain grid of a stored profile: undone, or made, in every pixel and channel.
 void test_gain_grid_of_a_profile(void **) {
     const double flat = 20000;
     auto p = std::make_unique<lensprof_profile>();
@@ -333,11 +325,16 @@ void test_contact_sheet(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_output_exposures),        CLI_TEST(test_linear_is_float),
-        CLI_TEST(test_simulate_undoes_correct), CLI_TEST(test_some_pictures_of_a_project),
-        CLI_TEST(test_overlaps_agree_better),   CLI_TEST(test_pictures_keep_their_nature),
-        CLI_TEST(test_profile_by_id_or_exif),   CLI_TEST(test_gain_grid_of_a_profile),
-        CLI_TEST(test_contact_sheet),           CLI_TEST(test_strength_cap_and_dither),
+        CLI_TEST(test_output_exposures),
+        CLI_TEST(test_linear_is_float),
+        CLI_TEST(test_simulate_undoes_correct),
+        CLI_TEST(test_some_pictures_of_a_project),
+        CLI_TEST(test_overlaps_agree_better),
+        CLI_TEST(test_pictures_keep_their_nature),
+        CLI_TEST(test_profile_by_id_or_exif),
+        CLI_TEST(test_gain_grid_of_a_profile),
+        CLI_TEST(test_contact_sheet),
+        CLI_TEST(test_strength_cap_and_dither),
         CLI_TEST(test_folder),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);

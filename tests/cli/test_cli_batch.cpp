@@ -1,14 +1,14 @@
-/* Many pictures corrected at once, each in strips: the same bytes whatever the threads and strips, what a failure
- * leaves. */
+// Many pictures corrected at once, each in strips: the same bytes whatever the threads and strips, what a failure
+// leaves.
 #include "batch_runs.hpp"
 
-#include "cli/correction.hpp"
+#include "cli/correct/correction.hpp"
 
 using namespace batch_runs;
 
 namespace {
 
-/* One picture of every way in which rows are read and written. */
+// One picture of every way in which rows are read and written.
 Words make_kinds() {
     Words files;
     const auto next = [&](const std::string &name) { return files.emplace_back(work("in/" + name)); };
@@ -23,8 +23,7 @@ Words make_kinds() {
                 kind.tile = tile;
                 write_tiff_file(next(name + "planes" + std::to_string(tile) + ".tif"), picture, kind);
             }
-            if (sample != LENSPROF_SAMPLE_F32)
-                write_picture(next(name + ".png"), picture);
+            if (sample != LENSPROF_SAMPLE_F32) write_picture(next(name + ".png"), picture);
         }
     Bytes bytes = make_noise(97, 61, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB).pixels;
     write_png_file(next("interlaced.png"),
@@ -36,7 +35,7 @@ Words make_kinds() {
     return files;
 }
 
-/* All files of a folder, by name. */
+// All files of a folder, by name.
 std::map<std::string, Bytes> contents(const std::string &place) {
     std::map<std::string, Bytes> all;
     for (const fs::directory_entry &entry : fs::directory_iterator(place))
@@ -44,7 +43,7 @@ std::map<std::string, Bytes> contents(const std::string &place) {
     return all;
 }
 
-/* The whole picture at once: what strips must come to. */
+// The whole picture at once: what strips must come to.
 Picture corrected_whole(const std::string &file, const lensprof_profile &model, bool linear) {
     Picture source = read_picture(file), result = source;
     lensprof_apply_options options;
@@ -79,8 +78,7 @@ std::map<std::string, Bytes> correct_by(const Words &files, bool linear, uint32_
     fs::create_directory(out);
     for (const std::string &file : files) {
         fs::path name = fs::path(file).filename();
-        if (linear)
-            name += ".tif";
+        if (linear) name += ".tif";
         Correction job{file, out + "/" + name.string(), model, {}, {}, 0, 0};
         lensprof_exposure_init(&job.own);
         lensprof_exposure_init(&job.wanted);
@@ -115,14 +113,14 @@ void test_same_bytes_by_any_threads_and_strips(void **) {
             const Picture whole = read_picture(work("whole" + name + ".tif")),
                           strips = read_picture(work("strips/" + name + (linear ? ".tif" : "")));
             if (fs::path(file).extension() == ".jpg" && !linear)
-                assert_near_pixels(whole, strips, 60); /* noise of coding */
+                assert_near_pixels(whole, strips, 60);  // noise of coding
             else
                 assert_same_pixels(whole, strips);
         }
     }
 }
 
-/* Strips written by PictureWriter as PictureReader gives them are the file that write_picture makes. */
+// Strips written by PictureWriter as PictureReader gives them are the file that write_picture makes.
 void test_reader_and_writer(void **) {
     for (const std::string &file : make_kinds()) {
         const std::string extension = fs::path(file).extension().string();
@@ -133,8 +131,9 @@ void test_reader_and_writer(void **) {
             Bytes rows(reader.header().row_bytes * strip);
             for (uint32_t y = 0; y < 61; y += strip) {
                 const Picture &header = reader.header();
-                const lensprof_image view = {rows.data(), ptrdiff_t(header.row_bytes), header.width,
-                                             std::min(strip, 61 - y), header.sample, header.layout};
+                const lensprof_image view = {rows.data(),   ptrdiff_t(header.row_bytes),
+                                             header.width,  std::min(strip, 61 - y),
+                                             header.sample, header.layout};
                 reader.read(view);
                 writer.write(view);
             }
@@ -147,7 +146,7 @@ void test_reader_and_writer(void **) {
     }
 }
 
-/* A contact sheet does not depend on them either. */
+// A contact sheet does not depend on them either.
 void test_sheet_by_any_threads(void **) {
     const Words files = make_kinds();
     Bytes wanted;
@@ -162,12 +161,12 @@ void test_sheet_by_any_threads(void **) {
     assert_true(sheet.width >= 6 * 97 && sheet.height >= files.size() / 6 * 2 * 61);
 }
 
-/* Failures. */
+// Failures.
 
-/* A picture whose header is good and whose pixels are not all there. */
+// A picture whose header is good and whose pixels are not all there.
 void damage(const std::string &file) {
     Bytes bytes = load(file);
-    if (fs::path(file).extension() == ".tif") /* the directory is at the end */
+    if (fs::path(file).extension() == ".tif")  // the directory is at the end
         std::fill_n(bytes.begin() + long(bytes.size() / 2), 200, uint8_t(0xee));
     else
         bytes.resize(bytes.size() / 2);
@@ -182,7 +181,7 @@ void set_not_a_number(const std::string &file) {
     write_picture(file, picture);
 }
 
-/* Pictures before the first bad one are written, it and those behind are not, nothing else is left. */
+// Pictures before the first bad one are written, it and those behind are not, nothing else is left.
 void test_bad_picture_among_good_ones(void **) {
     for (const std::string extension : {".png", ".jpg", ".tif", ".float.tif"}) {
         fs::remove_all(work("in"));
@@ -193,8 +192,7 @@ void test_bad_picture_among_good_ones(void **) {
             write_picture(files.back(), make_noise(200, 150, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB));
         }
         const bool number = extension == ".float.tif";
-        for (int bad : {5, 6, 11})
-            number ? set_not_a_number(files[size_t(bad)]) : damage(files[size_t(bad)]);
+        for (int bad : {5, 6, 11}) number ? set_not_a_number(files[size_t(bad)]) : damage(files[size_t(bad)]);
         for (const char *threads : {"1", "2", "5", "40"}) {
             fs::remove_all(work("out"));
             const Outcome outcome = run_words(corrected_into("out", Words{"--threads", threads} + files));
@@ -213,7 +211,7 @@ void test_bad_picture_among_good_ones(void **) {
     }
 }
 
-/* The disk is full for one picture: an older file of its name stays. */
+// The disk is full for one picture: an older file of its name stays.
 void test_full_disk_among_pictures(void **) {
     fs::create_directories(work("in"));
     fs::create_directories(work("out"));
@@ -228,8 +226,7 @@ void test_full_disk_among_pictures(void **) {
         const Outcome outcome = run_child(corrected_into("out", Words{"--threads", threads} + files), [] {
             signal(SIGXFSZ, SIG_IGN);
             const rlimit limit = {100000, 100000};
-            if (setrlimit(RLIMIT_FSIZE, &limit) != 0)
-                _exit(254);
+            if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(254);
         });
         assert_int_equal(outcome.code, failed);
         assert_true(contains(outcome.err, work("out/4.tif") + ": cannot write: File too large"));
@@ -238,7 +235,7 @@ void test_full_disk_among_pictures(void **) {
     }
 }
 
-/* What is said. */
+// What is said.
 
 void test_speed_is_said(void **) {
     fs::create_directories(work("in"));

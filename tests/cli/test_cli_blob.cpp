@@ -1,17 +1,17 @@
-/* Profiles as blobs: `lensprof profile export ID --blob FILE`, `lensprof profile show --blob FILE`. */
+// Profiles as blobs: `lensprof profile export ID --blob FILE`, `lensprof profile show --blob FILE`.
 #include "cli_runs.hpp"
 
 #include <lensprof/lensprof.h>
 
 using namespace cli_runs;
 
-/* What fontconfig keeps for the life of the process is no leak of ours; LeakSanitizer asks here. */
+// What fontconfig keeps for the life of the process is no leak of ours; LeakSanitizer asks here.
 extern "C" const char *__lsan_default_suppressions();
 extern "C" const char *__lsan_default_suppressions() { return "leak:libfontconfig"; }
 
 namespace {
 
-/* Number 1: an EMoR response, a gain grid and a covariance; number 2: linear, without any. */
+// Number 1: an EMoR response, a gain grid and a covariance; number 2: linear, without any.
 std::unique_ptr<lensprof_profile> make_profile(bool is_rich) {
     auto p = std::make_unique<lensprof_profile>();
     lensprof_profile_init(p.get());
@@ -85,9 +85,9 @@ void test_show_is_that_of_the_database(void **) {
     assert_true(shown["id"].is_null());
     assert_string_equal(shown["blob"]["crc32"].get<std::string>().c_str(), crc_of(load(work("camera.blob"))).c_str());
     assert_string_equal(shown["provenance"]["source"].get<std::string>().c_str(), "");
-    for (size_t j = 0; j < 1024; j++) /* single precision */
-        assert_close(shown["response"]["values"][0][j].get<double>(),
-                     stored["response"]["values"][0][j].get<double>(), 6e-8);
+    for (size_t j = 0; j < 1024; j++)  // single precision
+        assert_close(shown["response"]["values"][0][j].get<double>(), stored["response"]["values"][0][j].get<double>(),
+                     6e-8);
     for (Json *json : {&shown, &stored}) {
         json->erase("id"), json->erase("blob");
         (*json)["provenance"].erase("source");
@@ -138,7 +138,7 @@ void test_export_refuses(void **) {
     assert_refused(usage, export_of(work("link.blob")), {work("link.blob"), "is the profile database"});
 }
 
-/* A full disk: the older file stays. */
+// A full disk: the older file stays.
 void test_export_to_a_full_disk(void **) {
     save_text(work("camera.blob"), "older");
     const Words words = export_of(work("camera.blob"));
@@ -170,7 +170,7 @@ void test_show_refuses(void **) {
     longer.push_back(0);
     refuse(longer, "export");
     refuse(load(work("p.db")), "export");
-    Bytes newer = good; /* layout 2, sealed bit by bit */
+    Bytes newer = good;  // layout 2, sealed bit by bit
     newer[4] = 2;
     uint32_t crc = 0xFFFFFFFF;
     for (size_t i = 0; i + 4 < newer.size(); i++) {

@@ -1,4 +1,4 @@
-/* lensprof bracket: what it prints and stores, and what it refuses. */
+// lensprof bracket: what it prints and stores, and what it refuses.
 #include "bracket_runs.hpp"
 
 using namespace bracket_runs;
@@ -20,8 +20,7 @@ void test_object(void **) {
     const Json json = json_of(bracket(files, no_store + Words{"--ev", "2,0,-2"}));
     for (const char *field : {"usable", "reason", "reference", "images", "response", "gamma", "gamma_from", "profile",
                               "pairs", "components", "covariance", "coverage", "seconds", "residual", "iterations"})
-        if (!json.contains(field))
-            fail_msg("no %s", field);
+        if (!json.contains(field)) fail_msg("no %s", field);
     assert_false(json.contains("vignetting"));
     assert_true(json["profile"].is_null());
     assert_int_equal(json["images"].size(), 3);
@@ -71,7 +70,7 @@ void test_an_overexposed_picture_is_left_out(void **) {
     assert_true(contains(words.out, "unknown"));
 }
 
-/* -1 is an exposure like any other. */
+// -1 is an exposure like any other.
 void test_an_exposure_of_minus_one(void **) {
     const std::vector<double> evs = {0.0, -1.0, 1.0};
     const Words files = shots(evs);
@@ -82,18 +81,17 @@ void test_an_exposure_of_minus_one(void **) {
     assert_true(contains(text.out, "-1.000") && !contains(text.out, "unknown"));
 }
 
-/* A reason names files, whatever these are called. */
+// A reason names files, whatever these are called.
 void test_names_that_look_like_numbers(void **) {
     Shot like;
     like.noise = 0.0;
     const Words files = shots({20.0, -20.0}, like);
     const Words odd = {work("image 99999999999999999999.png"), work("shot 1 image 0.png")};
-    for (size_t i = 0; i < 2; ++i)
-        fs::rename(files[i], odd[i]);
+    for (size_t i = 0; i < 2; ++i) fs::rename(files[i], odd[i]);
     assert_refused(not_usable, bracket(odd, no_store), {odd[0]});
 }
 
-/* A forced result says so, whatever the method's name takes of its field. */
+// A forced result says so, whatever the method's name takes of its field.
 void test_forced(void **) {
     const Words files = shots(five);
     must_exit(not_usable, bracket(files, {"--db", work("p.db"), "--camera", "X", "--pairs", "4000", "--method",
@@ -104,15 +102,13 @@ void test_forced(void **) {
 
 void test_profile_of_the_camera_alone(void **) {
     const Words files = shots(three);
-    for (size_t i = 0; i < 3; ++i)
-        state_exposure(files[i], three[i] - 5.0);
+    for (size_t i = 0; i < 3; ++i) state_exposure(files[i], three[i] - 5.0);
     const std::string db = work("p.db");
     const Json json = json_of(bracket(files, {"--db", db, "--json", "--pairs", "4000"}));
     const Json stored = json_of({"profile", "show", std::to_string(json["profile"].get<int>()), "--db", db, "--json"});
     assert_string_equal(stored["key"]["camera_model"].get<std::string>().c_str(), "Camera");
     assert_string_equal(stored["key"]["lens"].get<std::string>().c_str(), "");
-    for (const char *field : {"focal_mm", "aperture", "distance_m"})
-        assert_true(stored["key"][field].is_null());
+    for (const char *field : {"focal_mm", "aperture", "distance_m"}) assert_true(stored["key"][field].is_null());
     assert_string_equal(stored["provenance"]["method"].get<std::string>().c_str(), "bracket");
     assert_true(stored["response"]["values"] == json["response"]["values"]);
     const std::string text = must_exit(done, {"profile", "show", "1", "--db", db});
@@ -122,7 +118,7 @@ void test_profile_of_the_camera_alone(void **) {
     assert_true(found["id"] == stored["id"]);
 }
 
-/* The reference variant: from known exposures alone, which it takes as they are. */
+// The reference variant: from known exposures alone, which it takes as they are.
 void test_debevec(void **) {
     const Words files = shots(five);
     const Words debevec = no_store + Words{"--method", "debevec"};
@@ -133,11 +129,10 @@ void test_debevec(void **) {
     assert_int_equal(reversed.code, not_usable);
     assert_true(contains(reversed.err, "falls"));
     assert_refused(usage, bracket(files, debevec), {files[0], "--ev", "--times"});
-    for (const Words &wrong : {Words{"--modes", "5"}, Words{"--modes-only"}, Words{"--loss", "huber"},
-                               Words{"--gamma-from", "prior"}})
+    for (const Words &wrong :
+         {Words{"--modes", "5"}, Words{"--modes-only"}, Words{"--loss", "huber"}, Words{"--gamma-from", "prior"}})
         assert_refused(usage, bracket(files, debevec + Words{"--ev", list_of(five)} + wrong), {wrong[0], "debevec"});
-    for (size_t i = 0; i + 1 < files.size(); ++i)
-        state_exposure(files[i], five[i]);
+    for (size_t i = 0; i + 1 < files.size(); ++i) state_exposure(files[i], five[i]);
     assert_refused(usage, bracket(files, debevec), {files[4]});
     state_exposure(files[4], five[4]);
     const std::string db = work("p.db");
@@ -167,17 +162,23 @@ Bytes stored_database() {
 void test_refused_options(void **) {
     stored_database();
     const Words files = shots(three);
-    for (const Words &wrong :
-         {Words{"--ev", "1,2"}, Words{"--ev", "1,2,3,4"}, Words{"--ev", "1,2,three"}, Words{"--ev", "1,2,"},
-          Words{"--ev", "1,,2"}, Words{"--ev", "1,2,nan"}, Words{"--ev", "1,2,inf"}, Words{"--ev", "1,2,65"},
-          Words{"--ev", "1;2;3"}, Words{"--ev", "1,2,3x"}, Words{"--ev", "1,2,1e400"}, Words{"--ev", ""},
-          Words{"--times", "1,2"}, Words{"--times", "1,2,0"}, Words{"--times", "1,2,-1"}, Words{"--times", "1,2,1/0"},
-          Words{"--times", "1,2,1/-8"}, Words{"--times", "1,2,1/"}, Words{"--times", "1,2,1e-10"},
-          Words{"--times", ""}, Words{"--ev-sigma", "0"}, Words{"--ev-sigma", "nan"},
-          Words{"--max-side", "10"}, Words{"--black", "-1"}, Words{"--black", "255"},
-          Words{"--white-balance", "warm"}, Words{"--modes", "26"}, Words{"--modes", "x"},
-          Words{"--pairs", "-1"}, Words{"--seed", "x"}, Words{"--method", "guess"}, Words{"--gamma-from", "guess"},
-          Words{"--gamma-from", "known"}})
+    for (const Words &wrong : {Words{"--ev", "1,2"},          Words{"--ev", "1,2,3,4"},
+                               Words{"--ev", "1,2,three"},    Words{"--ev", "1,2,"},
+                               Words{"--ev", "1,,2"},         Words{"--ev", "1,2,nan"},
+                               Words{"--ev", "1,2,inf"},      Words{"--ev", "1,2,65"},
+                               Words{"--ev", "1;2;3"},        Words{"--ev", "1,2,3x"},
+                               Words{"--ev", "1,2,1e400"},    Words{"--ev", ""},
+                               Words{"--times", "1,2"},       Words{"--times", "1,2,0"},
+                               Words{"--times", "1,2,-1"},    Words{"--times", "1,2,1/0"},
+                               Words{"--times", "1,2,1/-8"},  Words{"--times", "1,2,1/"},
+                               Words{"--times", "1,2,1e-10"}, Words{"--times", ""},
+                               Words{"--ev-sigma", "0"},      Words{"--ev-sigma", "nan"},
+                               Words{"--max-side", "10"},     Words{"--black", "-1"},
+                               Words{"--black", "255"},       Words{"--white-balance", "warm"},
+                               Words{"--modes", "26"},        Words{"--modes", "x"},
+                               Words{"--pairs", "-1"},        Words{"--seed", "x"},
+                               Words{"--method", "guess"},    Words{"--gamma-from", "guess"},
+                               Words{"--gamma-from", "known"}})
         assert_refused(usage, bracket(files, Words{"--db", work("p.db"), "--camera", "X"} + wrong), {wrong[0]});
     assert_refused(usage, bracket(files, {"--ev", "1,2,3", "--times", "1,2,3", "--no-store"}), {"--ev", "--times"});
     assert_refused(usage, bracket(files, {"--db", work("p.db"), "--no-store"}), {"--db", "--no-store"});
@@ -208,7 +209,7 @@ void test_refused_pictures(void **) {
     assert_refused(unreadable, bracket({files[0], work("text.png")}, store), {work("text.png")});
 }
 
-/* Pictures that show no response: the reason is told, as text and as an object, and nothing is stored. */
+// Pictures that show no response: the reason is told, as text and as an object, and nothing is stored.
 void assert_shows_nothing(const Words &files, const Words &more = {}) {
     const Words stored = Words{"--db", work("p.db"), "--camera", "X", "--pairs", "4000"} + more;
     assert_refused(not_usable, bracket(files, stored), {});
@@ -224,8 +225,7 @@ void test_pictures_that_show_no_response(void **) {
     stored_database();
     Shot like;
     like.noise = 0.0;
-    for (double ev : {-40.0, 40.0})
-        assert_shows_nothing(shots({ev, ev + 1.0, ev - 1.0}, like));
+    for (double ev : {-40.0, 40.0}) assert_shows_nothing(shots({ev, ev + 1.0, ev - 1.0}, like));
     assert_shows_nothing(shots({30.0, -30.0}, like));
     assert_refused(not_usable, bracket(shots({0.0, -30.0}, like), no_store), {"all black or white"});
     like.noise = 1.0;

@@ -1,4 +1,4 @@
-/* lensprof bracket: what is recovered, on every kind of picture and knowledge of the exposures. */
+// lensprof bracket: what is recovered, on every kind of picture and knowledge of the exposures.
 #include "bracket_runs.hpp"
 
 using namespace bracket_runs;
@@ -13,8 +13,7 @@ void test_unknown_exposures(void **) {
 
 void test_exposures_of_exif(void **) {
     const Words files = shots(five);
-    for (size_t i = 0; i < files.size(); ++i)
-        state_exposure(files[i], five[i] - 5.0);
+    for (size_t i = 0; i < files.size(); ++i) state_exposure(files[i], five[i] - 5.0);
     const Json json = json_of(bracket(files));
     assert_close(assert_recovered(json, five, 1.5), 1.0, 0.03);
     assert_string_equal(json["gamma_from"].get<std::string>().c_str(), "exif");
@@ -43,7 +42,7 @@ void test_kinds_of_pictures(void **) {
         }
 }
 
-/* A linear camera, which the prior does not expect, and one whose curve no few modes follow. */
+// A linear camera, which the prior does not expect, and one whose curve no few modes follow.
 void test_other_responses(void **) {
     Shot like;
     like.response = [](double x) { return x; };
@@ -55,19 +54,17 @@ void test_other_responses(void **) {
     const Json refined = json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five)}));
     assert_recovered(refined, five, 1.5, kink);
     assert_string_equal(refined["response"]["kind"].get<std::string>().c_str(), "table");
-    const Json modes =
-        json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five), "--modes-only"}));
+    const Json modes = json_of(bracket(shots(five, like), no_store + Words{"--ev", list_of(five), "--modes-only"}));
     assert_string_equal(modes["response"]["kind"].get<std::string>().c_str(), "emor");
     assert_true(heldout(refined) < heldout(modes));
 }
 
-/* The camera changed its sensitivity and did not say so. */
+// The camera changed its sensitivity and did not say so.
 void test_wrong_metadata_is_said(void **) {
     for (double wrong : {0.6, -1.0})
         for (size_t count : {5u, 7u}) {
             std::vector<double> truth, stated;
-            for (size_t i = 0; i < count; ++i)
-                truth.push_back(3.0 - 6.0 * double(i) / double(count - 1));
+            for (size_t i = 0; i < count; ++i) truth.push_back(3.0 - 6.0 * double(i) / double(count - 1));
             stated = truth;
             const size_t which = count == 5 ? 1 : 4;
             stated[which] += wrong;
@@ -80,11 +77,11 @@ void test_wrong_metadata_is_said(void **) {
         }
 }
 
-/* A step, an exposure at the end, the wrong order: what is not one exposure in the middle. */
+// A step, an exposure at the end, the wrong order: what is not one exposure in the middle.
 void test_other_wrong_metadata(void **) {
     struct Case {
         std::vector<double> truth, stated;
-        size_t named; /* a picture in the reason, or `none` */
+        size_t named;  // a picture in the reason, or `none`
         const char *word;
     };
     constexpr size_t none = 99;
@@ -100,17 +97,21 @@ void test_other_wrong_metadata(void **) {
     for (const Case &one : cases)
         for (const char *method : {"transfer", "radiance", "transfer-function"}) {
             const Words files = shots(one.truth);
-            const Words words = bracket(files, no_store + Words{"--method", method, "--ev-sigma", "0.1", "--ev", list_of(one.stated)});
+            const Words words =
+                bracket(files, no_store + Words{"--method", method, "--ev-sigma", "0.1", "--ev", list_of(one.stated)});
             const std::string reason = json_of(words)["reason"].get<std::string>();
             if (!contains(reason, one.word) || (one.named != none && !contains(reason, files[one.named])))
                 fail_msg("%s of %s: %s", method, list_of(one.stated).c_str(), reason.c_str());
         }
 }
 
-/* Whatever the response: exposures that are known settle gamma, and the result keeps to it. Modes alone cannot always, and
- * say so. */
+// Whatever the response: exposures that are known settle gamma, and the result keeps to it. Modes alone cannot always,
+// and say so.
 void test_known_exposures_hold_gamma(void **) {
-    const auto tone = [](double x) { double y = srgb(x); return y + 0.6 * y * (1.0 - y) * (y - 0.35); };
+    const auto tone = [](double x) {
+        double y = srgb(x);
+        return y + 0.6 * y * (1.0 - y) * (y - 0.35);
+    };
     const auto root = [](double x) { return std::sqrt(x); };
     const auto line = [](double x) { return x; };
     const std::vector<double> evs = {-3.0, -1.5, 0.0, 1.5, 3.0};
@@ -133,14 +134,13 @@ void test_known_exposures_hold_gamma(void **) {
     }
 }
 
-/* Two of three always agree: the wrong one cannot be named, and the answer is not stated to be sure. */
+// Two of three always agree: the wrong one cannot be named, and the answer is not stated to be sure.
 void test_exposures_of_three_pictures_contradict(void **) {
     const Words files = shots(three);
     for (const char *stated : {"2,0.6,-2", "2,-0.8,-2", "3,0,-2", "2.6,0,-2", "2,0,-1.2", "2,0,-2.8"}) {
         const Json json = json_of(bracket(files, no_store + Words{"--ev", stated}));
         const std::string reason = json["reason"].get<std::string>();
-        if (!contains(reason, "exposures contradict each other"))
-            fail_msg("--ev %s: %s", stated, reason.c_str());
+        if (!contains(reason, "exposures contradict each other")) fail_msg("--ev %s: %s", stated, reason.c_str());
         assert_true(json["gamma"]["sigma"].get<double>() > 0.05);
         for (size_t i = 1; i < 3; ++i)
             assert_true(std::fabs(found_ev(json, i) - (three[i] - three[0]))
@@ -150,17 +150,16 @@ void test_exposures_of_three_pictures_contradict(void **) {
     assert_string_equal(right["reason"].get<std::string>().c_str(), "");
 }
 
-/* Things that change from picture to picture in their own places: light, or tone mapping. */
+// Things that change from picture to picture in their own places: light, or tone mapping.
 void test_changed_light_is_refused(void **) {
     Shot like;
     like.waves_ev = 0.4;
     const Json json = json_of(bracket(shots(five, like)), not_usable);
     const std::string reason = json["reason"].get<std::string>();
-    if (!contains(reason, "light changed") || contains(reason, "free them"))
-        fail_msg("%s", reason.c_str());
+    if (!contains(reason, "light changed") || contains(reason, "free them")) fail_msg("%s", reason.c_str());
 }
 
-/* Scanned film: black is grey, and dark pictures show nothing else. */
+// Scanned film: black is grey, and dark pictures show nothing else.
 void test_black_that_is_not_0(void **) {
     const auto film = [](double x) { return (16.0 + 239.0 * std::pow(x, 0.6)) / 255.0; };
     Shot like;

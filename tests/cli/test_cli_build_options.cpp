@@ -1,15 +1,15 @@
-/* What settles gamma, and how many falloff curves: options of build on pictures that tell their exposures. */
+// What settles gamma, and how many falloff curves: options of build on pictures that tell their exposures.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
 
 namespace {
 
-/* A linear camera, which no prior expects, with one falloff for all channels. */
+// A linear camera, which no prior expects, with one falloff for all channels.
 std::string linear_scene() {
     const std::string path = work("linear");
-    must_exit(done, {"simulate", "-o", path, "--response", "linear", "--size", "320x240", "--images", "8", "--ev", "1.5",
-                     "--noise", "0.5", "--format", "tiff16", "--exif"});
+    must_exit(done, {"simulate", "-o", path, "--response", "linear", "--size", "320x240", "--images", "8", "--ev",
+                     "1.5", "--noise", "0.5", "--format", "tiff16", "--exif"});
     return path;
 }
 
@@ -17,7 +17,7 @@ Words build(const std::string &path, const Words &more) {
     return Words{"build", path + "/pano.pto", "--no-store", "--json", "--pairs", "2000"} + more;
 }
 
-/* Slope of recovered on true exposures: gamma. */
+// Slope of recovered on true exposures: gamma.
 double slope(const Json &json, const std::string &path) {
     const Json truth = Json::parse(text_of(path + "/truth.json"));
     const size_t count = json["images"].size();
@@ -56,22 +56,21 @@ void test_gamma_from_the_prior(void **) {
     assert_gamma(json, "prior");
     assert_string_equal(json["gamma"]["camera_kind"].get<std::string>().c_str(), "any");
     assert_true(std::fabs(slope(json, path) - 1.0) > 0.05);
-    /* Without exposures nothing else is left. */
+    // Without exposures nothing else is left.
     const Json none = json_of(build(path, {"--exif-sigma", "0"}));
     assert_gamma(none, "prior");
-    for (const Json &image : none["images"])
-        assert_close(image["known_ev_residual"].get<double>(), 0.0, 0.0);
+    for (const Json &image : none["images"]) assert_close(image["known_ev_residual"].get<double>(), 0.0, 0.0);
     const Json film = json_of(build(path, {"--gamma-from", "prior", "--camera-kind", "film"}));
     assert_string_equal(film["gamma"]["camera_kind"].get<std::string>().c_str(), "film");
     assert_true(film["gamma"]["sigma"] != json["gamma"]["sigma"]);
 }
 
-/* The project's own response is kept, and gamma with it: here one that was found by the exposures. */
+// The project's own response is kept, and gamma with it: here one that was found by the exposures.
 void test_gamma_known(void **) {
     const std::string path = linear_scene(), pto = path + "/found.pto";
     const Json found = json_of(build(path, {"--gamma-from", "exif", "--modes", "5", "--pto-out", pto}));
-    const Json json = json_of({"build", pto, "--no-store", "--json", "--pairs", "2000", "--gamma-from", "known",
-                               "--exif-sigma", "0"});
+    const Json json = json_of(
+        {"build", pto, "--no-store", "--json", "--pairs", "2000", "--gamma-from", "known", "--exif-sigma", "0"});
     assert_gamma(json, "known");
     assert_close(json["gamma"]["sigma"].get<double>(), 0.0, 0.0);
     assert_close(slope(json, path), 1.0, 0.05);
@@ -91,8 +90,7 @@ void test_coverage_and_errors_are_told(void **) {
     const Json json = json_of(build(linear_scene(), {}));
     for (const char *of : {"radius", "grey"}) {
         uint32_t sum = 0;
-        for (const Json &bin : json["coverage"][of])
-            sum += bin.get<uint32_t>();
+        for (const Json &bin : json["coverage"][of]) sum += bin.get<uint32_t>();
         assert_int_equal(json["coverage"][of].size(), 10);
         assert_int_equal(sum, (of[0] == 'g' ? 6 : 2) * json["pairs"].get<uint32_t>());
     }
@@ -105,11 +103,10 @@ void test_coverage_and_errors_are_told(void **) {
     }
     assert_int_equal(ends, 2 * json["pairs"].get<uint32_t>());
     assert_int_equal(json["gamma"]["direction"].size(), json["gamma"]["correlation"].size());
-    for (const Json &one : json["gamma"]["correlation"])
-        assert_true(std::fabs(one.get<double>()) <= 1.0);
+    for (const Json &one : json["gamma"]["correlation"]) assert_true(std::fabs(one.get<double>()) <= 1.0);
 }
 
-/* Standard errors are relative to the reference, whichever it is. */
+// Standard errors are relative to the reference, whichever it is.
 void test_another_reference(void **) {
     const std::string path = linear_scene();
     const Json first = json_of(build(path, {"--exif-sigma", "0"}));
@@ -122,7 +119,7 @@ void test_another_reference(void **) {
     assert_close(other["images"][base]["ev_sigma"].get<double>(), first["images"][3]["ev_sigma"].get<double>(), 0.01);
 }
 
-/* Exposures that are held (wrongly, here) are relative to the project's own reference, whichever image is asked for. */
+// Exposures that are held (wrongly, here) are relative to the project's own reference, whichever image is asked for.
 void test_another_reference_beside_held_exposures(void **) {
     const std::string pto = linear_scene() + "/pano.pto";
     edit(pto, "\nv E[^\n]*", "");
@@ -135,7 +132,7 @@ void test_another_reference_beside_held_exposures(void **) {
         assert_close(other["images"][i]["ev"].get<double>(), first["images"][i]["ev"].get<double>() - moved, 1e-9);
 }
 
-/* What is held settles gamma. */
+// What is held settles gamma.
 void test_known_is_said(void **) {
     const std::string path = linear_scene();
     const Outcome known = run_words({"build", path + "/pano.pto", "--no-store", "--gamma-from", "known"});
@@ -144,11 +141,10 @@ void test_known_is_said(void **) {
 
 void test_refused_options(void **) {
     const std::string path = linear_scene();
-    for (const Words &words :
-         {Words{"--gamma-from", "guess"}, Words{"--gamma-from", ""}, Words{"--exif-sigma", "-0.1"},
-          Words{"--exif-sigma", "nan"}, Words{"--exif-sigma", "11"}, Words{"--camera-kind", "phone"},
-          Words{"--gamma-from", "exif", "--exif-sigma", "0"}, Words{"--falloff-curves", "2"},
-          Words{"--falloff-curves", "4"}})
+    for (const Words &words : {Words{"--gamma-from", "guess"}, Words{"--gamma-from", ""}, Words{"--exif-sigma", "-0.1"},
+                               Words{"--exif-sigma", "nan"}, Words{"--exif-sigma", "11"},
+                               Words{"--camera-kind", "phone"}, Words{"--gamma-from", "exif", "--exif-sigma", "0"},
+                               Words{"--falloff-curves", "2"}, Words{"--falloff-curves", "4"}})
         assert_refused(usage, build(path, words), {words[0]});
 }
 

@@ -1,17 +1,17 @@
-/* Relative illuminance charts: `lensprof profile show --chart`. */
+// Relative illuminance charts: `lensprof profile show --chart`.
 #include "cli_runs.hpp"
 
 #include <lensprof/lensprof.h>
 
 using namespace cli_runs;
 
-/* What fontconfig keeps for the life of the process is no leak of ours; LeakSanitizer asks here. */
+// What fontconfig keeps for the life of the process is no leak of ours; LeakSanitizer asks here.
 extern "C" const char *__lsan_default_suppressions();
 extern "C" const char *__lsan_default_suppressions() { return "leak:libfontconfig"; }
 
 namespace {
 
-constexpr double steep[3] = {-0.35, 0.12, -0.17}; /* M(1) = 0.6 */
+constexpr double steep[3] = {-0.35, 0.12, -0.17};  // M(1) = 0.6
 
 struct Setting {
     const char *camera;
@@ -20,7 +20,7 @@ struct Setting {
     bool has_covariance;
 };
 
-/* Variances of k1..k3, covariance of k1 and k2, behind one of a response of no modes. */
+// Variances of k1..k3, covariance of k1 and k2, behind one of a response of no modes.
 constexpr double variance[3] = {4e-4, 9e-4, 4e-4}, covariance12 = -3e-4;
 
 double light(const double *k, double r) {
@@ -34,7 +34,7 @@ double error_of_light(double r) {
                      + 2 * covariance12 * s * s * s);
 }
 
-/* Falloff number i of a setting is `steep` times 1 - 0.3 i. */
+// Falloff number i of a setting is `steep` times 1 - 0.3 i.
 void put(lensprof_store *store, const Setting &setting) {
     auto p = std::make_unique<lensprof_profile>();
     lensprof_profile_init(p.get());
@@ -81,8 +81,8 @@ void test_terminal(void **) {
     }
     assert_true(contains(line_with(text, "b  f/8"), "  0.600"));
     assert_false(contains(line_with(text, "b  f/8"), "+-"));
-    assert_true(contains(text.substr(text.find("a  f/2.8")), "-0.74\n")); /* log2 0.6 */
-    /* 72 columns from r = 0 at column 10: both curves are the same, the first one's letter shows. */
+    assert_true(contains(text.substr(text.find("a  f/2.8")), "-0.74\n"));  // log2 0.6
+    // 72 columns from r = 0 at column 10: both curves are the same, the first one's letter shows.
     assert_true(line_with(text, "       1 +").at(10) == 'a');
     assert_int_equal(line_with(text, "     0.6 +").size(), 10 + 72 + 1);
     for (char c : text) assert_true(c == '\n' || (c >= ' ' && c <= '~'));
@@ -113,9 +113,11 @@ void test_json(void **) {
     }
 }
 
-/* Curves are called by what differs among them; green stands for three channels where profiles are compared. */
+// Curves are called by what differs among them; green stands for three channels where profiles are compared.
 void test_labels_and_channels(void **) {
-    const std::string db = make_db({{"A", 28, 2.8, 3, false}, {"A", 50, 2.8, 1, false}, {"A", 50, 2.8, 1, false},
+    const std::string db = make_db({{"A", 28, 2.8, 3, false},
+                                    {"A", 50, 2.8, 1, false},
+                                    {"A", 50, 2.8, 1, false},
                                     {"B", 28, LENSPROF_UNKNOWN, 1, false}});
     const auto labels = [&](const Words &more) {
         const Json json = json_of(Words{"profile", "show", "--chart", "--json", "--db", db} + more);
@@ -132,7 +134,7 @@ void test_labels_and_channels(void **) {
     assert_string_equal(labels({"--camera", "A", "--focal", "28"}).c_str(), "red;green;blue;");
 }
 
-/* Without --chart several profiles are shown one after the other. */
+// Without --chart several profiles are shown one after the other.
 void test_several_without_chart(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 1, false}, {"A", 28, 4, 1, false}});
     const std::string text = must_exit(done, {"profile", "show", "--camera", "A", "--db", db});
@@ -142,7 +144,7 @@ void test_several_without_chart(void **) {
     assert_int_equal(json_of({"profile", "show", "2", "--json", "--db", db})["id"].get<int>(), 2);
 }
 
-/* A gain grid is no function of the radius: it is shown, and named below the chart. */
+// A gain grid is no function of the radius: it is shown, and named below the chart.
 void test_gain_grid(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 1, true}, {"A", 28, 4, 1, false}});
     lensprof_store *store = nullptr;
@@ -175,10 +177,10 @@ void test_gain_grid(void **) {
     assert_false(contains(must_exit(done, {"profile", "show", "1", "2", "--chart", "--db", db}), "without"));
     must_exit(done, chart + Words{"--chart-out", work("a.svg")});
     must_exit(done, {"profile", "show", "1", "2", "--chart-out", work("b.svg"), "--db", db});
-    assert_true(text_of(work("a.svg")).size() > text_of(work("b.svg")).size()); /* the note */
+    assert_true(text_of(work("a.svg")).size() > text_of(work("b.svg")).size());  // the note
 }
 
-/* Tags of an XML document: every one that opens closes, in order. */
+// Tags of an XML document: every one that opens closes, in order.
 void assert_well_formed(const std::string &xml) {
     assert_int_equal(xml.rfind("<?xml version=\"1.0\" encoding=\"UTF-8\"?>", 0), 0);
     std::vector<std::string> open;
@@ -199,7 +201,7 @@ void assert_well_formed(const std::string &xml) {
     assert_true(open.empty() && elements > 50);
 }
 
-/* Width and height of the drawing. */
+// Width and height of the drawing.
 std::pair<uint32_t, uint32_t> size_of_svg(const std::string &svg) {
     const auto found = find_pattern("viewBox=\"0 0 ([0-9]+) ([0-9]+)\"", svg);
     assert_int_equal(found.size(), 4);
@@ -210,7 +212,7 @@ std::pair<uint32_t, uint32_t> size_of_svg(const std::string &svg) {
 void test_svg(void **) {
     const std::string db = make_db({{"A & <B>", 28, 2.8, 1, true}, {"A & <B>", 28, 4, 3, false}});
     const Words words = {"profile", "show", "1", "2", "--db", db, "--chart-out"};
-    for (const char *name : {"a.svg", "b.SVG"}) { /* every run is a process of its own */
+    for (const char *name : {"a.svg", "b.SVG"}) {  // every run is a process of its own
         const Outcome outcome = run_child(words + Words{work(name)});
         assert_int_equal(outcome.code, done);
         assert_true(contains(outcome.out, work(name)));
@@ -221,16 +223,16 @@ void test_svg(void **) {
     assert_true(size_of_svg(svg).first > 650 && size_of_svg(svg).second > 450);
     for (const char *colour : {"rgb(0%,44.7%,69.8%)", "rgb(83.5%,36.9%,0%)"}) assert_true(contains(svg, colour));
     assert_true(contains(svg, "dasharray"));
-    assert_int_equal(files_in_folder(), 3); /* scene, mixed and work: nothing beside them */
+    assert_int_equal(files_in_folder(), 3);  // scene, mixed and work: nothing beside them
 }
 
-/* A pixel's red, green and blue; the drawing's point (x, y) is at pixel (2x, 2y). */
+// A pixel's red, green and blue; the drawing's point (x, y) is at pixel (2x, 2y).
 std::array<int, 3> pixel_at(const Picture &picture, double x, double y) {
     const uint8_t *p = picture.pixels.data() + size_t(2 * y) * picture.row_bytes + size_t(2 * x) * 3;
     return {p[0], p[1], p[2]};
 }
 
-/* The plot is 520 x 360 points and begins at (70, 64); M goes from 0.5 to 1. */
+// The plot is 520 x 360 points and begins at (70, 64); M goes from 0.5 to 1.
 void test_png(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 1, true}, {"A", 28, 4, 3, false}});
     const Words words = {"profile", "show", "1", "2", "--channel", "red", "--db", db, "--chart-out"};
@@ -247,7 +249,7 @@ void test_png(void **) {
         const auto curve = pixel_at(one, x, y);
         for (size_t c = 0; c < 3; c++) assert_true(std::abs(curve[c] - blue[c]) < 12);
         assert_true(pixel_at(one, x, 64 + 351) == white);
-        const double sigma = 360 * error_of_light(r) / 0.5; /* the band is light: 15 % of the colour */
+        const double sigma = 360 * error_of_light(r) / 0.5;  // the band is light: 15 % of the colour
         const auto within = pixel_at(one, x, y + 0.7 * sigma), beyond = pixel_at(one, x, y + 1.3 * sigma + 1);
         if (sigma > 5) assert_true(within[0] > 200 && within[0] < 225 && within[2] > 235 && beyond[0] > within[0]);
     }
@@ -282,24 +284,27 @@ void test_refused_files(void **) {
     assert_refused(failed, {"profile", "show", "1", "--chart-out", work("none/a.svg"), "--db", db}, {"none/a.svg"});
     fs::create_directories(work("folder.png"));
     assert_refused(failed, {"profile", "show", "1", "--chart-out", work("folder.png"), "--db", db}, {"folder.png"});
-    /* The database itself, by another name that looks like a picture's. */
+    // The database itself, by another name that looks like a picture's.
     fs::create_symlink(db, work("link.svg"));
     assert_refused(usage, {"profile", "show", "1", "--chart-out", work("link.svg"), "--db", db}, {"link.svg"});
     fs::rename(db, work("db.png"));
     assert_refused(usage, {"profile", "show", "1", "--chart-out", work("db.png"), "--db", work("db.png")}, {"db.png"});
 }
 
-/* A folder that may not be written, and a disk that is full. */
+// A folder that may not be written, and a disk that is full.
 void test_unwritable(void **) {
     const std::string db = make_db({{"A", 28, 2.8, 1, true}});
     const Words words = {"profile", "show", "1", "--chart-out", work("a.png"), "--db", db};
     const Disk before = disk();
-    assert_refusal(words, run_child(words, [] {
-                       signal(SIGXFSZ, SIG_IGN);
-                       const rlimit limit = {4096, 4096};
-                       setrlimit(RLIMIT_FSIZE, &limit);
-                   }), failed, {work("a.png")}, before);
-    if (geteuid() != 0) return; /* only root can become somebody else */
+    assert_refusal(words,
+                   run_child(words,
+                             [] {
+                                 signal(SIGXFSZ, SIG_IGN);
+                                 const rlimit limit = {4096, 4096};
+                                 setrlimit(RLIMIT_FSIZE, &limit);
+                             }),
+                   failed, {work("a.png")}, before);
+    if (geteuid() != 0) return;  // only root can become somebody else
     const mode_t mode = 0755;
     chmod(work("").c_str(), mode);
     const Outcome outcome = run_child(words, [] {

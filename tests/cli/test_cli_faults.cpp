@@ -1,16 +1,15 @@
-/* Bad input: the exit code, a message that names the file, nothing left behind, and the database as it was. */
+// Bad input: the exit code, a message that names the file, nothing left behind, and the database as it was.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
 
 namespace {
 
-/* A database with one profile, made once and copied: what a failing command must not change. */
+// A database with one profile, made once and copied: what a failing command must not change.
 Bytes database;
 
 int make_all(void **state) {
-    if (make_scene(state) != 0)
-        return -1;
+    if (make_scene(state) != 0) return -1;
     fs::create_directories(work(""));
     must_exit(done, Words{"build", scene("pano.pto"), "--db", work("p.db")} + quick);
     database = load(work("p.db"));
@@ -23,11 +22,11 @@ int prepare(void **state) {
     return 0;
 }
 
-/* A build with everything that could leave something behind. */
+// A build with everything that could leave something behind.
 Words build_of(const std::string &pto) {
-    return Words{"build", pto, "--db", work("p.db"), "--camera", "X", "--points-out",
-                 work("left.txt"), "--pto-out", work("left.pto")} +
-           quick;
+    return Words{"build",          pto,         "--db",          work("p.db"), "--camera", "X", "--points-out",
+                 work("left.txt"), "--pto-out", work("left.pto")}
+           + quick;
 }
 
 void cut(const std::string &path, size_t bytes) {
@@ -37,7 +36,7 @@ void cut(const std::string &path, size_t bytes) {
     save(path, all);
 }
 
-/* Pictures. */
+// Pictures.
 
 void test_missing_picture(void **) {
     for (const char *name : {"img000.png", "img002.tif", "img005.jpg"}) {
@@ -94,7 +93,7 @@ void test_not_finite_picture(void **) {
         assert_refused(unreadable, build_of(work("float/pano.pto")), {name, "12, 7"});
     }
     write_picture(name, good, options);
-    must_exit(done, build_of(work("float/pano.pto"))); /* it was the number */
+    must_exit(done, build_of(work("float/pano.pto")));  // it was the number
 }
 
 void test_no_usable_sample(void **) {
@@ -110,7 +109,7 @@ void test_no_usable_sample(void **) {
     }
 }
 
-/* Projects. */
+// Projects.
 
 void test_pictures_apart(void **) {
     const std::string pto = copy_of("scene") + "/pano.pto";
@@ -174,7 +173,7 @@ void test_not_a_project(void **) {
     }
 }
 
-/* Point files. */
+// Point files.
 
 void test_bad_points(void **) {
     const std::string good = "0 1 10 10 20 20 .1 .2 .3 .4 .5 .6 0 .5 .5 0\n", path = work("points.txt");
@@ -210,7 +209,7 @@ void test_points_of_other_images(void **) {
     assert_refused(unreadable, build_of(scene("pano.pto")) + Words{"--points", path}, {path, "point 2", "img001.png"});
 }
 
-/* Where no fit can be made at all, --json still prints the object with the reason. */
+// Where no fit can be made at all, --json still prints the object with the reason.
 void test_reason_in_json(void **) {
     save_text(work("one.pto"), "i w320 h240 f0 v50 n\"one.png\"\nv Ra0\n");
     const Outcome outcome = run_words({"build", work("one.pto"), "--no-store", "--json"});
@@ -221,7 +220,7 @@ void test_reason_in_json(void **) {
     assert_int_equal(json["response"]["values"][0].size(), 1024);
 }
 
-/* Outputs that would take the place of an input, the database or each other. */
+// Outputs that would take the place of an input, the database or each other.
 void test_outputs_that_meet(void **) {
     const std::string copy = copy_of("scene"), pto = copy + "/pano.pto", db = work("p.db");
     const Words build = Words{"build", pto, "--db", db, "--camera", "X"} + quick;
@@ -231,7 +230,7 @@ void test_outputs_that_meet(void **) {
     assert_refused(usage, build + Words{"--points-out", work("same"), "--pto-out", work("same")}, {"same"});
 }
 
-/* Bytes that are not UTF-8, in names and options: stored as question marks, printed as U+FFFD. */
+// Bytes that are not UTF-8, in names and options: stored as question marks, printed as U+FFFD.
 void test_text_that_is_not_utf8(void **) {
     const Json json = json_of({"build", scene("pano.pto"), "--db", work("p.db"), "--camera", "X\xe9", "--json",
                                "--pairs", "600", "--modes", "3"});
@@ -240,7 +239,7 @@ void test_text_that_is_not_utf8(void **) {
     assert_true(contains(list.dump(), "X?"));
 }
 
-/* A project that was not written by build holds nothing to undo. */
+// A project that was not written by build holds nothing to undo.
 void test_apply_without_a_result(void **) {
     assert_refused(usage, {"apply", "--pto", scene("pano.pto"), "-o", work("corrected")}, {"pano.pto", "--pto-out"});
     assert_refused(usage,
@@ -249,7 +248,7 @@ void test_apply_without_a_result(void **) {
                    {"--pto"});
 }
 
-/* Truth to compare with. */
+// Truth to compare with.
 
 void test_bad_truth(void **) {
     const Words words = build_of(scene("pano.pto")) + Words{"--compare", work("truth.json")};
@@ -259,7 +258,7 @@ void test_bad_truth(void **) {
         save_text(work("truth.json"), text);
         assert_refused(unreadable, words, {work("truth.json")});
     }
-    /* JSON, but of something else. In a child, because a crash is one of the answers; nothing may be stored by then. */
+    // JSON, but of something else. In a child, because a crash is one of the answers; nothing may be stored by then.
     for (const char *text : {"[]", "3", "{\"images\":[]}", "{\"images\":[{},{},{},{}]}",
                              "{\"images\":[{\"ev\":0},{\"ev\":0},{\"ev\":0},{\"ev\":0}]}",
                              "{\"images\":[{\"ev\":\"x\"},{\"ev\":0},{\"ev\":0},{\"ev\":0}],\"vignetting\":{\"k\":[[0,"
@@ -271,7 +270,7 @@ void test_bad_truth(void **) {
     }
 }
 
-/* Databases. */
+// Databases.
 
 void test_corrupt_database(void **) {
     fs::create_directory(work("folder.db"));
@@ -292,7 +291,7 @@ void test_corrupt_database(void **) {
     }
 }
 
-/* What else was asked for is not written either. */
+// What else was asked for is not written either.
 void test_corrupt_database_leaves_no_output(void **) {
     save_text(work("p.db"), std::string(300, 'x') + "\n");
     assert_refused(store_failed, build_of(scene("pano.pto")), {work("p.db")});
@@ -303,7 +302,8 @@ void test_no_database(void **) {
     assert_refused(not_found, Words{"query", "--camera", "x"} + db, {work("none.db")});
     assert_refused(not_found, Words{"profile", "list"} + db, {work("none.db")});
     assert_refused(not_found, Words{"profile", "remove", "1"} + db, {work("none.db")});
-    assert_refused(usage, {"apply", "--from-db", "-o", work(""), scene("img000.png"), "--db", ""}, {"--db", "names no file"});
+    assert_refused(usage, {"apply", "--from-db", "-o", work(""), scene("img000.png"), "--db", ""},
+                   {"--db", "names no file"});
     assert_refused(not_found, Words{"apply", "--from-db", "-o", work(""), scene("img000.png")} + db, {work("none.db")});
 }
 
@@ -319,7 +319,7 @@ void test_no_such_profile(void **) {
                    {work("bare.png")});
 }
 
-/* Outputs. */
+// Outputs.
 
 void test_output_is_a_file(void **) {
     save_text(work("file"), "mine");
@@ -341,16 +341,16 @@ void test_output_would_replace_input(void **) {
     for (const std::string &out : {copy, copy + "/", copy + "/../copy", work("link")})
         assert_refused(usage, apply + Words{out, copy + "/img000.png"}, {copy + "/img000.png"});
     assert_refused(usage, {"apply", "--pto", copy + "/pano.pto", "-o", copy}, {copy + "/img000.png"});
-    fs::remove(work("link")); /* the listing would follow it */
+    fs::remove(work("link"));  // the listing would follow it
 }
 
 void test_contact_sheet_would_replace_input(void **) {
     const std::string copy = copy_of("scene"), input = copy + "/img001.png";
-    const Words words = {"apply", "--profile", "1", "--db", work("p.db"), "-o",
+    const Words words = {"apply",  "--profile",       "1",   "--db", work("p.db"), "-o",
                          work(""), "--contact-sheet", input, input};
     const Disk before = disk();
     const Outcome outcome = run_words(words);
-    assert_true(load(input) == before.at("work/copy/img001.png")); /* the user's picture */
+    assert_true(load(input) == before.at("work/copy/img001.png"));  // the user's picture
     assert_refusal(words, outcome, usage, {input}, before);
 }
 
@@ -367,7 +367,7 @@ void test_picture_of_no_project(void **) {
                    {mixed("img000.png"), scene("pano.pto")});
 }
 
-/* A picture that fails later: those before it are complete, nothing else is there. */
+// A picture that fails later: those before it are complete, nothing else is there.
 void test_later_picture_fails(void **) {
     const std::string copy = copy_of("scene");
     cut(copy + "/img002.png", 50000);
@@ -379,7 +379,7 @@ void test_later_picture_fails(void **) {
         assert_int_equal(read_picture(entry.path().string()).width, 320);
 }
 
-/* Options. */
+// Options.
 
 void test_bad_options(void **) {
     const std::string pto = scene("pano.pto"), png = scene("img000.png");
@@ -447,8 +447,7 @@ void test_bad_options(void **) {
         {"simulate", "-o", work("s"), "--seed", "x"},
         {"simulate", "-o", work("s"), "--overlap", "1"},
     };
-    for (const Words &words : cases)
-        assert_refused(usage, words, {});
+    for (const Words &words : cases) assert_refused(usage, words, {});
 }
 
 void test_options_that_are_no_numbers(void **) {

@@ -1,10 +1,10 @@
-/* `lensprof flat` in process: cards of a known lens as picture files, what is printed and stored, what is refused. */
+// `lensprof flat` in process: cards of a known lens as picture files, what is printed and stored, what is refused.
 #include "cli_runs.hpp"
 
 #include <lensprof/lensprof.h>
 
-#include "cli/library.hpp"
-#include "cli/picture.hpp"
+#include "cli/pictures/picture.hpp"
+#include "cli/program/library.hpp"
 
 namespace {
 
@@ -16,8 +16,8 @@ const lensprof_vignetting lens{{-0.42, 0.10, -0.05}, {0.03, -0.02}};
 struct Card {
     double ev = 0.0, turn_deg = 0.0, slant = 0.08, texture = 0.0, gamma = 1.0;
     uint32_t layout = LENSPROF_LAYOUT_RGB;
-    double left = 0.0, right = 1.0; /* part of the width that is the card */
-    bool told = false;              /* EXIF tells exposure and camera */
+    double left = 0.0, right = 1.0;  // part of the width that is the card
+    bool told = false;               // EXIF tells exposure and camera
 };
 
 std::string shoot(const std::string &name, const Card &card) {
@@ -31,9 +31,10 @@ std::string shoot(const std::string &name, const Card &card) {
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {
             double dx = (x - 0.5 * (width - 1)) / half, dy = (y - 0.5 * (height - 1)) / half;
-            double m = lensprof_vignetting_eval(&lens, lensprof_vignetting_r2(&lens, width, height, x, y, nullptr),
-                                                nullptr);
-            double light = 0.4 * std::exp2(card.ev) * m * std::exp(card.slant * (std::cos(turn) * dx - std::sin(turn) * dy));
+            double m =
+                lensprof_vignetting_eval(&lens, lensprof_vignetting_r2(&lens, width, height, x, y, nullptr), nullptr);
+            double light =
+                0.4 * std::exp2(card.ev) * m * std::exp(card.slant * (std::cos(turn) * dx - std::sin(turn) * dy));
             light *= 1.0 + card.texture * std::sin(0.35 * x) * std::sin(0.3 * y);
             if (x < card.left * width || x >= card.right * width) light *= 0.1;
             for (uint32_t c = 0; c < samples; c++) {
@@ -152,7 +153,8 @@ void test_grey_pictures_and_the_grid(void **) {
     Card card;
     card.layout = LENSPROF_LAYOUT_GREY;
     const std::string path = shoot("grey.png", card);
-    const Json json = json_of(flat({path, "--linear", "--no-store", "--json", "--grid", "always", "--center", "fixed"}));
+    const Json json =
+        json_of(flat({path, "--linear", "--no-store", "--json", "--grid", "always", "--center", "fixed"}));
     assert_int_equal(json["vignetting"]["k"].size(), 1);
     assert_true(json["gain_grid"]["columns"].get<int>() > 4);
     assert_int_equal(json["gain_grid"]["attenuation"].size(), 1);

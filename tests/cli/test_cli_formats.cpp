@@ -1,5 +1,5 @@
-/* `lensprof profile export` and `import` of other programs' files: written by name, read by content. */
-#include "cli/opcode_tag.hpp"
+// `lensprof profile export` and `import` of other programs' files: written by name, read by content.
+#include "cli/pictures/opcode_tag.hpp"
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
@@ -7,18 +7,19 @@ using namespace picture_files;
 
 namespace {
 
-/* A database of one profile whose every number is known. */
+// A database of one profile whose every number is known.
 void make_db() {
-    save_text(work("one.json"),
-              R"({"schema":1,"key":{"camera_maker":"Maker","camera_model":"Model 1","lens":"Lens 35mm","crop_factor":1.5,)"
-              R"("focal_mm":35,"aperture":2,"distance_m":"infinity","processing":"jpeg"},"vignetting":{"k":[[-0.4,0.1,-0.1]],)"
-              R"("center":[0.02,-0.01]},"response":{"kind":"gamma","gamma":2.0}})");
+    save_text(
+        work("one.json"),
+        R"({"schema":1,"key":{"camera_maker":"Maker","camera_model":"Model 1","lens":"Lens 35mm","crop_factor":1.5,)"
+        R"("focal_mm":35,"aperture":2,"distance_m":"infinity","processing":"jpeg"},"vignetting":{"k":[[-0.4,0.1,-0.1]],)"
+        R"("center":[0.02,-0.01]},"response":{"kind":"gamma","gamma":2.0}})");
     must_exit(done, {"profile", "import", work("one.json"), "--db", work("p.db")});
 }
 
 Json show(const std::string &db) { return json_of({"profile", "show", "1", "--db", work(db), "--json"}); }
 
-/* Light in the corner, and the grey value at a fifth of full irradiance. */
+// Light in the corner, and the grey value at a fifth of full irradiance.
 void assert_same_curves(const Json &json, bool falloff, bool response, double tolerance = 2e-3) {
     double m = 1.0;
     for (const Json &k : json["vignetting"]["k"][0]) m += k.get<double>();
@@ -31,7 +32,7 @@ Words export_to(const std::string &file, const Words &more = {}) {
     return Words{"profile", "export", "1", "--db", work("p.db"), "-o", file} + more;
 }
 
-/* What names a file's format, then what is read back from it. */
+// What names a file's format, then what is read back from it.
 void test_round_trips(void **) {
     const Words frame = {"--frame", "600x400"}, camera = {"--camera", "Other"};
     const struct {
@@ -63,23 +64,34 @@ void test_round_trips(void **) {
     }
 }
 
-/* A response and a falloff of two files are one profile. */
+// A response and a falloff of two files are one profile.
 void test_two_files_one_profile(void **) {
     make_db();
     must_exit(done, export_to(work("pcalib.txt")));
     must_exit(done, export_to(work("vignette.png"), {"--frame", "640x480"}));
-    must_exit(done, {"profile", "import", work("pcalib.txt"), work("vignette.png"), "--camera", "Odometer", "--lens", "Wide",
-                     "--focal", "8", "--db", work("q.db")});
+    must_exit(done, {"profile", "import", work("pcalib.txt"), work("vignette.png"), "--camera", "Odometer", "--lens",
+                     "Wide", "--focal", "8", "--db", work("q.db")});
     const Json json = show("q.db");
     assert_same_curves(json, true, true);
     assert_string_equal(json["key"]["camera_model"].get<std::string>().c_str(), "Odometer");
     assert_string_equal(json["provenance"]["source"].get<std::string>().c_str(), "pcalib.txt; vignette.png");
-    const Words again = {"profile", "import", work("pcalib.txt"), work("vignette.png"), "--camera", "Odometer", "--lens", "Wide",
-                         "--focal", "8", "--db", work("q.db"), "--json"};
+    const Words again = {"profile",
+                         "import",
+                         work("pcalib.txt"),
+                         work("vignette.png"),
+                         "--camera",
+                         "Odometer",
+                         "--lens",
+                         "Wide",
+                         "--focal",
+                         "8",
+                         "--db",
+                         work("q.db"),
+                         "--json"};
     assert_int_equal(json_of(again)["known"], 1);
 }
 
-/* Opcodes go into a picture that is there; all else in it stays. */
+// Opcodes go into a picture that is there; all else in it stays.
 void test_opcodes(void **) {
     make_db();
     const Picture picture = make_smooth(300, 200, LENSPROF_LAYOUT_RGB);
@@ -94,7 +106,7 @@ void test_opcodes(void **) {
     }
 }
 
-/* What a picture's lists do beside is not lost, and no falloff corrected twice. */
+// What a picture's lists do beside is not lost, and no falloff corrected twice.
 void test_opcodes_of_others_stay(void **) {
     make_db();
     const auto list_of = [](uint8_t id) {
@@ -110,14 +122,15 @@ void test_opcodes_of_others_stay(void **) {
     assert_refused(usage, export_to(work("gain.tif"), {"--format", "opcodes"}), {"gain.tif", "already"});
 }
 
-/* A gain that was taken for an attenuation is doubted, and not looked up. */
+// A gain that was taken for an attenuation is doubted, and not looked up.
 void test_wrong_sense_is_doubted(void **) {
     make_db();
     must_exit(done, export_to(work("gain.tif"), {"--frame", "60x40"}));
-    const Json json = json_of({"profile", "import", work("gain.tif"), "--sense", "attenuation", "--camera", "C", "--lens",
-                               "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db"), "--json"});
+    const Json json = json_of({"profile", "import", work("gain.tif"), "--sense", "attenuation", "--camera", "C",
+                               "--lens", "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db"), "--json"});
     assert_true(contains(json["flagged"][0]["doubt"].get<std::string>(), "is it a gain?"));
-    assert_refused(not_found, {"query", "--lens", "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db")}, {"doubtful"});
+    assert_refused(not_found, {"query", "--lens", "Wrong", "--focal", "9", "--aperture", "2", "--db", work("q.db")},
+                   {"doubtful"});
 }
 
 void test_several_profiles(void **) {
@@ -126,10 +139,11 @@ void test_several_profiles(void **) {
     must_exit(done, {"profile", "export", "--all", "--db", work("p.db"), "-o", work("all.json")});
     must_exit(done, {"profile", "export", "--lens", "Lens 35mm", "--db", work("p.db"), "-o", work("lens.xml")});
     assert_int_equal(json_of({"profile", "import", work("all.json"), "--db", work("q.db"), "--json"})["stored"], 1);
-    assert_refused(not_found, {"profile", "export", "--lens", "None", "--db", work("p.db"), "-o", work("a.json")}, {"None"});
+    assert_refused(not_found, {"profile", "export", "--lens", "None", "--db", work("p.db"), "-o", work("a.json")},
+                   {"None"});
 }
 
-/* Nothing is stored or written by what is refused. */
+// Nothing is stored or written by what is refused.
 void test_refused(void **) {
     make_db();
     must_exit(done, export_to(work("pcalib.txt")));
@@ -137,7 +151,8 @@ void test_refused(void **) {
     const Words to = {"--db", work("p.db")};
     const auto import = [&](const Words &words) { return Words{"profile", "import"} + words + to; };
     assert_refused(usage, import({work("pcalib.txt")}), {"pcalib.txt", "--camera"});
-    assert_refused(usage, import({work("pcalib.txt"), work("curve.csv"), "--camera", "C"}), {"curve.csv", "pcalib.txt"});
+    assert_refused(usage, import({work("pcalib.txt"), work("curve.csv"), "--camera", "C"}),
+                   {"curve.csv", "pcalib.txt"});
     assert_refused(usage, import({work("one.json"), "--camera", "C"}), {"leave --camera"});
     save_text(work("notes"), "nothing of any format\n");
     assert_refused(usage, import({work("notes"), "--camera", "C"}), {"notes", "--format"});
@@ -167,8 +182,12 @@ void test_refused(void **) {
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_round_trips), CLI_TEST(test_two_files_one_profile), CLI_TEST(test_opcodes),
-                                CLI_TEST(test_opcodes_of_others_stay), CLI_TEST(test_wrong_sense_is_doubted),
-                                CLI_TEST(test_several_profiles), CLI_TEST(test_refused)};
+    const CMUnitTest tests[] = {CLI_TEST(test_round_trips),
+                                CLI_TEST(test_two_files_one_profile),
+                                CLI_TEST(test_opcodes),
+                                CLI_TEST(test_opcodes_of_others_stay),
+                                CLI_TEST(test_wrong_sense_is_doubted),
+                                CLI_TEST(test_several_profiles),
+                                CLI_TEST(test_refused)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -1,4 +1,4 @@
-/* `lensprof profile import`, and `lensprof query` for settings that are not stored. */
+// `lensprof profile import`, and `lensprof query` for settings that are not stored.
 #include <cmath>
 
 #include "cli_runs.hpp"
@@ -11,9 +11,14 @@ namespace {
 constexpr const char *kLens = "24-70mm f/2.8";
 
 std::string make_file() {
-    save_text(work("lenses.xml"),
-              lensfun_text(kLens, {{24, 2.8, -0.6}, {24, 4, -0.35}, {24, 8, -0.15}, {70, 2.8, -0.4}, {70, 4, -0.25},
-                                   {70, 8, -0.1}, {50, 2.8, -0.3}, {50, 4, -1.9, 0.1}}));
+    save_text(work("lenses.xml"), lensfun_text(kLens, {{24, 2.8, -0.6},
+                                                       {24, 4, -0.35},
+                                                       {24, 8, -0.15},
+                                                       {70, 2.8, -0.4},
+                                                       {70, 4, -0.25},
+                                                       {70, 8, -0.1},
+                                                       {50, 2.8, -0.3},
+                                                       {50, 4, -1.9, 0.1}}));
     return work("lenses.xml");
 }
 
@@ -48,12 +53,13 @@ void test_query_between(void **) {
     assert_refused(not_found, query + Words{"--focal", "35", "--aperture", "32"}, {"aperture is beyond"});
     assert_refused(not_found, query + Words{"--focal", "35", "--aperture", "3.4", "--crop-factor", "1"},
                    {"smaller sensors only"});
-    assert_refused(not_found, {"query", "--db", work("l.db"), "--lens", "Nothing 50mm", "--focal", "50", "--aperture", "2"},
+    assert_refused(not_found,
+                   {"query", "--db", work("l.db"), "--lens", "Nothing 50mm", "--focal", "50", "--aperture", "2"},
                    {"no profile of a lens of this name"});
     assert_refused(usage, query + Words{"--unknown-distance", "nearest"}, {"--unknown-distance"});
 }
 
-/* Samples that were rounded on the way; several profiles of one key; none is stored twice. */
+// Samples that were rounded on the way; several profiles of one key; none is stored twice.
 void test_json_again(void **) {
     Json all = Json::array();
     for (double k1 : {-0.1, -0.2}) {
@@ -69,21 +75,28 @@ void test_json_again(void **) {
     assert_int_equal(again["stored"], 0);
     assert_int_equal(again["known"], 2);
     const Json shown = json_of({"profile", "show", "1", "--json", "--db", work("l.db")});
-    assert_true(std::fabs(shown["response"]["values"][0][511].get<double>() - std::pow(511 / 1023.0, 1.0 / 2.2)) < 1e-12);
+    assert_true(std::fabs(shown["response"]["values"][0][511].get<double>() - std::pow(511 / 1023.0, 1.0 / 2.2))
+                < 1e-12);
 }
 
-/* Profiles of one unit say so; a full setting is never answered by another one's profile; formats and ids in words. */
+// Profiles of one unit say so; a full setting is never answered by another one's profile; formats and ids in words.
 void test_units_and_settings(void **) {
     Json all = Json::array();
     for (double aperture : {2.0, 4.0})
-        all.push_back({{"key", {{"lens", "one"}, {"unit", "SN1"}, {"focal_mm", 50}, {"aperture", aperture}, {"processing", "raw"},
-                                {"crop_factor", 1.0}}},
+        all.push_back({{"key",
+                        {{"lens", "one"},
+                         {"unit", "SN1"},
+                         {"focal_mm", 50},
+                         {"aperture", aperture},
+                         {"processing", "raw"},
+                         {"crop_factor", 1.0}}},
                        {"vignetting", {{"k", {{-0.4, 0, 0}, {-0.3, 0, 0}, {-0.2, 0, 0}}}}}});
     save_text(work("unit.json"), Json{{"schema", 1}, {"profiles", all}}.dump());
     must_exit(done, import_words() + Words{work("unit.json")});
     const Words query = {"query", "--db", work("l.db"), "--lens", "one", "--focal", "50"};
     assert_true(contains(must_exit(done, query + Words{"--aperture", "2"}), "unit      SN1"));
-    assert_true(contains(must_exit(done, query + Words{"--aperture", "2.8", "--unit", "sn1"}), "predicted from 2 profiles"));
+    assert_true(
+        contains(must_exit(done, query + Words{"--aperture", "2.8", "--unit", "sn1"}), "predicted from 2 profiles"));
     assert_refused(not_found, query + Words{"--aperture", "2.8"}, {"single units"});
     assert_true(contains(must_exit(done, query), "2 profiles match"));
     assert_refused(usage, {"profile", "show", "abc", "--db", work("l.db")}, {"abc is no number of a profile"});
@@ -94,7 +107,7 @@ void test_units_and_settings(void **) {
     must_exit(done, {"profile", "export", "2", "-o", work("one.csv"), "--grid", "2x1024", "--db", work("l.db")});
 }
 
-/* All files or none. */
+// All files or none.
 void test_import_refuses(void **) {
     const std::string good = make_file();
     save_text(work("cut.xml"), lensfun_text(kLens, {{24, 2.8, -0.6}}).substr(0, 150));
@@ -104,7 +117,8 @@ void test_import_refuses(void **) {
     assert_refused(unreadable, import_words() + Words{work("none.xml")}, {work("none.xml")});
     assert_refused(unreadable, import_words() + Words{work("")}, {"is a folder"});
     assert_refused(usage, {"profile", "import"}, {"FILES"});
-    assert_refused(store_failed, {"profile", "import", good, "--db", work("none/l.db")}, {"there is no folder", "make it first"});
+    assert_refused(store_failed, {"profile", "import", good, "--db", work("none/l.db")},
+                   {"there is no folder", "make it first"});
     assert_refused(store_failed, {"profile", "merge", work("l.db"), "--db", work("none/l.db")}, {"there is no folder"});
 }
 
@@ -112,7 +126,6 @@ void test_import_refuses(void **) {
 
 int main() {
     const CMUnitTest tests[] = {CLI_TEST(test_import), CLI_TEST(test_query_between), CLI_TEST(test_json_again),
-                                CLI_TEST(test_units_and_settings),
-                                CLI_TEST(test_import_refuses)};
+                                CLI_TEST(test_units_and_settings), CLI_TEST(test_import_refuses)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

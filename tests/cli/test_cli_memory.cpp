@@ -1,5 +1,5 @@
-/* Memory of the program while it corrects pictures: its peak as a process. A child begins with the peak of its
- * parent, so that this process must stay small: pictures are made by children. */
+// Memory of the program while it corrects pictures: its peak as a process. A child begins with the peak of its
+// parent, so that this process must stay small: pictures are made by children.
 #include "batch_runs.hpp"
 
 #include <fcntl.h>
@@ -14,13 +14,12 @@ constexpr bool keeps_freed_memory = true;
 constexpr bool keeps_freed_memory = false;
 #endif
 
-/* Peak memory of the program as a process, bytes. */
+// Peak memory of the program as a process, bytes.
 long peak_of(const Words &words) {
     const pid_t child = fork();
     if (child == 0) {
         std::vector<char *> arguments = {const_cast<char *>(LENSPROF_PROGRAM)};
-        for (const std::string &word : words)
-            arguments.push_back(const_cast<char *>(word.c_str()));
+        for (const std::string &word : words) arguments.push_back(const_cast<char *>(word.c_str()));
         arguments.push_back(nullptr);
         dup2(open("/dev/null", O_WRONLY), 1);
         execv(LENSPROF_PROGRAM, arguments.data());
@@ -34,7 +33,7 @@ long peak_of(const Words &words) {
     return used.ru_maxrss * 1024;
 }
 
-/* Rows that are alike compress well, which keeps the test short. */
+// Rows that are alike compress well, which keeps the test short.
 Picture make_tall(uint32_t height) {
     Picture picture = make_smooth(600, 16, LENSPROF_LAYOUT_RGB);
     picture.pixels.resize(picture.row_bytes * height);
@@ -44,8 +43,8 @@ Picture make_tall(uint32_t height) {
     return picture;
 }
 
-/* A file that is `height` rows high: its own process, so that this one's memory, which a child begins with, stays
- * small. */
+// A file that is `height` rows high: its own process, so that this one's memory, which a child begins with, stays
+// small.
 std::string make_tall_file(const std::string &kind, uint32_t height) {
     const std::string path = work(kind + std::to_string(height) + "." + kind.substr(kind.size() - 3));
     const pid_t child = fork();
@@ -66,10 +65,9 @@ std::string make_tall_file(const std::string &kind, uint32_t height) {
     return path;
 }
 
-/* The tall pictures have 12 MB more of pixels, and as a JPEG 25 MB more of coefficients. */
+// The tall pictures have 12 MB more of pixels, and as a JPEG 25 MB more of coefficients.
 void test_memory_does_not_grow_with_height(void **) {
-    if (keeps_freed_memory)
-        skip();
+    if (keeps_freed_memory) skip();
     const uint32_t low = 1000, high = 8000;
     database();
     for (const std::string kind : {"rows.png", "strips.tif", "stored.tif", "tiles.tif", "baseline.jpg"}) {
@@ -85,10 +83,9 @@ void test_memory_does_not_grow_with_height(void **) {
     }
 }
 
-/* A picture on every thread. */
+// A picture on every thread.
 void test_memory_does_not_grow_with_pictures(void **) {
-    if (keeps_freed_memory)
-        skip();
+    if (keeps_freed_memory) skip();
     database();
     const std::string file = make_tall_file("strips.tif", 1500);
     Words files;
@@ -98,8 +95,7 @@ void test_memory_does_not_grow_with_pictures(void **) {
     }
     const long few = peak_of(corrected_into("out", {"--threads", "2", files[0], files[1]})),
                many = peak_of(corrected_into("out", Words{"--threads", "2"} + files));
-    if (many - few > 6 << 20)
-        fail_msg("%ld KiB for two pictures, %ld KiB for 16", few / 1024, many / 1024);
+    if (many - few > 6 << 20) fail_msg("%ld KiB for two pictures, %ld KiB for 16", few / 1024, many / 1024);
 }
 
 }  // namespace

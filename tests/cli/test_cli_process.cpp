@@ -1,4 +1,4 @@
-/* The program and the system around it: another user's files, full disks, Ctrl-C, closed outputs. */
+// The program and the system around it: another user's files, full disks, Ctrl-C, closed outputs.
 #include "cli_runs.hpp"
 
 #include <fcntl.h>
@@ -10,14 +10,13 @@ namespace {
 
 Words build_quick(const Words &more) { return Words{"build", scene("pano.pto")} + quick + more; }
 
-/* Read-only files: root may write everywhere, so that a child becomes nobody. */
+// Read-only files: root may write everywhere, so that a child becomes nobody.
 
 void become_nobody() {
-    if (getuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0))
-        _exit(254);
+    if (getuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(254);
 }
 
-/* A folder with a database, nothing of which may be written, and one that anybody may write. */
+// A folder with a database, nothing of which may be written, and one that anybody may write.
 void make_read_only() {
     fs::permissions(folder, fs::perms(0755));
     fs::create_directories(work("closed"));
@@ -37,14 +36,14 @@ void test_read_only_database(void **) {
         print_message("skipped: this root may not become another user\n");
         skip();
     }
-    assert_int_equal(outcome.code, done); /* reading is allowed */
+    assert_int_equal(outcome.code, done);  // reading is allowed
     for (const std::string &db : {work("closed/p.db"), work("closed/new.db")}) {
         const Words words = build_quick(outputs + Words{"--db", db});
         assert_refusal(words, run_child(words, become_nobody), store_failed, {db}, before);
     }
     const Words remove = {"profile", "remove", "1", "--db", work("closed/p.db")};
     assert_refusal(remove, run_child(remove, become_nobody), store_failed, {work("closed/p.db")}, before);
-    const Words apply = {"apply", "--profile", "1", "--db", work("closed/p.db"), "-o",
+    const Words apply = {"apply",        "--profile",        "1", "--db", work("closed/p.db"), "-o",
                          work("closed"), scene("img000.png")};
     assert_refusal(apply, run_child(apply, become_nobody), failed, {work("closed/img000.png")}, before);
     const Words pto = build_quick({"--no-store", "--pto-out", work("closed/left.pto")});
@@ -58,11 +57,10 @@ void test_unreadable_inputs(void **) {
     Disk before = disk();
     const Words build = Words{"build", copy + "/pano.pto", "--no-store"} + quick;
     Outcome outcome = run_child(build, become_nobody);
-    if (outcome.code == 254)
-        skip();
+    if (outcome.code == 254) skip();
     assert_refusal(build, outcome, unreadable, {copy + "/img001.png"}, before);
     fs::permissions(copy + "/pano.pto", fs::perms(0));
-    before = disk(); /* not as root: what cannot be read is empty here */
+    before = disk();  // not as root: what cannot be read is empty here
     assert_refusal(build, run_child(build, become_nobody), unreadable, {copy + "/pano.pto"}, before);
     fs::permissions(copy + "/pano.pto", fs::perms(0644));
     fs::permissions(copy + "/img001.png", fs::perms(0644));
@@ -72,21 +70,20 @@ void test_unreadable_inputs(void **) {
     assert_refusal(query, run_child(query, become_nobody), store_failed, {work("closed/p.db")}, before);
 }
 
-/* Teardown: who is not root could not empty the folder. */
+// Teardown: who is not root could not empty the folder.
 int open_again(void **) {
     std::error_code none;
     fs::permissions(work("closed"), fs::perms(0755), none);
     return 0;
 }
 
-/* A full disk: no file may grow beyond a limit. */
+// A full disk: no file may grow beyond a limit.
 
 std::function<void()> with_limit(rlim_t bytes) {
     return [bytes] {
         signal(SIGXFSZ, SIG_IGN);
         const rlimit limit = {bytes, bytes};
-        if (setrlimit(RLIMIT_FSIZE, &limit) != 0)
-            _exit(254);
+        if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(254);
     };
 }
 
@@ -102,12 +99,12 @@ void test_full_disk(void **) {
     for (rlim_t bytes : {0, 512, 8192, 20000})
         assert_refused_when_full(bytes, build_quick({"--db", work("p.db")}), store_failed, work("p.db"));
     assert_refused_when_full(512, {"profile", "remove", "1", "--db", work("p.db")}, store_failed, work("p.db"));
-    /* The project is small enough, the database is not: neither appears. */
+    // The project is small enough, the database is not: neither appears.
     assert_refused_when_full(20000, build_quick({"--db", work("p.db"), "--pto-out", work("left.pto")}), store_failed,
                              work("p.db"));
     assert_refused_when_full(20000, build_quick({"--no-store", "--points-out", work("left.txt")}), failed,
                              work("left.txt"));
-    /* Enough for the index of the database's log, 32 KiB. */
+    // Enough for the index of the database's log, 32 KiB.
     assert_refused_when_full(40000, build_quick({"--db", work("p.db"), "--points-out", work("left.txt")}), failed,
                              work("left.txt"));
     assert_refused_when_full(100, build_quick({"--no-store", "--pto-out", work("left.pto")}), failed, work("left.pto"));
@@ -124,17 +121,17 @@ void test_full_disk_for_a_new_database(void **) {
     for (rlim_t bytes : {0, 512, 8192, 20000})
         assert_refused_when_full(bytes, build_quick({"--db", work("new.db")}), store_failed, work("new.db"));
     save_text(work("lens.xml"), lensfun_text("50mm", {{50, 2, -0.4}}));
-    for (rlim_t bytes : {512, 8192, 40000}) /* the last is enough for the tables */
+    for (rlim_t bytes : {512, 8192, 40000})  // the last is enough for the tables
         assert_refused_when_full(bytes, {"profile", "import", work("lens.xml"), "--db", work("new.db")}, store_failed,
                                  work("new.db"));
 }
 
-/* The program itself, as a process. */
+// The program itself, as a process.
 
 struct Child {
     pid_t id = -1;
     int err = -1;
-    std::string said; /* on standard error */
+    std::string said;  // on standard error
 };
 
 Child start(const Words &words) {
@@ -144,8 +141,7 @@ Child start(const Words &words) {
     child.id = fork();
     if (child.id == 0) {
         std::vector<char *> arguments = {const_cast<char *>(LENSPROF_PROGRAM)};
-        for (const std::string &word : words)
-            arguments.push_back(const_cast<char *>(word.c_str()));
+        for (const std::string &word : words) arguments.push_back(const_cast<char *>(word.c_str()));
         arguments.push_back(nullptr);
         signal(SIGINT, SIG_DFL);
         const int null = open("/dev/null", O_WRONLY);
@@ -161,16 +157,14 @@ Child start(const Words &words) {
     return child;
 }
 
-/* Reads what the child says until `word` comes, or to the end when word is empty. False when a minute passes. */
+// Reads what the child says until `word` comes, or to the end when word is empty. False when a minute passes.
 bool listen_for(Child &child, const std::string &word) {
     char buffer[4096];
     while (word.empty() || !contains(child.said, word)) {
         pollfd waiting = {child.err, POLLIN, 0};
-        if (poll(&waiting, 1, 60000) != 1)
-            return false;
+        if (poll(&waiting, 1, 60000) != 1) return false;
         const ssize_t got = read(child.err, buffer, sizeof buffer);
-        if (got <= 0)
-            return word.empty();
+        if (got <= 0) return word.empty();
         child.said.append(buffer, size_t(got));
     }
     return true;
@@ -178,15 +172,14 @@ bool listen_for(Child &child, const std::string &word) {
 
 int end_of(Child &child) {
     const bool quiet = listen_for(child, "");
-    if (!quiet)
-        kill(child.id, SIGKILL);
+    if (!quiet) kill(child.id, SIGKILL);
     close(child.err);
     int status = 0;
     waitpid(child.id, &status, 0);
     return !quiet ? -1 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/* Interrupts a command when it says that it is at `stage`. Returns the seconds that it took to end. */
+// Interrupts a command when it says that it is at `stage`. Returns the seconds that it took to end.
 double interrupt_at(const std::string &stage, const Words &words, int number = SIGINT) {
     Child child = start(words);
     if (!listen_for(child, stage)) {
@@ -204,7 +197,7 @@ double interrupt_at(const std::string &stage, const Words &words, int number = S
     return double(after.tv_sec - before.tv_sec) + 1e-9 * double(after.tv_nsec - before.tv_nsec);
 }
 
-/* Some 15000 pairs: seconds of fitting. */
+// Some 15000 pairs: seconds of fitting.
 std::string make_many_points() {
     must_exit(done, {"simulate", "-o", work("many"), "--no-images", "--images", "6", "--points", "15000"});
     return work("many/pano.pto");
@@ -222,31 +215,26 @@ void test_interrupted_build(void **) {
                               "25", "--progress", "--pto-out", work("left.pto"), "--points-out", work("left.txt")},
                              number);
             const std::string changes = difference(before, disk());
-            if (!changes.empty())
-                fail_msg("after the interrupt:%s", changes.c_str());
-            if (seconds > 5)
-                fail_msg("it took %.1f s to stop", seconds);
+            if (!changes.empty()) fail_msg("after the interrupt:%s", changes.c_str());
+            if (seconds > 5) fail_msg("it took %.1f s to stop", seconds);
         }
 }
 
-/* More pictures than can be read, sampled and fitted before the signal comes; more pairs than these pictures hold. */
+// More pictures than can be read, sampled and fitted before the signal comes; more pairs than these pictures hold.
 void test_interrupted_with_pictures(void **) {
     must_exit(done, {"simulate", "-o", work("many"), "--images", "12", "--size", "320x240"});
     const Disk before = disk();
     for (const std::string stage : {"reading pictures", "sampling"}) {
-        const double seconds =
-            interrupt_at(stage, {"build", work("many/pano.pto"), "--db", work("p.db"), "--progress", "--pairs",
-                                 stage == "sampling" ? "1000000" : "20000", "--pto-out", work("left.pto"),
-                                 "--points-out", work("left.txt")});
+        const double seconds = interrupt_at(stage, {"build", work("many/pano.pto"), "--db", work("p.db"), "--progress",
+                                                    "--pairs", stage == "sampling" ? "1000000" : "20000", "--pto-out",
+                                                    work("left.pto"), "--points-out", work("left.txt")});
         const std::string changes = difference(before, disk());
-        if (!changes.empty())
-            fail_msg("after the interrupt:%s", changes.c_str());
-        if (seconds > 5)
-            fail_msg("%s: it took %.1f s to stop", stage.c_str(), seconds);
+        if (!changes.empty()) fail_msg("after the interrupt:%s", changes.c_str());
+        if (seconds > 5) fail_msg("%s: it took %.1f s to stop", stage.c_str(), seconds);
     }
 }
 
-/* What is there is complete, and has its name. */
+// What is there is complete, and has its name.
 void assert_complete_pictures(const std::string &place, size_t fewer_than) {
     size_t count = 0;
     for (const fs::directory_entry &entry : fs::directory_iterator(place)) {
@@ -275,7 +263,7 @@ void test_interrupted_apply(void **) {
     }
 }
 
-/* In the middle of a picture, on one thread and with one more that encodes. */
+// In the middle of a picture, on one thread and with one more that encodes.
 void test_interrupted_in_a_picture(void **) {
     must_exit(done, build_quick({"--db", work("p.db")}));
     for (const char *name : {"a.png", "a.tif", "a.jpg"}) {
@@ -286,19 +274,17 @@ void test_interrupted_in_a_picture(void **) {
             const double seconds = interrupt_at("correcting 1", words + Words{"--threads", threads, work(name)});
             fs::remove(work("out"));
             const std::string changes = difference(before, disk());
-            if (!changes.empty())
-                fail_msg("after the interrupt:%s", changes.c_str());
+            if (!changes.empty()) fail_msg("after the interrupt:%s", changes.c_str());
             assert_true(seconds < 2);
         }
         fs::remove(work(name));
     }
 }
 
-/* Says nothing without a terminal: the first picture tells that it is at work. */
+// Says nothing without a terminal: the first picture tells that it is at work.
 void test_interrupted_simulate(void **) {
     Child child = start({"simulate", "-o", work("out"), "--images", "60", "--size", "500x400"});
-    for (int wait = 0; wait < 6000 && !fs::exists(work("out/img000.png")); ++wait)
-        usleep(10000);
+    for (int wait = 0; wait < 6000 && !fs::exists(work("out/img000.png")); ++wait) usleep(10000);
     kill(child.id, SIGINT);
     assert_int_equal(end_of(child), stopped);
     assert_true(contains(child.said, "interrupted"));
@@ -306,8 +292,7 @@ void test_interrupted_simulate(void **) {
 }
 
 void test_full_standard_output(void **) {
-    if (access("/dev/full", W_OK) != 0)
-        skip();
+    if (access("/dev/full", W_OK) != 0) skip();
     const pid_t child = fork();
     if (child == 0) {
         dup2(open("/dev/full", O_WRONLY), 1);
@@ -321,7 +306,7 @@ void test_full_standard_output(void **) {
     assert_int_equal(WEXITSTATUS(status), failed);
 }
 
-/* `ulimit -f`: the system's signal for it does not end the process. */
+// `ulimit -f`: the system's signal for it does not end the process.
 void test_file_size_limit(void **) {
     const pid_t child = fork();
     if (child == 0) {

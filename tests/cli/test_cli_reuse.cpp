@@ -1,4 +1,4 @@
-/* What is stored serves later pictures: as the prior of the next fit, for one unit, between settings. */
+// What is stored serves later pictures: as the prior of the next fit, for one unit, between settings.
 #include <exiv2/exiv2.hpp>
 
 #include "cli_runs.hpp"
@@ -8,7 +8,7 @@ using namespace picture_files;
 
 namespace {
 
-/* Two overlapping pictures of the simulated camera; another seed is another place. */
+// Two overlapping pictures of the simulated camera; another seed is another place.
 std::string pictures(const std::string &name, const char *seed, const char *falloff = "-0.4,0.1,-0.1") {
     must_exit(done, {"simulate", "-o", work(name), "--images", "2", "--size", "480x320", "--overlap", "0.5",
                      "--vignetting", falloff, "--ev", "1.5", "--exif", "--exif-rounding", "0.1", "--seed", seed});
@@ -44,13 +44,12 @@ void test_next_sequences(void **) {
     const Json stored = shown(3);
     assert_string_equal(stored["provenance"]["method"].get<std::string>().c_str(), "transfer+2");
     assert_int_equal(stored["provenance"]["images"], 6);
-    assert_int_equal(stored["provenance"]["pairs"].get<int>(),
-                     3 * shown(1)["provenance"]["pairs"].get<int>());
+    assert_int_equal(stored["provenance"]["pairs"].get<int>(), 3 * shown(1)["provenance"]["pairs"].get<int>());
     const std::string said = must_exit(done, {"build", pictures("d", "4"), "--db", work("l.db"), "--prior", "auto"});
     assert_true(contains(said, "prior     profile 3, which the result holds"));
 }
 
-/* Not even as what is in another profile, or under another name. */
+// Not even as what is in another profile, or under another name.
 void test_pictures_count_once(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2");
     json_of(build(a));
@@ -65,11 +64,11 @@ void test_pictures_count_once(void **) {
     const Json alone = json_of(build(a, {"--no-store"}));
     assert_true(contains(alone["prior"]["reason"].get<std::string>(), "profile 1 is of these pictures alone"));
     json_of(build(b));
-    must_exit(done, {"profile", "remove", "1", "--db", work("l.db")}); /* the chain ends: nothing is known of it */
+    must_exit(done, {"profile", "remove", "1", "--db", work("l.db")});  // the chain ends: nothing is known of it
     assert_true(json_of(build(a, {"--no-store"}))["prior"]["used"].get<bool>());
 }
 
-/* In another database, where they have other numbers, it is still known what is in which. */
+// In another database, where they have other numbers, it is still known what is in which.
 void test_merged_profiles_count_once(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2");
     json_of(build(a));
@@ -82,7 +81,7 @@ void test_merged_profiles_count_once(void **) {
     const Words again = all + Words{"--prior", "auto", "--json", "--no-store"};
     assert_int_equal(json_of(Words{"build", b} + again)["prior"]["profile"], 2);
     assert_refused(usage, Words{"build", a} + again, {a, "profile 3 holds these pictures already"});
-    /* What is in a file has no numbers of ours. */
+    // What is in a file has no numbers of ours.
     must_exit(done, Words{"profile", "export", "3", "-o", work("one.json")} + all);
     must_exit(done, {"profile", "import", work("one.json"), "--db", work("one.db")});
     const Json alone = json_of({"profile", "show", "1", "--json", "--db", work("one.db")});
@@ -107,7 +106,8 @@ void test_wrong_profile_is_overruled(void **) {
 void test_no_prior_for_this(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2");
     json_of(build(a, {"--aperture", "4"}));
-    assert_true(contains(json_of(build(b, {"--no-store"}))["prior"]["reason"].get<std::string>(), "no profile is stored"));
+    assert_true(
+        contains(json_of(build(b, {"--no-store"}))["prior"]["reason"].get<std::string>(), "no profile is stored"));
     assert_refused(usage, build(b, {"--method", "transfer-function"}), {"--prior auto", "transfer"});
     assert_refused(usage, {"build", b, "--prior", "some"}, {"--prior", "some", "auto"});
     assert_refused(usage, {"bracket", work("a/img000.png"), "--prior", "auto"}, {"--prior"});
@@ -122,7 +122,7 @@ void write_exif(const std::string &file, const std::map<std::string, std::string
     image->writeMetadata();
 }
 
-/* A profile of one unit serves this unit, before one of the model, and no other. */
+// A profile of one unit serves this unit, before one of the model, and no other.
 void test_units(void **) {
     const std::string a = pictures("a", "1");
     const auto set_unit = [&](const char *body) {
@@ -145,7 +145,7 @@ void test_units(void **) {
     assert_refused(usage, Words{"build", a, "--unit", "exif"} + db, {"img000.png", "--unit"});
 }
 
-/* Between two apertures the falloff is predicted, and it is said. */
+// Between two apertures the falloff is predicted, and it is said.
 void test_apply_between_settings(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "1", "-0.2,0.05,-0.05");
     const Words db = {"--db", work("l.db"), "--distance", "inf"};
@@ -165,9 +165,12 @@ void test_apply_between_settings(void **) {
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {
-        CLI_TEST(test_next_sequences),             CLI_TEST(test_pictures_count_once), CLI_TEST(test_merged_profiles_count_once),
-        CLI_TEST(test_wrong_profile_is_overruled), CLI_TEST(test_no_prior_for_this),   CLI_TEST(test_units),
-        CLI_TEST(test_apply_between_settings)};
+    const CMUnitTest tests[] = {CLI_TEST(test_next_sequences),
+                                CLI_TEST(test_pictures_count_once),
+                                CLI_TEST(test_merged_profiles_count_once),
+                                CLI_TEST(test_wrong_profile_is_overruled),
+                                CLI_TEST(test_no_prior_for_this),
+                                CLI_TEST(test_units),
+                                CLI_TEST(test_apply_between_settings)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -1,5 +1,5 @@
-/* What simulate can add to a sequence: objects that move, local tone mapping, exposures in the metadata. The camera is
- * linear, so that the model is written out here in two lines. */
+// What simulate can add to a sequence: objects that move, local tone mapping, exposures in the metadata. The camera is
+// linear, so that the model is written out here in two lines.
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
@@ -18,11 +18,9 @@ Words simulate(const std::string &name, const Words &more) {
 
 Json truth_of(const std::string &name) { return Json::parse(text_of(work(name + "/truth.json"))); }
 
-std::string picture_of(const std::string &name, int i) {
-    return work(name + "/img00" + std::to_string(i) + ".tif");
-}
+std::string picture_of(const std::string &name, int i) { return work(name + "/img00" + std::to_string(i) + ".tif"); }
 
-/* Samples of a float picture. */
+// Samples of a float picture.
 std::vector<float> samples_of(const std::string &path) {
     const Picture picture = read_picture(path);
     assert_int_equal(picture.sample, LENSPROF_SAMPLE_F32);
@@ -33,8 +31,8 @@ std::vector<float> samples_of(const std::string &path) {
 
 bool in_object(const Json &image, double x, double y) {
     for (const Json &box : image.at("objects"))
-        if (x >= box[0].get<double>() && y >= box[1].get<double>() && x < box[2].get<double>() &&
-            y < box[3].get<double>())
+        if (x >= box[0].get<double>() && y >= box[1].get<double>() && x < box[2].get<double>()
+            && y < box[3].get<double>())
             return true;
     return false;
 }
@@ -42,7 +40,7 @@ bool in_object(const Json &image, double x, double y) {
 struct SeenPair {
     size_t image[2];
     double x[2], y[2];
-    double mismatch; /* largest difference of the logarithms of radiance, both ends taken back through the camera */
+    double mismatch;  // largest difference of the logarithms of radiance, both ends taken back through the camera
 };
 
 std::vector<SeenPair> pairs_of(const std::string &name, const std::string &file) {
@@ -52,8 +50,7 @@ std::vector<SeenPair> pairs_of(const std::string &name, const std::string &file)
     for (std::string line; std::getline(lines, line);) {
         std::istringstream numbers(line);
         double column[16], light[2][3];
-        for (double &number : column)
-            numbers >> number;
+        for (double &number : column) numbers >> number;
         SeenPair pair = {};
         for (size_t side = 0; side < 2; ++side) {
             pair.image[side] = size_t(column[side]);
@@ -63,8 +60,8 @@ std::vector<SeenPair> pairs_of(const std::string &name, const std::string &file)
             const double y = (pair.y[side] - 59.5) / 100 - centre[1].get<double>(), r2 = x * x + y * y;
             const double m = 1 + r2 * (k[0].get<double>() + r2 * (k[1].get<double>() + r2 * k[2].get<double>()));
             for (size_t c = 0; c < 3; ++c)
-                light[side][c] = column[6 + 3 * side + c] / (m * std::exp2(image["ev"].get<double>()) *
-                                                             image["white_balance"][c].get<double>());
+                light[side][c] = column[6 + 3 * side + c]
+                                 / (m * std::exp2(image["ev"].get<double>()) * image["white_balance"][c].get<double>());
         }
         for (size_t c = 0; c < 3; ++c)
             pair.mismatch = std::max(pair.mismatch, std::fabs(std::log(light[0][c] / light[1][c])));
@@ -75,14 +72,13 @@ std::vector<SeenPair> pairs_of(const std::string &name, const std::string &file)
 
 double median_mismatch(const std::vector<SeenPair> &pairs) {
     std::vector<double> values;
-    for (const SeenPair &pair : pairs)
-        values.push_back(pair.mismatch);
+    for (const SeenPair &pair : pairs) values.push_back(pair.mismatch);
     std::nth_element(values.begin(), values.begin() + long(values.size() / 2), values.end());
     return values[values.size() / 2];
 }
 
-/* Pixels change inside the stated blocks and nowhere else; the blocks cover the share, and lie elsewhere in every
- * picture. */
+// Pixels change inside the stated blocks and nowhere else; the blocks cover the share, and lie elsewhere in every
+// picture.
 void test_objects_in_pictures(void **) {
     must_exit(done, simulate("plain", {}));
     must_exit(done, simulate("moved", {"--objects", "0.25"}));
@@ -107,10 +103,10 @@ void test_objects_in_pictures(void **) {
         assert_true(i == 0 || image["objects"] != truth["images"][0]["objects"]);
     }
     assert_close(double(inside) / (6.0 * width * height), 0.25, 0.03);
-    assert_true(double(changed) > 0.97 * double(inside)); /* both white: the same */
+    assert_true(double(changed) > 0.97 * double(inside));  // both white: the same
 }
 
-/* Pairs with no end on an object follow the model, those with one do not; noise-free pairs know no objects. */
+// Pairs with no end on an object follow the model, those with one do not; noise-free pairs know no objects.
 void test_objects_in_pairs(void **) {
     must_exit(done, simulate("moved", {"--objects", "0.1", "--no-images", "--points", "2000", "--test-points", "500",
                                        "--format", "tiff16"}));
@@ -122,15 +118,13 @@ void test_objects_in_pairs(void **) {
             on = on || in_object(truth["images"][pair.image[side]], pair.x[side], pair.y[side]);
         (on ? hit : clear).push_back(pair);
     }
-    assert_close(double(hit.size()) / double(hit.size() + clear.size()), 0.19, 0.06); /* 1 - 0.9^2 */
-    for (const SeenPair &pair : clear)
-        assert_close(pair.mismatch, 0, 0.01); /* 16 bit at one level of 255 */
+    assert_close(double(hit.size()) / double(hit.size() + clear.size()), 0.19, 0.06);  // 1 - 0.9^2
+    for (const SeenPair &pair : clear) assert_close(pair.mismatch, 0, 0.01);           // 16 bit at one level of 255
     assert_true(median_mismatch(hit) > 0.5);
-    for (const SeenPair &pair : pairs_of("moved", "test_points.txt"))
-        assert_close(pair.mismatch, 0, 0.01);
+    for (const SeenPair &pair : pairs_of("moved", "test_points.txt")) assert_close(pair.mismatch, 0, 0.01);
 }
 
-/* Mean grey value about a pixel, weighted by a Gaussian whose sigma is a tenth of the width. */
+// Mean grey value about a pixel, weighted by a Gaussian whose sigma is a tenth of the width.
 double surroundings(const std::vector<float> &plain, int x, int y) {
     double sum = 0, weights = 0;
     for (int v = 0; v < int(height); v += 4)
@@ -143,7 +137,7 @@ double surroundings(const std::vector<float> &plain, int x, int y) {
     return sum / weights;
 }
 
-/* One gain for the three channels, set by the surroundings: up to +1 EV in the dark, -1 EV in the light. */
+// One gain for the three channels, set by the surroundings: up to +1 EV in the dark, -1 EV in the light.
 void test_local_tone_in_pictures(void **) {
     must_exit(done, simulate("plain", {}));
     must_exit(done, simulate("toned", {"--local-tone", "1"}));
@@ -168,16 +162,15 @@ void test_local_tone_in_pictures(void **) {
     assert_true(least < -0.2 && most > 0.5);
 }
 
-/* The same point is rendered differently in two pictures; not so in the noise-free pairs, which score the response. */
+// The same point is rendered differently in two pictures; not so in the noise-free pairs, which score the response.
 void test_local_tone_in_pairs(void **) {
     must_exit(done,
               simulate("toned", {"--local-tone", "1", "--no-images", "--points", "1000", "--test-points", "300"}));
     assert_true(median_mismatch(pairs_of("toned", "points.txt")) > 0.05);
-    for (const SeenPair &pair : pairs_of("toned", "test_points.txt"))
-        assert_close(pair.mismatch, 0, 0.01);
+    for (const SeenPair &pair : pairs_of("toned", "test_points.txt")) assert_close(pair.mismatch, 0, 0.01);
 }
 
-/* Differences of what pictures of every kind tell are the true ones, with several times and sensitivities. */
+// Differences of what pictures of every kind tell are the true ones, with several times and sensitivities.
 void test_exif_tells_exposures(void **) {
     must_exit(done, simulate("told", {"--exif", "--format", "png,png16,tiff,tiff16,tiff32,jpeg"}));
     const Json truth = truth_of("told");
@@ -195,8 +188,8 @@ void test_exif_tells_exposures(void **) {
         assert_close(*m.exif_ev - image["ev"].get<double>(), zero, 1e-8);
         sensitivities.push_back(*m.iso);
     }
-    assert_true(*std::max_element(sensitivities.begin(), sensitivities.end()) >
-                *std::min_element(sensitivities.begin(), sensitivities.end()));
+    assert_true(*std::max_element(sensitivities.begin(), sensitivities.end())
+                > *std::min_element(sensitivities.begin(), sensitivities.end()));
 }
 
 void test_exif_is_rounded(void **) {
@@ -213,7 +206,7 @@ void test_exif_is_rounded(void **) {
     assert_close(std::sqrt(square / 40 - sum * sum / 1600), 0.1, 0.04);
 }
 
-/* Without --exif camera, lens and aperture are told, the exposure is not. */
+// Without --exif camera, lens and aperture are told, the exposure is not.
 void test_no_exposure_without_exif(void **) {
     must_exit(done, simulate("quiet", {"--images", "2"}));
     const PictureMetadata m = read_metadata(picture_of("quiet", 0));
@@ -226,11 +219,10 @@ void test_no_exposure_without_exif(void **) {
 void test_mean_exposure(void **) {
     must_exit(done, simulate("dark", {"--mean-ev", "-3", "--ev", "0.5", "--no-images"}));
     const Json truth = truth_of("dark");
-    for (const Json &image : truth["images"])
-        assert_close(image["ev"].get<double>(), -3, 0.5);
+    for (const Json &image : truth["images"]) assert_close(image["ev"].get<double>(), -3, 0.5);
 }
 
-/* 1000 pictures, of which each overlaps a few: pairs are found for all of them. */
+// 1000 pictures, of which each overlaps a few: pairs are found for all of them.
 void test_many_pictures(void **) {
     must_exit(done, {"simulate", "-o", work("many"), "--no-images", "--images", "1000", "--rows", "28", "--hfov", "4",
                      "--jitter", "0.1", "--ev", "0.5", "--mean-ev", "-1", "--points", "50000"});

@@ -1,4 +1,4 @@
-/* `lensprof profile merge`, `check` and `stats`: whole databases. */
+// `lensprof profile merge`, `check` and `stats`: whole databases.
 #include "cli_runs.hpp"
 
 #include <sqlite3.h>
@@ -8,7 +8,7 @@ using namespace picture_files;
 
 namespace {
 
-/* A database of one imported lens with these falloffs. */
+// A database of one imported lens with these falloffs.
 std::string make_db(const std::string &name, const std::string &lens, const std::vector<LensfunEntry> &entries) {
     save_text(work(name + ".xml"), lensfun_text(lens, entries));
     must_exit(done, {"profile", "import", "--db", work(name), work(name + ".xml")});
@@ -39,7 +39,8 @@ void test_merge(void **) {
     for (size_t i = 0; i < 2; i++) assert_int_equal(again["merged"][i]["added"], 0);
     assert_int_equal(again["merged"][1]["known"], 2);
     assert_int_equal(profiles_in(all), 3);
-    const Json there = json_of({"profile", "list", "--db", all, "--json"}), here = json_of({"profile", "list", "--db", a, "--json"});
+    const Json there = json_of({"profile", "list", "--db", all, "--json"}),
+               here = json_of({"profile", "list", "--db", a, "--json"});
     assert_true(there["profiles"][0]["provenance"] == here["profiles"][0]["provenance"]);
 }
 
@@ -50,7 +51,8 @@ void test_merge_refuses(void **) {
     for (const std::string &db : {all, fresh}) {
         assert_refused(usage, merge_into(db) + Words{b, db}, {db, "is the database itself"});
         assert_refused(not_found, merge_into(db) + Words{b, work("none.db")}, {"none.db"});
-        assert_refused(store_failed, merge_into(db) + Words{b, work("a.db.xml")}, {"a.db.xml", "not a lensprof database"});
+        assert_refused(store_failed, merge_into(db) + Words{b, work("a.db.xml")},
+                       {"a.db.xml", "not a lensprof database"});
     }
     assert_refused(usage, merge_into(a) + Words{work("hard.db")}, {"hard.db", "is the database itself"});
     assert_refused(usage, merge_into(all), {"OTHER.db"});
@@ -68,8 +70,9 @@ void test_check(void **) {
     const Disk before = disk();
     assert_string_equal(must_exit(done, check).c_str(), (a + ": 3 profiles read, 0 faults\n").c_str());
     assert_string_equal(difference(before, disk()).c_str(), "");
-    run_sql(a, "PRAGMA foreign_keys = OFF; UPDATE vignettings SET k1 = -7 WHERE profile_id IN (1, 3);"
-               "INSERT INTO vignettings VALUES (77, 0, 0.0, 0.0, 0.0, 0.0, 0.0)");
+    run_sql(a,
+            "PRAGMA foreign_keys = OFF; UPDATE vignettings SET k1 = -7 WHERE profile_id IN (1, 3);"
+            "INSERT INTO vignettings VALUES (77, 0, 0.0, 0.0, 0.0, 0.0, 0.0)");
     const std::string said = must_exit(store_failed, check);
     for (const char *line : {"profile 1: ", "profile 3: ", "profile 77: a row of vignettings without its profile\n",
                              ": 3 profiles read, 3 faults\n"})

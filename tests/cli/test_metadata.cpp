@@ -1,8 +1,8 @@
-/* Metadata of picture files: what is read from files written through Exiv2, and what a copy keeps and leaves out. */
+// Metadata of picture files: what is read from files written through Exiv2, and what a copy keeps and leaves out.
 #include <cstring>
 #include <thread>
 
-#include <exiv2/exiv2.hpp> /* before cmocka, which makes a macro of `fail` */
+#include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
 #include "picture_files.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 
 const char *const names[] = {"a.jpg", "a.png", "a.tif"};
 
-/* Lets `change` edit the metadata of a file. */
+// Lets `change` edit the metadata of a file.
 void edit(const std::string &path, const std::function<void(Exiv2::Image &)> &change) {
     auto image = Exiv2::ImageFactory::open(path);
     image->readMetadata();
@@ -20,13 +20,12 @@ void edit(const std::string &path, const std::function<void(Exiv2::Image &)> &ch
     image->writeMetadata();
 }
 
-/* A small JPEG with these EXIF values, in Exiv2's text form. */
+// A small JPEG with these EXIF values, in Exiv2's text form.
 std::string make_exif(const std::vector<std::pair<const char *, const char *>> &values) {
     const std::string path = in_folder("exif.jpg");
     write_picture(path, make_smooth(16, 8, LENSPROF_LAYOUT_RGB));
     edit(path, [&](Exiv2::Image &image) {
-        for (const auto &value : values)
-            image.exifData()[value.first] = std::string(value.second);
+        for (const auto &value : values) image.exifData()[value.first] = std::string(value.second);
     });
     return path;
 }
@@ -79,7 +78,7 @@ void test_written_is_read(void **) {
         assert_close(again.exposure_time_s.value_or(0), 1 / 320.0, 1e-12);
         assert_close(again.iso.value_or(0), 400, 0);
         assert_close(again.f_number.value_or(0), 5.6, 1e-9);
-        /* log2(400 / 100 / 320 / 5.6^2) */
+        // log2(400 / 100 / 320 / 5.6^2)
         assert_close(again.exif_ev.value_or(0), 2 - 8.321928094887362 - 2 * 2.485426827170242, 1e-9);
         assert_int_equal(files_in_folder(), 1);
         empty_folder(nullptr);
@@ -92,12 +91,13 @@ void test_float_tiff_is_linear(void **) {
 }
 
 void test_unit_and_sensor(void **) {
-    const PictureMetadata both = read_exif({{"Exif.Photo.BodySerialNumber", " 0123 "}, {"Exif.Photo.LensSerialNumber", "9"}});
+    const PictureMetadata both =
+        read_exif({{"Exif.Photo.BodySerialNumber", " 0123 "}, {"Exif.Photo.LensSerialNumber", "9"}});
     assert_string_equal(both.key.unit, "0123/9");
     assert_string_equal(read_exif({{"Exif.Photo.LensSerialNumber", "9"}}).key.unit, "/9");
-    assert_string_equal(read_exif({{"Exif.Photo.BodySerialNumber", "0000"}, {"Exif.Photo.LensSerialNumber", "-"}}).key.unit,
-                        "");
-    /* 6000 x 4000 pixels of 3.9 um: 23.4 mm x 15.6 mm. */
+    assert_string_equal(
+        read_exif({{"Exif.Photo.BodySerialNumber", "0000"}, {"Exif.Photo.LensSerialNumber", "-"}}).key.unit, "");
+    // 6000 x 4000 pixels of 3.9 um: 23.4 mm x 15.6 mm.
     const PictureMetadata pitched = read_exif({{"Exif.Photo.PixelXDimension", "6000"},
                                                {"Exif.Photo.PixelYDimension", "4000"},
                                                {"Exif.Photo.FocalPlaneXResolution", "100000/39"},
@@ -106,12 +106,13 @@ void test_unit_and_sensor(void **) {
                                                {"Exif.Photo.FocalLength", "18/1"},
                                                {"Exif.Photo.FocalLengthIn35mmFilm", "27"}});
     assert_close(pitched.key.crop_factor, std::hypot(36, 24) / std::hypot(23.4, 15.6), 1e-9);
-    const PictureMetadata equivalent = read_exif({{"Exif.Photo.FocalLength", "425/100"},
-                                                  {"Exif.Photo.FocalLengthIn35mmFilm", "26"}});
+    const PictureMetadata equivalent =
+        read_exif({{"Exif.Photo.FocalLength", "425/100"}, {"Exif.Photo.FocalLengthIn35mmFilm", "26"}});
     assert_close(equivalent.key.crop_factor, 26 / 4.25, 1e-9);
     for (const char *focal : {"0/1", "1/0", "5000/1"})
-        assert_close(read_exif({{"Exif.Photo.FocalLength", focal}, {"Exif.Photo.FocalLengthIn35mmFilm", "26"}}).key.crop_factor,
-                     LENSPROF_UNKNOWN, 0);
+        assert_close(
+            read_exif({{"Exif.Photo.FocalLength", focal}, {"Exif.Photo.FocalLengthIn35mmFilm", "26"}}).key.crop_factor,
+            LENSPROF_UNKNOWN, 0);
 }
 
 void test_texts(void **) {
@@ -120,7 +121,7 @@ void test_texts(void **) {
                                           {"Exif.Image.Model", longer.c_str()},
                                           {"Exif.Photo.LensModel", " Caf\xe9\t50mm \n"}});
     assert_string_equal(metadata.key.camera_maker, "NIKON CORPORATION");
-    assert_string_equal(metadata.key.camera_model, std::string(62, 'm').c_str()); /* no half character at byte 63 */
+    assert_string_equal(metadata.key.camera_model, std::string(62, 'm').c_str());  // no half character at byte 63
     assert_string_equal(metadata.key.lens, "Caf\xc3\xa9 50mm");
     for (const char *nothing : {"", "   ", "----", "0.0 mm f/0.0", "n/a", "(65535)", "Unknown (7)", "None"}) {
         metadata = read_exif({{"Exif.Photo.LensModel", nothing}});
@@ -149,7 +150,7 @@ void test_exposure(void **) {
     assert_close(metadata.key.aperture, 8, 1e-12);
     assert_false(metadata.iso || metadata.exif_ev);
 
-    /* Stated values win over APEX; zero and zero denominators are unknown. */
+    // Stated values win over APEX; zero and zero denominators are unknown.
     metadata = read_exif({{"Exif.Photo.ExposureTime", "1/250"},
                           {"Exif.Photo.ShutterSpeedValue", "7/1"},
                           {"Exif.Photo.FNumber", "28/10"},
@@ -188,9 +189,9 @@ void test_distance(void **) {
     assert_close(canon.key.distance_m, 2.14, 1e-9);
 }
 
-/* Copies. */
+// Copies.
 
-/* A picture of the kind of `name`, with everything a camera and an editor put into it. */
+// A picture of the kind of `name`, with everything a camera and an editor put into it.
 void make_source(const std::string &name) {
     Picture picture = make_smooth(48, 32, LENSPROF_LAYOUT_RGB);
     picture.traits.orientation = 6;
@@ -240,14 +241,13 @@ void check_copy(const std::string &path, const char *mime_type) {
     assert_true(image->xmpData().findKey(Exiv2::XmpKey("Xmp.xmpNote.HasExtendedXMP")) == image->xmpData().end());
     for (const Exiv2::Exifdatum &datum : exif) {
         assert_string_not_equal(datum.groupName().c_str(), "Thumbnail");
-        if (image->mimeType() == "image/tiff" || datum.groupName() != "Image")
-            continue;
-        for (uint16_t structure : {256, 258, 273, 279, 34675}) /* width, bits, strips, colour profile */
+        if (image->mimeType() == "image/tiff" || datum.groupName() != "Image") continue;
+        for (uint16_t structure : {256, 258, 273, 279, 34675})  // width, bits, strips, colour profile
             assert_int_not_equal(datum.tag(), structure);
     }
 }
 
-/* From every format to every format: the metadata arrive, pixels, profile and resolution stay. */
+// From every format to every format: the metadata arrive, pixels, profile and resolution stay.
 void test_copy(void **) {
     const char *const mime_types[] = {"image/jpeg", "image/png", "image/tiff"};
     Picture picture = make_smooth(60, 40, LENSPROF_LAYOUT_RGB);
@@ -273,7 +273,7 @@ void test_copy(void **) {
     }
 }
 
-/* Exiv2 rebuilds the TIFF: no kind of pixels, strips or extra samples may be harmed, nor the byte order. */
+// Exiv2 rebuilds the TIFF: no kind of pixels, strips or extra samples may be harmed, nor the byte order.
 void test_copy_to_any_tiff(void **) {
     make_source("s.jpg");
     for (const char *mode : {"wl", "wb"}) {
@@ -301,7 +301,7 @@ void test_copy_to_any_tiff(void **) {
     }
 }
 
-/* Correcting a file in place. */
+// Correcting a file in place.
 void test_copy_from_itself(void **) {
     for (const char *name : {"s.jpg", "s.png", "s.tif"}) {
         make_source(name);
@@ -345,22 +345,22 @@ void test_copy_fails(void **) {
     assert_true(load(in_folder("s.jpg")) == whole);
     assert_int_equal(files_in_folder(), 2);
 
-    /* More EXIF than a JPEG segment can hold. */
+    // More EXIF than a JPEG segment can hold.
     write_picture(in_folder("a.tif"), make_smooth(8, 8, LENSPROF_LAYOUT_RGB));
     edit(in_folder("a.tif"), [](Exiv2::Image &image) {
         for (const char *key : {"Exif.Image.Artist", "Exif.Image.Copyright", "Exif.Image.ImageDescription",
                                 "Exif.Image.Software", "Exif.Photo.UserComment"})
-            image.exifData()[key] = std::string(19000, 'a'); /* Exiv2 drops longer ones */
+            image.exifData()[key] = std::string(19000, 'a');  // Exiv2 drops longer ones
     });
     WriteOptions options;
     options.metadata_from = in_folder("a.tif");
     const Picture picture = make_smooth(8, 8, LENSPROF_LAYOUT_RGB);
-    assert_failure(ExitCode::failed, "a.jpg: cannot write metadata: ",
-                   [&] { write_picture(in_folder("a.jpg"), picture, options); });
+    assert_failure(ExitCode::failed,
+                   "a.jpg: cannot write metadata: ", [&] { write_picture(in_folder("a.jpg"), picture, options); });
     assert_false(fs::exists(in_folder("a.jpg")));
 }
 
-/* Pictures are read by several threads at a time. */
+// Pictures are read by several threads at a time.
 void test_threads(void **) {
     make_source("s.jpg");
     std::vector<std::thread> threads;
@@ -377,10 +377,8 @@ void test_threads(void **) {
             }
         });
     }
-    for (std::thread &thread : threads)
-        thread.join();
-    for (bool one : good)
-        assert_true(one);
+    for (std::thread &thread : threads) thread.join();
+    for (bool one : good) assert_true(one);
 }
 
 }  // namespace

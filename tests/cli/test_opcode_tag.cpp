@@ -1,4 +1,4 @@
-/* Opcode lists in TIFF and DNG files that libtiff wrote, read back with libtiff; and what exiftool says of them. */
+// Opcode lists in TIFF and DNG files that libtiff wrote, read back with libtiff; and what exiftool says of them.
 #include "picture_files.hpp"
 
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 #include <lensprof/formats.h>
 
-#include "cli/opcode_tag.hpp"
+#include "cli/pictures/opcode_tag.hpp"
 
 using namespace picture_files;
 
@@ -17,8 +17,7 @@ constexpr uint32_t width = 40, height = 30;
 
 Bytes some_list(size_t bytes) {
     Bytes list = {0, 0, 0, 1, 0, 0, 0, 3, 1, 3, 0, 0, 0, 0, 0, 1, 0, 0, 0, 56};
-    for (size_t i = list.size(); i < bytes; ++i)
-        list.push_back(static_cast<uint8_t>(i * 37));
+    for (size_t i = list.size(); i < bytes; ++i) list.push_back(static_cast<uint8_t>(i * 37));
     list.resize(bytes);
     return list;
 }
@@ -37,14 +36,13 @@ void set_image(TIFF *tiff, uint16_t photometric, uint32_t type, uint16_t bits, u
 void write_rows(TIFF *tiff, uint8_t seed) {
     std::vector<uint8_t> row(static_cast<size_t>(TIFFScanlineSize(tiff)));
     for (uint32_t y = 0; y < height; ++y) {
-        for (size_t i = 0; i < row.size(); ++i)
-            row[i] = static_cast<uint8_t>(seed + 7 * i + 13 * y);
+        for (size_t i = 0; i < row.size(); ++i) row[i] = static_cast<uint8_t>(seed + 7 * i + 13 * y);
         assert_int_equal(TIFFWriteScanline(tiff, row.data(), y, 0), 1);
     }
     assert_int_equal(TIFFWriteDirectory(tiff), 1);
 }
 
-/* As DNG files are: a preview, and the raw image in the last of its SubIFDs. */
+// As DNG files are: a preview, and the raw image in the last of its SubIFDs.
 std::string write_dng(const std::string &name, const char *mode, uint16_t children) {
     const std::string path = in_folder(name);
     TIFF *tiff = TIFFOpen(path.c_str(), mode);
@@ -82,7 +80,7 @@ std::string write_plain(const std::string &name, const char *mode, int pages = 1
     return path;
 }
 
-/* libtiff's view: all rows of the directory that it is set to, and the tag. */
+// libtiff's view: all rows of the directory that it is set to, and the tag.
 struct Seen {
     Bytes rows, list;
 };
@@ -96,24 +94,21 @@ Seen look(TIFF *tiff, uint16_t tag) {
     }
     uint32_t count = 0;
     const uint8_t *bytes = nullptr;
-    if (TIFFGetField(tiff, tag, &count, &bytes))
-        seen.list.assign(bytes, bytes + count);
+    if (TIFFGetField(tiff, tag, &count, &bytes)) seen.list.assign(bytes, bytes + count);
     return seen;
 }
 
-/* Main directories in their order, or the SubIFDs of the first. */
+// Main directories in their order, or the SubIFDs of the first.
 std::vector<Seen> look_at(const std::string &path, uint16_t tag, bool children) {
     std::vector<Seen> all;
-    TIFFSetWarningHandler(nullptr); /* of tags that libtiff does not know */
+    TIFFSetWarningHandler(nullptr);  // of tags that libtiff does not know
     TIFF *tiff = TIFFOpen(path.c_str(), "r");
     assert_non_null(tiff);
     uint16_t count = 0;
     const toff_t *found = nullptr;
     std::vector<toff_t> offsets;
-    if (children && TIFFGetField(tiff, TIFFTAG_SUBIFD, &count, &found))
-        offsets.assign(found, found + count);
-    if (!children)
-        do
+    if (children && TIFFGetField(tiff, TIFFTAG_SUBIFD, &count, &found)) offsets.assign(found, found + count);
+    if (!children) do
             all.push_back(look(tiff, tag));
         while (TIFFReadDirectory(tiff));
     for (const toff_t offset : offsets) {
@@ -124,7 +119,7 @@ std::vector<Seen> look_at(const std::string &path, uint16_t tag, bool children) 
     return all;
 }
 
-/* All bytes of the old file but the 4 that lead to the directory are there still. */
+// All bytes of the old file but the 4 that lead to the directory are there still.
 void assert_kept(const Bytes &before, const Bytes &after) {
     assert_true(after.size() > before.size());
     size_t first = before.size(), last = 0, changed = 0;
@@ -165,13 +160,13 @@ void test_raw_image_of_a_dng(void **) {
             }
 }
 
-/* A list that is there is replaced, the other one stays; in place, and twice. */
+// A list that is there is replaced, the other one stays; in place, and twice.
 void test_replaced_in_place(void **) {
     const std::string path = write_dng("in.dng", "wb", 2);
     write_opcode_list(path, path, tag_opcode_list2, some_list(100));
     write_opcode_list(path, path, tag_opcode_list3, some_list(61));
     write_opcode_list(path, path, tag_opcode_list2, some_list(40));
-    const Bytes nothing = {0, 0, 0, 0}; /* held in the directory itself */
+    const Bytes nothing = {0, 0, 0, 0};  // held in the directory itself
     const OpcodeLists lists = read_opcode_lists(path);
     assert_true(lists.list2 == some_list(40) && lists.list3 == some_list(61));
     assert_true(look_at(path, tag_opcode_list2, true).at(1).list == some_list(40));
@@ -181,7 +176,7 @@ void test_replaced_in_place(void **) {
     assert_int_equal(files_in_folder(), 1);
 }
 
-/* Of a TIFF without a raw image the first page; those after it stay reachable. */
+// Of a TIFF without a raw image the first page; those after it stay reachable.
 void test_plain_tiff(void **) {
     for (const char *mode : {"wl", "wb"}) {
         const std::string in = write_plain("in.tif", mode, 3), out = in_folder("out.tif");
@@ -199,19 +194,17 @@ void test_plain_tiff(void **) {
 
 void assert_refused(const std::string &in, const char *why) {
     const std::string out = in_folder("out.dng");
-    save(out, {1, 2, 3}); /* what was there before */
+    save(out, {1, 2, 3});  // what was there before
     const size_t files = files_in_folder();
     int refused = 0;
-    for (const bool writes : {false, true})
-        try {
+    for (const bool writes : {false, true}) try {
             if (writes)
                 write_opcode_list(in, out, tag_opcode_list2, some_list(60));
             else
                 read_opcode_lists(in);
         } catch (const Failure &failure) {
             assert_int_equal(static_cast<int>(failure.code), static_cast<int>(ExitCode::unreadable));
-            if (!strstr(failure.what(), why) || !strstr(failure.what(), in.c_str()))
-                fail_msg("%s", failure.what());
+            if (!strstr(failure.what(), why) || !strstr(failure.what(), in.c_str())) fail_msg("%s", failure.what());
             ++refused;
         }
     assert_int_equal(refused, 2);
@@ -229,7 +222,7 @@ void test_refused(void **) {
     assert_refused(in, "is not a TIFF");
     write_plain("in.dng", "w8");
     assert_refused(in, "is a BigTIFF");
-    save(in, {'I', 'I', 42, 0, 8, 0, 0, 0, 0, 0, 8, 0, 0, 0}); /* the first directory follows itself */
+    save(in, {'I', 'I', 42, 0, 8, 0, 0, 0, 0, 0, 8, 0, 0, 0});  // the first directory follows itself
     assert_refused(in, "lead in a circle");
     save(in, {'I', 'I', 42, 0, 0, 0, 0, 0});
     assert_refused(in, "no directory");
@@ -237,14 +230,13 @@ void test_refused(void **) {
     assert_refused(in, "ends before");
 }
 
-/* Cut anywhere a file is refused, or, where only pixels are missing, read; changed anywhere it is one of the two. */
+// Cut anywhere a file is refused, or, where only pixels are missing, read; changed anywhere it is one of the two.
 void test_cuts_and_mutations(void **) {
     const Bytes whole = load(write_dng("in.dng", "wl", 3));
     const std::string path = in_folder("cut.dng"), out = in_folder("out.dng");
     const auto try_one = [&](bool writes) {
         try {
-            if (!writes)
-                return read_opcode_lists(path).width ? 1 : 2;
+            if (!writes) return read_opcode_lists(path).width ? 1 : 2;
             write_opcode_list(path, out, tag_opcode_list3, some_list(60));
             return read_opcode_lists(out).list3 == some_list(60) ? 1 : 2;
         } catch (const Failure &failure) {
@@ -254,20 +246,20 @@ void test_cuts_and_mutations(void **) {
     };
     for (size_t size = 0; size < whole.size(); size += 61) {
         save(path, Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
-        assert_int_equal(try_one(true), 0); /* the raw image's directory is the last thing of the file */
+        assert_int_equal(try_one(true), 0);  // the raw image's directory is the last thing of the file
     }
     Bytes changed = whole;
     size_t good = 0;
     for (size_t at = 0; at < whole.size(); at += 1 + at / 400) {
         changed[at] ^= 0x91;
         save(path, changed);
-        good += try_one(at % 300 == 0) == 1; /* every write is made to last, which takes its time */
+        good += try_one(at % 300 == 0) == 1;  // every write is made to last, which takes its time
         changed[at] = whole[at];
     }
     assert_true(good > 100);
 }
 
-/* What the library writes, under the names that exiftool has for it. */
+// What the library writes, under the names that exiftool has for it.
 void test_exiftool(void **) {
     if (system("exiftool -ver >/dev/null 2>&1") != 0) {
         print_message("needs package libimage-exiftool-perl\n");
@@ -277,8 +269,7 @@ void test_exiftool(void **) {
     auto profile = std::make_unique<lensprof_profile>();
     lensprof_profile_init(profile.get());
     profile->vignettings = 3;
-    for (int c = 0; c < 3; ++c)
-        profile->vignetting[c] = {{-0.3 - 0.05 * c, 0, 0}, {0, 0}};
+    for (int c = 0; c < 3; ++c) profile->vignetting[c] = {{-0.3 - 0.05 * c, 0, 0}, {0, 0}};
     Bytes list(20000);
     size_t needed = 0;
     const auto write = [&](uint32_t form, uint16_t tag) {
@@ -291,13 +282,11 @@ void test_exiftool(void **) {
     write(LENSPROF_DNG_RADIAL, tag_opcode_list3);
     FILE *said = popen(("exiftool -s -OpcodeList2 -OpcodeList3 -ImageWidth -Warning '" + path + "'").c_str(), "r");
     std::string text;
-    for (char line[300]; fgets(line, sizeof line, said);)
-        text += line;
+    for (char line[300]; fgets(line, sizeof line, said);) text += line;
     assert_int_equal(pclose(said), 0);
-    for (const char *expected : {"OpcodeList2", ": GainMap, GainMap, GainMap, GainMap\n", "OpcodeList3",
-                                 ": FixVignetteRadial\n"})
-        if (text.find(expected) == std::string::npos)
-            fail_msg("no %s in %s", expected, text.c_str());
+    for (const char *expected :
+         {"OpcodeList2", ": GainMap, GainMap, GainMap, GainMap\n", "OpcodeList3", ": FixVignetteRadial\n"})
+        if (text.find(expected) == std::string::npos) fail_msg("no %s in %s", expected, text.c_str());
     assert_true(text.find("Warning") == std::string::npos);
 }
 

@@ -1,4 +1,4 @@
-/* Picture files: round trips, all kinds of files that the libraries can write, reduced reading. */
+// Picture files: round trips, all kinds of files that the libraries can write, reduced reading.
 #include "picture_files.hpp"
 
 #include <algorithm>
@@ -16,24 +16,22 @@ double value_of(const Picture &picture, uint32_t x, uint32_t y, uint32_t c) {
                                                    : double(reinterpret_cast<const float *>(row)[i]);
 }
 
-/* Whether all samples of held pixel (x, y) are the mean of the middle two of the 2 x 2 pixels from (u, v) on, but for
- * rounding. */
+// Whether all samples of held pixel (x, y) are the mean of the middle two of the 2 x 2 pixels from (u, v) on, but for
+// rounding.
 bool is_middle_of(const Picture &full, const Picture &small, uint32_t x, uint32_t y, uint32_t u, uint32_t v,
                   double tolerance) {
     for (uint32_t c = 0; c < lensprof_layout_samples(full.layout); ++c) {
         double values[4];
-        for (uint32_t i = 0; i < 4; ++i)
-            values[i] = value_of(full, u + i % 2, v + i / 2, c);
+        for (uint32_t i = 0; i < 4; ++i) values[i] = value_of(full, u + i % 2, v + i / 2, c);
         std::sort(values, values + 4);
         const double mean = (values[1] + values[2]) / 2;
         const double rounded = full.sample == LENSPROF_SAMPLE_F32 ? double(float(mean)) : floor(mean + 0.5);
-        if (!(std::fabs(value_of(small, x, y, c) - rounded) <= tolerance + 1e-7))
-            return false;
+        if (!(std::fabs(value_of(small, x, y, c) - rounded) <= tolerance + 1e-7)) return false;
     }
     return true;
 }
 
-/* Every pixel of `small` must be the middle of a block of 2 x 2 pixels in its square of `full`. */
+// Every pixel of `small` must be the middle of a block of 2 x 2 pixels in its square of `full`.
 void assert_reduced(const Picture &full, const Picture &small, uint32_t step, double tolerance) {
     assert_int_equal(small.reduction, step);
     assert_int_equal(small.width, full.width / step);
@@ -41,20 +39,18 @@ void assert_reduced(const Picture &full, const Picture &small, uint32_t step, do
     assert_int_equal(small.frame_width, full.width);
     assert_int_equal(small.frame_height, full.height);
     assert_int_equal(small.pixels.size(), small.row_bytes * small.height);
-    if (step == 1)
-        assert_same_pixels(full, small);
+    if (step == 1) assert_same_pixels(full, small);
     for (uint32_t i = 0; step > 1 && i < small.width * small.height; ++i) {
         const uint32_t x = i % small.width, y = i / small.width;
         bool found = false;
         for (uint32_t v = y * step; v < (y + 1) * step; v += 2)
             for (uint32_t u = x * step; u < (x + 1) * step; u += 2)
                 found = found || is_middle_of(full, small, x, y, u, v, tolerance);
-        if (!found)
-            fail_msg("pixel %u, %u reduced by %u is no middle of a block of its square", x, y, step);
+        if (!found) fail_msg("pixel %u, %u reduced by %u is no middle of a block of its square", x, y, step);
     }
 }
 
-/* Tests: round trips. */
+// Tests: round trips.
 
 void test_png_round_trip(void **) {
     for (uint32_t layout = LENSPROF_LAYOUT_GREY; layout <= LENSPROF_LAYOUT_RGBA; ++layout) {
@@ -103,8 +99,7 @@ void test_tiff_round_trip(void **) {
                                      COMPRESSION_DEFLATE};
     int run = 0;
     for (uint16_t compression : compressions) {
-        if (!TIFFIsCODECConfigured(compression))
-            continue;
+        if (!TIFFIsCODECConfigured(compression)) continue;
         for (uint32_t layout = LENSPROF_LAYOUT_GREY; layout <= LENSPROF_LAYOUT_RGBA; ++layout) {
             for (uint32_t sample : {LENSPROF_SAMPLE_U8, LENSPROF_SAMPLE_U16, LENSPROF_SAMPLE_F32}) {
                 Picture picture = make_noise(41, 29, sample, layout);
@@ -122,8 +117,7 @@ void test_tiff_round_trip(void **) {
                 assert_same_pixels(picture, again);
                 assert_true(again.icc == picture.icc);
                 assert_int_equal(again.traits.compression, compression);
-                if (layout % 2 == 1)
-                    assert_true(again.traits.alpha == picture.traits.alpha);
+                if (layout % 2 == 1) assert_true(again.traits.alpha == picture.traits.alpha);
                 assert_int_equal(again.traits.orientation, 6);
                 assert_close(again.traits.x_resolution, 254, 1e-4);
                 assert_close(again.traits.y_resolution, 127, 1e-4);
@@ -146,7 +140,7 @@ void test_tiff_keeps_not_finite(void **) {
 void test_jpeg_round_trip(void **) {
     for (uint32_t layout : {LENSPROF_LAYOUT_GREY, LENSPROF_LAYOUT_RGB}) {
         Picture picture = make_smooth(133, 87, layout);
-        picture.icc = make_profile(layout == LENSPROF_LAYOUT_GREY, 200000); /* more than one segment holds */
+        picture.icc = make_profile(layout == LENSPROF_LAYOUT_GREY, 200000);  // more than one segment holds
         picture.traits.x_resolution = picture.traits.y_resolution = 300;
         picture.traits.resolution_unit = PictureTraits::Unit::inch;
         write_picture(in_folder("a.jpg"), picture);
@@ -160,7 +154,7 @@ void test_jpeg_round_trip(void **) {
     }
 }
 
-/* Written again it has the quality, the subsampling and the kind of the file it came from; a wanted quality wins. */
+// Written again it has the quality, the subsampling and the kind of the file it came from; a wanted quality wins.
 void test_jpeg_keeps_coding(void **) {
     const Picture picture = make_smooth(64, 48, LENSPROF_LAYOUT_RGB);
     for (const JpegKind &kind : {JpegKind{60, 2, 2, false, false}, JpegKind{85, 2, 1, true, false}}) {
@@ -180,7 +174,7 @@ void test_jpeg_keeps_coding(void **) {
     assert_int_equal(read_picture(in_folder("b.jpg")).traits.quantisation[0][0], 1);
 }
 
-/* More coefficients than are held in memory: the file is what libjpeg makes with all of them in memory. */
+// More coefficients than are held in memory: the file is what libjpeg makes with all of them in memory.
 void test_large_jpeg(void **) {
     const Picture noise = make_noise(1400, 1301, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB),
                   smooth = make_smooth(1404, 2000, LENSPROF_LAYOUT_RGB),
@@ -195,21 +189,20 @@ void test_large_jpeg(void **) {
                 write_jpeg_file(in_folder("b.jpg"), picture, {95, step, step, progressive, false, true});
                 write_picture(in_folder("a.jpg"), picture);
                 assert_true(load(in_folder("a.jpg")) == load(in_folder("b.jpg")));
-                if (step == 1 && kind != &noise) /* the test is about such pictures */
+                if (step == 1 && kind != &noise)  // the test is about such pictures
                     assert_true(samples * 2 * lensprof_layout_channels(picture.layout) > jpeg_memory_bytes);
             }
 }
 
-/* Tests: kinds of files. */
+// Tests: kinds of files.
 
-/* Bits from the highest down, as PNG packs them. */
+// Bits from the highest down, as PNG packs them.
 Bytes pack(const std::vector<int> &values, uint32_t width, int bits) {
     const size_t row_bytes = (width * unsigned(bits) + 7) / 8;
     Bytes packed(row_bytes * (values.size() / width), 0);
     for (size_t i = 0; i < values.size(); ++i) {
         const size_t bit = i % width * unsigned(bits);
-        packed[i / width * row_bytes + bit / 8] |=
-            static_cast<uint8_t>(values[i] << (8 - unsigned(bits) - bit % 8));
+        packed[i / width * row_bytes + bit / 8] |= static_cast<uint8_t>(values[i] << (8 - unsigned(bits) - bit % 8));
     }
     return packed;
 }
@@ -219,18 +212,15 @@ void test_png_palette(void **) {
     for (int bits : {1, 2, 4, 8}) {
         const int colours = std::min(1 << bits, 200);
         std::vector<png_color> palette;
-        for (int i = 0; i < colours; ++i)
-            palette.push_back({png_byte(i), png_byte(255 - i), png_byte(i * 7)});
+        for (int i = 0; i < colours; ++i) palette.push_back({png_byte(i), png_byte(255 - i), png_byte(i * 7)});
         Bytes alpha = {10, 200};
         std::vector<int> values;
-        for (uint32_t i = 0; i < width * height; ++i)
-            values.push_back(int(i * 5 % unsigned(colours)));
+        for (uint32_t i = 0; i < width * height; ++i) values.push_back(int(i * 5 % unsigned(colours)));
         Bytes packed = pack(values, width, bits);
         for (bool transparent : {false, true}) {
             const auto extra = [&](png_structp p, png_infop i) {
                 png_set_PLTE(p, i, palette.data(), colours);
-                if (transparent)
-                    png_set_tRNS(p, i, alpha.data(), 2, nullptr);
+                if (transparent) png_set_tRNS(p, i, alpha.data(), 2, nullptr);
             };
             PngKind kind{width, height, bits, PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_NONE, extra};
             write_png_file(in_folder("a.png"), kind, packed);
@@ -242,8 +232,7 @@ void test_png_palette(void **) {
                 assert_int_equal(pixel[0], palette[size_t(values[i])].red);
                 assert_int_equal(pixel[1], palette[size_t(values[i])].green);
                 assert_int_equal(pixel[2], palette[size_t(values[i])].blue);
-                if (transparent)
-                    assert_int_equal(pixel[3], values[i] < 2 ? alpha[size_t(values[i])] : 255);
+                if (transparent) assert_int_equal(pixel[3], values[i] < 2 ? alpha[size_t(values[i])] : 255);
             }
         }
     }
@@ -253,8 +242,7 @@ void test_png_grey_bits(void **) {
     const uint32_t width = 11, height = 4;
     for (int bits : {1, 2, 4}) {
         std::vector<int> values;
-        for (int i = 0; i < int(width * height); ++i)
-            values.push_back(i % (1 << bits));
+        for (int i = 0; i < int(width * height); ++i) values.push_back(i % (1 << bits));
         Bytes packed = pack(values, width, bits);
         png_color_16 transparent = {};
         transparent.gray = 1;
@@ -271,13 +259,12 @@ void test_png_grey_bits(void **) {
     }
 }
 
-/* 16 bit samples are big-endian in the file; interlaced files come out in order. */
+// 16 bit samples are big-endian in the file; interlaced files come out in order.
 void test_png_deep_interlaced(void **) {
     const uint32_t width = 19, height = 14;
     Bytes bytes(width * height * 6);
     uint64_t state = 5;
-    for (uint8_t &byte : bytes)
-        byte = static_cast<uint8_t>(256 * lp_random(&state));
+    for (uint8_t &byte : bytes) byte = static_cast<uint8_t>(256 * lp_random(&state));
     for (int interlace : {PNG_INTERLACE_NONE, PNG_INTERLACE_ADAM7}) {
         PngKind kind{width, height, 16, PNG_COLOR_TYPE_RGB, interlace, [](png_structp, png_infop) {}};
         write_png_file(in_folder("a.png"), kind, bytes);
@@ -329,7 +316,7 @@ void test_tiff_min_is_white(void **) {
     }
 }
 
-/* JPEG inside TIFF is read as RGB, and not written again with losses. */
+// JPEG inside TIFF is read as RGB, and not written again with losses.
 void test_tiff_jpeg(void **) {
     const Picture picture = make_smooth(96, 64, LENSPROF_LAYOUT_RGB);
     for (uint32_t tile : {0u, 32u}) {
@@ -349,8 +336,7 @@ void test_tiff_jpeg(void **) {
 void test_reduced_lossless(void **) {
     for (const char *name : {"a.png", "a.tif"}) {
         for (uint32_t sample : {LENSPROF_SAMPLE_U8, LENSPROF_SAMPLE_U16, LENSPROF_SAMPLE_F32}) {
-            if (sample == LENSPROF_SAMPLE_F32 && name[2] == 'p')
-                continue;
+            if (sample == LENSPROF_SAMPLE_F32 && name[2] == 'p') continue;
             const Picture full = make_noise(101, 67, sample, LENSPROF_LAYOUT_RGBA);
             write_picture(in_folder(name), full);
             for (uint32_t max_side : {100u, 50u, 49u, 20u, 3u, 1u}) {
@@ -381,7 +367,7 @@ void test_reduced_jpeg(void **) {
     }
 }
 
-/* Progressive files and halved chroma reduce in the same way. */
+// Progressive files and halved chroma reduce in the same way.
 void test_reduced_jpeg_kinds(void **) {
     for (int chroma : {1, 2})
         for (bool progressive : {false, true}) {
@@ -399,8 +385,8 @@ void test_reduced_jpeg_kinds(void **) {
         }
 }
 
-/* On a slope, patches of 5 x 5 reduced pixels have the mean of the middles of their squares: what each pixel is short
- * of its middle, its neighbours make up for. */
+// On a slope, patches of 5 x 5 reduced pixels have the mean of the middles of their squares: what each pixel is short
+// of its middle, its neighbours make up for.
 void test_reduced_is_not_shifted(void **) {
     for (uint32_t step : {4u, 6u, 8u, 14u})
         for (bool down : {false, true}) {
@@ -416,31 +402,29 @@ void test_reduced_is_not_shifted(void **) {
             for (uint32_t y = 2; y + 2 < 40; ++y)
                 for (uint32_t x = 2; x + 2 < 40; ++x) {
                     double sum = 0;
-                    for (uint32_t i = 0; i < 25; ++i)
-                        sum += value_of(small, x + i % 5 - 2, y + i / 5 - 2, 0) / 25;
+                    for (uint32_t i = 0; i < 25; ++i) sum += value_of(small, x + i % 5 - 2, y + i / 5 - 2, 0) / 25;
                     const double middle = 100 * ((down ? y : x) * step + (step - 1) / 2.0);
                     assert_close(sum / (100 * step), middle / (100 * step), 0.15);
                 }
         }
 }
 
-/* One wrong pixel in ten: less than one held pixel in ten is wrong, however small the picture. */
+// One wrong pixel in ten: less than one held pixel in ten is wrong, however small the picture.
 void test_reduced_keeps_wrong_pixels_apart(void **) {
     Picture full = make_noise(640, 480, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY);
     uint64_t random = 3;
-    for (uint8_t &value : full.pixels)
-        value = lp_random(&random) < 0.1 ? 255 : 100;
+    for (uint8_t &value : full.pixels) value = lp_random(&random) < 0.1 ? 255 : 100;
     write_picture(in_folder("a.png"), full);
     for (uint32_t max_side : {320u, 160u, 80u, 40u}) {
         ReadOptions options;
         options.max_side = max_side;
         const Picture small = read_picture(in_folder("a.png"), options);
         const auto clean = std::count(small.pixels.begin(), small.pixels.end(), uint8_t{100});
-        assert_true(double(clean) > 0.92 * double(small.pixels.size())); /* at most one of four is wrong: 0.948 */
+        assert_true(double(clean) > 0.92 * double(small.pixels.size()));  // at most one of four is wrong: 0.948
     }
 }
 
-/* A reduced picture says where it is in the frame; content counts, not the name. */
+// A reduced picture says where it is in the frame; content counts, not the name.
 void test_size(void **) {
     const Picture picture = make_smooth(90, 40, LENSPROF_LAYOUT_RGB);
     for (const char *name : {"a.png", "a.tif", "a.jpg"}) {
@@ -462,16 +446,25 @@ void test_size(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        cmocka_unit_test(test_png_round_trip),        cmocka_unit_test(test_png_keeps_colour_chunks),
-        cmocka_unit_test(test_tiff_round_trip),       cmocka_unit_test(test_tiff_keeps_not_finite),
-        cmocka_unit_test(test_jpeg_round_trip),       cmocka_unit_test(test_jpeg_keeps_coding),
-        cmocka_unit_test(test_png_palette),           cmocka_unit_test(test_png_grey_bits),
-        cmocka_unit_test(test_png_deep_interlaced),   cmocka_unit_test(test_tiff_kinds),
-        cmocka_unit_test(test_tiff_min_is_white),     cmocka_unit_test(test_tiff_jpeg),
-        cmocka_unit_test(test_reduced_lossless),      cmocka_unit_test(test_reduced_jpeg),
-        cmocka_unit_test(test_reduced_jpeg_kinds),    cmocka_unit_test(test_reduced_is_not_shifted),
+        cmocka_unit_test(test_png_round_trip),
+        cmocka_unit_test(test_png_keeps_colour_chunks),
+        cmocka_unit_test(test_tiff_round_trip),
+        cmocka_unit_test(test_tiff_keeps_not_finite),
+        cmocka_unit_test(test_jpeg_round_trip),
+        cmocka_unit_test(test_jpeg_keeps_coding),
+        cmocka_unit_test(test_png_palette),
+        cmocka_unit_test(test_png_grey_bits),
+        cmocka_unit_test(test_png_deep_interlaced),
+        cmocka_unit_test(test_tiff_kinds),
+        cmocka_unit_test(test_tiff_min_is_white),
+        cmocka_unit_test(test_tiff_jpeg),
+        cmocka_unit_test(test_reduced_lossless),
+        cmocka_unit_test(test_reduced_jpeg),
+        cmocka_unit_test(test_reduced_jpeg_kinds),
+        cmocka_unit_test(test_reduced_is_not_shifted),
         cmocka_unit_test(test_reduced_keeps_wrong_pixels_apart),
-        cmocka_unit_test(test_large_jpeg),            cmocka_unit_test(test_size),
+        cmocka_unit_test(test_large_jpeg),
+        cmocka_unit_test(test_size),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

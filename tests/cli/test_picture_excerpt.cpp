@@ -1,11 +1,11 @@
-/* Metadata edited in an excerpt of a picture file: the result is to the byte that of Exiv2 on the whole file. */
+// Metadata edited in an excerpt of a picture file: the result is to the byte that of Exiv2 on the whole file.
 #include <cstring>
 
-#include <exiv2/exiv2.hpp> /* before cmocka, which makes a macro of `fail` */
+#include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
 
 #include "picture_files.hpp"
 
-#include "cli/picture_excerpt.hpp"
+#include "cli/pictures/picture_excerpt.hpp"
 
 using namespace picture_files;
 
@@ -40,7 +40,7 @@ void add_much(Exiv2::Image &image) {
 
 void turn(Exiv2::Image &image) { image.exifData()["Exif.Image.Orientation"] = uint16_t(8); }
 
-/* The picture's pixels as they were, and the file as Exiv2 makes it alone; the excerpt is a small one. */
+// The picture's pixels as they were, and the file as Exiv2 makes it alone; the excerpt is a small one.
 void check_edits(const std::string &name, size_t excerpt_max) {
     const std::string path = in_folder(name), other = in_folder("whole-" + name);
     const Bytes bytes = load(path);
@@ -49,8 +49,7 @@ void check_edits(const std::string &name, size_t excerpt_max) {
         save(path, bytes);
         save(other, bytes);
         const auto excerpt = codec::excerpt_of(path);
-        if (!excerpt)
-            fail_msg("%s: no excerpt", name.c_str());
+        if (!excerpt) fail_msg("%s: no excerpt", name.c_str());
         assert_true(excerpt->bytes().size() < excerpt_max);
         edit(*excerpt, change);
         edit(*codec::whole_file(other), change);
@@ -69,8 +68,7 @@ void test_png(void **) {
         for (uint32_t sample : {LENSPROF_SAMPLE_U8, LENSPROF_SAMPLE_U16}) {
             Picture picture = make_noise(211, 97, sample, layout);
             picture.traits.x_resolution = picture.traits.y_resolution = 300;
-            if (sample == LENSPROF_SAMPLE_U16)
-                picture.icc = make_profile(layout < LENSPROF_LAYOUT_RGB, 400);
+            if (sample == LENSPROF_SAMPLE_U16) picture.icc = make_profile(layout < LENSPROF_LAYOUT_RGB, 400);
             write_picture(in_folder("a.png"), picture);
             check_edits("a.png", 1000);
         }
@@ -87,7 +85,7 @@ void test_jpeg(void **) {
         }
 }
 
-/* One strip and many, of odd and even bytes, whose counts libtiff writes as 16 or 32 bits. */
+// One strip and many, of odd and even bytes, whose counts libtiff writes as 16 or 32 bits.
 void test_tiff(void **) {
     for (uint16_t compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE})
         for (uint32_t layout : {LENSPROF_LAYOUT_GREY, LENSPROF_LAYOUT_RGB})
@@ -102,7 +100,7 @@ void test_tiff(void **) {
                 }
 }
 
-/* Strips as other programs make them, in both byte orders; planes of their own. */
+// Strips as other programs make them, in both byte orders; planes of their own.
 void test_tiff_kinds(void **) {
     const Picture picture = make_noise(45, 38, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
     for (const char *mode : {"wl", "wb"})
@@ -112,7 +110,7 @@ void test_tiff_kinds(void **) {
         }
 }
 
-/* What is not laid out as this program does it is left to the whole file. */
+// What is not laid out as this program does it is left to the whole file.
 void test_others(void **) {
     const Picture picture = make_noise(45, 38, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
     TiffKind tiles{"wl", COMPRESSION_LZW};
@@ -123,7 +121,7 @@ void test_others(void **) {
     assert_null(codec::excerpt_of(in_folder("a.tif")).get());
     write_picture(in_folder("a.tif"), picture);
     edit(*codec::whole_file(in_folder("a.tif")), add_much);
-    assert_null(codec::excerpt_of(in_folder("a.tif")).get()); /* Exiv2 writes the directory first */
+    assert_null(codec::excerpt_of(in_folder("a.tif")).get());  // Exiv2 writes the directory first
     PictureMetadata metadata = unknown_metadata();
     std::strcpy(metadata.key.camera_model, "Model");
     assert_true(write_metadata(in_folder("a.tif"), metadata));
@@ -131,7 +129,7 @@ void test_others(void **) {
     assert_same_pixels(picture, read_picture(in_folder("a.tif")));
 }
 
-/* Any damage ends in no excerpt, or in one that gives a file or a Failure. */
+// Any damage ends in no excerpt, or in one that gives a file or a Failure.
 void test_damaged_files(void **) {
     const Picture picture = make_noise(45, 38, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
     uint64_t state = 3;
@@ -142,8 +140,7 @@ void test_damaged_files(void **) {
             Bytes changed = bytes;
             const size_t range = run % 2 ? 300 : bytes.size(), at = size_t(double(range) * lp_random(&state));
             changed[run % 4 < 2 ? at : bytes.size() - 1 - at] = static_cast<uint8_t>(256 * lp_random(&state));
-            if (run % 5 == 0)
-                changed.resize(at);
+            if (run % 5 == 0) changed.resize(at);
             save(in_folder(name), changed);
             try {
                 write_metadata(in_folder(name), unknown_metadata());

@@ -1,4 +1,4 @@
-/* Picture files: everything that can go wrong, and what is on the disk afterwards. */
+// Picture files: everything that can go wrong, and what is on the disk afterwards.
 #include "picture_files.hpp"
 
 #include <csignal>
@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "cli/output_file.hpp"
+#include "cli/program/output_file.hpp"
 
 using namespace picture_files;
 
@@ -17,7 +17,7 @@ namespace {
 
 struct Sample {
     std::string name;
-    Picture picture; /* as it is read */
+    Picture picture;  // as it is read
     Bytes bytes;
 };
 
@@ -25,7 +25,7 @@ void add_sample(std::vector<Sample> &samples, const std::string &name) {
     samples.push_back({name, read_picture(in_folder(name)), load(in_folder(name))});
 }
 
-/* One file of every way in which pixels are decoded. */
+// One file of every way in which pixels are decoded.
 std::vector<Sample> make_samples() {
     std::vector<Sample> samples;
     const Picture smooth = make_smooth(61, 47, LENSPROF_LAYOUT_RGB);
@@ -39,12 +39,11 @@ std::vector<Sample> make_samples() {
     add_sample(samples, "baseline.jpg");
     write_jpeg_file(in_folder("progressive.jpg"), smooth, {90, 2, 2, true, false});
     add_sample(samples, "progressive.jpg");
-    for (uint16_t compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS,
-                                 COMPRESSION_JPEG}) {
+    for (uint16_t compression :
+         {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS, COMPRESSION_JPEG}) {
         for (uint32_t tile : {0u, 16u}) {
             TiffKind kind{"w", compression, tile ? uint16_t(PLANARCONFIG_SEPARATE) : uint16_t(PLANARCONFIG_CONTIG)};
-            if (compression == COMPRESSION_JPEG)
-                kind.planar = PLANARCONFIG_CONTIG;
+            if (compression == COMPRESSION_JPEG) kind.planar = PLANARCONFIG_CONTIG;
             kind.tile = tile;
             kind.rows_per_strip = 16;
             const std::string name = std::to_string(compression) + (tile ? "tiles.tif" : "strips.tif");
@@ -55,7 +54,7 @@ std::vector<Sample> make_samples() {
     return samples;
 }
 
-/* Moves the directory of a little-endian TIFF before the pixels, so that a cut hits the pixels. */
+// Moves the directory of a little-endian TIFF before the pixels, so that a cut hits the pixels.
 Bytes directory_first(const Bytes &tiff) {
     const auto get = [&](size_t at) {
         return size_t(tiff[at]) | size_t(tiff[at + 1]) << 8 | size_t(tiff[at + 2]) << 16 | size_t(tiff[at + 3]) << 24;
@@ -65,8 +64,7 @@ Bytes directory_first(const Bytes &tiff) {
     moved.insert(moved.end(), tiff.begin() + long(start), tiff.end());
     moved.insert(moved.end(), tiff.begin() + 8, tiff.begin() + long(start));
     const auto put = [&](size_t at, size_t value) {
-        for (size_t i = 0; i < 4; ++i)
-            moved[at + i] = static_cast<uint8_t>(value >> (8 * i));
+        for (size_t i = 0; i < 4; ++i) moved[at + i] = static_cast<uint8_t>(value >> (8 * i));
     };
     put(4, 8);
     const size_t entries = moved[8] + 256u * moved[9];
@@ -90,7 +88,7 @@ void check_cut(const Sample &sample, const Bytes &bytes, size_t length) {
         options.max_side = max_side;
         try {
             const Picture picture = read_picture(path, options);
-            /* Nothing may be missing: what was cut off was not needed. */
+            // Nothing may be missing: what was cut off was not needed.
             save(path, sample.bytes);
             assert_same_pixels(picture, read_picture(path, options));
             assert_true(bytes.size() - length <= 4 && sample.name.find(".tif") != std::string::npos);
@@ -105,12 +103,11 @@ void test_cut_files(void **) {
     for (const Sample &sample : make_samples()) {
         for (size_t length = 0; length < sample.bytes.size(); length += 1 + sample.bytes.size() / 150)
             check_cut(sample, sample.bytes, length);
-        for (size_t i = 1; i < 6; ++i)
-            check_cut(sample, sample.bytes, sample.bytes.size() - i);
+        for (size_t i = 1; i < 6; ++i) check_cut(sample, sample.bytes, sample.bytes.size() - i);
     }
 }
 
-/* Many programs write the directory first; libtiff's own files end with it. */
+// Many programs write the directory first; libtiff's own files end with it.
 void test_cut_tiff_pixels(void **) {
     for (const Picture &picture : {make_noise(40, 30, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB),
                                    make_noise(40, 30, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY)}) {
@@ -130,7 +127,7 @@ void test_cut_tiff_pixels(void **) {
     }
 }
 
-/* Damage is either noticed or harmless to the process. */
+// Damage is either noticed or harmless to the process.
 void test_changed_bytes(void **) {
     uint64_t state = 11;
     for (const Sample &sample : make_samples()) {
@@ -153,7 +150,7 @@ void test_changed_bytes(void **) {
     }
 }
 
-/* The number of a component's quantisation table is a byte of the file, of which 0 to 3 can be. */
+// The number of a component's quantisation table is a byte of the file, of which 0 to 3 can be.
 void test_any_quantisation_table(void **) {
     write_jpeg_file(in_folder("a.jpg"), make_smooth(40, 30, LENSPROF_LAYOUT_RGB), JpegKind());
     Bytes bytes = load(in_folder("a.jpg"));
@@ -170,13 +167,13 @@ void test_any_quantisation_table(void **) {
         }
 }
 
-/* An end marker in the middle of a JPEG strip: libtiff only warns, half of the pixels would be made up. */
+// An end marker in the middle of a JPEG strip: libtiff only warns, half of the pixels would be made up.
 void test_damaged_jpeg_in_tiff(void **) {
     TiffKind kind{"wl", COMPRESSION_JPEG};
     kind.rows_per_strip = 64;
     write_tiff_file(in_folder("a.tif"), make_smooth(96, 64, LENSPROF_LAYOUT_RGB), kind);
     Bytes bytes = load(in_folder("a.tif"));
-    bytes[300] = 0xff; /* the strip of about 770 bytes comes first */
+    bytes[300] = 0xff;  // the strip of about 770 bytes comes first
     bytes[301] = 0xd9;
     save(in_folder("a.tif"), bytes);
     assert_failure(ExitCode::unreadable, "a.tif: cannot read: file is truncated or damaged",
@@ -205,10 +202,10 @@ void test_not_pictures(void **) {
     assert_failure(ExitCode::unreadable, "no.png: cannot read: No such file", read("no.png"));
     assert_failure(ExitCode::unreadable, "is a folder", read("."));
     assert_failure(ExitCode::unreadable, "is a folder", [] { read_size(in_folder(".")); });
-    assert_failure(ExitCode::unreadable, "text.jpg: cannot read metadata: ",
-                   [] { read_metadata(in_folder("text.jpg")); });
+    assert_failure(ExitCode::unreadable,
+                   "text.jpg: cannot read metadata: ", [] { read_metadata(in_folder("text.jpg")); });
     assert_failure(ExitCode::unreadable, "is a folder", [] { read_metadata(in_folder(".")); });
-    assert_int_equal(mkfifo(in_folder("pipe.jpg").c_str(), 0600), 0); /* which nobody writes to */
+    assert_int_equal(mkfifo(in_folder("pipe.jpg").c_str(), 0600), 0);  // which nobody writes to
     assert_failure(ExitCode::unreadable, "pipe.jpg: cannot read: is no file", read("pipe.jpg"));
     assert_failure(ExitCode::unreadable, "pipe.jpg: cannot read", [] { read_metadata(in_folder("pipe.jpg")); });
 }
@@ -238,13 +235,13 @@ void test_unsupported_kinds(void **) {
     assert_failure(ExitCode::unreadable, "1 bit TIFF", read);
 }
 
-/* A header that claims a frame of terabytes is refused before anything is reserved for it. */
+// A header that claims a frame of terabytes is refused before anything is reserved for it.
 void test_too_large(void **) {
     Bytes bytes(30, 0);
     PngKind kind{10, 3, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, [](png_structp, png_infop) {}};
     write_png_file(in_folder("a.png"), kind, bytes);
     Bytes file = load(in_folder("a.png"));
-    const Bytes size = {0, 16, 0, 0, 0, 16, 0, 0}; /* 2^20 x 2^20 */
+    const Bytes size = {0, 16, 0, 0, 0, 16, 0, 0};  // 2^20 x 2^20
     std::copy(size.begin(), size.end(), file.begin() + 16);
     const Bytes crc = {0x6e, 0x43, 0xff, 0x19};
     std::copy(crc.begin(), crc.end(), file.begin() + 29);
@@ -296,7 +293,7 @@ void test_unwritable_targets(void **) {
     assert_failure(ExitCode::failed, "b.png: cannot write: is not a regular file",
                    [&] { write_picture(in_folder("b.png"), picture); });
     assert_failure(ExitCode::failed, "/proc/a.png: cannot write: ", [&] { write_picture("/proc/a.png", picture); });
-    if (geteuid() != 0) { /* root may write everywhere */
+    if (geteuid() != 0) {  // root may write everywhere
         fs::permissions(in_folder("b.png"), fs::perms::owner_read | fs::perms::owner_exec);
         assert_failure(ExitCode::failed, "Permission denied",
                        [&] { write_picture(in_folder("b.png/a.png"), picture); });
@@ -304,7 +301,7 @@ void test_unwritable_targets(void **) {
     assert_int_equal(files_in_folder(), 1);
 }
 
-/* A failure leaves the older file; success keeps its permissions and the link that points to it. */
+// A failure leaves the older file; success keeps its permissions and the link that points to it.
 void test_replacing(void **) {
     save(in_folder("old.png"), {1, 2, 3});
     chmod(in_folder("old.png").c_str(), 0640);
@@ -333,7 +330,7 @@ void test_long_name(void **) {
     assert_same_pixels(picture, read_picture(in_folder(name + ".png")));
 }
 
-/* In a child process: no file may become longer than `limit`. 0 when all went as it must. */
+// In a child process: no file may become longer than `limit`. 0 when all went as it must.
 int write_on_full_disk(const std::string &name, const Picture &picture, const WriteOptions &options, rlim_t limit) {
     const pid_t child = fork();
     if (child == 0) {
@@ -348,8 +345,7 @@ int write_on_full_disk(const std::string &name, const Picture &picture, const Wr
             result = text.find(name + ": cannot write: File too large") == std::string::npos ? 2
                      : failure.code != ExitCode::failed                                      ? 3
                                                                                              : 0;
-            if (result != 0)
-                std::fprintf(stderr, "%s\n", text.c_str());
+            if (result != 0) std::fprintf(stderr, "%s\n", text.c_str());
         }
         _exit(result);
     }
@@ -374,13 +370,13 @@ void test_full_disk(void **) {
             assert_int_equal(write_on_full_disk(name, p, options, limit), 0);
             assert_false(fs::exists(in_folder(name)));
         }
-        WriteOptions with_metadata; /* the pixels fit, the metadata do not */
+        WriteOptions with_metadata;  // the pixels fit, the metadata do not
         with_metadata.metadata = &metadata;
         assert_int_equal(write_on_full_disk(name, p, with_metadata, size + 20), 0);
         assert_false(fs::exists(in_folder(name)));
         fs::remove(in_folder("whole" + std::string(name)));
     }
-    /* The coefficients of a large JPEG, before anything of it is in the file itself. */
+    // The coefficients of a large JPEG, before anything of it is in the file itself.
     const Picture large = make_smooth(1404, 2000, LENSPROF_LAYOUT_RGB);
     for (rlim_t limit : {rlim_t(0), rlim_t(1) << 20, rlim_t(16) << 20})
         assert_int_equal(write_on_full_disk("a.jpg", large, options, limit), 0);

@@ -6,8 +6,7 @@
 #include "board.h"
 #include "cases.h"
 
-static void put_number(uint32_t number)
-{
+static void put_number(uint32_t number) {
     char text[11], *p = text + sizeof text;
     *--p = '\0';
     do *--p = (char)('0' + number % 10);
@@ -15,16 +14,14 @@ static void put_number(uint32_t number)
     put_text(p);
 }
 
-static uint32_t sample_at(const void *data, uint32_t sample, uint32_t i)
-{
+static uint32_t sample_at(const void *data, uint32_t sample, uint32_t i) {
     return sample == LENSPROF_SAMPLE_U8 ? ((const uint8_t *)data)[i] : ((const uint16_t *)data)[i];
 }
 
 static uint32_t samples, same;
 
 /* The worst difference in a case, levels; beyond a sample's range when it cannot be applied. */
-static uint32_t check(const random_case *c)
-{
+static uint32_t check(const random_case *c) {
     static uint16_t out[512];
     const lensprof_fixed_plan *plan;
     lensprof_image from = {(void *)c->in, 0, c->width, 1, c->sample, c->layout}, to = from;
@@ -42,8 +39,7 @@ static uint32_t check(const random_case *c)
     return worst;
 }
 
-int main(void)
-{
+int main(void) {
     uint32_t worst = 0;
     for (uint32_t n = 0; n < case_count; n++) {
         const uint32_t own = check(&cases[n]);

@@ -3,17 +3,17 @@
 #define PIXELS 40
 #include "unit/fixed_cases.h"
 
-enum { CASES = 40 };
+enum {
+    CASES = 40
+};
 
-static void print_words(const char *kind, int n, const uint32_t *words, size_t count)
-{
+static void print_words(const char *kind, int n, const uint32_t *words, size_t count) {
     printf("static const uint32_t %s_%d[] = {", kind, n);
     for (size_t i = 0; i < count; i++) printf("%s0x%08x,", i % 8 ? " " : "\n    ", words[i]);
     printf("};\n");
 }
 
-int main(void)
-{
+int main(void) {
     static fixture f;
     uint64_t random = 77;
     printf("/* Written by make_cases. */\n#include \"cases.h\"\n\nconst uint32_t case_count = %d;\n", CASES);
@@ -25,8 +25,10 @@ int main(void)
         print_words("in", n, words, (PIXELS * f.bytes + 3) / 4);
         memset(words, 0, sizeof words);
         for (uint32_t i = 0; i < PIXELS * lensprof_layout_samples(f.from.layout); i++)
-            if (f.from.sample == LENSPROF_SAMPLE_U8) ((uint8_t *)words)[i] = (uint8_t)wanted_at(&f, i);
-            else ((uint16_t *)words)[i] = (uint16_t)wanted_at(&f, i);
+            if (f.from.sample == LENSPROF_SAMPLE_U8)
+                ((uint8_t *)words)[i] = (uint8_t)wanted_at(&f, i);
+            else
+                ((uint16_t *)words)[i] = (uint16_t)wanted_at(&f, i);
         print_words("wanted", n, words, (PIXELS * f.bytes + 3) / 4);
         printf("#define CASE_%d {plan_%d, sizeof plan_%d, in_%d, wanted_%d, %u, %u, %u, %u, %u}\n", n, n, n, n, n,
                f.from.sample, f.from.layout, PIXELS, f.x0, f.y0);

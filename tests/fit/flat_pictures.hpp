@@ -33,11 +33,11 @@ struct FlatPictures {
     uint32_t sample = LENSPROF_SAMPLE_U16;
     lensprof_vignetting vignetting[3];
     lensprof_response response;
-    double gradient[2] = {0.0, 0.0};   // of the light's logarithm, scene right and down, a half diagonal
-    double level = 0.5;                // light at the centre at 0 EV
-    double noise = 0.004;              // of a grey value
+    double gradient[2] = {0.0, 0.0};  // of the light's logarithm, scene right and down, a half diagonal
+    double level = 0.5;               // light at the centre at 0 EV
+    double noise = 0.004;             // of a grey value
     uint64_t seed = 1;
-    Defect defect;                     // or empty
+    Defect defect;  // or empty
     std::vector<std::unique_ptr<std::vector<uint8_t>>> data;
     std::vector<lensprof_flat_image> images;
 
@@ -55,9 +55,8 @@ struct FlatPictures {
         double half = 0.5 * std::hypot(width, height), turn = turn_deg * 3.14159265358979 / 180.0;
         double dx = (x - 0.5 * (width - 1.0)) / half, dy = (y - 0.5 * (height - 1.0)) / half;
         double qx = std::cos(turn) * dx - std::sin(turn) * dy, qy = std::sin(turn) * dx + std::cos(turn) * dy;
-        double m = lensprof_vignetting_eval(&vignetting[channel],
-                                            lensprof_vignetting_r2(&vignetting[channel], width, height, x, y, nullptr),
-                                            nullptr);
+        double m = lensprof_vignetting_eval(
+            &vignetting[channel], lensprof_vignetting_r2(&vignetting[channel], width, height, x, y, nullptr), nullptr);
         return level * m * std::exp(gradient[0] * qx + gradient[1] * qy) * (defect ? defect(x, y, channel) : 1.0);
     }
 
@@ -88,7 +87,11 @@ struct FlatPictures {
                     put(at, lensprof_response_eval(&response, irradiance, nullptr) + noise * normals[random >> 48]);
                 }
         lensprof_flat_image image{};
-        image.view = {data.back()->data(), static_cast<ptrdiff_t>(width) * channels * bytes, width, height, sample,
+        image.view = {data.back()->data(),
+                      static_cast<ptrdiff_t>(width) * channels * bytes,
+                      width,
+                      height,
+                      sample,
                       channels == 3 ? LENSPROF_LAYOUT_RGB : LENSPROF_LAYOUT_GREY};
         image.width = width, image.height = height, image.reduction = 1;
         image.shot = shot, image.ev = ev, image.turn_deg = turn_deg;
@@ -112,8 +115,8 @@ struct FlatPictures {
         lensprof_flat_result_init(result.get());
         result->image_quality = quality;
         lensprof_error error;
-        lensprof_status status = lensprof_fit_flat(&o, images.data(), static_cast<uint32_t>(images.size()),
-                                                   result.get(), &error);
+        lensprof_status status =
+            lensprof_fit_flat(&o, images.data(), static_cast<uint32_t>(images.size()), result.get(), &error);
         if (status != LENSPROF_OK) print_error("%s: %s\n", lensprof_status_name(status), error.text);
         assert_int_equal(status, LENSPROF_OK);
         return result;
@@ -121,7 +124,8 @@ struct FlatPictures {
 };
 
 // Largest difference of two falloffs over the frame.
-inline double falloff_error(const lensprof_vignetting &a, const lensprof_vignetting &b, uint32_t width, uint32_t height) {
+inline double falloff_error(const lensprof_vignetting &a, const lensprof_vignetting &b, uint32_t width,
+                            uint32_t height) {
     double worst = 0.0;
     for (uint32_t i = 0; i < 400; i++) {
         double x = (i % 20) * (width - 1.0) / 19.0, y = (i / 20) * (height - 1.0) / 19.0;

@@ -76,14 +76,14 @@ inline lensprof_status Case::run() {
 
 // Numbers at and beyond every edge.
 inline double odd_number(Case &c) {
-    static const double numbers[] = {kNone, kInfinite, -kInfinite, 1e300, -1e300, 1e-320, -0.0, 0.0, 1.0, -1.0,
-                                     1.0000001, -1e-9, 2.0, 1e9, -1e9, 255.0, 1e6, 64.0, -64.0, 1e-6};
+    static const double numbers[] = {kNone,     kInfinite, -kInfinite, 1e300, -1e300, 1e-320, -0.0, 0.0,  1.0,   -1.0,
+                                     1.0000001, -1e-9,     2.0,        1e9,   -1e9,   255.0,  1e6,  64.0, -64.0, 1e-6};
     return numbers[c.below(sizeof numbers / sizeof *numbers)];
 }
 
 inline uint32_t odd_integer(Case &c) {
-    static const uint32_t numbers[] = {0, 1, 2, 3, 4, 25, 26, 99, 255, 1u << 20, (1u << 20) + 1, 0x7FFFFFFF, 0x80000000,
-                                       0xFFFFFFFE, 0xFFFFFFFF};
+    static const uint32_t numbers[] = {
+        0, 1, 2, 3, 4, 25, 26, 99, 255, 1u << 20, (1u << 20) + 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFE, 0xFFFFFFFF};
     return numbers[c.below(sizeof numbers / sizeof *numbers)];
 }
 
@@ -330,13 +330,13 @@ inline void odd_iterations(Case &c) { c.options.max_iterations = odd_integer(c);
 inline void many_iterations(Case &c) { c.options.max_iterations = c.chance(0.5) ? 200 : 1000000; }
 
 inline void odd_struct_size(Case &c) {
-    (c.chance(0.5) ? c.options.struct_size : c.result.struct_size) +=
-        c.chance(0.5) ? 8 : odd_integer(c);
+    (c.chance(0.5) ? c.options.struct_size : c.result.struct_size) += c.chance(0.5) ? 8 : odd_integer(c);
 }
 
 inline void odd_choices(Case &c) {
-    (c.chance(0.3) ? c.options.vignettings : c.chance(0.5) ? c.options.gamma_from : c.options.camera_kind) =
-        odd_integer(c);
+    (c.chance(0.3)   ? c.options.vignettings
+     : c.chance(0.5) ? c.options.gamma_from
+                     : c.options.camera_kind) = odd_integer(c);
 }
 
 inline void any_choices(Case &c) {
@@ -393,8 +393,7 @@ inline void set_given(Case &c, const std::vector<double> &values) {
 inline void nearly_flat_response(Case &c) {
     double low = c.uniform(), high = low + (1.0 - low) * std::pow(10.0, -16.0 * c.uniform());
     std::vector<double> values(1024);
-    for (size_t j = 0; j < values.size(); j++)
-        values[j] = low + (high - low) * static_cast<double>(j) / 1023.0;
+    for (size_t j = 0; j < values.size(); j++) values[j] = low + (high - low) * static_cast<double>(j) / 1023.0;
     values.front() = 0.0, values.back() = 1.0;
     set_given(c, values);
 }
@@ -417,18 +416,18 @@ inline void stairs_response(Case &c) {
 inline void odd_response(Case &c) {
     c.options.response = &c.given;
     switch (c.below(4)) {
-        case 0: c.given.table[c.below(1024)] = odd_number(c); break;
-        case 1: c.given.kind = odd_integer(c); break;
-        case 2: c.given.modes = odd_integer(c); break;
-        default: c.given.gamma = odd_number(c);
+    case 0: c.given.table[c.below(1024)] = odd_number(c); break;
+    case 1: c.given.kind = odd_integer(c); break;
+    case 2: c.given.modes = odd_integer(c); break;
+    default: c.given.gamma = odd_number(c);
     }
 }
 
 inline void cancelled(Case &c) { c.calls_left = static_cast<int>(c.below(12)); }
 
 inline void null_pointer(Case &c) {
-    bool *pointers[] = {&c.null_options, &c.null_images, &c.null_pairs, &c.null_exposures, &c.null_result,
-                        &c.null_error};
+    bool *pointers[] = {&c.null_options,   &c.null_images, &c.null_pairs,
+                        &c.null_exposures, &c.null_result, &c.null_error};
     *pointers[c.below(6)] = true;
 }
 
@@ -438,24 +437,74 @@ struct Mutation {
     uint32_t weight;  // how often
 };
 
-#define ROW(name, weight) {#name, name, weight}
+#define ROW(name, weight) \
+    { #name, name, weight }
 const Mutation kMutations[] = {
-    ROW(one_pair_repeated, 3), ROW(one_grey_value, 4), ROW(black_and_white, 3), ROW(some_black_or_white, 3),
-    ROW(noise_alone, 5), ROW(opposite_ends, 2), ROW(equal_ends, 2), ROW(dark, 3), ROW(one_position, 3),
-    ROW(same_position_in_both, 2), ROW(corners, 4), ROW(duplicates, 3), ROW(images_without_pairs, 3),
-    ROW(two_groups, 3), ROW(reference_without_pairs, 2), ROW(random_images, 3), ROW(same_image_twice, 1),
-    ROW(image_out_of_range, 1), ROW(one_pair, 3), ROW(no_pairs, 1), ROW(one_image, 1), ROW(many_images, 1),
-    ROW(link_all, 3), ROW(random_links, 4), ROW(link_out_of_range, 1), ROW(odd_size, 1), ROW(smallest_frames, 2),
-    ROW(largest_frames, 2), ROW(random_image_flags, 4), ROW(extreme_exposures, 4), ROW(extreme_balances, 3),
-    ROW(largest_exposures, 3), ROW(odd_exposure, 2), ROW(odd_value, 2), ROW(odd_position, 2),
-    ROW(odd_chroma_of_grey, 2), ROW(grey, 4), ROW(odd_channels, 1), ROW(any_reference, 3), ROW(random_flags, 6),
-    ROW(odd_flags, 1), ROW(any_modes, 4), ROW(automatic_modes, 2), ROW(any_loss, 2), ROW(any_huber, 3),
-    ROW(no_prior, 6), ROW(any_prior, 3), ROW(paper, 3), ROW(odd_iterations, 1), ROW(many_iterations, 1),
-    ROW(odd_struct_size, 1), ROW(odd_choices, 1), ROW(any_choices, 4),
-    ROW(known_exposures, 4), ROW(odd_known_exposure, 1),
-    ROW(any_vignetting, 4), ROW(odd_vignetting, 1),
-    ROW(darkest_vignetting, 3), ROW(centre_outside, 3), ROW(nearly_flat_response, 3), ROW(step_response, 3),
-    ROW(stairs_response, 3), ROW(odd_response, 1), ROW(cancelled, 2), ROW(null_pointer, 1),
+    ROW(one_pair_repeated, 3),
+    ROW(one_grey_value, 4),
+    ROW(black_and_white, 3),
+    ROW(some_black_or_white, 3),
+    ROW(noise_alone, 5),
+    ROW(opposite_ends, 2),
+    ROW(equal_ends, 2),
+    ROW(dark, 3),
+    ROW(one_position, 3),
+    ROW(same_position_in_both, 2),
+    ROW(corners, 4),
+    ROW(duplicates, 3),
+    ROW(images_without_pairs, 3),
+    ROW(two_groups, 3),
+    ROW(reference_without_pairs, 2),
+    ROW(random_images, 3),
+    ROW(same_image_twice, 1),
+    ROW(image_out_of_range, 1),
+    ROW(one_pair, 3),
+    ROW(no_pairs, 1),
+    ROW(one_image, 1),
+    ROW(many_images, 1),
+    ROW(link_all, 3),
+    ROW(random_links, 4),
+    ROW(link_out_of_range, 1),
+    ROW(odd_size, 1),
+    ROW(smallest_frames, 2),
+    ROW(largest_frames, 2),
+    ROW(random_image_flags, 4),
+    ROW(extreme_exposures, 4),
+    ROW(extreme_balances, 3),
+    ROW(largest_exposures, 3),
+    ROW(odd_exposure, 2),
+    ROW(odd_value, 2),
+    ROW(odd_position, 2),
+    ROW(odd_chroma_of_grey, 2),
+    ROW(grey, 4),
+    ROW(odd_channels, 1),
+    ROW(any_reference, 3),
+    ROW(random_flags, 6),
+    ROW(odd_flags, 1),
+    ROW(any_modes, 4),
+    ROW(automatic_modes, 2),
+    ROW(any_loss, 2),
+    ROW(any_huber, 3),
+    ROW(no_prior, 6),
+    ROW(any_prior, 3),
+    ROW(paper, 3),
+    ROW(odd_iterations, 1),
+    ROW(many_iterations, 1),
+    ROW(odd_struct_size, 1),
+    ROW(odd_choices, 1),
+    ROW(any_choices, 4),
+    ROW(known_exposures, 4),
+    ROW(odd_known_exposure, 1),
+    ROW(any_vignetting, 4),
+    ROW(odd_vignetting, 1),
+    ROW(darkest_vignetting, 3),
+    ROW(centre_outside, 3),
+    ROW(nearly_flat_response, 3),
+    ROW(step_response, 3),
+    ROW(stairs_response, 3),
+    ROW(odd_response, 1),
+    ROW(cancelled, 2),
+    ROW(null_pointer, 1),
 };
 #undef ROW
 

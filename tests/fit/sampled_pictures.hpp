@@ -10,7 +10,7 @@ inline double detail = 0.0;
 inline double scene(double longitude, double latitude, int c) {
     double x = 40 * longitude + 3 * std::sin(11 * latitude), y = 34 * latitude + 3 * std::sin(13 * longitude);
     return 0.5 + 0.2 * std::sin(9 * longitude + c) + 0.2 * std::cos(7 * latitude - 2.0 * c)
-        + detail * std::sin(x) * std::cos(y);
+           + detail * std::sin(x) * std::cos(y);
 }
 
 struct Pictures {

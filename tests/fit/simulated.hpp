@@ -18,10 +18,10 @@ struct Simulation {
     lensprof_response response;
     lensprof_vignetting vignetting{{-0.30, 0.05, -0.15}, {0.02, -0.015}};
     std::vector<lensprof_vignetting> chromatic;  // one falloff curve a channel; empty = `vignetting` for all
-    double local_ev = 0.0;   // largest local tone error, EV: waves over the frame that start elsewhere in each image
-    double frame_ev = 0.0;   // the same at the same place of every image, EV
-    uint32_t reach = 1;      // images of a pair are up to this many apart
-    double shift = 0.0;      // from one frame to the next, widths: neighbours in one are so in the other; 0 = anywhere
+    double local_ev = 0.0;  // largest local tone error, EV: waves over the frame that start elsewhere in each image
+    double frame_ev = 0.0;  // the same at the same place of every image, EV
+    uint32_t reach = 1;     // images of a pair are up to this many apart
+    double shift = 0.0;     // from one frame to the next, widths: neighbours in one are so in the other; 0 = anywhere
     std::vector<lensprof_exposure> exposures;  // drawn, unless given before make()
     std::vector<lensprof_fit_image> fit_images;
     std::vector<lensprof_pair> pairs;
@@ -136,8 +136,7 @@ lensprof_response table_response(Curve &&curve) {
 }
 
 inline lensprof_response srgb_response() {
-    return table_response(
-        [](double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; });
+    return table_response([](double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; });
 }
 
 inline lensprof_response linear_response() {

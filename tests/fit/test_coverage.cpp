@@ -3,14 +3,14 @@
 #include "simulated.hpp"
 
 #include "core/response.h"
-#include "fit/prior.hpp"
+#include "fit/prior/prior.hpp"
 
 using namespace lensprof;
 
 namespace {
 
-constexpr int kRuns = 600;       // the binomial error of the falloff's share is then 2 %
-constexpr int kLongRuns = 300;   // with gamma open and modes to choose
+constexpr int kRuns = 600;      // the binomial error of the falloff's share is then 2 %
+constexpr int kLongRuns = 300;  // with gamma open and modes to choose
 constexpr double kLowest = 0.63, kHighest = 0.73;
 
 // How often |error| <= sigma, and the root mean square of error / sigma.
@@ -86,9 +86,7 @@ double center_sigma(const lensprof_fit_result &r, uint32_t axis) {
     return std::sqrt(r.covariance[i * r.covariance_size + i]);
 }
 
-double corner(const lensprof_vignetting &v) {
-    return lensprof_vignetting_eval(&v, 1.0, nullptr);
-}
+double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
 // f(x) by the coefficients is linear: the modes' values at x, as far as they are in use.
 double response_variance(const lensprof_fit_result &r, double x) {
@@ -105,8 +103,10 @@ struct Shares {
         const lensprof_fit_result &r = run.result;
         for (uint32_t i = 1; i < s.images; i++) {
             const lensprof_fit_image_quality &q = run.quality[i];
-            if (s.fit_images[i].free & LENSPROF_FREE_EV) ev.add(run.exposures[i].ev - s.exposures[i].ev, q.ev_sigma);
-            else assert_close(q.ev_sigma, 0.0, 0.0);
+            if (s.fit_images[i].free & LENSPROF_FREE_EV)
+                ev.add(run.exposures[i].ev - s.exposures[i].ev, q.ev_sigma);
+            else
+                assert_close(q.ev_sigma, 0.0, 0.0);
             for (int c : {0, 2})
                 balance.add(run.exposures[i].white_balance[c] - s.exposures[i].white_balance[c],
                             q.white_balance_sigma[c]);
@@ -116,9 +116,9 @@ struct Shares {
             center.add(r.vignetting[0].center[axis] - s.vignetting.center[axis], center_sigma(r, axis));
         for (double x : {0.05, 0.2, 0.5})
             if (response_variance(r, x) > 0.0)
-                response.add(lensprof_response_eval(&r.response, x, nullptr)
-                                 - lensprof_response_eval(&s.response, x, nullptr),
-                             std::sqrt(response_variance(r, x)));
+                response.add(
+                    lensprof_response_eval(&r.response, x, nullptr) - lensprof_response_eval(&s.response, x, nullptr),
+                    std::sqrt(response_variance(r, x)));
     }
 
     void assert_true_to_size() const {

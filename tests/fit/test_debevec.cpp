@@ -26,8 +26,9 @@ Simulation bracket(const lensprof_response &response, double noise, uint32_t cou
     return s;
 }
 
-// Root mean square difference from the truth over the grey values 5..250, levels, at the best scale, and the largest from
-// 20 up: below, where noise is a good part of the value, least squares for a logarithm are biased (6 levels, gamma 2.2).
+// Root mean square difference from the truth over the grey values 5..250, levels, at the best scale, and the largest
+// from 20 up: below, where noise is a good part of the value, least squares for a logarithm are biased (6 levels,
+// gamma 2.2).
 struct Error {
     double rms, largest;
 };

@@ -3,9 +3,9 @@
 
 #include <Eigen/Dense>
 
-#include "fit/prior.hpp"
-#include "fit/residual.hpp"
-#include "fit/transfer_equations.hpp"
+#include "fit/prior/prior.hpp"
+#include "fit/problem/residual.hpp"
+#include "fit/solver/transfer_equations.hpp"
 
 using namespace lensprof;
 
@@ -282,10 +282,8 @@ void test_elimination_equals_full_solve(void **) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_residual_by_response),
-        cmocka_unit_test(test_residual_by_falloff),
-        cmocka_unit_test(test_residual_by_exposure_and_value),
-        cmocka_unit_test(test_objective_gradient),
+        cmocka_unit_test(test_residual_by_response),           cmocka_unit_test(test_residual_by_falloff),
+        cmocka_unit_test(test_residual_by_exposure_and_value), cmocka_unit_test(test_objective_gradient),
         cmocka_unit_test(test_elimination_equals_full_solve),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -34,10 +34,10 @@ struct Call {
     }
 };
 
-#define REFUSED(change, status)             \
-    do {                                    \
-        Call call;                          \
-        change;                             \
+#define REFUSED(change, status)               \
+    do {                                      \
+        Call call;                            \
+        change;                               \
         assert_int_equal(call.run(), status); \
     } while (0)
 
@@ -68,7 +68,10 @@ void test_refuses(void **) {
     REFUSED(call.options.free = LENSPROF_FREE_EV, LENSPROF_ERROR_ARGUMENT);
     REFUSED(call.s.fit_images[1].free = 0x100, LENSPROF_ERROR_ARGUMENT);
     REFUSED((call.options.free = 0, call.options.channels = 1,
-             [&] { for (auto &i : call.s.fit_images) i.free = LENSPROF_FREE_RED; }()), LENSPROF_ERROR_NO_UNKNOWNS);
+             [&] {
+                 for (auto &i : call.s.fit_images) i.free = LENSPROF_FREE_RED;
+             }()),
+            LENSPROF_ERROR_NO_UNKNOWNS);
     REFUSED((call.options.free = 0,
              [&] {
                  for (auto &i : call.s.fit_images) i.ev_of = 0, i.free = LENSPROF_FREE_EV;
@@ -91,8 +94,10 @@ void test_data_without_information_are_not_usable(void **) {
             call.options.prior_weight = prior;
             for (auto &pair : call.s.pairs) {
                 auto value = kind == 0 ? call.s.pairs[0].value[0][1] : kind == 1 ? 0.5 : kind == 2 ? 0.0 : 1.0;
-                if (kind == 0) pair = call.s.pairs[0];
-                else for (auto &side : pair.value) side[0] = side[1] = side[2] = value;
+                if (kind == 0)
+                    pair = call.s.pairs[0];
+                else
+                    for (auto &side : pair.value) side[0] = side[1] = side[2] = value;
             }
             assert_ok(call.run());
             assert_int_equal(call.result.usable, 0);

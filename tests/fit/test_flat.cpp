@@ -1,12 +1,11 @@
-/* The flat field fit against simulated pictures of a known lens. */
+// The flat field fit against simulated pictures of a known lens.
 #include "flat_pictures.hpp"
 
-#include <fit/flat_fit.hpp>
+#include "fit/flat/fit.hpp"
 
 using namespace lensprof;
 
-static void derivatives_are_those_of_central_differences(void **)
-{
+static void derivatives_are_those_of_central_differences(void **) {
     uint64_t random = 3;
     for (int variant = 0; variant < 8; variant++) {
         FlatModel model;
@@ -29,15 +28,15 @@ static void derivatives_are_those_of_central_differences(void **)
                     Eigen::VectorXd up = u, down = u;
                     up[i] += 1e-5, down[i] -= 1e-5;
                     double slope = (predict(model, up, shot, channel, x, y).value
-                                    - predict(model, down, shot, channel, x, y).value) / 2e-5;
+                                    - predict(model, down, shot, channel, x, y).value)
+                                   / 2e-5;
                     assert_close(by[i], slope, 1e-7 * (1.0 + std::fabs(slope)));
                 }
             }
     }
 }
 
-static void a_plain_card_gives_the_falloff(void **)
-{
+static void a_plain_card_gives_the_falloff(void **) {
     for (uint32_t sample : {LENSPROF_SAMPLE_U8, LENSPROF_SAMPLE_U16, LENSPROF_SAMPLE_F32}) {
         FlatPictures p;
         p.sample = sample;
@@ -49,13 +48,12 @@ static void a_plain_card_gives_the_falloff(void **)
         assert_int_equal(r->gain_grid.columns, 0);
         assert_close(error_of(*r, p), 0.0, 0.002);
         assert_true(r->corner_sigma > 5e-5 && r->corner_sigma < 5e-4);
-        assert_non_null(strstr(r->reason, "prior")); /* one shot cannot tell light from centre, and says so */
+        assert_non_null(strstr(r->reason, "prior"));  // one shot cannot tell light from centre, and says so
         assert_int_equal(r->separated, 0);
     }
 }
 
-static void a_grey_picture_has_one_curve(void **)
-{
+static void a_grey_picture_has_one_curve(void **) {
     FlatPictures p;
     p.channels = 1;
     p.shoot(0);
@@ -65,10 +63,9 @@ static void a_grey_picture_has_one_curve(void **)
     assert_close(error_of(*r, p), 0.0, 0.003);
 }
 
-static void turned_shots_tell_the_light_from_the_centre(void **)
-{
+static void turned_shots_tell_the_light_from_the_centre(void **) {
     FlatPictures p;
-    for (auto &v : p.vignetting) v = {{-0.4, 0.0, 0.0}, {0.04, -0.03}}; /* r^2 alone: a plane is as good as a centre */
+    for (auto &v : p.vignetting) v = {{-0.4, 0.0, 0.0}, {0.04, -0.03}};  // r^2 alone: a plane is as good as a centre
     p.gradient[0] = 0.10, p.gradient[1] = -0.06;
     p.shoot(0, 0.0, 0.0);
     lensprof_flat_options o = p.options();
@@ -91,16 +88,15 @@ static void turned_shots_tell_the_light_from_the_centre(void **)
     assert_true(sigma < 0.001 && sigma * 8 < alone_sigma);
     assert_close(quality[0].gradient[0], 0.10, 0.003);
     assert_close(quality[0].gradient[1], -0.06, 0.003);
-    assert_close(quality[2].gradient[0], -0.10, 0.003); /* the camera is upside down */
-    assert_close(quality[1].gradient[0], -0.06, 0.003); /* its right is down in the scene */
+    assert_close(quality[2].gradient[0], -0.10, 0.003);  // the camera is upside down
+    assert_close(quality[1].gradient[0], -0.06, 0.003);  // its right is down in the scene
 }
 
-static void exposures_of_one_shot_are_merged(void **)
-{
+static void exposures_of_one_shot_are_merged(void **) {
     FlatPictures p;
     assert_ok(lensprof_response_set_gamma(&p.response, 2.2));
     p.sample = LENSPROF_SAMPLE_U8;
-    p.level = 1.6; /* white in the longest exposure, and nowhere well exposed in one alone */
+    p.level = 1.6;  // white in the longest exposure, and nowhere well exposed in one alone
     for (auto &v : p.vignetting) v.k[0] = -0.8;
     for (int ev = -4; ev <= 0; ev++) p.shoot(0, ev);
     lensprof_flat_image_quality quality[5];
@@ -110,7 +106,7 @@ static void exposures_of_one_shot_are_merged(void **)
     assert_close(error_of(*r, p), 0.0, 0.002);
     assert_true(quality[4].white_share > 0.2 && quality[0].white_share == 0.0);
     for (const auto &q : quality) assert_close(q.ev_residual, 0.0, 0.01);
-    assert_true(quality[0].noise_levels > 0.8 && quality[0].noise_levels < 1.3); /* 0.004 * 255, rounded to 8 bit */
+    assert_true(quality[0].noise_levels > 0.8 && quality[0].noise_levels < 1.3);  // 0.004 * 255, rounded to 8 bit
     FlatPictures alone = FlatPictures();
     alone.vignetting[0] = alone.vignetting[1] = alone.vignetting[2] = p.vignetting[0];
     alone.response = p.response, alone.sample = p.sample, alone.level = 0.1;
@@ -118,8 +114,7 @@ static void exposures_of_one_shot_are_merged(void **)
     assert_true(alone.fit(alone.options())->corner_sigma > 1.5 * r->corner_sigma);
 }
 
-static void wrong_exposures_are_noticed(void **)
-{
+static void wrong_exposures_are_noticed(void **) {
     FlatPictures p;
     p.shoot(0, -1.0), p.shoot(0, 0.0);
     p.images[0].ev = -1.5;
@@ -127,11 +122,10 @@ static void wrong_exposures_are_noticed(void **)
     auto r = p.fit(p.options(), quality);
     assert_false(r->usable);
     assert_non_null(strstr(r->reason, "0.50 EV"));
-    assert_close(quality[0].ev_residual - quality[1].ev_residual, 1.0, 0.02); /* each against the other */
+    assert_close(quality[0].ev_residual - quality[1].ev_residual, 1.0, 0.02);  // each against the other
 }
 
-static void a_card_that_does_not_reach_the_corners_is_said(void **)
-{
+static void a_card_that_does_not_reach_the_corners_is_said(void **) {
     FlatPictures p;
     std::vector<uint8_t> mask(600 * 450);
     for (uint32_t y = 0; y < 450; y++)
@@ -149,8 +143,7 @@ static void a_card_that_does_not_reach_the_corners_is_said(void **)
     assert_non_null(strstr(r->reason, "corners"));
 }
 
-static void channels_get_curves_where_they_differ(void **)
-{
+static void channels_get_curves_where_they_differ(void **) {
     FlatPictures p;
     p.vignetting[0].k[0] = -0.48, p.vignetting[2].k[0] = -0.43;
     p.shoot(0);
@@ -163,8 +156,7 @@ static void channels_get_curves_where_they_differ(void **)
     assert_int_equal(p.fit(o)->vignettings, 1);
 }
 
-static void dust_is_counted_placed_and_left_out(void **)
-{
+static void dust_is_counted_placed_and_left_out(void **) {
     FlatPictures clean, p;
     p.defect = [](double x, double y, uint32_t) {
         return std::hypot(x - 120, y - 90) < 8 ? 0.85 : std::hypot(x - 430, y - 310) < 4 ? 0.93 : 1.0;
@@ -189,12 +181,12 @@ struct Bad {
     void (*spoil)(FlatPictures &);
 };
 
-static void what_is_wrong_is_said(void **)
-{
+static void what_is_wrong_is_said(void **) {
     const Bad cases[] = {
         {"white", [](FlatPictures &p) { p.level = 1.3; }},
         {"black", [](FlatPictures &p) { p.level = 0.024; }},
-        {"texture", [](FlatPictures &p) {
+        {"texture",
+         [](FlatPictures &p) {
              p.defect = [](double x, double y, uint32_t) { return 1 + 0.04 * std::sin(0.3 * x) * std::sin(0.27 * y); };
          }},
         {"turned", [](FlatPictures &p) { p.gradient[0] = 0.3; }},
@@ -210,7 +202,7 @@ static void what_is_wrong_is_said(void **)
         assert_non_null(strstr(r->reason, bad.word));
     }
     FlatPictures none;
-    none.defect = [](double x, double y, uint32_t) { /* no even region anywhere */
+    none.defect = [](double x, double y, uint32_t) {  // no even region anywhere
         return std::fmod(std::floor(x / 9) * 0.37 + std::floor(y / 7) * 0.61, 1.0);
     };
     none.shoot(0);
@@ -222,8 +214,7 @@ static void what_is_wrong_is_said(void **)
 }
 
 // A response from (0, 0) over two points to (1, 1).
-static lensprof_response bent(double x0, double y0, double x1, double y1)
-{
+static lensprof_response bent(double x0, double y0, double x1, double y1) {
     std::vector<double> table;
     for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) {
         const double x = j / (LENSPROF_RESPONSE_SAMPLES - 1.0);
@@ -238,8 +229,7 @@ static lensprof_response bent(double x0, double y0, double x1, double y1)
 }
 
 // All grey values of the card are those of nearly the same light, or hardly differ for any light.
-static void a_response_without_gradation_is_refused(void **)
-{
+static void a_response_without_gradation_is_refused(void **) {
     const struct {
         lensprof_response response;
         const char *word;
@@ -256,19 +246,17 @@ static void a_response_without_gradation_is_refused(void **)
     }
 }
 
-static void light_that_changes_between_shots_is_noticed(void **)
-{
+static void light_that_changes_between_shots_is_noticed(void **) {
     FlatPictures p;
     p.shoot(0);
-    p.defect = [](double x, double, uint32_t) { return x < 250 ? 0.94 : 1.0; }; /* a shadow */
+    p.defect = [](double x, double, uint32_t) { return x < 250 ? 0.94 : 1.0; };  // a shadow
     p.shoot(1);
     auto r = p.fit(p.options());
     assert_false(r->usable);
     assert_non_null(strstr(r->reason, "shadow"));
 }
 
-static void a_grid_of_a_radial_lens_is_flat(void **)
-{
+static void a_grid_of_a_radial_lens_is_flat(void **) {
     FlatPictures p;
     p.shoot(0);
     lensprof_flat_options o = p.options();
@@ -278,13 +266,12 @@ static void a_grid_of_a_radial_lens_is_flat(void **)
     for (uint32_t i = 0; i < 3 * 24 * 18; i++) assert_close(r->gain_grid.attenuation[i], 1.0, 0.01);
 }
 
-static void reduced_views_and_layouts_are_the_same_picture(void **)
-{
+static void reduced_views_and_layouts_are_the_same_picture(void **) {
     FlatPictures p;
     p.set_center(0.02, 0.0);
     p.shoot(0);
     auto full = p.fit(p.options());
-    auto small = p.images[0]; /* every second pixel: a view whose pixels stand for squares of 2 x 2 */
+    auto small = p.images[0];  // every second pixel: a view whose pixels stand for squares of 2 x 2
     std::vector<uint16_t> pixels(300 * 225 * 3), flipped(300 * 225 * 4);
     const auto *from = reinterpret_cast<const uint16_t *>(p.data[0]->data());
     for (uint32_t y = 0; y < 225; y++)
@@ -307,8 +294,7 @@ static void reduced_views_and_layouts_are_the_same_picture(void **)
     assert_memory_equal(bottom_up->vignetting, reduced->vignetting, sizeof reduced->vignetting);
 }
 
-static void held_values_stay_and_have_no_error(void **)
-{
+static void held_values_stay_and_have_no_error(void **) {
     FlatPictures p;
     p.shoot(0);
     lensprof_flat_options o = p.options();
@@ -319,12 +305,10 @@ static void held_values_stay_and_have_no_error(void **)
     assert_true(r->usable);
     assert_true(r->vignetting[0].k[2] == -0.06 && r->vignetting[0].center[0] == 0.0);
     assert_close(r->vignetting[0].k[0], -0.45, 0.002);
-    for (uint32_t i = 0; i < 5; i++)
-        assert_int_equal(r->covariance[i * 5 + i] > 0.0, i < 2);
+    for (uint32_t i = 0; i < 5; i++) assert_int_equal(r->covariance[i * 5 + i] > 0.0, i < 2);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(derivatives_are_those_of_central_differences),
         cmocka_unit_test(a_plain_card_gives_the_falloff),

@@ -1,4 +1,4 @@
-/* Whether the flat field fit's stated errors are true: hundreds of simulated cards. */
+// Whether the flat field fit's stated errors are true: hundreds of simulated cards.
 #include "flat_pictures.hpp"
 
 constexpr int runs = 400;
@@ -12,7 +12,8 @@ struct Coverage {
         const uint32_t n = r.covariance_size;
         double corner = 0.0, variance = 0.0;
         for (uint32_t i = 0; i < 5; i++) {
-            double error = i < 3 ? r.vignetting[0].k[i] - truth.k[i] : r.vignetting[0].center[i - 3] - truth.center[i - 3];
+            double error =
+                i < 3 ? r.vignetting[0].k[i] - truth.k[i] : r.vignetting[0].center[i - 3] - truth.center[i - 3];
             inside[i] += std::fabs(error) < std::sqrt(r.covariance[i * n + i]);
             for (uint32_t j = 0; j < 3 && i < 3; j++) variance += r.covariance[i * n + j];
             if (i < 3) corner += error;
@@ -23,8 +24,7 @@ struct Coverage {
     }
 };
 
-static Coverage simulate(uint32_t shots, double texture, uint32_t channels)
-{
+static Coverage simulate(uint32_t shots, double texture, uint32_t channels) {
     Coverage coverage;
     uint64_t random = 17 + shots;
     for (int run = 0; run < runs; run++) {
@@ -33,11 +33,11 @@ static Coverage simulate(uint32_t shots, double texture, uint32_t channels)
         p.seed = static_cast<uint64_t>(run) + 1;
         p.sample = LENSPROF_SAMPLE_U8;
         p.noise = 0.012;
-        p.set_center(0.02 * lp_normal(&random), 0.02 * lp_normal(&random)); /* as the prior has it */
+        p.set_center(0.02 * lp_normal(&random), 0.02 * lp_normal(&random));  // as the prior has it
         p.gradient[0] = 0.05, p.gradient[1] = 0.03;
         std::vector<double> waves(24 * 24);
         for (double &w : waves) w = texture * lp_normal(&random);
-        p.defect = [=](double x, double y, uint32_t) { /* texture of some cells' size, on the card */
+        p.defect = [=](double x, double y, uint32_t) {  // texture of some cells' size, on the card
             return 1.0 + waves[static_cast<size_t>(y / 8) * 24 + static_cast<size_t>(x / 9)];
         };
         for (uint32_t s = 0; s < shots; s++) p.shoot(s, 0.0, 90.0 * s);
@@ -51,8 +51,7 @@ static Coverage simulate(uint32_t shots, double texture, uint32_t channels)
     return coverage;
 }
 
-static void check(const char *what, const Coverage &c)
-{
+static void check(const char *what, const Coverage &c) {
     print_message("%s: k1 %.2f k2 %.2f k3 %.2f centre %.2f %.2f corner %.2f; corner off by %.5f, stated %.5f\n", what,
                   c.inside[0] / runs, c.inside[1] / runs, c.inside[2] / runs, c.inside[3] / runs, c.inside[4] / runs,
                   c.inside[5] / runs, std::sqrt(c.scatter / runs), std::sqrt(c.stated / runs));
@@ -64,8 +63,7 @@ static void stated_errors_of_one_shot(void **) { check("one shot", simulate(1, 0
 static void stated_errors_of_turned_shots(void **) { check("turned", simulate(3, 0.0, 3)); }
 static void stated_errors_on_a_card_with_texture(void **) { check("texture", simulate(1, 0.006, 1)); }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stated_errors_of_one_shot),
         cmocka_unit_test(stated_errors_of_turned_shots),

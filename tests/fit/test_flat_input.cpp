@@ -1,4 +1,4 @@
-/* The flat field fit and what it refuses. */
+// The flat field fit and what it refuses.
 #include "flat_pictures.hpp"
 
 struct Input {
@@ -31,16 +31,14 @@ struct Input {
     }
 };
 
-static void good_input_is_taken(void **)
-{
+static void good_input_is_taken(void **) {
     Input in;
     assert_ok(in.run());
     assert_true(in.result->usable);
     assert_string_equal(in.error.text, "");
 }
 
-static void null_pointers_and_sizes(void **)
-{
+static void null_pointers_and_sizes(void **) {
     Input in;
     auto *images = in.pictures.images.data();
     assert_int_equal(lensprof_fit_flat(nullptr, images, 1, in.result.get(), nullptr), LENSPROF_ERROR_ARGUMENT);
@@ -60,8 +58,7 @@ struct Spoil {
     void (*change)(Input &);
 };
 
-static void unusable_options(void **)
-{
+static void unusable_options(void **) {
     static lensprof_response broken;
     lensprof_response_set_linear(&broken);
     broken.table[7] = 0.9;
@@ -95,8 +92,7 @@ static void unusable_options(void **)
     }
 }
 
-static void unusable_pictures(void **)
-{
+static void unusable_pictures(void **) {
     static const uint8_t mask[4] = {0, 0, 0, 0};
     const Spoil cases[] = {
         {LENSPROF_ERROR_ARGUMENT, [](Input &in) { in.pictures.images[1].view.data = nullptr; }},
@@ -107,7 +103,8 @@ static void unusable_pictures(void **)
         {LENSPROF_ERROR_SIZE, [](Input &in) { in.pictures.images[0].reduction = 2; }},
         {LENSPROF_ERROR_SIZE, [](Input &in) { in.pictures.images[0].width = 100; }},
         {LENSPROF_ERROR_SIZE, [](Input &in) { in.pictures.images[1].width = 140; }},
-        {LENSPROF_ERROR_SIZE, [](Input &in) { in.pictures.images[1].mask = mask, in.pictures.images[1].mask_row_bytes = 4; }},
+        {LENSPROF_ERROR_SIZE,
+         [](Input &in) { in.pictures.images[1].mask = mask, in.pictures.images[1].mask_row_bytes = 4; }},
         {LENSPROF_ERROR_ARGUMENT, [](Input &in) { in.pictures.images[0].black = 0.99; }},
         {LENSPROF_ERROR_ARGUMENT, [](Input &in) { in.pictures.images[0].white = NAN; }},
         {LENSPROF_ERROR_EXPOSURE, [](Input &in) { in.pictures.images[0].ev = 65.0; }},
@@ -123,8 +120,7 @@ static void unusable_pictures(void **)
     }
 }
 
-static void nothing_to_see(void **)
-{
+static void nothing_to_see(void **) {
     Input in;
     std::vector<uint8_t> mask(120 * 90, 0);
     for (auto &image : in.pictures.images) image.mask = mask.data(), image.mask_row_bytes = 120;
@@ -134,8 +130,7 @@ static void nothing_to_see(void **)
     white.refused(LENSPROF_ERROR_NO_SAMPLES);
 }
 
-static void a_pixel_that_is_not_a_number_is_named(void **)
-{
+static void a_pixel_that_is_not_a_number_is_named(void **) {
     Input in;
     FlatPictures floats;
     floats.width = 120, floats.height = 90, floats.sample = LENSPROF_SAMPLE_F32;
@@ -147,8 +142,7 @@ static void a_pixel_that_is_not_a_number_is_named(void **)
     assert_non_null(strstr(in.error.text, "pixel 11, 7"));
 }
 
-static void tiny_and_odd_pictures_are_survived(void **)
-{
+static void tiny_and_odd_pictures_are_survived(void **) {
     for (uint32_t width : {1u, 2u, 5u, 13u, 40u})
         for (uint32_t height : {1u, 3u, 17u, 64u}) {
             FlatPictures p;
@@ -167,8 +161,7 @@ static void tiny_and_odd_pictures_are_survived(void **)
         }
 }
 
-static void random_pictures_are_survived_and_not_usable(void **)
-{
+static void random_pictures_are_survived_and_not_usable(void **) {
     uint64_t random = 5;
     for (int round = 0; round < 6; round++) {
         Input in;
@@ -188,16 +181,14 @@ struct Watch {
     double last;
 };
 
-static int watch(double done, void *user)
-{
+static int watch(double done, void *user) {
     auto *w = static_cast<Watch *>(user);
     assert_true(done >= w->last && done <= 1.0);
     w->last = done;
     return ++w->calls == w->cancel_at;
 }
 
-static void progress_rises_and_cancels(void **)
-{
+static void progress_rises_and_cancels(void **) {
     Watch w = {0, 0, 0.0};
     Input in;
     in.options.progress = watch;
@@ -215,8 +206,7 @@ static void progress_rises_and_cancels(void **)
     }
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(good_input_is_taken),
         cmocka_unit_test(null_pointers_and_sizes),

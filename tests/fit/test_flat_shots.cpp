@@ -1,9 +1,8 @@
-/* The flat field fit on several shots: dozens of simulated pictures. */
+// The flat field fit on several shots: dozens of simulated pictures.
 #include "flat_pictures.hpp"
 
-/* A strong falloff, off centre, far from what the priors expect. */
-static void the_start_does_not_matter(void **)
-{
+// A strong falloff, off centre, far from what the priors expect.
+static void the_start_does_not_matter(void **) {
     for (double k1 : {0.0, -0.3, -0.7, -1.2}) {
         FlatPictures p;
         for (auto &v : p.vignetting) v = {{k1, -0.5 * k1, 0.1 * k1}, {0.02, -0.015}};
@@ -20,8 +19,7 @@ static void the_start_does_not_matter(void **)
     }
 }
 
-static void a_card_at_several_places_needs_no_even_light_over_the_frame(void **)
-{
+static void a_card_at_several_places_needs_no_even_light_over_the_frame(void **) {
     FlatPictures p;
     p.set_center(0.03, -0.02);
     for (uint32_t place = 0; place < 9; place++) {
@@ -30,7 +28,7 @@ static void a_card_at_several_places_needs_no_even_light_over_the_frame(void **)
             bool card = x >= x0 && x < x0 + 200.0 && y >= y0 && y < y0 + 150.0;
             return card ? 1.0 : 0.15 + 0.1 * std::sin(0.05 * x + 0.02 * y);
         };
-        p.shoot(place, place == 4 ? -0.5 : 0.0); /* exposures may differ when they are known */
+        p.shoot(place, place == 4 ? -0.5 : 0.0);  // exposures may differ when they are known
     }
     lensprof_flat_options o = p.options();
     o.several = o.find_card = 1;
@@ -47,15 +45,13 @@ static void a_card_at_several_places_needs_no_even_light_over_the_frame(void **)
     }
 }
 
-/* The shape of a phone's colour shading: more in one corner, and not alike in the channels. */
-static double shading(double x, double y, uint32_t channel)
-{
+// The shape of a phone's colour shading: more in one corner, and not alike in the channels.
+static double shading(double x, double y, uint32_t channel) {
     double u = x / 300 - 1, v = y / 225 - 1;
     return 1 - 0.03 * u * u * u * v - 0.02 * v * v * v + (channel == 0 ? 0.025 * u * v * v : 0.0);
 }
 
-static void what_is_not_radial_goes_into_a_grid(void **)
-{
+static void what_is_not_radial_goes_into_a_grid(void **) {
     FlatPictures p;
     p.defect = shading;
     for (uint32_t shot = 0; shot < 4; shot++) p.shoot(shot, 0.0, 90.0 * shot);
@@ -67,7 +63,7 @@ static void what_is_not_radial_goes_into_a_grid(void **)
     assert_int_equal(r->gain_grid.columns, 24);
     assert_int_equal(r->gain_grid.rows, 18);
     assert_ok(lensprof_gain_grid_validate(&r->gain_grid));
-    double worst = 0.0, worst_without = 0.0; /* of all channels, relative to the frame's middle */
+    double worst = 0.0, worst_without = 0.0;  // of all channels, relative to the frame's middle
     for (uint32_t i = 0; i < 300; i++)
         for (uint32_t c = 0; c < 3; c++) {
             double x = i % 20 * 599 / 19.0, y = i / 20 * 449 / 14.0;
@@ -78,7 +74,8 @@ static void what_is_not_radial_goes_into_a_grid(void **)
             };
             double truth = p.light(x, y, c, 0) / p.light(299.5, 224.5, c, 0);
             worst = std::fmax(worst, std::fabs(value(x, y, true) / value(299.5, 224.5, true) / truth - 1));
-            worst_without = std::fmax(worst_without, std::fabs(value(x, y, false) / value(299.5, 224.5, false) / truth - 1));
+            worst_without =
+                std::fmax(worst_without, std::fabs(value(x, y, false) / value(299.5, 224.5, false) / truth - 1));
         }
     assert_true(worst < 0.008);
     assert_true(worst_without > 4 * worst);
@@ -89,14 +86,13 @@ static void what_is_not_radial_goes_into_a_grid(void **)
     assert_non_null(strstr(r->reason, "ask for a gain grid"));
 }
 
-static void what_is_far_from_radial_needs_a_grid(void **)
-{
+static void what_is_far_from_radial_needs_a_grid(void **) {
     FlatPictures p;
     p.defect = [](double x, double y, uint32_t c) { return std::pow(shading(x, y, c), 5.0); };
     for (uint32_t shot = 0; shot < 4; shot++) p.shoot(shot, 0.0, 90.0 * shot);
     auto r = p.fit(p.options());
     assert_true(r->usable);
-    assert_true(r->corner_sigma > 0.01); /* of the polynomial alone */
+    assert_true(r->corner_sigma > 0.01);  // of the polynomial alone
     assert_true(r->frame_residual > 20 * r->grid_residual);
     lensprof_flat_options o = p.options();
     o.grid = LENSPROF_FLAT_GRID_NONE;
@@ -105,8 +101,7 @@ static void what_is_far_from_radial_needs_a_grid(void **)
     assert_non_null(strstr(r->reason, "ask for a gain grid"));
 }
 
-static void the_result_does_not_depend_on_threads(void **)
-{
+static void the_result_does_not_depend_on_threads(void **) {
     FlatPictures p;
     p.defect = shading;
     p.shoot(0), p.shoot(1, 0.0, 90.0);
@@ -120,8 +115,7 @@ static void the_result_does_not_depend_on_threads(void **)
     }
 }
 
-static void wrong_angles_are_noticed(void **)
-{
+static void wrong_angles_are_noticed(void **) {
     FlatPictures p;
     p.set_center(0.03, 0.0);
     p.gradient[0] = 0.12;
@@ -132,8 +126,7 @@ static void wrong_angles_are_noticed(void **)
     assert_non_null(strstr(r->reason, "angles"));
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_start_does_not_matter),
         cmocka_unit_test(a_card_at_several_places_needs_no_even_light_over_the_frame),

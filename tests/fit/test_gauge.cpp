@@ -1,9 +1,9 @@
 // The exponent gamma that pictures leave open: what settles it, against simulated truth.
 #include "simulated.hpp"
 
-#include "fit/gauge.hpp"
-#include "fit/monotone.hpp"
-#include "fit/residual.hpp"
+#include "fit/prior/gauge.hpp"
+#include "fit/problem/monotone.hpp"
+#include "fit/problem/residual.hpp"
 
 using namespace lensprof;
 

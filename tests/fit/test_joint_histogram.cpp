@@ -1,7 +1,7 @@
 // Joint histograms and the transfer functions through them (Kim & Pollefeys 2004, section 2.2).
 #include "simulated.hpp"
 
-#include "fit/joint_histogram.hpp"
+#include "fit/methods/transfer_function/joint_histogram.hpp"
 
 using namespace lensprof;
 

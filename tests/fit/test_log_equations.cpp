@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 
 #include "core/response.h"
-#include "fit/log_equations.hpp"
+#include "fit/methods/transfer_function/log_equations.hpp"
 
 using namespace lensprof;
 

@@ -125,8 +125,7 @@ void test_malformed_problems(void **) {
         fitted += status == LENSPROF_OK;
         total += seconds;
         slowest = std::max(slowest, seconds);
-        if (!fault.empty() && ++faults <= 40)
-            print_error("case %u (%s): %s\n", number, c.what.c_str(), fault.c_str());
+        if (!fault.empty() && ++faults <= 40) print_error("case %u (%s): %s\n", number, c.what.c_str(), fault.c_str());
     }
     alarm(0);
     print_message("%u of %u problems were fitted, in %.1f s; slowest %.2f s; %u faults\n", fitted, kCases, total,

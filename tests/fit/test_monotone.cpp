@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 
 #include "core/response.h"
-#include "fit/monotone.hpp"
+#include "fit/problem/monotone.hpp"
 
 using namespace lensprof;
 

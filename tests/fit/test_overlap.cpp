@@ -181,8 +181,8 @@ void test_fixed_and_linked_parameters(void **) {
         s.pairs.end());
     s.fit_images[5].red_of = 3;
     Run run = fit(s, options);
-    assert_close(run.exposures[2].ev, s.exposures[2].ev, 1e-12);       // the reference
-    assert_close(run.exposures[4].ev, s.exposures[4].ev, 1e-12);       // fixed
+    assert_close(run.exposures[2].ev, s.exposures[2].ev, 1e-12);  // the reference
+    assert_close(run.exposures[4].ev, s.exposures[4].ev, 1e-12);  // fixed
     assert_close(run.exposures[0].ev, 30.0, 1e-12);
     assert_close(run.exposures[4].white_balance[2], s.exposures[4].white_balance[2], 1e-12);
     assert_close(run.exposures[5].white_balance[0], run.exposures[3].white_balance[0], 1e-12);  // linked

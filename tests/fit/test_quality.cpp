@@ -129,8 +129,10 @@ void test_a_misplaced_image_is_named(void **) {
     assert_int_equal(run.result.usable, 0);
     assert_true(says(run, "image 4 "));
     for (uint32_t i = 0; i < s.images; i++)
-        if (i == 4) assert_true(run.quality[i].median_residual > 10.0);
-        else assert_true(run.quality[i].median_residual < 3.0);
+        if (i == 4)
+            assert_true(run.quality[i].median_residual > 10.0);
+        else
+            assert_true(run.quality[i].median_residual < 3.0);
 }
 
 // Drops all pairs of the last image but so many.
@@ -201,7 +203,8 @@ void test_local_processing_is_refused(void **) {
     double last = 0.0;
     for (double local_ev : {0.02, 0.05, 0.2, 0.5}) {
         FitRun run = panorama(local_ev, 0.0);
-        print_message("local %.2f EV: image share %.2f, noise %.2f levels\n", local_ev, run.result.image_share, run.result.noise_levels);
+        print_message("local %.2f EV: image share %.2f, noise %.2f levels\n", local_ev, run.result.image_share,
+                      run.result.noise_levels);
         assert_true(run.result.image_share > last);
         last = run.result.image_share;
         assert_int_equal(run.result.usable, local_ev < 0.03);

@@ -1,7 +1,7 @@
 // The radiance method against simulated truth, and the gamma family of its answers.
 #include "simulated_tracks.hpp"
 
-#include "fit/tracks.hpp"
+#include "fit/problem/tracks.hpp"
 
 using namespace lensprof;
 
@@ -124,7 +124,8 @@ void test_standard_errors(void **) {
         for (uint32_t i = 1; i < s.images; i++, evs++) {
             ev2 += std::pow((run.exposures[i].ev - s.exposures[i].ev) / run.quality[i].ev_sigma, 2);
             balance2 += std::pow((run.exposures[i].white_balance[0] - s.exposures[i].white_balance[0])
-                                     / run.quality[i].white_balance_sigma[0], 2);
+                                     / run.quality[i].white_balance_sigma[0],
+                                 2);
         }
         assert_int_equal(r.covariance_size, 5);
         for (uint32_t u = 0; u < 3; u++)
@@ -166,7 +167,7 @@ std::vector<double> corrected(const lensprof_response &response, const lensprof_
     const lensprof_plan *plan;
     assert_ok(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan));
     std::vector<float> in = pixels, out(pixels.size());
-    lensprof_image source{in.data(), static_cast<ptrdiff_t>(side * 12), side, side, LENSPROF_SAMPLE_F32,
+    lensprof_image source{in.data(),          static_cast<ptrdiff_t>(side * 12), side, side, LENSPROF_SAMPLE_F32,
                           LENSPROF_LAYOUT_RGB};
     lensprof_image target = source;
     target.data = out.data();
@@ -231,7 +232,8 @@ void test_two_fits_of_the_family_correct_alike(void **) {
     for (size_t image = 0; image < s.images; image++) {
         std::vector<double> both[2];
         for (int n = 0; n < 2; n++)
-            both[n] = corrected(run[n].result.response, run[n].result.vignetting[1], run[n].exposures, image, side, pixels);
+            both[n] =
+                corrected(run[n].result.response, run[n].result.vignetting[1], run[n].exposures, image, side, pixels);
         const auto &one = both[0], &other = both[1];
         double sum2 = 0.0;
         size_t count = 0;
@@ -270,10 +272,10 @@ void test_pairs_become_tracks(void **) {
     auto pair = [](uint32_t i, double x, uint32_t j, double y) {
         return lensprof_pair{{i, j}, {{x, 1}, {y, 1}}, {{0.1 * (i + 1), 0.5, 0.5}, {0.1 * (j + 1), 0.5, 0.5}}};
     };
-    const lensprof_pair pairs[] = {pair(0, 10, 1, 20), pair(1, 20, 2, 30), pair(3, 40, 2, 30),  // one track of four
-                                   pair(0, 10, 1, 20),                                          // said twice
-                                   pair(0, 11, 2, 30),                                          // image 0 has it at 10
-                                   pair(0, 50, 1, 60), pair(2, 70, 3, 80), pair(1, 60, 2, 70)}; // joined by the last
+    const lensprof_pair pairs[] = {pair(0, 10, 1, 20), pair(1, 20, 2, 30), pair(3, 40, 2, 30),   // one track of four
+                                   pair(0, 10, 1, 20),                                           // said twice
+                                   pair(0, 11, 2, 30),                                           // image 0 has it at 10
+                                   pair(0, 50, 1, 60), pair(2, 70, 3, 80), pair(1, 60, 2, 70)};  // joined by the last
     auto observations = observations_of(pairs, 8, 3);
     Tracks tracks = tracks_of(observations.data(), static_cast<uint32_t>(observations.size()));
     std::vector<size_t> lengths;

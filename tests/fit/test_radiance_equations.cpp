@@ -3,9 +3,9 @@
 
 #include <Eigen/Dense>
 
-#include "fit/monotone.hpp"
-#include "fit/objective.hpp"
-#include "fit/radiance_equations.hpp"
+#include "fit/problem/monotone.hpp"
+#include "fit/solver/objective.hpp"
+#include "fit/solver/radiance_equations.hpp"
 
 using namespace lensprof;
 
@@ -44,8 +44,8 @@ struct Setting {
         for (uint32_t i = 0; i < 4; i++) {
             estimate.log_exposure.push_back({});
             for (uint32_t c = 0; c < 3; c++)
-                estimate.log_exposure[i][c] = std::log(lensprof_exposure_factor(&simulation.exposures[i], c))
-                                              + 0.03 * (lp_random(&random) - 0.5);
+                estimate.log_exposure[i][c] =
+                    std::log(lensprof_exposure_factor(&simulation.exposures[i], c)) + 0.03 * (lp_random(&random) - 0.5);
         }
         loss.kind = kind;
     }
@@ -198,7 +198,8 @@ public:
         Eigen::MatrixXd result = Eigen::MatrixXd::Zero(by_radiance.size(), outer + 3 * count);
         for (Eigen::Index u = 0; u < outer; u++)
             result.col(u) = (residuals(s_.moved(columns, static_cast<int>(u), h), 0.0)
-                             - residuals(s_.moved(columns, static_cast<int>(u), -h), 0.0)) / (2 * h);
+                             - residuals(s_.moved(columns, static_cast<int>(u), -h), 0.0))
+                            / (2 * h);
         Eigen::Index row = 0;
         for (Eigen::Index t = 0; t < count; t++)
             for (Eigen::Index c = 0; c < 3; c++)
@@ -322,12 +323,9 @@ void test_prior_covariance(void **) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_radiances_are_at_their_minimum),
-        cmocka_unit_test(test_gradient_of_the_reduced_objective),
-        cmocka_unit_test(test_descent_along_a_joint_step),
-        cmocka_unit_test(test_elimination_equals_full_solve),
-        cmocka_unit_test(test_distrusts_what_is_wrong),
-        cmocka_unit_test(test_prior_covariance),
+        cmocka_unit_test(test_radiances_are_at_their_minimum), cmocka_unit_test(test_gradient_of_the_reduced_objective),
+        cmocka_unit_test(test_descent_along_a_joint_step),     cmocka_unit_test(test_elimination_equals_full_solve),
+        cmocka_unit_test(test_distrusts_what_is_wrong),        cmocka_unit_test(test_prior_covariance),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

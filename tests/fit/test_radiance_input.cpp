@@ -66,13 +66,24 @@ void test_refuses(void **) {
     REFUSED(call.tracks[7].value[0] = -0.01, LENSPROF_ERROR_ARGUMENT);
     REFUSED(call.tracks[7].xy[0] = INFINITY, LENSPROF_ERROR_NOT_FINITE);
     REFUSED(call.tracks[7].xy[1] = 602.0, LENSPROF_ERROR_ARGUMENT);
-    REFUSED(call.tracks[0].point = 0xFFFFFFFFu, LENSPROF_ERROR_ARGUMENT);       // a track of one
+    REFUSED(call.tracks[0].point = 0xFFFFFFFFu, LENSPROF_ERROR_ARGUMENT);           // a track of one
     REFUSED(call.tracks[0].image = call.tracks[1].image, LENSPROF_ERROR_ARGUMENT);  // one image twice
     REFUSED(call.tracks.push_back(call.tracks[0]), LENSPROF_ERROR_ARGUMENT);
     REFUSED(call.tracks.clear(), LENSPROF_ERROR_NO_SAMPLES);
-    REFUSED([&] { for (auto &o : call.tracks) o.value[1] = 1.0; }(), LENSPROF_ERROR_NO_SAMPLES);
-    REFUSED([&] { for (auto &o : call.tracks) o.value[0] = 0.0; }(), LENSPROF_ERROR_NO_SAMPLES);
-    REFUSED((call.options.free = 0, [&] { for (auto &i : call.s.fit_images) i.free = 0; }()),
+    REFUSED(
+        [&] {
+            for (auto &o : call.tracks) o.value[1] = 1.0;
+        }(),
+        LENSPROF_ERROR_NO_SAMPLES);
+    REFUSED(
+        [&] {
+            for (auto &o : call.tracks) o.value[0] = 0.0;
+        }(),
+        LENSPROF_ERROR_NO_SAMPLES);
+    REFUSED((call.options.free = 0,
+             [&] {
+                 for (auto &i : call.s.fit_images) i.free = 0;
+             }()),
             LENSPROF_ERROR_NO_UNKNOWNS);
 }
 
@@ -92,15 +103,20 @@ void test_null(void **) {
     Call call;
     uint32_t count = static_cast<uint32_t>(call.tracks.size());
     assert_int_equal(lensprof_fit_radiance(nullptr, call.s.fit_images.data(), 6, call.tracks.data(), count,
-                                           call.exposures.data(), &call.result, nullptr), LENSPROF_ERROR_ARGUMENT);
+                                           call.exposures.data(), &call.result, nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_radiance(&call.options, nullptr, 6, call.tracks.data(), count, call.exposures.data(),
-                                           &call.result, nullptr), LENSPROF_ERROR_ARGUMENT);
+                                           &call.result, nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_radiance(&call.options, call.s.fit_images.data(), 6, nullptr, count,
-                                           call.exposures.data(), &call.result, nullptr), LENSPROF_ERROR_ARGUMENT);
+                                           call.exposures.data(), &call.result, nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_radiance(&call.options, call.s.fit_images.data(), 6, call.tracks.data(), count,
-                                           nullptr, &call.result, nullptr), LENSPROF_ERROR_ARGUMENT);
+                                           nullptr, &call.result, nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_fit_radiance(&call.options, call.s.fit_images.data(), 6, call.tracks.data(), count,
-                                           call.exposures.data(), nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+                                           call.exposures.data(), nullptr, nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
 }
 
 void test_cancel(void **) {
@@ -135,13 +151,19 @@ void test_degenerate_tracks_stay_finite(void **) {
             uint64_t random = 4;
             auto &tracks = call.tracks;
             for (auto &o : tracks) {
-                if (kind == 0) for (double &v : o.value) v = 0.5;                              // all alike
-                if (kind == 1) for (double &v : o.value) v = lp_random(&random);               // noise
-                if (kind == 2) for (double &v : o.value) v = lp_random(&random) < 0.5 ? 0.0 : 1.0;  // black and white
-                if (kind == 3) for (double &v : o.value) v = 3.0 / 255.0;                      // nearly black
-                if (kind == 4) for (double &v : o.value) v = o.image % 2 ? 1.0 : v;            // every second is white
-                if (kind == 5) for (double &v : o.value) v = o.image ? 0.003 : 0.97;           // steps of 8 EV and more
-                if (kind == 6) o.xy[0] = 400.0, o.xy[1] = 300.0;                               // one place
+                if (kind == 0)
+                    for (double &v : o.value) v = 0.5;  // all alike
+                if (kind == 1)
+                    for (double &v : o.value) v = lp_random(&random);  // noise
+                if (kind == 2)
+                    for (double &v : o.value) v = lp_random(&random) < 0.5 ? 0.0 : 1.0;  // black and white
+                if (kind == 3)
+                    for (double &v : o.value) v = 3.0 / 255.0;  // nearly black
+                if (kind == 4)
+                    for (double &v : o.value) v = o.image % 2 ? 1.0 : v;  // every second is white
+                if (kind == 5)
+                    for (double &v : o.value) v = o.image ? 0.003 : 0.97;  // steps of 8 EV and more
+                if (kind == 6) o.xy[0] = 400.0, o.xy[1] = 300.0;           // one place
             }
             if (kind == 7) tracks.resize(3);  // one track
             if (kind == 8)                    // images that nothing joins
@@ -149,8 +171,8 @@ void test_degenerate_tracks_stay_finite(void **) {
             if (kind == 8) {
                 std::vector<lensprof_observation> kept;
                 for (const auto &o : tracks) {
-                    auto same = std::count_if(tracks.begin(), tracks.end(),
-                                              [&](const auto &p) { return p.point == o.point; });
+                    auto same =
+                        std::count_if(tracks.begin(), tracks.end(), [&](const auto &p) { return p.point == o.point; });
                     if (same > 1) kept.push_back(o);
                 }
                 tracks = kept;

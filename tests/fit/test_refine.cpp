@@ -2,8 +2,8 @@
 #include "simulated.hpp"
 
 #include "core/response.h"
-#include "fit/refine.hpp"
-#include "fit/residual.hpp"
+#include "fit/methods/refine.hpp"
+#include "fit/problem/residual.hpp"
 
 using namespace lensprof;
 
@@ -65,7 +65,8 @@ void test_refines_what_modes_cannot_follow(void **) {
     assert_int_equal(refined.result.response.kind, LENSPROF_RESPONSE_TABLE);
     assert_true(is_monotone(refined.result.response));
     assert_true(refined.result.usable);
-    print_message("off by %.2f levels with modes, by %.2f refined\n", transfer_error(s, modes), transfer_error(s, refined));
+    print_message("off by %.2f levels with modes, by %.2f refined\n", transfer_error(s, modes),
+                  transfer_error(s, refined));
     assert_true(transfer_error(s, refined) < 0.5 * transfer_error(s, modes));
     assert_true(transfer_error(s, refined) < 2.5);
     assert_true(refined.result.heldout_rms < modes.result.heldout_rms);
@@ -92,8 +93,7 @@ void test_known_exposures_settle_gamma(void **) {
         FitRun run = run_fit(s, bracket_fit(1));
         assert_int_equal(run.result.gamma_from, LENSPROF_GAMMA_EXPOSURES);
         assert_close(s.gamma(run.exposures), 1.0, 0.015);
-        for (uint32_t i = 1; i < s.images; i++)
-            assert_close(run.exposures[i].ev - run.exposures[0].ev, 1.5 * i, 0.06);
+        for (uint32_t i = 1; i < s.images; i++) assert_close(run.exposures[i].ev - run.exposures[0].ev, 1.5 * i, 0.06);
     }
 }
 

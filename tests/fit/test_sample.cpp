@@ -58,8 +58,8 @@ void test_masks_levels_and_alpha_are_kept_out(void **) {
             for (uint32_t u = 0; u < 320; u++) {
                 if (v < 120) pictures.masks[1][v * 320 + u] = 0;  // upper half of image 1
                 float *pixel = &pictures.data[0][(v * 320 + u) * 3];
-                if (u > 300) pixel[1] = 1.0f;                      // saturated in one channel
-                if (v > 200) pixel[2] = 0.0f;                      // black in one channel
+                if (u > 300) pixel[1] = 1.0f;  // saturated in one channel
+                if (v > 200) pixel[2] = 0.0f;  // black in one channel
             }
         std::vector<lensprof_pair> pairs;
         assert_ok(pictures.sample(options_of(sampling, 600), pairs));
@@ -140,8 +140,8 @@ void test_what_moved_is_left_out(void **) {
         double inside = 0.0;
         for (const auto &pair : pairs) {
             const double *xy = pair.xy[pair.image[0] == 1 ? 0 : 1];
-            inside += xy[0] > left + border && xy[0] < right - border
-                && xy[1] > top + border && xy[1] < bottom - border;
+            inside +=
+                xy[0] > left + border && xy[0] < right - border && xy[1] > top + border && xy[1] < bottom - border;
         }
         return inside / static_cast<double>(pairs.size());
     };
@@ -297,9 +297,9 @@ void test_progress_cancels(void **) {
             uint32_t found = 77;
             lensprof_error error;
             lensprof_pair untouched = pairs[0];
-            assert_int_equal(lensprof_sample_overlap(&options, pictures.images.data(), 4, pairs.data(), 2000, &found,
-                                                     &error),
-                             LENSPROF_ERROR_CANCELLED);
+            assert_int_equal(
+                lensprof_sample_overlap(&options, pictures.images.data(), 4, pairs.data(), 2000, &found, &error),
+                LENSPROF_ERROR_CANCELLED);
             assert_int_equal(heard.done.size(), last);  // not asked again
             assert_int_equal(found, 77);
             assert_memory_equal(&pairs[0], &untouched, sizeof untouched);

@@ -155,8 +155,7 @@ void test_any_number_of_threads_gives_the_same_tracks(void **) {
         }
         options.seed = 2;
         assert_ok(pictures.tracks(options, more));
-        assert_true(more.size() != one.size()
-                    || std::memcmp(more.data(), one.data(), one.size() * sizeof one[0]) != 0);
+        assert_true(more.size() != one.size() || std::memcmp(more.data(), one.data(), one.size() * sizeof one[0]) != 0);
     }
 }
 
@@ -175,8 +174,7 @@ void test_progress_and_cancel(void **) {
         };
         options.progress_user = &heard;
         std::vector<lensprof_observation> observations;
-        assert_int_equal(pictures.tracks(options, observations),
-                         last == 2 ? LENSPROF_ERROR_CANCELLED : LENSPROF_OK);
+        assert_int_equal(pictures.tracks(options, observations), last == 2 ? LENSPROF_ERROR_CANCELLED : LENSPROF_OK);
         assert_true(std::is_sorted(heard.done.begin(), heard.done.end()));
         if (last != 2) assert_true(heard.done.back() == 1.0);
     }

@@ -37,7 +37,8 @@ lensprof_status fit(const Simulation &s, const lensprof_profile *profile, Found 
     lensprof_fit_result_init(found.result.get());
     found.exposures.resize(s.images);
     return lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                                static_cast<uint32_t>(s.pairs.size()), found.exposures.data(), found.result.get(), error);
+                                static_cast<uint32_t>(s.pairs.size()), found.exposures.data(), found.result.get(),
+                                error);
 }
 
 // What the command stores.
@@ -71,7 +72,9 @@ Errors errors_of(const Simulation &s, const lensprof_fit_result &r) {
         e.response = std::max(e.response, std::abs(lensprof_response_eval(&r.response, k / 20.0, nullptr)
                                                    - lensprof_response_eval(&s.response, k / 20.0, nullptr)));
     }
-    const auto log_at = [](const lensprof_response &f) { return std::log(lensprof_response_invert(&f, 0.35, nullptr)); };
+    const auto log_at = [](const lensprof_response &f) {
+        return std::log(lensprof_response_invert(&f, 0.35, nullptr));
+    };
     e.gamma = std::log(log_at(r.response) / log_at(s.response)) / r.gamma_sigma;
     return e;
 }
@@ -111,8 +114,10 @@ void test_sequences_improve(void **) {
 void test_wrong_profile_is_overruled(void **) {
     for (const bool other_lens : {true, false}) {
         Simulation other = sequence(5), s = sequence(99);
-        if (other_lens) other.vignetting = {{-0.05, 0.0, 0.0}, {0.0, 0.0}};
-        else other.response = gamma_response(1.3);
+        if (other_lens)
+            other.vignetting = {{-0.05, 0.0, 0.0}, {0.0, 0.0}};
+        else
+            other.response = gamma_response(1.3);
         other.pairs.clear(), other.fit_images.clear();
         other.make(2000, 1.0, 0.0, 1.5, 5);
         Found first, found, own;
@@ -202,7 +207,8 @@ void test_refused(void **) {
     assert_int_equal(fit(s, profile.get(), found, &error), LENSPROF_ERROR_ARGUMENT);
     assert_non_null(strstr(error.text, "covariance is none"));
     profile->covariance[1] = profile->covariance[5] = 0.0;
-    assert_int_equal(fit(s, profile.get(), found, &error, LENSPROF_METHOD_TRANSFER_FUNCTION), LENSPROF_ERROR_UNSUPPORTED);
+    assert_int_equal(fit(s, profile.get(), found, &error, LENSPROF_METHOD_TRANSFER_FUNCTION),
+                     LENSPROF_ERROR_UNSUPPORTED);
     profile->vignetting[0].k[0] = -2.0;
     assert_int_equal(fit(s, profile.get(), found, &error), LENSPROF_ERROR_VIGNETTING);
     assert_non_null(strstr(error.text, "the profile is not valid"));
@@ -212,12 +218,9 @@ void test_refused(void **) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sequences_improve),
-        cmocka_unit_test(test_wrong_profile_is_overruled),
-        cmocka_unit_test(test_falloff_alone),
-        cmocka_unit_test(test_three_curves_for_one_and_one_for_three),
-        cmocka_unit_test(test_radiance),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_sequences_improve), cmocka_unit_test(test_wrong_profile_is_overruled),
+        cmocka_unit_test(test_falloff_alone),     cmocka_unit_test(test_three_curves_for_one_and_one_for_three),
+        cmocka_unit_test(test_radiance),          cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

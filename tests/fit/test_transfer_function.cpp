@@ -186,8 +186,7 @@ void test_cancelling(void **) {
         lensprof_fit_result_init(&result);
         lensprof_error error;
         assert_int_equal(lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                                              static_cast<uint32_t>(s.pairs.size()), exposures.data(), &result,
-                                              &error),
+                                              static_cast<uint32_t>(s.pairs.size()), exposures.data(), &result, &error),
                          LENSPROF_ERROR_CANCELLED);
         assert_int_equal(result.usable, 0);
         assert_non_null(std::strstr(error.text, "cancelled"));

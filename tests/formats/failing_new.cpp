@@ -7,9 +7,7 @@ namespace {
 long allocations_left = -1;
 }
 
-void lp_fail_allocation_after(long good) {
-    allocations_left = good;
-}
+void lp_fail_allocation_after(long good) { allocations_left = good; }
 
 void *operator new(std::size_t size) {
     if (allocations_left == 0) throw std::bad_alloc();
@@ -19,10 +17,6 @@ void *operator new(std::size_t size) {
     return memory;
 }
 
-void operator delete(void *memory) noexcept {
-    std::free(memory);
-}
+void operator delete(void *memory) noexcept { std::free(memory); }
 
-void operator delete(void *memory, std::size_t) noexcept {
-    std::free(memory);
-}
+void operator delete(void *memory, std::size_t) noexcept { std::free(memory); }

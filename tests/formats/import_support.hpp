@@ -36,7 +36,7 @@ inline double attenuation_at(const lensprof_profile &profile, uint32_t width, ui
                              uint32_t channel = 0) {
     const lensprof_vignetting &v = profile.vignetting[profile.vignettings == 3 ? channel : 0];
     return lensprof_vignetting_eval(&v, lensprof_vignetting_r2(&v, width, height, x, y, nullptr), nullptr)
-         * lensprof_gain_grid_eval(&profile.grid, width, height, x, y, channel);
+           * lensprof_gain_grid_eval(&profile.grid, width, height, x, y, channel);
 }
 
 inline std::unique_ptr<lensprof_profile> profile_of(double k1, double k2, double k3, double x = 0.0, double y = 0.0) {
@@ -54,7 +54,8 @@ inline double largest_difference(const lensprof_profile &a, const lensprof_profi
         for (int j = 0; j <= 40; j++)
             for (int i = 0; i <= 40; i++) {
                 const double x = i * (width - 1.0) / 40, y = j * (height - 1.0) / 40;
-                const double ratio = attenuation_at(a, width, height, x, y, c) / attenuation_at(b, width, height, x, y, c);
+                const double ratio =
+                    attenuation_at(a, width, height, x, y, c) / attenuation_at(b, width, height, x, y, c);
                 worst = std::max(worst, std::fabs(ratio - 1.0));
             }
     return worst;

@@ -32,7 +32,8 @@ inline Profile full_profile() {
     snprintf(p->key.unit, sizeof p->key.unit, "123/456");
     p->key.crop_factor = 1.0 / 3.0, p->key.focal_mm = 50, p->key.aperture = 1.1 * 3, p->key.distance_m = INFINITY;
     p->key.processing = LENSPROF_PROCESSING_CORRECTED;
-    p->provenance = {"flat", "lensprof 9.9.9", "a source", 1700000000123456789, 4000000000u, 7, 0.1 + 0.2, 1.0 / 7, "a doubt"};
+    p->provenance = {"flat",    "lensprof 9.9.9", "a source", 1700000000123456789, 4000000000u, 7,
+                     0.1 + 0.2, 1.0 / 7,          "a doubt"};
     p->responses = p->vignettings = 3;
     const double emor[3] = {0.1 + 0.2, -1.0 / 7, 0.0};
     assert_ok(lensprof_response_set_emor(&p->response[0], emor, 3));
@@ -45,8 +46,7 @@ inline Profile full_profile() {
     for (int i = 0; i < 18; i++) p->grid.attenuation[i] = static_cast<float>(0.9 + 0.2 * lp_random(&random));
     p->covariance_size = 5;
     for (int i = 0; i < 5; i++)
-        for (int j = 0; j <= i; j++)
-            p->covariance[5 * i + j] = p->covariance[5 * j + i] = lp_random(&random) * 1e-7;
+        for (int j = 0; j <= i; j++) p->covariance[5 * i + j] = p->covariance[5 * j + i] = lp_random(&random) * 1e-7;
     assert_ok(lensprof_profile_validate(p.get()));
     return p;
 }
@@ -85,15 +85,18 @@ inline std::string written(const WriteText &write, lensprof_status *status = nul
     lensprof_status result = write(nullptr, 0, &needed, &error);
     std::string text(needed, '\0');
     if (result == LENSPROF_ERROR_CAPACITY) result = write(text.data(), needed, &needed, &error);
-    if (status) *status = result;
-    else assert_ok(result);
+    if (status)
+        *status = result;
+    else
+        assert_ok(result);
     if (why) *why = error.text;
     return result == LENSPROF_OK ? text : "";
 }
 
 inline std::string write_json(const std::vector<const lensprof_profile *> &profiles) {
     return written([&](char *text, size_t capacity, size_t *needed, lensprof_error *error) {
-        return lensprof_json_write(profiles.data(), static_cast<uint32_t>(profiles.size()), text, capacity, needed, error);
+        return lensprof_json_write(profiles.data(), static_cast<uint32_t>(profiles.size()), text, capacity, needed,
+                                   error);
     });
 }
 

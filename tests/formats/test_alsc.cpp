@@ -20,11 +20,13 @@ Found read(const std::string &text, double ct = LENSPROF_UNKNOWN, uint32_t colum
     const Profile before = copy_of(*found.profile);
     lensprof_error error;
     const std::vector<char> bytes = exact(text);
-    found.status = lensprof_alsc_read(bytes.data(), bytes.size(), ct, columns, rows, kWidth, kHeight, found.profile.get(),
-                                      &found.worst, &error);
+    found.status = lensprof_alsc_read(bytes.data(), bytes.size(), ct, columns, rows, kWidth, kHeight,
+                                      found.profile.get(), &found.worst, &error);
     found.error = error.text;
-    if (found.status != LENSPROF_OK) assert_memory_equal(found.profile.get(), before.get(), sizeof *before);
-    else assert_ok(lensprof_profile_validate(found.profile.get()));
+    if (found.status != LENSPROF_OK)
+        assert_memory_equal(found.profile.get(), before.get(), sizeof *before);
+    else
+        assert_ok(lensprof_profile_validate(found.profile.get()));
     return found;
 }
 
@@ -54,13 +56,15 @@ void test_round_trip(void **) {
     const Profile truth = lens();
     for (const uint32_t columns : {16u, 32u, 20u}) {
         const uint32_t rows = columns == 16 ? 12 : columns == 32 ? 32 : 10;
-        const Found found = read(write(*truth, 5000, columns, rows), LENSPROF_UNKNOWN, columns == 20 ? 20 : 0, columns == 20 ? 10 : 0);
+        const Found found =
+            read(write(*truth, 5000, columns, rows), LENSPROF_UNKNOWN, columns == 20 ? 20 : 0, columns == 20 ? 10 : 0);
         assert_string_equal(found.error.c_str(), "");
         assert_true(found.worst < 2e-3);
         assert_int_equal(found.profile->vignettings, 3);
         assert_int_equal(found.profile->covariance_size, 0);
         for (uint32_t c = 0; c < 3; c++)
-            for (const double way : {0.3, 0.6, 0.9}) assert_close(shade(*found.profile, c, way), shade(*truth, c, way), 2e-3);
+            for (const double way : {0.3, 0.6, 0.9})
+                assert_close(shade(*found.profile, c, way), shade(*truth, c, way), 2e-3);
     }
 }
 
@@ -79,7 +83,10 @@ std::string tuning_file() {
 // Cr is what red's gain is multiplied by: where it is large, red is dark beside green.
 void test_sense(void **) {
     const std::string text = write(*lens());
-    assert_int_equal(text.find("{\"rpi.alsc\":{\n\"omega\":1.3,\"n_iter\":100,\"luminance_strength\":1.0,\n\"calibrations_Cr\":[{\"ct\":5000,\"table\":[\n1."), 0);
+    assert_int_equal(
+        text.find(
+            "{\"rpi.alsc\":{\n\"omega\":1.3,\"n_iter\":100,\"luminance_strength\":1.0,\n\"calibrations_Cr\":[{\"ct\":5000,\"table\":[\n1."),
+        0);
     assert_true(text.find("corner_strength") == std::string::npos);  // it would replace the table
     const double red = std::stod(text.substr(text.find("table\":[") + 8)),
                  luminance = std::stod(text.substr(text.find("luminance_lut\":[") + 16));
@@ -91,8 +98,8 @@ void test_sense(void **) {
 }
 
 std::string with_two(double low, double high) {
-    return "{\"luminance_lut\":" + table(1, 1) + ",\"default_ct\":4000,\"calibrations_Cr\":[{\"ct\":3000,\"table\":" + table(low, 1)
-         + "},{\"ct\":5000,\"table\":" + table(high, 1) + "}]}";
+    return "{\"luminance_lut\":" + table(1, 1) + ",\"default_ct\":4000,\"calibrations_Cr\":[{\"ct\":3000,\"table\":"
+           + table(low, 1) + "},{\"ct\":5000,\"table\":" + table(high, 1) + "}]}";
 }
 
 // Between two tables linearly, beyond them as the nearer; without one as default_ct says.
@@ -101,7 +108,8 @@ void test_temperature(void **) {
         const Found found = read(with_two(1.2, 1.6), ct);
         assert_string_equal(found.error.c_str(), "");
         assert_int_equal(found.profile->vignettings, 3);
-        return found.profile->grid.attenuation[0] * lensprof_vignetting_eval(&found.profile->vignetting[0], 1.0, nullptr);
+        return found.profile->grid.attenuation[0]
+               * lensprof_vignetting_eval(&found.profile->vignetting[0], 1.0, nullptr);
     };
     const double low = corner(3000), high = corner(5000);
     assert_true(low > high + 0.03);
@@ -165,7 +173,9 @@ void test_refused(void **) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_sense), cmocka_unit_test(test_temperature),
+        cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_sense),
+        cmocka_unit_test(test_temperature),
         cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

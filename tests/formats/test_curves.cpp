@@ -34,10 +34,12 @@ double at(const Curves &curves, int channel, double x) {
 
 void test_layouts(void **) {
     // Of OpenCV, AliceVision, a spreadsheet, and what people paste.
-    for (const char *text : {"0.5, 1, 2\n1, 2, 4\n2, 4, 8\n4, 8, 16\n", "0.5;1;2\n1;2;4\n2;4;8\n4;8;16",
-                             "response,Red,Green,Blue,\n0,0.5,1,2,\n1,1,2,4,\n2,2,4,8,\n3,4,8,16,\n",
-                             "# made by hand\n\nx\tR\tG\tB\r\n0\t.5\t1\t2\r\n10\t1\t2\t4\r\n20\t2\t4\t8\r\n30\t4\t8\t16\r\n",
-                             "% bgr\nBlue green Red\n2 1 0.5\n4 2 1\n8 4 2\n16 8 4\n", "[0.5, 1, 2;\n 1, 2, 4;\n 2, 4, 8;\n 4, 8, 16]\n"}) {
+    for (const char *text :
+         {"0.5, 1, 2\n1, 2, 4\n2, 4, 8\n4, 8, 16\n", "0.5;1;2\n1;2;4\n2;4;8\n4;8;16",
+          "response,Red,Green,Blue,\n0,0.5,1,2,\n1,1,2,4,\n2,2,4,8,\n3,4,8,16,\n",
+          "# made by hand\n\nx\tR\tG\tB\r\n0\t.5\t1\t2\r\n10\t1\t2\t4\r\n20\t2\t4\t8\r\n30\t4\t8\t16\r\n",
+          "% bgr\nBlue green Red\n2 1 0.5\n4 2 1\n8 4 2\n16 8 4\n",
+          "[0.5, 1, 2;\n 1, 2, 4;\n 2, 4, 8;\n 4, 8, 16]\n"}) {
         const auto curves = read(text);
         assert_string_equal(curves->error.c_str(), "");
         assert_int_equal(curves->count, 3);
@@ -67,10 +69,11 @@ void test_kinds(void **) {
     assert_close(at(*forward, 0, 0.25), 0.25, 1e-12);
 }
 
-const char kPfs[] = "# Camera response curve, channel IR\n# data layout: log10(response) | camera output | response\n"
-                    "# name: IR\n# type: matrix\n# rows: 3\n# columns: 3\n -6.000000e+00    0 0.000000e+00\n"
-                    " 0.000000e+00    1 1.000000e+00\n 6.0e-01    2 4.000000e+00\n\n"
-                    "# name: IG\n -6 0 0\n 0 1 2\n 0.6 2 4\n\n# name: IB\n -6 0 0\n 0 1 3\n 0.6 2 4\n";
+const char kPfs[] =
+    "# Camera response curve, channel IR\n# data layout: log10(response) | camera output | response\n"
+    "# name: IR\n# type: matrix\n# rows: 3\n# columns: 3\n -6.000000e+00    0 0.000000e+00\n"
+    " 0.000000e+00    1 1.000000e+00\n 6.0e-01    2 4.000000e+00\n\n"
+    "# name: IG\n -6 0 0\n 0 1 2\n 0.6 2 4\n\n# name: IB\n -6 0 0\n 0 1 3\n 0.6 2 4\n";
 
 void test_pfstools(void **) {
     const auto curves = read(kPfs, LENSPROF_CURVE_LOG);
@@ -137,8 +140,14 @@ void test_refused(void **) {
         {"0\n" + std::string(2, '\0') + "\n", LENSPROF_ERROR_SYNTAX, "line 2", 0},
         {pfs.substr(0, pfs.find("# name: IB")), LENSPROF_ERROR_SYNTAX, "2 matrices", 0},
         {with(pfs, " 0 1 2\n", " 0 1 5\n"), LENSPROF_ERROR_RESPONSE, "line 14: 4 is below the 5", 0},
-        {with(pfs, " -6 0 0\n 0 1 2\n 0.6 2 4\n", "1 2\n3 4\n"), LENSPROF_ERROR_SYNTAX, "a matrix without 3 columns", 0},
-        {[] { std::string s; for (int i = 0; i < 65537; i++) s += "1\n"; return s; }(), LENSPROF_ERROR_SIZE, "line 65537", 0},
+        {with(pfs, " -6 0 0\n 0 1 2\n 0.6 2 4\n", "1 2\n3 4\n"), LENSPROF_ERROR_SYNTAX, "a matrix without 3 columns",
+         0},
+        {[] {
+             std::string s;
+             for (int i = 0; i < 65537; i++) s += "1\n";
+             return s;
+         }(),
+         LENSPROF_ERROR_SIZE, "line 65537", 0},
         {std::string((64u << 20) + 1, '\n'), LENSPROF_ERROR_SIZE, "64 MiB", 0},
     };
     for (const auto &c : cases) {

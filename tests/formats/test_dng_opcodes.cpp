@@ -51,7 +51,8 @@ struct MapArea {
 
 Bytes gain_map(const MapArea &a, uint32_t rows, uint32_t columns, uint32_t planes, const std::vector<float> &gains) {
     Bytes payload;
-    for (uint32_t value : {a.top, a.left, a.bottom, a.right, a.plane, a.planes, a.row_pitch, a.column_pitch, rows, columns})
+    for (uint32_t value :
+         {a.top, a.left, a.bottom, a.right, a.plane, a.planes, a.row_pitch, a.column_pitch, rows, columns})
         put(payload, value, 4);
     for (double value : {a.spacing, a.spacing, a.origin, a.origin}) put_f64(payload, value);
     put(payload, planes, 4);
@@ -79,8 +80,9 @@ void assert_refused(const Imported &imported, lensprof_status status, const char
 Bytes write(const lensprof_profile &profile, uint32_t layout, uint32_t form, double *worst = nullptr,
             uint32_t width = 600, uint32_t height = 400) {
     size_t needed = 0;
-    assert_int_equal(lensprof_dng_opcodes_write(&profile, width, height, layout, form, nullptr, 0, &needed, nullptr,
-                                                nullptr), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(
+        lensprof_dng_opcodes_write(&profile, width, height, layout, form, nullptr, 0, &needed, nullptr, nullptr),
+        LENSPROF_ERROR_CAPACITY);
     Bytes bytes(needed);
     assert_ok(lensprof_dng_opcodes_write(&profile, width, height, layout, form, bytes.data(), needed, &needed, worst,
                                          nullptr));
@@ -137,7 +139,8 @@ void test_opcodes_multiply(void **) {
     assert_true(largest_difference(*two.profiles.at(0), *product.profiles[0], 600, 400, 1) < 0.004);
 }
 
-// A map of 2 x 2 points whose origin and spacing put them at 1/4 and 3/4 of the frame: bilinear between, edges as there.
+// A map of 2 x 2 points whose origin and spacing put them at 1/4 and 3/4 of the frame: bilinear between, edges as
+// there.
 void test_map_semantics(void **) {
     MapArea area;
     area.planes = 3, area.spacing = 0.5, area.origin = 0.25;
@@ -156,8 +159,10 @@ void test_map_semantics(void **) {
         for (double y = 20; y < 400; y += 30)
             for (double x = 20; x < 600; x += 30) {
                 const double product = attenuation_at(p, 600, 400, x, y) * gain(x, y);
-                if (pass == 0) scale += product / (13 * 20);
-                else worst = std::max(worst, std::fabs(product / scale - 1.0));
+                if (pass == 0)
+                    scale += product / (13 * 20);
+                else
+                    worst = std::max(worst, std::fabs(product / scale - 1.0));
             }
     assert_true(worst < 0.006);  // of a map with kinks
 }
@@ -223,7 +228,8 @@ void test_written_bytes(void **) {
 void test_round_trips(void **) {
     const struct {
         double k1, k2, k3, x, y, radial, map;
-    } cases[] = {{-0.3, 0.1, -0.05, 0, 0, 2e-5, 6e-4}, {-0.8, 0.3, -0.1, 0.05, -0.08, 4e-3, 7e-3},
+    } cases[] = {{-0.3, 0.1, -0.05, 0, 0, 2e-5, 6e-4},
+                 {-0.8, 0.3, -0.1, 0.05, -0.08, 4e-3, 7e-3},
                  {-1.1, 0.7, -0.3, 0, 0.1, 2e-2, 2e-2}};
     for (const auto &c : cases) {
         const auto profile = profile_of(c.k1, c.k2, c.k3, c.x, c.y);
@@ -270,11 +276,12 @@ void test_grid_is_written_as_map(void **) {
     for (int i = 0; i < 25; i++) profile->grid.attenuation[i] = 1.0f + 0.01f * static_cast<float>(i % 5);
     const Imported back = read(write(*profile, LENSPROF_LAYOUT_RGGB, LENSPROF_DNG_GAIN_MAP), LENSPROF_LAYOUT_RGGB);
     assert_ok(back.status);
-    const double scale = attenuation_at(*back.profiles.at(0), 600, 400, 299.5, 199.5)
-                       / attenuation_at(*profile, 600, 400, 299.5, 199.5);
+    const double scale =
+        attenuation_at(*back.profiles.at(0), 600, 400, 299.5, 199.5) / attenuation_at(*profile, 600, 400, 299.5, 199.5);
     for (const double x : {0.0, 150.0, 450.0, 599.0})
-        assert_close(attenuation_at(*back.profiles[0], 600, 400, x, 100)
-                         / (scale * attenuation_at(*profile, 600, 400, x, 100)), 1.0, 4e-3);
+        assert_close(
+            attenuation_at(*back.profiles[0], 600, 400, x, 100) / (scale * attenuation_at(*profile, 600, 400, x, 100)),
+            1.0, 4e-3);
 }
 
 void test_write_refused(void **) {
@@ -283,8 +290,9 @@ void test_write_refused(void **) {
         lensprof_error error;
         uint8_t bytes[8] = {7};
         size_t needed = 99;
-        assert_int_equal(lensprof_dng_opcodes_write(&profile, 600, 400, layout, form, bytes, sizeof bytes, &needed,
-                                                    nullptr, &error), status);
+        assert_int_equal(
+            lensprof_dng_opcodes_write(&profile, 600, 400, layout, form, bytes, sizeof bytes, &needed, nullptr, &error),
+            status);
         assert_non_null(strstr(error.text, text));
         assert_int_equal(bytes[0], 7);
         assert_true(needed == 99 || status == LENSPROF_ERROR_CAPACITY);
@@ -335,8 +343,9 @@ void test_read_refused(void **) {
     assert_int_equal(lensprof_dng_opcodes_read(nullptr, 4, 6, 4, 2, nullptr, keep_entry, nullptr, nullptr),
                      LENSPROF_ERROR_ARGUMENT);
     const Bytes list = list_of({good});
-    assert_int_equal(lensprof_dng_opcodes_read(list.data(), list.size(), 6, 4, 2, nullptr, refuse_entry, nullptr, nullptr),
-                     LENSPROF_ERROR_CANCELLED);
+    assert_int_equal(
+        lensprof_dng_opcodes_read(list.data(), list.size(), 6, 4, 2, nullptr, refuse_entry, nullptr, nullptr),
+        LENSPROF_ERROR_CANCELLED);
 }
 
 void test_maps_refused(void **) {
@@ -365,7 +374,8 @@ void test_maps_refused(void **) {
 void test_cuts_and_mutations(void **) {
     Bytes list = list_of({radial({0.5, 0.1, 0, 0, 0}), opcode(1, 0, Bytes(5)), radial({0.1, 0, 0, 0, 0})});
     for (size_t size = 0; size < list.size(); size++)
-        assert_refused(read(Bytes(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(size))), LENSPROF_ERROR_SYNTAX, "");
+        assert_refused(read(Bytes(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(size))),
+                       LENSPROF_ERROR_SYNTAX, "");
     for (size_t at = 0; at < list.size(); at++)
         for (const uint8_t change : {0x01, 0x80, 0xFF}) {
             list[at] ^= change;
@@ -380,12 +390,18 @@ void test_cuts_and_mutations(void **) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_golden_radial), cmocka_unit_test(test_radial_about_another_centre),
-        cmocka_unit_test(test_opcodes_multiply), cmocka_unit_test(test_map_semantics),
-        cmocka_unit_test(test_map_planes), cmocka_unit_test(test_written_bytes),
-        cmocka_unit_test(test_round_trips), cmocka_unit_test(test_channels_round_trip),
-        cmocka_unit_test(test_grid_is_written_as_map), cmocka_unit_test(test_write_refused),
-        cmocka_unit_test(test_read_refused), cmocka_unit_test(test_maps_refused),
+        cmocka_unit_test(test_golden_radial),
+        cmocka_unit_test(test_radial_about_another_centre),
+        cmocka_unit_test(test_opcodes_multiply),
+        cmocka_unit_test(test_map_semantics),
+        cmocka_unit_test(test_map_planes),
+        cmocka_unit_test(test_written_bytes),
+        cmocka_unit_test(test_round_trips),
+        cmocka_unit_test(test_channels_round_trip),
+        cmocka_unit_test(test_grid_is_written_as_map),
+        cmocka_unit_test(test_write_refused),
+        cmocka_unit_test(test_read_refused),
+        cmocka_unit_test(test_maps_refused),
         cmocka_unit_test(test_cuts_and_mutations),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -10,7 +10,7 @@ std::string packet(const std::string &attributes, const std::string &elements) {
            "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n"
            "<rdf:Description rdf:about=\"\" xmlns:Camera=\"http://pix4d.com/camera/1.0\" "
            "xmlns:drone-dji=\"http://www.dji.com/drone-dji/1.0/\" xmlns:tiff=\"http://ns.adobe.com/tiff/1.0/\" "
-         + attributes + ">" + elements + "</rdf:Description></rdf:RDF></x:xmpmeta><?xpacket end=\"w\"?>\n   \n";
+           + attributes + ">" + elements + "</rdf:Description></rdf:RDF></x:xmpmeta><?xpacket end=\"w\"?>\n   \n";
 }
 
 std::string list(const std::string &name, const std::vector<double> &values) {
@@ -27,15 +27,16 @@ Imported read(const std::string &text, uint32_t width = 1280, uint32_t height = 
     Imported imported{};
     lensprof_error error;
     const std::vector<char> exact(text.begin(), text.end());
-    imported.status = lensprof_drone_xmp_read(exact.data(), exact.size(), width, height, "a.tif", keep_entry, &imported,
-                                              &error);
+    imported.status =
+        lensprof_drone_xmp_read(exact.data(), exact.size(), width, height, "a.tif", keep_entry, &imported, &error);
     imported.error = error.text;
     return imported;
 }
 
 // Corrected by the polynomial as the maker's own software does it, against the profile, at some places.
 template <typename Attenuation>
-void assert_same(const lensprof_profile &profile, uint32_t width, uint32_t height, double tolerance, Attenuation exact) {
+void assert_same(const lensprof_profile &profile, uint32_t width, uint32_t height, double tolerance,
+                 Attenuation exact) {
     const double x0 = width / 2, y0 = height / 2;
     const double scale = attenuation_at(profile, width, height, x0, y0) / exact(x0, y0);
     for (uint32_t y = 0; y < height; y += height / 7)
@@ -53,8 +54,8 @@ double polynomial(const std::vector<double> &terms, double r) {
 const std::vector<double> kMicaSense = {-3.0e-5, -5.1e-7, 3.4e-10, -8.5e-13, 5.0e-16, -1.0e-19};
 
 void test_micasense(void **) {
-    const std::string elements = list("Camera:VignettingPolynomial", kMicaSense)
-                               + list("Camera:VignettingCenter", {623.6301, 464.4527});
+    const std::string elements =
+        list("Camera:VignettingPolynomial", kMicaSense) + list("Camera:VignettingCenter", {623.6301, 464.4527});
     const Imported imported = read(packet("tiff:Make=\"MicaSense\" tiff:Model=\"RedEdge-M\"", elements));
     assert_string_equal(imported.error.c_str(), "");
     const lensprof_profile &p = *imported.profiles.at(0);
@@ -79,13 +80,16 @@ void assert_dji(const Imported &imported, double x, double y) {
     assert_string_equal(p.key.camera_maker, "DJI");
     assert_string_equal(p.provenance.source, "a.tif; XMP of DJI");
     assert_true(attenuation_at(p, 1600, 1300, 0, 0) < 0.6 * attenuation_at(p, 1600, 1300, 800, 650));
-    assert_same(p, 1600, 1300, 1.4e-2, [=](double a, double b) { return 1.0 / polynomial(kDji, std::hypot(a - x, b - y)); });
+    assert_same(p, 1600, 1300, 1.4e-2,
+                [=](double a, double b) { return 1.0 / polynomial(kDji, std::hypot(a - x, b - y)); });
 }
 
 void test_dji(void **) {
-    const std::string own = "drone-dji:VignettingData=\"0.000218235, 1.20722E-06, -2.8676E-09, 5.1742E-12, -4.16853E-15, "
-                            "1.36962E-18\" ";
-    const std::string center = "drone-dji:CalibratedOpticalCenterX=\"805\" drone-dji:CalibratedOpticalCenterY=\"640.5\" ";
+    const std::string own =
+        "drone-dji:VignettingData=\"0.000218235, 1.20722E-06, -2.8676E-09, 5.1742E-12, -4.16853E-15, "
+        "1.36962E-18\" ";
+    const std::string center =
+        "drone-dji:CalibratedOpticalCenterX=\"805\" drone-dji:CalibratedOpticalCenterY=\"640.5\" ";
     assert_dji(read(packet(own + center, ""), 1600, 1300), 805, 640.5);
     assert_dji(read(packet(own, ""), 1600, 1300), 799.5, 649.5);
     // The maker's other form of the same numbers is a gain as well; its own one counts first.
@@ -96,17 +100,19 @@ void test_dji(void **) {
     const Imported flagged = read(packet(own + "drone-dji:VignettingFlag=\"1\"", ""), 1600, 1300);
     assert_non_null(strstr(flagged.profiles.at(0)->provenance.doubt, "corrected this picture itself"));
     // Elements, and under another prefix.
-    std::string text = packet("", "<drone-dji:VignettingData>0.000218235,1.20722e-06,-2.8676e-09,5.1742e-12,-4.16853e-15,"
-                                  "1.36962e-18</drone-dji:VignettingData>");
+    std::string text = packet("",
+                              "<drone-dji:VignettingData>0.000218235,1.20722e-06,-2.8676e-09,5.1742e-12,-4.16853e-15,"
+                              "1.36962e-18</drone-dji:VignettingData>");
     for (size_t at; (at = text.find("drone-dji:")) != std::string::npos;) text.replace(at, 10, "d:");
     text.replace(text.find("xmlns:drone-dji"), 15, "xmlns:d");
     assert_dji(read(text, 1600, 1300), 799.5, 649.5);
 }
 
 // Corrected = picture / sum c (x / width)^i (y / height)^j: a Sequoia's, whose numbers are in one item of a list.
-const std::string k2d = "<Camera:VignettingPolynomial2DName><rdf:Seq><rdf:li>0,0,1,0,2,0,0,1,0,2,1,1</rdf:li>"
-                        "</rdf:Seq></Camera:VignettingPolynomial2DName><Camera:VignettingPolynomial2D><rdf:Seq>"
-                        "<rdf:li>0.6,0.9,-1.0,0.8,-0.9,0.1</rdf:li></rdf:Seq></Camera:VignettingPolynomial2D>";
+const std::string k2d =
+    "<Camera:VignettingPolynomial2DName><rdf:Seq><rdf:li>0,0,1,0,2,0,0,1,0,2,1,1</rdf:li>"
+    "</rdf:Seq></Camera:VignettingPolynomial2DName><Camera:VignettingPolynomial2D><rdf:Seq>"
+    "<rdf:li>0.6,0.9,-1.0,0.8,-0.9,0.1</rdf:li></rdf:Seq></Camera:VignettingPolynomial2D>";
 
 void test_2d(void **) {
     const Imported imported = read(packet("tiff:Make=\"Parrot\"", k2d));
@@ -145,13 +151,15 @@ void test_refused(void **) {
     refused(packet("", "<Camera:VignettingPolynomial>x</Camera:VignettingPolynomial>"), LENSPROF_ERROR_SYNTAX, "\"x\"");
     refused(packet("drone-dji:VignettingData=\"1,,2\"", ""), LENSPROF_ERROR_SYNTAX, "not a number");
     refused(packet("drone-dji:VignettingData=\"nan\"", ""), LENSPROF_ERROR_SYNTAX, "not a number");
-    refused(packet("", list("Camera:VignettingPolynomial", std::vector<double>(17, 0.0))), LENSPROF_ERROR_SIZE, "over 16");
+    refused(packet("", list("Camera:VignettingPolynomial", std::vector<double>(17, 0.0))), LENSPROF_ERROR_SIZE,
+            "over 16");
     refused(packet("", list("Camera:VignettingPolynomial", {-1e-2})), LENSPROF_ERROR_VIGNETTING, "not above 0");
     refused(packet("drone-dji:VignettingData=\"-1e-2\"", ""), LENSPROF_ERROR_VIGNETTING, "not above 0");
     refused(packet("", good + list("Camera:VignettingCenter", {1500, 20})), LENSPROF_ERROR_SYNTAX, "outside a frame");
     refused(packet("", good + list("Camera:VignettingCenter", {15})), LENSPROF_ERROR_SYNTAX, "two numbers");
-    refused(packet("", list("Camera:VignettingPolynomial2D", {1, 2}) + list("Camera:VignettingPolynomial2DName", {0, 0})),
-            LENSPROF_ERROR_SYNTAX, "two powers");
+    refused(
+        packet("", list("Camera:VignettingPolynomial2D", {1, 2}) + list("Camera:VignettingPolynomial2DName", {0, 0})),
+        LENSPROF_ERROR_SYNTAX, "two powers");
     refused(packet("", list("Camera:VignettingPolynomial2D", {1}) + list("Camera:VignettingPolynomial2DName", {0, -1})),
             LENSPROF_ERROR_SYNTAX, "whole power");
     refused(packet("", list("Camera:VignettingPolynomial2D", {-1}) + list("Camera:VignettingPolynomial2DName", {0, 0})),
@@ -165,15 +173,16 @@ void test_refused(void **) {
     for (size_t size = 0; size < all.rfind("</x:xmpmeta>"); size += 3)
         assert_int_equal(read(all.substr(0, size)).status, LENSPROF_ERROR_SYNTAX);
     assert_ok(read(all + std::string(5, '\0')).status);  // as padded by writers of TIFF
-    assert_int_equal(lensprof_drone_xmp_read(all.data(), all.size(), 1280, 960, nullptr, refuse_entry, nullptr, nullptr),
-                     LENSPROF_ERROR_CANCELLED);
+    assert_int_equal(
+        lensprof_drone_xmp_read(all.data(), all.size(), 1280, 960, nullptr, refuse_entry, nullptr, nullptr),
+        LENSPROF_ERROR_CANCELLED);
 }
 
 }  // namespace
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_micasense), cmocka_unit_test(test_dji), cmocka_unit_test(test_2d),
+        cmocka_unit_test(test_micasense),   cmocka_unit_test(test_dji),     cmocka_unit_test(test_2d),
         cmocka_unit_test(test_huge_frames), cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -13,20 +13,20 @@ typedef struct world {
     lensprof_profile *profile;
 } world;
 
-static lensprof_status read_again(world *w)
-{
+static lensprof_status read_again(world *w) {
     (void)w;
     lensprof_pto *untouched = (lensprof_pto *)&untouched, *pto = untouched;
     lensprof_error error;
     lensprof_status status = lensprof_pto_read(SAMPLE_PTO, strlen(SAMPLE_PTO), &pto, &error);
     assert_true((pto == untouched) == (status != LENSPROF_OK));
-    if (status == LENSPROF_OK) lensprof_pto_destroy(pto);
-    else assert_non_null(strstr(error.text, "out of memory"));
+    if (status == LENSPROF_OK)
+        lensprof_pto_destroy(pto);
+    else
+        assert_non_null(strstr(error.text, "out of memory"));
     return status;
 }
 
-static lensprof_status read_wrong(world *w)
-{
+static lensprof_status read_wrong(world *w) {
     (void)w;
     const char text[] = "i w10 h10\nv a_name_that_is_far_too_long_for_the_small_string_of_any_library\n";
     lensprof_pto *pto;
@@ -34,8 +34,7 @@ static lensprof_status read_wrong(world *w)
     return status == LENSPROF_ERROR_VARIABLE ? LENSPROF_OK : status;
 }
 
-static lensprof_status draw(world *w)
-{
+static lensprof_status draw(world *w) {
     uint8_t mask[100 * 60];
     memset(mask, 7, sizeof mask);
     lensprof_status status = lensprof_pto_draw_mask(w->pto, 2, mask, 100, 60, 100);
@@ -43,14 +42,12 @@ static lensprof_status draw(world *w)
     return status;
 }
 
-static lensprof_status set_result(world *w)
-{
+static lensprof_status set_result(world *w) {
     const lensprof_vignetting vignetting = {{-0.2, 0, 0}, {0, 0}};
     return lensprof_pto_set_result(w->pto, &w->response, &vignetting, w->exposures, 4, 0);
 }
 
-static lensprof_status write_points(world *w)
-{
+static lensprof_status write_points(world *w) {
     (void)w;
     const lensprof_camera cameras[2] = {{.width = 6, .height = 8}, {.width = 6, .height = 8}};
     const lensprof_pair pair = {{0, 1}, {{1, 2}, {3, 4}}, {{0, 0, 0}, {1, 1, 1}}};
@@ -60,27 +57,25 @@ static lensprof_status write_points(world *w)
     return status;
 }
 
-static lensprof_status count_entry(void *user, const lensprof_import_entry *entry)
-{
+static lensprof_status count_entry(void *user, const lensprof_import_entry *entry) {
     *(int *)user += (int)entry->usable;
     return LENSPROF_OK;
 }
 
-static lensprof_status read_lensfun(world *w)
-{
+static lensprof_status read_lensfun(world *w) {
     (void)w;
-    const char text[] = "<lensdatabase><camera><maker>A long name of a maker</maker><mount>acme</mount></camera>"
-                        "<lens><maker>A long name of a maker</maker><model>and of a lens</model><mount>acme</mount>"
-                        "<cropfactor>1</cropfactor><calibration><vignetting model=\"pa\" focal=\"9\" aperture=\"2\" "
-                        "distance=\"1\" k1=\"-0.3\"/></calibration></lens></lensdatabase>";
+    const char text[] =
+        "<lensdatabase><camera><maker>A long name of a maker</maker><mount>acme</mount></camera>"
+        "<lens><maker>A long name of a maker</maker><model>and of a lens</model><mount>acme</mount>"
+        "<cropfactor>1</cropfactor><calibration><vignetting model=\"pa\" focal=\"9\" aperture=\"2\" "
+        "distance=\"1\" k1=\"-0.3\"/></calibration></lens></lensdatabase>";
     int entries = 0;
     lensprof_status status = lensprof_lensfun_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
     assert_int_equal(entries, status == LENSPROF_OK);
     return status;
 }
 
-static lensprof_status write_lensfun(world *w)
-{
+static lensprof_status write_lensfun(world *w) {
     const lensprof_profile *const profiles[1] = {w->profile};
     char text[1000] = "untouched";
     size_t needed = 0;
@@ -89,19 +84,18 @@ static lensprof_status write_lensfun(world *w)
     return status;
 }
 
-static lensprof_status read_json(world *w)
-{
+static lensprof_status read_json(world *w) {
     (void)w;
-    const char text[] = "{\"profiles\":[{\"key\":{\"lens\":\"A lens with a rather long name\",\"processing\":\"raw\"},"
-                        "\"vignetting\":{\"k\":[[-0.3,0,0]]},\"response\":{\"kind\":\"emor\",\"emor\":[0.1]},\"a\":[[[]]]}]}";
+    const char text[] =
+        "{\"profiles\":[{\"key\":{\"lens\":\"A lens with a rather long name\",\"processing\":\"raw\"},"
+        "\"vignetting\":{\"k\":[[-0.3,0,0]]},\"response\":{\"kind\":\"emor\",\"emor\":[0.1]},\"a\":[[[]]]}]}";
     int entries = 0;
     lensprof_status status = lensprof_json_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
     assert_int_equal(entries, status == LENSPROF_OK);
     return status;
 }
 
-static lensprof_status read_wrong_json(world *w)
-{
+static lensprof_status read_wrong_json(world *w) {
     (void)w;
     int entries = 0;
     const char text[] = "{\"key\":{\"processing\":\"a word that is too long for the small string of any library\"}}";
@@ -109,8 +103,7 @@ static lensprof_status read_wrong_json(world *w)
     return status == LENSPROF_ERROR_SYNTAX ? LENSPROF_OK : status;
 }
 
-static lensprof_status write_json(world *w)
-{
+static lensprof_status write_json(world *w) {
     const lensprof_profile *const profiles[2] = {w->profile, w->profile};
     static char text[100000];
     strcpy(text, "untouched");
@@ -120,8 +113,7 @@ static lensprof_status write_json(world *w)
     return status;
 }
 
-static lensprof_status read_pcalib(world *w)
-{
+static lensprof_status read_pcalib(world *w) {
     w->response.kind = 99;
     char text[1024] = "";
     for (int i = 0; i < 256; i++) sprintf(text + strlen(text), "%d ", i);
@@ -131,20 +123,19 @@ static lensprof_status read_pcalib(world *w)
     return status;
 }
 
-static lensprof_status read_curves(world *w)
-{
+static lensprof_status read_curves(world *w) {
     const char text[] = "# name: a_name_that_is_far_too_long_for_a_small_string\n0 0 0\n0 1 1\n";
     uint32_t count = 99;
     static lensprof_response responses[3];
     (void)w;
-    lensprof_status status = lensprof_curves_read(text, sizeof text - 1, LENSPROF_CURVE_INVERSE, responses, &count, NULL);
+    lensprof_status status =
+        lensprof_curves_read(text, sizeof text - 1, LENSPROF_CURVE_INVERSE, responses, &count, NULL);
     assert_true((count == 99) == (status != LENSPROF_OK));
     return status;
 }
 
 /* Of all writers of tables. */
-static lensprof_status write_tables(world *w)
-{
+static lensprof_status write_tables(world *w) {
     static char text[20000];
     const lensprof_frame_time frame = {"00001", 1.5, 2.5};
     lensprof_status status = lensprof_pcalib_write(&w->response, text, sizeof text, NULL, NULL);
@@ -154,21 +145,20 @@ static lensprof_status write_tables(world *w)
     return lensprof_times_write(&frame, 1, text, sizeof text, NULL, NULL);
 }
 
-static lensprof_status read_lcp(world *w)
-{
+static lensprof_status read_lcp(world *w) {
     (void)w;
-    const char text[] = "<rdf:RDF><x:CameraProfiles><rdf:Seq><rdf:li Make=\"A long name of a maker\" FocalLength=\"9\" "
-                        "ImageWidth=\"60\" ImageLength=\"40\"><PerspectiveModel><VignetteModel FocalLengthX=\"1\" "
-                        "FocalLengthY=\"1.1\" VignetteModelParam1=\"-0.3\"/></PerspectiveModel></rdf:li></rdf:Seq>"
-                        "</x:CameraProfiles></rdf:RDF>";
+    const char text[] =
+        "<rdf:RDF><x:CameraProfiles><rdf:Seq><rdf:li Make=\"A long name of a maker\" FocalLength=\"9\" "
+        "ImageWidth=\"60\" ImageLength=\"40\"><PerspectiveModel><VignetteModel FocalLengthX=\"1\" "
+        "FocalLengthY=\"1.1\" VignetteModelParam1=\"-0.3\"/></PerspectiveModel></rdf:li></rdf:Seq>"
+        "</x:CameraProfiles></rdf:RDF>";
     int entries = 0;
     lensprof_status status = lensprof_lcp_read(text, sizeof text - 1, "a file", count_entry, &entries, NULL);
     assert_int_equal(entries, status == LENSPROF_OK);
     return status;
 }
 
-static lensprof_status write_lcp(world *w)
-{
+static lensprof_status write_lcp(world *w) {
     const lensprof_profile *const profiles[1] = {w->profile};
     char text[4000] = "untouched";
     size_t needed = 0;
@@ -177,24 +167,24 @@ static lensprof_status write_lcp(world *w)
     return status;
 }
 
-static lensprof_status read_drone_xmp(world *w)
-{
+static lensprof_status read_drone_xmp(world *w) {
     (void)w;
-    const char text[] = "<rdf:RDF><rdf:Description tiff:Make=\"A long name of a maker\" drone-dji:VignettingData=\"0.001, "
-                        "0.00001, 0.000001\"/></rdf:RDF>";
+    const char text[] =
+        "<rdf:RDF><rdf:Description tiff:Make=\"A long name of a maker\" drone-dji:VignettingData=\"0.001, "
+        "0.00001, 0.000001\"/></rdf:RDF>";
     int entries = 0;
-    lensprof_status status = lensprof_drone_xmp_read(text, sizeof text - 1, 60, 40, "a file", count_entry, &entries, NULL);
+    lensprof_status status =
+        lensprof_drone_xmp_read(text, sizeof text - 1, 60, 40, "a file", count_entry, &entries, NULL);
     assert_int_equal(entries, status == LENSPROF_OK);
     return status;
 }
 
-static lensprof_status read_opcodes(world *w)
-{
+static lensprof_status read_opcodes(world *w) {
     (void)w;
     /* a FixVignetteRadial of gain 1 about (0, 0), and a GainMap of one point, gain 1.5 */
     static const uint8_t list[4 + 16 + 56 + 16 + 76 + 4] = {
-        [3] = 2, [7] = 3, [19] = 56, [4 + 72 + 3] = 9, [4 + 72 + 15] = 80, [103] = 12, [107] = 18, [115] = 1, [119] = 1,
-        [123] = 1, [127] = 1, [131] = 1, [167] = 1, [168] = 0x3F, [169] = 0xC0};
+        [3] = 2,   [7] = 3,   [19] = 56, [4 + 72 + 3] = 9, [4 + 72 + 15] = 80, [103] = 12,   [107] = 18,  [115] = 1,
+        [119] = 1, [123] = 1, [127] = 1, [131] = 1,        [167] = 1,          [168] = 0x3F, [169] = 0xC0};
     int entries = 0;
     lensprof_status status = lensprof_dng_opcodes_read(list, sizeof list, 18, 12, LENSPROF_LAYOUT_RGB, "a file",
                                                        count_entry, &entries, NULL);
@@ -202,8 +192,7 @@ static lensprof_status read_opcodes(world *w)
     return status;
 }
 
-static lensprof_status write_opcodes(world *w)
-{
+static lensprof_status write_opcodes(world *w) {
     uint8_t bytes[16384] = {7};
     size_t needed = 0;
     lensprof_status status = lensprof_dng_opcodes_write(w->profile, 18, 12, LENSPROF_LAYOUT_RGB, LENSPROF_DNG_GAIN_MAP,
@@ -213,8 +202,7 @@ static lensprof_status write_opcodes(world *w)
 }
 
 /* A map, a polynomial of radical with a centre a channel, a tuning file: to a profile that stays as it was. */
-static lensprof_status read_falloffs(world *w)
-{
+static lensprof_status read_falloffs(world *w) {
     static float values[16 * 12];
     static char radical[1000];
     const lensprof_map map = {16, 12, 1, LENSPROF_MAP_ATTENUATION, values};
@@ -223,13 +211,13 @@ static lensprof_status read_falloffs(world *w)
     for (int i = 0; i < 16 * 12; i++)
         values[i] = 1 - 0.002f * (float)((i % 16 - 7) * (i % 16 - 7) + (i / 16 - 5) * (i / 16 - 5));
     size_t bytes = 0;
-    const char tuning[] = "{\"luminance_lut\":[1.1,1.05,1.1,1.05,1,1.05,1.1,1.05,1.1],\"calibrations_Cr\":[{\"ct\":3000,\"table\":"
-                          "[1.1,1.05,1.1,1.05,1,1.05,1.1,1.05,1.1]}]}";
+    const char tuning[] =
+        "{\"luminance_lut\":[1.1,1.05,1.1,1.05,1,1.05,1.1,1.05,1.1],\"calibrations_Cr\":[{\"ct\":3000,\"table\":"
+        "[1.1,1.05,1.1,1.05,1,1.05,1.1,1.05,1.1]}]}";
     lensprof_status status = lensprof_map_read(&map, 16, 12, w->profile, NULL, NULL);
     if (status == LENSPROF_OK)
         status = lensprof_radical_vignetting_write(before, 16, 12, radical, sizeof radical, &bytes, NULL);
-    if (status == LENSPROF_OK)
-        status = lensprof_radical_vignetting_read(radical, bytes, w->profile, NULL, NULL);
+    if (status == LENSPROF_OK) status = lensprof_radical_vignetting_read(radical, bytes, w->profile, NULL, NULL);
     if (status == LENSPROF_OK)
         status = lensprof_alsc_read(tuning, sizeof tuning - 1, 3000, 3, 3, 30, 30, w->profile, NULL, NULL);
     else
@@ -239,8 +227,7 @@ static lensprof_status read_falloffs(world *w)
     return status;
 }
 
-static lensprof_status write_falloffs(world *w)
-{
+static lensprof_status write_falloffs(world *w) {
     static float values[16 * 12 * 3];
     static char text[30000];
     values[0] = 99;
@@ -252,16 +239,14 @@ static lensprof_status write_falloffs(world *w)
     return lensprof_alsc_write(w->profile, 5000, 16, 12, 160, 120, text, sizeof text, NULL, NULL);
 }
 
-static lensprof_status read_points(world *w)
-{
+static lensprof_status read_points(world *w) {
     (void)w;
     lensprof_pair pair;
     uint32_t found;
     return lensprof_points_read(points, strlen(points), &pair, 1, &found, NULL);
 }
 
-static void fail_each(world *w, lensprof_status (*call)(world *), long at_least)
-{
+static void fail_each(world *w, lensprof_status (*call)(world *), long at_least) {
     long good = 0;
     lensprof_status status;
     do {
@@ -281,8 +266,7 @@ static void fail_each(world *w, lensprof_status (*call)(world *), long at_least)
     assert_true(good > at_least);
 }
 
-static void test_out_of_memory(void **state)
-{
+static void test_out_of_memory(void **state) {
     (void)state;
     world *w = calloc(1, sizeof *w);
     w->pto = read_pto(SAMPLE_PTO);
@@ -318,8 +302,7 @@ static void test_out_of_memory(void **state)
     free(w);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_out_of_memory),
     };

@@ -7,8 +7,7 @@
 #define WIDTH 60
 #define HEIGHT 40
 
-static void need(const char *program)
-{
+static void need(const char *program) {
     char command[100];
     snprintf(command, sizeof command, "command -v %s > hugin_found.txt 2>&1", program);
     if (system(command) != 0) {
@@ -17,16 +16,14 @@ static void need(const char *program)
     }
 }
 
-static void write_file(const char *path, const void *bytes, size_t size)
-{
+static void write_file(const char *path, const void *bytes, size_t size) {
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
     assert_int_equal(fwrite(bytes, 1, size, file), size);
     assert_int_equal(fclose(file), 0);
 }
 
-static char *read_file(const char *path, size_t *size)
-{
+static char *read_file(const char *path, size_t *size) {
     FILE *file = fopen(path, "rb");
     assert_non_null(file);
     char *bytes = malloc(1 << 20);
@@ -36,24 +33,21 @@ static char *read_file(const char *path, size_t *size)
     return bytes;
 }
 
-static void write_ppm(const char *path, const uint8_t *pixels)
-{
+static void write_ppm(const char *path, const uint8_t *pixels) {
     char file[32 + WIDTH * HEIGHT * 3];
     int head = snprintf(file, 32, "P6\n%d %d\n255\n", WIDTH, HEIGHT);
     memcpy(file + head, pixels, WIDTH * HEIGHT * 3);
     write_file(path, file, (size_t)head + WIDTH * HEIGHT * 3);
 }
 
-static uint32_t little(const char *bytes, int count)
-{
+static uint32_t little(const char *bytes, int count) {
     uint32_t value = 0;
     for (int i = count - 1; i >= 0; i--) value = value << 8 | (uint8_t)bytes[i];
     return value;
 }
 
 /* Values of a tag of a little-endian TIFF (SHORT or LONG); returns their number. */
-static uint32_t tiff_tag(const char *file, uint32_t tag, uint32_t *values)
-{
+static uint32_t tiff_tag(const char *file, uint32_t tag, uint32_t *values) {
     const char *directory = file + little(file + 4, 4);
     for (uint32_t i = 0; i < little(directory, 2); i++) {
         const char *entry = directory + 2 + 12 * i;
@@ -68,8 +62,7 @@ static uint32_t tiff_tag(const char *file, uint32_t tag, uint32_t *values)
 }
 
 /* An uncompressed 8-bit RGBA TIFF of WIDTH x HEIGHT, as nona writes it. */
-static void read_tiff(const char *path, uint8_t pixels[HEIGHT * WIDTH * 4])
-{
+static void read_tiff(const char *path, uint8_t pixels[HEIGHT * WIDTH * 4]) {
     size_t size, done = 0;
     char *file = read_file(path, &size);
     uint32_t value[200], offset[200], bytes[200];
@@ -89,8 +82,7 @@ static void read_tiff(const char *path, uint8_t pixels[HEIGHT * WIDTH * 4])
     free(file);
 }
 
-static void run_nona(const char *project)
-{
+static void run_nona(const char *project) {
     write_file("hugin.pto", project, strlen(project));
     assert_int_equal(system("nona -o hugin_out hugin.pto > hugin_nona.txt 2>&1"), 0);
 }
@@ -104,14 +96,13 @@ static const lensprof_vignetting falloff = {{-0.45, 0.12, -0.04}, {0.06, -0.04}}
 static const lensprof_exposure taken[2] = {{0.25, {1, 1, 1}}, {-0.6, {1.15, 1, 0.85}}};
 
 /* Picture of an even wall by the model of model.h; returns the largest minus the smallest value. */
-static int take_picture(const char *path, const lensprof_response *response, const lensprof_exposure *exposure)
-{
+static int take_picture(const char *path, const lensprof_response *response, const lensprof_exposure *exposure) {
     uint8_t pixels[HEIGHT * WIDTH * 3];
     int low = 255, high = 0;
     for (int i = 0; i < HEIGHT * WIDTH * 3; i++) {
         double r2 = lensprof_vignetting_r2(&falloff, WIDTH, HEIGHT, i / 3 % WIDTH, i / 3 / WIDTH, NULL);
-        double light = RADIANCE * lensprof_vignetting_eval(&falloff, r2, NULL) *
-                       lensprof_exposure_factor(exposure, (uint32_t)(i % 3));
+        double light = RADIANCE * lensprof_vignetting_eval(&falloff, r2, NULL)
+                       * lensprof_exposure_factor(exposure, (uint32_t)(i % 3));
         pixels[i] = (uint8_t)lround(255 * lensprof_response_eval(response, light, NULL));
         low = pixels[i] < low ? pixels[i] : low;
         high = pixels[i] > high ? pixels[i] : high;
@@ -121,19 +112,19 @@ static int take_picture(const char *path, const lensprof_response *response, con
 }
 
 /* Both pictures must come out as the wall that image 0 would have seen without falloff. */
-static void test_nona_corrects_with_a_written_project(void **state)
-{
+static void test_nona_corrects_with_a_written_project(void **state) {
     (void)state;
     need("nona");
     lensprof_response *response = malloc(sizeof *response);
     assert_ok(lensprof_response_set_emor(response, emor, 5));
     assert_true(take_picture("hugin0.ppm", response, &taken[0]) > 40);
     assert_true(take_picture("hugin1.ppm", response, &taken[1]) > 40);
-    lensprof_pto *pto = read_pto("p f0 w60 h40 v50 k0 E9.5 R0 n\"TIFF_m c:NONE\"\nm i0\n"
-                                 "i w60 h40 f0 v50 Ra0 Rb0 Rc0 Rd0 Re0 Eev9.5 Er1 Eb1 r0 p0 y0 Va1 Vb0 Vc0 Vd0 Vx0 Vy0 "
-                                 "Vm5 n\"hugin0.ppm\"\n"
-                                 "i w60 h40 f0 v=0 Ra=0 Rb=0 Rc=0 Rd=0 Re=0 r0 p0 y0 Va=0 Vb=0 Vc=0 Vd=0 "
-                                 "n\"hugin1.ppm\"\n");
+    lensprof_pto *pto = read_pto(
+        "p f0 w60 h40 v50 k0 E9.5 R0 n\"TIFF_m c:NONE\"\nm i0\n"
+        "i w60 h40 f0 v50 Ra0 Rb0 Rc0 Rd0 Re0 Eev9.5 Er1 Eb1 r0 p0 y0 Va1 Vb0 Vc0 Vd0 Vx0 Vy0 "
+        "Vm5 n\"hugin0.ppm\"\n"
+        "i w60 h40 f0 v=0 Ra=0 Rb=0 Rc=0 Rd=0 Re=0 r0 p0 y0 Va=0 Vb=0 Vc=0 Vd=0 "
+        "n\"hugin1.ppm\"\n");
     assert_ok(lensprof_pto_set_result(pto, response, &falloff, taken, 2, 0));
     char *project = write_pto(pto);
     run_nona(project);
@@ -164,8 +155,7 @@ static void test_nona_corrects_with_a_written_project(void **state)
 /* ---- nona draws the same masks --------------------------------------------------------------------------------- */
 
 /* Remapped onto itself, a picture's alpha is its mask; pixels on the edge of a circle may differ. */
-static void compare_masks(const char *project, uint32_t images, int tolerance)
-{
+static void compare_masks(const char *project, uint32_t images, int tolerance) {
     lensprof_pto *pto = read_pto(project);
     run_nona(project);
     for (uint32_t i = 0; i < images; i++) {
@@ -186,32 +176,34 @@ static void compare_masks(const char *project, uint32_t images, int tolerance)
     lensprof_pto_destroy(pto);
 }
 
-static void test_nona_draws_the_same_masks(void **state)
-{
+static void test_nona_draws_the_same_masks(void **state) {
     (void)state;
     need("nona");
     uint8_t grey[HEIGHT * WIDTH * 3];
     memset(grey, 128, sizeof grey);
     write_ppm("hugin0.ppm", grey);
-    compare_masks("p f0 w60 h40 v50 E0 R0 n\"TIFF_m c:NONE\"\nm i0\n"
-                  "i w60 h40 f0 v50 j0 Vm5 S5,50,3,35 n\"hugin0.ppm\"\n"
-                  "i w60 h40 f0 v=0 j=0 Vm5 n\"hugin0.ppm\"\n"
-                  "i w60 h40 f0 v=0 j0 Vm5 n\"hugin0.ppm\"\n"
-                  "i w60 h40 f0 v50 j0 Vm5 S-20,90,7,90 n\"hugin0.ppm\"\n"
-                  "k i0 t0 p\"20.3 10.2 35.1 12.7 30.4 25.6 18.2 22.9\"\n"
-                  "k i1 t2 p\"40.3 5.2 55.1 5.7 44.4 15.6\"\n"
-                  "k i2 t4 p\"2.3 30.2 15.1 28.7 14.4 38.6 3.3 37.1\"\n", 4, 0);
-    compare_masks("p f3 w60 h40 v50 E0 R0 n\"TIFF_m c:NONE\"\nm i0\n"
-                  "i w60 h40 f2 v50 Vm5 S11,49,2,36 n\"hugin0.ppm\"\n"
-                  "i w60 h40 f2 v50 Vm5 S-3,57,5,31 n\"hugin0.ppm\"\n"
-                  "i w60 h40 f3 v50 Vm5 S11,49,2,36 n\"hugin0.ppm\"\n", 3, 12);
+    compare_masks(
+        "p f0 w60 h40 v50 E0 R0 n\"TIFF_m c:NONE\"\nm i0\n"
+        "i w60 h40 f0 v50 j0 Vm5 S5,50,3,35 n\"hugin0.ppm\"\n"
+        "i w60 h40 f0 v=0 j=0 Vm5 n\"hugin0.ppm\"\n"
+        "i w60 h40 f0 v=0 j0 Vm5 n\"hugin0.ppm\"\n"
+        "i w60 h40 f0 v50 j0 Vm5 S-20,90,7,90 n\"hugin0.ppm\"\n"
+        "k i0 t0 p\"20.3 10.2 35.1 12.7 30.4 25.6 18.2 22.9\"\n"
+        "k i1 t2 p\"40.3 5.2 55.1 5.7 44.4 15.6\"\n"
+        "k i2 t4 p\"2.3 30.2 15.1 28.7 14.4 38.6 3.3 37.1\"\n",
+        4, 0);
+    compare_masks(
+        "p f3 w60 h40 v50 E0 R0 n\"TIFF_m c:NONE\"\nm i0\n"
+        "i w60 h40 f2 v50 Vm5 S11,49,2,36 n\"hugin0.ppm\"\n"
+        "i w60 h40 f2 v50 Vm5 S-3,57,5,31 n\"hugin0.ppm\"\n"
+        "i w60 h40 f3 v50 Vm5 S11,49,2,36 n\"hugin0.ppm\"\n",
+        3, 12);
 }
 
 /* ---- vig_optimize solves from written points --------------------------------------------------------------------- */
 
 /* Pairs without noise by the model with EMoR's mean curve; exposures relative to picture 0. */
-static void make_pairs(lensprof_pair *pairs, int count, const lensprof_vignetting *vignetting)
-{
+static void make_pairs(lensprof_pair *pairs, int count, const lensprof_vignetting *vignetting) {
     lensprof_response *response = malloc(sizeof *response);
     uint64_t seed = 77;
     assert_ok(lensprof_response_set_emor(response, emor, 0));
@@ -232,17 +224,19 @@ static void make_pairs(lensprof_pair *pairs, int count, const lensprof_vignettin
     free(response);
 }
 
-static void test_vig_optimize_reads_written_points(void **state)
-{
+static void test_vig_optimize_reads_written_points(void **state) {
     (void)state;
-    enum { PAIRS = 400 };
+    enum {
+        PAIRS = 400
+    };
     need("vig_optimize");
-    const char *project = "p f2 w3000 h1500 v360 k0 E0 R0 n\"TIFF_m\"\nm i0\n"
-                          "i w600 h400 f0 v50 Ra0 Rb0 Rc0 Rd0 Re0 Eev9.5 Er1 Eb1 r0 p0 y0 Va1 Vb0 Vc0 Vd0 Vx0 Vy0 Vm5 "
-                          "n\"none0.ppm\"\n"
-                          "i w600 h400 f0 v=0 Ra=0 Rb=0 Rc=0 Rd=0 Re=0 Eev9.5 Er1 Eb1 r0 p0 y25 Va=0 Vb=0 Vc=0 "
-                          "Vd=0 Vx=0 Vy=0 Vm5 n\"none1.ppm\"\n"
-                          "v Vb0 Vc0 Vd0\nv Eev1 Er1 Eb1\nv\n";
+    const char *project =
+        "p f2 w3000 h1500 v360 k0 E0 R0 n\"TIFF_m\"\nm i0\n"
+        "i w600 h400 f0 v50 Ra0 Rb0 Rc0 Rd0 Re0 Eev9.5 Er1 Eb1 r0 p0 y0 Va1 Vb0 Vc0 Vd0 Vx0 Vy0 Vm5 "
+        "n\"none0.ppm\"\n"
+        "i w600 h400 f0 v=0 Ra=0 Rb=0 Rc=0 Rd=0 Re=0 Eev9.5 Er1 Eb1 r0 p0 y25 Va=0 Vb=0 Vc=0 "
+        "Vd=0 Vx=0 Vy=0 Vm5 n\"none1.ppm\"\n"
+        "v Vb0 Vc0 Vd0\nv Eev1 Er1 Eb1\nv\n";
     static lensprof_pair pairs[PAIRS], again[PAIRS];
     static char text[PAIRS * 400];
     const lensprof_camera cameras[2] = {{.width = 600, .height = 400}, {.width = 600, .height = 400}};
@@ -254,7 +248,8 @@ static void test_vig_optimize_reads_written_points(void **state)
     write_file("hugin_points.txt", text, bytes);
     write_file("hugin.pto", project, strlen(project));
     assert_int_equal(system("vig_optimize -i hugin_points.txt -w hugin_points2.txt -o hugin_solved.pto hugin.pto"
-                            " > hugin_vig.txt 2>&1"), 0);
+                            " > hugin_vig.txt 2>&1"),
+                     0);
     char *solved = read_file("hugin_solved.pto", &bytes);
     lensprof_pto *pto = read_pto(solved);
     lensprof_pto_image image = image_of(pto, 1);
@@ -276,8 +271,7 @@ static void test_vig_optimize_reads_written_points(void **state)
     free(points);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nona_corrects_with_a_written_project),
         cmocka_unit_test(test_nona_draws_the_same_masks),

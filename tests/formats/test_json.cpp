@@ -48,9 +48,10 @@ void test_kinds(void **) {
     assert_same(*read_json(write_json({rounded.get()}), nullptr).profiles[0], *rounded);
 }
 
-const std::string kShort = "{\"key\":{\"processing\":\"raw\",\"lens\":\"L\",\"distance_m\":null,\"later\":[{}]},\n"
-                           "\"vignetting\":{\"k\":[[-0.5,0,1e-3]]},\n"
-                           "\"response\":{\"kind\":\"emor\",\"emor\":[0.25]},\"more\":{\"a\":[1,[2]]}}";
+const std::string kShort =
+    "{\"key\":{\"processing\":\"raw\",\"lens\":\"L\",\"distance_m\":null,\"later\":[{}]},\n"
+    "\"vignetting\":{\"k\":[[-0.5,0,1e-3]]},\n"
+    "\"response\":{\"kind\":\"emor\",\"emor\":[0.25]},\"more\":{\"a\":[1,[2]]}}";
 
 void test_defaults(void **) {
     const Read read = read_json(kShort, "my.json");
@@ -90,31 +91,43 @@ void test_refused(void **) {
         {with(kShort, "[[-0.5,0,1e-3]]", "[]"), LENSPROF_ERROR_SYNTAX, "vignetting.k is not of one or three"},
         {with(kShort, "\"L\"", "\"\xff\""), LENSPROF_ERROR_SYNTAX, "line 1: not UTF-8"},
         {with(kShort, "\"L\"", "\"\\u0007\""), LENSPROF_ERROR_SYNTAX, "key.lens has control characters"},
-        {with(kShort, "\"L\"", "\"" + std::string(128, 'x') + "\""), LENSPROF_ERROR_SYNTAX, "key.lens is longer than 127"},
+        {with(kShort, "\"L\"", "\"" + std::string(128, 'x') + "\""), LENSPROF_ERROR_SYNTAX,
+         "key.lens is longer than 127"},
         {with(kShort, "\"L\"", "7"), LENSPROF_ERROR_SYNTAX, "key.lens is no text"},
         {with(kShort, "\"raw\"", "\"tiff\""), LENSPROF_ERROR_SYNTAX, "key.processing is \"tiff\""},
         {with(kShort, "\"processing\":\"raw\",", ""), LENSPROF_ERROR_SYNTAX, "key has no \"processing\""},
-        {with(kShort, "\"distance_m\":null", "\"distance_m\":-1"), LENSPROF_ERROR_SYNTAX, "key.distance_m is not above 0"},
+        {with(kShort, "\"distance_m\":null", "\"distance_m\":-1"), LENSPROF_ERROR_SYNTAX,
+         "key.distance_m is not above 0"},
         {with(kShort, "0.25", "250"), LENSPROF_ERROR_RESPONSE, "response.emor is no response"},
         {with(kShort, "\"emor\",", "\"table\","), LENSPROF_ERROR_SYNTAX, "response has no \"values\""},
         {with(kShort, "\"emor\",", "\"gamma\","), LENSPROF_ERROR_SYNTAX, "response has no \"gamma\""},
         {with(kShort, "{\"key\"", "{\"schema\":2,\"key\""), LENSPROF_ERROR_UNSUPPORTED, "schema is not 1"},
         {with(one, "\"columns\":3", "\"columns\":4"), LENSPROF_ERROR_SYNTAX, "gain_grid.attenuation[0][0] has 3 items"},
-        {with(one, "\"columns\":3", "\"columns\":4000000000"), LENSPROF_ERROR_SYNTAX, "gain_grid.columns is 4000000000"},
+        {with(one, "\"columns\":3", "\"columns\":4000000000"), LENSPROF_ERROR_SYNTAX,
+         "gain_grid.columns is 4000000000"},
         {with(one, "\"covariance\":[[", "\"covariance\":[[1,"), LENSPROF_ERROR_SYNTAX, "covariance[0] has 6 items"},
         {with(one, "\"covariance\":[[", "\"covariance\":[[-"), LENSPROF_ERROR_ARGUMENT, "is no valid profile"},
-        {with(one, "\"images\":4000000000", "\"images\":5000000000"), LENSPROF_ERROR_SYNTAX, "provenance.images is 5000000000"},
-        {with(one, "\"values\":[[0.0,", "\"values\":[[0.5,"), LENSPROF_ERROR_SYNTAX, "response.values[0] is another curve"},
+        {with(one, "\"images\":4000000000", "\"images\":5000000000"), LENSPROF_ERROR_SYNTAX,
+         "provenance.images is 5000000000"},
+        {with(one, "\"values\":[[0.0,", "\"values\":[[0.5,"), LENSPROF_ERROR_SYNTAX,
+         "response.values[0] is another curve"},
         {with(list, "\"profiles\":[", "\"profiles\":[null,"), LENSPROF_ERROR_SYNTAX, "profiles holds null"},
         {with(list, "\"k\":[[", "\"k\":[[1e7,"), LENSPROF_ERROR_SYNTAX, "profiles[0].vignetting.k[0] has 4 items"},
         {"{\"a\":" + std::string(100000, '[') + "]}", LENSPROF_ERROR_SYNTAX, "over 32 levels"},
-        {"{\"a\":[0" + [] { std::string s; for (int i = 0; i < 4000000; i++) s += ",0"; return s; }() + "]}", LENSPROF_ERROR_SIZE,
-         "4 million"},
+        {"{\"a\":[0" +
+             [] {
+                 std::string s;
+                 for (int i = 0; i < 4000000; i++) s += ",0";
+                 return s;
+             }()
+             + "]}",
+         LENSPROF_ERROR_SIZE, "4 million"},
         {std::string((64u << 20) + 1, ' '), LENSPROF_ERROR_SIZE, "64 MiB"},
     };
     for (const auto &c : cases) {
         const Read read = read_json(c.text);
-        if (read.error.find(c.words) == std::string::npos) fail_msg("\"%s\" instead of \"%s\"", read.error.c_str(), c.words);
+        if (read.error.find(c.words) == std::string::npos)
+            fail_msg("\"%s\" instead of \"%s\"", read.error.c_str(), c.words);
         assert_int_equal(read.status, c.status);
         assert_int_equal(read.profiles.size(), 0);
     }
@@ -125,7 +138,8 @@ lensprof_status stop(void *, const lensprof_import_entry *) { return LENSPROF_ER
 void test_calls(void **) {
     lensprof_error error;
     const std::string text = write_json({full_profile().get()});
-    assert_int_equal(lensprof_json_read(text.data(), text.size(), nullptr, stop, nullptr, &error), LENSPROF_ERROR_CANCELLED);
+    assert_int_equal(lensprof_json_read(text.data(), text.size(), nullptr, stop, nullptr, &error),
+                     LENSPROF_ERROR_CANCELLED);
     assert_int_equal(lensprof_json_read(nullptr, 1, nullptr, stop, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_json_read("{}", 2, nullptr, nullptr, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_json_write(nullptr, 1, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);

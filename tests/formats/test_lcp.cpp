@@ -68,9 +68,7 @@ Imported read(const std::string &text, const char *source = "my.lcp") {
     return imported;
 }
 
-Imported read_entry(const std::string &entries) {
-    return read(kHead + entries + kTail);
-}
+Imported read_entry(const std::string &entries) { return read(kHead + entries + kTail); }
 
 std::string replaced(std::string text, const std::string &from, const std::string &to) {
     const size_t at = text.find(from);
@@ -79,7 +77,8 @@ std::string replaced(std::string text, const std::string &from, const std::strin
 }
 
 void test_golden(void **) {
-    const Imported imported = read_entry(kElements + kAttributes + "<rdf:li><stCamera:Make>Acme</stCamera:Make></rdf:li>");
+    const Imported imported =
+        read_entry(kElements + kAttributes + "<rdf:li><stCamera:Make>Acme</stCamera:Make></rdf:li>");
     assert_string_equal(imported.error.c_str(), "");
     assert_ok(imported.status);
     assert_int_equal(imported.profiles.size(), 2);  // the third has no falloff
@@ -122,7 +121,8 @@ void test_what_may_be_missing(void **) {
     text = replaced(kElements, "<stCamera:FocalLengthX>0.5</stCamera:FocalLengthX>", "");
     text = replaced(text, "<stCamera:FocalLengthY>0.5</stCamera:FocalLengthY>", "");
     assert_close(read_entry(text).profiles.at(0)->vignetting[0].k[0], -0.2 * 0.625 * 0.625, 1e-14);
-    const Imported none = read_entry(replaced(text, "SensorFormatFactor>1.0</stCamera:SensorFormatFactor", "X>1</stCamera:X"));
+    const Imported none =
+        read_entry(replaced(text, "SensorFormatFactor>1.0</stCamera:SensorFormatFactor", "X>1</stCamera:X"));
     assert_int_equal(none.status, LENSPROF_ERROR_SYNTAX);
     assert_non_null(strstr(none.error.c_str(), "without FocalLengthX"));
 }
@@ -145,8 +145,9 @@ void test_piecewise(void **) {
         assert_close(m * (1 + 0.2 * r * r * 1.25 * 1.25), 1.0, 3e-3);
     }
     // Knots far from any such polynomial are said to be; those that are not attenuations make no falloff.
-    std::string step = "<stCamera:VignetteModelPiecewiseParam><rdf:Seq><rdf:li>0, 1</rdf:li><rdf:li>0.7, 1</rdf:li>"
-                       "<rdf:li>0.71, 0.6</rdf:li></rdf:Seq></stCamera:VignetteModelPiecewiseParam>";
+    std::string step =
+        "<stCamera:VignetteModelPiecewiseParam><rdf:Seq><rdf:li>0, 1</rdf:li><rdf:li>0.7, 1</rdf:li>"
+        "<rdf:li>0.71, 0.6</rdf:li></rdf:Seq></stCamera:VignetteModelPiecewiseParam>";
     const auto with = [&](const std::string &list) {
         return read_entry(replaced(kElements, "</stCamera:VignetteModel>", list + "</stCamera:VignetteModel>"));
     };
@@ -212,20 +213,27 @@ void test_written_golden(void **) {
     strcpy(p.key.lens, "A");
     p.vignetting[0] = {{-0.25, 0, 0}, {0, 0}};
     const std::string text = write({p}, 3600, 2400);
-    const char *const expected[] = {
-        "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">", "xmlns:stCamera=\"http://ns.adobe.com/photoshop/1.0/camera-profile\"",
-        "<rdf:li rdf:parseType=\"Resource\">", "<stCamera:Make>Acme</stCamera:Make>", "<stCamera:Model>One</stCamera:Model>",
-        "<stCamera:CameraRawProfile>True</stCamera:CameraRawProfile>", "<stCamera:Lens>A</stCamera:Lens>",
-        "<stCamera:SensorFormatFactor>1</stCamera:SensorFormatFactor>", "<stCamera:ImageWidth>3600</stCamera:ImageWidth>",
-        "<stCamera:FocalLength>36</stCamera:FocalLength>", "<stCamera:FocusDistance>2.5</stCamera:FocusDistance>",
-        "<stCamera:ApertureValue>3</stCamera:ApertureValue>", "<stCamera:VignetteModel rdf:parseType=\"Resource\">",
-        "<stCamera:ImageXCenter>0.5</stCamera:ImageXCenter>"};
+    const char *const expected[] = {"<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">",
+                                    "xmlns:stCamera=\"http://ns.adobe.com/photoshop/1.0/camera-profile\"",
+                                    "<rdf:li rdf:parseType=\"Resource\">",
+                                    "<stCamera:Make>Acme</stCamera:Make>",
+                                    "<stCamera:Model>One</stCamera:Model>",
+                                    "<stCamera:CameraRawProfile>True</stCamera:CameraRawProfile>",
+                                    "<stCamera:Lens>A</stCamera:Lens>",
+                                    "<stCamera:SensorFormatFactor>1</stCamera:SensorFormatFactor>",
+                                    "<stCamera:ImageWidth>3600</stCamera:ImageWidth>",
+                                    "<stCamera:FocalLength>36</stCamera:FocalLength>",
+                                    "<stCamera:FocusDistance>2.5</stCamera:FocusDistance>",
+                                    "<stCamera:ApertureValue>3</stCamera:ApertureValue>",
+                                    "<stCamera:VignetteModel rdf:parseType=\"Resource\">",
+                                    "<stCamera:ImageXCenter>0.5</stCamera:ImageXCenter>"};
     size_t at = 0;
     for (const char *piece : expected) {
         at = text.find(piece, at);
         if (at == std::string::npos) fail_msg("missing: %s in %s", piece, text.c_str());
     }
-    // 36 mm is the longer side: the focal length in it is 1, and -0.25 of half diagonals is -0.25 (36 / 21.633)^2 of it.
+    // 36 mm is the longer side: the focal length in it is 1, and -0.25 of half diagonals is -0.25 (36 / 21.633)^2 of
+    // it.
     const auto number = [&](const std::string &name) {
         return std::stod(text.substr(text.rfind("<" + name + ">") + name.size() + 2));
     };
@@ -279,15 +287,18 @@ void test_write_refused(void **) {
     refused([](P p) { p.key.aperture = 2; }, LENSPROF_ERROR_ARGUMENT, "setting of an earlier profile");
     refused([](P p) { p.key.lens[0] = 'B'; }, LENSPROF_ERROR_ARGUMENT, "a lens profile is of one");
     refused([](P p) { p.key.camera_model[0] = 'B'; }, LENSPROF_ERROR_ARGUMENT, "a lens profile is of one");
-    refused([](P p) { p.key.processing = LENSPROF_PROCESSING_JPEG; }, LENSPROF_ERROR_ARGUMENT, "a lens profile is of one");
+    refused([](P p) { p.key.processing = LENSPROF_PROCESSING_JPEG; }, LENSPROF_ERROR_ARGUMENT,
+            "a lens profile is of one");
     refused([](P p) { p.key.processing = LENSPROF_PROCESSING_CORRECTED; }, LENSPROF_ERROR_UNSUPPORTED, "in camera");
     refused([](P p) { strcpy(p.key.camera_maker, "\xFF"); }, LENSPROF_ERROR_ARGUMENT, "UTF-8");
     refused([](P p) { strcpy(p.key.lens, "\xFF"); }, LENSPROF_ERROR_ARGUMENT, "UTF-8");
     refused([](P p) { p.vignetting[0].k[0] = -3; }, LENSPROF_ERROR_VIGNETTING, "not valid");
-    refused([](P p) {
-        p.grid.columns = p.grid.rows = 2, p.grid.channels = 1;
-        for (int i = 0; i < 4; i++) p.grid.attenuation[i] = 1;
-    }, LENSPROF_ERROR_UNSUPPORTED, "gain grid");
+    refused(
+        [](P p) {
+            p.grid.columns = p.grid.rows = 2, p.grid.channels = 1;
+            for (int i = 0; i < 4; i++) p.grid.attenuation[i] = 1;
+        },
+        LENSPROF_ERROR_UNSUPPORTED, "gain grid");
     write({good}, 100, 0, LENSPROF_ERROR_ARGUMENT, "one side");
     write({good}, 2000000, 100, LENSPROF_ERROR_SIZE, "million");
     const lensprof_profile *none = nullptr;
@@ -313,7 +324,8 @@ void test_read_refused(void **) {
     refused(with("FocalLengthX>0.5", "FocalLengthX>-1"), LENSPROF_ERROR_SYNTAX, "FocalLengthX");
     refused(with("XCenter>0.55", "XCenter>55"), LENSPROF_ERROR_SYNTAX, "ImageXCenter");
     refused(with("ApertureValue>0.970854", "ApertureValue>1e9"), LENSPROF_ERROR_SYNTAX, "ApertureValue");
-    refused(with("<stCamera:Make>Canon", "<stCamera:Make>" + std::string(64, 'x')), LENSPROF_ERROR_SYNTAX, "longer than 63");
+    refused(with("<stCamera:Make>Canon", "<stCamera:Make>" + std::string(64, 'x')), LENSPROF_ERROR_SYNTAX,
+            "longer than 63");
     refused(with("<stCamera:Make>Canon", "<stCamera:Make>&#1;"), LENSPROF_ERROR_SYNTAX, "control characters");
     const std::string all = kHead + kElements + kAttributes + kTail;
     for (size_t size = 0; size + 2 < all.size(); size += 7) refused(all.substr(0, size), LENSPROF_ERROR_SYNTAX, "");
@@ -329,10 +341,11 @@ void test_read_refused(void **) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_golden), cmocka_unit_test(test_what_may_be_missing), cmocka_unit_test(test_piecewise),
-        cmocka_unit_test(test_two_focal_lengths), cmocka_unit_test(test_written_golden),
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_mean_of_channels),
-        cmocka_unit_test(test_write_refused), cmocka_unit_test(test_read_refused),
+        cmocka_unit_test(test_golden),           cmocka_unit_test(test_what_may_be_missing),
+        cmocka_unit_test(test_piecewise),        cmocka_unit_test(test_two_focal_lengths),
+        cmocka_unit_test(test_written_golden),   cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_mean_of_channels), cmocka_unit_test(test_write_refused),
+        cmocka_unit_test(test_read_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -241,10 +241,11 @@ void test_bombs(void **) {
     expect_error("<lensdatabase>" + repeated("<a/>", 2000001) + "</lensdatabase>", LENSPROF_ERROR_SIZE, "2 million");
     expect_error("<lensdatabase>" + repeated("=", 2000001) + "</lensdatabase>", LENSPROF_ERROR_SIZE, "2 million");
     expect_error(std::string((size_t{64} << 20) + 1, ' '), LENSPROF_ERROR_SIZE, "64 MiB");
-    const std::string laughs = "<!DOCTYPE lensdatabase [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;&a;&a;\">"
-                               "<!ENTITY x SYSTEM \"file:///etc/passwd\">]><lensdatabase><lens><model>&b;&x;</model>"
-                               "<cropfactor>1</cropfactor><calibration><vignetting model=\"pa\" focal=\"1\" "
-                               "aperture=\"1\" distance=\"1\" k1=\"0\"/></calibration></lens></lensdatabase>";
+    const std::string laughs =
+        "<!DOCTYPE lensdatabase [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;&a;&a;\">"
+        "<!ENTITY x SYSTEM \"file:///etc/passwd\">]><lensdatabase><lens><model>&b;&x;</model>"
+        "<cropfactor>1</cropfactor><calibration><vignetting model=\"pa\" focal=\"1\" "
+        "aperture=\"1\" distance=\"1\" k1=\"0\"/></calibration></lens></lensdatabase>";
     const Database database = read_lensfun(laughs);
     assert_ok(database.status);
     assert_string_equal(database.entries[0].key.lens, "&b;&x;");
@@ -424,8 +425,10 @@ void test_out_of_memory(void **) {
     for (good = 0; status != LENSPROF_OK && good < 1000; good++) {
         allocations_left = good;
         const std::string text = write_lensfun(profiles, &status);
-        if (status != LENSPROF_OK) assert_int_equal(status, LENSPROF_ERROR_MEMORY);
-        else assert_string_equal(text.c_str(), whole.c_str());
+        if (status != LENSPROF_OK)
+            assert_int_equal(status, LENSPROF_ERROR_MEMORY);
+        else
+            assert_string_equal(text.c_str(), whole.c_str());
     }
     assert_true(good > 2 && good < 1000);
     allocations_left = -1;

@@ -53,8 +53,8 @@ void compare_gains(const lensprof_profile &profile, float distance, double toler
         const std::vector<float> row = gains(lens, crop, static_cast<float>(profile.key.focal_mm),
                                              static_cast<float>(profile.key.aperture), distance, kWidth, kHeight, y);
         for (int x = 0; x < kWidth; x++) {
-            const double r2 = lensprof_vignetting_r2(&profile.vignetting[0], kWidth - 1, kHeight - 1, x - 0.5, y - 0.5,
-                                                     nullptr);
+            const double r2 =
+                lensprof_vignetting_r2(&profile.vignetting[0], kWidth - 1, kHeight - 1, x - 0.5, y - 0.5, nullptr);
             const double gain = 1.0 / lensprof_vignetting_eval(&profile.vignetting[0], r2, nullptr);
             worst = fmax(worst, fabs(row[static_cast<size_t>(x) * 3] - gain) / gain);
             strongest = fmax(strongest, gain);
@@ -115,9 +115,10 @@ void test_every_entry_is_loaded(void **) {
 
 // Beside Lensfun's own database, for a camera whose mount takes "Generic".
 void test_found_for_a_camera(void **) {
-    const std::string cameras = "<lensdatabase version=\"1\"><mount><name>Acme F</name><compat>Generic</compat></mount>"
-                                "<camera><maker>Acme</maker><model>A1</model><mount>Acme F</mount><cropfactor>1.5"
-                                "</cropfactor></camera></lensdatabase>";
+    const std::string cameras =
+        "<lensdatabase version=\"1\"><mount><name>Acme F</name><compat>Generic</compat></mount>"
+        "<camera><maker>Acme</maker><model>A1</model><mount>Acme F</mount><cropfactor>1.5"
+        "</cropfactor></camera></lensdatabase>";
     const Loaded loaded(cameras);
     const std::string lens = write_lensfun({lens_profile("Acme 24mm f/2 & <so on>", 1.5, 24, 2, 5, -0.3)});
     assert_int_equal(lf_db_load_data(loaded.db(), "lensprof", lens.data(), lens.size()), LF_NO_ERROR);
@@ -131,10 +132,8 @@ void test_found_for_a_camera(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        cmocka_unit_test(test_gains_are_the_same),
-        cmocka_unit_test(test_shifted_centre),
-        cmocka_unit_test(test_adobe_model_converted),
-        cmocka_unit_test(test_every_entry_is_loaded),
+        cmocka_unit_test(test_gains_are_the_same),    cmocka_unit_test(test_shifted_centre),
+        cmocka_unit_test(test_adobe_model_converted), cmocka_unit_test(test_every_entry_is_loaded),
         cmocka_unit_test(test_found_for_a_camera),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

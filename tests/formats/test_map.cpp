@@ -108,7 +108,8 @@ void test_mean(void **) {
     const std::vector<float> one = write(*truth, 20, 15, 1, 0), all = write(*truth, 20, 15, 3, 0);
     for (size_t i = 0; i < one.size(); i++) {
         const double mean = (double(all[3 * i]) + double(all[3 * i + 1]) + double(all[3 * i + 2])) / 3;
-        assert_close(double(one[i]) / double(one[150]), mean / ((double(all[450]) + double(all[451]) + double(all[452])) / 3), 1e-6);
+        assert_close(double(one[i]) / double(one[150]),
+                     mean / ((double(all[450]) + double(all[451]) + double(all[452])) / 3), 1e-6);
     }
 }
 
@@ -142,18 +143,21 @@ void test_refused(void **) {
     map.sense = 0, map.values = nullptr;
     read(LENSPROF_ERROR_ARGUMENT, "values");
     assert_int_equal(lensprof_map_write(found.get(), 0, 5, 5, 5, 1, 0, values.data(), nullptr), LENSPROF_ERROR_SIZE);
-    assert_int_equal(lensprof_map_write(found.get(), 5, 5, 5, 5, 2, 0, values.data(), nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_map_write(found.get(), 5, 5, 5, 5, 1, 2, values.data(), nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_map_write(found.get(), 5, 5, 5, 5, 2, 0, values.data(), nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_map_write(found.get(), 5, 5, 5, 5, 1, 2, values.data(), nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
     found->vignetting[0].k[0] = -9;
-    assert_int_equal(lensprof_map_write(found.get(), 5, 5, 5, 5, 1, 0, values.data(), nullptr), LENSPROF_ERROR_VIGNETTING);
+    assert_int_equal(lensprof_map_write(found.get(), 5, 5, 5, 5, 1, 0, values.data(), nullptr),
+                     LENSPROF_ERROR_VIGNETTING);
 }
 
 }  // namespace
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_coded),   cmocka_unit_test(test_grid),
-        cmocka_unit_test(test_narrow),     cmocka_unit_test(test_mean),    cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_coded), cmocka_unit_test(test_grid),
+        cmocka_unit_test(test_narrow),     cmocka_unit_test(test_mean),  cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -21,14 +21,10 @@ typedef struct panorama {
     double width, height, hfov_deg;
 } panorama;
 
-static double spread(uint64_t *seed, double half)
-{
-    return half * (2 * lp_random(seed) - 1);
-}
+static double spread(uint64_t *seed, double half) { return half * (2 * lp_random(seed) - 1); }
 
 /* Variant 0 plain, 1 radial, 2 shift, 3 shear, 4 translation, 5 translation to a turned plane, 6 all, 7 all, wide. */
-static lensprof_camera make_camera(uint32_t projection, int variant, uint64_t *seed)
-{
+static lensprof_camera make_camera(uint32_t projection, int variant, uint64_t *seed) {
     int all = variant >= 6;
     lensprof_camera camera = {.projection = projection, .width = 1500, .height = 1000};
     if (variant % 2) {
@@ -52,8 +48,7 @@ static lensprof_camera make_camera(uint32_t projection, int variant, uint64_t *s
     return camera;
 }
 
-static void write_project(const char *path, const panorama *pano, const lensprof_camera *cameras)
-{
+static void write_project(const char *path, const panorama *pano, const lensprof_camera *cameras) {
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fprintf(file, "p f%d w%.0f h%.0f v%.17g n\"TIFF_m\"\nm i0\n", pano->projection, pano->width, pano->height,
@@ -70,8 +65,7 @@ static void write_project(const char *path, const panorama *pano, const lensprof
 }
 
 /* Panorama pixel -> direction, as libpano13 defines its panoramas. */
-static void direction_of(const panorama *pano, const double pixel[2], double direction[2])
-{
+static void direction_of(const panorama *pano, const double pixel[2], double direction[2]) {
     double x = pixel[0] - pano->width / 2 + 0.5, y = pixel[1] - pano->height / 2 + 0.5;
     double hfov = pano->hfov_deg * PI / 180, distance;
     switch (pano->projection) {
@@ -85,21 +79,17 @@ static void direction_of(const panorama *pano, const double pixel[2], double dir
         direction[0] = x / distance;
         direction[1] = atan(y / distance);
         break;
-    default:
-        direction[0] = x * hfov / pano->width;
-        direction[1] = y * hfov / pano->width;
+    default: direction[0] = x * hfov / pano->width; direction[1] = y * hfov / pano->width;
     }
 }
 
 /* The points are made once more, with the same seed, when the answers are read. */
-static void random_point(const panorama *pano, uint64_t *seed, double pixel[2])
-{
+static void random_point(const panorama *pano, uint64_t *seed, double pixel[2]) {
     pixel[0] = floor(1000 * pano->width * lp_random(seed)) / 1000;
     pixel[1] = floor(1000 * pano->height * lp_random(seed)) / 1000;
 }
 
-static void ask(const panorama *pano, uint64_t seed)
-{
+static void ask(const panorama *pano, uint64_t seed) {
     FILE *file = fopen("pano_trafo_points.txt", "w");
     assert_non_null(file);
     for (size_t i = 0; i < CAMERAS; i++) {
@@ -113,14 +103,12 @@ static void ask(const panorama *pano, uint64_t seed)
     assert_int_equal(system("pano_trafo -r pano_trafo.pto < pano_trafo_points.txt > pano_trafo_answers.txt"), 0);
 }
 
-static int in_frame(const lensprof_camera *camera, const double xy[2])
-{
+static int in_frame(const lensprof_camera *camera, const double xy[2]) {
     return xy[0] > 0 && xy[0] < camera->width - 1 && xy[1] > 0 && xy[1] < camera->height - 1;
 }
 
 /* Largest deviation and number of compared points of each lens. */
-static void compare(const panorama *pano, const lensprof_camera *cameras, uint64_t seed, double *worst, int *compared)
-{
+static void compare(const panorama *pano, const lensprof_camera *cameras, uint64_t seed, double *worst, int *compared) {
     FILE *file = fopen("pano_trafo_answers.txt", "r");
     assert_non_null(file);
     for (size_t i = 0; i < CAMERAS; i++) {
@@ -149,8 +137,7 @@ static void compare(const panorama *pano, const lensprof_camera *cameras, uint64
     fclose(file);
 }
 
-static void test_project_agrees_with_pano_trafo(void **state)
-{
+static void test_project_agrees_with_pano_trafo(void **state) {
     (void)state;
     if (system("command -v pano_trafo > pano_trafo_found.txt 2>&1") != 0) {
         print_message("pano_trafo is missing; install hugin-tools to run this test\n");
@@ -176,8 +163,7 @@ static void test_project_agrees_with_pano_trafo(void **state)
     }
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_project_agrees_with_pano_trafo),
     };

@@ -31,7 +31,8 @@ std::string gamma_text(double gamma, int count, double low, double high) {
     std::string text;
     char word[40];
     for (int i = 0; i < count; i++) {
-        snprintf(word, sizeof word, "%.15g%s", low + (high - low) * pow(i / (count - 1.0), gamma), i % 16 == 15 ? "\r\n" : "\t ");
+        snprintf(word, sizeof word, "%.15g%s", low + (high - low) * pow(i / (count - 1.0), gamma),
+                 i % 16 == 15 ? "\r\n" : "\t ");
         text += word;
     }
     return text;
@@ -123,7 +124,8 @@ void test_pcalib_refused(void **) {
     assert_int_equal(lensprof_pcalib_read("0 1", 3, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
 }
 
-lensprof_status read_times(const std::string &text, std::vector<lensprof_frame_time> &frames, std::string *why = nullptr) {
+lensprof_status read_times(const std::string &text, std::vector<lensprof_frame_time> &frames,
+                           std::string *why = nullptr) {
     lensprof_error error;
     const std::vector<char> bytes = exact(text);
     uint32_t found = 0;
@@ -155,21 +157,27 @@ void test_times(void **) {
     assert_ok(read_times("", same));
     assert_int_equal(same.size(), 0);
     uint32_t found;
-    assert_int_equal(lensprof_times_read(text.data(), text.size(), same.data(), 2, &found, nullptr), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(lensprof_times_read(text.data(), text.size(), same.data(), 2, &found, nullptr),
+                     LENSPROF_ERROR_CAPACITY);
 }
 
 void test_times_refused(void **) {
-    const char *const texts[][2] = {{"1 2 3\n4\n", "line 2: a frame without a time"}, {"1 x\n", "the time is \"x\""},
-                                    {"1 2 nan\n", "the exposure is \"nan\""},         {"1 2 -3\n", "an exposure below 0"},
-                                    {"1 2 3 4\n", "more than name"},                  {"a\x01 2 3\n", "control"},
-                                    {"1234567890123456789012345678901234567890123456789012345678901234 2 3\n", "longer"}};
+    const char *const texts[][2] = {
+        {"1 2 3\n4\n", "line 2: a frame without a time"},
+        {"1 x\n", "the time is \"x\""},
+        {"1 2 nan\n", "the exposure is \"nan\""},
+        {"1 2 -3\n", "an exposure below 0"},
+        {"1 2 3 4\n", "more than name"},
+        {"a\x01 2 3\n", "control"},
+        {"1234567890123456789012345678901234567890123456789012345678901234 2 3\n", "longer"}};
     for (const auto &c : texts) {
         std::vector<lensprof_frame_time> frames;
         std::string why;
         assert_int_equal(read_times(c[0], frames, &why), LENSPROF_ERROR_SYNTAX);
         if (why.find(c[1]) == std::string::npos) fail_msg("\"%s\" instead of \"%s\"", why.c_str(), c[1]);
     }
-    const lensprof_frame_time frames[] = {{"", 1, 1}, {"a b", 1, 1}, {"#a", 1, 1}, {"a", NAN, 1}, {"a", 1, 0}, {"a", 1, INFINITY}};
+    const lensprof_frame_time frames[] = {{"", 1, 1},    {"a b", 1, 1}, {"#a", 1, 1},
+                                          {"a", NAN, 1}, {"a", 1, 0},   {"a", 1, INFINITY}};
     const lensprof_status statuses[] = {LENSPROF_ERROR_ARGUMENT,   LENSPROF_ERROR_ARGUMENT, LENSPROF_ERROR_ARGUMENT,
                                         LENSPROF_ERROR_NOT_FINITE, LENSPROF_ERROR_EXPOSURE, LENSPROF_ERROR_EXPOSURE};
     for (int i = 0; i < 6; i++)

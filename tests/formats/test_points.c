@@ -8,8 +8,7 @@
 
 static const char two[] = FIRST "\r\n   \n" SECOND;
 
-static void test_read(void **state)
-{
+static void test_read(void **state) {
     (void)state;
     lensprof_pair pairs[3];
     uint32_t found = 99;
@@ -31,8 +30,7 @@ static void test_read(void **state)
     assert_int_equal(found, 0);
 }
 
-static void test_too_small_a_buffer(void **state)
-{
+static void test_too_small_a_buffer(void **state) {
     (void)state;
     lensprof_pair pairs[2], before[2];
     uint32_t found = 0;
@@ -45,8 +43,7 @@ static void test_too_small_a_buffer(void **state)
     assert_non_null(strchr(error.text, ';'));
 }
 
-static void test_read_errors(void **state)
-{
+static void test_read_errors(void **state) {
     (void)state;
     const struct {
         const char *line, *words;
@@ -84,8 +81,7 @@ static void test_read_errors(void **state)
 }
 
 /* Frames of 6 x 8: half the diagonal is 5, the centre (2.5, 3.5). */
-static void test_write(void **state)
-{
+static void test_write(void **state) {
     (void)state;
     const lensprof_camera cameras[2] = {{.width = 6, .height = 8}, {.width = 600, .height = 800}};
     const lensprof_pair pair = {{1, 0}, {{299.5, 149.5}, {6.5, 6.5}}, {{0, 0.5, 1}, {0.1, 0.25, 1e-9}}};
@@ -102,8 +98,7 @@ static void test_write(void **state)
     assert_int_equal(needed, 0);
 }
 
-static void test_write_refuses(void **state)
-{
+static void test_write_refuses(void **state) {
     (void)state;
     lensprof_camera cameras[2] = {{.width = 6, .height = 8}, {.width = 6, .height = 8}};
     lensprof_pair pair = {{0, 1}, {{1, 2}, {3, 4}}, {{0, 0, 0}, {1, 1, 1}}};
@@ -122,10 +117,11 @@ static void test_write_refuses(void **state)
     assert_int_equal(lensprof_points_write(&pair, 1, cameras, 2, text, 200, NULL), LENSPROF_ERROR_SIZE);
 }
 
-static void test_round_trip_is_exact(void **state)
-{
+static void test_round_trip_is_exact(void **state) {
     (void)state;
-    enum { COUNT = 500 };
+    enum {
+        COUNT = 500
+    };
     static lensprof_pair pairs[COUNT], again[COUNT];
     static char text[COUNT * 400];
     lensprof_camera cameras[5];
@@ -147,8 +143,7 @@ static void test_round_trip_is_exact(void **state)
     assert_memory_equal(pairs, again, sizeof pairs);
 }
 
-static void test_arguments(void **state)
-{
+static void test_arguments(void **state) {
     (void)state;
     lensprof_pair pair;
     uint32_t found;
@@ -158,8 +153,7 @@ static void test_arguments(void **state)
 }
 
 /* What vig_optimize writes where its cubic interpolation rings. */
-static void test_overshoot_is_cut(void **state)
-{
+static void test_overshoot_is_cut(void **state) {
     (void)state;
     const char *text = "0 1 10 20 30 40 1.02 0.2 0.3 0.4 0.5 -0.015 0 0.7 0.8 0\n";
     lensprof_pair pair;
@@ -170,17 +164,12 @@ static void test_overshoot_is_cut(void **state)
     assert_close(pair.value[1][1], 0.5, 0.0);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_read),
-        cmocka_unit_test(test_too_small_a_buffer),
-        cmocka_unit_test(test_read_errors),
-        cmocka_unit_test(test_write),
-        cmocka_unit_test(test_write_refuses),
-        cmocka_unit_test(test_round_trip_is_exact),
-        cmocka_unit_test(test_arguments),
-        cmocka_unit_test(test_overshoot_is_cut),
+        cmocka_unit_test(test_read),          cmocka_unit_test(test_too_small_a_buffer),
+        cmocka_unit_test(test_read_errors),   cmocka_unit_test(test_write),
+        cmocka_unit_test(test_write_refuses), cmocka_unit_test(test_round_trip_is_exact),
+        cmocka_unit_test(test_arguments),     cmocka_unit_test(test_overshoot_is_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

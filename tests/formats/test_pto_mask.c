@@ -1,8 +1,8 @@
 /* Drawing crops and masks. The pictures below are what must come out, row by row. */
 #include "pto_support.h"
 
-static void assert_drawn(const lensprof_pto *pto, uint32_t index, uint32_t width, uint32_t height, const char *picture)
-{
+static void assert_drawn(const lensprof_pto *pto, uint32_t index, uint32_t width, uint32_t height,
+                         const char *picture) {
     uint8_t mask[64 * 32];
     char drawn[64 * 32 + 1];
     assert_true(strlen(picture) == (size_t)width * height);
@@ -20,51 +20,84 @@ static void assert_drawn(const lensprof_pto *pto, uint32_t index, uint32_t width
     assert_int_equal(mask[width * height], 77);
 }
 
-static void test_crop(void **state)
-{
+static void test_crop(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w8 h6 S2,7,1,5\ni w8 h6 S-3,99,-3,2\ni w8 h6\ni w8 h6 S2,6,2,6\n");
-    assert_drawn(pto, 0, 8, 6, "........" "..#####." "..#####." "..#####." "..#####." "........");
-    assert_drawn(pto, 1, 8, 6, "########" "########" "........" "........" "........" "........");
-    assert_drawn(pto, 2, 8, 6, "########" "########" "########" "########" "########" "########");
-    assert_drawn(pto, 3, 4, 3, "...." ".##." ".##."); /* places 0.5, 2.5, 4.5, 6.5 of pixels 2..5 */
-    assert_drawn(pto, 2, 16, 2, "################" "################");
+    assert_drawn(pto, 0, 8, 6,
+                 "........"
+                 "..#####."
+                 "..#####."
+                 "..#####."
+                 "..#####."
+                 "........");
+    assert_drawn(pto, 1, 8, 6,
+                 "########"
+                 "########"
+                 "........"
+                 "........"
+                 "........"
+                 "........");
+    assert_drawn(pto, 2, 8, 6,
+                 "########"
+                 "########"
+                 "########"
+                 "########"
+                 "########"
+                 "########");
+    assert_drawn(pto, 3, 4, 3,
+                 "...."
+                 ".##."
+                 ".##."); /* places 0.5, 2.5, 4.5, 6.5 of pixels 2..5 */
+    assert_drawn(pto, 2, 16, 2,
+                 "################"
+                 "################");
     lensprof_pto_destroy(pto);
 }
 
 /* The circle touches the nearer sides of the crop: radius 4 around (6, 5) of 2..10 x 1..9. */
-static void test_circular_crop(void **state)
-{
+static void test_circular_crop(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w12 h10 f2 v90 S1,11,1,9\n");
     uint8_t mask[10][12];
     assert_ok(lensprof_pto_draw_mask(pto, 0, mask[0], 12, 10, 12));
     for (int y = 0; y < 10; y++)
-        for (int x = 0; x < 12; x++)
-            assert_int_equal(mask[y][x], (x - 6) * (x - 6) + (y - 5) * (y - 5) < 16);
+        for (int x = 0; x < 12; x++) assert_int_equal(mask[y][x], (x - 6) * (x - 6) + (y - 5) * (y - 5) < 16);
     lensprof_pto_destroy(pto);
 }
 
-static void test_polygons(void **state)
-{
+static void test_polygons(void **state) {
     (void)state;
-    lensprof_pto *pto = read_pto("i w8 h6\n"
-                                 "k i0 t0 p\"1.5 0.5 4.5 0.5 4.5 3.5 1.5 3.5\"\n" /* pixels 2..4 x 1..3 */
-                                 "k i0 t0 p\"5.5 4.5 99 4.5 99 99 5.5 99\"\n"      /* beyond the corner */
-                                 "k i0 t0 p\"0 0 5 5\"\n");                        /* two corners enclose nothing */
-    assert_drawn(pto, 0, 8, 6, "########" "##...###" "##...###" "##...###" "########" "######..");
+    lensprof_pto *pto = read_pto(
+        "i w8 h6\n"
+        "k i0 t0 p\"1.5 0.5 4.5 0.5 4.5 3.5 1.5 3.5\"\n" /* pixels 2..4 x 1..3 */
+        "k i0 t0 p\"5.5 4.5 99 4.5 99 99 5.5 99\"\n"     /* beyond the corner */
+        "k i0 t0 p\"0 0 5 5\"\n");                       /* two corners enclose nothing */
+    assert_drawn(pto, 0, 8, 6,
+                 "########"
+                 "##...###"
+                 "##...###"
+                 "##...###"
+                 "########"
+                 "######..");
     lensprof_pto_destroy(pto);
-    pto = read_pto("i w9 h9\n"
-                   "k i0 t0 p\"0.5 0.5 7.5 0.5 7.5 7.5 0.5 7.5 0.5 0.5 2.5 2.5 5.5 2.5 5.5 5.5 2.5 5.5 2.5 2.5\"\n");
+    pto = read_pto(
+        "i w9 h9\n"
+        "k i0 t0 p\"0.5 0.5 7.5 0.5 7.5 7.5 0.5 7.5 0.5 0.5 2.5 2.5 5.5 2.5 5.5 5.5 2.5 5.5 2.5 2.5\"\n");
     assert_drawn(pto, 0, 9, 9,
-                 "#########" "#.......#" "#.......#" "#..###..#" "#..###..#" "#..###..#" "#.......#" "#.......#"
+                 "#########"
+                 "#.......#"
+                 "#.......#"
+                 "#..###..#"
+                 "#..###..#"
+                 "#..###..#"
+                 "#.......#"
+                 "#.......#"
                  "#########"); /* what is enclosed twice is not excluded */
     lensprof_pto_destroy(pto);
 }
 
 /* A triangle against the half-plane test, at the frame's size and at smaller and larger views. */
-static void test_triangle_in_views(void **state)
-{
+static void test_triangle_in_views(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w40 h30\nk i0 p\"3.3 2.2 35.1 9.7 12.9 27.4\"\n");
     const double corner[3][2] = {{3.3, 2.2}, {35.1, 9.7}, {12.9, 27.4}};
@@ -91,32 +124,35 @@ static void test_triangle_in_views(void **state)
     lensprof_pto_destroy(pto);
 }
 
-static void test_include(void **state)
-{
+static void test_include(void **state) {
     (void)state;
-    lensprof_pto *pto = read_pto("i w8 h4 S0,7,0,4\n"
-                                 "k i0 t1 p\"0.5 0.5 2.5 0.5 2.5 2.5 0.5 2.5\"\n"
-                                 "k i0 t1 p\"4.5 -1 9 -1 9 9 4.5 9\"\n"
-                                 "k i0 t0 p\"-1 1.5 9 1.5 9 2.5 -1 2.5\"\n");
-    assert_drawn(pto, 0, 8, 4, "#####..." "#..##..." "........" "#####...");
+    lensprof_pto *pto = read_pto(
+        "i w8 h4 S0,7,0,4\n"
+        "k i0 t1 p\"0.5 0.5 2.5 0.5 2.5 2.5 0.5 2.5\"\n"
+        "k i0 t1 p\"4.5 -1 9 -1 9 9 4.5 9\"\n"
+        "k i0 t0 p\"-1 1.5 9 1.5 9 2.5 -1 2.5\"\n");
+    assert_drawn(pto, 0, 8, 4,
+                 "#####..."
+                 "#..##..."
+                 "........"
+                 "#####...");
     lensprof_pto_destroy(pto);
 }
 
 /* Stacks are images with linked j (Hugin writes j0 for every unlinked image), lenses images with linked v. */
-static void test_stack_and_lens(void **state)
-{
+static void test_stack_and_lens(void **state) {
     (void)state;
-    lensprof_pto *pto = read_pto("i w4 h1 j0\ni w4 h1 v=0 j=0\ni w4 h1 v=1 j0\ni w4 h1 j=1\ni w4 h1 v60 j1\n"
-                                 "k i1 t2 p\"-1 -1 0.5 -1 0.5 9 -1 9\"\n"
-                                 "k i1 t4 p\"0.5 -1 1.5 -1 1.5 9 0.5 9\"\n"
-                                 "k i4 t3 p\"-1 -1 2.5 -1 2.5 9 -1 9\"\n");
+    lensprof_pto *pto = read_pto(
+        "i w4 h1 j0\ni w4 h1 v=0 j=0\ni w4 h1 v=1 j0\ni w4 h1 j=1\ni w4 h1 v60 j1\n"
+        "k i1 t2 p\"-1 -1 0.5 -1 0.5 9 -1 9\"\n"
+        "k i1 t4 p\"0.5 -1 1.5 -1 1.5 9 0.5 9\"\n"
+        "k i4 t3 p\"-1 -1 2.5 -1 2.5 9 -1 9\"\n");
     const char *const pictures[5] = {"..##", "..##", "#.##", ".###", "...#"};
     for (uint32_t i = 0; i < 5; i++) assert_drawn(pto, i, 4, 1, pictures[i]);
     lensprof_pto_destroy(pto);
 }
 
-static void test_rows(void **state)
-{
+static void test_rows(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w4 h3 S0,4,0,1\n");
     uint8_t mask[3 * 6];
@@ -135,15 +171,11 @@ static void test_rows(void **state)
     lensprof_pto_destroy(pto);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_crop),
-        cmocka_unit_test(test_circular_crop),
-        cmocka_unit_test(test_polygons),
-        cmocka_unit_test(test_triangle_in_views),
-        cmocka_unit_test(test_include),
-        cmocka_unit_test(test_stack_and_lens),
+        cmocka_unit_test(test_crop),     cmocka_unit_test(test_circular_crop),
+        cmocka_unit_test(test_polygons), cmocka_unit_test(test_triangle_in_views),
+        cmocka_unit_test(test_include),  cmocka_unit_test(test_stack_and_lens),
         cmocka_unit_test(test_rows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,24 +4,43 @@
 #define MUTATIONS 5000
 #define ROOM 8192
 
-static size_t pick(uint64_t *seed, size_t below)
-{
-    return below ? (size_t)(lp_random(seed) * (double)below) : 0;
-}
+static size_t pick(uint64_t *seed, size_t below) { return below ? (size_t)(lp_random(seed) * (double)below) : 0; }
 
 /* A random size, more often a small one. */
-static size_t pick_size(uint64_t *seed, size_t most)
-{
+static size_t pick_size(uint64_t *seed, size_t most) {
     size_t divisor = 1 + pick(seed, 20);
     return pick(seed, most + 1) / divisor;
 }
 
 /* One change: a byte, a removed or doubled piece, or a word that parsers stumble over. */
-static size_t mutate(char *text, size_t length, uint64_t *seed)
-{
-    static const char *const words[] = {"\n", "\r", " ", "\"", "=", "=0", "=99999999999", "nan", "inf", "-", "1e309",
-                                        "1e-400", "99999999999999999999", "-1", "i w10 h10 ", "\nv ", "\nk i0 t1 p\"",
-                                        "0x1p3", ",", "\t", "v", "n\"", "S1,2,3,4", "f8", "f20", "+", "4294967296"};
+static size_t mutate(char *text, size_t length, uint64_t *seed) {
+    static const char *const words[] = {"\n",
+                                        "\r",
+                                        " ",
+                                        "\"",
+                                        "=",
+                                        "=0",
+                                        "=99999999999",
+                                        "nan",
+                                        "inf",
+                                        "-",
+                                        "1e309",
+                                        "1e-400",
+                                        "99999999999999999999",
+                                        "-1",
+                                        "i w10 h10 ",
+                                        "\nv ",
+                                        "\nk i0 t1 p\"",
+                                        "0x1p3",
+                                        ",",
+                                        "\t",
+                                        "v",
+                                        "n\"",
+                                        "S1,2,3,4",
+                                        "f8",
+                                        "f20",
+                                        "+",
+                                        "4294967296"};
     char byte;
     const char *piece = &byte;
     size_t at = pick(seed, length + 1), cut = 0, size = 1;
@@ -38,9 +57,7 @@ static size_t mutate(char *text, size_t length, uint64_t *seed)
         piece = text + pick(seed, length);
         size = pick_size(seed, (size_t)(text + length - piece));
         break;
-    default:
-        piece = words[pick(seed, sizeof words / sizeof words[0])];
-        size = strlen(piece);
+    default: piece = words[pick(seed, sizeof words / sizeof words[0])]; size = strlen(piece);
     }
     if (length - cut + size > ROOM) return length;
     char copy[ROOM];
@@ -50,8 +67,7 @@ static size_t mutate(char *text, size_t length, uint64_t *seed)
     return length - cut + size;
 }
 
-static void use(lensprof_pto *pto, const lensprof_response *response)
-{
+static void use(lensprof_pto *pto, const lensprof_response *response) {
     uint32_t count = lensprof_pto_image_count(pto);
     lensprof_exposure *exposures = calloc(count, sizeof *exposures);
     const lensprof_vignetting vignetting = {{-0.2, 0, 0}, {0, 0}};
@@ -71,8 +87,7 @@ static void use(lensprof_pto *pto, const lensprof_response *response)
     free(exposures);
 }
 
-static void test_projects(void **state)
-{
+static void test_projects(void **state) {
     (void)state;
     lensprof_response *response = malloc(sizeof *response);
     lensprof_response_set_linear(response);
@@ -100,18 +115,19 @@ static void test_projects(void **state)
     }
     print_message("%d of %d accepted, %d syntax, %d variable, %d unsupported\n", accepted, MUTATIONS,
                   kinds[LENSPROF_ERROR_SYNTAX], kinds[LENSPROF_ERROR_VARIABLE], kinds[LENSPROF_ERROR_UNSUPPORTED]);
-    assert_int_equal(accepted + kinds[LENSPROF_ERROR_SYNTAX] + kinds[LENSPROF_ERROR_VARIABLE] +
-                     kinds[LENSPROF_ERROR_UNSUPPORTED], MUTATIONS);
+    assert_int_equal(
+        accepted + kinds[LENSPROF_ERROR_SYNTAX] + kinds[LENSPROF_ERROR_VARIABLE] + kinds[LENSPROF_ERROR_UNSUPPORTED],
+        MUTATIONS);
     assert_true(accepted > MUTATIONS / 10 && accepted < MUTATIONS * 9 / 10);
     free(text);
     free(response);
 }
 
-static void test_points(void **state)
-{
+static void test_points(void **state) {
     (void)state;
-    const char sample[] = "0 1 10.5 20 30 40.25 0.1 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8 0\r\n\n"
-                          "7 2\t-1 2e1 3 4 0 1 0.5 1 0 +.25 0 0 0 0\n";
+    const char sample[] =
+        "0 1 10.5 20 30 40.25 0.1 0.2 0.3 0.4 0.5 0.6 0 0.7 0.8 0\r\n\n"
+        "7 2\t-1 2e1 3 4 0 1 0.5 1 0 +.25 0 0 0 0\n";
     char *text = malloc(ROOM);
     uint64_t seed = 12;
     for (int n = 0; n < MUTATIONS; n++) {
@@ -135,8 +151,7 @@ static void test_points(void **state)
     free(text);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_projects),
         cmocka_unit_test(test_points),

@@ -1,8 +1,7 @@
 /* Reading Hugin projects: every construct, every error. */
 #include "pto_support.h"
 
-static void test_first_image(void **state)
-{
+static void test_first_image(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
     assert_int_equal(lensprof_pto_image_count(pto), 4);
@@ -30,8 +29,7 @@ static void test_first_image(void **state)
     lensprof_pto_destroy(pto);
 }
 
-static void test_links_resolve_to_the_end_of_the_chain(void **state)
-{
+static void test_links_resolve_to_the_end_of_the_chain(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
     lensprof_pto_image first = image_of(pto, 0), second = image_of(pto, 1), third = image_of(pto, 2);
@@ -49,8 +47,7 @@ static void test_links_resolve_to_the_end_of_the_chain(void **state)
     lensprof_pto_destroy(pto);
 }
 
-static void test_defaults(void **state)
-{
+static void test_defaults(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
     lensprof_pto_image image = image_of(pto, 3), expected;
@@ -72,26 +69,25 @@ static void test_defaults(void **state)
 }
 
 /* v Ra1 Vb2 Vc0 / Vx0 / Eev2 Er1 Eb3: Ra, Vb and Vx are linked over images 0 to 2, Eev over 1 and 2. */
-static void test_variables(void **state)
-{
+static void test_variables(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
-    uint32_t shared = LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_CENTER |
-                      LENSPROF_FREE_RED;
+    uint32_t shared =
+        LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_CENTER | LENSPROF_FREE_RED;
     assert_int_equal(image_of(pto, 0).free, shared);
     assert_int_equal(image_of(pto, 1).free, shared | LENSPROF_FREE_EV);
     assert_int_equal(image_of(pto, 2).free, shared | LENSPROF_FREE_EV);
     assert_int_equal(image_of(pto, 3).free, LENSPROF_FREE_BLUE);
     lensprof_pto_destroy(pto);
-    pto = read_pto("i w10 h10\ni w10 h10\nv Vd1\tVy1\t Re0\n"
-                   "v Va0 r1 p1 y1 TrX1 TrY1 TrZ1 Tpy1 Tpp1 a0 b0 c0 d0 e0 g0 t0\n");
+    pto = read_pto(
+        "i w10 h10\ni w10 h10\nv Vd1\tVy1\t Re0\n"
+        "v Va0 r1 p1 y1 TrX1 TrY1 TrZ1 Tpy1 Tpp1 a0 b0 c0 d0 e0 g0 t0\n");
     assert_int_equal(image_of(pto, 0).free, LENSPROF_FREE_RESPONSE);
     assert_int_equal(image_of(pto, 1).free, LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER);
     lensprof_pto_destroy(pto);
 }
 
-static void test_crops(void **state)
-{
+static void test_crops(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
     const int32_t second[4] = {20, 30, 380, 290}, third[4] = {-10, 0, 490, 500}, frame[4] = {0, 0, 100, 80};
@@ -99,8 +95,9 @@ static void test_crops(void **state)
     assert_memory_equal(image_of(pto, 2).crop, third, sizeof third);
     assert_int_equal(image_of(pto, 2).crop_circular, 0); /* f3 fills the frame */
     lensprof_pto_destroy(pto);
-    pto = read_pto("i w100 h80 f2 v90 S0,100,0,80\ni w100 h80 f2 v90 S10,90,0,80\ni w100 h80 f8 v90 C10,90,0,80\n"
-                   "i w100 h80 f20 v90 S10,90,0,80\ni w100 h80 f21 v90 S10,90,0,80\ni w100 h80 S0,0,0,0\n");
+    pto = read_pto(
+        "i w100 h80 f2 v90 S0,100,0,80\ni w100 h80 f2 v90 S10,90,0,80\ni w100 h80 f8 v90 C10,90,0,80\n"
+        "i w100 h80 f20 v90 S10,90,0,80\ni w100 h80 f21 v90 S10,90,0,80\ni w100 h80 S0,0,0,0\n");
     const uint32_t circular[6] = {0, 1, 1, 1, 0, 0};
     for (uint32_t i = 0; i < 6; i++) assert_int_equal(image_of(pto, i).crop_circular, circular[i]);
     assert_memory_equal(image_of(pto, 0).crop, frame, sizeof frame);
@@ -108,11 +105,11 @@ static void test_crops(void **state)
     lensprof_pto_destroy(pto);
 }
 
-static void test_vignetting_mode(void **state)
-{
+static void test_vignetting_mode(void **state) {
     (void)state;
-    lensprof_pto *pto = read_pto("i w30 h40 Va2 Vb-0.5 Vc0.25 Vd0 Vx5 Vm5\ni w30 h40 Va1 Vb-0.5 Vx5\n"
-                                 "i w30 h40 Vb-0.5 Vx5 Vm6 Vf\"flat field.tif\" Rt1\n");
+    lensprof_pto *pto = read_pto(
+        "i w30 h40 Va2 Vb-0.5 Vc0.25 Vd0 Vx5 Vm5\ni w30 h40 Va1 Vb-0.5 Vx5\n"
+        "i w30 h40 Vb-0.5 Vx5 Vm6 Vf\"flat field.tif\" Rt1\n");
     lensprof_pto_image image = image_of(pto, 0);
     assert_true(image.vignetting.k[0] == -0.25 && image.vignetting.k[1] == 0.125 && image.vignetting.center[0] == 0.2);
     for (uint32_t i = 1; i < 3; i++) {
@@ -125,8 +122,7 @@ static void test_vignetting_mode(void **state)
     lensprof_pto_destroy(pto);
 }
 
-static void test_names(void **state)
-{
+static void test_names(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
     char name[32] = "untouched";
@@ -142,11 +138,11 @@ static void test_names(void **state)
 }
 
 /* Windows line ends, tabs, no end of the last line, a plus sign, twice the same item (Hugin reads the first). */
-static void test_spelling(void **state)
-{
+static void test_spelling(void **state) {
     (void)state;
-    lensprof_pto *pto = read_pto("#x\r\ni\tw10\th20\tv+60 y1 y2\tn\"a\tb.jpg\"\r\n\r\n"
-                                 "v Eev0\r\nv\r\n*\r\ni w1 h1 n\"c\"");
+    lensprof_pto *pto = read_pto(
+        "#x\r\ni\tw10\th20\tv+60 y1 y2\tn\"a\tb.jpg\"\r\n\r\n"
+        "v Eev0\r\nv\r\n*\r\ni w1 h1 n\"c\"");
     assert_int_equal(lensprof_pto_image_count(pto), 2);
     lensprof_pto_image image = image_of(pto, 0);
     assert_true(image.camera.width == 10 && image.camera.height == 20 && image.camera.hfov_deg == 60);
@@ -160,8 +156,7 @@ static void test_spelling(void **state)
     lensprof_pto_destroy(pto);
 }
 
-static void assert_refused(const char *text, size_t bytes, lensprof_status status, const char *words)
-{
+static void assert_refused(const char *text, size_t bytes, lensprof_status status, const char *words) {
     lensprof_pto *untouched = (lensprof_pto *)&untouched, *pto = untouched;
     lensprof_error error;
     assert_int_equal(lensprof_pto_read(text, bytes, &pto, &error), status);
@@ -174,8 +169,7 @@ static void assert_refused(const char *text, size_t bytes, lensprof_status statu
     assert_int_equal(lensprof_pto_read(text, bytes, &pto, NULL), status);
 }
 
-static void test_errors(void **state)
-{
+static void test_errors(void **state) {
     (void)state;
     const struct {
         const char *text;
@@ -229,8 +223,7 @@ static void test_errors(void **state)
     assert_refused("i w10 h10\nx\0y\n", 14, LENSPROF_ERROR_SYNTAX, "line 2: zero byte");
 }
 
-static void test_limits(void **state)
-{
+static void test_limits(void **state) {
     (void)state;
     const char line[] = "i w1 h1\n";
     size_t length = strlen(line), images = 100001;
@@ -249,8 +242,7 @@ static void test_limits(void **state)
     free(text);
 }
 
-static void test_arguments(void **state)
-{
+static void test_arguments(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w10 h10\n");
     lensprof_pto_image image;
@@ -267,8 +259,7 @@ static void test_arguments(void **state)
 }
 
 /* Hugin evaluates a response that falls as its running maximum. */
-static void test_response_as_hugin_sees_it(void **state)
-{
+static void test_response_as_hugin_sees_it(void **state) {
     (void)state;
     lensprof_response response;
     lensprof_pto *pto = read_pto("i w8 h4 Ra0.5\ni w8 h4 Rt1 Ra3\ni w8 h4 Ra20\n");
@@ -289,21 +280,14 @@ static void test_response_as_hugin_sees_it(void **state)
     lensprof_pto_destroy(pto);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_first_image),
-        cmocka_unit_test(test_links_resolve_to_the_end_of_the_chain),
-        cmocka_unit_test(test_defaults),
-        cmocka_unit_test(test_variables),
-        cmocka_unit_test(test_crops),
-        cmocka_unit_test(test_vignetting_mode),
-        cmocka_unit_test(test_names),
-        cmocka_unit_test(test_spelling),
-        cmocka_unit_test(test_errors),
-        cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_arguments),
-        cmocka_unit_test(test_response_as_hugin_sees_it),
+        cmocka_unit_test(test_first_image), cmocka_unit_test(test_links_resolve_to_the_end_of_the_chain),
+        cmocka_unit_test(test_defaults),    cmocka_unit_test(test_variables),
+        cmocka_unit_test(test_crops),       cmocka_unit_test(test_vignetting_mode),
+        cmocka_unit_test(test_names),       cmocka_unit_test(test_spelling),
+        cmocka_unit_test(test_errors),      cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_arguments),   cmocka_unit_test(test_response_as_hugin_sees_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,8 +3,7 @@
 
 #include <lensprof/model.h>
 
-static void test_unmodified_is_identical(void **state)
-{
+static void test_unmodified_is_identical(void **state) {
     (void)state;
     const char *const texts[] = {SAMPLE_PTO, "i w10 h10",
                                  "\r\n\t# x\r\ni w10 h10  n\"a b\" \r\nv\r\n\n\n*\n garbage \xff\n"};
@@ -17,8 +16,7 @@ static void test_unmodified_is_identical(void **state)
     }
 }
 
-static void test_write_into_buffers(void **state)
-{
+static void test_write_into_buffers(void **state) {
     (void)state;
     const char *text = "i w10 h10\n";
     lensprof_pto *pto = read_pto(text);
@@ -41,14 +39,12 @@ static const double emor[5] = {0.71, -0.123456789012345, 0.05, 1e-7, -0.02};
 static const lensprof_vignetting falloff = {{-0.31, 0.0625, -0.011}, {0.04, -0.07}};
 
 /* Images 1 and 2 of the sample share Eev, 0 to 2 share Er. Exposures are relative to image 3. */
-static void make_exposures(lensprof_exposure exposures[4])
-{
+static void make_exposures(lensprof_exposure exposures[4]) {
     const double ev[4] = {0.75, -0.5, -0.5, 0.25}, red[4] = {1.5, 1.5, 1.5, 1}, blue[4] = {0.5, 0.8, 0.8, 1};
     for (int i = 0; i < 4; i++) exposures[i] = (lensprof_exposure){ev[i], {red[i], 1, blue[i]}};
 }
 
-static lensprof_pto *sample_with_result(void)
-{
+static lensprof_pto *sample_with_result(void) {
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
     lensprof_response *response = malloc(sizeof *response);
     lensprof_exposure exposures[4];
@@ -59,8 +55,7 @@ static lensprof_pto *sample_with_result(void)
     return pto;
 }
 
-static void assert_result(const lensprof_pto *pto)
-{
+static void assert_result(const lensprof_pto *pto) {
     lensprof_exposure exposures[4];
     make_exposures(exposures);
     for (uint32_t i = 0; i < 4; i++) {
@@ -77,8 +72,7 @@ static void assert_result(const lensprof_pto *pto)
     }
 }
 
-static void test_result_reads_back(void **state)
-{
+static void test_result_reads_back(void **state) {
     (void)state;
     lensprof_pto *pto = sample_with_result();
     assert_result(pto);
@@ -90,8 +84,7 @@ static void test_result_reads_back(void **state)
     lensprof_pto_destroy(pto);
 }
 
-static void test_only_the_result_changes(void **state)
-{
+static void test_only_the_result_changes(void **state) {
     (void)state;
     lensprof_pto *pto = sample_with_result();
     char *text = write_pto(pto), *copy = text;
@@ -121,8 +114,7 @@ static void test_only_the_result_changes(void **state)
     lensprof_pto_destroy(pto);
 }
 
-static void test_links_stay_and_missing_items_come(void **state)
-{
+static void test_links_stay_and_missing_items_come(void **state) {
     (void)state;
     lensprof_pto *pto = sample_with_result();
     char *text = write_pto(pto);
@@ -143,8 +135,7 @@ static void test_links_stay_and_missing_items_come(void **state)
 }
 
 /* The reference keeps its exposure and white balance to the bit, whatever they are. */
-static void test_reference_stays(void **state)
-{
+static void test_reference_stays(void **state) {
     (void)state;
     lensprof_response *response = malloc(sizeof *response);
     assert_ok(lensprof_response_set_emor(response, emor, 5));
@@ -170,8 +161,7 @@ static void test_reference_stays(void **state)
 }
 
 /* A curve beyond Hugin's five modes: the remainder must be orthogonal to all five, else a nearer curve exists. */
-static void test_other_responses_are_projected(void **state)
-{
+static void test_other_responses_are_projected(void **state) {
     (void)state;
     lensprof_response *response = malloc(sizeof *response);
     const double seven[7] = {0.5, 0.1, -0.2, 0.05, 0.01, 0.04, -0.03};
@@ -200,8 +190,7 @@ static void test_other_responses_are_projected(void **state)
     free(response);
 }
 
-static void test_set_result_refuses(void **state)
-{
+static void test_set_result_refuses(void **state) {
     (void)state;
     lensprof_response *response = malloc(sizeof *response);
     lensprof_response_set_linear(response);
@@ -228,8 +217,7 @@ static void test_set_result_refuses(void **state)
     lensprof_pto_destroy(pto);
 }
 
-static void test_set_name(void **state)
-{
+static void test_set_name(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
     char name[64];
@@ -258,8 +246,7 @@ static void test_set_name(void **state)
 }
 
 /* A name that was set and a result that is put in afterwards are both in the text. */
-static void test_result_keeps_set_names(void **state)
-{
+static void test_result_keeps_set_names(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w100 h80 f0 v50 Eev3 n\"a.jpg\"\ni w100 h80 f0 v=0 Eev4 n\"b.jpg\"\n");
     lensprof_response *response = malloc(sizeof *response);
@@ -283,8 +270,7 @@ static void test_result_keeps_set_names(void **state)
     lensprof_pto_destroy(pto);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_unmodified_is_identical),
         cmocka_unit_test(test_write_into_buffers),

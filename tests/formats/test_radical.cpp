@@ -7,7 +7,8 @@ namespace {
 
 // The header of a matrix, byte for byte: magic, type, dimensions, rows, columns.
 std::string header(char type, char rows_low, char rows_high, char columns) {
-    return std::string("\xD9\xFD\xA1\xC4", 4) + std::string({type, 0, 0, 0, 2, 0, 0, 0, rows_low, rows_high, 0, 0, columns, 0, 0, 0});
+    return std::string("\xD9\xFD\xA1\xC4", 4)
+           + std::string({type, 0, 0, 0, 2, 0, 0, 0, rows_low, rows_high, 0, 0, columns, 0, 0, 0});
 }
 
 template <typename Number>
@@ -74,10 +75,13 @@ Found read_vgn(const std::string &data) {
     const Profile before = copy_of(*found.profile);
     lensprof_error error;
     const std::vector<char> bytes = exact(data);
-    found.status = lensprof_radical_vignetting_read(bytes.data(), bytes.size(), found.profile.get(), &found.worst, &error);
+    found.status =
+        lensprof_radical_vignetting_read(bytes.data(), bytes.size(), found.profile.get(), &found.worst, &error);
     found.error = error.text;
-    if (found.status != LENSPROF_OK) assert_memory_equal(found.profile.get(), before.get(), sizeof *before);
-    else assert_ok(lensprof_profile_validate(found.profile.get()));
+    if (found.status != LENSPROF_OK)
+        assert_memory_equal(found.profile.get(), before.get(), sizeof *before);
+    else
+        assert_ok(lensprof_profile_validate(found.profile.get()));
     return found;
 }
 
@@ -92,8 +96,8 @@ const std::string kLine = "PolynomialVignettingModel 3 640 480\n";
 // Centres (blue, green, red), then coefficients of r^2, r^4, r^6 in px; half the diagonal is 400 px.
 std::vector<double> terms(double shift) {
     const double r2 = 1 / 160000.0, r4 = r2 * r2, r6 = r4 * r2;
-    return {339.5 - shift, 339.5, 339.5 + shift, 219.5,     219.5,     219.5, -0.4 * r2, -0.5 * r2,
-            -0.6 * r2,     0.1 * r4, 0.2 * r4,   0.3 * r4, -0.1 * r6, -0.1 * r6, -0.1 * r6};
+    return {339.5 - shift, 339.5,    339.5 + shift, 219.5,    219.5,     219.5,     -0.4 * r2, -0.5 * r2,
+            -0.6 * r2,     0.1 * r4, 0.2 * r4,      0.3 * r4, -0.1 * r6, -0.1 * r6, -0.1 * r6};
 }
 
 void test_polynomial(void **) {
@@ -187,7 +191,8 @@ void test_refused(void **) {
     refused(std::string(crf).replace(20 + 12 * 7 + 8, 4, 4, '\0'), LENSPROF_ERROR_RESPONSE, "grey 7 of red is darker");
     const auto not_read = [&](const std::string &data, lensprof_status status, const char *words) {
         const Found found = read_vgn(data);
-        if (found.error.find(words) == std::string::npos) fail_msg("\"%s\" instead of \"%s\"", found.error.c_str(), words);
+        if (found.error.find(words) == std::string::npos)
+            fail_msg("\"%s\" instead of \"%s\"", found.error.c_str(), words);
         assert_int_equal(found.status, status);
     };
     not_read("", LENSPROF_ERROR_SYNTAX, "no line of text");
@@ -205,13 +210,17 @@ void test_refused(void **) {
     t[7] = -1;
     not_read(kLine + header(22, 5, 0, 1) + bytes_of(t), LENSPROF_ERROR_VIGNETTING, "not above 0");
     const Profile p = full_profile();
-    assert_int_equal(lensprof_radical_vignetting_write(p.get(), 1, 9, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_SIZE);
-    assert_int_equal(lensprof_radical_vignetting_write(nullptr, 9, 9, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_radical_vignetting_write(p.get(), 1, 9, nullptr, 0, nullptr, nullptr),
+                     LENSPROF_ERROR_SIZE);
+    assert_int_equal(lensprof_radical_vignetting_write(nullptr, 9, 9, nullptr, 0, nullptr, nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_radical_vignetting_read(nullptr, 9, p.get(), nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_radical_response_write(p->response, 2, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_radical_response_write(p->response, 2, nullptr, 0, nullptr, nullptr),
+                     LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_radical_response_read(nullptr, 9, responses->r, nullptr), LENSPROF_ERROR_ARGUMENT);
     p->response[1].table[5] = 7;
-    assert_int_equal(lensprof_radical_response_write(p->response, 3, nullptr, 0, nullptr, nullptr), LENSPROF_ERROR_RESPONSE);
+    assert_int_equal(lensprof_radical_response_write(p->response, 3, nullptr, 0, nullptr, nullptr),
+                     LENSPROF_ERROR_RESPONSE);
 }
 
 }  // namespace

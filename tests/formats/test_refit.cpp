@@ -4,9 +4,9 @@
 
 #include <lensprof/formats.h>
 
-#include "formats/map_fit.hpp"
-#include "formats/refit.hpp"
-#include "formats/text.hpp"
+#include "formats/falloff/map_fit.hpp"
+#include "formats/falloff/refit.hpp"
+#include "formats/text/text.hpp"
 
 extern "C" {
 #include "support.h"
@@ -16,9 +16,7 @@ using namespace lensprof;
 
 namespace {
 
-lensprof_status status_of(const std::function<void()> &body) {
-    return at_boundary(nullptr, body);
-}
+lensprof_status status_of(const std::function<void()> &body) { return at_boundary(nullptr, body); }
 
 double polynomial(double r2) { return 1.0 - 0.5 * r2 + 0.2 * r2 * r2 - 0.1 * r2 * r2 * r2; }
 
@@ -38,7 +36,8 @@ void test_radial_reciprocal(void **) {
 }
 
 void test_radial_refused(void **) {
-    assert_int_equal(status_of([] { refit_radial([](double r2) { return 1.0 - 1.2 * r2; }); }), LENSPROF_ERROR_VIGNETTING);
+    assert_int_equal(status_of([] { refit_radial([](double r2) { return 1.0 - 1.2 * r2; }); }),
+                     LENSPROF_ERROR_VIGNETTING);
     assert_int_equal(status_of([] { refit_radial([](double r2) { return r2 > 0.5 ? NAN : 1.0; }); }),
                      LENSPROF_ERROR_NOT_FINITE);
 }
@@ -49,9 +48,9 @@ FalloffMap map_of(const lensprof_profile &profile, uint32_t columns, uint32_t ro
     for (uint32_t c = 0; c < channels; c++)
         for (uint32_t j = 0; j < rows; j++)
             for (uint32_t i = 0; i < columns; i++)
-                map.attenuation.push_back(scale * (c + 1)
-                                          * profile_attenuation(profile, map.width, map.height, map.x0 + i * map.dx,
-                                                                map.y0 + j * map.dy, c));
+                map.attenuation.push_back(
+                    scale * (c + 1)
+                    * profile_attenuation(profile, map.width, map.height, map.x0 + i * map.dx, map.y0 + j * map.dy, c));
     return map;
 }
 
@@ -59,8 +58,7 @@ std::unique_ptr<lensprof_profile> lens_profile(uint32_t curves) {
     auto profile = std::make_unique<lensprof_profile>();
     lensprof_profile_init(profile.get());
     profile->vignettings = curves;
-    for (uint32_t c = 0; c < curves; c++)
-        profile->vignetting[c] = {{-0.5 - 0.05 * c, 0.2, -0.1}, {0.06, -0.04}};
+    for (uint32_t c = 0; c < curves; c++) profile->vignetting[c] = {{-0.5 - 0.05 * c, 0.2, -0.1}, {0.06, -0.04}};
     return profile;
 }
 
@@ -132,9 +130,9 @@ void test_map_refused(void **) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_radial_exact),  cmocka_unit_test(test_radial_reciprocal),
+        cmocka_unit_test(test_radial_exact),   cmocka_unit_test(test_radial_reciprocal),
         cmocka_unit_test(test_radial_refused), cmocka_unit_test(test_map_exact),
-        cmocka_unit_test(test_map_with_grid), cmocka_unit_test(test_map_of_few),
+        cmocka_unit_test(test_map_with_grid),  cmocka_unit_test(test_map_of_few),
         cmocka_unit_test(test_map_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -14,18 +14,19 @@
 
 #include "core/blob.h"
 
-enum { SIDE = 8, LARGEST = 1 << 16 };
+enum {
+    SIDE = 8,
+    LARGEST = 1 << 16
+};
 
-static void demand(int holds, const char *what)
-{
+static void demand(int holds, const char *what) {
     if (holds) return;
     fprintf(stderr, "fuzz_blob: %s\n", what);
     abort();
 }
 
 /* An 8 bit picture corrected by these options; 0 where no plan is made. */
-static int correct(const lensprof_apply_options *options, uint8_t *pixels)
-{
+static int correct(const lensprof_apply_options *options, uint8_t *pixels) {
     const size_t bytes = lensprof_plan_bytes(options);
     if (!bytes) return 0;
     void *memory = malloc(bytes);
@@ -39,8 +40,7 @@ static int correct(const lensprof_apply_options *options, uint8_t *pixels)
     return status == LENSPROF_OK;
 }
 
-static void compare_plans(const uint8_t *blob, size_t bytes, const lensprof_profile *profile)
-{
+static void compare_plans(const uint8_t *blob, size_t bytes, const lensprof_profile *profile) {
     uint8_t a[SIDE * SIDE * 3], b[SIDE * SIDE * 3];
     for (size_t i = 0; i < sizeof a; i++) a[i] = b[i] = (uint8_t)(i * 37);
     lensprof_apply_options options;
@@ -57,15 +57,13 @@ static void compare_plans(const uint8_t *blob, size_t bytes, const lensprof_prof
     demand(memcmp(a, b, sizeof a) == 0, "blob and profile correct differently");
 }
 
-static int is_untouched(const lensprof_profile *profile)
-{
+static int is_untouched(const lensprof_profile *profile) {
     const uint8_t *bytes = (const uint8_t *)profile;
     return bytes[0] == 0xA5 && memcmp(bytes, bytes + 1, sizeof *profile - 1) == 0;
 }
 
 /* Returns whether it is a profile. */
-static int try_blob(const uint8_t *blob, size_t bytes)
-{
+static int try_blob(const uint8_t *blob, size_t bytes) {
     static lensprof_profile profile;
     memset(&profile, 0xA5, sizeof profile);
     const lensprof_status status = lensprof_profile_unpack(blob, bytes, &profile);
@@ -86,14 +84,12 @@ static int try_blob(const uint8_t *blob, size_t bytes)
     return 1;
 }
 
-static void put_u32(uint8_t *at, uint32_t value)
-{
+static void put_u32(uint8_t *at, uint32_t value) {
     for (int i = 0; i < 4; i++) at[i] = (uint8_t)(value >> 8 * i);
 }
 
 /* As it is, then sealed; in memory of its own size. Returns whether the sealed one is a profile. */
-static int try_both(const uint8_t *data, size_t bytes)
-{
+static int try_both(const uint8_t *data, size_t bytes) {
     uint8_t *copy = malloc(bytes + 1), *blob = copy + 1;
     int is_profile = 0;
     memcpy(blob, data, bytes);
@@ -109,16 +105,14 @@ static int try_both(const uint8_t *data, size_t bytes)
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes);
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
-{
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes) {
     if (bytes <= LARGEST) try_both(data, bytes);
     return 0;
 }
 
 #ifndef LENSPROF_LIBFUZZER
 
-static uint64_t random_bits(uint64_t *state)
-{
+static uint64_t random_bits(uint64_t *state) {
     *state ^= *state << 13;
     *state ^= *state >> 7;
     return *state ^= *state << 17;
@@ -127,10 +121,9 @@ static uint64_t random_bits(uint64_t *state)
 static size_t below(uint64_t *state, size_t count) { return (size_t)(random_bits(state) >> 11) % count; }
 
 /* One to three changes, mostly near the head, where counts and numbers are. Returns the new length. */
-static size_t mutate(uint8_t *data, size_t bytes, uint64_t *random)
-{
-    static const uint32_t words[] = {0, 1, 3, 0x7f, 0xff, 0xffff, 0x7f800000, 0x7fc00000, 0x3f800000, 0x80000000,
-                                     0xbf800000, 0xffffffff};
+static size_t mutate(uint8_t *data, size_t bytes, uint64_t *random) {
+    static const uint32_t words[] = {0,          1,          3,          0x7f,       0xff,       0xffff,
+                                     0x7f800000, 0x7fc00000, 0x3f800000, 0x80000000, 0xbf800000, 0xffffffff};
     for (size_t changes = 1 + below(random, 3); changes; changes--) {
         const size_t reach = below(random, 4) ? (bytes < 200 ? bytes : 200) : bytes, at = below(random, reach),
                      other = below(random, reach), left = bytes - (at > other ? at : other),
@@ -139,7 +132,9 @@ static size_t mutate(uint8_t *data, size_t bytes, uint64_t *random)
         case 0: data[at] ^= (uint8_t)(1u << below(random, 8)); break;
         case 1: data[at] = (uint8_t)random_bits(random); break;
         case 2: data[at] = (uint8_t)below(random, 40); break;
-        case 3: if (at + 4 <= bytes) put_u32(data + at, words[below(random, sizeof words / sizeof *words)]); break;
+        case 3:
+            if (at + 4 <= bytes) put_u32(data + at, words[below(random, sizeof words / sizeof *words)]);
+            break;
         case 4: memmove(data + at, data + other, run); break;
         case 5: /* bytes taken out */
             if (bytes - run >= 16) memmove(data + at, data + at + run, bytes - at - run), bytes -= run;
@@ -154,8 +149,7 @@ static size_t mutate(uint8_t *data, size_t bytes, uint64_t *random)
     return bytes;
 }
 
-static size_t read_file(const char *name, uint8_t *data)
-{
+static size_t read_file(const char *name, uint8_t *data) {
     FILE *file = fopen(name, "rb");
     demand(file != NULL, name);
     const size_t bytes = fread(data, 1, LARGEST, file);
@@ -163,8 +157,7 @@ static size_t read_file(const char *name, uint8_t *data)
     return bytes;
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     static uint8_t file[LARGEST], data[LARGEST];
     const long rounds = argc > 2 ? strtol(argv[1], NULL, 10) : 0;
     uint64_t random = 88172645463325252u;

@@ -1,6 +1,6 @@
-// Fuzzing tables of responses and frame times: pcalib.txt, times.txt, CSV and pfstools' .m. What must hold for any bytes: a
-// text with an error has one of the statuses of formats.h and a text that says why, and the outputs are untouched; of others
-// every response is valid, and what is written of it reads back.
+// Fuzzing tables of responses and frame times: pcalib.txt, times.txt, CSV and pfstools' .m. What must hold for any
+// bytes: a text with an error has one of the statuses of formats.h and a text that says why, and the outputs are
+// untouched; of others every response is valid, and what is written of it reads back.
 #include <memory>
 
 #include <lensprof/formats.h>
@@ -10,16 +10,30 @@
 namespace {
 
 const char *const kTarget = "fuzz_curves";
-const std::vector<std::string> kWords = {
-    ",", ";", " ", "\t", "\n", "\r\n", "[", "]", "#", "# name: IR\n", "%", "//", "0", "-0", "1", "-1", "0.5", "255", "1e308",
-    "-1e308", "1e-320", "5e-324", "nan", "inf", "r,g,b\n", "blue,green,red\n", "0 0\n", "1,1,1\n", "\xC3\xA9", "\xFF", ".", "+"};
+const std::vector<std::string> kWords = {",",        ";",
+                                         " ",        "\t",
+                                         "\n",       "\r\n",
+                                         "[",        "]",
+                                         "#",        "# name: IR\n",
+                                         "%",        "//",
+                                         "0",        "-0",
+                                         "1",        "-1",
+                                         "0.5",      "255",
+                                         "1e308",    "-1e308",
+                                         "1e-320",   "5e-324",
+                                         "nan",      "inf",
+                                         "r,g,b\n",  "blue,green,red\n",
+                                         "0 0\n",    "1,1,1\n",
+                                         "\xC3\xA9", "\xFF",
+                                         ".",        "+"};
 
 struct Responses {
     lensprof_response r[3];
 };
 
 void check_outcome(lensprof_status status, const lensprof_error &error) {
-    demand(status == LENSPROF_OK || status == LENSPROF_ERROR_SYNTAX || status == LENSPROF_ERROR_RESPONSE, "another status");
+    demand(status == LENSPROF_OK || status == LENSPROF_ERROR_SYNTAX || status == LENSPROF_ERROR_RESPONSE,
+           "another status");
     demand((status == LENSPROF_OK) == !error.text[0], "an error without a text, or the other way round");
 }
 
@@ -44,7 +58,8 @@ bool try_curves(const std::vector<char> &bytes, uint32_t curve) {
     auto responses = std::make_unique<Responses>(), again = std::make_unique<Responses>();
     uint32_t count = 99, same = 0;
     lensprof_error error;
-    const lensprof_status status = lensprof_curves_read(bytes.data(), bytes.size(), curve, responses->r, &count, &error);
+    const lensprof_status status =
+        lensprof_curves_read(bytes.data(), bytes.size(), curve, responses->r, &count, &error);
     check_outcome(status, error);
     demand((status == LENSPROF_OK) == (count != 99), "an output of a failed call, or none");
     if (status != LENSPROF_OK) return false;
@@ -74,7 +89,8 @@ bool try_times(const std::vector<char> &bytes) {
     });
     uint32_t same = 0;
     demand(lensprof_times_read(text.data(), text.size(), again.data(), count + 1, &same, nullptr) == LENSPROF_OK
-               && same == count, "not read again");
+               && same == count,
+           "not read again");
     return true;
 }
 

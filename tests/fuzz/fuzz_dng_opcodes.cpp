@@ -1,6 +1,6 @@
 // Fuzzing DNG opcode lists. What must hold for any bytes: a list with an error has one of the statuses of formats.h, a
-// text that says why, and nothing of it is visited; of others the falloff is a valid profile or marked, with the reason,
-// and what is written of it is read again.
+// text that says why, and nothing of it is visited; of others the falloff is a valid profile or marked, with the
+// reason, and what is written of it is read again.
 #include "fuzz_import.hpp"
 
 namespace {
@@ -11,8 +11,8 @@ constexpr uint32_t kWidth = 18, kHeight = 12;  // small, so that maps are sample
 
 lensprof_status read(const std::vector<char> &bytes, uint32_t layout, Visited &visited) {
     lensprof_error error{};
-    const lensprof_status status = lensprof_dng_opcodes_read(bytes.data(), bytes.size(), kWidth, kHeight, layout, "fuzz",
-                                                             visit, &visited, &error);
+    const lensprof_status status =
+        lensprof_dng_opcodes_read(bytes.data(), bytes.size(), kWidth, kHeight, layout, "fuzz", visit, &visited, &error);
     check_reading(status, error, visited,
                   {LENSPROF_ERROR_SYNTAX, LENSPROF_ERROR_UNSUPPORTED, LENSPROF_ERROR_SIZE, LENSPROF_ERROR_NOT_FOUND,
                    LENSPROF_ERROR_NOT_FINITE, LENSPROF_ERROR_VIGNETTING});
@@ -22,11 +22,15 @@ lensprof_status read(const std::vector<char> &bytes, uint32_t layout, Visited &v
 // A falloff that was read is written as a map; a steep one may be none any more when it is read again.
 void write_and_read(const lensprof_profile &profile) {
     size_t size = 0;
-    demand(lensprof_dng_opcodes_write(&profile, kWidth, kHeight, LENSPROF_LAYOUT_RGGB, LENSPROF_DNG_GAIN_MAP, nullptr, 0,
-                                      &size, nullptr, nullptr) == LENSPROF_ERROR_CAPACITY, "not written");
+    demand(lensprof_dng_opcodes_write(&profile, kWidth, kHeight, LENSPROF_LAYOUT_RGGB, LENSPROF_DNG_GAIN_MAP, nullptr,
+                                      0, &size, nullptr, nullptr)
+               == LENSPROF_ERROR_CAPACITY,
+           "not written");
     std::vector<char> bytes(size);
-    demand(lensprof_dng_opcodes_write(&profile, kWidth, kHeight, LENSPROF_LAYOUT_RGGB, LENSPROF_DNG_GAIN_MAP, bytes.data(),
-                                      size, &size, nullptr, nullptr) == LENSPROF_OK, "not written");
+    demand(lensprof_dng_opcodes_write(&profile, kWidth, kHeight, LENSPROF_LAYOUT_RGGB, LENSPROF_DNG_GAIN_MAP,
+                                      bytes.data(), size, &size, nullptr, nullptr)
+               == LENSPROF_OK,
+           "not written");
     Visited again;
     const lensprof_status status = read(bytes, LENSPROF_LAYOUT_RGGB, again);
     demand(status == LENSPROF_OK || status == LENSPROF_ERROR_VIGNETTING, "not read again");
@@ -40,7 +44,14 @@ bool try_bytes(const std::vector<char> &bytes) {
     return status == LENSPROF_OK || other == LENSPROF_OK;
 }
 
-const std::vector<std::string> kWords = {std::string(4, '\0'), std::string("\0\0\0\x01", 4), "\xFF\xFF\xFF\xFF",
-                                         "\x7F\xF0", "\x7F\xF8", "\x80", "\x3F\xE0", "\x3F\x80", "\x01\x03"};
+const std::vector<std::string> kWords = {std::string(4, '\0'),
+                                         std::string("\0\0\0\x01", 4),
+                                         "\xFF\xFF\xFF\xFF",
+                                         "\x7F\xF0",
+                                         "\x7F\xF8",
+                                         "\x80",
+                                         "\x3F\xE0",
+                                         "\x3F\x80",
+                                         "\x01\x03"};
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Fuzzing XMP packets of drones' cameras. What must hold for any bytes: a packet with an error has one of the statuses of
-// formats.h, a text that says why, and nothing of it is visited; of others the falloff is a valid profile or marked, with
-// the reason.
+// Fuzzing XMP packets of drones' cameras. What must hold for any bytes: a packet with an error has one of the statuses
+// of formats.h, a text that says why, and nothing of it is visited; of others the falloff is a valid profile or marked,
+// with the reason.
 #include "fuzz_import.hpp"
 
 namespace {
@@ -20,7 +20,8 @@ bool try_bytes(const std::vector<char> &text) {
 
 const std::vector<std::string> kWords = [] {
     std::vector<std::string> words = kXmlWords;
-    for (const char *word : {"</rdf:li>", "<rdf:li>", "<rdf:Seq>", "</rdf:Seq>", "DJI", "0,0", "xmlns:Camera=\"\"", "2D"})
+    for (const char *word :
+         {"</rdf:li>", "<rdf:li>", "<rdf:Seq>", "</rdf:Seq>", "DJI", "0,0", "xmlns:Camera=\"\"", "2D"})
         words.push_back(word);
     return words;
 }();

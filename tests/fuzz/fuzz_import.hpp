@@ -32,14 +32,15 @@ lensprof_status visit(void *user, const lensprof_import_entry *entry) {
 }
 
 void check_reading(lensprof_status status, const lensprof_error &error, const Visited &visited,
-                          const std::vector<lensprof_status> &allowed) {
+                   const std::vector<lensprof_status> &allowed) {
     demand(status == LENSPROF_OK || std::count(allowed.begin(), allowed.end(), status), "another status");
     demand((status == LENSPROF_OK) == !error.text[0], "an error without a text, or the other way round");
     demand(status == LENSPROF_OK || visited.entries == 0, "entries of a text with an error");
 }
 
 const std::vector<std::string> kXmlWords = {
-    "<", ">", "/>", "<!--", "-->", "<![CDATA[", "]]>", "\"", "'", "=", "&", "&amp;", "&#0;", "&#x10FFFF;", "&#xD800;", "<?",
-    "<!DOCTYPE a [", "\n", "0", "-1", "1e308", "1e-308", "nan", "inf", ":", ",", "\xC3\xA9", "\xFF"};
+    "<",     ">",      "/>",   "<!--",       "-->",      "<![CDATA[", "]]>",           "\"",  "'", "=",
+    "&",     "&amp;",  "&#0;", "&#x10FFFF;", "&#xD800;", "<?",        "<!DOCTYPE a [", "\n",  "0", "-1",
+    "1e308", "1e-308", "nan",  "inf",        ":",        ",",         "\xC3\xA9",      "\xFF"};
 
 }  // namespace

@@ -1,5 +1,6 @@
-// Fuzzing profiles as JSON. What must hold for any bytes: a text with an error has a status of formats.h and a text that says
-// why, and nothing of it is visited; of others every entry is a valid profile, and reads back the same when written.
+// Fuzzing profiles as JSON. What must hold for any bytes: a text with an error has a status of formats.h and a text
+// that says why, and nothing of it is visited; of others every entry is a valid profile, and reads back the same when
+// written.
 #include <memory>
 
 #include <lensprof/formats.h>
@@ -9,15 +10,46 @@
 namespace {
 
 const char *const kTarget = "fuzz_json";
-const std::vector<std::string> kWords = {
-    "{", "}", "[", "]", ",", ":", "\"", "null", "true", "-", "0", "1", "-1", "0.5", "1e308", "1e-320", "1e999", "NaN", "[]",
-    "{}", "\"infinity\"", "\"kind\":\"gamma\",\"gamma\":2.2", "\"gain_grid\":null,", "\"key\"", "\"profiles\":[", "\\u0000",
-    "\\ud800", "\\\"", "\n", "4294967296", "9223372036854775808", "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[", "\xC3\xA9", "\xFF"};
+const std::vector<std::string> kWords = {"{",
+                                         "}",
+                                         "[",
+                                         "]",
+                                         ",",
+                                         ":",
+                                         "\"",
+                                         "null",
+                                         "true",
+                                         "-",
+                                         "0",
+                                         "1",
+                                         "-1",
+                                         "0.5",
+                                         "1e308",
+                                         "1e-320",
+                                         "1e999",
+                                         "NaN",
+                                         "[]",
+                                         "{}",
+                                         "\"infinity\"",
+                                         "\"kind\":\"gamma\",\"gamma\":2.2",
+                                         "\"gain_grid\":null,",
+                                         "\"key\"",
+                                         "\"profiles\":[",
+                                         "\\u0000",
+                                         "\\ud800",
+                                         "\\\"",
+                                         "\n",
+                                         "4294967296",
+                                         "9223372036854775808",
+                                         "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[",
+                                         "\xC3\xA9",
+                                         "\xFF"};
 
 using Profiles = std::vector<std::unique_ptr<lensprof_profile>>;
 
 lensprof_status visit(void *user, const lensprof_import_entry *entry) {
-    demand(entry->usable == 1 && lensprof_profile_validate(entry->profile) == LENSPROF_OK, "an entry that is not valid");
+    demand(entry->usable == 1 && lensprof_profile_validate(entry->profile) == LENSPROF_OK,
+           "an entry that is not valid");
     static_cast<Profiles *>(user)->push_back(std::make_unique<lensprof_profile>(*entry->profile));
     return LENSPROF_OK;
 }
@@ -39,9 +71,11 @@ std::vector<char> write(const Profiles &profiles) {
     for (const auto &profile : profiles) pointers.push_back(profile.get());
     const auto count = static_cast<uint32_t>(pointers.size());
     size_t bytes = 0;
-    demand(lensprof_json_write(pointers.data(), count, nullptr, 0, &bytes, nullptr) == LENSPROF_ERROR_CAPACITY, "not written");
+    demand(lensprof_json_write(pointers.data(), count, nullptr, 0, &bytes, nullptr) == LENSPROF_ERROR_CAPACITY,
+           "not written");
     std::vector<char> text(bytes);
-    demand(lensprof_json_write(pointers.data(), count, text.data(), bytes, &bytes, nullptr) == LENSPROF_OK, "not written");
+    demand(lensprof_json_write(pointers.data(), count, text.data(), bytes, &bytes, nullptr) == LENSPROF_OK,
+           "not written");
     return text;
 }
 

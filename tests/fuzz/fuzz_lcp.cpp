@@ -1,6 +1,6 @@
-// Fuzzing Adobe lens profiles. What must hold for any bytes: a text with an error has one of the statuses of formats.h, a
-// text that says why, and nothing of it is visited; of others every entry is a valid profile or marked, with the reason,
-// and what can be written reads back the same.
+// Fuzzing Adobe lens profiles. What must hold for any bytes: a text with an error has one of the statuses of formats.h,
+// a text that says why, and nothing of it is visited; of others every entry is a valid profile or marked, with the
+// reason, and what can be written reads back the same.
 #include <cmath>
 #include <cstring>
 
@@ -17,16 +17,15 @@ lensprof_status read(const std::vector<char> &text, Visited &visited) {
     return status;
 }
 
-bool same(double a, double b) {
-    return a == b || std::fabs(a - b) <= 1e-9 * std::fabs(a);
-}
+bool same(double a, double b) { return a == b || std::fabs(a - b) <= 1e-9 * std::fabs(a); }
 
 void write_and_read(const lensprof_profile &profile) {
     const lensprof_profile *const pointer = &profile;
     size_t size = 0;
     const lensprof_status status = lensprof_lcp_write(&pointer, 1, 600, 400, nullptr, 0, &size, nullptr);
-    demand(status == LENSPROF_ERROR_CAPACITY || status == LENSPROF_ERROR_ARGUMENT || status == LENSPROF_ERROR_UNSUPPORTED,
-           "another status of writing");
+    demand(
+        status == LENSPROF_ERROR_CAPACITY || status == LENSPROF_ERROR_ARGUMENT || status == LENSPROF_ERROR_UNSUPPORTED,
+        "another status of writing");
     if (status != LENSPROF_ERROR_CAPACITY) return;
     std::vector<char> text(size);
     demand(lensprof_lcp_write(&pointer, 1, 600, 400, text.data(), size, &size, nullptr) == LENSPROF_OK, "not written");
@@ -36,7 +35,8 @@ void write_and_read(const lensprof_profile &profile) {
     const lensprof_profile &other = *again.usable[0];
     demand(std::strcmp(profile.key.lens, other.key.lens) == 0, "another lens");
     demand(same(profile.key.focal_mm, other.key.focal_mm) && same(profile.key.aperture, other.key.aperture)
-               && same(profile.key.crop_factor, other.key.crop_factor), "another setting");
+               && same(profile.key.crop_factor, other.key.crop_factor),
+           "another setting");
     for (int n = 0; n < 3; n++) demand(same(profile.vignetting[0].k[n], other.vignetting[0].k[n]), "another k");
 }
 

@@ -1,6 +1,6 @@
 // Fuzzing Lensfun databases. What must hold for any bytes: a text with an error has one of the statuses of formats.h, a
-// text that says why, and nothing of it is visited; of others every entry is a valid profile or marked, with the reason,
-// and what can be written reads back the same.
+// text that says why, and nothing of it is visited; of others every entry is a valid profile or marked, with the
+// reason, and what can be written reads back the same.
 #include <cstring>
 
 #include "fuzz_import.hpp"

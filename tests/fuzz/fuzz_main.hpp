@@ -1,7 +1,8 @@
-// The frame of a fuzz target for text or binary files: the entry point of libFuzzer, or a program that mutates a corpus.
+// The frame of a fuzz target for text or binary files: the entry point of libFuzzer, or a program that mutates a
+// corpus.
 //
-//   clang:  -fsanitize=fuzzer,address,undefined -DLENSPROF_LIBFUZZER, run with a copy of the target's folder of the corpus
-//   others: TARGET ROUNDS FILE...  mutates the files, the same way in every run
+//   clang:  -fsanitize=fuzzer,address,undefined -DLENSPROF_LIBFUZZER, run with a copy of the target's folder of the
+//   corpus others: TARGET ROUNDS FILE...  mutates the files, the same way in every run
 //
 // Included by one file, which defines the three declarations below.
 #pragma once
@@ -60,9 +61,7 @@ uint64_t random_bits(uint64_t &state) {
     return state ^= state << 17;
 }
 
-size_t below(uint64_t &state, size_t count) {
-    return static_cast<size_t>(random_bits(state) >> 11) % count;
-}
+size_t below(uint64_t &state, size_t count) { return static_cast<size_t>(random_bits(state) >> 11) % count; }
 
 // One to three changes: a byte, a piece taken out, moved or doubled, a digit, or one of the words.
 std::string mutate(std::string text, uint64_t &random) {

@@ -1,6 +1,6 @@
-// Fuzzing radical's files and the Raspberry Pi's tuning files. What must hold for any bytes: a file with an error has one of
-// the statuses of formats.h and a text that says why, and the outputs are untouched; of others the result is valid, and what
-// is written of it reads back.
+// Fuzzing radical's files and the Raspberry Pi's tuning files. What must hold for any bytes: a file with an error has
+// one of the statuses of formats.h and a text that says why, and the outputs are untouched; of others the result is
+// valid, and what is written of it reads back.
 #include <memory>
 
 #include <lensprof/formats.h>
@@ -10,12 +10,36 @@
 namespace {
 
 const char *const kTarget = "fuzz_maps";
-const std::vector<std::string> kWords = {
-    std::string(4, '\0'), std::string("\x01\0\0\0", 4), std::string("\x05\0\0\0", 4), std::string("\0\x01\0\0", 4),
-    "\xFF\xFF\xFF\xFF", std::string("\0\0\xC0\x7F", 4), std::string("\0\0\x80\x7F", 4), std::string("\0\0\x80\xBF", 4),
-    std::string("\0\0\0\0\0\0\xF0\x7F", 8), std::string("\0\0\0\0\0\0\xF0\xBF", 8), "PolynomialVignettingModel 3 9 9\n",
-    "NonparametricVignettingModel\n", "\n", " ", "0", "9", "-1", "1.5", "1e9", "null", "[", "]", "{", "}", ",", "\"ct\":4000",
-    "\"default_ct\":1,", "\"corner_strength\":2,", "\"rpi.alsc\"", "\xD9\xFD\xA1\xC4"};
+const std::vector<std::string> kWords = {std::string(4, '\0'),
+                                         std::string("\x01\0\0\0", 4),
+                                         std::string("\x05\0\0\0", 4),
+                                         std::string("\0\x01\0\0", 4),
+                                         "\xFF\xFF\xFF\xFF",
+                                         std::string("\0\0\xC0\x7F", 4),
+                                         std::string("\0\0\x80\x7F", 4),
+                                         std::string("\0\0\x80\xBF", 4),
+                                         std::string("\0\0\0\0\0\0\xF0\x7F", 8),
+                                         std::string("\0\0\0\0\0\0\xF0\xBF", 8),
+                                         "PolynomialVignettingModel 3 9 9\n",
+                                         "NonparametricVignettingModel\n",
+                                         "\n",
+                                         " ",
+                                         "0",
+                                         "9",
+                                         "-1",
+                                         "1.5",
+                                         "1e9",
+                                         "null",
+                                         "[",
+                                         "]",
+                                         "{",
+                                         "}",
+                                         ",",
+                                         "\"ct\":4000",
+                                         "\"default_ct\":1,",
+                                         "\"corner_strength\":2,",
+                                         "\"rpi.alsc\"",
+                                         "\xD9\xFD\xA1\xC4"};
 
 using Profile = std::unique_ptr<lensprof_profile>;
 
@@ -27,8 +51,9 @@ Profile new_profile() {
 
 void check_outcome(lensprof_status status, const lensprof_error &error) {
     demand(status == LENSPROF_OK || status == LENSPROF_ERROR_SYNTAX || status == LENSPROF_ERROR_UNSUPPORTED
-               || status == LENSPROF_ERROR_SIZE || status == LENSPROF_ERROR_RESPONSE || status == LENSPROF_ERROR_VIGNETTING
-               || status == LENSPROF_ERROR_NOT_FINITE || status == LENSPROF_ERROR_ARGUMENT,
+               || status == LENSPROF_ERROR_SIZE || status == LENSPROF_ERROR_RESPONSE
+               || status == LENSPROF_ERROR_VIGNETTING || status == LENSPROF_ERROR_NOT_FINITE
+               || status == LENSPROF_ERROR_ARGUMENT,
            "another status");
     demand((status == LENSPROF_OK) == !error.text[0], "an error without a text, or the other way round");
 }
@@ -37,7 +62,8 @@ void check_outcome(lensprof_status status, const lensprof_error &error) {
 bool check_falloff(lensprof_status status, const lensprof_error &error, const lensprof_profile &profile, double worst) {
     check_outcome(status, error);
     if (status != LENSPROF_OK) {
-        demand(std::memcmp(&profile, new_profile().get(), sizeof profile) == 0 && worst == -7.0, "an output of a failed call");
+        demand(std::memcmp(&profile, new_profile().get(), sizeof profile) == 0 && worst == -7.0,
+               "an output of a failed call");
         return false;
     }
     demand(lensprof_profile_validate(&profile) == LENSPROF_OK, "a profile that is not valid");
@@ -51,11 +77,13 @@ bool try_responses(const std::vector<char> &bytes) {
     const lensprof_status status = lensprof_radical_response_read(bytes.data(), bytes.size(), responses.get(), &error);
     check_outcome(status, error);
     if (status != LENSPROF_OK) return false;
-    for (int c = 0; c < 3; c++) demand(lensprof_response_validate(&responses[c]) == LENSPROF_OK, "a response that is not valid");
+    for (int c = 0; c < 3; c++)
+        demand(lensprof_response_validate(&responses[c]) == LENSPROF_OK, "a response that is not valid");
     const std::vector<char> data = written([&](char *to, size_t capacity, size_t *needed) {
         return lensprof_radical_response_write(responses.get(), 3, to, capacity, needed, nullptr);
     });
-    demand(lensprof_radical_response_read(data.data(), data.size(), responses.get() + 3, nullptr) == LENSPROF_OK, "not read again");
+    demand(lensprof_radical_response_read(data.data(), data.size(), responses.get() + 3, nullptr) == LENSPROF_OK,
+           "not read again");
     return true;
 }
 
@@ -69,7 +97,8 @@ bool try_vignetting(const std::vector<char> &bytes) {
     const std::vector<char> data = written([&](char *to, size_t capacity, size_t *needed) {
         return lensprof_radical_vignetting_write(profile.get(), 16, 12, to, capacity, needed, nullptr);
     });
-    const lensprof_status read = lensprof_radical_vignetting_read(data.data(), data.size(), again.get(), nullptr, nullptr);
+    const lensprof_status read =
+        lensprof_radical_vignetting_read(data.data(), data.size(), again.get(), nullptr, nullptr);
     // A falloff at the edge of what is valid may be beyond it when rounded or refitted.
     demand(read == LENSPROF_OK || read == LENSPROF_ERROR_VIGNETTING, "not read again");
     return true;

@@ -88,6 +88,15 @@ LAYERS = {
     "bindings": Layer(WHOLE_API, C_LIBRARY | CPP_LIBRARY | {"Python.h"}),
 }
 
+# The rooms of a layer, its folders, from the ground up: a room may use those before it. "" is the layer's own folder.
+ROOMS = {
+    "src/fit": ["base", "problem", "prior", "solver", "verdict", "methods", "methods/transfer_function", "sampling", "flat",
+                "api"],
+    "src/formats": ["text", "falloff", "hugin", ""],
+    "src/store": ["file", "lookup", "profiles"],
+    "src/cli": ["program", "report", "pictures", "fitting", "profiles", "correct", "simulate"],
+}
+
 # What each public header may include, beside <stddef.h> and <stdint.h>: nothing above its own layer.
 PUBLIC = {
     "base.h": set(),
@@ -116,23 +125,44 @@ def layer_of(folder):
     return max(found, key=len, default=None)
 
 
+def room_of(layer_name, folder):
+    return "" if folder == layer_name else folder[len(layer_name) + 1 :]
+
+
+def check_room(layer_name, folder, target):
+    """Within a layer: only the room itself and those below it."""
+    rooms = ROOMS.get(layer_name)
+    if rooms is None:
+        return None
+    own, other = room_of(layer_name, folder), room_of(layer_name, target)
+    for room in (own, other):
+        if room not in rooms:
+            return f"{layer_name}/{room} is not in ROOMS of tests/lint/include_rules.py; add it where it belongs"
+    if rooms.index(other) > rooms.index(own):
+        return f"{other or layer_name} lies above {own or layer_name}, which must not know it"
+    return None
+
+
 def check_quoted(root, path, layer_name, header):
-    """A quoted header must be the layer's own, or of a folder that it may see."""
+    """A quoted header is named from src, and must be the layer's own or of a folder that it may see. Outside src it is
+    named from its folder."""
     if ".." in header.split("/"):
         return "leads out of its folder by '..'; name it from src"
-    if (path.parent / header).is_file() or (root / layer_name / header).is_file():
-        return None
+    if not layer_name.startswith("src/"):
+        return None if (path.parent / header).is_file() else f"is not found in {layer_name}"
     owner = header.split("/")[0]
-    if owner in LAYERS[layer_name].private and (root / "src" / header).is_file():
-        return None
-    if (
-        (root / "src" / header).is_file()
-        or (root / "include" / header).is_file()
-        or (root / "include/lensprof" / header).is_file()
-    ):
+    if (root / "src" / header).is_file():
+        target = ("src/" + header).rpartition("/")[0]
+        if layer_of(target) == layer_name:
+            return check_room(layer_name, path.parent.relative_to(root).as_posix(), target)
+        if owner in LAYERS[layer_name].private:
+            return None
+    if (root / "src" / header).is_file() or any((root / top / header).is_file() for top in ("include", "include/lensprof")):
         return f"is not {layer_name}'s own; it may use public headers as <lensprof/...>" + (
             f" and private ones of {', '.join(LAYERS[layer_name].private)}" if LAYERS[layer_name].private else ""
         )
+    if (path.parent / header).is_file():
+        return "is not named from src"
     return f"is not found in {layer_name}"
 
 
@@ -193,13 +223,14 @@ def check_tree(root):
 GOOD = {
     "include/lensprof/base.h": "#include <stddef.h>\n#include <stdint.h>\n",
     "include/lensprof/store.h": '#include "base.h"\n',
-    "src/core/base.c": '#include <lensprof/base.h>\n#include <string.h>\n#include "own.h"\n',
+    "src/core/base.c": '#include <lensprof/base.h>\n#include <string.h>\n#include "core/own.h"\n',
     "src/core/own.h": "#include <math.h>\n",
-    "src/fit/fit.cpp": '#include <vector>\n#include <Eigen/Core>\n#include "core/own.h"\n',
+    "src/fit/api/fit.cpp": '#include <vector>\n#include <Eigen/Core>\n#include "core/own.h"\n#include "fit/base/low.hpp"\n',
+    "src/fit/base/low.hpp": "#include <vector>\n",
     "src/formats/pto.cpp": "#include <string>\n#include <lensprof/fit.h>\n",
-    "src/store/store.c": "#include <sqlite3.h>\n#include <lensprof/store.h>\n// #include <fine.h>\n",
-    "src/cli/run.cpp": '#include <CLI/CLI.hpp>\n#include <sys/stat.h>\n#include "run.hpp"\n',
-    "src/cli/run.hpp": "#include <lensprof/lensprof.h>\n",
+    "src/store/file/store.c": "#include <sqlite3.h>\n#include <lensprof/store.h>\n// #include <fine.h>\n",
+    "src/cli/program/run.cpp": '#include <CLI/CLI.hpp>\n#include <sys/stat.h>\n#include "cli/program/run.hpp"\n',
+    "src/cli/program/run.hpp": "#include <lensprof/lensprof.h>\n",
     "examples/one.c": "#include <stdio.h>\n#include <lensprof/lensprof.h>\n",
 }
 BAD = [
@@ -207,40 +238,44 @@ BAD = [
     ("src/core/base.c", "#include <stdlib.h>"),
     ("src/core/base.c", "#  include <threads.h>"),
     ("src/core/base.c", "#include <lensprof/store.h>"),
-    ("src/core/base.c", '#include "fit/fit.hpp"'),
+    ("src/core/base.c", '#include "fit/base/low.hpp"'),
     ("src/core/base.c", "#include <vector>"),
     ("src/core/base.c", '#include "lensprof/base.h"'),
-    ("src/core/base.c", '#include "../fit/fit.cpp"'),
+    ("src/core/base.c", '#include "../fit/api/fit.cpp"'),
     ("src/core/kernels/lane.c", "#include <math.h>"),
     ("src/core/base.c", "#include <immintrin.h>"),
     ("src/core/base.c", "#include HEADER"),
-    ("src/fit/fit.cpp", "#include <lensprof/store.h>"),
-    ("src/fit/fit.cpp", "#include <sqlite3.h>"),
-    ("src/fit/fit.cpp", "#include <lensprof/formats.h>"),
-    ("src/fit/fit.cpp", '#include "formats/pto.cpp"'),
-    ("src/fit/fit.cpp", "#include <iostream>"),
-    ("src/fit/fit.cpp", "#include <mutex>"),
-    ("src/fit/fit.cpp", "#include <png.h>"),
-    ("src/fit/fit.cpp", "#include <lensprof/lensprof.h>"),
+    ("src/fit/api/fit.cpp", "#include <lensprof/store.h>"),
+    ("src/fit/api/fit.cpp", "#include <sqlite3.h>"),
+    ("src/fit/api/fit.cpp", "#include <lensprof/formats.h>"),
+    ("src/fit/api/fit.cpp", '#include "formats/pto.cpp"'),
+    ("src/fit/api/fit.cpp", "#include <iostream>"),
+    ("src/fit/api/fit.cpp", "#include <mutex>"),
+    ("src/fit/api/fit.cpp", "#include <png.h>"),
+    ("src/fit/api/fit.cpp", "#include <lensprof/lensprof.h>"),
     ("src/formats/pto.cpp", "#include <nlopt.h>"),
     ("src/formats/pto.cpp", "#include <nlopt.h>"),
-    ("src/formats/pto.cpp", '#include "fit/fit.cpp"'),
+    ("src/formats/pto.cpp", '#include "fit/api/fit.cpp"'),
     ("src/formats/pto.cpp", "#include <fstream>"),
     ("src/formats/pto.cpp", "#include <lensprof/store.h>"),
-    ("src/store/store.c", "#include <lensprof/fit.h>"),
-    ("src/store/store.c", "#include <unistd.h>"),
-    ("src/store/store.c", '#include "cli/run.hpp"'),
-    ("src/cli/run.cpp", '#include "core/own.h"'),
-    ("src/cli/run.cpp", "#include <sqlite3.h>"),
-    ("src/cli/run.cpp", "#include <Eigen/Core>"),
-    ("src/cli/run.cpp", "#include <nlopt.h>"),
-    ("src/cli/run.cpp", '#include "store/store.c"'),
+    ("src/store/file/store.c", "#include <lensprof/fit.h>"),
+    ("src/store/file/store.c", "#include <unistd.h>"),
+    ("src/store/file/store.c", '#include "cli/program/run.hpp"'),
+    ("src/cli/program/run.cpp", '#include "core/own.h"'),
+    ("src/cli/program/run.cpp", "#include <sqlite3.h>"),
+    ("src/cli/program/run.cpp", "#include <Eigen/Core>"),
+    ("src/cli/program/run.cpp", "#include <nlopt.h>"),
+    ("src/cli/program/run.cpp", '#include "store/file/store.c"'),
     ("include/lensprof/base.h", "#include <stdio.h>"),
     ("include/lensprof/base.h", '#include "store.h"'),
     ("include/lensprof/new.h", "#include <stddef.h>"),
     ("src/other/new.c", "#include <stddef.h>"),
     ("examples/one.c", '#include "core/own.h"'),
     ("bindings/python/x.c", "#include <sqlite3.h>"),
+    ("src/core/base.c", '#include "own.h"'),
+    ("src/fit/base/low.hpp", '#include "fit/api/fit.cpp"'),
+    ("src/fit/attic/new.hpp", '#include "fit/base/low.hpp"'),
+    ("src/fit/fit.cpp", '#include "fit/base/low.hpp"'),
 ]
 
 

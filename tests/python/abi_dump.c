@@ -6,26 +6,22 @@
 
 static const char *separator = "";
 
-static void begin_struct(const char *name, size_t size, size_t alignment)
-{
+static void begin_struct(const char *name, size_t size, size_t alignment) {
     printf("%s\n\"%s\": {\"size\": %zu, \"alignment\": %zu, \"fields\": {", separator, name, size, alignment);
     separator = "";
 }
 
-static void print_field(const char *name, size_t offset, size_t size)
-{
+static void print_field(const char *name, size_t offset, size_t size) {
     printf("%s\"%s\": [%zu, %zu]", separator, name, offset, size);
     separator = ", ";
 }
 
-static void end_struct(void)
-{
+static void end_struct(void) {
     printf("}}");
     separator = ",";
 }
 
-static void print_value(const char *name, double value)
-{
+static void print_value(const char *name, double value) {
     printf("%s\n\"%s\": %.17g", separator, name, value);
     separator = ",";
 }
@@ -34,8 +30,7 @@ static void print_value(const char *name, double value)
 #define FIELD(type, name) print_field(#name, offsetof(type, name), sizeof(((type *)0)->name))
 #define VALUE(name) print_value(#name, (double)(name))
 
-static void print_model_structs(void)
-{
+static void print_model_structs(void) {
     BEGIN(lensprof_error);
     FIELD(lensprof_error, text);
     end_struct();
@@ -77,8 +72,7 @@ static void print_model_structs(void)
     end_struct();
 }
 
-static void print_apply_structs(void)
-{
+static void print_apply_structs(void) {
     BEGIN(lensprof_image);
     FIELD(lensprof_image, data);
     FIELD(lensprof_image, row_bytes);
@@ -114,8 +108,7 @@ static void print_apply_structs(void)
     end_struct();
 }
 
-static void print_profile_structs(void)
-{
+static void print_profile_structs(void) {
     BEGIN(lensprof_profile_key);
     FIELD(lensprof_profile_key, camera_maker);
     FIELD(lensprof_profile_key, camera_model);
@@ -203,8 +196,7 @@ static void print_profile_structs(void)
     end_struct();
 }
 
-static void print_sample_structs(void)
-{
+static void print_sample_structs(void) {
     BEGIN(lensprof_pair);
     FIELD(lensprof_pair, image);
     FIELD(lensprof_pair, xy);
@@ -238,8 +230,7 @@ static void print_sample_structs(void)
     end_struct();
 }
 
-static void print_fit_structs(void)
-{
+static void print_fit_structs(void) {
     BEGIN(lensprof_fit_image);
     FIELD(lensprof_fit_image, width);
     FIELD(lensprof_fit_image, height);
@@ -319,8 +310,7 @@ static void print_fit_structs(void)
     end_struct();
 }
 
-static void print_flat_results(void)
-{
+static void print_flat_results(void) {
     BEGIN(lensprof_flat_image_quality);
     FIELD(lensprof_flat_image_quality, white_share);
     FIELD(lensprof_flat_image_quality, black_share);
@@ -372,8 +362,7 @@ static void print_flat_results(void)
     end_struct();
 }
 
-static void print_flat_structs(void)
-{
+static void print_flat_structs(void) {
     BEGIN(lensprof_flat_image);
     FIELD(lensprof_flat_image, view);
     FIELD(lensprof_flat_image, width);
@@ -410,8 +399,7 @@ static void print_flat_structs(void)
     print_flat_results();
 }
 
-static void print_formats_structs(void)
-{
+static void print_formats_structs(void) {
     BEGIN(lensprof_import_entry);
     FIELD(lensprof_import_entry, profile);
     FIELD(lensprof_import_entry, usable);
@@ -448,8 +436,7 @@ static void print_formats_structs(void)
     end_struct();
 }
 
-static void print_constants(void)
-{
+static void print_constants(void) {
     VALUE(LENSPROF_VERSION_MAJOR);
     VALUE(LENSPROF_VERSION_MINOR);
     VALUE(LENSPROF_VERSION_PATCH);
@@ -472,8 +459,7 @@ static void print_constants(void)
     VALUE(LENSPROF_FREE_BLUE);
 }
 
-static void print_statuses(void)
-{
+static void print_statuses(void) {
     VALUE(LENSPROF_OK);
     VALUE(LENSPROF_ERROR_ARGUMENT);
     VALUE(LENSPROF_ERROR_STRUCT_SIZE);
@@ -502,8 +488,7 @@ static void print_statuses(void)
     VALUE(LENSPROF_ERROR_INTERNAL);
 }
 
-static void print_enumerations(void)
-{
+static void print_enumerations(void) {
     VALUE(LENSPROF_RESPONSE_LINEAR);
     VALUE(LENSPROF_RESPONSE_GAMMA);
     VALUE(LENSPROF_RESPONSE_EMOR);
@@ -588,8 +573,7 @@ static void print_enumerations(void)
     VALUE(LENSPROF_STATS_GROUPS);
 }
 
-int main(void)
-{
+int main(void) {
     printf("{\"structs\": {");
     print_model_structs();
     print_apply_structs();

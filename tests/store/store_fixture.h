@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "store/store_private.h"
+#include "store/file/private.h"
 
 typedef struct place {
     char directory[128];
@@ -24,8 +24,7 @@ typedef struct place {
 /* Makes a file or directory unwritable, also for root, who runs the tests in a container and is not bound by
  * permission bits: there the immutable flag of the file system is tried. False when neither is
  * possible; such tests are skipped. */
-static inline bool set_protected(const char *path, bool on)
-{
+static inline bool set_protected(const char *path, bool on) {
     int flags, descriptor = open(path, O_RDONLY);
     if (descriptor < 0) return false;
     bool done = ioctl(descriptor, FS_IOC_GETFLAGS, &flags) == 0;
@@ -39,8 +38,7 @@ static inline bool set_protected(const char *path, bool on)
     return chmod(path, on ? status.st_mode & ~write : status.st_mode | S_IWUSR) == 0;
 }
 
-static inline int place_setup(void **state)
-{
+static inline int place_setup(void **state) {
     place *here = calloc(1, sizeof *here);
     const char *base = getenv("TMPDIR");
     snprintf(here->directory, sizeof here->directory, "%.90s/lensprof-store-XXXXXX", base ? base : "/tmp");
@@ -50,8 +48,7 @@ static inline int place_setup(void **state)
     return 0;
 }
 
-static inline int place_teardown(void **state)
-{
+static inline int place_teardown(void **state) {
     place *here = *state;
     char path[600];
     struct dirent *entry;
@@ -73,16 +70,14 @@ static inline int place_teardown(void **state)
 #define store_test(function) cmocka_unit_test_setup_teardown(function, place_setup, place_teardown)
 
 /* Opens or fails the test with the library's sentence. */
-static inline lensprof_store *store_at(const char *path, uint32_t mode)
-{
+static inline lensprof_store *store_at(const char *path, uint32_t mode) {
     lensprof_store *store = NULL;
     lensprof_error error;
     if (lensprof_store_open(path, mode, &store, &error) != LENSPROF_OK) fail_msg("%s", error.text);
     return store;
 }
 
-static inline int64_t put_at(lensprof_store *store, const lensprof_profile *profile)
-{
+static inline int64_t put_at(lensprof_store *store, const lensprof_profile *profile) {
     int64_t id = 0;
     lensprof_error error;
     if (lensprof_store_put(store, profile, &id, &error) != LENSPROF_OK) fail_msg("%s", error.text);
@@ -90,8 +85,7 @@ static inline int64_t put_at(lensprof_store *store, const lensprof_profile *prof
 }
 
 /* Runs SQL on the file behind the library's back. */
-static inline void run_sql(const char *path, const char *sql)
-{
+static inline void run_sql(const char *path, const char *sql) {
     sqlite3 *db;
     char *message = NULL;
     assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
@@ -99,8 +93,7 @@ static inline void run_sql(const char *path, const char *sql)
     sqlite3_close(db);
 }
 
-static inline void assert_integrity(const char *path)
-{
+static inline void assert_integrity(const char *path) {
     sqlite3 *db;
     sqlite3_stmt *statement;
     assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
@@ -115,8 +108,7 @@ static inline void assert_integrity(const char *path)
 }
 
 /* The whole file in memory; the caller frees it. */
-static inline unsigned char *read_file(const char *path, size_t *size)
-{
+static inline unsigned char *read_file(const char *path, size_t *size) {
     FILE *file = fopen(path, "rb");
     assert_non_null(file);
     fseek(file, 0, SEEK_END);
@@ -128,16 +120,14 @@ static inline unsigned char *read_file(const char *path, size_t *size)
     return bytes;
 }
 
-static inline void write_file(const char *path, const void *bytes, size_t size)
-{
+static inline void write_file(const char *path, const void *bytes, size_t size) {
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
     assert_int_equal(fwrite(bytes, 1, size, file), size);
     fclose(file);
 }
 
-static inline void assert_file(const char *path, const void *expected, size_t size)
-{
+static inline void assert_file(const char *path, const void *expected, size_t size) {
     size_t found;
     unsigned char *bytes = read_file(path, &found);
     assert_int_equal(found, size);
@@ -146,12 +136,12 @@ static inline void assert_file(const char *path, const void *expected, size_t si
 }
 
 /* A file as lensprof made it before there were gain grids: layout 1, with these profiles, whose grids are left out. */
-static inline void make_layout_1(const char *path, const lensprof_profile *profiles, size_t count)
-{
+static inline void make_layout_1(const char *path, const lensprof_profile *profiles, size_t count) {
     char newer[400], sql[2000];
-    const char *columns = "id, camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing, method,"
-                          " software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
-                          " response_curves, vignetting_curves, covariance_size, covariance";
+    const char *columns =
+        "id, camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing, method,"
+        " software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
+        " response_curves, vignetting_curves, covariance_size, covariance";
     snprintf(newer, sizeof newer, "%s.newer", path);
     lensprof_store *store = store_at(newer, LENSPROF_STORE_CREATE);
     for (size_t i = 0; i < count; i++) put_at(store, &profiles[i]);
@@ -167,8 +157,7 @@ static inline void make_layout_1(const char *path, const lensprof_profile *profi
     unlink(newer);
 }
 
-static inline uint32_t count_at(lensprof_store *store)
-{
+static inline uint32_t count_at(lensprof_store *store) {
     uint32_t found = UINT32_MAX;
     lensprof_error error;
     if (lensprof_store_list(store, NULL, NULL, 0, &found, &error) != LENSPROF_OK) fail_msg("%s", error.text);
@@ -176,16 +165,14 @@ static inline uint32_t count_at(lensprof_store *store)
 }
 
 /* A gain grid of 3/n, which few decimal numbers are. */
-static inline void fill_grid(lensprof_gain_grid *grid, uint32_t columns, uint32_t rows, uint32_t channels)
-{
+static inline void fill_grid(lensprof_gain_grid *grid, uint32_t columns, uint32_t rows, uint32_t channels) {
     lensprof_gain_grid_init(grid);
     grid->columns = columns, grid->rows = rows, grid->channels = channels;
     for (uint32_t i = 0; i < columns * rows * channels; i++) grid->attenuation[i] = 3.0f / (float)(i % 1000 + 7);
 }
 
 /* A profile with something in every field: EMoR, one curve, gain grid, covariance 10 x 10. */
-static inline void fill_profile(lensprof_profile *profile)
-{
+static inline void fill_profile(lensprof_profile *profile) {
     static const double coefficients[] = {-0.625, 0.1, -0.05, 0.02, 1.0 / 30.0};
     lensprof_profile_init(profile);
     strcpy(profile->key.camera_maker, "Canon");
@@ -211,8 +198,7 @@ static inline void fill_profile(lensprof_profile *profile)
 }
 
 /* The values of two profiles to the bit; curves beyond the count do not matter. */
-static inline void assert_same_profile(const lensprof_profile *a, const lensprof_profile *b)
-{
+static inline void assert_same_profile(const lensprof_profile *a, const lensprof_profile *b) {
     assert_memory_equal(&a->key, &b->key, sizeof a->key);
     assert_memory_equal(&a->provenance, &b->provenance, sizeof a->provenance);
     assert_int_equal(a->responses, b->responses);

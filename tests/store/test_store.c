@@ -1,8 +1,7 @@
 /* The database in good times: what goes in comes out, is found, listed and removed. */
 #include "store_fixture.h"
 
-static void round_trip(const place *here, const lensprof_profile *profile)
-{
+static void round_trip(const place *here, const lensprof_profile *profile) {
     lensprof_profile *found = malloc(sizeof *found);
     int64_t id;
     memset(found, 0x55, sizeof *found);
@@ -21,16 +20,14 @@ static void round_trip(const place *here, const lensprof_profile *profile)
     free(found);
 }
 
-static void test_every_field_round_trips(void **state)
-{
+static void test_every_field_round_trips(void **state) {
     lensprof_profile *profile = malloc(sizeof *profile);
     fill_profile(profile);
     round_trip(*state, profile);
     free(profile);
 }
 
-static void test_three_curves_round_trip(void **state)
-{
+static void test_three_curves_round_trip(void **state) {
     lensprof_profile *profile = malloc(sizeof *profile);
     double values[LENSPROF_RESPONSE_SAMPLES], coefficients[LENSPROF_EMOR_MODES] = {0};
     uint64_t seed = 1;
@@ -54,8 +51,7 @@ static void test_three_curves_round_trip(void **state)
     free(profile);
 }
 
-static void test_unknown_and_infinite_round_trip(void **state)
-{
+static void test_unknown_and_infinite_round_trip(void **state) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_profile_init(profile);
     round_trip(*state, profile); /* everything unknown */
@@ -75,8 +71,7 @@ static void test_unknown_and_infinite_round_trip(void **state)
 }
 
 /* The one number that SQLite does not keep to the bit; see 0001_profiles.sql. */
-static void test_negative_zero_becomes_zero(void **state)
-{
+static void test_negative_zero_becomes_zero(void **state) {
     lensprof_profile *profile = malloc(sizeof *profile);
     fill_profile(profile);
     profile->vignetting[0].k[0] = -0.0;
@@ -89,8 +84,7 @@ static void test_negative_zero_becomes_zero(void **state)
     free(profile);
 }
 
-static void test_longest_texts_round_trip(void **state)
-{
+static void test_longest_texts_round_trip(void **state) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_profile_init(profile);
     memset(profile->key.camera_maker, 'a', sizeof profile->key.camera_maker - 1);
@@ -105,8 +99,7 @@ static void test_longest_texts_round_trip(void **state)
 }
 
 /* The columns are for other SQL users: this asks as they would. */
-static void test_numbers_can_be_queried(void **state)
-{
+static void test_numbers_can_be_queried(void **state) {
     const place *here = *state;
     lensprof_profile *profile = malloc(sizeof *profile);
     sqlite3 *db;
@@ -117,10 +110,11 @@ static void test_numbers_can_be_queried(void **state)
     put_at(store, profile);
     lensprof_store_close(store);
     assert_int_equal(sqlite3_open(here->path, &db), SQLITE_OK);
-    const char *sql = "SELECT camera_maker, focal_mm, distance_m = 9e999, processing, kind, emor_modes, coefficient,"
-                      " k1, center_y, length(covariance) FROM profiles JOIN responses r ON r.profile_id = id"
-                      " JOIN vignettings v ON v.profile_id = id"
-                      " JOIN emor_coefficients e ON e.profile_id = id AND mode = 1";
+    const char *sql =
+        "SELECT camera_maker, focal_mm, distance_m = 9e999, processing, kind, emor_modes, coefficient,"
+        " k1, center_y, length(covariance) FROM profiles JOIN responses r ON r.profile_id = id"
+        " JOIN vignettings v ON v.profile_id = id"
+        " JOIN emor_coefficients e ON e.profile_id = id AND mode = 1";
     assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &statement, NULL), SQLITE_OK);
     assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
     assert_string_equal((const char *)sqlite3_column_text(statement, 0), "Canon");
@@ -139,8 +133,7 @@ static void test_numbers_can_be_queried(void **state)
     free(profile);
 }
 
-static void test_blobs_are_little_endian(void **state)
-{
+static void test_blobs_are_little_endian(void **state) {
     const place *here = *state;
     static const unsigned char one[] = {0, 0, 0, 0, 0, 0, 0xf0, 0x3f}, quarter[] = {0, 0, 0x80, 0x3e}; /* IEEE 754 */
     lensprof_profile *profile = malloc(sizeof *profile);
@@ -168,8 +161,7 @@ static void test_blobs_are_little_endian(void **state)
     free(profile);
 }
 
-static void test_newest_wins(void **state)
-{
+static void test_newest_wins(void **state) {
     lensprof_profile *profile = malloc(sizeof *profile), *found = malloc(sizeof *found);
     int64_t id;
     fill_profile(profile);
@@ -194,8 +186,7 @@ static void test_newest_wins(void **state)
 }
 
 /* Puts a profile with `put` and looks for `asked`. */
-static lensprof_status match(void **state, const lensprof_profile_key *put, const lensprof_profile_key *asked)
-{
+static lensprof_status match(void **state, const lensprof_profile_key *put, const lensprof_profile_key *asked) {
     const place *here = *state;
     lensprof_profile *profile = malloc(sizeof *profile);
     int64_t id;
@@ -210,8 +201,7 @@ static lensprof_status match(void **state, const lensprof_profile_key *put, cons
     return status;
 }
 
-static void test_texts_match_without_case_and_blanks(void **state)
-{
+static void test_texts_match_without_case_and_blanks(void **state) {
     lensprof_profile_key put, asked;
     lensprof_profile_key_init(&put);
     strcpy(put.camera_maker, "  Canon ");
@@ -240,15 +230,20 @@ static void test_texts_match_without_case_and_blanks(void **state)
     assert_int_equal(match(state, &put, &asked), LENSPROF_ERROR_NOT_FOUND);
 }
 
-static void test_numbers_match_to_a_millionth(void **state)
-{
+static void test_numbers_match_to_a_millionth(void **state) {
     static const struct {
         double put, asked;
         int same;
     } cases[] = {
-        {50.0, 50.0, 1}, {50.0, 50.0 * (1 + 9e-7), 1}, {50.0 * (1 + 9e-7), 50.0, 1}, {50.0, 50.0 * (1 + 1.1e-6), 0},
-        {50.0 * (1 + 1.1e-6), 50.0, 0}, {50.0, LENSPROF_UNKNOWN, 0}, {LENSPROF_UNKNOWN, 50.0, 0},
-        {LENSPROF_UNKNOWN, LENSPROF_UNKNOWN, 1}, {1e-7, 2e-7, 0},
+        {50.0, 50.0, 1},
+        {50.0, 50.0 * (1 + 9e-7), 1},
+        {50.0 * (1 + 9e-7), 50.0, 1},
+        {50.0, 50.0 * (1 + 1.1e-6), 0},
+        {50.0 * (1 + 1.1e-6), 50.0, 0},
+        {50.0, LENSPROF_UNKNOWN, 0},
+        {LENSPROF_UNKNOWN, 50.0, 0},
+        {LENSPROF_UNKNOWN, LENSPROF_UNKNOWN, 1},
+        {1e-7, 2e-7, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         for (int field = 0; field < 3; field++) {
@@ -261,8 +256,7 @@ static void test_numbers_match_to_a_millionth(void **state)
         }
 }
 
-static void test_infinity_matches_infinity_only(void **state)
-{
+static void test_infinity_matches_infinity_only(void **state) {
     static const double others[] = {1.0, 1.7e308, LENSPROF_UNKNOWN};
     lensprof_profile_key infinite, other;
     lensprof_profile_key_init(&infinite);
@@ -276,8 +270,7 @@ static void test_infinity_matches_infinity_only(void **state)
     }
 }
 
-static void put_key(lensprof_store *store, const char *maker, const char *lens, double focal, double distance)
-{
+static void put_key(lensprof_store *store, const char *maker, const char *lens, double focal, double distance) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_profile_init(profile);
     strcpy(profile->key.camera_maker, maker);
@@ -288,8 +281,7 @@ static void put_key(lensprof_store *store, const char *maker, const char *lens, 
     free(profile);
 }
 
-static void assert_ids(lensprof_store *store, const lensprof_profile_key *filter, const char *expected)
-{
+static void assert_ids(lensprof_store *store, const lensprof_profile_key *filter, const char *expected) {
     lensprof_store_row rows[20];
     char ids[100] = "";
     uint32_t found = 99;
@@ -300,8 +292,7 @@ static void assert_ids(lensprof_store *store, const lensprof_profile_key *filter
     assert_string_equal(ids, expected);
 }
 
-static void fill_listing(lensprof_store *store)
-{
+static void fill_listing(lensprof_store *store) {
     put_key(store, "Nikon", "a", 50.0, INFINITY);           /* 1 */
     put_key(store, "canon", "b", 35.0, 2.0);                /* 2 */
     put_key(store, "Canon", "B", 35.0, INFINITY);           /* 3 */
@@ -312,8 +303,7 @@ static void fill_listing(lensprof_store *store)
     put_key(store, "Canon", "b", 24.0, 9.0);                /* 8, as 5 */
 }
 
-static void test_list_order(void **state)
-{
+static void test_list_order(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     assert_ids(store, NULL, "");
     fill_listing(store);
@@ -321,8 +311,7 @@ static void test_list_order(void **state)
     lensprof_store_close(store);
 }
 
-static void test_list_filter(void **state)
-{
+static void test_list_filter(void **state) {
     lensprof_profile_key filter;
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     fill_listing(store);
@@ -345,8 +334,7 @@ static void test_list_filter(void **state)
     lensprof_store_close(store);
 }
 
-static void test_list_capacity(void **state)
-{
+static void test_list_capacity(void **state) {
     lensprof_store_row rows[3];
     uint32_t found = 0;
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
@@ -365,20 +353,22 @@ static void test_list_capacity(void **state)
     lensprof_store_close(store);
 }
 
-static void test_long_list(void **state)
-{
+static void test_long_list(void **state) {
     const place *here = *state;
-    enum { COUNT = 1000 };
+    enum {
+        COUNT = 1000
+    };
     uint32_t found = 0;
     lensprof_store_row *rows = malloc(COUNT * sizeof *rows);
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     put_key(store, "Canon", "a", 1.0, 1.0);
-    run_sql(here->path, "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 1000)"
-                        " INSERT INTO profiles SELECT i, camera_maker, camera_model, lens, i, aperture, distance_m,"
-                        " processing, method, software, source, created_unix_s, images, pairs, heldout_rms,"
-                        " inlier_share, response_curves, vignetting_curves, covariance_size, covariance, 0,"
-                        " unit, crop_factor, doubt, lens_name"
-                        " FROM profiles, n");
+    run_sql(here->path,
+            "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 1000)"
+            " INSERT INTO profiles SELECT i, camera_maker, camera_model, lens, i, aperture, distance_m,"
+            " processing, method, software, source, created_unix_s, images, pairs, heldout_rms,"
+            " inlier_share, response_curves, vignetting_curves, covariance_size, covariance, 0,"
+            " unit, crop_factor, doubt, lens_name"
+            " FROM profiles, n");
     assert_ok(lensprof_store_list(store, NULL, rows, COUNT, &found, NULL));
     assert_int_equal(found, COUNT);
     for (int i = 0; i < COUNT; i++) assert_close(rows[i].key.focal_mm, i + 1.0, 0.0);
@@ -388,8 +378,7 @@ static void test_long_list(void **state)
     free(rows);
 }
 
-static void test_remove(void **state)
-{
+static void test_remove(void **state) {
     const place *here = *state;
     lensprof_profile *profile = malloc(sizeof *profile), *found = malloc(sizeof *found);
     lensprof_error error;
@@ -403,8 +392,9 @@ static void test_remove(void **state)
     assert_non_null(strstr(error.text, "profiles.db: has no profile 1;"));
     assert_int_equal(lensprof_store_get(store, id, found, &error), LENSPROF_ERROR_NOT_FOUND);
     assert_int_equal(lensprof_store_remove(store, -5, NULL), LENSPROF_ERROR_NOT_FOUND);
-    const char *sql = "SELECT (SELECT count(*) FROM responses) + (SELECT count(*) FROM emor_coefficients)"
-                      " + (SELECT count(*) FROM vignettings)";
+    const char *sql =
+        "SELECT (SELECT count(*) FROM responses) + (SELECT count(*) FROM emor_coefficients)"
+        " + (SELECT count(*) FROM vignettings)";
     assert_int_equal(lp_store_number(store->db, sql, &left), SQLITE_OK);
     assert_int_equal(left, 0);
     lensprof_store_close(store);
@@ -413,8 +403,7 @@ static void test_remove(void **state)
     free(found);
 }
 
-static void test_put_refuses_what_is_not_a_profile(void **state)
-{
+static void test_put_refuses_what_is_not_a_profile(void **state) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_error error;
     int64_t id = 77;
@@ -443,8 +432,7 @@ static void test_put_refuses_what_is_not_a_profile(void **state)
     free(profile);
 }
 
-static void test_wrong_arguments(void **state)
-{
+static void test_wrong_arguments(void **state) {
     const place *here = *state;
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_store *store = NULL;
@@ -476,8 +464,7 @@ static void test_wrong_arguments(void **state)
     free(profile);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_every_field_round_trips),
         store_test(test_three_curves_round_trip),

@@ -7,16 +7,14 @@ typedef struct faults {
     lensprof_status answer;
 } faults;
 
-static lensprof_status collect(void *user, const lensprof_store_fault *fault)
-{
+static lensprof_status collect(void *user, const lensprof_store_fault *fault) {
     faults *all = user;
     if (all->count < 50) all->fault[all->count] = *fault;
     all->count++;
     return all->answer;
 }
 
-static void check_at(const char *path, uint32_t profiles, faults *all)
-{
+static void check_at(const char *path, uint32_t profiles, faults *all) {
     lensprof_store *store = store_at(path, LENSPROF_STORE_READ);
     lensprof_error error = {"x"};
     uint32_t read = 99, count = 99;
@@ -29,15 +27,13 @@ static void check_at(const char *path, uint32_t profiles, faults *all)
 }
 
 /* Whether a fault with this number has `part` in its reason. */
-static bool has_fault(const faults *all, int64_t id, const char *part)
-{
+static bool has_fault(const faults *all, int64_t id, const char *part) {
     for (uint32_t i = 0; i < all->count && i < 50; i++)
         if (all->fault[i].id == id && strstr(all->fault[i].reason, part)) return true;
     return false;
 }
 
-static void make_database(const char *path)
-{
+static void make_database(const char *path) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_store *store = store_at(path, LENSPROF_STORE_CREATE);
     fill_profile(profile);
@@ -48,8 +44,7 @@ static void make_database(const char *path)
     free(profile);
 }
 
-static void craft(const char *path, const char *sql)
-{
+static void craft(const char *path, const char *sql) {
     char text[1000];
     unlink(path);
     make_database(path);
@@ -57,8 +52,7 @@ static void craft(const char *path, const char *sql)
     run_sql(path, text);
 }
 
-static void test_sound(void **state)
-{
+static void test_sound(void **state) {
     const place *here = *state;
     faults *all = malloc(sizeof *all);
     size_t size;
@@ -71,8 +65,7 @@ static void test_sound(void **state)
     free(all);
 }
 
-static void test_older_layout(void **state)
-{
+static void test_older_layout(void **state) {
     const place *here = *state;
     faults *all = malloc(sizeof *all);
     lensprof_profile *profile = malloc(sizeof *profile);
@@ -88,8 +81,7 @@ static void test_older_layout(void **state)
     free(all);
 }
 
-static void test_each_kind_of_damage(void **state)
-{
+static void test_each_kind_of_damage(void **state) {
     static const struct {
         const char *sql;
         int64_t id;
@@ -98,14 +90,17 @@ static void test_each_kind_of_damage(void **state)
         {"UPDATE profiles SET lens = char(10) WHERE id = 2", 2, "ARGUMENT"},
         {"UPDATE profiles SET aperture = -2.0 WHERE id = 2", 2, "aperture"},
         {"UPDATE profiles SET covariance = zeroblob(799) WHERE id = 2", 2, "covariance"},
-        {"UPDATE profiles SET covariance = CAST(x'000000000000f0bf' || zeroblob(792) AS BLOB) WHERE id = 2", 2, "LENSPROF"},
+        {"UPDATE profiles SET covariance = CAST(x'000000000000f0bf' || zeroblob(792) AS BLOB) WHERE id = 2", 2,
+         "LENSPROF"},
         {"UPDATE profiles SET covariance = CAST(zeroblob(8) || x'000000000000f03f' || zeroblob(784) AS BLOB) WHERE id = 2",
          2, "LENSPROF"}, /* not symmetric */
-        {"UPDATE profiles SET covariance = CAST(x'000000000000f87f' || zeroblob(792) AS BLOB) WHERE id = 2", 2, "LENSPROF"},
+        {"UPDATE profiles SET covariance = CAST(x'000000000000f87f' || zeroblob(792) AS BLOB) WHERE id = 2", 2,
+         "LENSPROF"},
         {"UPDATE profiles SET lens_name = 'another' WHERE id = 2", 2, "lens_name"},
         {"UPDATE emor_coefficients SET coefficient = 1e9 WHERE mode = 1 AND profile_id = 2", 2, "response"},
         {"UPDATE responses SET kind = 'table', emor_modes = NULL, samples = CAST(x'000000000000f03f' || zeroblob(8184) AS BLOB)"
-         " WHERE profile_id = 2", 2, "response"}, /* falls */
+         " WHERE profile_id = 2",
+         2, "response"}, /* falls */
         {"UPDATE vignettings SET k1 = -5 WHERE profile_id = 2", 2, "VIGNETTING"},
         {"UPDATE gain_grids SET attenuation = zeroblob(80) WHERE profile_id = 2", 2, "VIGNETTING"},
         {"DELETE FROM responses WHERE profile_id = 2", 2, "count of responses"},
@@ -116,7 +111,8 @@ static void test_each_kind_of_damage(void **state)
         {"INSERT INTO emor_coefficients VALUES (5, 0, 1, 0.5)", 5, "not EMoR"},
         {"DROP INDEX profiles_by_lens; CREATE UNIQUE INDEX profiles_by_lens ON profiles (id); PRAGMA writable_schema = ON;"
          " UPDATE sqlite_master SET sql = 'CREATE INDEX profiles_by_lens ON profiles (lens_name, id)'"
-         " WHERE name = 'profiles_by_lens'", 0, "index profiles_by_lens"},
+         " WHERE name = 'profiles_by_lens'",
+         0, "index profiles_by_lens"},
     };
     const place *here = *state;
     faults *all = malloc(sizeof *all);
@@ -126,19 +122,18 @@ static void test_each_kind_of_damage(void **state)
         if (!has_fault(all, cases[i].id, cases[i].reason))
             fail_msg("%s: %u faults, the last: %s", cases[i].sql, all->count,
                      all->count ? all->fault[all->count - 1].reason : "");
-        for (uint32_t n = 0; n < all->count; n++)
-            assert_true(all->fault[n].id == cases[i].id || all->fault[n].id == 0);
+        for (uint32_t n = 0; n < all->count; n++) assert_true(all->fault[n].id == cases[i].id || all->fault[n].id == 0);
     }
     free(all);
 }
 
 /* All of them, not only the first. */
-static void test_everything_is_listed(void **state)
-{
+static void test_everything_is_listed(void **state) {
     const place *here = *state;
     faults *all = malloc(sizeof *all);
-    craft(here->path, "UPDATE vignettings SET k1 = -5 WHERE profile_id IN (1, 3); DELETE FROM responses WHERE profile_id = 4;"
-                      " DELETE FROM profiles WHERE id = 2");
+    craft(here->path,
+          "UPDATE vignettings SET k1 = -5 WHERE profile_id IN (1, 3); DELETE FROM responses WHERE profile_id = 4;"
+          " DELETE FROM profiles WHERE id = 2");
     check_at(here->path, 4, all);
     assert_true(has_fault(all, 1, "VIGNETTING") && has_fault(all, 3, "VIGNETTING"));
     assert_true(has_fault(all, 4, "count of responses") && has_fault(all, 4, "without its response"));
@@ -149,8 +144,7 @@ static void test_everything_is_listed(void **state)
 }
 
 /* Pages overwritten: as much as can be read is checked, and nothing crashes. */
-static void test_broken_pages(void **state)
-{
+static void test_broken_pages(void **state) {
     const place *here = *state;
     faults *all = malloc(sizeof *all);
     size_t size;
@@ -180,8 +174,7 @@ static void test_broken_pages(void **state)
     free(all);
 }
 
-static void test_visitor_ends_the_check(void **state)
-{
+static void test_visitor_ends_the_check(void **state) {
     const place *here = *state;
     faults *all = calloc(1, sizeof *all);
     lensprof_error error;
@@ -199,8 +192,7 @@ static void test_visitor_ends_the_check(void **state)
     free(all);
 }
 
-static void put_counted(lensprof_store *store, const char *camera, const char *lens, const char *unit, double focal)
-{
+static void put_counted(lensprof_store *store, const char *camera, const char *lens, const char *unit, double focal) {
     static lensprof_profile p;
     lensprof_profile_init(&p);
     strcpy(p.key.camera_model, camera);
@@ -214,8 +206,7 @@ static void put_counted(lensprof_store *store, const char *camera, const char *l
     put_at(store, &p);
 }
 
-static void test_stats(void **state)
-{
+static void test_stats(void **state) {
     const place *here = *state;
     lensprof_store_stats *s = malloc(sizeof *s);
     struct stat file;
@@ -258,8 +249,7 @@ static void test_stats(void **state)
     free(s);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_sound),
         store_test(test_older_layout),

@@ -10,8 +10,7 @@ typedef struct entry {
     uint32_t processing;
 } entry;
 
-static void put(lensprof_store *store, const entry *e)
-{
+static void put(lensprof_store *store, const entry *e) {
     lensprof_profile_init(&shared);
     strcpy(shared.key.camera_model, e->camera);
     strcpy(shared.key.lens, e->lens);
@@ -22,16 +21,14 @@ static void put(lensprof_store *store, const entry *e)
     put_at(store, &shared);
 }
 
-static lensprof_store *store_of(const place *here, const entry *entries, int count)
-{
+static lensprof_store *store_of(const place *here, const entry *entries, int count) {
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     for (int i = 0; i < count; i++) put(store, &entries[i]);
     return store;
 }
 
 static lensprof_status ask(lensprof_store *store, const char *camera, const char *lens, double focal, double aperture,
-                           uint32_t any_processing)
-{
+                           uint32_t any_processing) {
     lensprof_lookup_options options;
     lensprof_profile_key key;
     lensprof_lookup_options_init(&options);
@@ -46,11 +43,13 @@ static lensprof_status ask(lensprof_store *store, const char *camera, const char
 #define RAW LENSPROF_PROCESSING_RAW
 #define JPEG LENSPROF_PROCESSING_JPEG
 
-/* Never a mean of raw pictures and those that a camera has corrected: the state of the newest, which the answer names. */
-static void test_one_processing(void **state)
-{
-    static const entry entries[] = {{"", "A 50mm", "", 2.0, 1.5, -0.5, RAW}, {"", "A 50mm", "", 4.0, 1.5, -0.3, RAW},
-                                    {"", "A 50mm", "", 2.0, 1.5, -0.1, JPEG}, {"", "A 50mm", "", 4.0, 1.5, -0.05, JPEG}};
+/* Never a mean of raw pictures and those that a camera has corrected: the state of the newest, which the answer names.
+ */
+static void test_one_processing(void **state) {
+    static const entry entries[] = {{"", "A 50mm", "", 2.0, 1.5, -0.5, RAW},
+                                    {"", "A 50mm", "", 4.0, 1.5, -0.3, RAW},
+                                    {"", "A 50mm", "", 2.0, 1.5, -0.1, JPEG},
+                                    {"", "A 50mm", "", 4.0, 1.5, -0.05, JPEG}};
     lensprof_store *store = store_of(*state, entries, 4);
     assert_ok(ask(store, "", "A 50mm", 50, 2.8, 1));
     assert_int_equal(how.rows, 2);
@@ -64,10 +63,11 @@ static void test_one_processing(void **state)
 }
 
 /* A profile holds those of its setting that it was fitted with, or has overruled them: the newest counts alone. */
-static void test_newest_of_a_setting(void **state)
-{
-    static const entry entries[] = {{"", "A 50mm", "", 2.0, 1, -0.9, RAW}, {"", "A 50mm", "", 2.0, 1, -0.4, RAW},
-                                    {"", "A 50mm", "", 4.0, 1, -0.9, RAW}, {"", "A 50mm", "", 4.0, 1, -0.3, RAW}};
+static void test_newest_of_a_setting(void **state) {
+    static const entry entries[] = {{"", "A 50mm", "", 2.0, 1, -0.9, RAW},
+                                    {"", "A 50mm", "", 2.0, 1, -0.4, RAW},
+                                    {"", "A 50mm", "", 4.0, 1, -0.9, RAW},
+                                    {"", "A 50mm", "", 4.0, 1, -0.3, RAW}};
     lensprof_store *store = store_of(*state, entries, 4);
     assert_ok(ask(store, "", "A 50mm", 50, 2.8, 0));
     assert_int_equal(how.rows, 2);
@@ -78,10 +78,11 @@ static void test_newest_of_a_setting(void **state)
     lensprof_store_close(store);
 }
 
-/* Rows of a camera serve who asks for the lens alone; of another camera, or a single unit, they are said to be there. */
-static void test_lens_of_cameras(void **state)
-{
-    static const entry entries[] = {{"EOS 5D", "A 50mm", "", 2.0, 1, -0.5, RAW}, {"EOS 5D", "A 50mm", "", 4.0, 1, -0.3, RAW},
+/* Rows of a camera serve who asks for the lens alone; of another camera, or a single unit, they are said to be there.
+ */
+static void test_lens_of_cameras(void **state) {
+    static const entry entries[] = {{"EOS 5D", "A 50mm", "", 2.0, 1, -0.5, RAW},
+                                    {"EOS 5D", "A 50mm", "", 4.0, 1, -0.3, RAW},
                                     {"", "B 50mm", "77", 2.0, 1, -0.5, RAW}};
     lensprof_store *store = store_of(*state, entries, 3);
     assert_ok(ask(store, "", "A 50mm", 50, 2.8, 0));
@@ -95,14 +96,15 @@ static void test_lens_of_cameras(void **state)
 }
 
 /* A camera's only lens, by any of the camera's names; under a name of EXIF's where it is built in. */
-static void test_built_in_lens(void **state)
-{
-    static const entry entries[] = {{"Canon PowerShot S110", "Canon PowerShot S110 & compatibles", "", 2.0, 4.6, -0.5, RAW},
-                                    {"Canon PowerShot S110", "Canon PowerShot S110 & compatibles", "", 4.0, 4.6, -0.3, RAW},
-                                    {"EOS 5D", "Canon 50mm f/2", "", 2.0, 1, -0.4, RAW}};
+static void test_built_in_lens(void **state) {
+    static const entry entries[] = {
+        {"Canon PowerShot S110", "Canon PowerShot S110 & compatibles", "", 2.0, 4.6, -0.5, RAW},
+        {"Canon PowerShot S110", "Canon PowerShot S110 & compatibles", "", 4.0, 4.6, -0.3, RAW},
+        {"EOS 5D", "Canon 50mm f/2", "", 2.0, 1, -0.4, RAW}};
     lensprof_store *store = store_of(*state, entries, 3);
     for (int i = 0; i < 4; i++) {
-        static const char *const names[] = {"canon powershot s110", "PowerShot S110", "CANON PowerShot-S110", "PowerShot S110"};
+        static const char *const names[] = {"canon powershot s110", "PowerShot S110", "CANON PowerShot-S110",
+                                            "PowerShot S110"};
         assert_ok(ask(store, names[i], i == 3 ? "5.2-26.0 mm" : "", 50, 2.8, 0));
         assert_int_equal(how.rows, 2);
     }
@@ -114,9 +116,9 @@ static void test_built_in_lens(void **state)
 }
 
 /* One node beyond the last, which is said. */
-static void test_outside_is_said(void **state)
-{
-    static const entry entries[] = {{"", "A 50mm", "", 2.0, 1, -0.5, RAW}, {"", "A 50mm", "", 2.8, 1, -0.4, RAW},
+static void test_outside_is_said(void **state) {
+    static const entry entries[] = {{"", "A 50mm", "", 2.0, 1, -0.5, RAW},
+                                    {"", "A 50mm", "", 2.8, 1, -0.4, RAW},
                                     {"", "A 50mm", "", 4.0, 1, -0.3, RAW}};
     lensprof_store *store = store_of(*state, entries, 3);
     assert_ok(ask(store, "", "A 50mm", 50, 5.0, 0));
@@ -126,11 +128,10 @@ static void test_outside_is_said(void **state)
     lensprof_store_close(store);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
-        store_test(test_one_processing),  store_test(test_newest_of_a_setting), store_test(test_lens_of_cameras),
-        store_test(test_built_in_lens),   store_test(test_outside_is_said),
+        store_test(test_one_processing), store_test(test_newest_of_a_setting), store_test(test_lens_of_cameras),
+        store_test(test_built_in_lens),  store_test(test_outside_is_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

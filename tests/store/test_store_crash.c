@@ -16,8 +16,7 @@ typedef struct report {
 } report;
 
 /* Puts profiles of changing size for ever, and removes every fourth of its own again. */
-static void work(const char *path, int pipe_end, uint32_t number)
-{
+static void work(const char *path, int pipe_end, uint32_t number) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_store *store = NULL;
     if (lensprof_store_open(path, LENSPROF_STORE_CREATE, &store, NULL)) _exit(1);
@@ -37,8 +36,7 @@ static void work(const char *path, int pipe_end, uint32_t number)
 }
 
 /* Lets a child work for a time, kills it, and returns how many reports it made. */
-static size_t work_and_kill(const char *path, uint32_t number, double seconds, report *reports, size_t capacity)
-{
+static size_t work_and_kill(const char *path, uint32_t number, double seconds, report *reports, size_t capacity) {
     int ends[2], status = 0;
     size_t count = 0;
     assert_int_equal(pipe(ends), 0);
@@ -60,8 +58,7 @@ static size_t work_and_kill(const char *path, uint32_t number, double seconds, r
 }
 
 /* Every report of the round holds; `extra` (0 or 1) call may have been done but not reported. */
-static void check_reports(const char *path, uint32_t mode, const report *reports, size_t count, uint32_t expected)
-{
+static void check_reports(const char *path, uint32_t mode, const report *reports, size_t count, uint32_t expected) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_store *store = store_at(path, mode);
     uint32_t found = count_at(store);
@@ -78,18 +75,19 @@ static void check_reports(const char *path, uint32_t mode, const report *reports
     free(profile);
 }
 
-static void test_killed_at_random_moments(void **state)
-{
+static void test_killed_at_random_moments(void **state) {
     const place *here = *state;
-    enum { CAPACITY = 20000 };
+    enum {
+        CAPACITY = 20000
+    };
     report *reports = malloc(CAPACITY * sizeof *reports);
     uint64_t seed = 7;
     uint32_t stored = 0;
     size_t done = 0;
     /* A busy machine needs more rounds to get so much done. */
     for (int round = 0; round < ROUNDS || (done <= (size_t)ROUNDS && round < 10 * ROUNDS); round++) {
-        size_t count = work_and_kill(here->path, (uint32_t)round * 1000000, 0.001 + 0.06 * lp_random(&seed), reports,
-                                     CAPACITY);
+        size_t count =
+            work_and_kill(here->path, (uint32_t)round * 1000000, 0.001 + 0.06 * lp_random(&seed), reports, CAPACITY);
         done += count;
         for (size_t i = 0; i < count; i++) stored += reports[i].id > 0 ? 1 : UINT32_MAX;
         if (access(here->path, F_OK) == 0) {
@@ -108,8 +106,7 @@ static void test_killed_at_random_moments(void **state)
     free(reports);
 }
 
-static void test_killed_while_creating(void **state)
-{
+static void test_killed_while_creating(void **state) {
     const place *here = *state;
     report reports[1000];
     uint64_t seed = 8;
@@ -129,10 +126,11 @@ static void test_killed_while_creating(void **state)
 }
 
 /* Puts batches of BATCH profiles, all with the batch's number, for ever, and reports each after its commit. */
-enum { BATCH = 7 };
+enum {
+    BATCH = 7
+};
 
-static void work_in_batches(const char *path, int pipe_end, uint32_t number)
-{
+static void work_in_batches(const char *path, int pipe_end, uint32_t number) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_store *store = NULL;
     fill_profile(profile);
@@ -148,8 +146,7 @@ static void work_in_batches(const char *path, int pipe_end, uint32_t number)
 }
 
 /* Looks up and checks for ever; nothing that it sees may be half of a batch. */
-static void read_for_ever(const char *path)
-{
+static void read_for_ever(const char *path) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_profile_key key;
     lensprof_lookup_options options;
@@ -172,8 +169,7 @@ static void read_for_ever(const char *path)
 }
 
 /* How many profiles of a batch there are; all of them, or none. */
-static uint32_t count_batch(sqlite3 *db, uint32_t number)
-{
+static uint32_t count_batch(sqlite3 *db, uint32_t number) {
     char sql[80];
     int64_t count = -1;
     snprintf(sql, sizeof sql, "SELECT count(*) FROM profiles WHERE images = %u", number);
@@ -183,8 +179,7 @@ static uint32_t count_batch(sqlite3 *db, uint32_t number)
 
 /* One writer of batches and two readers, all killed at a random moment:
  * every batch that was reported is whole, the next one whole or not there, and the readers saw nothing else. */
-static void test_batches_beside_readers(void **state)
-{
+static void test_batches_beside_readers(void **state) {
     const place *here = *state;
     uint64_t seed = 9;
     uint32_t number, reported = 0;
@@ -220,8 +215,7 @@ static void test_batches_beside_readers(void **state)
     assert_true(reported > (uint32_t)ROUNDS / 4); /* else nothing was tested */
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_killed_at_random_moments),
         store_test(test_killed_while_creating),

@@ -7,8 +7,7 @@
 #endif
 
 /* A database of three profiles: 1 with every field, 2 with three table curves, 3 with gamma; returns its bytes. */
-static unsigned char *make_three(const place *here, size_t *size)
-{
+static unsigned char *make_three(const place *here, size_t *size) {
     lensprof_profile *profile = malloc(sizeof *profile);
     double values[LENSPROF_RESPONSE_SAMPLES];
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -30,8 +29,7 @@ static unsigned char *make_three(const place *here, size_t *size)
 }
 
 /* The database of make_three after SQL that the constraints would not let pass. */
-static lensprof_store *crafted(const place *here, const char *sql)
-{
+static lensprof_store *crafted(const place *here, const char *sql) {
     size_t size;
     char text[1200];
     unlink(here->path);
@@ -42,8 +40,7 @@ static lensprof_store *crafted(const place *here, const char *sql)
 }
 
 /* Profile 1 is refused with a text that names it and `named`, outputs stay, and profile 3 can still be had. */
-static void assert_damaged(const place *here, const char *sql, const char *named, bool in_list)
-{
+static void assert_damaged(const place *here, const char *sql, const char *named, bool in_list) {
     lensprof_profile *profile = malloc(sizeof *profile), *before = malloc(sizeof *before);
     lensprof_store_row rows[3];
     lensprof_error error = {""};
@@ -70,8 +67,7 @@ static void assert_damaged(const place *here, const char *sql, const char *named
     free(before);
 }
 
-static void test_impossible_keys_and_provenance(void **state)
-{
+static void test_impossible_keys_and_provenance(void **state) {
     static const char *const cases[][2] = {
         {"camera_maker = printf('%.64c', 'x')", "camera_maker"},
         {"camera_model = 'a' || char(0) || 'b'", "camera_model"},
@@ -101,8 +97,7 @@ static void test_impossible_keys_and_provenance(void **state)
     }
 }
 
-static void test_impossible_curves(void **state)
-{
+static void test_impossible_curves(void **state) {
     static const char *const cases[][2] = {
         {"UPDATE profiles SET response_curves = 2 WHERE id = 1", "responses"},
         {"UPDATE profiles SET response_curves = 0 WHERE id = 1", "response_curves"},
@@ -154,14 +149,16 @@ static void test_impossible_curves(void **state)
          "LENSPROF_ERROR_NOT_FINITE"},
         {"UPDATE gain_grids SET attenuation = zeroblob(1000000)", "attenuation"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        assert_damaged(*state, cases[i][0], cases[i][1], false);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) assert_damaged(*state, cases[i][0], cases[i][1], false);
 }
 
-static void test_impossible_tables(void **state)
-{
+static void test_impossible_tables(void **state) {
     static const char *const samples[] = {
-        "zeroblob(8192)", "zeroblob(8191)", "zeroblob(8200)", "zeroblob(0)", "zeroblob(1000000)",
+        "zeroblob(8192)",
+        "zeroblob(8191)",
+        "zeroblob(8200)",
+        "zeroblob(0)",
+        "zeroblob(1000000)",
         "zeroblob(8) || x'000000000000f87f' || zeroblob(8168) || x'000000000000f03f'", /* NaN among zeros */
         "x'000000000000f03f' || zeroblob(8184)",                                       /* falls from 1 to 0 */
     };
@@ -176,16 +173,26 @@ static void test_impossible_tables(void **state)
 }
 
 /* Without STRICT any column holds any type. */
-static void test_wrong_types(void **state)
-{
+static void test_wrong_types(void **state) {
     static const char *const cases[][3] = {
-        {"profiles", "focal_mm", "'abc'"}, {"profiles", "aperture", "x'00'"}, {"profiles", "distance_m", "''"},
-        {"profiles", "lens", "x'c3a9'"}, {"profiles", "lens", "NULL"}, {"profiles", "source", "x''"},
-        {"profiles", "processing", "1"}, {"profiles", "images", "1.5"}, {"profiles", "pairs", "'-'"},
-        {"profiles", "created_unix_s", "'x'"}, {"profiles", "response_curves", "'one'"},
-        {"profiles", "covariance", "printf('%.800c', 'x')"}, {"responses", "kind", "2"},
-        {"responses", "emor_modes", "x'05'"}, {"responses", "samples", "1"}, {"vignettings", "k2", "'x'"},
-        {"emor_coefficients", "coefficient", "x'0000000000000000'"}, {"gain_grids", "channels", "x'01'"},
+        {"profiles", "focal_mm", "'abc'"},
+        {"profiles", "aperture", "x'00'"},
+        {"profiles", "distance_m", "''"},
+        {"profiles", "lens", "x'c3a9'"},
+        {"profiles", "lens", "NULL"},
+        {"profiles", "source", "x''"},
+        {"profiles", "processing", "1"},
+        {"profiles", "images", "1.5"},
+        {"profiles", "pairs", "'-'"},
+        {"profiles", "created_unix_s", "'x'"},
+        {"profiles", "response_curves", "'one'"},
+        {"profiles", "covariance", "printf('%.800c', 'x')"},
+        {"responses", "kind", "2"},
+        {"responses", "emor_modes", "x'05'"},
+        {"responses", "samples", "1"},
+        {"vignettings", "k2", "'x'"},
+        {"emor_coefficients", "coefficient", "x'0000000000000000'"},
+        {"gain_grids", "channels", "x'01'"},
         {"gain_grids", "attenuation", "printf('%.80c', 'x')"},
     };
     char sql[600];
@@ -199,8 +206,7 @@ static void test_wrong_types(void **state)
     }
 }
 
-static void assert_not_opened(const place *here, const char *sql)
-{
+static void assert_not_opened(const place *here, const char *sql) {
     lensprof_store *store = NULL;
     lensprof_error error;
     size_t size;
@@ -214,18 +220,17 @@ static void assert_not_opened(const place *here, const char *sql)
     assert_null(store);
 }
 
-static void test_other_tables(void **state)
-{
+static void test_other_tables(void **state) {
     assert_not_opened(*state, "DROP TABLE vignettings");
     assert_not_opened(*state, "DROP TABLE gain_grids");
     assert_not_opened(*state, "ALTER TABLE emor_coefficients RENAME TO e");
     /* A view that never ends. */
-    assert_not_opened(*state, "ALTER TABLE profiles RENAME TO p; CREATE VIEW profiles AS WITH RECURSIVE n(id) AS"
-                              " (SELECT 1 UNION ALL SELECT id + 1 FROM n) SELECT * FROM n");
+    assert_not_opened(*state,
+                      "ALTER TABLE profiles RENAME TO p; CREATE VIEW profiles AS WITH RECURSIVE n(id) AS"
+                      " (SELECT 1 UNION ALL SELECT id + 1 FROM n) SELECT * FROM n");
 }
 
-static void test_missing_column(void **state)
-{
+static void test_missing_column(void **state) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_error error;
     uint32_t found;
@@ -240,8 +245,7 @@ static void test_missing_column(void **state)
 }
 
 /* Triggers in the file do not run. */
-static void test_triggers_are_ignored(void **state)
-{
+static void test_triggers_are_ignored(void **state) {
     lensprof_profile *profile = malloc(sizeof *profile);
     const char *sql = "CREATE TRIGGER t AFTER INSERT ON profiles BEGIN DELETE FROM profiles; END";
     lensprof_store *store = crafted(*state, sql);
@@ -253,8 +257,7 @@ static void test_triggers_are_ignored(void **state)
     free(profile);
 }
 
-static void use_everything(lensprof_store *store)
-{
+static void use_everything(lensprof_store *store) {
     static lensprof_profile found, asked;
     lensprof_lookup_options options;
     lensprof_lookup how;
@@ -273,8 +276,7 @@ static void use_everything(lensprof_store *store)
 }
 
 /* Schemas that would run something, fail everything or take up all memory: no crash, no file made, no wrong profile. */
-static void test_crafted_schemas(void **state)
-{
+static void test_crafted_schemas(void **state) {
     static const char *const schemas[] = {
         "ALTER TABLE profiles RENAME TO p; CREATE VIEW profiles AS SELECT *, load_extension('/tmp/evil') AS e FROM p",
         "ALTER TABLE vignettings RENAME TO v; CREATE VIEW vignettings AS SELECT * FROM v",
@@ -306,8 +308,10 @@ static void test_crafted_schemas(void **state)
         for (uint32_t mode = 0; mode < 2; mode++) {
             lensprof_error error = {""};
             const lensprof_status status = lensprof_store_open(here->path, mode, &store, &error);
-            if (status == LENSPROF_OK) use_everything(store);
-            else if (status != LENSPROF_ERROR_CORRUPT) fail_msg("%s: %s", schemas[i], error.text);
+            if (status == LENSPROF_OK)
+                use_everything(store);
+            else if (status != LENSPROF_ERROR_CORRUPT)
+                fail_msg("%s: %s", schemas[i], error.text);
             if (status == LENSPROF_OK) lensprof_store_close(store);
             if (i < 2) assert_int_equal(status, LENSPROF_ERROR_CORRUPT); /* views are no tables */
         }
@@ -315,8 +319,7 @@ static void test_crafted_schemas(void **state)
 }
 
 /* A constraint of somebody else's fails the put and leaves nothing of it. */
-static void test_foreign_constraint(void **state)
-{
+static void test_foreign_constraint(void **state) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_error error;
     int64_t id = 99;
@@ -330,15 +333,14 @@ static void test_foreign_constraint(void **state)
     free(profile);
 }
 
-static void assert_sane(lensprof_status status, const lensprof_error *error, const char *what, int round)
-{
+static void assert_sane(lensprof_status status, const lensprof_error *error, const char *what, int round) {
     bool fine = status == LENSPROF_OK ? error->text[0] == 0 : strstr(error->text, "profiles.db: ") != NULL;
     switch (status) {
     case LENSPROF_OK:
     case LENSPROF_ERROR_NOT_FOUND:
     case LENSPROF_ERROR_CORRUPT:
     case LENSPROF_ERROR_LAYOUT:
-    case LENSPROF_ERROR_READ_ONLY: /* the header has a byte that says so */
+    case LENSPROF_ERROR_READ_ONLY:   /* the header has a byte that says so */
     case LENSPROF_ERROR_FULL: break; /* a counter of ids at its end */
     default: fine = false;
     }
@@ -346,8 +348,7 @@ static void assert_sane(lensprof_status status, const lensprof_error *error, con
 }
 
 /* Every call on the file at `path`; what is delivered must be valid. */
-static lensprof_status use(const char *path, uint32_t mode, int round)
-{
+static lensprof_status use(const char *path, uint32_t mode, int round) {
     static lensprof_profile profile, asked;
     lensprof_store *store = NULL;
     lensprof_store_row rows[4];
@@ -376,8 +377,7 @@ static lensprof_status use(const char *path, uint32_t mode, int round)
     return LENSPROF_OK;
 }
 
-static void put_file(const place *here, const unsigned char *bytes, size_t size)
-{
+static void put_file(const place *here, const unsigned char *bytes, size_t size) {
     char path[200];
     static const char *const beside[] = {"-journal", "-wal", "-shm"};
     for (int i = 0; i < 3; i++) {
@@ -387,8 +387,7 @@ static void put_file(const place *here, const unsigned char *bytes, size_t size)
     write_file(here->path, bytes, size);
 }
 
-static void test_truncated(void **state)
-{
+static void test_truncated(void **state) {
     const place *here = *state;
     size_t size, page = 4096;
     unsigned char *bytes = make_three(here, &size);
@@ -403,8 +402,7 @@ static void test_truncated(void **state)
     free(bytes);
 }
 
-static void test_random_damage(void **state)
-{
+static void test_random_damage(void **state) {
     const place *here = *state;
     size_t size, page = 4096;
     uint64_t seed = 42;
@@ -429,8 +427,7 @@ static void test_random_damage(void **state)
     free(bytes);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_impossible_keys_and_provenance),
         store_test(test_impossible_curves),

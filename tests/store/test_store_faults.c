@@ -14,43 +14,30 @@ static char other_path[200];
 static sqlite3_mem_methods memory;
 static sqlite3_vfs *real_vfs;
 
-static bool faults(void)
-{
+static bool faults(void) {
     if (countdown < 0) return false;
     if (countdown > 0) return --countdown == 0;
     return for_good;
 }
 
-static void *faulty_malloc(int size)
-{
-    return !file_fault && faults() ? NULL : memory.xMalloc(size);
-}
+static void *faulty_malloc(int size) { return !file_fault && faults() ? NULL : memory.xMalloc(size); }
 
-static void *faulty_realloc(void *old, int size)
-{
-    return !file_fault && faults() ? NULL : memory.xRealloc(old, size);
-}
+static void *faulty_realloc(void *old, int size) { return !file_fault && faults() ? NULL : memory.xRealloc(old, size); }
 
 /* Behind every file, in the same allocation, is the real one. */
-static sqlite3_file *real(sqlite3_file *file)
-{
-    return file + 1;
-}
+static sqlite3_file *real(sqlite3_file *file) { return file + 1; }
 
 #define PLAIN(call) return real(file)->pMethods->call
 #define FORWARD(call) return file_fault && faults() ? file_fault : real(file)->pMethods->call
 
-static int faulty_read(sqlite3_file *file, void *bytes, int size, sqlite3_int64 at)
-{
+static int faulty_read(sqlite3_file *file, void *bytes, int size, sqlite3_int64 at) {
     FORWARD(xRead)(real(file), bytes, size, at);
 }
-static int faulty_write(sqlite3_file *file, const void *bytes, int size, sqlite3_int64 at)
-{
+static int faulty_write(sqlite3_file *file, const void *bytes, int size, sqlite3_int64 at) {
     FORWARD(xWrite)(real(file), bytes, size, at);
 }
 static int faulty_truncate(sqlite3_file *file, sqlite3_int64 size) { FORWARD(xTruncate)(real(file), size); }
-static int faulty_sync(sqlite3_file *file, int flags)
-{
+static int faulty_sync(sqlite3_file *file, int flags) {
     if (file_fault && faults()) {
         sync_failed = true;
         return file_fault;
@@ -68,8 +55,7 @@ static int plain_sector(sqlite3_file *file) { PLAIN(xSectorSize)(real(file)); }
 static int plain_features(sqlite3_file *file) { PLAIN(xDeviceCharacteristics)(real(file)); }
 
 /* The memory that processes share for the log's index. */
-static int faulty_shm_map(sqlite3_file *file, int page, int size, int extend, void volatile **out)
-{
+static int faulty_shm_map(sqlite3_file *file, int page, int size, int extend, void volatile **out) {
     if (file_fault && faults()) return file_fault == SQLITE_FULL ? SQLITE_FULL : SQLITE_IOERR_SHMMAP;
     PLAIN(xShmMap)(real(file), page, size, extend, out);
 }
@@ -78,13 +64,28 @@ static void plain_shm_barrier(sqlite3_file *file) { real(file)->pMethods->xShmBa
 static int plain_shm_unmap(sqlite3_file *file, int remove) { PLAIN(xShmUnmap)(real(file), remove); }
 
 static const sqlite3_io_methods methods = {
-    2, plain_close, faulty_read, faulty_write, faulty_truncate, faulty_sync, faulty_size, faulty_lock, plain_unlock,
-    plain_reserved, plain_control, plain_sector, plain_features, faulty_shm_map, plain_shm_lock, plain_shm_barrier,
-    plain_shm_unmap, NULL, NULL,
+    2,
+    plain_close,
+    faulty_read,
+    faulty_write,
+    faulty_truncate,
+    faulty_sync,
+    faulty_size,
+    faulty_lock,
+    plain_unlock,
+    plain_reserved,
+    plain_control,
+    plain_sector,
+    plain_features,
+    faulty_shm_map,
+    plain_shm_lock,
+    plain_shm_barrier,
+    plain_shm_unmap,
+    NULL,
+    NULL,
 };
 
-static int faulty_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *file, int flags, int *out)
-{
+static int faulty_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *file, int flags, int *out) {
     (void)vfs;
     file->pMethods = NULL;
     if (file_fault && faults()) return SQLITE_CANTOPEN;
@@ -93,15 +94,13 @@ static int faulty_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *file, i
     return rc;
 }
 
-static int faulty_delete(sqlite3_vfs *vfs, const char *name, int sync)
-{
+static int faulty_delete(sqlite3_vfs *vfs, const char *name, int sync) {
     (void)vfs;
     return file_fault && faults() ? SQLITE_IOERR_DELETE : real_vfs->xDelete(real_vfs, name, sync);
 }
 
 /* A batch that is taken back, a check of everything, a lookup, and another database merged and taken back. */
-static lensprof_status whole_database(lensprof_store *store, const lensprof_profile *profile, lensprof_error *error)
-{
+static lensprof_status whole_database(lensprof_store *store, const lensprof_profile *profile, lensprof_error *error) {
     static lensprof_profile found;
     lensprof_lookup_options options;
     lensprof_lookup how;
@@ -125,8 +124,7 @@ static lensprof_status whole_database(lensprof_store *store, const lensprof_prof
 }
 
 /* One call after another, as a program would; puts one profile. `done` tells whether it is in the file. */
-static lensprof_status session(const char *path, const lensprof_profile *profile, bool *done, lensprof_error *error)
-{
+static lensprof_status session(const char *path, const lensprof_profile *profile, bool *done, lensprof_error *error) {
     static lensprof_profile found;
     lensprof_store *store = NULL;
     lensprof_store_row rows[40];
@@ -148,11 +146,14 @@ static lensprof_status session(const char *path, const lensprof_profile *profile
 }
 
 /* What a session begins with: the file as the one before left it, none, or one of layout 1 to bring up to date. */
-typedef enum start { AS_LEFT, NO_FILE, LAYOUT_1 } start;
+typedef enum start {
+    AS_LEFT,
+    NO_FILE,
+    LAYOUT_1
+} start;
 
 /* Lets the n-th operation fail for growing n until a session is over before; returns that n. */
-static int fail_each(const place *here, int first, start start_at, lensprof_status only)
-{
+static int fail_each(const place *here, int first, start start_at, lensprof_status only) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_error error;
     lensprof_status status = LENSPROF_ERROR_INTERNAL;
@@ -197,8 +198,7 @@ static int fail_each(const place *here, int first, start start_at, lensprof_stat
     return n;
 }
 
-static void fail_each_way(void **state, int fault, lensprof_status only)
-{
+static void fail_each_way(void **state, int fault, lensprof_status only) {
     const place *here = *state;
     lensprof_profile *another = malloc(sizeof *another);
     fill_profile(another);
@@ -219,24 +219,14 @@ static void fail_each_way(void **state, int fault, lensprof_status only)
     }
 }
 
-static void test_out_of_memory(void **state)
-{
-    fail_each_way(state, 0, LENSPROF_ERROR_MEMORY);
-}
+static void test_out_of_memory(void **state) { fail_each_way(state, 0, LENSPROF_ERROR_MEMORY); }
 
-static void test_input_output_error(void **state)
-{
-    fail_each_way(state, SQLITE_IOERR_WRITE, LENSPROF_OK);
-}
+static void test_input_output_error(void **state) { fail_each_way(state, SQLITE_IOERR_WRITE, LENSPROF_OK); }
 
-static void test_full_disk_at_every_operation(void **state)
-{
-    fail_each_way(state, SQLITE_FULL, LENSPROF_OK);
-}
+static void test_full_disk_at_every_operation(void **state) { fail_each_way(state, SQLITE_FULL, LENSPROF_OK); }
 
 /* Before SQLite is used for the first time. */
-static int install_faults(void **state)
-{
+static int install_faults(void **state) {
     static sqlite3_vfs vfs;
     sqlite3_mem_methods faulty;
     (void)state;
@@ -255,8 +245,7 @@ static int install_faults(void **state)
     return sqlite3_vfs_register(&vfs, 1);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_out_of_memory),
         store_test(test_input_output_error),

@@ -6,8 +6,7 @@
 #include <sys/wait.h>
 
 /* Opening fails with `status`, a text that names the file, and no handle. */
-static void assert_refused(const char *path, uint32_t mode, lensprof_status status)
-{
+static void assert_refused(const char *path, uint32_t mode, lensprof_status status) {
     lensprof_store *store = NULL;
     lensprof_error error = {""};
     lensprof_status found = lp_store_open_waiting(path, mode, 20, &store, &error);
@@ -18,8 +17,7 @@ static void assert_refused(const char *path, uint32_t mode, lensprof_status stat
 }
 
 /* Every mode refuses the file, which stays as it is, without anything new beside it. */
-static void assert_refused_untouched(const place *here, lensprof_status status)
-{
+static void assert_refused_untouched(const place *here, lensprof_status status) {
     size_t size, entries[2] = {0, 0};
     unsigned char *bytes = read_file(here->path, &size);
     for (int after = 0; after < 2; after++) {
@@ -34,8 +32,7 @@ static void assert_refused_untouched(const place *here, lensprof_status status)
 }
 
 /* A database with one profile. */
-static void make_database(const place *here)
-{
+static void make_database(const place *here) {
     lensprof_profile *profile = malloc(sizeof *profile);
     fill_profile(profile);
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -45,16 +42,14 @@ static void make_database(const place *here)
 }
 
 /* Opens for reading: so many profiles, file sound. */
-static void assert_profiles(const char *path, uint32_t count)
-{
+static void assert_profiles(const char *path, uint32_t count) {
     lensprof_store *store = store_at(path, LENSPROF_STORE_READ);
     assert_int_equal(count_at(store), count);
     lensprof_store_close(store);
     assert_integrity(path);
 }
 
-static void test_missing_file(void **state)
-{
+static void test_missing_file(void **state) {
     const place *here = *state;
     char path[300];
     assert_refused(here->path, LENSPROF_STORE_READ, LENSPROF_ERROR_NOT_FOUND);
@@ -64,14 +59,12 @@ static void test_missing_file(void **state)
     for (uint32_t mode = 0; mode < 3; mode++) assert_refused(path, mode, LENSPROF_ERROR_NOT_FOUND);
 }
 
-static void test_directory(void **state)
-{
+static void test_directory(void **state) {
     const place *here = *state;
     for (uint32_t mode = 0; mode < 3; mode++) assert_refused(here->directory, mode, LENSPROF_ERROR_STORE);
 }
 
-static void test_path_through_a_file(void **state)
-{
+static void test_path_through_a_file(void **state) {
     const place *here = *state;
     char path[300];
     write_file(here->path, "x", 1);
@@ -83,8 +76,7 @@ static void test_path_through_a_file(void **state)
     }
 }
 
-static void test_overlong_path(void **state)
-{
+static void test_overlong_path(void **state) {
     char path[5001];
     (void)state;
     memset(path, 'x', 5000);
@@ -97,8 +89,7 @@ static void test_overlong_path(void **state)
     assert_non_null(strstr(error.text, "; "));
 }
 
-static void test_text_file(void **state)
-{
+static void test_text_file(void **state) {
     const place *here = *state;
     static char text[5000];
     memset(text, 'a', sizeof text);
@@ -115,8 +106,7 @@ static void test_text_file(void **state)
     assert_refused_untouched(here, LENSPROF_ERROR_CORRUPT);
 }
 
-static void test_empty_file(void **state)
-{
+static void test_empty_file(void **state) {
     const place *here = *state;
     write_file(here->path, "", 0);
     assert_refused(here->path, LENSPROF_STORE_READ, LENSPROF_ERROR_CORRUPT);
@@ -127,8 +117,7 @@ static void test_empty_file(void **state)
 }
 
 /* Ends without commit after some pages were written to the file: what kill -9 leaves in the worst case. */
-static void cut_off_write(const char *path, const char *sql)
-{
+static void cut_off_write(const char *path, const char *sql) {
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
@@ -142,19 +131,18 @@ static void cut_off_write(const char *path, const char *sql)
     assert_int_equal(status, 0);
 }
 
-static void test_foreign_database(void **state)
-{
+static void test_foreign_database(void **state) {
     const place *here = *state;
     run_sql(here->path, "CREATE TABLE profiles (a); INSERT INTO profiles VALUES (1)");
     assert_refused_untouched(here, LENSPROF_ERROR_CORRUPT);
-    run_sql(here->path, "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 500)"
-                        " INSERT INTO profiles SELECT randomblob(1000) FROM n");
+    run_sql(here->path,
+            "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 500)"
+            " INSERT INTO profiles SELECT randomblob(1000) FROM n");
     cut_off_write(here->path, "UPDATE profiles SET a = randomblob(1000)");
     assert_refused_untouched(here, LENSPROF_ERROR_CORRUPT); /* not even undone */
 }
 
-static void test_foreign_database_with_log(void **state)
-{
+static void test_foreign_database_with_log(void **state) {
     const place *here = *state;
     char log[200];
     sqlite3 *db;
@@ -168,8 +156,7 @@ static void test_foreign_database_with_log(void **state)
     assert_refused_untouched(here, LENSPROF_ERROR_CORRUPT);
 }
 
-static void test_layouts(void **state)
-{
+static void test_layouts(void **state) {
     const place *here = *state;
     lensprof_store *store = NULL;
     lensprof_error error;
@@ -188,8 +175,7 @@ static void test_layouts(void **state)
     lensprof_store_close(store);
 }
 
-static void test_names_that_sqlite_reads_otherwise(void **state)
-{
+static void test_names_that_sqlite_reads_otherwise(void **state) {
     const place *here = *state;
     static const char *const names[] = {":memory:", "file:x.db?mode=memory", "100%.db", "a b.db", "#1.db"};
     char old[PATH_MAX];
@@ -205,8 +191,7 @@ static void test_names_that_sqlite_reads_otherwise(void **state)
     }
 }
 
-static void test_symbolic_link(void **state)
-{
+static void test_symbolic_link(void **state) {
     const place *here = *state;
     char link[200];
     make_database(here);
@@ -218,8 +203,7 @@ static void test_symbolic_link(void **state)
 }
 
 /* What a handle that may not write does, on a database with one profile. */
-static void assert_reads_only(lensprof_store *store)
-{
+static void assert_reads_only(lensprof_store *store) {
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_error error;
     int64_t id = 99;
@@ -234,8 +218,7 @@ static void assert_reads_only(lensprof_store *store)
     free(profile);
 }
 
-static void test_reading_writes_nothing(void **state)
-{
+static void test_reading_writes_nothing(void **state) {
     const place *here = *state;
     size_t size;
     make_database(here);
@@ -245,8 +228,7 @@ static void test_reading_writes_nothing(void **state)
     free(bytes);
 }
 
-static void test_protected_file(void **state)
-{
+static void test_protected_file(void **state) {
     const place *here = *state;
     make_database(here);
     if (!set_protected(here->path, true)) skip();
@@ -255,8 +237,7 @@ static void test_protected_file(void **state)
     assert_reads_only(store_at(here->path, LENSPROF_STORE_READ));
 }
 
-static void test_protected_directory(void **state)
-{
+static void test_protected_directory(void **state) {
     const place *here = *state;
     char path[200];
     make_database(here);
@@ -267,8 +248,7 @@ static void test_protected_directory(void **state)
     assert_refused(path, LENSPROF_STORE_CREATE, LENSPROF_ERROR_READ_ONLY);
 }
 
-static void test_cut_off_write_is_undone(void **state)
-{
+static void test_cut_off_write_is_undone(void **state) {
     const place *here = *state;
     char journal[200];
     size_t size;
@@ -278,9 +258,10 @@ static void test_cut_off_write_is_undone(void **state)
         make_database(here);
         run_sql(here->path, "PRAGMA journal_mode = DELETE"); /* as before there was a log */
         unsigned char *bytes = read_file(here->path, &size);
-        cut_off_write(here->path, "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 50)"
-                                  " INSERT INTO responses SELECT i, 0, 'table', NULL, NULL, zeroblob(8192) FROM n;"
-                                  " UPDATE profiles SET covariance = zeroblob(800), source = 'cut off'");
+        cut_off_write(here->path,
+                      "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 50)"
+                      " INSERT INTO responses SELECT i, 0, 'table', NULL, NULL, zeroblob(8192) FROM n;"
+                      " UPDATE profiles SET covariance = zeroblob(800), source = 'cut off'");
         assert_int_equal(access(journal, F_OK), 0);
         lensprof_store *store = store_at(here->path, mode);
         assert_int_equal(count_at(store), 1);
@@ -288,8 +269,9 @@ static void test_cut_off_write_is_undone(void **state)
         assert_file(here->path, bytes, size);
         free(bytes);
     }
-    cut_off_write(here->path, "UPDATE profiles SET covariance = zeroblob(800);"
-                              " INSERT INTO responses VALUES (1, 1, 'table', NULL, NULL, zeroblob(8192))");
+    cut_off_write(here->path,
+                  "UPDATE profiles SET covariance = zeroblob(800);"
+                  " INSERT INTO responses VALUES (1, 1, 'table', NULL, NULL, zeroblob(8192))");
     if (!set_protected(here->path, true)) skip();
     lensprof_store *store = NULL;
     lensprof_error error;
@@ -299,8 +281,7 @@ static void test_cut_off_write_is_undone(void **state)
     assert_profiles(here->path, 1);
 }
 
-static void test_removed_while_open(void **state)
-{
+static void test_removed_while_open(void **state) {
     const place *here = *state;
     lensprof_error error;
     make_database(here);
@@ -312,8 +293,7 @@ static void test_removed_while_open(void **state)
 }
 
 /* The store's own limit stands for the end of the disk. */
-static void test_no_page_left(void **state)
-{
+static void test_no_page_left(void **state) {
     const place *here = *state;
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_error error;
@@ -345,8 +325,7 @@ static void test_no_page_left(void **state)
 
 /* In a child whose files may not grow beyond `bytes`: puts until that fails. Exit code: 100 + profiles stored when the
  * failure was as it should be; `there` were in the file before. */
-static int fill_limited(const char *path, rlim_t bytes, uint32_t there)
-{
+static int fill_limited(const char *path, rlim_t bytes, uint32_t there) {
     pid_t child = fork();
     if (child == 0) {
         struct rlimit limit = {bytes, bytes};
@@ -372,8 +351,7 @@ static int fill_limited(const char *path, rlim_t bytes, uint32_t there)
     return WEXITSTATUS(status);
 }
 
-static void test_no_room_for_the_file(void **state)
-{
+static void test_no_room_for_the_file(void **state) {
     const place *here = *state;
     static const rlim_t limits[] = {1, 5000, 20000, 60000, 100000, 200001};
     for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
@@ -396,8 +374,7 @@ static void test_no_room_for_the_file(void **state)
     free(bytes);
 }
 
-static void test_busy(void **state)
-{
+static void test_busy(void **state) {
     const place *here = *state;
     lensprof_profile *profile = malloc(sizeof *profile);
     lensprof_store *store = NULL;
@@ -426,8 +403,7 @@ static void test_busy(void **state)
 }
 
 /* The probe of a second handle in one process must not drop the locks of the first. */
-static void test_opening_keeps_locks_of_this_process(void **state)
-{
+static void test_opening_keeps_locks_of_this_process(void **state) {
     const place *here = *state;
     sqlite3 *holder;
     make_database(here);
@@ -447,10 +423,12 @@ static void test_opening_keeps_locks_of_this_process(void **state)
     sqlite3_close(holder);
 }
 
-static void test_several_processes_create_and_put(void **state)
-{
+static void test_several_processes_create_and_put(void **state) {
     const place *here = *state;
-    enum { PROCESSES = 4, PUTS = 5 };
+    enum {
+        PROCESSES = 4,
+        PUTS = 5
+    };
     for (int i = 0; i < PROCESSES; i++)
         if (fork() == 0) {
             lensprof_profile *profile = malloc(sizeof *profile);
@@ -470,8 +448,7 @@ static void test_several_processes_create_and_put(void **state)
     assert_profiles(here->path, PROCESSES * PUTS);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_missing_file),
         store_test(test_directory),

@@ -7,16 +7,14 @@
 
 static lensprof_profile profile;
 
-static bool has_file(const place *here, const char *end)
-{
+static bool has_file(const place *here, const char *end) {
     char path[200];
     snprintf(path, sizeof path, "%s%s", here->path, end);
     return access(path, F_OK) == 0;
 }
 
 /* The file's header says what its readers must do: 2 = log. */
-static int mode_of(const place *here)
-{
+static int mode_of(const place *here) {
     size_t size;
     unsigned char *bytes = read_file(here->path, &size);
     const int mode = bytes[18] == bytes[19] ? bytes[18] : -1;
@@ -24,21 +22,18 @@ static int mode_of(const place *here)
     return mode;
 }
 
-static void make_database(const place *here, int profiles)
-{
+static void make_database(const place *here, int profiles) {
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     fill_profile(&profile);
     for (int i = 0; i < profiles; i++) put_at(store, &profile);
     lensprof_store_close(store);
 }
 
-static void assert_alone(const place *here)
-{
+static void assert_alone(const place *here) {
     assert_false(has_file(here, "-wal") || has_file(here, "-shm") || has_file(here, "-journal"));
 }
 
-static void test_one_file_when_closed(void **state)
-{
+static void test_one_file_when_closed(void **state) {
     const place *here = *state;
     make_database(here, 2);
     assert_int_equal(mode_of(here), 2);
@@ -53,8 +48,7 @@ static void test_one_file_when_closed(void **state)
     assert_integrity(here->path);
 }
 
-static void test_settings(void **state)
-{
+static void test_settings(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     int64_t value = -1;
@@ -75,8 +69,7 @@ static void test_settings(void **state)
 }
 
 /* A file of an older lensprof: readers leave it as it is, the first writer makes a log, also while others read. */
-static void test_rollback_mode_becomes_a_log(void **state)
-{
+static void test_rollback_mode_becomes_a_log(void **state) {
     const place *here = *state;
     make_database(here, 1);
     run_sql(here->path, "PRAGMA journal_mode = DELETE");
@@ -100,8 +93,7 @@ static void test_rollback_mode_becomes_a_log(void **state)
 }
 
 /* Somebody reads: the profile is stored, and the mode is changed by a later write. */
-static void test_reader_keeps_the_mode(void **state)
-{
+static void test_reader_keeps_the_mode(void **state) {
     const place *here = *state;
     sqlite3 *reader;
     sqlite3_stmt *statement;
@@ -123,8 +115,7 @@ static void test_reader_keeps_the_mode(void **state)
 }
 
 /* Ends without closing: the log stays, with `more` committed profiles and one that is not. */
-static void leave_log(const char *path, int more)
-{
+static void leave_log(const char *path, int more) {
     pid_t child = fork();
     if (child == 0) {
         lensprof_store *store = store_at(path, LENSPROF_STORE_WRITE);
@@ -137,8 +128,7 @@ static void leave_log(const char *path, int more)
     assert_int_equal(status, 0);
 }
 
-static void test_log_that_was_left(void **state)
-{
+static void test_log_that_was_left(void **state) {
     const place *here = *state;
     for (uint32_t mode = 0; mode < 3; mode++) {
         unlink(here->path);
@@ -153,8 +143,7 @@ static void test_log_that_was_left(void **state)
     }
 }
 
-static void assert_read_there(const char *path, lensprof_status expected, const char *text)
-{
+static void assert_read_there(const char *path, lensprof_status expected, const char *text) {
     lensprof_store *store = NULL;
     lensprof_error error = {""};
     const lensprof_status status = lensprof_store_open(path, LENSPROF_STORE_READ, &store, &error);
@@ -163,13 +152,13 @@ static void assert_read_there(const char *path, lensprof_status expected, const 
         assert_int_equal(count_at(store), 1);
         assert_ok(lensprof_store_get(store, 1, &profile, &error));
         assert_int_equal(lensprof_store_put(store, &profile, NULL, &error), LENSPROF_ERROR_READ_ONLY);
-    } else if (!strstr(error.text, text)) fail_msg("%s", error.text);
+    } else if (!strstr(error.text, text))
+        fail_msg("%s", error.text);
     lensprof_store_close(store);
 }
 
 /* A folder that cannot be written: read as it is when it was closed; a log left there is said. */
-static void test_read_only_folder(void **state)
-{
+static void test_read_only_folder(void **state) {
     const place *here = *state;
     make_database(here, 1);
     if (!set_protected(here->directory, true)) skip();
@@ -185,8 +174,7 @@ static void test_read_only_folder(void **state)
 }
 
 /* A user who may only read, with names that an address would read otherwise. */
-static void test_another_user(void **state)
-{
+static void test_another_user(void **state) {
     const place *here = *state;
     char path[300];
     if (geteuid() != 0) skip();
@@ -206,8 +194,7 @@ static void test_another_user(void **state)
 }
 
 /* A reader without locks notices a writer that comes later. */
-static void test_writer_beside_an_immutable_reader(void **state)
-{
+static void test_writer_beside_an_immutable_reader(void **state) {
     const place *here = *state;
     make_database(here, 1);
     if (!set_protected(here->directory, true)) skip();
@@ -227,8 +214,7 @@ static void test_writer_beside_an_immutable_reader(void **state)
 }
 
 /* No room for the log's index, 32 KiB: what is there can be read, and nothing new lies beside it. */
-static void test_full_disk(void **state)
-{
+static void test_full_disk(void **state) {
     const place *here = *state;
     make_database(here, 1);
     pid_t child = fork();
@@ -247,8 +233,7 @@ static void test_full_disk(void **state)
     assert_integrity(here->path);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_one_file_when_closed),
         store_test(test_settings),

@@ -1,13 +1,12 @@
 /* Profiles for settings that are not stored: names, cameras, units, sensors, the falloff between settings, refusals. */
 #include "store_fixture.h"
 
-#include "store/falloff_prediction.h"
-#include "store/store_names.h"
+#include "store/lookup/falloff_prediction.h"
+#include "store/lookup/names.h"
 
 static lensprof_profile shared; /* 50 kB */
 
-static lensprof_profile *zoom_profile(const char *lens, double focal, double aperture, double distance)
-{
+static lensprof_profile *zoom_profile(const char *lens, double focal, double aperture, double distance) {
     lensprof_profile *p = &shared;
     lensprof_profile_init(p);
     snprintf(p->key.lens, sizeof p->key.lens, "%s", lens);
@@ -18,16 +17,14 @@ static lensprof_profile *zoom_profile(const char *lens, double focal, double ape
 }
 
 /* A lens that loses less the more it is stopped down, and the longer it is. */
-static void true_falloff(double focal, double aperture, double k[3])
-{
+static void true_falloff(double focal, double aperture, double k[3]) {
     const double open = 1.8 / aperture;
     k[0] = -0.12 - 0.45 * open * open - 0.1 * log2(70.0 / focal) * open;
     k[1] = 0.15 * open;
     k[2] = -0.06 * open * open;
 }
 
-static int64_t put_falloff(lensprof_store *store, const char *lens, double focal, double aperture, double distance)
-{
+static int64_t put_falloff(lensprof_store *store, const char *lens, double focal, double aperture, double distance) {
     lensprof_profile *p = zoom_profile(lens, focal, aperture, distance);
     true_falloff(focal, aperture, p->vignetting[0].k);
     return put_at(store, p);
@@ -35,8 +32,7 @@ static int64_t put_falloff(lensprof_store *store, const char *lens, double focal
 
 static const char zoom[] = "Example EF 24-70mm f/1.8L USM";
 
-static lensprof_store *zoom_store(const place *here)
-{
+static lensprof_store *zoom_store(const place *here) {
     static const double focals[] = {24, 35, 50, 70}, apertures[] = {1.8, 2.0, 2.8, 4.0, 5.6, 8.0};
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     assert_ok(lensprof_store_begin(store, NULL));
@@ -50,23 +46,20 @@ static lensprof_profile answered;
 static lensprof_lookup how;
 
 static lensprof_status ask_with(lensprof_store *store, const lensprof_profile_key *key,
-                                const lensprof_lookup_options *options)
-{
+                                const lensprof_lookup_options *options) {
     lensprof_error error;
     memset(&how, 0, sizeof how);
     return lensprof_store_lookup(store, key, options, &answered, &how, &error);
 }
 
-static lensprof_status ask(lensprof_store *store, const char *lens, double focal, double aperture, double distance)
-{
+static lensprof_status ask(lensprof_store *store, const char *lens, double focal, double aperture, double distance) {
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
     const lensprof_profile_key key = zoom_profile(lens, focal, aperture, distance)->key;
     return ask_with(store, &key, &options);
 }
 
-static double worst_error(double focal, double aperture)
-{
+static double worst_error(double focal, double aperture) {
     double k[3], worst = 0.0;
     true_falloff(focal, aperture, k);
     for (double r = 0.0; r <= 1.0; r += 0.05) {
@@ -77,8 +70,7 @@ static double worst_error(double focal, double aperture)
     return worst;
 }
 
-static void test_exact(void **state)
-{
+static void test_exact(void **state) {
     lensprof_store *store = zoom_store(*state);
     assert_ok(ask(store, zoom, 35, 2.8, INFINITY));
     assert_int_equal(how.exact, 1);
@@ -92,8 +84,7 @@ static void test_exact(void **state)
     lensprof_store_close(store);
 }
 
-static void test_between_settings(void **state)
-{
+static void test_between_settings(void **state) {
     static const double asked[][2] = {{28, 2.4}, {42, 3.5}, {60, 6.3}, {24, 1.9}, {70, 7.1}, {30, 4.0}};
     lensprof_store *store = zoom_store(*state);
     for (int i = 0; i < 6; i++) {
@@ -112,8 +103,7 @@ static void test_between_settings(void **state)
 }
 
 /* Without a bit of difference, whoever asks and however often. */
-static void test_same_answer_and_nothing_written(void **state)
-{
+static void test_same_answer_and_nothing_written(void **state) {
     const place *here = *state;
     size_t before, after;
     lensprof_store_close(zoom_store(here));
@@ -133,14 +123,15 @@ static void test_same_answer_and_nothing_written(void **state)
     free(is);
 }
 
-static void test_refusals(void **state)
-{
+static void test_refusals(void **state) {
     lensprof_store *store = zoom_store(*state);
     static const struct {
         double focal, aperture;
         const char *why;
-    } cases[] = {{24, 1.2, "aperture is beyond"},      {24, 16, "aperture is beyond"},
-                 {14, 2.8, "focal length is beyond"},  {200, 2.8, "focal length is beyond"},
+    } cases[] = {{24, 1.2, "aperture is beyond"},
+                 {24, 16, "aperture is beyond"},
+                 {14, 2.8, "focal length is beyond"},
+                 {200, 2.8, "focal length is beyond"},
                  {LENSPROF_UNKNOWN, 2.8, "focal length is not known"},
                  {35, LENSPROF_UNKNOWN, "aperture is not known"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -156,8 +147,7 @@ static void test_refusals(void **state)
     lensprof_store_close(store);
 }
 
-static void test_names(void **state)
-{
+static void test_names(void **state) {
     lensprof_store *store = zoom_store(*state);
     put_falloff(store, "Canon EF 85mm f/1.8 USM", 85, 1.8, INFINITY);
     lensprof_lookup_options options;
@@ -165,9 +155,9 @@ static void test_names(void **state)
     static const struct {
         const char *lens, *maker;
         double score;
-    } cases[] = {{"Canon EF 85mm f/1.8 USM", "", 1.0},     {" canon ef 85MM F/1.8 usm ", "", 1.0},
-                 {"Canon EF85mm F1.8 USM", "", 0.9},       {"EF85mm f/1.8 USM", "Canon", 0.8},
-                 {"EF85mm f/1.8 USM", "CANON INC.", 0.8},  {"EF85mm f/1.8 USM", "NIKON CORPORATION", 0.0},
+    } cases[] = {{"Canon EF 85mm f/1.8 USM", "", 1.0},      {" canon ef 85MM F/1.8 usm ", "", 1.0},
+                 {"Canon EF85mm F1.8 USM", "", 0.9},        {"EF85mm f/1.8 USM", "Canon", 0.8},
+                 {"EF85mm f/1.8 USM", "CANON INC.", 0.8},   {"EF85mm f/1.8 USM", "NIKON CORPORATION", 0.0},
                  {"Canon EF 85mm f/1.2 USM", "Canon", 0.0}, {"", "Canon", 0.0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         lensprof_profile_key key = zoom_profile(cases[i].lens, 85, 1.8, INFINITY)->key;
@@ -180,8 +170,7 @@ static void test_names(void **state)
 }
 
 /* A camera's own profiles before a lens's, a unit's before the model's, the smallest sensor that is large enough. */
-static void test_which_rows(void **state)
-{
+static void test_which_rows(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     lensprof_lookup_options options;
@@ -220,8 +209,7 @@ static void test_which_rows(void **state)
 }
 
 /* Beyond the last focal length the aperture counts as it does at it. */
-static void test_aperture_beyond_the_last_focal_length(void **state)
-{
+static void test_aperture_beyond_the_last_focal_length(void **state) {
     const place *here = *state;
     lensprof_store *store = zoom_store(here);
     double corner[3];
@@ -237,10 +225,9 @@ static void test_aperture_beyond_the_last_focal_length(void **state)
     lensprof_store_close(store);
 }
 
-/* A sensor that is not known is taken as the smallest measured, so that not too much is taken out; curves of sensors are not
- * mixed, and one whose crop factor EXIF rounds is the same. */
-static void test_unknown_sensor(void **state)
-{
+/* A sensor that is not known is taken as the smallest measured, so that not too much is taken out; curves of sensors
+ * are not mixed, and one whose crop factor EXIF rounds is the same. */
+static void test_unknown_sensor(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     lensprof_lookup_options options;
@@ -267,8 +254,7 @@ static void test_unknown_sensor(void **state)
 }
 
 /* What there is, but was not asked for, is said. */
-static void test_left_out_is_said(void **state)
-{
+static void test_left_out_is_said(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     lensprof_lookup_options options;
@@ -289,8 +275,7 @@ static void test_left_out_is_said(void **state)
 }
 
 /* Nothing that was not there is taken out. */
-static void test_unknown_distance(void **state)
-{
+static void test_unknown_distance(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     lensprof_lookup_options options;
@@ -312,8 +297,7 @@ static void test_unknown_distance(void **state)
     lensprof_store_close(store);
 }
 
-static void test_doubt_and_processing(void **state)
-{
+static void test_doubt_and_processing(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     lensprof_lookup_options options;
@@ -335,8 +319,7 @@ static void test_doubt_and_processing(void **state)
 }
 
 /* What no profile has, by another program's hand. */
-static void test_damaged_rows(void **state)
-{
+static void test_damaged_rows(void **state) {
     static const char *const damages[] = {"profiles SET aperture = -2.0", "profiles SET focal_mm = 0.0",
                                           "vignettings SET k1 = 9e999", "profiles SET camera_model = char(7)"};
     const place *here = *state;
@@ -353,8 +336,7 @@ static void test_damaged_rows(void **state)
     }
 }
 
-static void test_covariance_counts(void **state)
-{
+static void test_covariance_counts(void **state) {
     (void)state;
     lp_falloff_node nodes[2] = {{1, 50, 2.0, INFINITY, {{-0.2}, {-0.2}, {-0.2}}, 0.0},
                                 {2, 50, 2.0, INFINITY, {{-0.4}, {-0.4}, {-0.4}}, 0.0}};
@@ -366,8 +348,7 @@ static void test_covariance_counts(void **state)
     assert_true(unequal.k[0][0] < equal.k[0][0] - 0.03);
 }
 
-static void test_transactions(void **state)
-{
+static void test_transactions(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     lensprof_error error;
@@ -396,8 +377,7 @@ static void test_transactions(void **state)
     assert_integrity(here->path);
 }
 
-static void test_arguments(void **state)
-{
+static void test_arguments(void **state) {
     lensprof_store *store = zoom_store(*state);
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
@@ -418,8 +398,7 @@ static void test_arguments(void **state)
     lensprof_store_close(store);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_exact),
         store_test(test_between_settings),

@@ -4,8 +4,7 @@
 static lensprof_profile sample[3], found;
 
 /* Profiles with something in every field: EMoR and a grid; three tables; unknown numbers, gamma and a doubt. */
-static void fill_samples(void)
-{
+static void fill_samples(void) {
     double values[LENSPROF_RESPONSE_SAMPLES];
     for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) values[j] = sqrt(j / 1023.0);
     fill_profile(&sample[0]);
@@ -24,23 +23,20 @@ static void fill_samples(void)
     assert_ok(lensprof_response_set_gamma(&sample[2].response[0], 2.2));
 }
 
-static lensprof_store *other_store(const place *here, const char *name, uint32_t mode)
-{
+static lensprof_store *other_store(const place *here, const char *name, uint32_t mode) {
     char path[300];
     snprintf(path, sizeof path, "%s/%s", here->directory, name);
     return store_at(path, mode);
 }
 
 /* A database of the samples from `first` on, closed. */
-static void make_other(const place *here, const char *name, int first, int count)
-{
+static void make_other(const place *here, const char *name, int first, int count) {
     lensprof_store *store = other_store(here, name, LENSPROF_STORE_CREATE);
     for (int i = 0; i < count; i++) put_at(store, &sample[first + i]);
     lensprof_store_close(store);
 }
 
-static void assert_merged(lensprof_store *store, lensprof_store *other, uint32_t new_ones, uint32_t old_ones)
-{
+static void assert_merged(lensprof_store *store, lensprof_store *other, uint32_t new_ones, uint32_t old_ones) {
     lensprof_error error;
     uint32_t added = 99, known = 99;
     if (lensprof_store_merge(store, other, &added, &known, &error) != LENSPROF_OK) fail_msg("%s", error.text);
@@ -48,8 +44,7 @@ static void assert_merged(lensprof_store *store, lensprof_store *other, uint32_t
     assert_int_equal(known, old_ones);
 }
 
-static void test_everything_arrives_as_it_was(void **state)
-{
+static void test_everything_arrives_as_it_was(void **state) {
     const place *here = *state;
     fill_samples();
     make_other(here, "other.db", 0, 3);
@@ -70,10 +65,11 @@ static void test_everything_arrives_as_it_was(void **state)
 }
 
 /* Whatever differs makes another profile, be it the last bit of one number. */
-static void test_what_differs_is_added(void **state)
-{
+static void test_what_differs_is_added(void **state) {
     const place *here = *state;
-    enum { CHANGES = 13 };
+    enum {
+        CHANGES = 13
+    };
     lensprof_profile *p = malloc(sizeof *p);
     fill_samples();
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -105,8 +101,7 @@ static void test_what_differs_is_added(void **state)
 }
 
 /* The newest of a key is the newest of the other database, as it was there; two that are the same become one. */
-static void test_order_and_repetitions(void **state)
-{
+static void test_order_and_repetitions(void **state) {
     const place *here = *state;
     int64_t id;
     fill_samples();
@@ -124,8 +119,7 @@ static void test_order_and_repetitions(void **state)
     lensprof_store_close(other);
 }
 
-static void test_older_layout_is_read_as_it_is(void **state)
-{
+static void test_older_layout_is_read_as_it_is(void **state) {
     const place *here = *state;
     char path[300];
     size_t size;
@@ -145,15 +139,13 @@ static void test_older_layout_is_read_as_it_is(void **state)
     free(bytes);
 }
 
-static void set_method(lensprof_profile *profile, const char *method)
-{
+static void set_method(lensprof_profile *profile, const char *method) {
     memset(profile->provenance.method, 0, sizeof profile->provenance.method);
     strcpy(profile->provenance.method, method);
 }
 
 /* The number behind a method, and the method with another one. */
-static void test_prior_of_a_method(void **state)
-{
+static void test_prior_of_a_method(void **state) {
     static const struct {
         const char *method;
         int64_t prior, next;
@@ -199,8 +191,7 @@ static void test_prior_of_a_method(void **state)
 }
 
 /* What is in a profile has another number here, also where it was here before. */
-static void test_priors_are_renumbered(void **state)
-{
+static void test_priors_are_renumbered(void **state) {
     const place *here = *state;
     static const char *const methods[] = {"transfer", "transfer+1", "transfer+2 (forced)", "transfer+99", "transfer+5"};
     static const char *const here_as[] = {"transfer+3", "transfer+4 (forced)", "transfer", "transfer"};
@@ -227,10 +218,11 @@ static void test_priors_are_renumbered(void **state)
 }
 
 /* A known profile learns what is in it; what it says itself stays. */
-static void test_known_profiles_learn_their_priors(void **state)
-{
+static void test_known_profiles_learn_their_priors(void **state) {
     const place *here = *state;
-    static const char *const own[] = {"transfer", "transfer", "transfer+1"}, *const theirs[] = {"transfer", "transfer+1", "transfer+2"};
+    static const char *const own[] = {"transfer", "transfer", "transfer+1"}, *const theirs[] = {"transfer",
+                                                                                                "transfer+1",
+                                                                                                "transfer+2"};
     fill_samples();
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_CREATE);
@@ -254,8 +246,7 @@ static void test_known_profiles_learn_their_priors(void **state)
 }
 
 /* The same rule for importers: not the newest alone, and whatever made it. */
-static void test_find_same(void **state)
-{
+static void test_find_same(void **state) {
     const place *here = *state;
     lensprof_error error;
     int64_t id = 77;
@@ -292,8 +283,7 @@ static void test_find_same(void **state)
     lensprof_store_close(store);
 }
 
-static void test_damaged_row_takes_everything_back(void **state)
-{
+static void test_damaged_row_takes_everything_back(void **state) {
     const place *here = *state;
     char path[300];
     lensprof_error error;
@@ -318,8 +308,7 @@ static void test_damaged_row_takes_everything_back(void **state)
     assert_integrity(here->path);
 }
 
-static void test_one_transaction_for_several(void **state)
-{
+static void test_one_transaction_for_several(void **state) {
     const place *here = *state;
     fill_samples();
     make_other(here, "a.db", 0, 2);
@@ -330,8 +319,10 @@ static void test_one_transaction_for_several(void **state)
         assert_ok(lensprof_store_begin(store, NULL));
         assert_merged(store, a, 2, 0);
         assert_merged(store, b, 1, 1);
-        if (again) assert_ok(lensprof_store_commit(store, NULL));
-        else lensprof_store_rollback(store);
+        if (again)
+            assert_ok(lensprof_store_commit(store, NULL));
+        else
+            lensprof_store_rollback(store);
         assert_int_equal(count_at(store), again ? 3 : 0);
     }
     lensprof_store_close(a);
@@ -339,8 +330,7 @@ static void test_one_transaction_for_several(void **state)
     lensprof_store_close(store);
 }
 
-static void test_refusals(void **state)
-{
+static void test_refusals(void **state) {
     const place *here = *state;
     lensprof_error error;
     char link[300];
@@ -365,8 +355,7 @@ static void test_refusals(void **state)
     lensprof_store_close(store);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_everything_arrives_as_it_was),
         store_test(test_what_differs_is_added),

@@ -1,10 +1,9 @@
 /* Names that are written in many ways: what is the same lens or camera, and above all what is not. */
 #include "store_fixture.h"
 
-#include "store/store_names.h"
+#include "store/lookup/names.h"
 
-static void test_scores(void **state)
-{
+static void test_scores(void **state) {
     static const struct {
         const char *a, *b;
         double score;
@@ -35,8 +34,7 @@ static void test_scores(void **state)
         }
 }
 
-static void test_words(void **state)
-{
+static void test_words(void **state) {
     static const struct {
         const char *a, *b, *camera_maker;
         int same;
@@ -78,8 +76,7 @@ static lensprof_profile profile;
 static lensprof_lookup how;
 
 static int64_t put(lensprof_store *store, const char *maker, const char *camera, const char *lens, double focal,
-                   double aperture)
-{
+                   double aperture) {
     lensprof_profile_init(&profile);
     strcpy(profile.key.camera_maker, maker);
     strcpy(profile.key.camera_model, camera);
@@ -90,8 +87,7 @@ static int64_t put(lensprof_store *store, const char *maker, const char *camera,
 }
 
 static lensprof_status ask(lensprof_store *store, const char *maker, const char *camera, const char *lens, double focal,
-                           double aperture)
-{
+                           double aperture) {
     lensprof_lookup_options options;
     lensprof_profile_key key;
     lensprof_error error;
@@ -105,8 +101,7 @@ static lensprof_status ask(lensprof_store *store, const char *maker, const char 
     return lensprof_store_lookup(store, &key, &options, &profile, &how, &error);
 }
 
-static void test_lenses_found_by_other_names(void **state)
-{
+static void test_lenses_found_by_other_names(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     const int64_t canon = put(store, "", "", "Canon EF 24-70mm f/2.8L II USM", 24, 2.8);
     const int64_t fuji = put(store, "", "", "Fujinon XF 23mm F2 R WR", 23, 2);
@@ -136,8 +131,7 @@ static void test_lenses_found_by_other_names(void **state)
     lensprof_store_close(store);
 }
 
-static void test_fixed_lenses(void **state)
-{
+static void test_fixed_lenses(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     const int64_t phone = put(store, "Apple", "iPhone 7", "", 4.2, 1.8);
     put(store, "Canon", "PowerShot G7", "Canon PowerShot G7 & compatibles", 7.4, 2.8);
@@ -167,8 +161,7 @@ static void test_fixed_lenses(void **state)
     lensprof_store_close(store);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_scores),
         cmocka_unit_test(test_words),

@@ -6,8 +6,7 @@
 /* Two profiles as layout 1 can hold them, made once. */
 static lensprof_profile old[2], found;
 
-static void make_old(const char *path)
-{
+static void make_old(const char *path) {
     for (int i = 0; i < 2; i++) {
         fill_profile(&old[i]);
         lensprof_gain_grid_init(&old[i].grid);
@@ -17,8 +16,7 @@ static void make_old(const char *path)
     make_layout_1(path, old, 2);
 }
 
-static int64_t layout_of(const char *path)
-{
+static int64_t layout_of(const char *path) {
     sqlite3 *db;
     int64_t layout = -1;
     assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
@@ -28,8 +26,7 @@ static int64_t layout_of(const char *path)
 }
 
 /* Both profiles are there as they were. */
-static void assert_old_profiles(lensprof_store *store)
-{
+static void assert_old_profiles(lensprof_store *store) {
     lensprof_store_row rows[4];
     uint32_t count;
     int64_t id;
@@ -45,8 +42,7 @@ static void assert_old_profiles(lensprof_store *store)
     assert_true(count >= 2);
 }
 
-static void test_reading_changes_nothing(void **state)
-{
+static void test_reading_changes_nothing(void **state) {
     const place *here = *state;
     lensprof_error error;
     size_t size;
@@ -64,8 +60,7 @@ static void test_reading_changes_nothing(void **state)
     free(bytes);
 }
 
-static void test_first_put_brings_up_to_date(void **state)
-{
+static void test_first_put_brings_up_to_date(void **state) {
     const place *here = *state;
     lensprof_profile *newer = malloc(sizeof *newer);
     make_old(here->path);
@@ -89,8 +84,7 @@ static void test_first_put_brings_up_to_date(void **state)
     free(newer);
 }
 
-static void test_first_remove_brings_up_to_date(void **state)
-{
+static void test_first_remove_brings_up_to_date(void **state) {
     const place *here = *state;
     make_old(here->path);
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_WRITE);
@@ -102,8 +96,7 @@ static void test_first_remove_brings_up_to_date(void **state)
 }
 
 /* A write that fails takes the new layout back with it. */
-static void test_failed_write_leaves_the_layout(void **state)
-{
+static void test_failed_write_leaves_the_layout(void **state) {
     const place *here = *state;
     lensprof_error error;
     char sql[60];
@@ -127,14 +120,14 @@ static void test_failed_write_leaves_the_layout(void **state)
 }
 
 /* Text of every table and index, by name. */
-static void read_schema(const char *path, char *text, size_t capacity)
-{
+static void read_schema(const char *path, char *text, size_t capacity) {
     sqlite3 *db;
     sqlite3_stmt *statement;
     size_t used = 0;
     assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
     assert_int_equal(sqlite3_prepare_v2(db, "SELECT sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY name", -1,
-                                        &statement, NULL), SQLITE_OK);
+                                        &statement, NULL),
+                     SQLITE_OK);
     while (sqlite3_step(statement) == SQLITE_ROW)
         used += (size_t)snprintf(text + used, capacity - used, "%s\n", sqlite3_column_text(statement, 0));
     assert_true(used > 1000 && used < capacity);
@@ -142,8 +135,7 @@ static void read_schema(const char *path, char *text, size_t capacity)
     sqlite3_close(db);
 }
 
-static void test_old_and_new_files_become_the_same(void **state)
-{
+static void test_old_and_new_files_become_the_same(void **state) {
     const place *here = *state;
     static char schema[2][16384];
     char path[300];
@@ -160,10 +152,11 @@ static void test_old_and_new_files_become_the_same(void **state)
 }
 
 /* All bring it up to date at once; one is the first, nobody fails. */
-static void test_several_processes(void **state)
-{
+static void test_several_processes(void **state) {
     const place *here = *state;
-    enum { PROCESSES = 4 };
+    enum {
+        PROCESSES = 4
+    };
     make_old(here->path);
     fill_profile(&found);
     strcpy(found.key.lens, "another");
@@ -171,8 +164,7 @@ static void test_several_processes(void **state)
         if (fork() == 0) {
             lensprof_store *store = NULL;
             lensprof_status status = lensprof_store_open(here->path, LENSPROF_STORE_WRITE, &store, NULL);
-            for (int k = 0; k < 3 && status == LENSPROF_OK; k++)
-                status = lensprof_store_put(store, &found, NULL, NULL);
+            for (int k = 0; k < 3 && status == LENSPROF_OK; k++) status = lensprof_store_put(store, &found, NULL, NULL);
             _exit((int)status);
         }
     for (int i = 0; i < PROCESSES; i++) {
@@ -188,8 +180,7 @@ static void test_several_processes(void **state)
 }
 
 /* Somebody's own table of that name, or a column: the write fails, reading goes on. */
-static void test_names_that_are_taken(void **state)
-{
+static void test_names_that_are_taken(void **state) {
     const place *here = *state;
     static const char *const taken[] = {"CREATE TABLE gain_grids (a)",
                                         "ALTER TABLE profiles ADD COLUMN gain_grids INTEGER"};
@@ -210,8 +201,7 @@ static void test_names_that_are_taken(void **state)
     }
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_reading_changes_nothing),
         store_test(test_first_put_brings_up_to_date),

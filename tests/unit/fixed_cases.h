@@ -9,7 +9,9 @@
 #ifndef PIXELS
 #define PIXELS 200
 #endif
-enum { ROOM = 8 * PIXELS };
+enum {
+    ROOM = 8 * PIXELS
+};
 
 typedef struct fixture {
     model m;
@@ -20,20 +22,17 @@ typedef struct fixture {
     const lensprof_fixed_plan *plan;
 } fixture;
 
-static const uint32_t layouts[] = {LENSPROF_LAYOUT_GREY, LENSPROF_LAYOUT_GREY_ALPHA, LENSPROF_LAYOUT_RGB,
-                                   LENSPROF_LAYOUT_RGBA, LENSPROF_LAYOUT_BGR,        LENSPROF_LAYOUT_BGRA,
-                                   LENSPROF_LAYOUT_RGGB, LENSPROF_LAYOUT_GRBG,       LENSPROF_LAYOUT_GBRG,
-                                   LENSPROF_LAYOUT_BGGR};
+static const uint32_t layouts[] = {
+    LENSPROF_LAYOUT_GREY, LENSPROF_LAYOUT_GREY_ALPHA, LENSPROF_LAYOUT_RGB,  LENSPROF_LAYOUT_RGBA, LENSPROF_LAYOUT_BGR,
+    LENSPROF_LAYOUT_BGRA, LENSPROF_LAYOUT_RGGB,       LENSPROF_LAYOUT_GRBG, LENSPROF_LAYOUT_GBRG, LENSPROF_LAYOUT_BGGR};
 
-static void make_plan(fixture *f)
-{
+static void make_plan(fixture *f) {
     assert_in_range(lensprof_fixed_plan_bytes(&f->m.options), 1, sizeof f->memory);
     assert_ok(lensprof_fixed_plan_init(f->memory, sizeof f->memory, &f->m.options, &f->plan));
 }
 
 /* A random model that integers take, and random pixels of a row somewhere in its frame. */
-static void make_case(fixture *f, uint32_t sample, uint64_t *random)
-{
+static void make_case(fixture *f, uint32_t sample, uint64_t *random) {
     lensprof_apply_options *o = &f->m.options;
     random_model(&f->m, random);
     o->grid = NULL;
@@ -55,25 +54,23 @@ static void make_case(fixture *f, uint32_t sample, uint64_t *random)
 }
 
 /* Colour channel of sample s of pixel (x, y), by the names of the layouts; -1 for alpha. */
-static int channel_at(uint32_t layout, uint32_t s, uint32_t x, uint32_t y)
-{
+static int channel_at(uint32_t layout, uint32_t s, uint32_t x, uint32_t y) {
     static const char *const orders[] = {"G", "Ga", "RGB", "RGBa", "BGR", "BGRa", "", "RGGB", "GRBG", "GBRG", "BGGR"};
     const char name = orders[layout][layout >= LENSPROF_LAYOUT_RGGB ? 2 * (y & 1) + (x & 1) : s];
     return name == 'R' ? 0 : name == 'G' ? 1 : name == 'B' ? 2 : -1;
 }
 
-static double value_at(const uint8_t *data, uint32_t sample, uint32_t i)
-{
+static double value_at(const uint8_t *data, uint32_t sample, uint32_t i) {
     uint16_t word;
     memcpy(&word, data + 2 * i, sizeof word);
     return sample == LENSPROF_SAMPLE_U8 ? data[i] : word;
 }
 
 /* The code that sample i of the row shall become. */
-static inline double wanted_at(const fixture *f, uint32_t i)
-{
+static inline double wanted_at(const fixture *f, uint32_t i) {
     const uint32_t samples = lensprof_layout_samples(f->from.layout), x = f->x0 + i / samples;
-    const double unit = f->from.sample == LENSPROF_SAMPLE_U8 ? 255.0 : 65535.0, code = value_at(f->in, f->from.sample, i);
+    const double unit = f->from.sample == LENSPROF_SAMPLE_U8 ? 255.0 : 65535.0,
+                 code = value_at(f->in, f->from.sample, i);
     const int c = channel_at(f->from.layout, i % samples, x, f->y0);
     if (c < 0) return code;
     return floor(unit * fmin(fmax(reference(&f->m, code / unit, (uint32_t)c, x, f->y0), 0.0), 1.0) + 0.5);

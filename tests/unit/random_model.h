@@ -6,7 +6,10 @@
 
 #include <lensprof/apply.h>
 
-enum { MODEL_WIDTH = 4000, MODEL_HEIGHT = 3000 };
+enum {
+    MODEL_WIDTH = 4000,
+    MODEL_HEIGHT = 3000
+};
 
 typedef struct model {
     lensprof_response response[3];
@@ -15,14 +18,12 @@ typedef struct model {
     lensprof_apply_options options;
 } model;
 
-static void random_response(lensprof_response *r, uint64_t *random)
-{
+static void random_response(lensprof_response *r, uint64_t *random) {
     uint32_t kind = (uint32_t)(4 * lp_random(random));
     double emor[4], sizes[4] = {1.0, 0.5, 0.3, 0.1}, table[40] = {0.0};
     lensprof_response_set_linear(r);
     if (kind == 1) assert_ok(lensprof_response_set_gamma(r, 1.0 + 1.6 * lp_random(random)));
-    if (kind == 2)
-        do
+    if (kind == 2) do
             for (int i = 0; i < 4; i++) emor[i] = sizes[i] * (2.0 * lp_random(random) - 1.0);
         while (lensprof_response_set_emor(r, emor, 4) != LENSPROF_OK);
     if (kind < 3) return;
@@ -32,8 +33,7 @@ static void random_response(lensprof_response *r, uint64_t *random)
 }
 
 /* Falloffs of real lenses: between .25 and 1.1 anywhere in the frame. */
-static void random_falloff(lensprof_vignetting *v, const double center[2], uint64_t *random)
-{
+static void random_falloff(lensprof_vignetting *v, const double center[2], uint64_t *random) {
     int good = 0;
     while (!good) {
         for (int n = 0; n < 3; n++) v->k[n] = 1.2 * lp_random(random) - 0.8;
@@ -46,8 +46,7 @@ static void random_falloff(lensprof_vignetting *v, const double center[2], uint6
     }
 }
 
-static void random_model(model *m, uint64_t *random)
-{
+static void random_model(model *m, uint64_t *random) {
     memset(m, 0, sizeof *m);
     lensprof_apply_options *o = &m->options;
     lensprof_apply_options_init(o);
@@ -77,8 +76,7 @@ static void random_model(model *m, uint64_t *random)
 }
 
 /* The formula of apply.h for a value of a channel at a pixel. */
-static double reference(const model *m, double value, uint32_t c, uint32_t x, uint32_t y)
-{
+static double reference(const model *m, double value, uint32_t c, uint32_t x, uint32_t y) {
     const lensprof_apply_options *o = &m->options;
     const lensprof_response *r = &m->response[o->responses == 3 ? c : 0];
     const lensprof_vignetting *v = &m->vignetting[o->vignettings == 3 ? c : 0];

@@ -3,7 +3,10 @@
 
 #include <lensprof/apply.h>
 
-enum { W = 37, H = 23 };
+enum {
+    W = 37,
+    H = 23
+};
 static const double steps[3] = {255.0, 65535.0, 0.0};
 
 typedef struct fixture {
@@ -15,17 +18,18 @@ typedef struct fixture {
     const lensprof_plan *plan;
 } fixture;
 
-static void make_model(fixture *f, uint32_t kind, uint32_t curves)
-{
+static void make_model(fixture *f, uint32_t kind, uint32_t curves) {
     const double emor[3] = {0.8, -0.3, 0.1}, table[4] = {0.0, 0.6, 0.9, 1.0};
     lensprof_apply_options_init(&f->options);
     for (int c = 0; c < 3; c++) {
-        if (kind == LENSPROF_RESPONSE_LINEAR) lensprof_response_set_linear(&f->response[c]);
+        if (kind == LENSPROF_RESPONSE_LINEAR)
+            lensprof_response_set_linear(&f->response[c]);
         else if (kind == LENSPROF_RESPONSE_GAMMA)
             assert_ok(lensprof_response_set_gamma(&f->response[c], 2.0 + 0.2 * c));
         else if (kind == LENSPROF_RESPONSE_EMOR)
             assert_ok(lensprof_response_set_emor(&f->response[c], emor, 1 + (uint32_t)c));
-        else assert_ok(lensprof_response_set_table(&f->response[c], table, 4));
+        else
+            assert_ok(lensprof_response_set_table(&f->response[c], table, 4));
         f->vignetting[c] = (lensprof_vignetting){{-0.4 + 0.1 * c, 0.1, -0.1}, {0.03, -0.05}};
     }
     f->options.response = f->response;
@@ -39,8 +43,7 @@ static void make_model(fixture *f, uint32_t kind, uint32_t curves)
 }
 
 /* Attenuations 0.6..1.4 without any order. */
-static void make_grid(fixture *f, uint32_t columns, uint32_t rows, uint32_t channels)
-{
+static void make_grid(fixture *f, uint32_t columns, uint32_t rows, uint32_t channels) {
     uint64_t random = columns + 100 * rows;
     lensprof_gain_grid_init(&f->grid);
     f->grid.columns = columns, f->grid.rows = rows, f->grid.channels = channels;
@@ -49,8 +52,7 @@ static void make_grid(fixture *f, uint32_t columns, uint32_t rows, uint32_t chan
     f->options.grid = &f->grid;
 }
 
-static void make_plan(fixture *f)
-{
+static void make_plan(fixture *f) {
     size_t bytes = lensprof_plan_bytes(&f->options);
     assert_true(bytes > 0);
     f->memory = malloc(bytes);
@@ -58,8 +60,7 @@ static void make_plan(fixture *f)
 }
 
 /* The formula of apply.h for one sample; channel -1 is grey (treated as green). */
-static double reference(const fixture *f, double value, int channel, double x, double y)
-{
+static double reference(const fixture *f, double value, int channel, double x, double y) {
     const lensprof_apply_options *o = &f->options;
     int c = channel < 0 ? 1 : channel, one_r = o->responses == 3 ? c : 0, one_v = o->vignettings == 3 ? c : 0;
     const lensprof_response *r = &f->response[one_r];
@@ -73,8 +74,7 @@ static double reference(const fixture *f, double value, int channel, double x, d
     return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(r, light, NULL);
 }
 
-static void put(uint8_t *p, uint32_t sample, double value)
-{
+static void put(uint8_t *p, uint32_t sample, double value) {
     if (sample == LENSPROF_SAMPLE_U8) *p = (uint8_t)lround(value * 255.0);
     uint16_t u = (uint16_t)lround(value * 65535.0);
     float v = (float)value;
@@ -82,8 +82,7 @@ static void put(uint8_t *p, uint32_t sample, double value)
     if (sample == LENSPROF_SAMPLE_F32) memcpy(p, &v, 4);
 }
 
-static double get(const uint8_t *p, uint32_t sample)
-{
+static double get(const uint8_t *p, uint32_t sample) {
     uint16_t u;
     float v;
     if (sample == LENSPROF_SAMPLE_U8) return *p / 255.0;
@@ -91,8 +90,7 @@ static double get(const uint8_t *p, uint32_t sample)
     return memcpy(&v, p, 4), (double)v;
 }
 
-static lensprof_image make_image(uint32_t sample, uint32_t layout, uint64_t seed)
-{
+static lensprof_image make_image(uint32_t sample, uint32_t layout, uint64_t seed) {
     lensprof_image image = {NULL, 0, W, H, sample, layout};
     uint32_t bytes = lensprof_sample_bytes(sample), count = W * H * lensprof_layout_samples(layout);
     image.row_bytes = (ptrdiff_t)(W * lensprof_layout_samples(layout) * bytes);
@@ -102,15 +100,13 @@ static lensprof_image make_image(uint32_t sample, uint32_t layout, uint64_t seed
     return image;
 }
 
-static int channel_of(uint32_t layout, uint32_t s)
-{
+static int channel_of(uint32_t layout, uint32_t s) {
     if (s >= lensprof_layout_channels(layout)) return -2; /* alpha */
     if (lensprof_layout_channels(layout) == 1) return -1;
     return (int)(layout == LENSPROF_LAYOUT_BGR || layout == LENSPROF_LAYOUT_BGRA ? 2 - s : s);
 }
 
-static void compare(const fixture *f, const lensprof_image *source, const lensprof_image *target)
-{
+static void compare(const fixture *f, const lensprof_image *source, const lensprof_image *target) {
     uint32_t samples = lensprof_layout_samples(source->layout), sb = lensprof_sample_bytes(source->sample),
              tb = lensprof_sample_bytes(target->sample);
     for (uint32_t y = 0; y < H; y++)
@@ -131,8 +127,7 @@ static void compare(const fixture *f, const lensprof_image *source, const lenspr
 }
 
 /* Every sample type in and out, every layout, response kind, direction, encoding, one and three curves. */
-static void test_every_format_follows_the_formula(void **state)
-{
+static void test_every_format_follows_the_formula(void **state) {
     (void)state;
     for (uint32_t n = 0; n < 3 * 3 * 6 * 4 * 2 * 2 * 2 * 2; n++) {
         fixture f;
@@ -152,8 +147,7 @@ static void test_every_format_follows_the_formula(void **state)
     }
 }
 
-static void test_gain_grids_follow_the_formula(void **state)
-{
+static void test_gain_grids_follow_the_formula(void **state) {
     (void)state;
     static const uint32_t sides[][2] = {{2, 2}, {7, 5}, {32, 32}, {2, 32}};
     for (uint32_t n = 0; n < 4 * 2 * 2 * 6 * 3; n++) {
@@ -175,8 +169,7 @@ static void test_gain_grids_follow_the_formula(void **state)
 }
 
 /* A grid of ones, no grid at all and NULL are the same. */
-static void test_no_gain_grid(void **state)
-{
+static void test_no_gain_grid(void **state) {
     (void)state;
     lensprof_image source = make_image(LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB, 3), target[3];
     for (int n = 0; n < 3; n++) {
@@ -195,8 +188,7 @@ static void test_no_gain_grid(void **state)
     free(source.data);
 }
 
-static void tiles_give_the_whole(int has_grid)
-{
+static void tiles_give_the_whole(int has_grid) {
     fixture f;
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
     if (has_grid) make_grid(&f, 9, 13, 3);
@@ -226,16 +218,14 @@ static void tiles_give_the_whole(int has_grid)
     free(source.data), free(whole.data), free(flipped), free(f.memory);
 }
 
-static void test_tiles_in_place_and_bottom_up_give_the_whole(void **state)
-{
+static void test_tiles_in_place_and_bottom_up_give_the_whole(void **state) {
     (void)state;
     tiles_give_the_whole(0);
     tiles_give_the_whole(1);
 }
 
 /* Simulate, then correct: back to the start within rounding. */
-static void test_correct_undoes_simulate(void **state)
-{
+static void test_correct_undoes_simulate(void **state) {
     (void)state;
     fixture f;
     make_model(&f, LENSPROF_RESPONSE_TABLE, 1);
@@ -254,8 +244,7 @@ static void test_correct_undoes_simulate(void **state)
     free(start.data), free(there.data), free(f.memory);
 }
 
-static void test_not_a_number_stays_in_its_sample(void **state)
-{
+static void test_not_a_number_stays_in_its_sample(void **state) {
     (void)state;
     fixture f;
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
@@ -269,8 +258,7 @@ static void test_not_a_number_stays_in_its_sample(void **state)
 }
 
 /* White stays without a cast when the white balance changes, and well exposed pixels follow the formula. */
-static void test_saturated_pixels_stay_neutral(void **state)
-{
+static void test_saturated_pixels_stay_neutral(void **state) {
     (void)state;
     fixture f;
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
@@ -291,8 +279,7 @@ static void test_saturated_pixels_stay_neutral(void **state)
     free(image.data), free(before.data), free(f.memory);
 }
 
-static void test_plan_refuses(void **state)
-{
+static void test_plan_refuses(void **state) {
     (void)state;
     fixture f;
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
@@ -301,10 +288,10 @@ static void test_plan_refuses(void **state)
     const lensprof_plan *plan = NULL;
     const lensprof_apply_options good = f.options;
     memset(memory, 0xAA, bytes + 8);
-#define REFUSED(change, status)                                                     \
-    do {                                                                            \
-        f.options = good;                                                           \
-        change;                                                                     \
+#define REFUSED(change, status)                                                         \
+    do {                                                                                \
+        f.options = good;                                                               \
+        change;                                                                         \
         assert_int_equal(lensprof_plan_init(memory, bytes, &f.options, &plan), status); \
     } while (0)
     REFUSED(f.options.struct_size = 4, LENSPROF_ERROR_STRUCT_SIZE);
@@ -352,8 +339,7 @@ static void test_plan_refuses(void **state)
     free(memory);
 }
 
-static void test_apply_refuses_and_writes_nothing(void **state)
-{
+static void test_apply_refuses_and_writes_nothing(void **state) {
     (void)state;
     fixture f;
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
@@ -390,8 +376,7 @@ static void test_apply_refuses_and_writes_nothing(void **state)
     free(s.data), free(t.data), free(before), free(f.memory);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_format_follows_the_formula),
         cmocka_unit_test(test_gain_grids_follow_the_formula),

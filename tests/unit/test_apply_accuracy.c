@@ -2,12 +2,20 @@
  * 16 bit within a level, float within four units in the last place where both sides are linear. */
 #include "unit/random_model.h"
 
-enum { PROFILES = 400, W = MODEL_WIDTH, H = MODEL_HEIGHT, PIXELS = 900 };
+enum {
+    PROFILES = 400,
+    W = MODEL_WIDTH,
+    H = MODEL_HEIGHT,
+    PIXELS = 900
+};
 
 /* How far the result is from the reference for pixels of a few rows: the worst, and the share that is the same. */
-static double worst_error(const model *m, uint32_t sample, uint64_t *random, double *same)
-{
-    static union { uint8_t u8[3 * PIXELS]; uint16_t u16[3 * PIXELS]; float f32[3 * PIXELS]; } in, out;
+static double worst_error(const model *m, uint32_t sample, uint64_t *random, double *same) {
+    static union {
+        uint8_t u8[3 * PIXELS];
+        uint16_t u16[3 * PIXELS];
+        float f32[3 * PIXELS];
+    } in, out;
     const double unit = sample == LENSPROF_SAMPLE_U8 ? 255.0 : sample == LENSPROF_SAMPLE_U16 ? 65535.0 : 1.0;
     const lensprof_plan *plan;
     double worst = 0.0;
@@ -15,16 +23,21 @@ static double worst_error(const model *m, uint32_t sample, uint64_t *random, dou
     assert_ok(lensprof_plan_init(memory, lensprof_plan_bytes(&m->options), &m->options, &plan));
     for (uint32_t i = 0; i < 3 * PIXELS; i++) {
         double value = lp_random(random);
-        if (sample == LENSPROF_SAMPLE_U8) in.u8[i] = (uint8_t)(256.0 * value);
-        else if (sample == LENSPROF_SAMPLE_U16) in.u16[i] = (uint16_t)(65536.0 * value);
-        else in.f32[i] = (float)value;
+        if (sample == LENSPROF_SAMPLE_U8)
+            in.u8[i] = (uint8_t)(256.0 * value);
+        else if (sample == LENSPROF_SAMPLE_U16)
+            in.u16[i] = (uint16_t)(65536.0 * value);
+        else
+            in.f32[i] = (float)value;
     }
     const uint32_t x0 = (uint32_t)((W - PIXELS) * lp_random(random)), y = (uint32_t)(H * lp_random(random));
     lensprof_image from = {&in, 0, PIXELS, 1, sample, LENSPROF_LAYOUT_RGB}, to = from;
     to.data = &out;
     assert_ok(lensprof_apply(plan, &from, &to, x0, y));
     for (uint32_t i = 0; i < 3 * PIXELS; i++) {
-        double value = sample == LENSPROF_SAMPLE_U8 ? in.u8[i] : sample == LENSPROF_SAMPLE_U16 ? in.u16[i] : (double)in.f32[i];
+        double value = sample == LENSPROF_SAMPLE_U8    ? in.u8[i]
+                       : sample == LENSPROF_SAMPLE_U16 ? in.u16[i]
+                                                       : (double)in.f32[i];
         double wanted = reference(m, value / unit, i % 3, x0 + i / 3, y), error;
         if (sample == LENSPROF_SAMPLE_F32) {
             float nearest = (float)wanted;
@@ -40,8 +53,7 @@ static double worst_error(const model *m, uint32_t sample, uint64_t *random, dou
     return worst;
 }
 
-static void check_levels(uint32_t sample, double smallest_share)
-{
+static void check_levels(uint32_t sample, double smallest_share) {
     uint64_t random = 17;
     double same = 0.0, worst = 0.0;
     for (int n = 0; n < PROFILES; n++) {
@@ -58,20 +70,17 @@ static void check_levels(uint32_t sample, double smallest_share)
     assert_true(same >= smallest_share);
 }
 
-static void test_8_bit(void **state)
-{
+static void test_8_bit(void **state) {
     (void)state;
     check_levels(LENSPROF_SAMPLE_U8, 0.999);
 }
 
-static void test_16_bit(void **state)
-{
+static void test_16_bit(void **state) {
     (void)state;
     check_levels(LENSPROF_SAMPLE_U16, 0.95);
 }
 
-static void test_linear_float(void **state)
-{
+static void test_linear_float(void **state) {
     (void)state;
     uint64_t random = 29;
     double same = 0.0, worst = 0.0;
@@ -86,8 +95,7 @@ static void test_linear_float(void **state)
     assert_true(worst <= 4.0);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_8_bit),
         cmocka_unit_test(test_16_bit),

@@ -1,12 +1,13 @@
 /* Profile blobs: there and back, and everything that is not one. */
 #include "blob_support.h"
 
-enum { GOLDEN = 4 };
+enum {
+    GOLDEN = 4
+};
 static const char *const golden_name[GOLDEN] = {"linear", "gamma", "emor", "table"};
 
 /* The profiles of tests/fuzz/corpus/blob, with their covariance. */
-static void golden_profile(int which, lensprof_profile *p)
-{
+static void golden_profile(int which, lensprof_profile *p) {
     const double emor[4] = {0.8, -0.3, 0.125, -0.0625}, knee[4] = {0.0, 0.625, 0.9375, 1.0};
     lensprof_profile_init(p);
     if (which == 0) return;
@@ -42,8 +43,7 @@ static void golden_profile(int which, lensprof_profile *p)
     }
 }
 
-static uint8_t *golden_blob(int which, size_t *bytes)
-{
+static uint8_t *golden_blob(int which, size_t *bytes) {
     lensprof_profile *p = malloc(sizeof *p);
     golden_profile(which, p);
     uint8_t *blob = pack(p, LENSPROF_PACK_COVARIANCE, bytes);
@@ -52,8 +52,7 @@ static uint8_t *golden_blob(int which, size_t *bytes)
 }
 
 /* A profile that nobody has: to see that nothing was written to it. */
-static lensprof_profile *poisoned(void)
-{
+static lensprof_profile *poisoned(void) {
     lensprof_profile *p = malloc(sizeof *p);
     memset(p, 0xA5, sizeof *p);
     return p;
@@ -61,15 +60,13 @@ static lensprof_profile *poisoned(void)
 
 static lensprof_profile *poison, *target;
 
-static int make_poison(void **state)
-{
+static int make_poison(void **state) {
     (void)state;
     poison = poisoned(), target = poisoned();
     return 0;
 }
 
-static int free_poison(void **state)
-{
+static int free_poison(void **state) {
     (void)state;
     free(poison), free(target);
     return 0;
@@ -77,8 +74,7 @@ static int free_poison(void **state)
 
 #define assert_refused(blob, bytes, status) refused((blob), (bytes), (status), __LINE__)
 
-static void refused(const uint8_t *blob, size_t bytes, lensprof_status status, int line)
-{
+static void refused(const uint8_t *blob, size_t bytes, lensprof_status status, int line) {
     const lensprof_status said = lensprof_profile_unpack(blob, bytes, target);
     if (said != status) fail_msg("line %d: %s, not %s", line, lensprof_status_name(said), lensprof_status_name(status));
     if (memcmp(target, poison, sizeof *target)) fail_msg("line %d: the profile was written", line);
@@ -86,8 +82,7 @@ static void refused(const uint8_t *blob, size_t bytes, lensprof_status status, i
 
 /* ---- there and back ---- */
 
-static void assert_response(const lensprof_response *from, const lensprof_response *to)
-{
+static void assert_response(const lensprof_response *from, const lensprof_response *to) {
     const int has_samples = from->kind == LENSPROF_RESPONSE_EMOR || from->kind == LENSPROF_RESPONSE_TABLE;
     assert_int_equal(to->kind, from->kind);
     assert_int_equal(to->modes, from->modes);
@@ -97,8 +92,7 @@ static void assert_response(const lensprof_response *from, const lensprof_respon
         assert_true(to->table[j] == (has_samples ? (double)(float)from->table[j] : from->table[j]));
 }
 
-static void test_random_profiles_come_back(void **state)
-{
+static void test_random_profiles_come_back(void **state) {
     (void)state;
     uint64_t random = 1;
     lensprof_profile *p = malloc(sizeof *p), *back = poisoned();
@@ -128,8 +122,7 @@ static void test_random_profiles_come_back(void **state)
 }
 
 /* Files that a released lensprof may have written: if this fails, the format changed and needs another number. */
-static void test_format_is_that_of_the_files(void **state)
-{
+static void test_format_is_that_of_the_files(void **state) {
     (void)state;
     for (int which = 0; which < GOLDEN; which++) {
         char name[512];
@@ -145,16 +138,14 @@ static void test_format_is_that_of_the_files(void **state)
     }
 }
 
-static void assert_size(const lensprof_profile *p, size_t expected)
-{
+static void assert_size(const lensprof_profile *p, size_t expected) {
     size_t bytes = 0;
     assert_int_equal(lensprof_profile_pack(p, LENSPROF_PACK_COVARIANCE, NULL, 0, &bytes), LENSPROF_ERROR_CAPACITY);
     assert_int_equal(bytes, expected);
 }
 
 /* Those of docs/blob.md. */
-static void test_sizes(void **state)
-{
+static void test_sizes(void **state) {
     (void)state;
     const double values[4] = {0.0, 0.0, 0.0, 0.0}, line[2] = {0.0, 1.0};
     lensprof_profile *p = malloc(sizeof *p);
@@ -176,8 +167,7 @@ static void test_sizes(void **state)
     free(p);
 }
 
-static void test_any_address(void **state)
-{
+static void test_any_address(void **state) {
     (void)state;
     for (int which = 0; which < GOLDEN; which++) {
         size_t bytes;
@@ -197,8 +187,7 @@ static void test_any_address(void **state)
     }
 }
 
-static void test_pack_refuses(void **state)
-{
+static void test_pack_refuses(void **state) {
     (void)state;
     lensprof_profile *p = malloc(sizeof *p);
     uint8_t blob[200];
@@ -223,8 +212,7 @@ static void test_pack_refuses(void **state)
 
 /* ---- damage ---- */
 
-static void test_every_flipped_bit_is_found(void **state)
-{
+static void test_every_flipped_bit_is_found(void **state) {
     (void)state;
     for (int which = 0; which < GOLDEN; which++) {
         size_t bytes;
@@ -238,8 +226,7 @@ static void test_every_flipped_bit_is_found(void **state)
     }
 }
 
-static void test_every_other_length_is_found(void **state)
-{
+static void test_every_other_length_is_found(void **state) {
     (void)state;
     for (int which = 0; which < GOLDEN; which++) {
         size_t bytes;
@@ -271,8 +258,7 @@ static void test_every_other_length_is_found(void **state)
     assert_refused((const uint8_t *)"SQLite format 3\0 and more of it", 32, LENSPROF_ERROR_CORRUPT);
 }
 
-static void test_newer_layouts(void **state)
-{
+static void test_newer_layouts(void **state) {
     (void)state;
     size_t bytes;
     uint8_t *blob = golden_blob(1, &bytes);
@@ -298,8 +284,7 @@ static void test_newer_layouts(void **state)
 /* ---- with a right CRC ---- */
 
 /* Writes `value` in `count` bytes at an offset of a golden blob, seals it, and expects it to be refused. */
-static void refuse_number(int which, size_t offset, uint64_t value, size_t count)
-{
+static void refuse_number(int which, size_t offset, uint64_t value, size_t count) {
     size_t bytes;
     uint8_t *blob = golden_blob(which, &bytes);
     put_number(blob + offset, value, count);
@@ -310,22 +295,19 @@ static void refuse_number(int which, size_t offset, uint64_t value, size_t count
     free(blob);
 }
 
-static void refuse_double(int which, size_t offset, double value)
-{
+static void refuse_double(int which, size_t offset, double value) {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     refuse_number(which, offset, bits, 8);
 }
 
-static void refuse_float(int which, size_t offset, float value)
-{
+static void refuse_float(int which, size_t offset, float value) {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     refuse_number(which, offset, bits, 4);
 }
 
-static void test_fixed_fields(void **state)
-{
+static void test_fixed_fields(void **state) {
     (void)state;
     for (int which = 0; which < GOLDEN; which++) {
         static const uint8_t zero[] = {6, 7, 19, 25, 26, 27};
@@ -361,8 +343,7 @@ static void test_fixed_fields(void **state)
     }
 }
 
-static void test_responses(void **state)
-{
+static void test_responses(void **state) {
     (void)state;
     for (uint32_t kind = 1; kind < 256; kind++) refuse_number(0, 124, kind, 1);
     for (size_t at = 125; at < 128; at++) refuse_number(0, at, 1, 1);
@@ -373,7 +354,7 @@ static void test_responses(void **state)
         refuse_double(1, 128 + 12 * (size_t)c, INFINITY);
     }
     const size_t coefficients = 100 + 72 + 4, samples = coefficients + 32; /* of the EMoR blob */
-    refuse_number(2, coefficients - 3, 3, 1); /* modes: all that follows moves */
+    refuse_number(2, coefficients - 3, 3, 1);                              /* modes: all that follows moves */
     refuse_number(2, coefficients - 3, 5, 1);
     refuse_number(2, coefficients - 3, 255, 1);
     for (size_t l = 0; l < 4; l++) {
@@ -392,8 +373,7 @@ static void test_responses(void **state)
     }
 }
 
-static void test_grids_covariances_and_texts(void **state)
-{
+static void test_grids_covariances_and_texts(void **state) {
     (void)state;
     const size_t grid = 100 + 24 + 36, text = grid + 24; /* of the gamma blob */
     static const float wrong[] = {0.0f, -1.0f, 0.00099f, 1000.1f};
@@ -420,15 +400,16 @@ static void test_grids_covariances_and_texts(void **state)
 }
 
 /* Sides and counts that ask for more than there is, with as many bytes as that and with too few. */
-static void test_huge_sizes(void **state)
-{
+static void test_huge_sizes(void **state) {
     (void)state;
-    enum { ROOM = 1 << 20 };
+    enum {
+        ROOM = 1 << 20
+    };
     uint8_t *blob = calloc(1, ROOM);
     size_t bytes;
     uint8_t *golden = golden_blob(0, &bytes);
-    static const uint8_t huge[][3] = {{3, 33, 33}, {3, 255, 255}, {255, 255, 255}, {1, 1, 2}, {1, 2, 1},  {1, 33, 2},
-                                      {1, 2, 33},  {3, 32, 255},  {2, 2, 2},       {1, 0, 2}, {1, 2, 0},  {0, 2, 2}};
+    static const uint8_t huge[][3] = {{3, 33, 33}, {3, 255, 255}, {255, 255, 255}, {1, 1, 2}, {1, 2, 1}, {1, 33, 2},
+                                      {1, 2, 33},  {3, 32, 255},  {2, 2, 2},       {1, 0, 2}, {1, 2, 0}, {0, 2, 2}};
     for (size_t n = 0; n < sizeof huge / sizeof huge[0]; n++)
         for (size_t more = 0; more < 2; more++) {
             const size_t nodes = (size_t)huge[n][0] * huge[n][1] * huge[n][2],
@@ -455,16 +436,17 @@ static void test_huge_sizes(void **state)
             blob[20 + t] = (uint8_t)length;
             memset(blob + 128, 'x', length);
             seal(blob, bytes + length);
-            if (length == room[t]) assert_refused(blob, bytes + length, LENSPROF_ERROR_CORRUPT);
-            else assert_ok(lensprof_profile_unpack(blob, bytes + length, target));
+            if (length == room[t])
+                assert_refused(blob, bytes + length, LENSPROF_ERROR_CORRUPT);
+            else
+                assert_ok(lensprof_profile_unpack(blob, bytes + length, target));
             memcpy(target, poison, sizeof *target);
         }
     }
     free(blob), free(golden);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_profiles_come_back),
         cmocka_unit_test(test_format_is_that_of_the_files),

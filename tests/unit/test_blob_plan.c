@@ -1,44 +1,47 @@
 /* Plans made from a blob: the same as from the profile unpacked from it. */
 #include "blob_support.h"
 
-enum { W = 41, H = 29 };
+enum {
+    W = 41,
+    H = 29
+};
 
 typedef struct pictures {
     uint8_t source[3][W * H * 4 * 4], target[3][W * H * 4 * 4];
 } pictures;
 
-static void fill(pictures *p, uint32_t sample, uint64_t *random)
-{
+static void fill(pictures *p, uint32_t sample, uint64_t *random) {
     for (int plane = 0; plane < 3; plane++)
         for (size_t i = 0; i < W * H * 4; i++) {
             const float value = (float)(1.2 * lp_random(random) - 0.1);
-            if (sample == LENSPROF_SAMPLE_F32) memcpy(p->source[plane] + 4 * i, &value, 4);
-            else for (int b = 0; b < 4; b++) p->source[plane][4 * i + (size_t)b] = (uint8_t)(256 * lp_random(random));
+            if (sample == LENSPROF_SAMPLE_F32)
+                memcpy(p->source[plane] + 4 * i, &value, 4);
+            else
+                for (int b = 0; b < 4; b++) p->source[plane][4 * i + (size_t)b] = (uint8_t)(256 * lp_random(random));
             if (sample == LENSPROF_SAMPLE_F16) p->source[plane][4 * i + 1] &= 0x3f, p->source[plane][4 * i + 3] &= 0x3f;
         }
     memset(p->target, 0, sizeof p->target);
 }
 
-static lensprof_image view(uint8_t *data, uint32_t sample, uint32_t layout)
-{
+static lensprof_image view(uint8_t *data, uint32_t sample, uint32_t layout) {
     if (layout == LENSPROF_LAYOUT_PLANAR) layout = LENSPROF_LAYOUT_GREY;
     const ptrdiff_t row = (ptrdiff_t)(W * lensprof_layout_samples(layout) * lensprof_sample_bytes(sample));
     return (lensprof_image){data, row, W, H, sample, layout};
 }
 
-static void run(const lensprof_plan *plan, const lensprof_apply_options *o, pictures *p)
-{
+static void run(const lensprof_plan *plan, const lensprof_apply_options *o, pictures *p) {
     lensprof_image source[3], target[3];
     for (int i = 0; i < 3; i++) {
         source[i] = view(p->source[i], o->source_sample, o->source_layout);
         target[i] = view(p->target[i], o->target_sample, o->source_layout);
     }
-    if (o->source_layout == LENSPROF_LAYOUT_PLANAR) assert_ok(lensprof_apply_planar(plan, source, target, 0, 0));
-    else assert_ok(lensprof_apply(plan, source, target, 0, 0));
+    if (o->source_layout == LENSPROF_LAYOUT_PLANAR)
+        assert_ok(lensprof_apply_planar(plan, source, target, 0, 0));
+    else
+        assert_ok(lensprof_apply(plan, source, target, 0, 0));
 }
 
-static const lensprof_plan *make_plan(const lensprof_apply_options *o, void **memory)
-{
+static const lensprof_plan *make_plan(const lensprof_apply_options *o, void **memory) {
     const size_t bytes = lensprof_plan_bytes(o);
     const lensprof_plan *plan = NULL;
     assert_true(bytes > 0);
@@ -47,8 +50,7 @@ static const lensprof_plan *make_plan(const lensprof_apply_options *o, void **me
     return plan;
 }
 
-static lensprof_apply_options random_options(uint64_t *random)
-{
+static lensprof_apply_options random_options(uint64_t *random) {
     lensprof_apply_options o;
     lensprof_apply_options_init(&o);
     o.direction = (uint32_t)(2 * lp_random(random));
@@ -67,16 +69,14 @@ static lensprof_apply_options random_options(uint64_t *random)
     return o;
 }
 
-static void use_profile(lensprof_apply_options *o, const lensprof_profile *p)
-{
+static void use_profile(lensprof_apply_options *o, const lensprof_profile *p) {
     o->blob = NULL, o->blob_bytes = 0;
     o->response = p->response, o->responses = p->responses;
     o->vignetting = p->vignetting, o->vignettings = p->vignettings;
     o->grid = &p->grid;
 }
 
-static void test_same_bytes_as_from_the_profile(void **state)
-{
+static void test_same_bytes_as_from_the_profile(void **state) {
     (void)state;
     uint64_t random = 5;
     lensprof_profile *p = malloc(sizeof *p), *unpacked = malloc(sizeof *unpacked);
@@ -109,8 +109,7 @@ static void test_same_bytes_as_from_the_profile(void **state)
 
 /* Single precision of the samples does not show in 8 bit: the codes of the profile itself, or a neighbour where they
  * are about to be rounded the other way. */
-static void test_close_to_the_profile_itself(void **state)
-{
+static void test_close_to_the_profile_itself(void **state) {
     (void)state;
     uint64_t random = 9;
     lensprof_profile *p = malloc(sizeof *p);
@@ -143,8 +142,7 @@ static void test_close_to_the_profile_itself(void **state)
     free(p), free(a), free(b);
 }
 
-static void test_plan_refuses(void **state)
-{
+static void test_plan_refuses(void **state) {
     (void)state;
     uint64_t random = 2;
     lensprof_profile *p = malloc(sizeof *p);
@@ -193,8 +191,7 @@ static void test_plan_refuses(void **state)
     free(memory), free(blob), free(p);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_bytes_as_from_the_profile),
         cmocka_unit_test(test_close_to_the_profile_itself),

@@ -6,11 +6,12 @@
 
 #include <core/fixed_plan.h>
 
-enum { PROFILES = 3000 };
+enum {
+    PROFILES = 3000
+};
 
 /* The worst difference to the reference, levels; counts samples that are the same. */
-static double worst_error(const fixture *f, double *same, double *all)
-{
+static double worst_error(const fixture *f, double *same, double *all) {
     const uint32_t sample = f->from.sample, samples = lensprof_layout_samples(f->from.layout);
     double worst = 0.0;
     for (uint32_t i = 0; i < PIXELS * samples; i++) {
@@ -21,8 +22,7 @@ static double worst_error(const fixture *f, double *same, double *all)
     return worst;
 }
 
-static void check_levels(uint32_t sample, double smallest_share)
-{
+static void check_levels(uint32_t sample, double smallest_share) {
     uint64_t random = 5;
     double worst = 0.0, same = 0.0, all = 0.0;
     static fixture f;
@@ -36,21 +36,18 @@ static void check_levels(uint32_t sample, double smallest_share)
     assert_true(same >= smallest_share * all);
 }
 
-static void test_8_bit_are_within_a_level(void **state)
-{
+static void test_8_bit_are_within_a_level(void **state) {
     (void)state;
     check_levels(LENSPROF_SAMPLE_U8, 0.9999);
 }
 
-static void test_16_bit_are_within_a_level(void **state)
-{
+static void test_16_bit_are_within_a_level(void **state) {
     (void)state;
     check_levels(LENSPROF_SAMPLE_U16, 0.95);
 }
 
 /* Odd curves, falloffs near what is allowed, centres far outside, small frames, great exposures. */
-static void test_wild_models_are_within_a_level(void **state)
-{
+static void test_wild_models_are_within_a_level(void **state) {
     (void)state;
     uint64_t random = 11;
     double worst = 0.0, same = 0.0, all = 0.0;
@@ -65,8 +62,10 @@ static void test_wild_models_are_within_a_level(void **state)
             double table[64] = {0.0}; /* flat here, steep there */
             for (int i = 1; i < 64; i++) table[i] = table[i - 1] + pow(lp_random(&random), 6.0);
             for (int i = 0; i < 64; i++) table[i] /= table[63];
-            if (n % 2) assert_ok(lensprof_response_set_table(&f.m.response[c], table, 64));
-            else assert_ok(lensprof_response_set_gamma(&f.m.response[c], 0.1 + 9.9 * lp_random(&random)));
+            if (n % 2)
+                assert_ok(lensprof_response_set_table(&f.m.response[c], table, 64));
+            else
+                assert_ok(lensprof_response_set_gamma(&f.m.response[c], 0.1 + 9.9 * lp_random(&random)));
             lensprof_vignetting *v = &f.m.vignetting[c];
             memcpy(v->center, center, sizeof center);
             do
@@ -76,7 +75,8 @@ static void test_wild_models_are_within_a_level(void **state)
         o->source.ev = 16.0 * lp_random(&random) - 8.0;
         const lensprof_status status = lensprof_fixed_plan_init(f.memory, sizeof f.memory, o, &f.plan);
         refused += status == LENSPROF_ERROR_UNSUPPORTED;
-        if (status != LENSPROF_OK) assert_int_equal(status, LENSPROF_ERROR_UNSUPPORTED);
+        if (status != LENSPROF_OK)
+            assert_int_equal(status, LENSPROF_ERROR_UNSUPPORTED);
         else {
             assert_ok(lensprof_fixed_apply(f.plan, &f.from, &f.to, f.x0, f.y0));
             worst = fmax(worst, worst_error(&f, &same, &all));
@@ -89,8 +89,7 @@ static void test_wild_models_are_within_a_level(void **state)
 }
 
 /* Nothing to do changes nothing, whatever the curve. */
-static void test_nothing_to_do_changes_nothing(void **state)
-{
+static void test_nothing_to_do_changes_nothing(void **state) {
     (void)state;
     uint64_t random = 3;
     static fixture f;
@@ -106,8 +105,7 @@ static void test_nothing_to_do_changes_nothing(void **state)
 }
 
 /* Nearly saturated pixels as the path in single precision has them. */
-static void test_white_stays_white(void **state)
-{
+static void test_white_stays_white(void **state) {
     (void)state;
     uint64_t random = 23;
     static fixture f;
@@ -145,10 +143,13 @@ static void test_white_stays_white(void **state)
 }
 
 /* Tiles and rows upside down, in place or not, give the frame; nothing beside the tile is written. */
-static void test_tiles_give_the_frame(void **state)
-{
+static void test_tiles_give_the_frame(void **state) {
     (void)state;
-    enum { W = 61, H = 37, PITCH = 4 * W + 3 };
+    enum {
+        W = 61,
+        H = 37,
+        PITCH = 4 * W + 3
+    };
     static uint8_t in[H * PITCH], whole[H * PITCH], tiled[H * PITCH], upside[H * PITCH];
     uint64_t random = 9;
     static fixture f;
@@ -156,14 +157,19 @@ static void test_tiles_give_the_frame(void **state)
         make_case(&f, LENSPROF_SAMPLE_U8, &random);
         f.m.options.frame_width = W, f.m.options.frame_height = H;
         make_plan(&f);
-        for (size_t i = 0; i < sizeof in; i++) in[i] = whole[i] = tiled[i] = upside[i] = (uint8_t)(256.0 * lp_random(&random));
+        for (size_t i = 0; i < sizeof in; i++)
+            in[i] = whole[i] = tiled[i] = upside[i] = (uint8_t)(256.0 * lp_random(&random));
         lensprof_image from = {in, PITCH, W, H, LENSPROF_SAMPLE_U8, f.m.options.source_layout}, to = from;
         to.data = whole;
         assert_ok(lensprof_fixed_apply(f.plan, &from, &to, 0, 0));
         for (uint32_t y = 0; y < H; y += 10)
             for (uint32_t x = 0; x < W; x += 13) {
-                lensprof_image tile = {tiled + y * PITCH + x * f.bytes, PITCH, W - x < 13 ? W - x : 13,
-                                       H - y < 10 ? H - y : 10, LENSPROF_SAMPLE_U8, from.layout};
+                lensprof_image tile = {tiled + y * PITCH + x * f.bytes,
+                                       PITCH,
+                                       W - x < 13 ? W - x : 13,
+                                       H - y < 10 ? H - y : 10,
+                                       LENSPROF_SAMPLE_U8,
+                                       from.layout};
                 assert_ok(lensprof_fixed_apply(f.plan, &tile, &tile, x, y));
             }
         assert_memory_equal(whole, tiled, sizeof whole);
@@ -179,8 +185,7 @@ static void test_tiles_give_the_frame(void **state)
 }
 
 /* A plan is bytes: copied anywhere it does the same; damaged it is refused, each time a bit of it is another. */
-static void test_plans_can_be_copied(void **state)
-{
+static void test_plans_can_be_copied(void **state) {
     (void)state;
     uint64_t random = 31;
     static fixture f;
@@ -219,8 +224,7 @@ static void test_plans_can_be_copied(void **state)
 }
 
 /* From a blob as from the profile that it holds; damaged it is refused. */
-static void test_blobs_give_the_same_plan(void **state)
-{
+static void test_blobs_give_the_same_plan(void **state) {
     (void)state;
     uint64_t random = 37;
     static fixture f;
@@ -252,8 +256,7 @@ static void test_blobs_give_the_same_plan(void **state)
     }
 }
 
-static void expect_refused(fixture *f, lensprof_status wanted)
-{
+static void expect_refused(fixture *f, lensprof_status wanted) {
     const lensprof_fixed_plan *plan = NULL;
     static uint8_t before[sizeof f->memory];
     memset(f->memory, 0x5A, sizeof f->memory);
@@ -263,17 +266,16 @@ static void expect_refused(fixture *f, lensprof_status wanted)
     assert_memory_equal(f->memory, before, sizeof before);
 }
 
-static void test_options_that_are_refused(void **state)
-{
+static void test_options_that_are_refused(void **state) {
     (void)state;
     uint64_t random = 41;
     static fixture f;
     lensprof_apply_options *o = &f.m.options;
-#define REFUSED(change, status)                                                                                        \
-    do {                                                                                                               \
-        make_case(&f, LENSPROF_SAMPLE_U8, &random);                                                                    \
-        change;                                                                                                        \
-        expect_refused(&f, status);                                                                                    \
+#define REFUSED(change, status)                     \
+    do {                                            \
+        make_case(&f, LENSPROF_SAMPLE_U8, &random); \
+        change;                                     \
+        expect_refused(&f, status);                 \
     } while (0)
     REFUSED(o->struct_size = 1, LENSPROF_ERROR_STRUCT_SIZE);
     REFUSED(o->response = NULL, LENSPROF_ERROR_ARGUMENT);
@@ -289,7 +291,8 @@ static void test_options_that_are_refused(void **state)
     REFUSED(o->source_sample = o->target_sample = LENSPROF_SAMPLE_F16, LENSPROF_ERROR_UNSUPPORTED);
     REFUSED(o->source_layout = LENSPROF_LAYOUT_PLANAR, LENSPROF_ERROR_UNSUPPORTED);
     REFUSED(o->strength = 1.0; o->vignettings = 1; f.m.vignetting[0].k[2] = 1e6, LENSPROF_ERROR_UNSUPPORTED);
-    REFUSED(o->grid = &f.m.grid; lensprof_gain_grid_init(&f.m.grid); f.m.grid.columns = f.m.grid.rows = 2; f.m.grid.channels = 1;
+    REFUSED(o->grid = &f.m.grid; lensprof_gain_grid_init(&f.m.grid); f.m.grid.columns = f.m.grid.rows = 2;
+            f.m.grid.channels = 1;
             for (int i = 0; i < 4; i++) f.m.grid.attenuation[i] = 1.0f, LENSPROF_ERROR_UNSUPPORTED);
     make_case(&f, LENSPROF_SAMPLE_U8, &random);
     o->source_sample = o->target_sample = LENSPROF_SAMPLE_U16;
@@ -312,20 +315,19 @@ static void test_options_that_are_refused(void **state)
     assert_int_equal(lensprof_fixed_plan_init(f.memory, bytes, o, NULL), LENSPROF_ERROR_ARGUMENT);
 }
 
-static void test_tiles_that_are_refused(void **state)
-{
+static void test_tiles_that_are_refused(void **state) {
     (void)state;
     uint64_t random = 43;
     static fixture f, before;
     make_case(&f, LENSPROF_SAMPLE_U8, &random);
     before = f;
-#define BAD(change, status)                                                                                            \
-    do {                                                                                                               \
-        lensprof_image from = f.from, to = f.to;                                                                       \
-        uint32_t x0 = f.x0, y0 = f.y0;                                                                                 \
-        change;                                                                                                        \
-        assert_int_equal(lensprof_fixed_apply(f.plan, &from, &to, x0, y0), status);                                    \
-        assert_memory_equal(f.out, before.out, sizeof f.out);                                                          \
+#define BAD(change, status)                                                         \
+    do {                                                                            \
+        lensprof_image from = f.from, to = f.to;                                    \
+        uint32_t x0 = f.x0, y0 = f.y0;                                              \
+        change;                                                                     \
+        assert_int_equal(lensprof_fixed_apply(f.plan, &from, &to, x0, y0), status); \
+        assert_memory_equal(f.out, before.out, sizeof f.out);                       \
     } while (0)
     BAD(from.data = NULL, LENSPROF_ERROR_ARGUMENT);
     BAD(to.data = NULL, LENSPROF_ERROR_ARGUMENT);
@@ -345,8 +347,7 @@ static void test_tiles_that_are_refused(void **state)
     assert_int_equal(lensprof_fixed_apply(f.plan, &f.from, NULL, 0, 0), LENSPROF_ERROR_ARGUMENT);
 }
 
-static void test_tables_are_what_they_say(void **state)
-{
+static void test_tables_are_what_they_say(void **state) {
     (void)state;
     for (int i = 0; i <= 256; i++) {
         assert_int_equal(lp_log2_table[i], lround(4194304.0 * log2(1.0 + i / 256.0)));
@@ -354,8 +355,7 @@ static void test_tables_are_what_they_say(void **state)
     }
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_8_bit_are_within_a_level),
         cmocka_unit_test(test_16_bit_are_within_a_level),

@@ -4,11 +4,13 @@
 
 #include <core/fixed_plan.h>
 
-enum { ROUNDS = 30000, HEAD_WORDS = sizeof(lensprof_fixed_plan) / 4 };
+enum {
+    ROUNDS = 30000,
+    HEAD_WORDS = sizeof(lensprof_fixed_plan) / 4
+};
 
 /* In memory of its own size, with or without the check made right. Returns whether it opens. */
-static int try_plan(const uint32_t *words, size_t bytes, int seal, const fixture *f)
-{
+static int try_plan(const uint32_t *words, size_t bytes, int seal, const fixture *f) {
     uint32_t *copy = malloc(bytes);
     const lensprof_fixed_plan *opened = NULL;
     memcpy(copy, words, bytes);
@@ -20,7 +22,8 @@ static int try_plan(const uint32_t *words, size_t bytes, int seal, const fixture
         lensprof_image from = f->from;
         from.sample = opened->sample, from.layout = opened->layout;
         from.width = opened->frame_width < PIXELS ? opened->frame_width : PIXELS;
-        const size_t row = (size_t)from.width * lensprof_layout_samples(from.layout) * lensprof_sample_bytes(from.sample);
+        const size_t row =
+            (size_t)from.width * lensprof_layout_samples(from.layout) * lensprof_sample_bytes(from.sample);
         from.data = malloc(row);
         memcpy(from.data, f->in, row);
         assert_ok(lensprof_fixed_apply(opened, &from, &from, corner & 1 ? opened->frame_width - from.width : 0,
@@ -31,19 +34,21 @@ static int try_plan(const uint32_t *words, size_t bytes, int seal, const fixture
     return opens;
 }
 
-static void change(uint32_t *words, size_t count, uint64_t *random)
-{
-    static const uint32_t values[] = {0, 1, 2, 3, 4, 30, 63, 64, 99, 255, 0x7fff, 0x100000, 0x40000000, 0x7fffffff,
-                                      0x80000000, 0xc0000000, 0xffffffff};
+static void change(uint32_t *words, size_t count, uint64_t *random) {
+    static const uint32_t values[] = {0,          1,          2,          3,          4,         30,
+                                      63,         64,         99,         255,        0x7fff,    0x100000,
+                                      0x40000000, 0x7fffffff, 0x80000000, 0xc0000000, 0xffffffff};
     const size_t at = 3 + (size_t)((lp_random(random) < 0.8 ? HEAD_WORDS - 3 : count - 3) * lp_random(random));
     const double kind = lp_random(random);
-    if (kind < 0.4) words[at] = values[(size_t)(lp_random(random) * (sizeof values / sizeof *values))];
-    else if (kind < 0.7) words[at] ^= 1u << (uint32_t)(32 * lp_random(random));
-    else ((uint8_t *)words)[4 * at + (size_t)(4 * lp_random(random))] = (uint8_t)(256 * lp_random(random));
+    if (kind < 0.4)
+        words[at] = values[(size_t)(lp_random(random) * (sizeof values / sizeof *values))];
+    else if (kind < 0.7)
+        words[at] ^= 1u << (uint32_t)(32 * lp_random(random));
+    else
+        ((uint8_t *)words)[4 * at + (size_t)(4 * lp_random(random))] = (uint8_t)(256 * lp_random(random));
 }
 
-static void test_any_bytes_are_safe(void **state)
-{
+static void test_any_bytes_are_safe(void **state) {
     (void)state;
     uint64_t random = 53;
     static fixture f;
@@ -55,15 +60,16 @@ static void test_any_bytes_are_safe(void **state)
         memcpy(copy, f.memory, bytes);
         for (int i = 0; i <= n % 3; i++) change(copy, bytes / 4, &random);
         if (memcmp(copy, f.memory, bytes)) assert_int_equal(try_plan(copy, bytes, 0, &f), 0);
-        if (try_plan(copy, bytes, 1, &f)) opened++;
-        else refused++;
+        if (try_plan(copy, bytes, 1, &f))
+            opened++;
+        else
+            refused++;
     }
     assert_true(opened > ROUNDS / 10 && refused > ROUNDS / 10);
 }
 
 /* One number that no plan holds is enough. */
-static void test_numbers_that_cannot_be(void **state)
-{
+static void test_numbers_that_cannot_be(void **state) {
     (void)state;
     uint64_t random = 59;
     static fixture f;
@@ -71,11 +77,11 @@ static void test_numbers_that_cannot_be(void **state)
     make_case(&f, LENSPROF_SAMPLE_U8, &random);
     const size_t bytes = plan->bytes;
     was = *plan;
-#define REFUSED(member, value)                                         \
-    do {                                                               \
-        *plan = was;                                                   \
-        plan->member = (value);                                        \
-        assert_int_equal(try_plan(f.memory, bytes, 1, &f), 0);         \
+#define REFUSED(member, value)                                 \
+    do {                                                       \
+        *plan = was;                                           \
+        plan->member = (value);                                \
+        assert_int_equal(try_plan(f.memory, bytes, 1, &f), 0); \
     } while (0)
     assert_int_equal(try_plan(f.memory, bytes, 1, &f), 1);
     REFUSED(bytes, sizeof was);
@@ -105,8 +111,7 @@ static void test_numbers_that_cannot_be(void **state)
 #undef REFUSED
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_any_bytes_are_safe),
         cmocka_unit_test(test_numbers_that_cannot_be),

@@ -3,8 +3,7 @@
 
 #include <lensprof/model.h>
 
-static lensprof_gain_grid ones(uint32_t columns, uint32_t rows, uint32_t channels)
-{
+static lensprof_gain_grid ones(uint32_t columns, uint32_t rows, uint32_t channels) {
     lensprof_gain_grid g;
     lensprof_gain_grid_init(&g);
     g.columns = columns, g.rows = rows, g.channels = channels;
@@ -12,8 +11,7 @@ static lensprof_gain_grid ones(uint32_t columns, uint32_t rows, uint32_t channel
     return g;
 }
 
-static void test_no_grid_is_one_everywhere(void **state)
-{
+static void test_no_grid_is_one_everywhere(void **state) {
     (void)state;
     lensprof_gain_grid g;
     memset(&g, 0xff, sizeof g);
@@ -22,8 +20,7 @@ static void test_no_grid_is_one_everywhere(void **state)
     for (uint32_t c = 0; c < 3; c++) assert_close(lensprof_gain_grid_eval(&g, 640, 480, 17.0, 400.0, c), 1.0, 0.0);
 }
 
-static void test_nodes_lie_from_first_to_last_pixel(void **state)
-{
+static void test_nodes_lie_from_first_to_last_pixel(void **state) {
     (void)state;
     lensprof_gain_grid g = ones(5, 4, 3);
     for (uint32_t i = 0; i < 60; i++) g.attenuation[i] = 0.5f + 0.01f * (float)i;
@@ -44,8 +41,7 @@ static void test_nodes_lie_from_first_to_last_pixel(void **state)
 }
 
 /* a + b x + c y + d x y is bilinear in every cell, so that a grid holds it to the precision of its floats. */
-static void test_bilinear_functions_are_exact(void **state)
-{
+static void test_bilinear_functions_are_exact(void **state) {
     (void)state;
     uint64_t random = 11;
     for (int run = 0; run < 200; run++) {
@@ -65,8 +61,7 @@ static void test_bilinear_functions_are_exact(void **state)
     }
 }
 
-static void test_frames_of_one_pixel(void **state)
-{
+static void test_frames_of_one_pixel(void **state) {
     (void)state;
     lensprof_gain_grid g = ones(2, 2, 1);
     g.attenuation[0] = 0.25f;
@@ -74,16 +69,21 @@ static void test_frames_of_one_pixel(void **state)
     assert_close(lensprof_gain_grid_eval(&g, 1, 2, 0.0, 1.0, 0), 1.0, 0.0);
 }
 
-static void test_validate_refuses(void **state)
-{
+static void test_validate_refuses(void **state) {
     (void)state;
     static const struct {
         uint32_t columns, rows, channels;
         lensprof_status status;
-    } shapes[] = {{2, 2, 1, LENSPROF_OK},           {32, 32, 3, LENSPROF_OK},         {1, 2, 1, LENSPROF_ERROR_SIZE},
-                  {2, 1, 1, LENSPROF_ERROR_SIZE},   {0, 2, 1, LENSPROF_ERROR_SIZE},   {33, 2, 1, LENSPROF_ERROR_SIZE},
-                  {2, 4000000000u, 1, LENSPROF_ERROR_SIZE}, {2, 2, 2, LENSPROF_ERROR_ARGUMENT},
-                  {2, 2, 0, LENSPROF_ERROR_ARGUMENT}, {0, 0, 1, LENSPROF_ERROR_ARGUMENT}};
+    } shapes[] = {{2, 2, 1, LENSPROF_OK},
+                  {32, 32, 3, LENSPROF_OK},
+                  {1, 2, 1, LENSPROF_ERROR_SIZE},
+                  {2, 1, 1, LENSPROF_ERROR_SIZE},
+                  {0, 2, 1, LENSPROF_ERROR_SIZE},
+                  {33, 2, 1, LENSPROF_ERROR_SIZE},
+                  {2, 4000000000u, 1, LENSPROF_ERROR_SIZE},
+                  {2, 2, 2, LENSPROF_ERROR_ARGUMENT},
+                  {2, 2, 0, LENSPROF_ERROR_ARGUMENT},
+                  {0, 0, 1, LENSPROF_ERROR_ARGUMENT}};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         lensprof_gain_grid g = ones(0, 0, 0);
         g.columns = shapes[i].columns, g.rows = shapes[i].rows, g.channels = shapes[i].channels;
@@ -93,10 +93,14 @@ static void test_validate_refuses(void **state)
     static const struct {
         float value;
         lensprof_status status;
-    } values[] = {{0.001f, LENSPROF_OK},          {1000.0f, LENSPROF_OK},
-                  {0.0f, LENSPROF_ERROR_VIGNETTING}, {0.00099f, LENSPROF_ERROR_VIGNETTING},
-                  {1001.0f, LENSPROF_ERROR_VIGNETTING}, {-1.0f, LENSPROF_ERROR_VIGNETTING},
-                  {NAN, LENSPROF_ERROR_NOT_FINITE}, {INFINITY, LENSPROF_ERROR_NOT_FINITE}};
+    } values[] = {{0.001f, LENSPROF_OK},
+                  {1000.0f, LENSPROF_OK},
+                  {0.0f, LENSPROF_ERROR_VIGNETTING},
+                  {0.00099f, LENSPROF_ERROR_VIGNETTING},
+                  {1001.0f, LENSPROF_ERROR_VIGNETTING},
+                  {-1.0f, LENSPROF_ERROR_VIGNETTING},
+                  {NAN, LENSPROF_ERROR_NOT_FINITE},
+                  {INFINITY, LENSPROF_ERROR_NOT_FINITE}};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         lensprof_gain_grid g = ones(4, 3, 3);
         g.attenuation[35] = values[i].value; /* the last node */
@@ -110,8 +114,7 @@ static void test_validate_refuses(void **state)
     assert_int_equal(lensprof_gain_grid_validate(NULL), LENSPROF_ERROR_ARGUMENT);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_no_grid_is_one_everywhere),
         cmocka_unit_test(test_nodes_lie_from_first_to_last_pixel),

@@ -13,31 +13,27 @@ static const uint32_t lenses[] = {
     LENSPROF_PROJECTION_STEREOGRAPHIC,     LENSPROF_PROJECTION_THOBY,           LENSPROF_PROJECTION_EQUISOLID};
 #define LENSES (sizeof lenses / sizeof lenses[0])
 
-static lensprof_camera plain_camera(uint32_t projection, double hfov_deg)
-{
+static lensprof_camera plain_camera(uint32_t projection, double hfov_deg) {
     lensprof_camera camera = {.projection = projection, .width = 1200, .height = 800, .hfov_deg = hfov_deg};
     assert_ok(lensprof_camera_validate(&camera));
     return camera;
 }
 
-static void assert_pixel(const lensprof_camera *camera, double longitude, double latitude, double x, double y)
-{
+static void assert_pixel(const lensprof_camera *camera, double longitude, double latitude, double x, double y) {
     double xy[2] = {-1e9, -1e9};
     assert_int_equal(lensprof_camera_project(camera, longitude, latitude, xy), 1);
     assert_close(xy[0], x, 1e-9);
     assert_close(xy[1], y, 1e-9);
 }
 
-static void assert_unseen(const lensprof_camera *camera, double longitude, double latitude)
-{
+static void assert_unseen(const lensprof_camera *camera, double longitude, double latitude) {
     double xy[2] = {7, 8};
     assert_int_equal(lensprof_camera_project(camera, longitude, latitude, xy), 0);
     assert_true(xy[0] == 7 && xy[1] == 8);
 }
 
 /* By definition of the field of view, half of it lies at the right edge of the last pixel, whatever the lens. */
-static void test_centre_and_edges(void **state)
-{
+static void test_centre_and_edges(void **state) {
     (void)state;
     for (size_t i = 0; i < LENSES; i++) {
         lensprof_camera camera = plain_camera(lenses[i], 100);
@@ -50,12 +46,17 @@ static void test_centre_and_edges(void **state)
 }
 
 /* Radius of a direction 40 degrees off the axis, from the textbook formula of each lens. */
-static void test_lens_formulas(void **state)
-{
+static void test_lens_formulas(void **state) {
     (void)state;
     const double angle = 40 * DEGREE, half = 50 * DEGREE;
-    const double ratio[LENSES] = {tan(angle) / tan(half), 0.8, 0.8, 0.8, 0.8, sin(angle) / sin(half),
-                                  tan(angle / 2) / tan(half / 2), sin(0.713 * angle) / sin(0.713 * half),
+    const double ratio[LENSES] = {tan(angle) / tan(half),
+                                  0.8,
+                                  0.8,
+                                  0.8,
+                                  0.8,
+                                  sin(angle) / sin(half),
+                                  tan(angle / 2) / tan(half / 2),
+                                  sin(0.713 * angle) / sin(0.713 * half),
                                   sin(angle / 2) / sin(half / 2)};
     for (size_t i = 0; i < LENSES; i++) {
         lensprof_camera camera = plain_camera(lenses[i], 100);
@@ -69,8 +70,7 @@ static void test_lens_formulas(void **state)
 }
 
 /* The optical axis looks at (yaw, -pitch); roll turns the picture clockwise. */
-static void test_rotation(void **state)
-{
+static void test_rotation(void **state) {
     (void)state;
     for (size_t i = 0; i < LENSES; i++) {
         lensprof_camera camera = plain_camera(lenses[i], 100);
@@ -86,8 +86,7 @@ static void test_rotation(void **state)
 
 /* Plane z = 1: the point (1, 0, 1) is seen straight ahead after moving right by 1, at slope 1/1.5 after moving back
  * by 0.5, and by nobody from behind the plane. */
-static void test_translation(void **state)
-{
+static void test_translation(void **state) {
     (void)state;
     lensprof_camera camera = plain_camera(LENSPROF_PROJECTION_RECTILINEAR, 90);
     camera.translation[0] = 1;
@@ -106,8 +105,7 @@ static void test_translation(void **state)
     assert_pixel(&camera, 75 * DEGREE, 0, 599.5 + 600 / 2.0, 399.5);
 }
 
-static void test_distortion_shift_and_shear(void **state)
-{
+static void test_distortion_shift_and_shear(void **state) {
     (void)state;
     lensprof_camera camera = plain_camera(LENSPROF_PROJECTION_RECTILINEAR, 90);
     camera.radial[0] = 0.01;
@@ -122,8 +120,7 @@ static void test_distortion_shift_and_shear(void **state)
     assert_pixel(&camera, atan(0.5), 0, x + 8.0 / 800 * y + 599.5, y - 24.0 / 1200 * x + 399.5);
 }
 
-static void test_limits_of_sight(void **state)
-{
+static void test_limits_of_sight(void **state) {
     (void)state;
     double direction[2] = {3, 4};
     lensprof_camera camera = plain_camera(LENSPROF_PROJECTION_RECTILINEAR, 90);
@@ -151,8 +148,7 @@ static void test_limits_of_sight(void **state)
 }
 
 /* P = R (1.3 - 0.3 R^2) turns back where 1.3 = 0.9 R^2; b alone and c alone likewise. */
-static void test_radial_turns_back(void **state)
-{
+static void test_radial_turns_back(void **state) {
     (void)state;
     const double radial[3][3] = {{0, -0.3, 0}, {0, 0, -0.4}, {-0.1, 0, 0}};
     const double turn[3] = {sqrt(1.3 / 0.9), 1.4 / 0.8, cbrt(1.1 / 0.4)};
@@ -168,11 +164,11 @@ static void test_radial_turns_back(void **state)
     }
 }
 
-static lensprof_camera random_camera(uint32_t projection, uint64_t *seed)
-{
-    double widest = projection == LENSPROF_PROJECTION_RECTILINEAR ? 130
-                  : projection == LENSPROF_PROJECTION_THOBY       ? 250
-                  : projection == LENSPROF_PROJECTION_ORTHOGRAPHIC ? 180 : 340;
+static lensprof_camera random_camera(uint32_t projection, uint64_t *seed) {
+    double widest = projection == LENSPROF_PROJECTION_RECTILINEAR    ? 130
+                    : projection == LENSPROF_PROJECTION_THOBY        ? 250
+                    : projection == LENSPROF_PROJECTION_ORTHOGRAPHIC ? 180
+                                                                     : 340;
     lensprof_camera camera = {.projection = projection};
     camera.width = 100 + (uint32_t)(5000 * lp_random(seed));
     camera.height = 100 + (uint32_t)(5000 * lp_random(seed));
@@ -194,8 +190,7 @@ static lensprof_camera random_camera(uint32_t projection, uint64_t *seed)
 }
 
 /* Every pixel that has a direction comes back. Some have none: outside the image circle, behind the plane. */
-static void test_round_trip(void **state)
-{
+static void test_round_trip(void **state) {
     (void)state;
     uint64_t seed = 20070627;
     for (size_t i = 0; i < LENSES; i++) {
@@ -223,8 +218,7 @@ static void test_round_trip(void **state)
 }
 
 /* The other way: what a lens shows of a direction is where the direction comes from. */
-static void test_round_trip_of_directions(void **state)
-{
+static void test_round_trip_of_directions(void **state) {
     (void)state;
     uint64_t seed = 5;
     for (size_t i = 0; i < LENSES; i++) {
@@ -233,9 +227,9 @@ static void test_round_trip_of_directions(void **state)
             lensprof_camera camera = random_camera(lenses[i], &seed);
             double longitude = PI * (2 * lp_random(&seed) - 1), latitude = asin(2 * lp_random(&seed) - 1);
             double xy[2], direction[2];
-            if (lensprof_camera_validate(&camera) != LENSPROF_OK ||
-                !lensprof_camera_project(&camera, longitude, latitude, xy) || fabs(xy[0]) > 2e4 ||
-                fabs(xy[1]) > 2e4 || !lensprof_camera_unproject(&camera, xy[0], xy[1], direction)) {
+            if (lensprof_camera_validate(&camera) != LENSPROF_OK
+                || !lensprof_camera_project(&camera, longitude, latitude, xy) || fabs(xy[0]) > 2e4 || fabs(xy[1]) > 2e4
+                || !lensprof_camera_unproject(&camera, xy[0], xy[1], direction)) {
                 continue;
             }
             seen++;
@@ -246,8 +240,7 @@ static void test_round_trip_of_directions(void **state)
     }
 }
 
-static void assert_invalid(lensprof_camera camera)
-{
+static void assert_invalid(lensprof_camera camera) {
     assert_int_equal(lensprof_camera_validate(&camera), LENSPROF_ERROR_GEOMETRY);
 }
 
@@ -258,8 +251,7 @@ static void assert_invalid(lensprof_camera camera)
         assert_invalid(c);          \
     } while (0)
 
-static void test_validate(void **state)
-{
+static void test_validate(void **state) {
     (void)state;
     assert_int_equal(lensprof_camera_validate(NULL), LENSPROF_ERROR_ARGUMENT);
     lensprof_camera good = plain_camera(LENSPROF_PROJECTION_RECTILINEAR, 179.9);
@@ -289,8 +281,7 @@ static void test_validate(void **state)
     assert_invalid(good);
 }
 
-static void test_validate_field_of_view(void **state)
-{
+static void test_validate_field_of_view(void **state) {
     (void)state;
     const double widest[LENSES] = {179.99, 360, 360, 360, 360, 360, 359.99, 252.4, 360};
     const double too_wide[LENSES] = {180, 360.01, 360.01, 360.01, 360.01, 360.01, 360, 252.5, 360.01};
@@ -300,8 +291,7 @@ static void test_validate_field_of_view(void **state)
     }
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_centre_and_edges),
         cmocka_unit_test(test_lens_formulas),

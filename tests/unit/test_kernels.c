@@ -6,7 +6,13 @@
 
 #include <core/plan.h>
 
-enum { MOST_WIDTH = 67, ROWS = 3, LAYOUTS = 11, FRAME_W = 900, FRAME_H = 700 };
+enum {
+    MOST_WIDTH = 67,
+    ROWS = 3,
+    LAYOUTS = 11,
+    FRAME_W = 900,
+    FRAME_H = 700
+};
 
 /* Memory whose last byte is followed by one that must not be touched. */
 typedef struct guarded {
@@ -14,8 +20,7 @@ typedef struct guarded {
     size_t bytes;
 } guarded;
 
-static guarded guarded_memory(void)
-{
+static guarded guarded_memory(void) {
     guarded g;
     size_t page = (size_t)sysconf(_SC_PAGESIZE);
     g.bytes = 4 * page;
@@ -33,8 +38,7 @@ typedef struct model {
     lensprof_apply_options options;
 } model;
 
-static void random_response(lensprof_response *r, uint32_t kind, uint64_t *random)
-{
+static void random_response(lensprof_response *r, uint32_t kind, uint64_t *random) {
     double emor[3] = {lp_random(random) - 0.5, 0.4 * (lp_random(random) - 0.5), 0.2 * (lp_random(random) - 0.5)};
     double table[9] = {0.0};
     for (int i = 1; i < 9; i++) table[i] = table[i - 1] + 0.01 + lp_random(random);
@@ -47,8 +51,7 @@ static void random_response(lensprof_response *r, uint32_t kind, uint64_t *rando
 }
 
 /* One model of many, by its number. */
-static void make_model(model *m, uint64_t seed)
-{
+static void make_model(model *m, uint64_t seed) {
     uint64_t random = seed * 977 + 5;
     uint32_t kinds = (uint32_t)(5 * lp_random(&random));
     memset(m, 0, sizeof *m);
@@ -88,8 +91,7 @@ static void make_model(model *m, uint64_t seed)
     }
 }
 
-static void *make_plan(const model *m, uint32_t lanes, const lensprof_plan **plan)
-{
+static void *make_plan(const model *m, uint32_t lanes, const lensprof_plan **plan) {
     size_t bytes = lensprof_plan_bytes(&m->options);
     void *memory = malloc(bytes);
     assert_true(bytes > 0);
@@ -98,22 +100,22 @@ static void *make_plan(const model *m, uint32_t lanes, const lensprof_plan **pla
     return memory;
 }
 
-static void fill_samples(uint8_t *p, size_t bytes, uint32_t sample, uint64_t random)
-{
+static void fill_samples(uint8_t *p, size_t bytes, uint32_t sample, uint64_t random) {
     for (size_t i = 0; i + 4 <= bytes; i += 4) {
         float value = (float)(1.3 * lp_random(&random) - 0.1);
         uint32_t any = (uint32_t)(4294967296.0 * lp_random(&random));
         if (sample == LENSPROF_SAMPLE_F32 && any % 50 == 0) value = (float)NAN;
-        if (sample == LENSPROF_SAMPLE_F32) memcpy(p + i, &value, 4);
-        else memcpy(p + i, &any, 4);
-        if (sample == LENSPROF_SAMPLE_F16) p[i + 1] &= 0x3f, p[i + 3] &= 0x3f; /* 0..2 */
+        if (sample == LENSPROF_SAMPLE_F32)
+            memcpy(p + i, &value, 4);
+        else
+            memcpy(p + i, &any, 4);
+        if (sample == LENSPROF_SAMPLE_F16) p[i + 1] &= 0x3f, p[i + 3] &= 0x3f;                 /* 0..2 */
         if (sample < 2 && i % 64 < 24) p[i] = p[i + 1] = p[i + 2] = p[i + 3] = 255 - any % 32; /* near white */
     }
 }
 
 /* Rows of a tile that end where the guarded memory does, with `gap` bytes between rows. */
-static lensprof_image tile_in(const guarded *g, uint32_t sample, uint32_t layout, uint32_t width, size_t gap)
-{
+static lensprof_image tile_in(const guarded *g, uint32_t sample, uint32_t layout, uint32_t width, size_t gap) {
     uint32_t bytes = lensprof_sample_bytes(sample) * lensprof_layout_samples(layout);
     lensprof_image image = {NULL, (ptrdiff_t)(width * bytes + gap), width, ROWS, sample, layout};
     image.data = g->end - (width * bytes + (size_t)(ROWS - 1) * (size_t)image.row_bytes);
@@ -121,8 +123,7 @@ static lensprof_image tile_in(const guarded *g, uint32_t sample, uint32_t layout
 }
 
 static void apply_rows_streamed(const lensprof_plan *plan, const lensprof_image *from, const lensprof_image *to,
-                                uint32_t x0, uint32_t y0)
-{
+                                uint32_t x0, uint32_t y0) {
     for (uint32_t y = 0; y < ROWS; y++) {
         const uint8_t *source[3] = {(uint8_t *)from->data + y * from->row_bytes, NULL, NULL};
         uint8_t *target[3] = {(uint8_t *)to->data + y * to->row_bytes, NULL, NULL};
@@ -130,13 +131,13 @@ static void apply_rows_streamed(const lensprof_plan *plan, const lensprof_image 
     }
 }
 
-static void check_case(uint64_t seed, uint32_t width, const guarded *in, const guarded *out, uint8_t *wanted)
-{
+static void check_case(uint64_t seed, uint32_t width, const guarded *in, const guarded *out, uint8_t *wanted) {
     model m;
     make_model(&m, seed);
     if (m.options.source_layout == LENSPROF_LAYOUT_PLANAR) m.options.source_layout = LENSPROF_LAYOUT_RGB;
     uint64_t random = seed + 7;
-    uint32_t x0 = (uint32_t)((FRAME_W - width) * lp_random(&random)), y0 = (uint32_t)((FRAME_H - ROWS) * lp_random(&random));
+    uint32_t x0 = (uint32_t)((FRAME_W - width) * lp_random(&random)),
+             y0 = (uint32_t)((FRAME_H - ROWS) * lp_random(&random));
     size_t gap = 4 * (size_t)(4 * lp_random(&random));
     lensprof_image from = tile_in(in, m.options.source_sample, m.options.source_layout, width, gap);
     lensprof_image to = tile_in(out, m.options.target_sample, m.options.source_layout, width, gap);
@@ -148,9 +149,12 @@ static void check_case(uint64_t seed, uint32_t width, const guarded *in, const g
         fill_samples(in->pages, in->bytes, m.options.source_sample, seed);
         memset(out->pages, 0xA5, out->bytes);
         if (in_place) memcpy(out->pages, in->pages, in->bytes);
-        if (n && seed % 5 == 0 && !in_place) apply_rows_streamed(plan, &from, &to, x0, y0);
-        else assert_ok(lensprof_apply(plan, in_place ? &to : &from, &to, x0, y0));
-        if (n == 0) memcpy(wanted, out->pages, out->bytes);
+        if (n && seed % 5 == 0 && !in_place)
+            apply_rows_streamed(plan, &from, &to, x0, y0);
+        else
+            assert_ok(lensprof_apply(plan, in_place ? &to : &from, &to, x0, y0));
+        if (n == 0)
+            memcpy(wanted, out->pages, out->bytes);
         else if (memcmp(wanted, out->pages, out->bytes))
             fail_msg("model %llu, width %u, layout %u, samples %u to %u: %u lanes give other bytes",
                      (unsigned long long)seed, width, m.options.source_layout, m.options.source_sample,
@@ -159,8 +163,7 @@ static void check_case(uint64_t seed, uint32_t width, const guarded *in, const g
     }
 }
 
-static void test_every_lane_count_gives_the_same_bytes(void **state)
-{
+static void test_every_lane_count_gives_the_same_bytes(void **state) {
     (void)state;
     guarded in = guarded_memory(), out = guarded_memory();
     uint8_t *wanted = malloc(out.bytes);
@@ -170,8 +173,7 @@ static void test_every_lane_count_gives_the_same_bytes(void **state)
 }
 
 /* A row in pieces, at any place, is the row. */
-static void test_pieces_give_the_row(void **state)
-{
+static void test_pieces_give_the_row(void **state) {
     (void)state;
     static uint8_t source[4 * 4 * FRAME_W], whole[4 * 4 * FRAME_W], pieces[4 * 4 * FRAME_W];
     for (uint64_t seed = 0; seed < 300; seed++) {
@@ -202,15 +204,17 @@ static void test_pieces_give_the_row(void **state)
 }
 
 /* Planes give what interleaved pixels give. */
-static void test_planes_are_the_same_picture(void **state)
-{
+static void test_planes_are_the_same_picture(void **state) {
     (void)state;
-    enum { W = 301 };
+    enum {
+        W = 301
+    };
     static uint8_t rgb[12 * W], target[12 * W], planes[3][4 * W], result[3][4 * W];
     for (uint64_t seed = 0; seed < 400; seed++) {
         model m;
         make_model(&m, seed);
-        uint32_t in = lensprof_sample_bytes(m.options.source_sample), out = lensprof_sample_bytes(m.options.target_sample);
+        uint32_t in = lensprof_sample_bytes(m.options.source_sample),
+                 out = lensprof_sample_bytes(m.options.target_sample);
         fill_samples(rgb, sizeof rgb, m.options.source_sample, seed);
         lensprof_image from = {rgb, 0, W, 1, m.options.source_sample, LENSPROF_LAYOUT_RGB}, to = from;
         to.data = target, to.sample = m.options.target_sample;
@@ -230,16 +234,16 @@ static void test_planes_are_the_same_picture(void **state)
         memory = make_plan(&m, 0, &plan);
         assert_ok(lensprof_apply_planar(plan, sources, targets, 40, 50));
         for (uint32_t c = 0; c < 3; c++)
-            for (uint32_t i = 0; i < W; i++)
-                assert_memory_equal(result[c] + i * out, target + (3 * i + c) * out, out);
+            for (uint32_t i = 0; i < W; i++) assert_memory_equal(result[c] + i * out, target + (3 * i + c) * out, out);
         free(memory);
     }
 }
 
-static void test_planes_that_are_refused(void **state)
-{
+static void test_planes_that_are_refused(void **state) {
     (void)state;
-    enum { W = 20 };
+    enum {
+        W = 20
+    };
     static uint8_t data[6][W], before[6][W];
     model m;
     make_model(&m, 1);
@@ -275,10 +279,12 @@ static void test_planes_that_are_refused(void **state)
 }
 
 /* Each site of a mosaic gets what its channel gets in a picture of that colour alone. */
-static void test_mosaics_follow_their_pattern(void **state)
-{
+static void test_mosaics_follow_their_pattern(void **state) {
     (void)state;
-    enum { W = 131, H = 7 };
+    enum {
+        W = 131,
+        H = 7
+    };
     static const char *patterns[] = {"RGGB", "GRBG", "GBRG", "BGGR"};
     static uint16_t mosaic[H][W], result[H][W], rgb[H][3 * W], full[H][3 * W];
     for (uint32_t n = 0; n < 40; n++) {
@@ -290,7 +296,8 @@ static void test_mosaics_follow_their_pattern(void **state)
         for (uint32_t y = 0; y < H; y++)
             for (uint32_t x = 0; x < 3 * W; x++) rgb[y][x] = mosaic[y][x / 3];
         const uint32_t x0 = 11 * (n % 3), y0 = n % 2;
-        lensprof_image from = {mosaic, sizeof *mosaic, W, H, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGGB + n % 4}, to = from;
+        lensprof_image from = {mosaic, sizeof *mosaic, W, H, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGGB + n % 4},
+                       to = from;
         lensprof_image from_rgb = {rgb, sizeof *rgb, W, H, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB}, to_rgb = from_rgb;
         to.data = result, to_rgb.data = full;
         const lensprof_plan *plan;
@@ -311,8 +318,7 @@ static void test_mosaics_follow_their_pattern(void **state)
 }
 
 /* Half floats: all of them survive, and others go to the nearest, halves to even. */
-static void test_half_floats(void **state)
-{
+static void test_half_floats(void **state) {
     (void)state;
     static uint16_t half[65536], back[65536];
     static float wide[65536];
@@ -327,7 +333,8 @@ static void test_half_floats(void **state)
     o->input = o->output = LENSPROF_ENCODING_LINEAR;
     o->source_layout = LENSPROF_LAYOUT_GREY;
     for (uint32_t h = 0; h < 65536; h++) half[h] = (uint16_t)h;
-    lensprof_image image = {half, 0, 65536, 1, LENSPROF_SAMPLE_F16, LENSPROF_LAYOUT_GREY}, as_float = image, again = image;
+    lensprof_image image = {half, 0, 65536, 1, LENSPROF_SAMPLE_F16, LENSPROF_LAYOUT_GREY}, as_float = image,
+                   again = image;
     as_float.data = wide, as_float.sample = LENSPROF_SAMPLE_F32, again.data = back;
     const lensprof_plan *plan;
     o->source_sample = LENSPROF_SAMPLE_F16, o->target_sample = LENSPROF_SAMPLE_F32;
@@ -337,8 +344,10 @@ static void test_half_floats(void **state)
     for (uint32_t h = 0; h < 65536; h++) {
         int exponent = (int)(h >> 10 & 31);
         double size = exponent ? ldexp(1.0 + (h & 0x3ff) / 1024.0, exponent - 15) : ldexp((h & 0x3ff) / 1024.0, -14);
-        if (exponent < 31) assert_true((double)wide[h] == (h & 0x8000 ? -size : size));
-        else assert_true(h & 0x3ff ? isnan(wide[h]) : isinf(wide[h]));
+        if (exponent < 31)
+            assert_true((double)wide[h] == (h & 0x8000 ? -size : size));
+        else
+            assert_true(h & 0x3ff ? isnan(wide[h]) : isinf(wide[h]));
     }
     o->source_sample = LENSPROF_SAMPLE_F32, o->target_sample = LENSPROF_SAMPLE_F16;
     memory = make_plan(&m, 0, &plan);
@@ -358,15 +367,11 @@ static void test_half_floats(void **state)
     free(memory);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_lane_count_gives_the_same_bytes),
-        cmocka_unit_test(test_pieces_give_the_row),
-        cmocka_unit_test(test_planes_are_the_same_picture),
-        cmocka_unit_test(test_planes_that_are_refused),
-        cmocka_unit_test(test_mosaics_follow_their_pattern),
-        cmocka_unit_test(test_half_floats),
+        cmocka_unit_test(test_every_lane_count_gives_the_same_bytes), cmocka_unit_test(test_pieces_give_the_row),
+        cmocka_unit_test(test_planes_are_the_same_picture),           cmocka_unit_test(test_planes_that_are_refused),
+        cmocka_unit_test(test_mosaics_follow_their_pattern),          cmocka_unit_test(test_half_floats),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

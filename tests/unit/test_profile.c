@@ -3,8 +3,7 @@
 
 #include <lensprof/profile.h>
 
-static void test_init_is_valid(void **state)
-{
+static void test_init_is_valid(void **state) {
     (void)state;
     lensprof_profile *p = malloc(sizeof *p);
     lensprof_profile_init(p);
@@ -14,8 +13,7 @@ static void test_init_is_valid(void **state)
     free(p);
 }
 
-static void test_key_refuses(void **state)
-{
+static void test_key_refuses(void **state) {
     (void)state;
     lensprof_profile_key good, k;
     lensprof_profile_key_init(&good);
@@ -35,8 +33,7 @@ static void test_key_refuses(void **state)
     assert_ok(lensprof_profile_key_validate(&k));
 }
 
-static void test_profile_refuses(void **state)
-{
+static void test_profile_refuses(void **state) {
     (void)state;
     lensprof_profile *p = malloc(sizeof *p);
     lensprof_profile_init(p);
@@ -71,8 +68,7 @@ static void test_profile_refuses(void **state)
     free(p);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_init_is_valid),
         cmocka_unit_test(test_key_refuses),

@@ -5,8 +5,7 @@
 
 #define LAST (LENSPROF_RESPONSE_SAMPLES - 1)
 
-static lensprof_response emor(double a, double b)
-{
+static lensprof_response emor(double a, double b) {
     lensprof_response r;
     const double coefficients[2] = {a, b};
     assert_ok(lensprof_response_set_emor(&r, coefficients, 2));
@@ -14,8 +13,7 @@ static lensprof_response emor(double a, double b)
 }
 
 /* The published tables: curves end at 0 and 1, modes vanish at the ends and are orthonormal on the grid. */
-static void test_emor_tables(void **state)
-{
+static void test_emor_tables(void **state) {
     (void)state;
     assert_null(lensprof_emor_table(LENSPROF_EMOR_MODES + 1));
     assert_close(lensprof_emor_table(0)[0], 0.0, 0.0);
@@ -30,8 +28,7 @@ static void test_emor_tables(void **state)
         }
 }
 
-static void test_kinds_follow_their_formulas(void **state)
-{
+static void test_kinds_follow_their_formulas(void **state) {
     (void)state;
     lensprof_response r;
     lensprof_response_set_linear(&r);
@@ -50,8 +47,7 @@ static void test_kinds_follow_their_formulas(void **state)
     assert_close(lensprof_response_eval(&r, 0.75, NULL), 0.9, 1e-6);
 }
 
-static void test_values_outside_are_clamped(void **state)
-{
+static void test_values_outside_are_clamped(void **state) {
     (void)state;
     lensprof_response r = emor(1.0, 0.0);
     double slope = 7.0;
@@ -63,8 +59,7 @@ static void test_values_outside_are_clamped(void **state)
     assert_close(lensprof_response_invert(&r, 2.0, NULL), 1.0, 0.0);
 }
 
-static void test_invert_undoes_eval(void **state)
-{
+static void test_invert_undoes_eval(void **state) {
     (void)state;
     lensprof_response kinds[4];
     lensprof_response_set_linear(&kinds[0]);
@@ -81,8 +76,7 @@ static void test_invert_undoes_eval(void **state)
 }
 
 /* Where the curve is flat, the inverse is the smallest irradiance that gives the grey value. */
-static void test_invert_of_a_flat_curve(void **state)
-{
+static void test_invert_of_a_flat_curve(void **state) {
     (void)state;
     lensprof_response r;
     const double table[5] = {0.0, 0.5, 0.5, 1.0, 1.0};
@@ -92,8 +86,7 @@ static void test_invert_of_a_flat_curve(void **state)
     assert_true(lensprof_response_invert(&r, 1.0, NULL) < 0.7515);
 }
 
-static void test_slopes_against_central_differences(void **state)
-{
+static void test_slopes_against_central_differences(void **state) {
     (void)state;
     lensprof_response kinds[3];
     lensprof_response_set_linear(&kinds[0]);
@@ -114,8 +107,7 @@ static void test_slopes_against_central_differences(void **state)
         }
 }
 
-static void test_set_refuses_what_is_no_response(void **state)
-{
+static void test_set_refuses_what_is_no_response(void **state) {
     (void)state;
     lensprof_response r, before;
     lensprof_response_set_linear(&r);
@@ -133,8 +125,7 @@ static void test_set_refuses_what_is_no_response(void **state)
     assert_memory_equal(&r, &before, sizeof r);
 }
 
-static void test_validate(void **state)
-{
+static void test_validate(void **state) {
     (void)state;
     lensprof_response good = emor(0.2, 0.1), r = good;
     assert_ok(lensprof_response_validate(&good));
@@ -153,8 +144,7 @@ static void test_validate(void **state)
     assert_int_equal(lensprof_response_validate(&r), LENSPROF_ERROR_RESPONSE);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_emor_tables),
         cmocka_unit_test(test_kinds_follow_their_formulas),

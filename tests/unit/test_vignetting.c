@@ -3,8 +3,7 @@
 
 #include <lensprof/model.h>
 
-static void test_value_and_radius(void **state)
-{
+static void test_value_and_radius(void **state) {
     (void)state;
     const lensprof_vignetting v = {{-0.3, 0.05, -0.15}, {0.0, 0.0}};
     assert_close(lensprof_vignetting_eval(&v, 0.0, NULL), 1.0, 0.0);
@@ -18,8 +17,7 @@ static void test_value_and_radius(void **state)
     assert_close(lensprof_vignetting_r2(&shifted, 400, 300, 224.5, 99.5, NULL), 0.0, 1e-15);
 }
 
-static void test_derivatives_against_central_differences(void **state)
-{
+static void test_derivatives_against_central_differences(void **state) {
     (void)state;
     uint64_t random = 3;
     for (int i = 0; i < 1000; i++) {
@@ -45,8 +43,7 @@ static void test_derivatives_against_central_differences(void **state)
 }
 
 /* The verdict equals that of a fine scan over the radius. */
-static void test_validate_finds_every_minimum(void **state)
-{
+static void test_validate_finds_every_minimum(void **state) {
     (void)state;
     uint64_t random = 5;
     int valid = 0, invalid = 0;
@@ -65,8 +62,7 @@ static void test_validate_finds_every_minimum(void **state)
     assert_true(valid > 1000 && invalid > 1000);
 }
 
-static void test_validate_refuses(void **state)
-{
+static void test_validate_refuses(void **state) {
     (void)state;
     lensprof_vignetting v = {{NAN, 0, 0}, {0, 0}};
     assert_int_equal(lensprof_vignetting_validate(&v), LENSPROF_ERROR_NOT_FINITE);
@@ -79,8 +75,7 @@ static void test_validate_refuses(void **state)
     assert_int_equal(lensprof_vignetting_validate(NULL), LENSPROF_ERROR_ARGUMENT);
 }
 
-static void test_exposure(void **state)
-{
+static void test_exposure(void **state) {
     (void)state;
     lensprof_exposure e;
     lensprof_exposure_init(&e);
@@ -95,8 +90,7 @@ static void test_exposure(void **state)
     assert_int_equal(lensprof_exposure_validate(&e), LENSPROF_ERROR_EXPOSURE);
 }
 
-int main(void)
-{
+int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_value_and_radius),
         cmocka_unit_test(test_derivatives_against_central_differences),

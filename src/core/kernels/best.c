@@ -5,16 +5,18 @@
 #include <cpuid.h>
 
 /* What the operating system saves of the vector registers (XCR0). */
-static uint32_t saved_state(void)
-{
+static uint32_t saved_state(void) {
     uint32_t low, high;
     __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
     return low;
 }
 
-static uint32_t most_lanes(void)
-{
-    enum { SSE41 = 1 << 19, OSXSAVE = 1 << 27, AVX2 = 1 << 5 };
+static uint32_t most_lanes(void) {
+    enum {
+        SSE41 = 1 << 19,
+        OSXSAVE = 1 << 27,
+        AVX2 = 1 << 5
+    };
     const uint32_t avx512 = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31; /* F, DQ, BW, VL */
     uint32_t a, b, c, d;
     if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & SSE41)) return 1;
@@ -24,20 +26,15 @@ static uint32_t most_lanes(void)
     return (b & avx512) == avx512 && (state & 0xe0) == 0xe0 ? 16 : 8;
 }
 
-lp_row_kernel *lp_row_best(uint32_t lanes)
-{
+lp_row_kernel *lp_row_best(uint32_t lanes) {
     uint32_t most = most_lanes();
     if (lanes && lanes < most) most = lanes;
     return most >= 16 ? lp_row_avx512 : most >= 8 ? lp_row_avx2 : most >= 4 ? lp_row_sse41 : lp_row_scalar;
 }
 #elif defined(__aarch64__) && defined(LENSPROF_KERNELS)
-lp_row_kernel *lp_row_best(uint32_t lanes)
-{
-    return lanes == 0 || lanes >= 4 ? lp_row_neon : lp_row_scalar;
-}
+lp_row_kernel *lp_row_best(uint32_t lanes) { return lanes == 0 || lanes >= 4 ? lp_row_neon : lp_row_scalar; }
 #else
-lp_row_kernel *lp_row_best(uint32_t lanes)
-{
+lp_row_kernel *lp_row_best(uint32_t lanes) {
     (void)lanes;
     return lp_row_scalar;
 }

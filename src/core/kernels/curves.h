@@ -2,8 +2,7 @@
 
 /* x^e for 0 <= x <= 1, e > 0: 2^(e log2 x). log2 by the series of atanh, 2^ by a polynomial; relative error below 2e-6
  * where the result is above 1e-3. */
-ALWAYS_INLINE lane_f power(lane_f x, lane_f e)
-{
+ALWAYS_INLINE lane_f power(lane_f x, lane_f e) {
     const lane_i bits = i_of_bits(f_max(x, f_set(1e-37f)));
     const lane_i shifted = i_sub(bits, i_set(0x3f3504f3)); /* of the square root of 1/2: m lies about 1 */
     const lane_f whole = f_of_i(i_sub(i_right(i_add(shifted, i_set(0x40000000)), 23), i_set(0x80)));
@@ -28,14 +27,12 @@ ALWAYS_INLINE lane_f power(lane_f x, lane_f e)
 }
 
 /* Within 0..most; 0 for NaN. `is_light`: numbers not below 0. */
-ALWAYS_INLINE lane_f cut(lane_f x, int is_light, float most)
-{
+ALWAYS_INLINE lane_f cut(lane_f x, int is_light, float most) {
     return f_min(is_light ? x : f_max(x, f_set(0.0f)), f_set(most));
 }
 
 /* f(position / LAST) by its samples, 0 <= position <= LAST. One number more follows them. */
-ALWAYS_INLINE lane_f table_at(const float *samples, lane_f position, lane_i channel)
-{
+ALWAYS_INLINE lane_f table_at(const float *samples, lane_f position, lane_i channel) {
     const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
     const lane_i j = i_of_f(position);
     lane_f low, high;
@@ -44,8 +41,7 @@ ALWAYS_INLINE lane_f table_at(const float *samples, lane_f position, lane_i chan
 }
 
 /* g(b) by the samples of f, 0 <= b <= 1: the smallest x with f(x) >= b. */
-ALWAYS_INLINE lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i channel)
-{
+ALWAYS_INLINE lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i channel) {
     const float *samples = plan->forward;
     const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
     const lane_i cell = i_add(i_of_f(f_mul(b, f_set((float)LP_CELLS))), channel); /* a table is one longer than cells */
@@ -66,32 +62,32 @@ ALWAYS_INLINE lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i c
 /* The value of a curve; NaN stays. `at`: index into s->channel. `is_light`: x are numbers not below 0. Towards
  * codes by a table, x is a position in it. */
 ALWAYS_INLINE lane_f curve_value(const lensprof_plan *plan, const strip *s, uint32_t curve, int inverse, int is_light,
-                                 uint32_t at, lane_f x)
-{
+                                 uint32_t at, lane_f x) {
     const float *exponents = inverse ? plan->inverse_exponent : plan->exponent;
     const int is_position = !inverse && curve == LP_CURVE_TABLE;
     const lane_f inside = cut(x, is_light, is_position ? (float)LAST : 1.0f);
     lane_f y = inside, e = f_set(exponents[0]);
     lane_i channel = i_set(0);
     if (plan->curves == 3) channel = i_load(s->channel + at), e = f_gather(exponents, channel);
-    if (is_position) y = table_at(plan->forward, inside, channel);
-    else if (inverse && (curve == LP_CURVE_TABLE || curve == LP_CURVE_MIXED)) y = table_inverse(plan, inside, channel);
-    else if (curve == LP_CURVE_MIXED) y = table_at(plan->forward, f_mul(inside, f_set((float)LAST)), channel);
+    if (is_position)
+        y = table_at(plan->forward, inside, channel);
+    else if (inverse && (curve == LP_CURVE_TABLE || curve == LP_CURVE_MIXED))
+        y = table_inverse(plan, inside, channel);
+    else if (curve == LP_CURVE_MIXED)
+        y = table_at(plan->forward, f_mul(inside, f_set((float)LAST)), channel);
     if (curve == LP_CURVE_POWER) y = power(inside, e);
     if (curve == LP_CURVE_MIXED) y = f_pick(f_less(f_set(0.0f), e), power(inside, e), y);
     return is_light ? y : f_pick(f_is_number(x), y, x);
 }
 
 /* Codes of 16 bit that go through a formula become values. */
-ALWAYS_INLINE lane_f code_scale(const lensprof_plan *plan)
-{
+ALWAYS_INLINE lane_f code_scale(const lensprof_plan *plan) {
     return f_set(plan->source_sample == LENSPROF_SAMPLE_U16 ? 1.0f / 65535.0f : 1.0f);
 }
 
 /* Samples of a strip's light, in place, through a curve; codes of 16 bit become values first. */
 ALWAYS_INLINE void through_curve(const lensprof_plan *plan, strip *s, uint32_t curve, int inverse, uint32_t at,
-                                 uint32_t count)
-{
+                                 uint32_t count) {
     const lane_f scale = inverse ? code_scale(plan) : f_set(1.0f);
     for (uint32_t i = at; i < at + count; i += LANES)
         f_store(s->light + i, curve_value(plan, s, curve, inverse, 0, i, f_mul(f_load(s->light + i), scale)));

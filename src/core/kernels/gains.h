@@ -2,8 +2,7 @@
 
 /* The gain grid's nodes, interpolated to a row. They hold what the attenuation is beyond 1, which is small: single
  * precision loses less. */
-static void blend_rows(const lensprof_plan *plan, uint32_t y, strip *s)
-{
+static void blend_rows(const lensprof_plan *plan, uint32_t y, strip *s) {
     uint32_t last = plan->rows - 1, pixels = plan->frame_height > 1 ? plan->frame_height - 1 : 1;
     uint32_t at = y * last, node = at / pixels;
     if (node >= last) node = last - 1;
@@ -15,21 +14,21 @@ static void blend_rows(const lensprof_plan *plan, uint32_t y, strip *s)
 }
 
 /* The grid's values at pixels of the row, to `values`. */
-static void grid_values(const lensprof_plan *plan, const float *nodes, uint32_t x, uint32_t count, float *values)
-{
+static void grid_values(const lensprof_plan *plan, const float *nodes, uint32_t x, uint32_t count, float *values) {
     uint32_t last = plan->columns - 1, pixels = plan->frame_width > 1 ? plan->frame_width - 1 : 1;
     uint32_t node = x * last / pixels, rest = x * last - node * pixels;
     float per_pixel = (float)pixels;
     for (uint32_t i = 0; i < count; i++) {
-        if (node < last) values[i] = nodes[node] + (float)rest / per_pixel * (nodes[node + 1] - nodes[node]);
-        else values[i] = nodes[last];
+        if (node < last)
+            values[i] = nodes[node] + (float)rest / per_pixel * (nodes[node + 1] - nodes[node]);
+        else
+            values[i] = nodes[last];
         for (rest += last; rest >= pixels; rest -= pixels) node++;
     }
 }
 
 /* factor / M of channel c for pixels of the row (or M / factor, to simulate), to s->gain[c]. */
-static void gains_of_channel(const lensprof_plan *plan, uint32_t c, uint32_t x, float dy, uint32_t count, strip *s)
-{
+static void gains_of_channel(const lensprof_plan *plan, uint32_t c, uint32_t x, float dy, uint32_t count, strip *s) {
     float *gain = s->gain[c];
     const int has_grid = plan->columns != 0;
     const lane_f one = f_set(1.0f), k0 = f_set(plan->k[c][0]), k1 = f_set(plan->k[c][1]), k2 = f_set(plan->k[c][2]);
@@ -51,8 +50,7 @@ static void gains_of_channel(const lensprof_plan *plan, uint32_t c, uint32_t x, 
 }
 
 /* Gains of the samples of `count` pixels from those of the pixels. */
-static void spread_gains(const lensprof_plan *plan, uint32_t x, uint32_t y, uint32_t count, strip *s)
-{
+static void spread_gains(const lensprof_plan *plan, uint32_t x, uint32_t y, uint32_t count, strip *s) {
     const float *gain[LP_CHANNELS];
     for (uint32_t c = 0; c < LP_CHANNELS; c++) gain[c] = s->gain[plan->gains == 3 ? c : 0];
     if (plan->layout == LENSPROF_LAYOUT_PLANAR) {
@@ -83,12 +81,13 @@ static void spread_gains(const lensprof_plan *plan, uint32_t x, uint32_t y, uint
 }
 
 /* The curve of every sample of a strip; strips begin at even pixels of the row. */
-static void find_channels(const lensprof_plan *plan, uint32_t x, uint32_t y, strip *s)
-{
+static void find_channels(const lensprof_plan *plan, uint32_t x, uint32_t y, strip *s) {
     for (uint32_t i = 0; i < ROOM; i++) {
         uint32_t c = plan->channel_of_sample[i % plan->samples];
-        if (plan->layout == LENSPROF_LAYOUT_PLANAR) c = i / (STRIP + LANES);
-        else if (plan->samples == 1) c = plan->site[y & 1][(x + i) & 1];
+        if (plan->layout == LENSPROF_LAYOUT_PLANAR)
+            c = i / (STRIP + LANES);
+        else if (plan->samples == 1)
+            c = plan->site[y & 1][(x + i) & 1];
         s->channel[i] = (int32_t)(c == LP_ALPHA ? 1 : c);
     }
 }

@@ -25,8 +25,7 @@ static inline lane_f f_min(lane_f a, lane_f b) { return _mm256_min_ps(a, b); }
 static inline lane_b f_less(lane_f a, lane_f b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
 static inline lane_b f_is_number(lane_f a) { return _mm256_cmp_ps(a, a, _CMP_EQ_OQ); }
 static inline lane_f f_pick(lane_b is, lane_f yes, lane_f no) { return _mm256_blendv_ps(no, yes, is); }
-static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no)
-{
+static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) {
     return _mm256_blendv_epi8(no, yes, _mm256_castps_si256(is));
 }
 
@@ -45,20 +44,16 @@ static inline lane_f f_of_bits(lane_i a) { return _mm256_castsi256_ps(a); }
 static inline lane_i i_of_bits(lane_f a) { return _mm256_castps_si256(a); }
 static inline lane_i i_count(void) { return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7); }
 
-static inline lane_i i_load_u8(const uint8_t *p)
-{
+static inline lane_i i_load_u8(const uint8_t *p) {
     return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)p));
 }
-static inline lane_i i_load_u16(const uint8_t *p)
-{
+static inline lane_i i_load_u16(const uint8_t *p) {
     return _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)(const void *)p));
 }
-static inline __m128i to_u16(lane_i v)
-{
+static inline __m128i to_u16(lane_i v) {
     return _mm_packus_epi32(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
 }
-static inline void i_store_u8(uint8_t *p, lane_i v)
-{
+static inline void i_store_u8(uint8_t *p, lane_i v) {
     __m128i words = to_u16(v);
     _mm_storel_epi64((__m128i *)(void *)p, _mm_packus_epi16(words, words));
 }
@@ -66,23 +61,19 @@ static inline void i_store_u16(uint8_t *p, lane_i v) { _mm_storeu_si128((__m128i
 
 /* All lanes, which the compiler is not to know: it would leave out the zeros that gathers write into, and each would
  * wait for whatever was in its register before. */
-static inline __m256i all_lanes(void)
-{
+static inline __m256i all_lanes(void) {
     __m256i all = _mm256_set1_epi32(-1);
     __asm__("" : "+x"(all));
     return all;
 }
-static inline lane_f f_gather(const float *base, lane_i index)
-{
+static inline lane_f f_gather(const float *base, lane_i index) {
     return _mm256_mask_i32gather_ps(_mm256_setzero_ps(), base, index, _mm256_castsi256_ps(all_lanes()), 4);
 }
-static inline __m256d gather_pairs(const float *base, __m128i index)
-{
+static inline __m256d gather_pairs(const float *base, __m128i index) {
     return _mm256_mask_i32gather_pd(_mm256_setzero_pd(), (const double *)(const void *)base, index,
                                     _mm256_castsi256_pd(all_lanes()), 4);
 }
-static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second)
-{
+static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second) {
     __m256 low = _mm256_castpd_ps(gather_pairs(base, _mm256_castsi256_si128(index)));
     __m256 high = _mm256_castpd_ps(gather_pairs(base, _mm256_extracti128_si256(index, 1)));
     __m256d a = _mm256_castps_pd(_mm256_shuffle_ps(low, high, 0x88));
@@ -91,8 +82,7 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
     *second = _mm256_castpd_ps(_mm256_permute4x64_pd(b, 0xd8));
 }
 
-static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
-{
+static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {
     __m256i first = _mm256_setr_epi32(0, 0, 0, 1, 1, 1, 2, 2), second = _mm256_setr_epi32(2, 3, 3, 3, 4, 4, 4, 5),
             third = _mm256_setr_epi32(5, 5, 6, 6, 6, 7, 7, 7);
     __m256 x = _mm256_blend_ps(_mm256_permutevar8x32_ps(a, first), _mm256_permutevar8x32_ps(b, first), 0x92);
@@ -105,8 +95,7 @@ static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
 
 /* A line of 64 bytes past the caches; `to` is aligned to it. */
 #define CAN_STREAM 1
-static inline void stream_line(uint8_t *to, const uint8_t *from)
-{
+static inline void stream_line(uint8_t *to, const uint8_t *from) {
     for (int i = 0; i < 2; i++)
         _mm256_stream_si256((__m256i *)(void *)to + i, _mm256_loadu_si256((const __m256i *)(const void *)from + i));
 }

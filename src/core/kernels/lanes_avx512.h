@@ -45,53 +45,40 @@ static inline lane_f f_of_i(lane_i a) { return _mm512_cvtepi32_ps(a); }
 static inline lane_i i_of_f(lane_f a) { return _mm512_cvttps_epi32(a); }
 static inline lane_f f_of_bits(lane_i a) { return _mm512_castsi512_ps(a); }
 static inline lane_i i_of_bits(lane_f a) { return _mm512_castps_si512(a); }
-static inline lane_i i_count(void)
-{
-    return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-}
+static inline lane_i i_count(void) { return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
 
-static inline lane_i i_load_u8(const uint8_t *p)
-{
+static inline lane_i i_load_u8(const uint8_t *p) {
     return _mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)(const void *)p));
 }
-static inline lane_i i_load_u16(const uint8_t *p)
-{
+static inline lane_i i_load_u16(const uint8_t *p) {
     return _mm512_cvtepu16_epi32(_mm256_loadu_si256((const __m256i *)(const void *)p));
 }
-static inline void i_store_u8(uint8_t *p, lane_i v)
-{
-    _mm_storeu_si128((__m128i *)(void *)p, _mm512_cvtepi32_epi8(v));
-}
-static inline void i_store_u16(uint8_t *p, lane_i v)
-{
+static inline void i_store_u8(uint8_t *p, lane_i v) { _mm_storeu_si128((__m128i *)(void *)p, _mm512_cvtepi32_epi8(v)); }
+static inline void i_store_u16(uint8_t *p, lane_i v) {
     _mm256_storeu_si256((__m256i *)(void *)p, _mm512_cvtepi32_epi16(v));
 }
 
 /* All lanes, which the compiler is not to know: it would leave out the zeros that gathers write into, and each would
  * wait for whatever was in its register before. */
-static inline __mmask16 all_lanes(void)
-{
+static inline __mmask16 all_lanes(void) {
     __mmask16 all = 0xffff;
     __asm__("" : "+Yk"(all));
     return all;
 }
-static inline lane_f f_gather(const float *base, lane_i index)
-{
+static inline lane_f f_gather(const float *base, lane_i index) {
     return _mm512_mask_i32gather_ps(_mm512_setzero_ps(), all_lanes(), index, base, 4);
 }
-static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second)
-{
+static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second) {
     __m512 low = _mm512_castpd_ps(
         _mm512_mask_i32gather_pd(_mm512_setzero_pd(), (__mmask8)all_lanes(), _mm512_castsi512_si256(index), base, 4));
-    __m512 high = _mm512_castpd_ps(
-        _mm512_mask_i32gather_pd(_mm512_setzero_pd(), (__mmask8)all_lanes(), _mm512_extracti64x4_epi64(index, 1), base, 4));
+    __m512 high = _mm512_castpd_ps(_mm512_mask_i32gather_pd(_mm512_setzero_pd(), (__mmask8)all_lanes(),
+                                                            _mm512_extracti64x4_epi64(index, 1), base, 4));
     const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
     *first = _mm512_permutex2var_ps(low, even, high);
     *second = _mm512_permutex2var_ps(low, _mm512_add_epi32(even, _mm512_set1_epi32(1)), high);
 }
 
-static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
-{
+static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {
     const __m512i first = _mm512_setr_epi32(0, 16, 0, 1, 17, 0, 2, 18, 0, 3, 19, 0, 4, 20, 0, 5),
                   second = _mm512_setr_epi32(21, 0, 6, 22, 0, 7, 23, 0, 8, 24, 0, 9, 25, 0, 10, 26),
                   third = _mm512_setr_epi32(0, 11, 27, 0, 12, 28, 0, 13, 29, 0, 14, 30, 0, 15, 31, 0);
@@ -105,8 +92,7 @@ static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
 
 /* A line of 64 bytes past the caches; `to` is aligned to it. */
 #define CAN_STREAM 1
-static inline void stream_line(uint8_t *to, const uint8_t *from)
-{
+static inline void stream_line(uint8_t *to, const uint8_t *from) {
     _mm512_stream_si512((__m512i *)(void *)to, _mm512_loadu_si512(from));
 }
 static inline void end_stream(void) { _mm_sfence(); }

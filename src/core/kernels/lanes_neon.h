@@ -40,52 +40,46 @@ static inline lane_f f_of_i(lane_i a) { return vcvtq_f32_s32(a); }
 static inline lane_i i_of_f(lane_f a) { return vcvtq_s32_f32(a); }
 static inline lane_f f_of_bits(lane_i a) { return vreinterpretq_f32_s32(a); }
 static inline lane_i i_of_bits(lane_f a) { return vreinterpretq_s32_f32(a); }
-static inline lane_i i_count(void)
-{
+static inline lane_i i_count(void) {
     static const int32_t count[4] = {0, 1, 2, 3};
     return vld1q_s32(count);
 }
 
-static inline lane_i i_load_u8(const uint8_t *p)
-{
+static inline lane_i i_load_u8(const uint8_t *p) {
     uint32_t four;
     memcpy(&four, p, sizeof four);
     uint16x8_t words = vmovl_u8(vreinterpret_u8_u32(vdup_n_u32(four)));
     return vreinterpretq_s32_u32(vmovl_u16(vget_low_u16(words)));
 }
-static inline lane_i i_load_u16(const uint8_t *p)
-{
+static inline lane_i i_load_u16(const uint8_t *p) {
     uint8x8_t bytes = vld1_u8(p);
     return vreinterpretq_s32_u32(vmovl_u16(vreinterpret_u16_u8(bytes)));
 }
-static inline void i_store_u8(uint8_t *p, lane_i v)
-{
+static inline void i_store_u8(uint8_t *p, lane_i v) {
     uint16x4_t words = vmovn_u32(vreinterpretq_u32_s32(v));
     uint32_t four = vget_lane_u32(vreinterpret_u32_u8(vmovn_u16(vcombine_u16(words, words))), 0);
     memcpy(p, &four, sizeof four);
 }
-static inline void i_store_u16(uint8_t *p, lane_i v)
-{
+static inline void i_store_u16(uint8_t *p, lane_i v) {
     vst1_u8(p, vreinterpret_u8_u16(vmovn_u32(vreinterpretq_u32_s32(v))));
 }
 
-static inline lane_f f_gather(const float *base, lane_i index)
-{
+static inline lane_f f_gather(const float *base, lane_i index) {
     float32x4_t v = vdupq_n_f32(base[vgetq_lane_s32(index, 0)]);
     v = vsetq_lane_f32(base[vgetq_lane_s32(index, 1)], v, 1);
     v = vsetq_lane_f32(base[vgetq_lane_s32(index, 2)], v, 2);
     return vsetq_lane_f32(base[vgetq_lane_s32(index, 3)], v, 3);
 }
-static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second)
-{
-    float32x4_t low = vcombine_f32(vld1_f32(base + vgetq_lane_s32(index, 0)), vld1_f32(base + vgetq_lane_s32(index, 1)));
-    float32x4_t high = vcombine_f32(vld1_f32(base + vgetq_lane_s32(index, 2)), vld1_f32(base + vgetq_lane_s32(index, 3)));
+static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second) {
+    float32x4_t low =
+        vcombine_f32(vld1_f32(base + vgetq_lane_s32(index, 0)), vld1_f32(base + vgetq_lane_s32(index, 1)));
+    float32x4_t high =
+        vcombine_f32(vld1_f32(base + vgetq_lane_s32(index, 2)), vld1_f32(base + vgetq_lane_s32(index, 3)));
     *first = vuzp1q_f32(low, high);
     *second = vuzp2q_f32(low, high);
 }
 
-static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
-{
+static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {
     float32x4x3_t all = {{a, b, c}};
     vst3q_f32(p, all);
 }

@@ -39,14 +39,12 @@ static inline lane_i i_min(lane_i a, lane_i b) { return a < b ? a : b; }
 
 static inline lane_f f_of_i(lane_i a) { return (float)a; }
 static inline lane_i i_of_f(lane_f a) { return (int32_t)a; } /* towards 0; within int32 */
-static inline lane_f f_of_bits(lane_i a)
-{
+static inline lane_f f_of_bits(lane_i a) {
     lane_f f;
     memcpy(&f, &a, sizeof f);
     return f;
 }
-static inline lane_i i_of_bits(lane_f a)
-{
+static inline lane_i i_of_bits(lane_f a) {
     lane_i i;
     memcpy(&i, &a, sizeof i);
     return i;
@@ -57,22 +55,19 @@ static inline lane_i i_count(void) { return 0; }
 
 static inline lane_i i_load_u8(const uint8_t *p) { return *p; }
 static inline void i_store_u8(uint8_t *p, lane_i v) { *p = (uint8_t)v; }
-static inline lane_i i_load_u16(const uint8_t *p)
-{
+static inline lane_i i_load_u16(const uint8_t *p) {
     uint16_t v;
     memcpy(&v, p, sizeof v);
     return v;
 }
-static inline void i_store_u16(uint8_t *p, lane_i v)
-{
+static inline void i_store_u16(uint8_t *p, lane_i v) {
     uint16_t u = (uint16_t)v;
     memcpy(p, &u, sizeof u);
 }
 
 static inline lane_f f_gather(const float *base, lane_i index) { return base[index]; }
 /* base[index] and the element behind it */
-static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second)
-{
+static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second) {
     *first = base[index];
     *second = base[index + 1];
 }

@@ -42,34 +42,26 @@ static inline lane_f f_of_bits(lane_i a) { return _mm_castsi128_ps(a); }
 static inline lane_i i_of_bits(lane_f a) { return _mm_castps_si128(a); }
 static inline lane_i i_count(void) { return _mm_setr_epi32(0, 1, 2, 3); }
 
-static inline lane_i i_load_u8(const uint8_t *p)
-{
+static inline lane_i i_load_u8(const uint8_t *p) {
     int32_t four;
     memcpy(&four, p, sizeof four);
     return _mm_cvtepu8_epi32(_mm_cvtsi32_si128(four));
 }
-static inline lane_i i_load_u16(const uint8_t *p)
-{
+static inline lane_i i_load_u16(const uint8_t *p) {
     return _mm_cvtepu16_epi32(_mm_loadl_epi64((const __m128i *)(const void *)p));
 }
-static inline void i_store_u8(uint8_t *p, lane_i v)
-{
+static inline void i_store_u8(uint8_t *p, lane_i v) {
     __m128i words = _mm_packus_epi32(v, v);
     int32_t four = _mm_cvtsi128_si32(_mm_packus_epi16(words, words));
     memcpy(p, &four, sizeof four);
 }
-static inline void i_store_u16(uint8_t *p, lane_i v)
-{
-    _mm_storel_epi64((__m128i *)(void *)p, _mm_packus_epi32(v, v));
-}
+static inline void i_store_u16(uint8_t *p, lane_i v) { _mm_storel_epi64((__m128i *)(void *)p, _mm_packus_epi32(v, v)); }
 
-static inline lane_f f_gather(const float *base, lane_i index)
-{
+static inline lane_f f_gather(const float *base, lane_i index) {
     return _mm_setr_ps(base[_mm_extract_epi32(index, 0)], base[_mm_extract_epi32(index, 1)],
                        base[_mm_extract_epi32(index, 2)], base[_mm_extract_epi32(index, 3)]);
 }
-static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second)
-{
+static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second) {
     __m128 low = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + _mm_extract_epi32(index, 0)));
     low = _mm_loadh_pi(low, (const __m64 *)(const void *)(base + _mm_extract_epi32(index, 1)));
     __m128 high = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + _mm_extract_epi32(index, 2)));
@@ -78,8 +70,7 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
     *second = _mm_shuffle_ps(low, high, 0xdd);
 }
 
-static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
-{
+static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {
     __m128 ab = _mm_unpacklo_ps(a, b), ab_high = _mm_unpackhi_ps(a, b);        /* a0 b0 a1 b1, a2 b2 a3 b3 */
     __m128 ca = _mm_shuffle_ps(c, a, _MM_SHUFFLE(1, 1, 0, 0));                 /* c0 c0 a1 a1 */
     __m128 bc = _mm_shuffle_ps(b, c, _MM_SHUFFLE(1, 1, 1, 1));                 /* b1 b1 c1 c1 */
@@ -92,8 +83,7 @@ static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c)
 
 /* A line of 64 bytes past the caches; `to` is aligned to it. */
 #define CAN_STREAM 1
-static inline void stream_line(uint8_t *to, const uint8_t *from)
-{
+static inline void stream_line(uint8_t *to, const uint8_t *from) {
     for (int i = 0; i < 4; i++)
         _mm_stream_si128((__m128i *)(void *)to + i, _mm_loadu_si128((const __m128i *)(const void *)from + i));
 }

@@ -1,16 +1,15 @@
 /* The row kernel, compiled once for every lane count (a lanes_*.h comes first): pixels in strips, each strip in steps:
  * gains, light, light times gain, grey values. */
-#include "strip.h"
+#include "core/kernels/strip.h"
 
-#include "curves.h"
-#include "gains.h"
-#include "samples.h"
+#include "core/kernels/curves.h"
+#include "core/kernels/gains.h"
+#include "core/kernels/samples.h"
 
 /* ---- towards white ---- */
 
 /* 0 below `low`, 1 at white, smooth between. */
-static inline float ramp(float value, float low)
-{
+static inline float ramp(float value, float low) {
     float t = (value - low) / (1.0f - low);
     if (!(t > 0.0f)) return 0.0f;
     if (t > 1.0f) t = 1.0f;
@@ -20,8 +19,7 @@ static inline float ramp(float value, float low)
 /* Gains of red, green and blue, in s->factor. Towards white they approach the largest one, gradually, as the brightest
  * channel nears saturation (from 0.9 on) and the darkest one follows (from 0.6 on): a clipped cloud, not a bright
  * colour. The strip's light still holds codes, `unit` of which are white; channels lie `pitch` apart, pixels `step`. */
-static void approach_white(strip *s, uint32_t count, uint32_t pitch, uint32_t step, float unit)
-{
+static void approach_white(strip *s, uint32_t count, uint32_t pitch, uint32_t step, float unit) {
     for (uint32_t i = 0; i < count; i++) {
         const float *value = s->light + i * step;
         float *gain = s->factor + i * step, brightest = 0.0f, darkest = 1.0f, largest = 0.0f;
@@ -39,14 +37,13 @@ static void approach_white(strip *s, uint32_t count, uint32_t pitch, uint32_t st
 /* ---- rows ---- */
 
 /* 8 x 8 ordered dither (Bayer 1973), in 64ths. */
-static const uint8_t dither_matrix[8][8] = {
-    {0, 32, 8, 40, 2, 34, 10, 42},   {48, 16, 56, 24, 50, 18, 58, 26}, {12, 44, 4, 36, 14, 46, 6, 38},
-    {60, 28, 52, 20, 62, 30, 54, 22}, {3, 35, 11, 43, 1, 33, 9, 41},   {51, 19, 59, 27, 49, 17, 57, 25},
-    {15, 47, 7, 39, 13, 45, 5, 37},   {63, 31, 55, 23, 61, 29, 53, 21}};
+static const uint8_t dither_matrix[8][8] = {{0, 32, 8, 40, 2, 34, 10, 42},  {48, 16, 56, 24, 50, 18, 58, 26},
+                                            {12, 44, 4, 36, 14, 46, 6, 38}, {60, 28, 52, 20, 62, 30, 54, 22},
+                                            {3, 35, 11, 43, 1, 33, 9, 41},  {51, 19, 59, 27, 49, 17, 57, 25},
+                                            {15, 47, 7, 39, 13, 45, 5, 37}, {63, 31, 55, 23, 61, 29, 53, 21}};
 
 /* Strips begin at pixels of the row that are multiples of 8 away from its first. */
-static void find_rounding(const lensprof_plan *plan, uint32_t x, uint32_t y, strip *s)
-{
+static void find_rounding(const lensprof_plan *plan, uint32_t x, uint32_t y, strip *s) {
     const uint32_t planes = plan->layout == LENSPROF_LAYOUT_PLANAR ? 3 : 1;
     for (uint32_t plane = 0; plane < planes; plane++)
         for (uint32_t i = 0; i < (planes == 3 ? STRIP + LANES : ROOM); i++)
@@ -61,22 +58,22 @@ typedef struct run {
     uint32_t at, count;
 } run;
 
-static void decode(const lensprof_plan *plan, const run *r, strip *s)
-{
+static void decode(const lensprof_plan *plan, const run *r, strip *s) {
     switch (plan->decode) {
     case LP_CURVE_NONE: break;
     case LP_CURVE_CLIP: through_curve(plan, s, LP_CURVE_CLIP, 1, r->at, r->count); break;
     case LP_CURVE_TABLE:
-        if (plan->inverse) codes_to_light(plan, s, r->at, r->count);
-        else through_curve(plan, s, LP_CURVE_TABLE, 1, r->at, r->count);
+        if (plan->inverse)
+            codes_to_light(plan, s, r->at, r->count);
+        else
+            through_curve(plan, s, LP_CURVE_TABLE, 1, r->at, r->count);
         break;
     case LP_CURVE_POWER: through_curve(plan, s, LP_CURVE_POWER, 1, r->at, r->count); break;
     default: through_curve(plan, s, LP_CURVE_MIXED, 1, r->at, r->count); break;
     }
 }
 
-static void encode(const lensprof_plan *plan, const run *r, strip *s)
-{
+static void encode(const lensprof_plan *plan, const run *r, strip *s) {
     for (uint32_t i = r->at; i < r->at + r->count; i += LANES)
         f_store(s->light + i, f_mul(f_load(s->light + i), f_load(s->factor + i)));
     switch (plan->encode) {
@@ -88,8 +85,7 @@ static void encode(const lensprof_plan *plan, const run *r, strip *s)
     }
 }
 
-static void load_run(const lensprof_plan *plan, const run *r, strip *s)
-{
+static void load_run(const lensprof_plan *plan, const run *r, strip *s) {
     switch (plan->source_sample) {
     case LENSPROF_SAMPLE_U8: load_codes(LENSPROF_SAMPLE_U8, r->from, r->count, s->light + r->at); break;
     case LENSPROF_SAMPLE_U16: load_codes(LENSPROF_SAMPLE_U16, r->from, r->count, s->light + r->at); break;
@@ -98,8 +94,7 @@ static void load_run(const lensprof_plan *plan, const run *r, strip *s)
     }
 }
 
-static void store_run(const lensprof_plan *plan, const run *r, const strip *s)
-{
+static void store_run(const lensprof_plan *plan, const run *r, const strip *s) {
     switch (plan->target_sample) {
     case LENSPROF_SAMPLE_U8: store_samples(plan, LENSPROF_SAMPLE_U8, s, r->at, r->to, r->count); break;
     case LENSPROF_SAMPLE_U16: store_samples(plan, LENSPROF_SAMPLE_U16, s, r->at, r->to, r->count); break;
@@ -112,21 +107,23 @@ static void store_run(const lensprof_plan *plan, const run *r, const strip *s)
 /* The usual ways in one pass: samples of one type in and out, through one curve both ways. The same steps as
  * load_run, decode, encode and store_run, and so the same bytes. */
 ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t sample, uint32_t curve, uint32_t at,
-                             const uint8_t *from)
-{
+                             const uint8_t *from) {
     const int is_light = sample != LENSPROF_SAMPLE_F32; /* codes are */
     lane_f light;
-    if (curve == LP_CURVE_TABLE && sample == LENSPROF_SAMPLE_U8) light = f_gather(plan->inverse, i_load_u8(from));
-    else if (curve == LP_CURVE_TABLE && sample == LENSPROF_SAMPLE_U16) light = f_gather(plan->inverse, i_load_u16(from));
-    else light = load_values(sample, from);
+    if (curve == LP_CURVE_TABLE && sample == LENSPROF_SAMPLE_U8)
+        light = f_gather(plan->inverse, i_load_u8(from));
+    else if (curve == LP_CURVE_TABLE && sample == LENSPROF_SAMPLE_U16)
+        light = f_gather(plan->inverse, i_load_u16(from));
+    else
+        light = load_values(sample, from);
     if (curve != LP_CURVE_NONE && !(curve == LP_CURVE_TABLE && is_light))
         light = curve_value(plan, s, curve, 1, is_light, at, f_mul(light, code_scale(plan)));
     light = f_mul(light, f_load(s->factor + at));
     return curve == LP_CURVE_NONE ? light : curve_value(plan, s, curve, 0, is_light, at, light);
 }
 
-ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const strip *s, uint32_t sample, uint32_t curve)
-{
+ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const strip *s, uint32_t sample,
+                            uint32_t curve) {
     lensprof_plan own = *shared; /* which no store can change */
     const lensprof_plan *plan = &own;
     const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
@@ -147,8 +144,7 @@ ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const str
 }
 
 /* False for what is not one of the usual ways. */
-static int do_one_pass(const lensprof_plan *plan, const run *r, const strip *s)
-{
+static int do_one_pass(const lensprof_plan *plan, const run *r, const strip *s) {
     if (plan->source_sample != plan->target_sample || plan->decode != plan->encode || plan->dither
         || (plan->curves == 3 && plan->decode != LP_CURVE_NONE))
         return 0;
@@ -166,8 +162,7 @@ static int do_one_pass(const lensprof_plan *plan, const run *r, const strip *s)
 #endif
 
 /* The largest of the codes or values of a run; 0 of none but NaN. Written so that compilers make vectors of it. */
-static float largest_of(const lensprof_plan *plan, const run *r)
-{
+static float largest_of(const lensprof_plan *plan, const run *r) {
     const uint16_t *codes = (const uint16_t *)(const void *)r->from;
     const float *values = (const float *)(const void *)r->from;
     uint8_t most8 = 0;
@@ -189,8 +184,7 @@ static float largest_of(const lensprof_plan *plan, const run *r)
 
 #if CAN_STREAM
 /* Whole lines of a cache past it: parts of lines would be slower than no such way. */
-static void stream_copy(uint8_t *to, const uint8_t *from, size_t bytes)
-{
+static void stream_copy(uint8_t *to, const uint8_t *from, size_t bytes) {
     size_t i = (size_t)(-(uintptr_t)to % 64);
     if (i > bytes) i = bytes;
     memcpy(to, from, i);
@@ -200,8 +194,7 @@ static void stream_copy(uint8_t *to, const uint8_t *from, size_t bytes)
 #endif
 
 /* A run whose codes are on the strip already, `is_loaded`, or not yet. */
-static void do_run(const lensprof_plan *plan, const run *r, int is_loaded, strip *s)
-{
+static void do_run(const lensprof_plan *plan, const run *r, int is_loaded, strip *s) {
 #if LANES > 1
     if (do_one_pass(plan, r, s)) return;
 #endif
@@ -212,8 +205,8 @@ static void do_run(const lensprof_plan *plan, const run *r, int is_loaded, strip
 }
 
 /* A strip whose factors are known. */
-static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes, uint32_t count, strip *s, int stream)
-{
+static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes, uint32_t count, strip *s,
+                     int stream) {
     static const float units[] = {255.0f, 65535.0f, 1.0f, 1.0f};
     const float unit = units[plan->source_sample];
     const int has_alpha = plan->samples > plan->channels;
@@ -222,8 +215,7 @@ static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes
     for (uint32_t p = 0; p < planes && plan->neutral_white; p++)
         near_white |= largest_of(plan, &runs[p]) > 0.89f * unit;
     for (uint32_t p = 0; p < planes && near_white; p++) load_run(plan, &runs[p], s);
-    if (near_white)
-        approach_white(s, count, planes == 3 ? STRIP + LANES : 1, planes == 3 ? 1 : plan->samples, unit);
+    if (near_white) approach_white(s, count, planes == 3 ? STRIP + LANES : 1, planes == 3 ? 1 : plan->samples, unit);
     for (uint32_t p = 0; p < planes; p++) {
         run r = runs[p];
 #if CAN_STREAM
@@ -240,8 +232,7 @@ static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes
 }
 
 /* Asks for the next strip's samples while this one is worked on. */
-static inline void fetch_ahead(const uint8_t *from, uint32_t bytes)
-{
+static inline void fetch_ahead(const uint8_t *from, uint32_t bytes) {
 #if LANES > 1 && defined(__GNUC__)
     for (uint32_t i = 0; i < bytes; i += 64) __builtin_prefetch(from + i);
 #else
@@ -250,8 +241,7 @@ static inline void fetch_ahead(const uint8_t *from, uint32_t bytes)
 }
 
 void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8_t *const target[3], uint32_t x,
-                uint32_t y, uint32_t count, int stream)
-{
+                uint32_t y, uint32_t count, int stream) {
     const uint32_t planes = plan->layout == LENSPROF_LAYOUT_PLANAR ? 3 : 1;
     const uint32_t from_step = plan->samples * lensprof_sample_bytes(plan->source_sample);
     const uint32_t to_step = plan->samples * lensprof_sample_bytes(plan->target_sample);

@@ -1,4 +1,4 @@
-#include "lanes_avx2.h"
+#include "core/kernels/lanes_avx2.h"
 
 #define ROW_KERNEL lp_row_avx2
-#include "row.h"
+#include "core/kernels/row.h"

@@ -1,4 +1,4 @@
-#include "lanes_avx512.h"
+#include "core/kernels/lanes_avx512.h"
 
 #define ROW_KERNEL lp_row_avx512
-#include "row.h"
+#include "core/kernels/row.h"

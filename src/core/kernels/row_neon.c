@@ -1,4 +1,4 @@
-#include "lanes_neon.h"
+#include "core/kernels/lanes_neon.h"
 
 #define ROW_KERNEL lp_row_neon
-#include "row.h"
+#include "core/kernels/row.h"

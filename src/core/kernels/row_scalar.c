@@ -1,4 +1,4 @@
-#include "lanes_scalar.h"
+#include "core/kernels/lanes_scalar.h"
 
 #define ROW_KERNEL lp_row_scalar
-#include "row.h"
+#include "core/kernels/row.h"

@@ -1,4 +1,4 @@
-#include "lanes_sse41.h"
+#include "core/kernels/lanes_sse41.h"
 
 #define ROW_KERNEL lp_row_sse41
-#include "row.h"
+#include "core/kernels/row.h"

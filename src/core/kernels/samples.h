@@ -1,23 +1,23 @@
 /* Samples in memory to numbers on the strip, and back. */
 
 /* Half precision (IEEE binary16), exactly. */
-static inline float float_of_half(uint16_t h)
-{
+static inline float float_of_half(uint16_t h) {
     uint32_t sign = (uint32_t)(h & 0x8000u) << 16, exponent = (h >> 10) & 31u, mantissa = h & 0x3ffu, bits;
     float f;
     if (exponent == 0) {
         f = (float)mantissa * 5.9604644775390625e-8f; /* 2^-24 */
         return sign ? -f : f;
     }
-    if (exponent == 31) bits = sign | 0x7f800000u | mantissa << 13 | (mantissa ? 0x400000u : 0u);
-    else bits = sign | (exponent + 112u) << 23 | mantissa << 13;
+    if (exponent == 31)
+        bits = sign | 0x7f800000u | mantissa << 13 | (mantissa ? 0x400000u : 0u);
+    else
+        bits = sign | (exponent + 112u) << 23 | mantissa << 13;
     memcpy(&f, &bits, sizeof f);
     return f;
 }
 
 /* To nearest, halves to even; beyond the range infinity. */
-static inline uint16_t half_of_float(float f)
-{
+static inline uint16_t half_of_float(float f) {
     uint32_t bits, magnitude;
     memcpy(&bits, &f, sizeof bits);
     uint16_t sign = (uint16_t)(bits >> 16 & 0x8000u);
@@ -36,8 +36,7 @@ static inline uint16_t half_of_float(float f)
 }
 
 /* Samples as numbers: codes or values. */
-ALWAYS_INLINE lane_f load_values(uint32_t sample, const uint8_t *p)
-{
+ALWAYS_INLINE lane_f load_values(uint32_t sample, const uint8_t *p) {
     float values[LANES];
     switch (sample) {
     case LENSPROF_SAMPLE_U8: return f_of_i(i_load_u8(p));
@@ -54,8 +53,7 @@ ALWAYS_INLINE lane_f load_values(uint32_t sample, const uint8_t *p)
     return f_load(values);
 }
 
-ALWAYS_INLINE void load_codes(uint32_t sample, const uint8_t *from, uint32_t count, float *light)
-{
+ALWAYS_INLINE void load_codes(uint32_t sample, const uint8_t *from, uint32_t count, float *light) {
     const uint32_t bytes = lensprof_sample_bytes(sample), whole = count - count % LANES;
     for (uint32_t i = 0; i < whole; i += LANES) {
         f_store(light + i, load_values(sample, from + i * bytes));
@@ -69,8 +67,7 @@ ALWAYS_INLINE void load_codes(uint32_t sample, const uint8_t *from, uint32_t cou
 }
 
 /* Light of codes by the table of all codes. */
-ALWAYS_INLINE lane_f light_of_codes(const lensprof_plan *plan, const strip *s, uint32_t at, lane_f codes)
-{
+ALWAYS_INLINE lane_f light_of_codes(const lensprof_plan *plan, const strip *s, uint32_t at, lane_f codes) {
     lane_i code = i_of_f(codes);
     if (plan->curves == 3) {
         const lane_i channel = i_load(s->channel + at);
@@ -79,8 +76,7 @@ ALWAYS_INLINE lane_f light_of_codes(const lensprof_plan *plan, const strip *s, u
     return f_gather(plan->inverse, code);
 }
 
-static void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uint32_t count)
-{
+static void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uint32_t count) {
     for (uint32_t i = at; i < at + count; i += LANES)
         f_store(s->light + i, light_of_codes(plan, s, i, f_load(s->light + i)));
 }
@@ -89,8 +85,7 @@ static void codes_to_light(const lensprof_plan *plan, strip *s, uint32_t at, uin
 
 /* One vector as samples at p. `at`: its place on the strip. `is_inside`: all within black and white. */
 ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, int is_inside, const strip *s, uint32_t at,
-                                lane_f light, uint8_t *p)
-{
+                                lane_f light, uint8_t *p) {
     if (sample == LENSPROF_SAMPLE_F32) {
         f_store((float *)(void *)p, light);
         return;
@@ -109,13 +104,14 @@ ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, int 
     const lane_f half = plan->dither ? f_load(s->rounding + at) : f_set(0.5f);
     const lane_f up = f_add(is_inside ? codes : f_max(codes, f_set(0.0f)), half);
     const lane_i code = i_of_f(is_inside ? up : f_min(up, f_set(unit + 0.5f)));
-    if (sample == LENSPROF_SAMPLE_U8) i_store_u8(p, code);
-    else i_store_u16(p, code);
+    if (sample == LENSPROF_SAMPLE_U8)
+        i_store_u8(p, code);
+    else
+        i_store_u16(p, code);
 }
 
 ALWAYS_INLINE void store_samples(const lensprof_plan *plan, uint32_t sample, const strip *s, uint32_t at, uint8_t *to,
-                                 uint32_t count)
-{
+                                 uint32_t count) {
     const uint32_t bytes = lensprof_sample_bytes(sample);
     uint32_t i = 0;
     for (; i + LANES <= count; i += LANES)
@@ -130,16 +126,13 @@ ALWAYS_INLINE void store_samples(const lensprof_plan *plan, uint32_t sample, con
 
 /* ---- alpha ---- */
 
-static void take_alpha(const lensprof_plan *plan, const uint8_t *from, uint32_t count, strip *s)
-{
+static void take_alpha(const lensprof_plan *plan, const uint8_t *from, uint32_t count, strip *s) {
     const uint32_t bytes = lensprof_sample_bytes(plan->source_sample);
-    for (uint32_t i = 0; i < count; i++)
-        memcpy(s->alpha[i], from + ((i + 1) * plan->samples - 1) * bytes, bytes);
+    for (uint32_t i = 0; i < count; i++) memcpy(s->alpha[i], from + ((i + 1) * plan->samples - 1) * bytes, bytes);
 }
 
 /* A value 0..1 as one sample. */
-static void put_value(uint32_t sample, float value, uint8_t *p)
-{
+static void put_value(uint32_t sample, float value, uint8_t *p) {
     const float inside = value > 0.0f ? (value < 1.0f ? value : 1.0f) : 0.0f;
     const uint16_t half = half_of_float(value), code = (uint16_t)(inside * 65535.0f + 0.5f);
     switch (sample) {
@@ -150,8 +143,7 @@ static void put_value(uint32_t sample, float value, uint8_t *p)
     }
 }
 
-static float get_value(uint32_t sample, const uint8_t *p)
-{
+static float get_value(uint32_t sample, const uint8_t *p) {
     uint16_t word;
     float value;
     memcpy(&word, p, sizeof word);
@@ -163,12 +155,13 @@ static float get_value(uint32_t sample, const uint8_t *p)
 }
 
 /* As it was, converted where the types differ. */
-static void give_alpha(const lensprof_plan *plan, const strip *s, uint8_t *to, uint32_t count)
-{
+static void give_alpha(const lensprof_plan *plan, const strip *s, uint8_t *to, uint32_t count) {
     const uint32_t bytes = lensprof_sample_bytes(plan->target_sample);
     for (uint32_t i = 0; i < count; i++) {
         uint8_t *p = to + ((i + 1) * plan->samples - 1) * bytes;
-        if (plan->source_sample == plan->target_sample) memcpy(p, s->alpha[i], bytes);
-        else put_value(plan->target_sample, get_value(plan->source_sample, s->alpha[i]), p);
+        if (plan->source_sample == plan->target_sample)
+            memcpy(p, s->alpha[i], bytes);
+        else
+            put_value(plan->target_sample, get_value(plan->source_sample, s->alpha[i]), p);
     }
 }

@@ -16,8 +16,8 @@ typedef struct strip {
     float gain[LP_CHANNELS][STRIP + LANES]; /* of the pixels */
     float factor[ROOM];                     /* of the samples */
     float light[ROOM];
-    int32_t channel[ROOM];  /* of the samples, where the channels have curves of their own */
-    float rounding[ROOM];   /* added before a code is cut to an integer, with dither */
+    int32_t channel[ROOM]; /* of the samples, where the channels have curves of their own */
+    float rounding[ROOM];  /* added before a code is cut to an integer, with dither */
     uint8_t alpha[STRIP][4];
     float grid[LP_CHANNELS][LENSPROF_GRID_SIDE + 1];
 } strip;

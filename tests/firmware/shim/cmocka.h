@@ -1,5 +1,5 @@
-/* As much of cmocka as the core's tests use, for processors that there is no package of it for: the first assertion that
- * does not hold ends the program. */
+/* As much of cmocka as the core's tests use, for processors that there is no package of it for: the first assertion
+ * that does not hold ends the program. */
 #ifndef LENSPROF_TESTS_SHIM_CMOCKA_H
 #define LENSPROF_TESTS_SHIM_CMOCKA_H
 
@@ -10,8 +10,7 @@
 #define print_message printf
 #define print_error printf
 
-static inline void shim_fail(const char *what, const char *file, int line)
-{
+static inline void shim_fail(const char *what, const char *file, int line) {
     printf("%s:%d: %s\n", file, line, what);
     exit(1);
 }
@@ -33,10 +32,10 @@ struct CMUnitTest {
     const char *name;
     void (*run)(void **state);
 };
-#define cmocka_unit_test(f) {#f, f}
+#define cmocka_unit_test(f) \
+    { #f, f }
 
-static inline int shim_run(const struct CMUnitTest *tests, size_t count)
-{
+static inline int shim_run(const struct CMUnitTest *tests, size_t count) {
     for (size_t i = 0; i < count; i++) {
         void *state = NULL;
         tests[i].run(&state);

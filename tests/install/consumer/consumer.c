@@ -4,8 +4,7 @@
 
 #include <lensprof/lensprof.h>
 
-int main(void)
-{
+int main(void) {
     static const char text[] = "p f2 w100 h50 v360\ni w10 h8 f0 v50 Eev0 n\"a.png\"\nv Eev0\nv\n";
     char version[32];
     lensprof_pto *pto = NULL;

@@ -1,4 +1,4 @@
-/* The same from C++: the headers' functions have C linkage there. */
+// The same from C++: the headers' functions have C linkage there.
 #include <iostream>
 #include <memory>
 

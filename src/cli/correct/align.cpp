@@ -1,0 +1,204 @@
+// `lensprof align`: the frames of a sequence as if all had been taken with one exposure and white balance (Kim &
+// Pollefeys 2004, section 3).
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/correct/correction.hpp"
+#include "cli/fitting/fitting.hpp"
+#include "cli/fitting/profile_store.hpp"
+#include "cli/fitting/project.hpp"
+#include "cli/fitting/static_camera.hpp"
+#include "cli/pictures/clipping.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Options {
+    FitOptions fit;
+    std::string to = "mean", output = "aligned", pto;
+    uint32_t seed = 1, pairs = 0, max_side = 800, threads = 0;
+    bool json = false, progress = false;
+    std::vector<std::string> files;
+};
+
+void declare(CLI::App &app, Options &o) {
+    app.add_option("FRAMES", o.files, "pictures of one camera, in order; with --project default all of it");
+    app.add_option("--to", o.to,
+                   "whose exposure and white balance all frames get: first, last, brightest, or mean (geometric)")
+        ->check(CLI::IsMember({"first", "last", "brightest", "mean"}));
+    app.add_option("-o,--output", o.output, "folder for the frames (aligned)");
+    app.add_option("--project", o.pto,
+                   "Hugin project that says where the camera looked; the falloff is then found and evened out, too. "
+                   "Without it the camera stood still");
+    declare_fit(app, o.fit, {false, false});
+    app.add_option("--pairs", o.pairs,
+                   "number of pairs; 0 = 300 a frame, at least 2000; without --project 10000 a frame")
+        ->check(in_range(0, 1 << 24));
+    app.add_option("--seed", o.seed, "of the sampling");
+    app.add_option("--max-side", o.max_side,
+                   "sample frames reduced to no less than this many pixels (800); 0 = full size");
+    declare_threads(app, o.threads);
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
+}
+
+constexpr uint32_t image_flags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
+constexpr uint32_t lens_flags =
+    LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
+
+// Where the camera looked. A sequence is aligned from nothing but its pictures: all is unknown, but for a falloff that
+// a camera that stands still does not show.
+Project sequence(const Options &o) {
+    Project project = o.pto.empty() ? static_project(o.files, true) : read_project(o.pto, true);
+    if (project.images.size() < 2)
+        throw Failure(ExitCode::not_usable, (o.pto.empty() ? project.files[0] : o.pto)
+                                                + ": one frame alone has nothing to be aligned to; give at least two");
+    project.reference = 0;
+    for (uint32_t i = 0; i < project.images.size(); i++) {
+        auto &image = project.images[i];
+        image.free = image_flags | (o.pto.empty() ? static_cast<uint32_t>(LENSPROF_FREE_RESPONSE) : lens_flags);
+        image.ev_of = image.red_of = image.blue_of = i;
+        lensprof_exposure_init(&image.exposure);
+    }
+    return project;
+}
+
+// The frames to write, as numbers of the project's images.
+std::vector<uint32_t> frames_of(const Options &o, const Project &project) {
+    std::vector<uint32_t> frames;
+    for (uint32_t i = 0; i < project.files.size() && (o.files.empty() || o.pto.empty()); i++) frames.push_back(i);
+    if (!frames.empty()) return frames;
+    for (const std::string &file : o.files) {
+        auto same = [&](const std::string &other) { return is_same_file(file, other); };
+        auto found = std::find_if(project.files.begin(), project.files.end(), same);
+        if (found == project.files.end())
+            throw Failure(ExitCode::usage,
+                          file + ": is not a picture of " + project.path + "; leave it out or leave --project out");
+        frames.push_back(static_cast<uint32_t>(found - project.files.begin()));
+    }
+    return frames;
+}
+
+Fitted fit_sequence(const Options &o, const Project &project, std::vector<double> &white_shares, Progress &progress,
+                    Streams &streams) {
+    FitInput input;
+    input.options = fit_options(o.fit);
+    input.options.free &= project.images[0].free;
+    input.options.reference = project.reference;
+    auto pictures = read_pictures(project, o.max_side, progress);
+    input.options.channels = channel_count(pictures);
+    lensprof_sample_options sampling;
+    lensprof_sample_options_init(&sampling);
+    sampling.pairs = o.pairs;
+    sampling.seed = o.seed;
+    input.pairs = project.pto ? sample_pairs(project, pictures, sampling, {}, progress)
+                              : sample_still(project, pictures, sampling, 0.0, progress);
+    input.options.refine = !project.pto && o.fit.modes == "auto";
+    input.images = fit_images(project);
+    std::vector<PictureMetadata> metadata;
+    for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
+    add_known_exposures(o.fit, project.files, metadata, input.images, streams);
+    for (const SamplePicture &picture : pictures) white_shares.push_back(white_share(picture.picture));
+    return fit(input, project.reference, o.pto.empty() ? project.files[0] : o.pto, progress, nullptr);
+}
+
+lensprof_exposure wanted_exposure(const Options &o, const std::vector<lensprof_exposure> &exposures) {
+    auto darker = [](const lensprof_exposure &a, const lensprof_exposure &b) { return a.ev < b.ev; };
+    if (o.to == "first") return exposures.front();
+    if (o.to == "last") return exposures.back();
+    if (o.to == "brightest") return *std::max_element(exposures.begin(), exposures.end(), darker);
+    return mean_exposure(exposures);
+}
+
+// Outputs beside the frames they come from.
+std::vector<Correction> make_jobs(const Options &o, const Project &project, const std::vector<uint32_t> &frames) {
+    std::vector<Correction> jobs;
+    for (uint32_t i : frames) {
+        std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
+        jobs.push_back({project.files[i], (std::filesystem::path(o.output) / name).string(), nullptr, {}, {}, 0, 0});
+    }
+    check_targets(jobs, project.files, "");
+    return jobs;
+}
+
+Json report(const Options &o, const Fitted &fitted, const std::vector<lensprof_exposure> &exposures,
+            const Corrected &corrected) {
+    const lensprof_fit_result &r = fitted.result;
+    Json written = corrected.pictures;
+    for (size_t i = 0; i < written.size(); i++) {
+        const auto &w = exposures[i].white_balance;
+        written[i]["ev"] = exposures[i].ev;
+        written[i]["white_balance"] = {w[0], w[1], w[2]};
+    }
+    auto known = [](double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(value); };
+    Json json = {{"schema", 1},
+                 {"usable", r.usable != 0},
+                 {"reason", r.reason},
+                 {"to", o.to},
+                 {"frames", written},
+                 {"residual",
+                  {{"before_rms", known(r.before_rms)},
+                   {"heldout_rms", known(r.heldout_rms)},
+                   {"heldout_median", known(r.heldout_median)},
+                   {"noise", r.noise_levels},
+                   {"inlier_share", r.inlier_share}}},
+                 {"pairs", r.pairs}};
+    add_speed(corrected, json);
+    return json;
+}
+
+int align(const Options &o, Streams &streams) {
+    Project project = sequence(o);
+    std::vector<uint32_t> frames = frames_of(o, project);
+    std::vector<Correction> jobs = make_jobs(o, project, frames);
+    check_folder(o.output, o.output, ExitCode::failed);
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    std::vector<double> white_shares;  // of the project's pictures
+    Fitted fitted = fit_sequence(o, project, white_shares, progress, streams);
+    std::string reason = with_names(fitted.result.reason, project.names);
+    set_text(fitted.result.reason, sizeof fitted.result.reason, reason);
+    std::vector<lensprof_exposure> exposures;
+    for (uint32_t i : frames) exposures.push_back(fitted.exposures[i]);
+    Corrected written;
+    if (fitted.result.usable) {
+        std::shared_ptr<const lensprof_profile> model = profile_of(fitted.result);
+        for (size_t i = 0; i < jobs.size(); i++) {
+            jobs[i].model = model;
+            jobs[i].own = exposures[i];
+            jobs[i].wanted = wanted_exposure(o, exposures);
+            warn_of_limits(jobs[i].source, jobs[i].own.ev, jobs[i].wanted.ev, white_shares[frames[i]], streams);
+        }
+        make_folder(o.output);
+        CorrectionKind kind;
+        kind.threads = o.threads;
+        written = write_corrected(jobs, kind, nullptr, progress);
+    }
+    progress.clear();
+    const std::string &item = o.pto.empty() ? project.files[0] : o.pto;
+    if (!fitted.result.usable && o.pto.empty()) reason += "; frames of a camera that moved need --project";
+    if (!reason.empty())
+        streams.err << "lensprof: " << (fitted.result.usable ? "warning: " + item + ": " : item + ": not usable: ")
+                    << reason << (fitted.result.usable ? "" : "; nothing was written") << "\n";
+    if (o.json) print_json(report(o, fitted, exposures, written), streams.out);
+    for (const auto &entry : written.pictures)
+        if (!o.json) streams.out << entry["output"].get<std::string>() << "\n";
+    return static_cast<int>(fitted.result.usable ? ExitCode::done : ExitCode::not_usable);
+}
+
+}  // namespace
+
+int run_align(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app("Makes the frames of a sequence look as if all had been taken with one exposure and white balance.",
+                 "lensprof align");
+    declare(app, o);
+    if (!parse(app, arguments, streams)) return 0;
+    check_fit_options(o.fit);
+    if (o.max_side != 0 && o.max_side < 64)
+        throw Failure(ExitCode::usage,
+                      "--max-side: frames of less than 64 pixels hold too few samples; give more, or 0 for full size");
+    if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no frames to align; name them");
+    return align(o, streams);
+}
+
+}  // namespace lensprof

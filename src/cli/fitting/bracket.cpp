@@ -1,0 +1,270 @@
+// `lensprof bracket`: pictures of one scene at several exposures -> the camera's response.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "cli/fitting/fitting.hpp"
+#include "cli/fitting/profile_store.hpp"
+#include "cli/fitting/static_camera.hpp"
+#include "cli/program/interrupt.hpp"
+#include "cli/program/numbers.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Options {
+    FitOptions fit;
+    StoreOptions store;
+    std::vector<std::string> files;
+    std::optional<std::string> ev, times;
+    std::string balance = "free", reference;
+    double ev_sigma = 0.05, black = 0.0;
+    bool modes_only = false, json = false, progress = false;
+    uint32_t seed = 1, pairs = 0, max_side = 1600;
+};
+
+void declare(CLI::App &app, Options &o) {
+    app.add_option("FILES", o.files, "pictures of one scene by a camera that does not move")->required();
+    app.add_option("--ev", o.ev, "their exposures, EV, larger = brighter, with commas; default EXIF's, else unknown");
+    app.add_option("--times", o.times, "their exposure times instead, seconds, e.g. 1/8,1,8");
+    app.add_option("--ev-sigma", o.ev_sigma, "standard error of these, EV")->check(in_range(0.001, 10.0));
+    app.add_option("--white-balance", o.balance, "free or fixed from picture to picture")
+        ->check(CLI::IsMember({"free", "fixed"}));
+    declare_fit(app, o.fit, {true, false});
+    app.add_flag("--modes-only", o.modes_only, "keep the response to EMoR modes, also where it is better without");
+    app.add_option("--reference", o.reference, "picture (number or name) whose exposure is 0 EV");
+    app.add_option("--black", o.black,
+                   "grey values up to this, levels of 255, are not used: black that is not 0, as in scanned film")
+        ->check(in_range(0.0, 200.0));
+    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 10000 a picture")->check(in_range(0, 1 << 24));
+    app.add_option("--seed", o.seed, "of the sampling");
+    app.add_option("--max-side", o.max_side,
+                   "sample pictures reduced to no less than this many pixels (1600); 0 = full size");
+    declare_store(app, o.store);
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
+}
+
+// The exposures of the command line, EV; empty when it says nothing.
+std::vector<double> given_exposures(const Options &o) {
+    if (o.ev) {
+        auto ev = numbers_of(*o.ev, "--ev", o.files.size(), "pictures");
+        for (double value : ev)
+            if (std::fabs(value) > 64.0) throw Failure(ExitCode::usage, "--ev: exposures lie within 64 EV");
+        return ev;
+    }
+    std::vector<double> ev;
+    if (!o.times) return ev;
+    for (double time : numbers_of(*o.times, "--times", o.files.size(), "pictures")) {
+        if (!(time > 1e-9 && time < 1e9)) throw Failure(ExitCode::usage, "--times: a time lies within 1e-9..1e9 s");
+        ev.push_back(std::log2(time));
+    }
+    return ev;
+}
+
+// A response belongs to the camera, whatever lens, aperture and focus the pictures were taken with.
+lensprof_profile_key camera_key(const Options &o, const PictureMetadata &metadata, const std::string &file) {
+    lensprof_profile_key key = metadata.key, unknown;
+    lensprof_profile_key_init(&unknown);
+    set_text(key.lens, sizeof key.lens, "");
+    key.focal_mm = unknown.focal_mm;
+    key.aperture = unknown.aperture;
+    key.distance_m = unknown.distance_m;
+    if (!*key.camera_model && o.store.camera.empty() && o.store.lens.empty() && !o.store.no_store)
+        throw Failure(ExitCode::usage, file + ": no EXIF says which camera it was; give --camera, or --no-store");
+    return override_key(key, o.store, file);
+}
+
+std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, Progress &progress, BuildReport &report,
+                                     uint32_t &channels) {
+    auto clock = std::chrono::steady_clock::now();
+    auto pictures = read_pictures(project, o.max_side, progress);
+    channels = channel_count(pictures);
+    report.load_s = lap(clock);
+    lensprof_sample_options options;
+    lensprof_sample_options_init(&options);
+    options.pairs = o.pairs;
+    options.seed = o.seed;
+    auto pairs = sample_still(project, pictures, options, o.black, progress);
+    report.sample_s = lap(clock);
+    return pairs;
+}
+
+// The pictures that pairs join, in order: the largest group, the earlier one of two. The others show hardly anything
+// between black and white that another one shows, too.
+std::vector<uint32_t> joined(const std::vector<lensprof_pair> &pairs, uint32_t count) {
+    std::vector<uint32_t> group(count), size(count, 0);
+    std::iota(group.begin(), group.end(), 0u);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const auto &pair : pairs) {
+            uint32_t &a = group[pair.image[0]], &b = group[pair.image[1]], low = std::min(a, b);
+            changed = changed || a != b;
+            a = b = low;
+        }
+    }
+    for (uint32_t g : group) size[g]++;
+    auto largest = static_cast<uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+    std::vector<uint32_t> members;
+    for (uint32_t i = 0; i < count; i++)
+        if (group[i] == largest) members.push_back(i);
+    return members;
+}
+
+// The members of the input alone, numbered anew.
+void keep_only(const std::vector<uint32_t> &members, FitInput &input) {
+    std::vector<uint32_t> number(input.images.size(), UINT32_MAX);
+    std::vector<lensprof_fit_image> images;
+    for (uint32_t i : members) {
+        number[i] = static_cast<uint32_t>(images.size());
+        images.push_back(input.images[i]);
+        images.back().ev_of = images.back().red_of = images.back().blue_of = number[i];
+    }
+    std::vector<lensprof_pair> pairs;
+    for (lensprof_pair pair : input.pairs) {
+        if (number[pair.image[0]] == UINT32_MAX || number[pair.image[1]] == UINT32_MAX) continue;
+        for (uint32_t &image : pair.image) image = number[image];
+        pairs.push_back(pair);
+    }
+    input.images = images;
+    input.pairs = pairs;
+}
+
+// What was found for the members, in its places; of the others what is known beforehand, relative to the reference.
+void report_members(const std::vector<uint32_t> &members, const std::vector<lensprof_fit_image> &images,
+                    const Fitted &fitted, BuildReport &report, Streams &streams) {
+    const auto &zero = images[report.reference];
+    std::vector<lensprof_fit_image_quality> quality(images.size());
+    for (uint32_t i = 0, m = 0; i < images.size(); i++) {
+        lensprof_exposure exposure;
+        lensprof_exposure_init(&exposure);
+        if (m < members.size() && members[m] == i) {
+            exposure = fitted.exposures[m];
+            quality[i] = report.quality[m++];
+            quality[i].component = members[quality[i].component];
+        } else {
+            bool known = images[i].known_ev_sigma > 0.0 && zero.known_ev_sigma > 0.0;
+            exposure.ev = known ? images[i].known_ev - zero.known_ev : NAN;
+            quality[i].component = i;
+            streams.err
+                << "lensprof: warning: " << report.names[i]
+                << ": shows hardly anything between black and white that another picture shows, too; left out\n";
+        }
+        report.exposures.push_back(exposure);
+    }
+    report.quality = quality;
+}
+
+bool is_debevec(const Options &o) { return o.fit.method == "debevec"; }
+
+// Failure (usage) for what has no meaning to the method debevec.
+void check_debevec_options(const Options &o) {
+    const std::pair<bool, const char *> without[] = {{o.fit.modes != "auto", "--modes"},
+                                                     {o.modes_only, "--modes-only"},
+                                                     {o.fit.loss != "robust", "--loss"},
+                                                     {o.fit.gamma_from == "prior", "--gamma-from prior"}};
+    for (const auto &[is_given, option] : without)
+        if (is_given && is_debevec(o))
+            throw Failure(ExitCode::usage, std::string("--method debevec and ") + option
+                                               + " contradict each other: it finds the response at every grey level "
+                                                 "by least squares, from known exposures");
+}
+
+// Failure (usage) where the exposure of a picture is not known that has to be.
+void check_exposures_known(const Options &o, const std::vector<lensprof_fit_image> &images) {
+    for (size_t i = 0; i < images.size() && is_debevec(o); i++)
+        if (!(images[i].known_ev_sigma > 0.0))
+            throw Failure(ExitCode::usage, o.files[i] + ": --method debevec wants known exposures of all pictures, and "
+                                                        "EXIF does not tell this one; give --ev or --times, or use "
+                                                        "--method transfer");
+}
+
+FitInput fit_input(const Options &o, const Project &project, const std::vector<PictureMetadata> &metadata,
+                   const std::vector<double> &ev, Streams &streams) {
+    FitInput input;
+    input.options = fit_options(o.fit);
+    input.options.free &= LENSPROF_FREE_RESPONSE;
+    input.options.vignettings = 1;
+    input.options.refine = !o.modes_only && o.fit.modes == "auto";
+    input.images = fit_images(project);
+    if (ev.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
+    for (size_t i = 0; i < ev.size(); i++) {
+        input.images[i].known_ev = ev[i];
+        input.images[i].known_ev_sigma = o.ev_sigma;
+    }
+    check_exposures_known(o, input.images);
+    return input;
+}
+
+BuildReport fit_bracket(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
+                        const std::vector<double> &ev, Streams &streams) {
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    BuildReport report;
+    report.names = project.names;
+    report.has_falloff = false;
+    report.exposures_given = !ev.empty();
+    FitInput input = fit_input(o, project, metadata, ev, streams);
+    report.camera_kind = input.options.camera_kind;
+    if (!o.reference.empty()) report.reference = image_of_word(project, o.reference);
+    input.pairs = get_pairs(o, project, progress, report, input.options.channels);
+    stop_if_interrupted();
+    const auto images = input.images;
+    const auto members = joined(input.pairs, static_cast<uint32_t>(images.size()));
+    auto place = std::find(members.begin(), members.end(), report.reference);
+    if (place == members.end() && !o.reference.empty())
+        throw Failure(ExitCode::not_usable,
+                      project.names[report.reference] + ": shows hardly anything between black and white that another picture "
+                                                        "shows, too; choose another reference");
+    if (place == members.end()) place = members.begin();
+    report.reference = *place;
+    keep_only(members, input);
+    input.options.reference = static_cast<uint32_t>(place - members.begin());
+    Fitted best = fit(input, input.options.reference, project.path, progress, &report.quality);
+    progress.clear();
+    report.fit = best.result;
+    std::vector<std::string> names;
+    for (uint32_t i : members) names.push_back(project.names[i]);
+    set_text(report.fit.reason, sizeof report.fit.reason, with_names(best.result.reason, names));
+    report_members(members, images, best, report, streams);
+    return report;
+}
+
+int bracket_and_store(const Options &o, Streams &streams) {
+    std::vector<double> ev = given_exposures(o);
+    Project project = static_project(o.files, o.balance == "free");
+    std::vector<PictureMetadata> metadata;
+    for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
+    lensprof_profile_key key = camera_key(o, metadata[0], project.files[0]);
+    check_store(o.store);
+    BuildReport report = fit_bracket(o, project, metadata, ev, streams);
+    return finish_fit(report, key, o.store,
+                      {o.fit.method == "transfer" ? "bracket" : "bracket " + o.fit.method, project.path, o.json},
+                      streams);
+}
+
+}  // namespace
+
+int run_bracket(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app("Recovers the response of a camera, and exposures, from pictures of one scene.", "lensprof bracket");
+    declare(app, o);
+    if (!parse(app, arguments, streams)) return 0;
+    check_max_side(o.max_side);
+    check_fit_options(o.fit);
+    check_debevec_options(o);
+    check_store_options(o.store);
+    if (o.ev && o.times) throw Failure(ExitCode::usage, "--ev and --times say the same; give one of the two");
+    try {
+        return bracket_and_store(o, streams);
+    } catch (const Failure &failure) {
+        if (o.json && failure.code == ExitCode::not_usable) {
+            BuildReport report = no_fit(o.files, failure.what());
+            report.has_falloff = false;
+            print_json(build_json(report), streams.out);
+        }
+        throw;
+    }
+}
+
+}  // namespace lensprof

@@ -1,0 +1,299 @@
+// `lensprof build`: pictures of a project -> response, falloff, exposures -> a profile in the database.
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/fitting/fitting.hpp"
+#include "cli/fitting/profile_store.hpp"
+#include "cli/fitting/project.hpp"
+#include "cli/program/interrupt.hpp"
+#include "cli/program/output_file.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Options {
+    FitOptions fit;
+    StoreOptions store;
+    std::string pto, points, points_out, pto_out, sampling = "balanced", falloff = "auto", reference, free, compare;
+    bool json = false, one_lens = false, progress = false;
+    uint32_t seed = 1, pairs = 0, max_side = 800;
+};
+
+void declare(CLI::App &app, Options &o) {
+    app.add_option("PROJECT", o.pto, "Hugin project; its v lines choose what is estimated")->required();
+    app.add_option("--points", o.points,
+                   "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
+    app.add_option("--points-out", o.points_out,
+                   "write the pairs used (Hugin's 16 columns), also those of a fit that is not usable");
+    app.add_option("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
+    FitChoices choices;
+    choices.stored_prior = true;
+    declare_fit(app, o.fit, choices);
+    app.add_option("--falloff-curves", o.falloff, "1, 3 (one a channel) or auto (held-out error decides)")
+        ->check(CLI::IsMember({"auto", "1", "3"}));
+    app.add_option("--free", o.free, "what is estimated instead of the v lines: response,falloff,center,ev,wb or all");
+    app.add_option("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
+    app.add_flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
+    app.add_option("--sampling", o.sampling, "balanced or paper (d'Angelo 5.1)")
+        ->check(CLI::IsMember({"balanced", "paper"}));
+    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000 (radiance: points, 150)")
+        ->check(in_range(0, 1 << 24));
+    app.add_option("--seed", o.seed, "of the sampling");
+    app.add_option("--max-side", o.max_side,
+                   "sample pictures reduced to no less than this many pixels (800); 0 = full size");
+    declare_store(app, o.store);
+    app.add_option("--compare", o.compare, "truth.json of `simulate`: print recovered beside true values");
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
+}
+
+constexpr uint32_t falloff_flags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+constexpr uint32_t lens_flags = LENSPROF_FREE_RESPONSE | falloff_flags | LENSPROF_FREE_CENTER;
+constexpr uint32_t balance_flags = LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
+
+// --free: the same unknowns for every image.
+uint32_t free_of(const std::string &list) {
+    uint32_t flags = 0;
+    std::string word;
+    for (char c : list + ",") {
+        if (c != ',') {
+            word += c;
+            continue;
+        }
+        if (word == "response")
+            flags |= LENSPROF_FREE_RESPONSE;
+        else if (word == "falloff")
+            flags |= falloff_flags;
+        else if (word == "center")
+            flags |= LENSPROF_FREE_CENTER;
+        else if (word == "ev")
+            flags |= LENSPROF_FREE_EV;
+        else if (word == "wb")
+            flags |= balance_flags;
+        else if (word == "all")
+            flags |= lens_flags | LENSPROF_FREE_EV | balance_flags;
+        else
+            throw Failure(ExitCode::usage, "--free " + word + ": use response, falloff, center, ev, wb, all");
+        word.clear();
+    }
+    return flags;
+}
+
+lensprof_fit_options project_options(const Options &o, const Project &project, lensprof_response &fixed) {
+    lensprof_fit_options options = fit_options(o.fit);
+    const auto &lens = project.images[project.reference];
+    uint32_t asked = 0;
+    for (const auto &image : project.images) asked |= image.free & lens_flags;
+    options.free &= asked;
+    options.reference = project.reference;
+    options.vignettings = o.falloff == "auto" ? 0 : o.falloff == "3" ? 3 : 1;
+    options.vignetting = lens.vignetting;
+    check(lensprof_pto_get_response(project.pto.get(), project.reference, &fixed), project.path);
+    options.response = &fixed;
+    if (options.free & falloff_flags)
+        if (lensprof_vignetting_validate(&options.vignetting) != LENSPROF_OK)
+            options.vignetting = lensprof_vignetting{};
+    return options;
+}
+
+bool is_grey(const std::vector<lensprof_pair> &pairs) {
+    for (const auto &p : pairs)
+        for (const auto &v : p.value)
+            if (v[0] != v[1] || v[1] != v[2]) return false;
+    return true;
+}
+
+// What the pictures say about themselves. Beside given pairs they may be anything: only what the profile's key needs is
+// read.
+std::vector<PictureMetadata> picture_metadata(const Options &o, const Project &project) {
+    std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
+    for (uint32_t i = 0; i < metadata.size(); i++) {
+        bool needed = o.points.empty() || (i == project.reference && !o.store.no_store);
+        if (needed && std::filesystem::exists(project.files[i])) metadata[i] = read_metadata(project.files[i]);
+    }
+    return metadata;
+}
+
+// The key of the profile: EXIF of the reference picture, then what the command line says.
+lensprof_profile_key profile_key(const Options &o, const Project &project, const std::vector<PictureMetadata> &metadata,
+                                 Streams &streams) {
+    const std::string &file = project.files[project.reference];
+    lensprof_profile_key key = override_key(metadata[project.reference].key, o.store, file);
+    for (size_t i = 0; i < project.files.size() && o.store.aperture == LENSPROF_UNKNOWN && o.points.empty(); i++) {
+        const lensprof_profile_key &other = metadata[i].key;
+        auto differ = [](double a, double b) { return a != b && a != LENSPROF_UNKNOWN && b != LENSPROF_UNKNOWN; };
+        if (std::filesystem::exists(project.files[i])
+            && (differ(other.aperture, key.aperture) || differ(other.focal_mm, key.focal_mm)))
+            streams.err << "lensprof: warning: " << project.files[i] << ": aperture or focal length differ from "
+                        << file << "; one falloff is estimated for both\n";
+    }
+    return key;
+}
+
+// Another reference than the project's: where nothing else is held, it is held in that one's place, so that standard
+// errors are relative to it. Held exposures are relative to the project's own; there the result is moved afterwards.
+void refer_to(uint32_t reference, FitInput &input) {
+    uint32_t &own = input.options.reference, asked = 0;
+    for (const auto &image : input.images) asked |= image.free;
+    for (uint32_t i = 0; i < input.images.size(); i++) {
+        const auto &image = input.images[i];
+        bool linked = image.ev_of != i || image.red_of != i || image.blue_of != i;
+        if (linked || (i != own && image.free != asked)) return;
+    }
+    std::swap(input.images[own].free, input.images[reference].free);
+    own = reference;
+}
+
+// No output may take the place of an input, of the database or of another output.
+void check_outputs(const Options &o, const Project &project) {
+    std::vector<std::string> taken{o.pto, o.points, o.compare};
+    taken.insert(taken.end(), project.files.begin(), project.files.end());
+    if (!o.store.no_store) taken.push_back(store_path(o.store.db));
+    for (const std::string &output : {o.points_out, o.pto_out}) {
+        if (output.empty()) continue;
+        for (const std::string &other : taken)
+            if (is_same_file(output, other))
+                throw Failure(ExitCode::usage, output + ": would be written over; give the output another name");
+        taken.push_back(output);
+    }
+}
+
+constexpr uint32_t project_modes = 5;  // Ra..Re
+
+// The text of the project with the result in it.
+std::string project_text(const Options &o, Project &project, const Fitted &fitted, uint32_t reference) {
+    check(lensprof_pto_set_result(project.pto.get(), &fitted.result.response, &green_falloff(fitted.result),
+                                  fitted.exposures.data(), static_cast<uint32_t>(fitted.exposures.size()), reference),
+          o.pto);
+    // Names are relative to the project's folder, which may be another one now.
+    auto folder = std::filesystem::absolute(o.pto_out).parent_path();
+    if (folder.lexically_normal() != std::filesystem::absolute(o.pto).parent_path().lexically_normal())
+        for (uint32_t i = 0; i < project.files.size(); i++) {
+            auto file = std::filesystem::absolute(project.files[i])
+                            .lexically_normal()
+                            .lexically_proximate(folder.lexically_normal());
+            check(lensprof_pto_set_name(project.pto.get(), i, file.string().c_str()), project.files[i]);
+        }
+    return pto_text(*project.pto);
+}
+
+// The pairs or tracks that are fitted.
+void get_points(const Options &o, const Project &project, Progress &progress, BuildReport &report, FitInput &input) {
+    auto clock = std::chrono::steady_clock::now();
+    uint32_t &channels = input.options.channels;
+    if (!o.points.empty()) {
+        input.pairs = read_points(o.points, project);
+        channels = is_grey(input.pairs) ? 1 : 3;
+        report.load_s = lap(clock);
+        return;
+    }
+    auto pictures = read_pictures(project, o.max_side, progress);
+    channels = channel_count(pictures);
+    report.load_s = lap(clock);
+    lensprof_sample_options options;
+    lensprof_sample_options_init(&options);
+    options.sampling = o.sampling == "paper" ? LENSPROF_SAMPLING_PAPER : LENSPROF_SAMPLING_BALANCED;
+    options.pairs = o.pairs;
+    options.seed = o.seed;
+    if (o.fit.method == "radiance") {
+        input.observations = sample_tracks(project, pictures, options, progress);
+        input.pairs = pairs_of_tracks(input.observations);
+    } else {
+        input.pairs = sample_pairs(project, pictures, options, {}, progress);
+    }
+    report.sample_s = lap(clock);
+}
+
+// A project holds five modes and one falloff: what is best with these, not what is left of something better.
+Fitted fit_for_project(const Options &o, FitInput &input, const Fitted &best, uint32_t reference, Progress &progress) {
+    bool fits = best.result.response.modes <= project_modes && best.result.vignettings == 1;
+    if (fits || !(input.options.free & LENSPROF_FREE_RESPONSE)) return best;
+    input.options.modes = std::min<uint32_t>(best.result.response.modes, project_modes);
+    input.options.vignettings = 1;
+    return fit(input, reference, o.pto, progress, nullptr);
+}
+
+BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
+                  const EarlierProfile &prior, OutputFiles &outputs, Streams &streams) {
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    BuildReport report;
+    report.names = project.names;
+    report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
+    FitInput input;
+    input.options = project_options(o, project, input.fixed);
+    report.camera_kind = input.options.camera_kind;
+    report.prior_id = prior.id;
+    report.no_prior = prior.reason;
+    input.options.profile = prior.profile.get();
+    get_points(o, project, progress, report, input);
+    stop_if_interrupted();
+    input.images = fit_images(project);
+    if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
+    refer_to(report.reference, input);
+    const std::string &item = o.points.empty() ? o.pto : o.points;
+    Fitted best = fit(input, report.reference, item, progress, &report.quality);
+    report.fit = best.result;
+    set_text(report.fit.reason, sizeof report.fit.reason, with_names(best.result.reason, project.names));
+    report.exposures = best.exposures;
+    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(input.pairs, project));
+    if (!o.pto_out.empty() && (report.fit.usable || o.store.force)) {
+        Fitted written = fit_for_project(o, input, best, report.reference, progress);
+        outputs.add(o.pto_out, project_text(o, project, written, report.reference));
+    }
+    progress.clear();
+    if (o.fit.gamma_from == "exif" && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
+        streams.err << "lensprof: warning: " << o.pto
+                    << (o.points.empty() ? ": no EXIF exposures that differ" : ": EXIF is not read beside --points")
+                    << ": gamma rests on the prior\n";
+    return report;
+}
+
+// The command behind its options; `names` receives the images as soon as they are known.
+int build_and_store(const Options &o, std::vector<std::string> &names, Streams &streams) {
+    Project project = read_project(o.pto, o.one_lens);
+    names = project.names;
+    if (project.images.size() < 2)
+        throw Failure(ExitCode::not_usable, o.pto + ": has one image; at least two overlapping ones are needed");
+    check_outputs(o, project);
+    if (!o.free.empty())
+        for (auto &image : project.images) image.free = free_of(o.free);
+    auto metadata = picture_metadata(o, project);
+    lensprof_profile_key key = profile_key(o, project, metadata, streams);
+    TrueValues truth;
+    if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
+    check_store(o.store);
+    OutputFiles outputs;
+    EarlierProfile prior;
+    if (o.fit.wants_stored_prior()) prior = find_stored_prior(o.store, key, o.pto);
+    BuildReport report = build(o, project, metadata, prior, outputs, streams);
+    int code = finish_fit(report, key, o.store, {o.fit.method, o.pto, o.json, &outputs, &prior}, streams);
+    if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
+    if (!report.fit.usable && !o.pto_out.empty() && !o.store.force)
+        streams.err << "lensprof: " << o.pto_out << ": not written (--force writes it all the same)\n";
+    return code;
+}
+
+}  // namespace
+
+int run_build(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app("Recovers response, falloff, exposure and white balance from overlapping pictures.", "lensprof build");
+    declare(app, o);
+    if (!parse(app, arguments, streams)) return 0;
+    check_max_side(o.max_side);
+    check_fit_options(o.fit);
+    if (o.json && !o.compare.empty())
+        throw Failure(ExitCode::usage, "--compare prints a table, which --json leaves out; give one of the two");
+    if (!o.fit.wants_stored_prior()) check_store_options(o.store);
+
+    std::vector<std::string> names;
+    try {
+        return build_and_store(o, names, streams);
+    } catch (const Failure &failure) {
+        if (o.json && failure.code == ExitCode::not_usable)
+            print_json(build_json(no_fit(names, failure.what())), streams.out);
+        throw;
+    }
+}
+
+}  // namespace lensprof

@@ -1,0 +1,94 @@
+// What every command that fits has in common: its options, the call, what is said about the result.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/fitting/profile_store.hpp"
+#include "cli/fitting/stored_prior.hpp"
+#include "cli/pictures/metadata.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/output_file.hpp"
+#include "cli/program/progress.hpp"
+#include "cli/program/run.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+
+// How to fit.
+struct FitOptions {
+    std::string method = "transfer", modes = "auto", loss = "robust", gamma_from = "auto", camera_kind = "any";
+    std::string prior = "1";  // a weight, or auto
+    double huber = 5.0, exif_sigma = 0.1;
+
+    bool wants_stored_prior() const { return prior == "auto"; }
+};
+
+// What not every command has to offer.
+struct FitChoices {
+    bool debevec = false;        // the pictures' exposures may be known
+    bool known_response = true;  // a project says a response that may be held
+    bool stored_prior = false;   // a stored profile may be the prior
+};
+void declare_fit(CLI::App &app, FitOptions &o, FitChoices choices = {});
+
+// Failure (usage) for options that contradict each other.
+void check_fit_options(const FitOptions &o);
+
+// The library's options; everything shared is free.
+lensprof_fit_options fit_options(const FitOptions &o);
+
+// What is fitted.
+struct FitInput {
+    lensprof_fit_options options;
+    lensprof_response fixed;
+    std::vector<lensprof_fit_image> images;
+    std::vector<lensprof_pair> pairs;                // what is fitted where there are no observations
+    std::vector<lensprof_observation> observations;  // tracks, for the method radiance
+};
+
+// Exposures by EXIF, as soft observations of the images.
+void add_known_exposures(const FitOptions &o, const std::vector<std::string> &files,
+                         const std::vector<PictureMetadata> &metadata, std::vector<lensprof_fit_image> &images,
+                         Streams &streams);
+
+// A result and the exposures that belong to it.
+struct Fitted {
+    lensprof_fit_result result{};
+    std::vector<lensprof_exposure> exposures;  // relative to the reference
+};
+
+// Fits, with `progress` shown. `item` names the input in a Failure. `quality` may be NULL.
+Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,
+           std::vector<lensprof_fit_image_quality> *quality);
+
+// The fit counts images; people know them by their files.
+std::string with_names(const std::string &reason, const std::vector<std::string> &names);
+
+// What is reported where no fit could be made: the same object, neutral, with the reason.
+BuildReport no_fit(const std::vector<std::string> &names, const std::string &reason);
+
+// Where a result goes.
+struct Finish {
+    std::string method;  // for the provenance
+    std::string source;  // what it was made from
+    bool json = false;
+    OutputFiles *outputs = nullptr;         // committed once the profile is stored; or NULL
+    const EarlierProfile *prior = nullptr;  // that the fit was given; or NULL
+};
+
+// Stores a result that is usable or forced, prints it, says on standard error what is wrong with it. Returns the exit
+// code.
+int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,
+               Streams &streams);
+
+// Failure (usage) for a longest side that holds too few samples.
+void check_max_side(uint32_t max_side);
+
+// Seconds since `since`, which becomes now.
+double lap(std::chrono::steady_clock::time_point &since);
+
+}  // namespace lensprof

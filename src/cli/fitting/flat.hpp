@@ -1,0 +1,67 @@
+// The parts of `lensprof flat`: what is asked for, the pictures, what is said about the result.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/fitting/profile_store.hpp"
+#include "cli/pictures/picture.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/progress.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+
+struct FlatCommand {
+    StoreOptions store;
+    std::vector<std::string> files, cards;
+    std::string shots, ev, turned, falloff = "auto", light = "auto", grid = "auto", center = "free";
+    bool linear = false, several = false, find_card = false, own_light = false, json = false, progress = false;
+    int64_t profile = 0;
+    std::optional<double> gamma;
+    double ev_sigma = 0.02, black = 2.0 / 255.0, white = 250.0 / 255.0;
+    uint32_t max_side = 1600;
+};
+
+// Everything that the library is asked with, and what keeps it alive.
+struct FlatInput {
+    std::vector<std::string> names;  // the pictures, as people know them
+    std::vector<Picture> pictures;
+    std::vector<std::vector<uint8_t>> masks;  // of every picture; empty = all of it
+    std::vector<lensprof_flat_image> images;
+    std::vector<lensprof_response> response;  // one, or three
+    lensprof_profile_key key;                 // by EXIF of the first picture
+    lensprof_flat_options options;
+};
+
+// Failure (usage) for options that contradict each other or do not fit the number of pictures.
+void check_flat_options(const FlatCommand &o);
+
+// What can be known before pixels are read: shots, exposures, turns, response and key. Failure for what is missing.
+FlatInput prepare_flat(const FlatCommand &o);
+
+// Reads the pictures; afterwards images and options are complete.
+void read_flat(const FlatCommand &o, Progress &progress, FlatInput &input);
+
+// What `flat` found out.
+struct FlatReport {
+    std::vector<std::string> names;
+    std::vector<uint32_t> shots;  // of the pictures
+    std::vector<double> ev, turned;
+    std::vector<lensprof_flat_image_quality> quality;
+    std::vector<lensprof_response> response;
+    lensprof_flat_result fit{};
+    double load_s = 0, solve_s = 0;
+    int64_t profile_id = 0;  // 0 = not stored
+};
+
+// The object that `flat --json` prints; docs/json.md describes the schema.
+Json flat_json(const FlatReport &report);
+
+void print_flat(const FlatReport &report, std::ostream &out);
+
+}  // namespace lensprof

@@ -1,0 +1,213 @@
+// What `lensprof flat` works on: pictures, and what is known about their exposure, turn, card and response.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "cli/fitting/flat.hpp"
+#include "cli/pictures/metadata.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/numbers.hpp"
+#include "cli/program/parallel.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double farthest_ev = 64.0;
+constexpr uint32_t smallest_side = 64;
+
+std::vector<uint32_t> shots_of(const FlatCommand &o) {
+    std::vector<uint32_t> shots;
+    if (o.shots.empty()) {
+        for (uint32_t i = 0; i < o.files.size(); i++) shots.push_back(i + 1);
+        return shots;
+    }
+    for (double number : numbers_of(o.shots, "--shots", o.files.size(), "pictures")) {
+        if (number != std::floor(number) || number < 0.0 || number > 1e6)
+            throw Failure(ExitCode::usage, "--shots " + o.shots + ": give whole numbers");
+        shots.push_back(static_cast<uint32_t>(number));
+    }
+    return shots;
+}
+
+// Turn of every picture from the turns of the shots, in the order in which these begin.
+std::vector<double> turns_of(const FlatCommand &o, const std::vector<uint32_t> &shots) {
+    std::vector<uint32_t> order;
+    for (uint32_t shot : shots)
+        if (std::find(order.begin(), order.end(), shot) == order.end()) order.push_back(shot);
+    std::vector<double> turns(shots.size(), 0.0);
+    if (o.turned.empty()) return turns;
+    std::vector<double> given = numbers_of(o.turned, "--turned", order.size(), "shots");
+    for (size_t i = 0; i < shots.size(); i++)
+        turns[i] = given[static_cast<size_t>(std::find(order.begin(), order.end(), shots[i]) - order.begin())];
+    for (double turn : given)
+        if (std::fabs(turn) > 360.0)
+            throw Failure(ExitCode::usage, "--turned " + o.turned + ": give degrees from -360 to 360");
+    return turns;
+}
+
+// Exposures matter between pictures of one shot, and between all of a card at several places.
+bool needs_ev(const FlatCommand &o, const std::vector<uint32_t> &shots, size_t i) {
+    return (o.several && shots.size() > 1) || std::count(shots.begin(), shots.end(), shots[i]) > 1;
+}
+
+std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_t> &shots,
+                                 const std::vector<PictureMetadata> &metadata) {
+    std::vector<double> ev(shots.size(), 0.0);
+    if (!o.ev.empty()) ev = numbers_of(o.ev, "--ev", o.files.size(), "pictures");
+    for (size_t i = 0; i < ev.size(); i++) {
+        if (o.ev.empty() && needs_ev(o, shots, i)) {
+            if (!metadata[i].exif_ev)
+                throw Failure(ExitCode::usage, o.files[i]
+                                                   + ": no EXIF says how it was exposed (time, aperture, ISO); give the "
+                                                     "exposures of all pictures with --ev, as 0,0,0 where they are alike");
+            ev[i] = *metadata[i].exif_ev;
+        }
+        if (!(std::fabs(ev[i]) <= farthest_ev))
+            throw Failure(ExitCode::usage,
+                          o.files[i] + ": an exposure beyond 64 EV cannot be true; check --ev or EXIF");
+    }
+    return ev;
+}
+
+std::vector<lensprof_response> response_of(const FlatCommand &o) {
+    std::vector<lensprof_response> response(1);
+    lensprof_response_set_linear(response.data());
+    if (o.gamma) check(lensprof_response_set_gamma(response.data(), *o.gamma), "--gamma");
+    if (o.profile) {
+        Store store = open_store(o.store.db, LENSPROF_STORE_READ);
+        auto profile = std::make_unique<lensprof_profile>();
+        lensprof_error error{};
+        check(lensprof_store_get(store.get(), o.profile, profile.get(), &error), store_path(o.store.db), &error);
+        response.assign(profile->response, profile->response + profile->responses);
+    }
+    return response;
+}
+
+// The card's rectangle as a mask of the held pixels.
+std::vector<uint8_t> mask_of(const std::string &card, const Picture &picture, const std::string &file) {
+    std::vector<double> r = numbers_of(card, "--card");
+    if (r.size() != 4 || !(r[0] >= 0 && r[1] >= 0 && r[2] > 0 && r[3] > 0) || r[0] + r[2] > picture.frame_width
+        || r[1] + r[3] > picture.frame_height)
+        throw Failure(ExitCode::usage, "--card " + card + ": not a rectangle X,Y,WIDTH,HEIGHT in the "
+                                           + std::to_string(picture.frame_width) + " x "
+                                           + std::to_string(picture.frame_height) + " px of " + file);
+    std::vector<uint8_t> mask(static_cast<size_t>(picture.width) * picture.height);
+    const double side = picture.reduction;
+    for (uint32_t y = 0; y < picture.height; y++)
+        for (uint32_t x = 0; x < picture.width; x++)
+            mask[static_cast<size_t>(y) * picture.width + x] =
+                x * side >= r[0] && (x + 1) * side <= r[0] + r[2] && y * side >= r[1] && (y + 1) * side <= r[1] + r[3];
+    return mask;
+}
+
+// All of one frame and kind; Failure names the one that differs.
+uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictures) {
+    const Picture &first = pictures.front();
+    const uint32_t channels = lensprof_layout_channels(first.layout);
+    for (size_t i = 0; i < pictures.size(); i++) {
+        const Picture &p = pictures[i];
+        if (p.frame_width != first.frame_width || p.frame_height != first.frame_height)
+            throw Failure(
+                ExitCode::unreadable,
+                format("%s: has %u x %u px, not %u x %u as %s; give pictures of one camera, none of them turned",
+                       o.files[i].c_str(), p.frame_width, p.frame_height, first.frame_width, first.frame_height,
+                       o.files.front().c_str()));
+        if (lensprof_layout_channels(p.layout) != channels)
+            throw Failure(ExitCode::usage, o.files[i] + ": colour and grey pictures do not go together");
+        if (std::max(p.width, p.height) < smallest_side)
+            throw Failure(ExitCode::not_usable, o.files[i] + ": less than 64 px are too few cells of light");
+    }
+    return channels;
+}
+
+}  // namespace
+
+void check_flat_options(const FlatCommand &o) {
+    check_store_options(o.store);
+    if (o.linear + o.gamma.has_value() + (o.profile != 0) != 1)
+        throw Failure(ExitCode::usage,
+                      "say which response the pictures have: one of --linear, --gamma G, --profile ID");
+    if (o.files.size() > LENSPROF_FLAT_IMAGES)
+        throw Failure(ExitCode::usage, std::to_string(o.files.size()) + " pictures; give at most "
+                                           + std::to_string(LENSPROF_FLAT_IMAGES));
+    for (size_t i = 0; i < o.files.size(); i++)
+        for (size_t j = 0; j < i; j++)
+            if (is_same_file(o.files[i], o.files[j])) throw Failure(ExitCode::usage, o.files[i] + ": is given twice");
+    if (!(o.black < o.white)) throw Failure(ExitCode::usage, "--black must be less than --white");
+    if (o.max_side != 0 && o.max_side < smallest_side)
+        throw Failure(ExitCode::usage,
+                      "--max-side: less than 64 pixels are too few cells; give more, or 0 for full size");
+    if (o.several && (o.light == "plane" || o.light == "quadratic"))
+        throw Failure(ExitCode::usage, "--several: a card of one brightness has even light; leave out --light");
+    if (o.find_card && !o.cards.empty()) throw Failure(ExitCode::usage, "--card and --find-card contradict each other");
+    if (o.cards.size() > 1 && o.cards.size() != o.files.size())
+        throw Failure(ExitCode::usage, std::to_string(o.cards.size()) + " --card for " + std::to_string(o.files.size())
+                                           + " pictures; give one for all, or one for each");
+}
+
+FlatInput prepare_flat(const FlatCommand &o) {
+    FlatInput input;
+    lensprof_flat_options_init(&input.options);
+    std::vector<PictureMetadata> metadata;
+    for (const auto &file : o.files) metadata.push_back(read_metadata(file));
+    input.names = o.files;
+    std::vector<uint32_t> shots = shots_of(o);
+    std::vector<double> ev = exposures_of(o, shots, metadata), turns = turns_of(o, shots);
+    for (size_t i = 0; i < o.files.size(); i++) {
+        lensprof_flat_image image{};
+        image.shot = shots[i];
+        image.ev = ev[i];
+        image.turn_deg = turns[i];
+        image.black = o.black;
+        image.white = o.white;
+        input.images.push_back(image);
+    }
+    input.response = response_of(o);
+    if (o.linear) metadata.front().key.processing = LENSPROF_PROCESSING_RAW;
+    input.key = override_key(metadata.front().key, o.store, o.files.front());
+    auto &options = input.options;
+    options.vignettings = o.falloff == "auto" ? 0 : o.falloff == "3" ? 3 : 1;
+    options.light = o.light == "even"        ? LENSPROF_FLAT_LIGHT_EVEN
+                    : o.light == "plane"     ? LENSPROF_FLAT_LIGHT_PLANE
+                    : o.light == "quadratic" ? LENSPROF_FLAT_LIGHT_QUADRATIC
+                                             : LENSPROF_FLAT_LIGHT_AUTO;
+    options.grid = o.grid == "none"     ? LENSPROF_FLAT_GRID_NONE
+                   : o.grid == "always" ? LENSPROF_FLAT_GRID_ALWAYS
+                                        : LENSPROF_FLAT_GRID_AUTO;
+    if (o.center == "fixed") options.free &= ~LENSPROF_FREE_CENTER;
+    options.own_light = o.own_light;
+    options.several = o.several;
+    options.find_card = o.find_card;
+    options.ev_sigma = o.ev_sigma;
+    return input;
+}
+
+void read_flat(const FlatCommand &o, Progress &progress, FlatInput &input) {
+    const size_t count = o.files.size();
+    input.pictures.resize(count);
+    input.masks.resize(count);
+    for_each_parallel(static_cast<uint32_t>(count), "reading pictures", progress, [&](uint32_t i) {
+        ReadOptions reduced;
+        reduced.max_side = o.max_side;
+        input.pictures[i] = read_picture(o.files[i], reduced);
+    });
+    input.options.channels = common_channels(o, input.pictures);
+    if (input.options.channels == 1 && input.options.vignettings == 3)
+        throw Failure(ExitCode::usage, "--falloff-curves 3: the pictures are grey");
+    for (size_t i = 0; i < count; i++) {
+        Picture &picture = input.pictures[i];
+        if (!o.cards.empty())
+            input.masks[i] = mask_of(o.cards.size() == 1 ? o.cards.front() : o.cards[i], picture, o.files[i]);
+        auto &image = input.images[i];
+        image.view = picture.view();
+        image.width = picture.frame_width;
+        image.height = picture.frame_height;
+        image.reduction = picture.reduction;
+        image.mask = input.masks[i].empty() ? nullptr : input.masks[i].data();
+        image.mask_row_bytes = static_cast<ptrdiff_t>(picture.width);
+    }
+    input.options.response = input.response.data();
+    input.options.responses = static_cast<uint32_t>(input.response.size());
+}
+
+}  // namespace lensprof

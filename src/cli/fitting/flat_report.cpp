@@ -1,0 +1,144 @@
+// What `lensprof flat` says: a JSON object, and a table for people.
+#include <algorithm>
+
+#include "cli/fitting/flat.hpp"
+#include "cli/program/format.hpp"
+
+namespace lensprof {
+namespace {
+
+const char *light_name(uint32_t light) {
+    static const char *const names[] = {"auto", "even", "plane", "quadratic"};
+    return light <= LENSPROF_FLAT_LIGHT_QUADRATIC ? names[light] : "unknown";
+}
+
+Json images_json(const FlatReport &report) {
+    Json images = Json::array();
+    for (size_t i = 0; i < report.names.size(); i++) {
+        const auto &q = report.quality[i];
+        images.push_back({{"file", report.names[i]},
+                          {"shot", report.shots[i]},
+                          {"ev", report.ev[i]},
+                          {"turned_deg", report.turned[i]},
+                          {"card", {q.card[0], q.card[1], q.card[2], q.card[3]}},
+                          {"cells", q.cells},
+                          {"radius", q.radius},
+                          {"white_share", q.white_share},
+                          {"black_share", q.black_share},
+                          {"noise_levels", q.noise_levels},
+                          {"ev_residual", q.ev_residual},
+                          {"residual", q.residual},
+                          {"gradient", {q.gradient[0], q.gradient[1]}}});
+    }
+    return images;
+}
+
+Json spots_json(const lensprof_flat_result &fit) {
+    Json spots = Json::array();
+    for (uint32_t i = 0; i < std::min<uint32_t>(fit.spots, LENSPROF_FLAT_SPOTS); i++) {
+        const auto &s = fit.spot[i];
+        spots.push_back({{"x", s.x}, {"y", s.y}, {"radius", s.radius}, {"depth", s.depth}, {"shots", s.shots}});
+    }
+    return spots;
+}
+
+// Attenuation as [channel][row][column]; null where there is none.
+Json grid_json(const lensprof_gain_grid &grid) {
+    if (!grid.columns) return Json();
+    Json channels = Json::array();
+    const float *at = grid.attenuation;
+    for (uint32_t c = 0; c < grid.channels; c++) {
+        Json rows = Json::array();
+        for (uint32_t row = 0; row < grid.rows; row++, at += grid.columns)
+            rows.push_back(std::vector<float>(at, at + grid.columns));
+        channels.push_back(rows);
+    }
+    return {{"columns", grid.columns}, {"rows", grid.rows}, {"attenuation", channels}};
+}
+
+void print_images(const FlatReport &report, std::ostream &out) {
+    size_t width = 5;
+    for (const auto &name : report.names) width = std::max(width, name.size());
+    out << format("%-*s  %4s  %7s  %6s  %6s  %7s  %7s  %6s  %6s  %-13s\n", static_cast<int>(width), "image", "shot",
+                  "EV", "turned", "r", "white %", "black %", "noise", "left %", "light right, down %");
+    for (size_t i = 0; i < report.names.size(); i++) {
+        const auto &q = report.quality[i];
+        out << format("%-*s  %4u  %+7.2f  %6g  %6.2f  %7.1f  %7.1f  %6.2f  %6.2f  %+6.1f %+6.1f\n",
+                      static_cast<int>(width), report.names[i].c_str(), report.shots[i], report.ev[i], report.turned[i],
+                      q.radius, 100.0 * q.white_share, 100.0 * q.black_share, q.noise_levels, 100.0 * q.residual,
+                      100.0 * q.gradient[0], 100.0 * q.gradient[1]);
+    }
+}
+
+void print_spots(const lensprof_flat_result &fit, std::ostream &out) {
+    if (!fit.spots) return;
+    out << format("dust      %u spots, left out:", fit.spots);
+    const uint32_t told = std::min<uint32_t>(fit.spots, 5);
+    for (uint32_t i = 0; i < told; i++)
+        out << format("  %.0f,%.0f px (%.1f %% darker, in %u of %u shots)", fit.spot[i].x, fit.spot[i].y,
+                      100.0 * fit.spot[i].depth, fit.spot[i].shots, fit.shots);
+    out << (told < fit.spots ? "  ...\n" : "\n");
+}
+
+}  // namespace
+
+Json flat_json(const FlatReport &report) {
+    const auto &fit = report.fit;
+    Json json;
+    json["schema"] = 1;
+    json["method"] = "flat";
+    json["usable"] = fit.usable != 0;
+    json["reason"] = fit.reason;
+    json["images"] = images_json(report);
+    json["vignetting"] = vignetting_json(fit.vignetting, fit.vignettings);
+    json["response"] = response_json(report.response.data(), static_cast<uint32_t>(report.response.size()));
+    json["light"] = light_name(fit.light);
+    json["separated"] = fit.separated != 0;
+    json["shots"] = fit.shots;
+    json["cells"] = fit.cells;
+    json["radius"] = fit.radius;
+    json["residual"] = {{"noise", fit.noise},
+                        {"cell", fit.residual},
+                        {"texture", fit.texture},
+                        {"frame", fit.frame_residual},
+                        {"shot", fit.shot_residual},
+                        {"with_grid", fit.gain_grid.columns ? Json(fit.grid_residual) : Json()},
+                        {"inlier_share", fit.inlier_share}};
+    json["corner_sigma"] = fit.corner_sigma;
+    json["spot_count"] = fit.spots;
+    json["spots"] = spots_json(fit);
+    json["gain_grid"] = grid_json(fit.gain_grid);
+    json["iterations"] = fit.iterations;
+    json["covariance"] = covariance_json(fit.covariance, fit.covariance_size);
+    json["seconds"] = {{"load", report.load_s}, {"solve", report.solve_s}};
+    json["profile"] = report.profile_id ? Json(report.profile_id) : Json();
+    return json;
+}
+
+void print_flat(const FlatReport &report, std::ostream &out) {
+    const auto &fit = report.fit;
+    print_images(report, out);
+    print_vignettings(fit.vignetting, fit.vignettings,
+                      {fit.covariance, fit.covariance_size, report.response.front().modes}, out);
+    for (const auto &response : report.response) print_response(response, out);
+    out << format("light     %s; its gradient %s\n", light_name(fit.light),
+                  fit.light == LENSPROF_FLAT_LIGHT_EVEN ? "taken as none"
+                  : fit.separated                       ? "told from the lens by the turned shots"
+                                                        : "and the centre told apart by the prior on the centre alone");
+    out << format(
+        "residual  %.2f %% of the light a cell (noise %.2f, texture %.2f, not radial %.2f, shots differ %.2f); "
+        "%.1f %% inliers of %u cells\n",
+        100.0 * fit.residual, 100.0 * fit.noise, 100.0 * fit.texture, 100.0 * fit.frame_residual,
+        100.0 * fit.shot_residual, 100.0 * fit.inlier_share, fit.cells);
+    if (fit.gain_grid.columns)
+        out << format("grid      %u x %u nodes take what is not radial: %.2f %% are left\n", fit.gain_grid.columns,
+                      fit.gain_grid.rows, 100.0 * fit.grid_residual);
+    print_spots(fit, out);
+    out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
+    if (!fit.usable)
+        out << "NOT USABLE: " << fit.reason << "\n";
+    else if (*fit.reason)
+        out << "mind      " << fit.reason << "\n";
+}
+
+}  // namespace lensprof

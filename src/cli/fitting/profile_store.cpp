@@ -1,0 +1,116 @@
+#include "cli/fitting/profile_store.hpp"
+
+#include <ctime>
+#include <filesystem>
+
+#include "cli/program/output_file.hpp"
+#include "cli/program/run.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+
+void declare_store(CLI::App &app, StoreOptions &o) {
+    declare_db(app, o.db);
+    app.add_flag("--no-store", o.no_store, "do not store the profile");
+    app.add_flag("--force", o.force, "store a result that is not usable");
+    app.add_option("--maker", o.maker, "camera maker, instead of EXIF's");
+    app.add_option("--camera", o.camera, "camera model");
+    app.add_option("--lens", o.lens, "lens");
+    app.add_option(
+        "--unit", o.unit,
+        "the profile is of one camera and lens alone: their serial numbers, or exif for those of the picture");
+    app.add_option("--crop-factor", o.crop_factor, "43.27 mm over the diagonal of the camera's sensor")
+        ->check(in_range(0.01, 1e4));
+    app.add_option("--focal", o.focal, "focal length, mm")->check(in_range(0.01, 1e5));
+    app.add_option("--aperture", o.aperture, "f-number")->check(in_range(0.01, 1e4));
+    app.add_option("--distance", o.distance, "focus distance, m")->check(in_range(1e-6, INFINITY));
+    app.add_option("--processing", o.processing, "raw, jpeg or corrected (falloff corrected in camera)");
+}
+
+void check_store_options(const StoreOptions &o) {
+    if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
+}
+
+lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &o, const std::string &file) {
+    if (!o.maker.empty()) set_text(key.camera_maker, sizeof key.camera_maker, o.maker);
+    if (!o.camera.empty()) set_text(key.camera_model, sizeof key.camera_model, o.camera);
+    if (!o.lens.empty()) set_text(key.lens, sizeof key.lens, o.lens);
+    if (o.unit == "exif" && !*key.unit)
+        throw Failure(ExitCode::usage, file + ": its EXIF has no serial numbers; give them with --unit");
+    if (o.unit != "exif") set_text(key.unit, sizeof key.unit, o.unit);  // of all of the model, where none is given
+    if (o.crop_factor != LENSPROF_UNKNOWN) key.crop_factor = o.crop_factor;
+    if (o.focal != LENSPROF_UNKNOWN) key.focal_mm = o.focal;
+    if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;
+    if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;
+    if (!o.processing.empty()) key.processing = processing_of_name(o.processing);
+    if (!*key.camera_model && !*key.lens && !o.no_store)
+        throw Failure(ExitCode::usage,
+                      file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");
+    return key;
+}
+
+void check_store(const StoreOptions &o) {
+    if (o.no_store) return;
+    std::filesystem::path file = store_path(o.db), folder = std::filesystem::absolute(file).parent_path();
+    if (std::filesystem::exists(file)
+        && !(std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) == 0))
+        open_store(o.db, LENSPROF_STORE_WRITE);
+    else {
+        demand_folder(o.db);
+        check_folder(folder.string(), file.string(), ExitCode::store);
+    }
+}
+
+void remove_empty_store(const std::string &file) {
+    lensprof_store *store = nullptr;
+    uint32_t profiles = 0;
+    std::error_code ignored;
+    if (lensprof_store_open(file.c_str(), LENSPROF_STORE_WRITE, &store, nullptr) != LENSPROF_OK) {
+        if (std::filesystem::file_size(file, ignored) == 0) std::filesystem::remove(file, ignored);
+        return;  // else somebody else's
+    }
+    Store closing(store);  // nobody writes to it while it is counted and removed
+    if (lensprof_store_begin(store, nullptr) != LENSPROF_OK) return;
+    if (lensprof_store_list(store, nullptr, nullptr, 0, &profiles, nullptr) != LENSPROF_OK || profiles) return;
+    for (const char *end : {"", "-wal", "-shm"}) std::filesystem::remove(file + end, ignored);
+}
+
+std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit) {
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    profile->response[0] = fit.response;
+    profile->vignettings = fit.vignettings;
+    std::copy(fit.vignetting, fit.vignetting + 3, profile->vignetting);
+    profile->covariance_size = fit.covariance_size;
+    std::copy(fit.covariance, fit.covariance + fit.covariance_size * fit.covariance_size, profile->covariance);
+    profile->provenance.pairs = fit.pairs;
+    profile->provenance.heldout_rms = fit.heldout_rms;
+    profile->provenance.inlier_share = fit.inlier_share;
+    return profile;
+}
+
+std::string source_of(const std::string &file) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file)).string();
+}
+
+int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin) {
+    auto &p = profile.provenance;
+    set_text(p.method, sizeof p.method, origin.method + (origin.usable ? "" : " (forced)"));
+    check(lensprof_provenance_set_prior(&p, origin.held), store_path(o.db));
+    set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
+    set_text(p.source, sizeof p.source, source_of(origin.source));
+    p.created_unix_s = static_cast<int64_t>(std::time(nullptr));
+    bool is_new = !std::filesystem::exists(store_path(o.db));
+    try {
+        Store store = open_store(o.db, LENSPROF_STORE_CREATE);
+        int64_t id = 0;
+        lensprof_error error{};
+        check(lensprof_store_put(store.get(), &profile, &id, &error), store_path(o.db), &error);
+        return id;
+    } catch (const Failure &) {
+        if (is_new) remove_empty_store(store_path(o.db));
+        throw;
+    }
+}
+
+}  // namespace lensprof

@@ -1,0 +1,53 @@
+// From a measurement to a profile in the database: its key, its provenance, the database itself.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/program/library.hpp"
+
+namespace lensprof {
+
+// The options of every command that stores a profile.
+struct StoreOptions {
+    std::string db, maker, camera, lens, unit, processing;
+    double crop_factor = LENSPROF_UNKNOWN, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN,
+           distance = LENSPROF_UNKNOWN;
+    bool no_store = false, force = false;
+};
+
+void declare_store(CLI::App &app, StoreOptions &o);
+
+// Failure (usage) for options that contradict each other.
+void check_store_options(const StoreOptions &o);
+
+// The key of a profile: that of a picture's EXIF, then what the command line says. Failure (usage) that names `file`
+// when nothing says what camera it was and the profile is to be stored.
+lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &o, const std::string &file);
+
+// Failure (store) before the work is done when the database cannot be used.
+void check_store(const StoreOptions &o);
+
+// A database that was to be made for what failed is not left behind empty; one that somebody else has filled stays.
+void remove_empty_store(const std::string &file);
+
+// A profile of what a fit found, its key and provenance but the result's numbers still empty.
+std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit);
+
+// A file as provenances name it: one name, however it was written.
+std::string source_of(const std::string &file);
+
+// What a provenance says of a profile that was made now.
+struct Origin {
+    std::string method, source;
+    bool usable;       // else stored by --force
+    int64_t held = 0;  // the profile that is in it; 0 = none
+};
+
+// Completes the provenance, with this program, source_of(source) and the time, and stores the profile. A new database
+// that could not take it is not left behind. Returns its number.
+int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin);
+
+}  // namespace lensprof

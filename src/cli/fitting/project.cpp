@@ -1,0 +1,254 @@
+#include "cli/fitting/project.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "cli/program/interrupt.hpp"
+#include "cli/program/parallel.hpp"
+
+namespace lensprof {
+namespace {
+
+uint32_t find_reference(const Project &project) {
+    for (uint32_t i = 0; i < project.images.size(); i++)
+        if (!(project.images[i].free & LENSPROF_FREE_EV)) return i;
+    return 0;
+}
+
+// The fit knows one lens.
+void check_one_lens(const Project &project) {
+    for (uint32_t i = 1; i < project.images.size(); i++) {
+        const auto &image = project.images[i];
+        if (image.response_of != project.images[0].response_of
+            || image.vignetting_of != project.images[0].vignetting_of)
+            throw Failure(ExitCode::usage, project.path + ": image " + std::to_string(i) + " (" + project.names[i]
+                          + ") is not linked to image 0 in Ra..Re and Va..Vd, which makes it another lens; link them in "
+                            "Hugin (or give build --one-lens)");
+    }
+}
+
+SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
+    const auto &camera = project.images[i].camera;
+    const std::string &file = project.files[i];
+    SamplePicture result;
+    ReadOptions options;
+    options.max_side = max_side;
+    result.picture = read_picture(file, options);
+    const Picture &p = result.picture;
+    if (p.frame_width != camera.width || p.frame_height != camera.height)
+        throw Failure(ExitCode::unreadable,
+                      file + ": is " + std::to_string(p.frame_width) + " x " + std::to_string(p.frame_height)
+                          + " pixels, but " + project.path + " says " + std::to_string(camera.width) + " x "
+                          + std::to_string(camera.height) + "; use the pictures that the project was made with");
+    check_finite(result.picture.view(), 0, p.reduction, file);
+    if (!project.pto) return result;
+    std::vector<uint8_t> mask(static_cast<size_t>(p.width) * p.height);
+    check(lensprof_pto_draw_mask(project.pto.get(), i, mask.data(), p.width, p.height, static_cast<ptrdiff_t>(p.width)),
+          file);
+    if (std::find(mask.begin(), mask.end(), 0) != mask.end()) result.mask = std::move(mask);
+    return result;
+}
+
+int on_sampling(double done, void *progress) {
+    static_cast<Progress *>(progress)->update("sampling", done);
+    return interrupted();
+}
+
+}  // namespace
+
+void check_finite(const lensprof_image &rows, uint32_t first_row, uint32_t reduction, const std::string &file) {
+    if (rows.sample != LENSPROF_SAMPLE_F32) return;
+    uint32_t samples = lensprof_layout_samples(rows.layout);
+    for (uint32_t y = 0; y < rows.height; y++) {
+        const auto *row = reinterpret_cast<const float *>(static_cast<const uint8_t *>(rows.data)
+                                                          + static_cast<ptrdiff_t>(y) * rows.row_bytes);
+        for (uint32_t s = 0; s < rows.width * samples; s++)
+            if (!std::isfinite(row[s]))
+                throw Failure(ExitCode::unreadable, file + ": pixel " + std::to_string(s / samples * reduction) + ", "
+                                                        + std::to_string((first_row + y) * reduction)
+                                                        + " is not a finite number; repair the picture");
+    }
+}
+
+Project read_project(const std::string &path, bool one_lens) {
+    Project project;
+    project.path = path;
+    project.pto = read_pto(path);
+    std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    for (uint32_t i = 0; i < lensprof_pto_image_count(project.pto.get()); i++) {
+        lensprof_pto_image image;
+        check(lensprof_pto_get_image(project.pto.get(), i, &image), path);
+        project.images.push_back(image);
+        project.names.push_back(pto_name(*project.pto, i));
+        project.files.push_back((folder / project.names[i]).string());
+    }
+    if (!one_lens) check_one_lens(project);
+    project.reference = find_reference(project);
+    return project;
+}
+
+uint32_t image_of_word(const Project &project, const std::string &word) {
+    for (uint32_t i = 0; i < project.names.size(); i++)
+        if (word == project.names[i] || word == std::to_string(i)) return i;
+    throw Failure(ExitCode::usage, word + ": no such image in " + project.path + "; give its number or name");
+}
+
+std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress) {
+    std::vector<SamplePicture> pictures(project.files.size());
+    for_each_parallel(static_cast<uint32_t>(pictures.size()), "reading pictures", progress,
+                      [&](uint32_t i) { pictures[i] = read_one(project, i, max_side); });
+    return pictures;
+}
+
+uint32_t channel_count(const std::vector<SamplePicture> &pictures) {
+    for (const auto &p : pictures)
+        if (lensprof_layout_channels(p.picture.layout) == 3) return 3;
+    return 1;
+}
+
+namespace {
+
+// By lensprof_sample_overlap or lensprof_sample_tracks.
+template <class Item, class Function>
+std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pictures, lensprof_sample_options options,
+                         const GreyRange &range, Progress &progress, Function function) {
+    std::vector<lensprof_sample_image> images;
+    for (size_t i = 0; i < pictures.size(); i++) {
+        lensprof_sample_image image{};
+        image.view = pictures[i].picture.view();
+        image.camera = project.images[i].camera;
+        image.reduction = pictures[i].picture.reduction;
+        image.mask = pictures[i].mask.empty() ? nullptr : pictures[i].mask.data();
+        image.mask_row_bytes = static_cast<ptrdiff_t>(pictures[i].picture.width);
+        image.black = range.black;
+        image.white = range.white;
+        image.every_pixel = range.every_pixel;
+        images.push_back(image);
+    }
+    lensprof_error error{};
+    uint32_t found = 0;
+    auto count = static_cast<uint32_t>(images.size());
+    check(function(&options, images.data(), count, nullptr, 0, &found, &error), project.path, &error);
+    std::vector<Item> items(found);
+    options.progress = on_sampling;
+    options.progress_user = &progress;
+    lensprof_status status = function(&options, images.data(), count, items.data(), found, &found, &error);
+    stop_if_interrupted();
+    check(status, project.path, &error);
+    items.resize(found);
+    return items;
+}
+
+}  // namespace
+
+std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
+                                        lensprof_sample_options options, const GreyRange &range, Progress &progress) {
+    return sample<lensprof_pair>(project, pictures, options, range, progress, lensprof_sample_overlap);
+}
+
+std::vector<lensprof_observation> sample_tracks(const Project &project, std::vector<SamplePicture> &pictures,
+                                                lensprof_sample_options options, Progress &progress) {
+    return sample<lensprof_observation>(project, pictures, options, {}, progress, lensprof_sample_tracks);
+}
+
+std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observation> &observations) {
+    std::vector<lensprof_pair> pairs;
+    const lensprof_observation *last = nullptr;
+    for (const auto &next : observations) {
+        if (*std::max_element(next.value, next.value + 3) > GreyRange{}.white) continue;
+        if (last && last->point == next.point) {
+            lensprof_pair pair{};
+            const lensprof_observation *ends[2] = {last, &next};
+            for (int side = 0; side < 2; side++) {
+                pair.image[side] = ends[side]->image;
+                std::copy(ends[side]->xy, ends[side]->xy + 2, pair.xy[side]);
+                std::copy(ends[side]->value, ends[side]->value + 3, pair.value[side]);
+            }
+            pairs.push_back(pair);
+        }
+        last = &next;
+    }
+    return pairs;
+}
+
+namespace {
+
+// `number`: of the point in its file, from 1 on.
+void check_point(const std::string &path, const Project &project, const lensprof_pair &pair, int side, size_t number) {
+    const uint32_t image = pair.image[side];
+    if (image >= project.images.size())
+        throw Failure(ExitCode::unreadable, path + ": names image " + std::to_string(image) + ", but " + project.path
+                                                + " has images 0 to " + std::to_string(project.images.size() - 1)
+                                                + "; give the points of this project");
+    const auto &camera = project.images[image].camera;
+    const double *xy = pair.xy[side];
+    if (!(xy[0] >= -1.0 && xy[1] >= -1.0 && xy[0] <= camera.width && xy[1] <= camera.height))
+        throw Failure(ExitCode::unreadable, path + ": point " + std::to_string(number) + " is outside of "
+                                                + project.names[image] + "; give the points of this project");
+}
+
+}  // namespace
+
+std::vector<lensprof_pair> read_points(const std::string &path, const Project &project) {
+    std::string text = read_text(path);
+    lensprof_error error{};
+    uint32_t found = 0;
+    check(lensprof_points_read(text.data(), text.size(), nullptr, 0, &found, &error), path, &error);
+    std::vector<lensprof_pair> pairs(found);
+    if (found == 0) throw Failure(ExitCode::unreadable, path + ": holds no points");
+    check(lensprof_points_read(text.data(), text.size(), pairs.data(), found, &found, &error), path, &error);
+    for (size_t p = 0; p < pairs.size(); p++)
+        for (int side = 0; side < 2; side++) check_point(path, project, pairs[p], side, p + 1);
+    return pairs;
+}
+
+std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &project) {
+    std::vector<lensprof_camera> cameras;
+    for (const auto &image : project.images) cameras.push_back(image.camera);
+    auto write = [&](char *text, size_t capacity, size_t *needed) {
+        return lensprof_points_write(pairs.data(), static_cast<uint32_t>(pairs.size()), cameras.data(),
+                                     static_cast<uint32_t>(cameras.size()), text, capacity, needed);
+    };
+    size_t needed = 0;
+    if (write(nullptr, 0, &needed) != LENSPROF_ERROR_CAPACITY) return {};
+    std::string text(needed, 0);
+    check(write(text.data(), needed, &needed), "points");
+    text.resize(needed);
+    return text;
+}
+
+std::vector<lensprof_exposure> relative_exposures(std::vector<lensprof_exposure> exposures, uint32_t reference) {
+    const lensprof_exposure zero = exposures[reference];
+    for (auto &e : exposures) {
+        e.ev -= zero.ev;
+        for (int c = 0; c < 3; c++) e.white_balance[c] /= zero.white_balance[c];
+    }
+    return exposures;
+}
+
+std::vector<lensprof_exposure> project_exposures(const Project &project) {
+    std::vector<lensprof_exposure> exposures;
+    for (const auto &image : project.images) exposures.push_back(image.exposure);
+    return relative_exposures(exposures, project.reference);
+}
+
+std::vector<lensprof_fit_image> fit_images(const Project &project) {
+    std::vector<lensprof_fit_image> images;
+    auto exposures = project_exposures(project);
+    for (const auto &from : project.images) {
+        lensprof_fit_image image{};
+        image.width = from.camera.width;
+        image.height = from.camera.height;
+        image.exposure = exposures[images.size()];
+        image.free = from.free & (LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE);
+        image.ev_of = from.ev_of;
+        image.red_of = from.red_of;
+        image.blue_of = from.blue_of;
+        images.push_back(image);
+    }
+    return images;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,75 @@
+// A Hugin project and its pictures, as the fit wants them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/pictures/metadata.hpp"
+#include "cli/pictures/picture.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/progress.hpp"
+
+namespace lensprof {
+
+struct Project {
+    std::string path;  // of the .pto
+    Pto pto;           // NULL where the project is not of a file
+    std::vector<lensprof_pto_image> images;
+    std::vector<std::string> names;  // as written in the project
+    std::vector<std::string> files;  // path of each picture
+    uint32_t reference = 0;          // image that the fit holds
+};
+
+// Reads a project. The reference is the first image whose Eev is not asked for, else image 0. With `one_lens`, images
+// that are not linked are taken as one lens; otherwise that is a Failure.
+Project read_project(const std::string &path, bool one_lens);
+
+// The image that a user means by a number or a file name of the project.
+uint32_t image_of_word(const Project &project, const std::string &word);
+
+// A picture reduced for sampling, with the mask of the project; no mask where nothing is excluded.
+struct SamplePicture {
+    Picture picture;
+    std::vector<uint8_t> mask;
+};
+
+// Reads all pictures, several at once, each reduced to a longer side of at least `max_side` pixels. Sizes that
+// contradict the project, unreadable files and float samples that are not finite are a Failure that names the file.
+std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress);
+
+// Failure (unreadable) that names the first sample that is not a finite number, in rows of a picture from first_row
+// on.
+void check_finite(const lensprof_image &rows, uint32_t first_row, uint32_t reduction, const std::string &file);
+
+// 3, or 1 when every picture is grey.
+uint32_t channel_count(const std::vector<SamplePicture> &pictures);
+
+// Grey values outside these are black or saturated.
+struct GreyRange {
+    double black = 2.0 / 255.0, white = 250.0 / 255.0;
+    bool every_pixel = false;  // of a patch has to be within; else its mean
+};
+
+// The progress function of the options is set here.
+std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
+                                        lensprof_sample_options options, const GreyRange &range, Progress &progress);
+std::vector<lensprof_observation> sample_tracks(const Project &project, std::vector<SamplePicture> &pictures,
+                                                lensprof_sample_options options, Progress &progress);
+
+// Of every point those unsaturated observations as pairs that follow each other, as a fit by tracks counts them.
+std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observation> &observations);
+
+// The pairs of a point file, which must be of images of the project.
+std::vector<lensprof_pair> read_points(const std::string &path, const Project &project);
+std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &project);
+
+// The images of the fit: sizes, links, unknowns, and exposures relative to the reference.
+std::vector<lensprof_fit_image> fit_images(const Project &project);
+
+// Exposures and white balances relative to those of one image.
+std::vector<lensprof_exposure> relative_exposures(std::vector<lensprof_exposure> exposures, uint32_t reference);
+
+// The project's own, relative to its reference.
+std::vector<lensprof_exposure> project_exposures(const Project &project);
+
+}  // namespace lensprof

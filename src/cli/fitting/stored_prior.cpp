@@ -1,0 +1,60 @@
+#include "cli/fitting/stored_prior.hpp"
+
+#include <filesystem>
+#include <set>
+
+namespace lensprof {
+namespace {
+
+// Whether a profile that is in this one was made from `source`.
+bool holds(lensprof_store *store, const lensprof_profile &profile, const std::string &source) {
+    auto next = std::make_unique<lensprof_profile>(profile);
+    std::set<int64_t> seen;
+    for (;;) {
+        const int64_t id = lensprof_provenance_prior(&next->provenance);
+        if (id <= 0 || !seen.insert(id).second || lensprof_store_get(store, id, next.get(), nullptr) != LENSPROF_OK)
+            return false;
+        if (source == next->provenance.source) return true;
+    }
+}
+
+bool is_uncertain(const lensprof_profile &profile) {
+    for (uint32_t i = 0; i < profile.covariance_size; i++)
+        if (profile.covariance[i * profile.covariance_size + i] > 0.0) return true;
+    return false;
+}
+
+}  // namespace
+
+EarlierProfile find_stored_prior(const StoreOptions &o, const lensprof_profile_key &key, const std::string &source) {
+    const std::string file = store_path(o.db);
+    if (!std::filesystem::exists(file)) return {0, nullptr, "there is no database yet"};
+    Store store = open_store(o.db, LENSPROF_STORE_READ);
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_error error{};
+    lensprof_lookup how{};
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    const lensprof_status status = lensprof_store_lookup(store.get(), &key, &options, profile.get(), &how, &error);
+    if (status != LENSPROF_ERROR_NOT_FOUND) check(status, file, &error);
+    if (status != LENSPROF_OK || !how.exact) return {0, nullptr, "no profile is stored for this lens and setting"};
+    const std::string named = "profile " + std::to_string(how.id[0]);
+    if (!is_uncertain(*profile)) return {0, nullptr, named + " has no covariance"};
+    if (std::string(profile->provenance.method).find("(forced)") != std::string::npos)
+        return {0, nullptr, named + " was stored by --force, of a fit that was not usable"};
+    const std::string own = source_of(source);
+    int64_t id = how.id[0];
+    if (own == profile->provenance.source) {  // fitted again: what it was given then is the prior again
+        id = lensprof_provenance_prior(&profile->provenance);
+        if (id <= 0 || lensprof_store_get(store.get(), id, profile.get(), nullptr) != LENSPROF_OK
+            || !is_uncertain(*profile))
+            return {0, nullptr, named + " is of these pictures alone, which are fitted again"};
+    }
+    if (own == profile->provenance.source || holds(store.get(), *profile, own))
+        throw Failure(ExitCode::usage, source + ": profile " + std::to_string(id)
+                                           + " holds these pictures already, and others that came later; nothing would be "
+                                             "gained. Leave --prior auto out to fit them alone");
+    return {id, std::move(profile), ""};
+}
+
+}  // namespace lensprof

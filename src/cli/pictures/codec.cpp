@@ -1,0 +1,96 @@
+#include "cli/pictures/codec.hpp"
+
+#include <algorithm>
+#include <cerrno>
+
+#include <sys/stat.h>
+
+#include "cli/program/error.hpp"
+#include "cli/program/output_file.hpp"
+
+namespace lensprof {
+
+namespace codec {
+
+uint64_t pixel_bytes(const Picture &picture) {
+    return lensprof_layout_samples(picture.layout) * uint64_t(lensprof_sample_bytes(picture.sample));
+}
+
+void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, const ReadRequest &request) {
+    const std::string size = std::to_string(frame_width) + " x " + std::to_string(frame_height) + " pixels";
+    if (frame_width == 0 || frame_height == 0) fail_damaged(request.path, size);
+    if (frame_width > picture_max_side || frame_height > picture_max_side
+        || pixel_bytes(picture) * frame_width * frame_height > picture_max_bytes)
+        fail_unsupported(request.path, size + " are too many; cut it into smaller pictures");
+    picture.frame_width = frame_width;
+    picture.frame_height = frame_height;
+    picture.reduction = 1;
+    if (request.max_side > 0) {
+        const uint32_t wanted = std::max(frame_width, frame_height) / request.max_side;
+        picture.reduction = std::max(1u, std::min({wanted, frame_width, frame_height}));
+        if (picture.reduction > 1) picture.reduction -= picture.reduction % 2;
+    }
+    picture.width = frame_width / picture.reduction;
+    picture.height = frame_height / picture.reduction;
+    picture.row_bytes = static_cast<size_t>(pixel_bytes(picture) * picture.width);
+}
+
+double convert_resolution(double value, PictureTraits::Unit from, PictureTraits::Unit to) {
+    const auto metres = [](PictureTraits::Unit unit) {
+        return unit == PictureTraits::Unit::inch ? 0.0254 : unit == PictureTraits::Unit::centimetre ? 0.01 : 1.0;
+    };
+    if (from == to || from == PictureTraits::Unit::none || to == PictureTraits::Unit::none) return value;
+    return value * metres(to) / metres(from);
+}
+
+File open_for_reading(const std::string &path) {
+    struct stat kind = {};
+    if (stat(path.c_str(), &kind) == 0 && !S_ISREG(kind.st_mode) && !S_ISDIR(kind.st_mode))  // would wait for a writer
+        throw Failure(ExitCode::unreadable, path + ": cannot read: is no file; give the name of a picture");
+    File file(std::fopen(path.c_str(), "rb"), std::fclose);
+    if (!file)
+        throw Failure(ExitCode::unreadable,
+                      path + ": cannot read: " + system_text(errno) + "; check the name and its permissions");
+    struct stat status = {};
+    if (fstat(fileno(file.get()), &status) != 0 || S_ISDIR(status.st_mode))
+        throw Failure(ExitCode::unreadable, path + ": cannot read: is a folder; give the name of a picture");
+    return file;
+}
+
+File open_for_writing(const std::string &path) {
+    File file(std::fopen(path.c_str(), "wb"), std::fclose);
+    if (!file) fail_to_write(path, system_text(errno), errno);
+    return file;
+}
+
+void close_written(File &file, const std::string &path) {
+    if (std::fclose(file.release()) != 0) fail_to_write(path, system_text(errno), errno);
+}
+
+void fail_damaged(const std::string &path, const std::string &detail) {
+    throw Failure(ExitCode::unreadable,
+                  path + ": cannot read: file is truncated or damaged (" + detail + "); copy it again");
+}
+
+void fail_unsupported(const std::string &path, const std::string &kind_and_next_step) {
+    throw Failure(ExitCode::unreadable, path + ": cannot read: " + kind_and_next_step);
+}
+
+void fail_memory(const std::string &path) {
+    fail_unsupported(path, "not enough memory; close other programs or use a smaller picture");
+}
+
+void fail_to_write(const std::string &path, const std::string &detail, int error_number) {
+    throw Failure(ExitCode::failed,
+                  path + ": cannot write: "
+                      + (error_number != 0 ? system_text(error_number) + "; check the disk's space and the permissions"
+                                           : detail + "; write another format"));
+}
+
+void fail_to_hold(const std::string &path, const std::string &kind_and_next_step) {
+    throw Failure(ExitCode::usage, path + ": cannot write: " + kind_and_next_step);
+}
+
+}  // namespace codec
+
+}  // namespace lensprof

@@ -1,0 +1,101 @@
+// What the readers and writers of picture files share: private to picture*.cpp, row_reducer.cpp and
+// metadata*.cpp. Each format is a source of rows and a sink of rows.
+#pragma once
+
+#include <csetjmp>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "cli/pictures/picture.hpp"
+
+namespace lensprof {
+
+namespace codec {
+
+struct ReadRequest {
+    std::string path;
+    uint32_t max_side = 0;
+};
+
+// A picture file that is being read. Nothing is decoded before the first row is asked for.
+class RowSource {
+public:
+    virtual ~RowSource() = default;
+    RowSource(const RowSource &) = delete;
+    RowSource &operator=(const RowSource &) = delete;
+
+    const Picture &header() const { return header_; }  // without pixels
+
+    // 1, or 2: the rows are those of the frame halved in both directions.
+    virtual uint32_t halved() const { return 1; }
+
+    // Rows to be read, and the pixels of each.
+    virtual uint32_t row_count() const { return header_.frame_height; }
+    virtual uint32_t row_width() const { return header_.frame_width; }
+
+    virtual void read(uint8_t *row) = 0;  // the next one
+    virtual void finish() {}              // all were read: checks the rest of the file
+
+protected:
+    RowSource() = default;
+
+    Picture header_;
+};
+
+std::unique_ptr<RowSource> open_png(const ReadRequest &request);
+std::unique_ptr<RowSource> open_tiff(const ReadRequest &request);
+std::unique_ptr<RowSource> open_jpeg(const ReadRequest &request);
+
+// A picture file that is being written.
+class RowSink {
+public:
+    virtual ~RowSink() = default;
+    RowSink(const RowSink &) = delete;
+    RowSink &operator=(const RowSink &) = delete;
+
+    virtual void write(const uint8_t *row) = 0;  // the next one, without gaps between pixels
+    virtual void finish() = 0;                   // all were written: completes and closes the file
+
+protected:
+    RowSink() = default;
+};
+
+std::unique_ptr<RowSink> create_png(const std::string &path, const Picture &header);
+std::unique_ptr<RowSink> create_tiff(const std::string &path, const Picture &header);
+std::unique_ptr<RowSink> create_jpeg(const std::string &path, const Picture &header, int quality);
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE *)>;
+
+File open_for_reading(const std::string &path);
+File open_for_writing(const std::string &path);
+void close_written(File &file, const std::string &path);
+
+[[noreturn]] void fail_damaged(const std::string &path, const std::string &detail);
+[[noreturn]] void fail_unsupported(const std::string &path, const std::string &kind_and_next_step);
+[[noreturn]] void fail_memory(const std::string &path);
+[[noreturn]] void fail_to_write(const std::string &path, const std::string &detail, int error_number);
+[[noreturn]] void fail_to_hold(const std::string &path, const std::string &kind_and_next_step);
+
+// Sets frame, reduction, size and row_bytes from the frame's size and max_side; sample and layout must be set.
+void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, const ReadRequest &request);
+
+uint64_t pixel_bytes(const Picture &picture);
+
+// Resolution in another unit; `none` stays as it is.
+double convert_resolution(double value, PictureTraits::Unit from, PictureTraits::Unit to);
+
+// Runs body() and says false when the C library it calls left it by longjmp(jump). The jump skips no destructor as
+// long as body owns no object that has one while it is inside the library: such objects belong to the caller. GCC and
+// clang never inline a function that calls setjmp, so no variable of the caller can be lost.
+template <class Body>
+bool guarded(std::jmp_buf &jump, const Body &body) {
+    if (setjmp(jump) != 0) return false;
+    body();
+    return true;
+}
+
+}  // namespace codec
+
+}  // namespace lensprof

@@ -1,0 +1,451 @@
+#include "cli/pictures/metadata.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <initializer_list>
+#include <iterator>
+#include <mutex>
+#include <vector>
+
+#include <exiv2/exiv2.hpp>
+
+#include "cli/pictures/codec.hpp"
+#include "cli/pictures/picture_excerpt.hpp"
+#include "cli/program/error.hpp"
+
+namespace lensprof {
+
+namespace {
+
+using ExivImage = decltype(Exiv2::ImageFactory::open(std::string()));
+
+// Exiv2 logs to stderr, and its XMP parser shares state between threads unless it is given a lock.
+void prepare_exiv2() {
+    static std::once_flag once;
+    static std::recursive_mutex mutex;
+    std::call_once(once, [] {
+        Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
+        Exiv2::XmpParser::initialize(
+            [](void *lock, bool take) {
+                std::recursive_mutex *m = static_cast<std::recursive_mutex *>(lock);
+                take ? m->lock() : m->unlock();
+            },
+            &mutex);
+    });
+}
+
+[[noreturn]] void fail_reading(const std::string &path, const std::exception &error) {
+    std::string text = error.what();
+    if (text.compare(0, path.size() + 2, path + ": ") == 0) text.erase(0, path.size() + 2);
+    throw Failure(ExitCode::unreadable,
+                  path + ": cannot read metadata: " + text + "; check that it is a picture, or copy it again");
+}
+
+[[noreturn]] void fail_writing(const std::string &path, const std::exception &error) {
+    throw Failure(ExitCode::failed,
+                  path + ": cannot write metadata: " + error.what() + "; write another format, or without metadata");
+}
+
+bool is_big_tiff(const std::string &path) {
+    const codec::File file = codec::open_for_reading(path);
+    char start[4] = {};
+    return std::fread(start, 1, sizeof start, file.get()) == sizeof start
+           && (std::memcmp(start, "II+\0", 4) == 0 || std::memcmp(start, "MM\0+", 4) == 0);
+}
+
+ExivImage open_image(const std::string &path) {
+    prepare_exiv2();
+    codec::open_for_reading(path);  // for its errors, which say more than Exiv2's
+    try {
+        ExivImage image = Exiv2::ImageFactory::open(path);
+        image->readMetadata();
+        return image;
+    } catch (const std::exception &error) {
+        fail_reading(path, error);
+    }
+}
+
+// Reading.
+
+// The longest start of `text` that is shorter than `size` bytes and does not cut a UTF-8 character.
+size_t fitting_length(const std::string &text, size_t size) {
+    size_t length = std::min(text.size(), size - 1);
+    while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) --length;
+    return length;
+}
+
+// Bytes of the UTF-8 character at `at`, 0 when there is none. Overlong forms and surrogates do not matter here.
+size_t utf8_length(const std::string &text, size_t at) {
+    const unsigned char lead = static_cast<unsigned char>(text[at]);
+    const size_t length = lead < 0x80                   ? 1
+                          : lead >= 0xc2 && lead < 0xe0 ? 2
+                          : lead >= 0xe0 && lead < 0xf0 ? 3
+                          : lead >= 0xf0 && lead < 0xf5 ? 4
+                                                        : 0;
+    for (size_t i = 1; i < length; ++i) {
+        if (at + i >= text.size() || (static_cast<unsigned char>(text[at + i]) & 0xc0) != 0x80) return 0;
+    }
+    return length;
+}
+
+// EXIF text is ASCII by the standard; what is neither that nor UTF-8 is taken for Latin-1. Ends at the first NUL,
+// control characters become blanks, runs at both ends are cut.
+std::string clean_text(const std::string &raw) {
+    std::string text;
+    for (size_t i = 0; i < raw.size() && raw[i] != '\0';) {
+        const unsigned char c = static_cast<unsigned char>(raw[i]);
+        const size_t length = utf8_length(raw, i);
+        if (length == 0) {
+            text += static_cast<char>(0xc0 | (c >> 6));
+            text += static_cast<char>(0x80 | (c & 0x3f));
+        } else if (c < 0x20 || c == 0x7f) {
+            text += ' ';
+        } else {
+            text.append(raw, i, length);
+        }
+        i += std::max<size_t>(1, length);
+    }
+    const size_t first = text.find_first_not_of(' ');
+    return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+template <size_t size>
+void store_text(const std::string &text, char (&field)[size]) {
+    const size_t length = fitting_length(text, size);
+    std::memcpy(field, text.data(), length);
+    std::memset(field + length, 0, size - length);
+}
+
+std::string read_text(const Exiv2::ExifData &exif, const char *key) {
+    const auto datum = exif.findKey(Exiv2::ExifKey(key));
+    return datum == exif.end() || datum->count() == 0 ? std::string() : clean_text(datum->toString());
+}
+
+template <size_t count>
+bool begins_with_one(const std::string &text, const char *const (&starts)[count]) {
+    return std::any_of(std::begin(starts), std::end(starts),
+                       [&](const char *start) { return text.compare(0, std::strlen(start), start) == 0; });
+}
+
+// What cameras write when they do not know the lens, and Exiv2 when it knows only the number.
+bool is_lens_name(const std::string &text) {
+    static const char *const nothing[] = {"n/a",     "N/A",     "None",    "none",   "Unknown",
+                                          "unknown", "NO-LENS", "No lens", "0.0 mm", "0 mm"};
+    if (text.find_first_not_of("-0. ()") == std::string::npos) return false;
+    if (text.front() == '(' && text.find_first_not_of("0123456789 ", 1) == text.size() - 1) return false;
+    if (text.find_first_not_of("0123456789 ") == std::string::npos) return false;
+    return !begins_with_one(text, nothing);
+}
+
+std::string read_lens(const Exiv2::ExifData &exif) {
+    const std::string model = read_text(exif, "Exif.Photo.LensModel");
+    if (is_lens_name(model)) return model;
+    const auto datum = Exiv2::lensName(exif);
+    const std::string name = datum == exif.end() ? std::string() : clean_text(datum->print(&exif));
+    return is_lens_name(name) ? name : std::string();
+}
+
+// Serial numbers of camera and lens, as far as they are known: "BODY", "BODY/LENS" or "/LENS".
+std::string read_unit(const Exiv2::ExifData &exif) {
+    const auto of_maker = Exiv2::serialNumber(exif);
+    const std::string lens = read_text(exif, "Exif.Photo.LensSerialNumber");
+    const auto is_nothing = [](const std::string &text) { return text.find_first_not_of("0 .-") == std::string::npos; };
+    std::string unit = read_text(exif, "Exif.Photo.BodySerialNumber");
+    if (is_nothing(unit) && of_maker != exif.end()) unit = clean_text(of_maker->print(&exif));
+    if (is_nothing(unit)) unit.clear();
+    return is_nothing(lens) ? unit : unit + "/" + lens;
+}
+
+// In double precision; NaN when there is no value.
+double number(const Exiv2::Exifdatum &datum) {
+    if (datum.count() == 0) return NAN;
+    if (const auto *value = dynamic_cast<const Exiv2::URationalValue *>(&datum.value()))
+        return static_cast<double>(value->value_[0].first) / value->value_[0].second;
+    if (const auto *value = dynamic_cast<const Exiv2::RationalValue *>(&datum.value()))
+        return static_cast<double>(value->value_[0].first) / value->value_[0].second;
+    return static_cast<double>(datum.toFloat());
+}
+
+// The first of the keys that is there; NaN when none is.
+double read_number(const Exiv2::ExifData &exif, std::initializer_list<const char *> keys) {
+    for (const char *key : keys) {
+        const auto datum = exif.findKey(Exiv2::ExifKey(key));
+        if (datum != exif.end()) return number(*datum);
+    }
+    return NAN;
+}
+
+std::optional<double> in_range(double value, double below) {
+    return value > 0 && value < below ? std::optional<double>(value) : std::nullopt;
+}
+
+// EXIF 2.32 section 4.6.5: APEX values Tv = -log2(time), Av = 2 log2(f-number).
+std::optional<double> read_exposure_time(const Exiv2::ExifData &exif) {
+    const double time = read_number(exif, {"Exif.Photo.ExposureTime", "Exif.Image.ExposureTime"});
+    const double apex = read_number(exif, {"Exif.Photo.ShutterSpeedValue", "Exif.Image.ShutterSpeedValue"});
+    const std::optional<double> stated = in_range(time, 1e6);
+    return stated ? stated : in_range(std::exp2(-apex), 1e6);
+}
+
+std::optional<double> read_f_number(const Exiv2::ExifData &exif) {
+    const double stated = read_number(exif, {"Exif.Photo.FNumber", "Exif.Image.FNumber"});
+    const double apex = read_number(exif, {"Exif.Photo.ApertureValue", "Exif.Image.ApertureValue"});
+    if (in_range(stated, 1000)) return stated;
+    return apex > 0 ? in_range(std::exp2(apex / 2), 1000) : std::nullopt;
+}
+
+// Exiv2 knows where the makers put it; the readable form is the number of the standard, the raw one often is not.
+std::optional<double> read_iso(const Exiv2::ExifData &exif) {
+    const auto datum = Exiv2::isoSpeed(exif);
+    if (datum == exif.end()) return std::nullopt;
+    return in_range(std::strtod(datum->print(&exif).c_str(), nullptr), 1e8);
+}
+
+// Maker notes print "3.5 m", "Infinity", "Unknown" and the like; beyond 10 km the number means something else.
+double parse_distance(const std::string &text) {
+    if (text.compare(0, 5, "Infin") == 0) return INFINITY;
+    char *end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (end == text.c_str() || std::string(end) != " m") return LENSPROF_UNKNOWN;
+    return in_range(value, 1e4).value_or(LENSPROF_UNKNOWN);
+}
+
+double read_distance(const Exiv2::ExifData &exif) {
+    const auto stated = exif.findKey(Exiv2::ExifKey("Exif.Photo.SubjectDistance"));
+    if (stated != exif.end() && stated->count() > 0) {
+        const auto *value = dynamic_cast<const Exiv2::URationalValue *>(&stated->value());
+        if (value && value->value_[0].first == 0xffffffffu)  // EXIF 2.32: means infinity; 0 means unknown
+            return INFINITY;
+        const std::optional<double> distance = in_range(number(*stated), 1e4);
+        if (distance) return *distance;
+    }
+    const auto datum = Exiv2::subjectDistance(exif);
+    return datum == exif.end() || datum == stated ? LENSPROF_UNKNOWN : parse_distance(clean_text(datum->print(&exif)));
+}
+
+// 43.27 mm over the sensor's diagonal: by the pixels' pitch, else by the focal length's equivalent, which is rounded to
+// whole mm.
+double read_crop_factor(const Exiv2::ExifData &exif, double focal_mm) {
+    const double full_frame = std::hypot(36.0, 24.0);
+    const double unit = read_number(exif, {"Exif.Photo.FocalPlaneResolutionUnit"}) == 3 ? 10.0 : 25.4;  // mm: cm, inch
+    const double width = read_number(exif, {"Exif.Photo.PixelXDimension"})
+                         / read_number(exif, {"Exif.Photo.FocalPlaneXResolution"}) * unit;
+    const double height = read_number(exif, {"Exif.Photo.PixelYDimension"})
+                          / read_number(exif, {"Exif.Photo.FocalPlaneYResolution"}) * unit;
+    const double equivalent = read_number(exif, {"Exif.Photo.FocalLengthIn35mmFilm"}) / focal_mm;
+    const double pitched = full_frame / std::hypot(width, height);
+    const auto is_plausible = [](double crop) { return crop > 0.2 && crop < 50.0; };
+    const bool known = is_plausible(equivalent) && focal_mm > 0.0;
+    if (is_plausible(pitched) && (!known || std::fabs(pitched / equivalent - 1.0) < 0.1)) return pitched;
+    return known ? equivalent : LENSPROF_UNKNOWN;
+}
+
+// Writing.
+
+// Reads, changes and writes the metadata of a file in memory: Exiv2 does not notice a disk that is full. False when the
+// excerpt was not enough.
+bool edit_excerpt(const std::string &path, const codec::PictureExcerpt &excerpt,
+                  const std::function<void(Exiv2::Image &)> &change) {
+    ExivImage image;
+    try {
+        image = Exiv2::ImageFactory::open(excerpt.bytes().data(), static_cast<long>(excerpt.bytes().size()));
+        image->readMetadata();
+    } catch (const std::exception &error) {
+        fail_reading(path, error);
+    }
+    Exiv2::BasicIo &io = image->io();
+    const Exiv2::byte *data = nullptr;
+    try {
+        change(*image);
+        image->writeMetadata();
+        io.open();
+        data = io.mmap();
+    } catch (const std::exception &error) {
+        fail_writing(path, error);
+    }
+    return excerpt.replace(data, static_cast<size_t>(io.size()));
+}
+
+// Without the pixels where that can be, so that memory does not grow with them.
+void edit_metadata(const std::string &path, const std::function<void(Exiv2::Image &)> &change) {
+    prepare_exiv2();
+    const auto excerpt = codec::excerpt_of(path);
+    if (!excerpt || !edit_excerpt(path, *excerpt, change)) edit_excerpt(path, *codec::whole_file(path), change);
+}
+
+// Tags of the main directory that say how pixels are stored, where other things are in the file, or hold what is kept
+// by other means (ICC, XMP, IPTC).
+bool is_structure(uint16_t tag) {
+    static const uint16_t tags[] = {254, 255, 256, 257, 258, 259,   262,   263,   264,   265,   266,  273, 277,
+                                    278, 279, 280, 281, 284, 288,   289,   290,   291,   292,   293,  317, 320,
+                                    321, 322, 323, 324, 325, 326,   327,   328,   330,   332,   334,  336, 338,
+                                    339, 340, 341, 342, 347, 512,   513,   514,   515,   517,   518,  519, 520,
+                                    521, 529, 530, 532, 700, 33723, 34377, 34665, 34675, 34853, 37724};
+    return std::binary_search(std::begin(tags), std::end(tags), tag);
+}
+
+// Directories of other pictures in the file.
+bool is_other_picture(const std::string &group) {
+    static const char *const starts[] = {"Thumbnail", "SubImage", "SubThumb", "Image2", "Image3", "PanaRaw", "MpfInfo"};
+    return begins_with_one(group, starts);
+}
+
+bool keep_exif(const Exiv2::Exifdatum &datum, const Exiv2::ExifData &target, bool to_tiff) {
+    static const uint16_t resolution[] = {282, 283, 296};
+    const uint16_t tag = datum.tag();
+    if (is_other_picture(datum.groupName())) return false;
+    if (datum.groupName() != "Image") return true;
+    if (to_tiff && tag == 531)  // position of chroma samples: there are none
+        return false;
+    if (to_tiff && std::find(std::begin(resolution), std::end(resolution), tag) != std::end(resolution))
+        return target.findKey(Exiv2::ExifKey("Exif.Image.XResolution")) == target.end();
+    return !is_structure(tag);
+}
+
+Exiv2::ExifData merge_exif(const Exiv2::ExifData &source, const Exiv2::ExifData &target, bool to_tiff) {
+    Exiv2::ExifData merged = target;
+    std::vector<const Exiv2::Exifdatum *> kept;
+    for (const Exiv2::Exifdatum &datum : source) {
+        if (keep_exif(datum, target, to_tiff)) kept.push_back(&datum);
+    }
+    for (const Exiv2::Exifdatum *datum : kept) {
+        const auto old = merged.findKey(Exiv2::ExifKey(datum->key()));
+        if (old != merged.end()) merged.erase(old);
+    }
+    for (const Exiv2::Exifdatum *datum : kept) merged.add(*datum);
+    return merged;
+}
+
+// Leaves out the thumbnail, and references to parts of the old file that are not copied.
+Exiv2::XmpData copy_xmp(const Exiv2::XmpData &source) {
+    static const char *const gone[] = {"Xmp.xmp.Thumbnails", "Xmp.xmpNote.", "Xmp.Container.", "Xmp.GContainer."};
+    Exiv2::XmpData copy;
+    for (const Exiv2::Xmpdatum &datum : source) {
+        if (!begins_with_one(datum.key(), gone)) copy.add(datum);
+    }
+    return copy;
+}
+
+// Where sizes are stated they become those of the file.
+void set_sizes(Exiv2::ExifData &exif, Exiv2::XmpData &xmp, uint32_t width, uint32_t height) {
+    for (const bool x : {true, false}) {
+        const uint32_t size = x ? width : height;
+        const auto stated =
+            exif.findKey(Exiv2::ExifKey(x ? "Exif.Photo.PixelXDimension" : "Exif.Photo.PixelYDimension"));
+        if (stated != exif.end()) *stated = size;
+        for (const char *key : {x ? "Xmp.exif.PixelXDimension" : "Xmp.exif.PixelYDimension",
+                                x ? "Xmp.tiff.ImageWidth" : "Xmp.tiff.ImageLength"}) {
+            const auto datum = xmp.findKey(Exiv2::XmpKey(key));
+            if (datum != xmp.end()) datum->setValue(std::to_string(size));
+        }
+    }
+}
+
+// The fraction with small terms that is within 1e-9 of the value, by continued fractions.
+Exiv2::URational to_rational(double value) {
+    double p0 = 0, q0 = 1, p1 = 1, q1 = 0, rest = value;
+    for (int i = 0; i < 40; ++i) {
+        const double whole = std::floor(rest);
+        const double p2 = whole * p1 + p0, q2 = whole * q1 + q0;
+        if (p2 > 4e9 || q2 > 4e9) break;
+        p0 = p1, q0 = q1, p1 = p2, q1 = q2;
+        if (std::fabs(p1 / q1 - value) <= 1e-9 * value || rest == whole) break;
+        rest = 1 / (rest - whole);
+    }
+    return {static_cast<uint32_t>(p1), static_cast<uint32_t>(q1)};
+}
+
+void set_text(Exiv2::ExifData &exif, const char *key, const char *text) {
+    if (text[0] != '\0') exif[key] = std::string(text);
+}
+
+void set_rational(Exiv2::ExifData &exif, const char *key, double value) {
+    if (value > 0 && value < 4e9) exif[key] = to_rational(value);
+}
+
+}  // namespace
+
+PictureMetadata unknown_metadata() {
+    PictureMetadata metadata = {};
+    lensprof_profile_key_init(&metadata.key);
+    return metadata;
+}
+
+PictureMetadata read_metadata(const std::string &path) {
+    PictureMetadata metadata = unknown_metadata();
+    if (is_big_tiff(path)) return metadata;
+    const ExivImage image = open_image(path);
+    const Exiv2::ExifData &exif = image->exifData();
+    try {
+        store_text(read_text(exif, "Exif.Image.Make"), metadata.key.camera_maker);
+        store_text(read_text(exif, "Exif.Image.Model"), metadata.key.camera_model);
+        store_text(read_lens(exif), metadata.key.lens);
+        metadata.f_number = read_f_number(exif);
+        metadata.exposure_time_s = read_exposure_time(exif);
+        metadata.iso = read_iso(exif);
+        metadata.key.aperture = metadata.f_number.value_or(LENSPROF_UNKNOWN);
+        metadata.key.focal_mm = in_range(read_number(exif, {"Exif.Photo.FocalLength", "Exif.Image.FocalLength"}), 1e5)
+                                    .value_or(LENSPROF_UNKNOWN);
+        metadata.key.distance_m = read_distance(exif);
+        metadata.key.crop_factor = read_crop_factor(exif, metadata.key.focal_mm);
+        store_text(read_unit(exif), metadata.key.unit);
+        if (image->mimeType() == "image/tiff" && read_number(exif, {"Exif.Image.SampleFormat"}) == 3)
+            metadata.key.processing = LENSPROF_PROCESSING_RAW;
+    } catch (const std::exception &error) {
+        fail_reading(path, error);
+    }
+    if (metadata.exposure_time_s && metadata.iso && metadata.f_number)
+        metadata.exif_ev =
+            std::log2(*metadata.exposure_time_s * *metadata.iso / 100 / (*metadata.f_number * *metadata.f_number));
+    return metadata;
+}
+
+std::string read_xmp_packet(const std::string &path) {
+    return is_big_tiff(path) ? std::string() : open_image(path)->xmpPacket();
+}
+
+bool copy_metadata(const std::string &source, const std::string &target) {
+    if (is_big_tiff(source) || is_big_tiff(target)) return false;
+    const ExivImage from = open_image(source);
+    edit_metadata(target, [&](Exiv2::Image &to) {
+        const bool tiff = to.mimeType() == "image/tiff";
+        Exiv2::ExifData exif = merge_exif(from->exifData(), to.exifData(), tiff);
+        Exiv2::XmpData xmp = copy_xmp(from->xmpData());
+        set_sizes(exif, xmp, static_cast<uint32_t>(to.pixelWidth()), static_cast<uint32_t>(to.pixelHeight()));
+        const auto mime_type = xmp.findKey(Exiv2::XmpKey("Xmp.dc.format"));
+        if (mime_type != xmp.end()) mime_type->setValue(to.mimeType());
+        to.setExifData(exif);
+        to.setXmpData(xmp);
+        to.setIptcData(from->iptcData());
+        if (!tiff)  // maker notes that Exiv2 does not know are copied byte by byte
+            to.setByteOrder(from->byteOrder());
+        if (!from->comment().empty() && (to.checkMode(Exiv2::mdComment) & Exiv2::amWrite))
+            to.setComment(from->comment());
+    });
+    return true;
+}
+
+bool write_metadata(const std::string &path, const PictureMetadata &metadata) {
+    if (is_big_tiff(path)) return false;
+    edit_metadata(path, [&](Exiv2::Image &image) {
+        const lensprof_profile_key &key = metadata.key;
+        Exiv2::ExifData &exif = image.exifData();
+        set_text(exif, "Exif.Image.Make", key.camera_maker);
+        set_text(exif, "Exif.Image.Model", key.camera_model);
+        set_text(exif, "Exif.Photo.LensModel", key.lens);
+        set_rational(exif, "Exif.Photo.FocalLength", key.focal_mm);
+        set_rational(exif, "Exif.Photo.FNumber", key.aperture);
+        set_rational(exif, "Exif.Photo.SubjectDistance", key.distance_m);
+        if (std::isinf(key.distance_m)) exif["Exif.Photo.SubjectDistance"] = Exiv2::URational(0xffffffffu, 1);
+        set_rational(exif, "Exif.Photo.ExposureTime", metadata.exposure_time_s.value_or(LENSPROF_UNKNOWN));
+        if (metadata.iso && *metadata.iso >= 0.5)  // 16 bits; 65535 stands for what is larger
+            exif["Exif.Photo.ISOSpeedRatings"] = static_cast<uint16_t>(std::lround(std::fmin(*metadata.iso, 65535)));
+    });
+    return true;
+}
+
+}  // namespace lensprof

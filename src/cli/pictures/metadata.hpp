@@ -1,0 +1,48 @@
+// What a picture file says about camera, lens and exposure (EXIF, maker notes), through Exiv2.
+//
+// Threads: any function may run in several threads at once.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <lensprof/profile.h>
+
+namespace lensprof {
+
+struct PictureMetadata {
+    // Unknown what the file does not say. Texts without surrounding blanks, in valid UTF-8, cut to the fields' sizes.
+    // Processing is JPEG (a rendered picture, whatever the file's format), but RAW for float TIFF, which by custom
+    // holds values proportional to light.
+    lensprof_profile_key key;
+
+    std::optional<double> exposure_time_s;
+    std::optional<double> iso;
+    std::optional<double> f_number;  // the key's aperture
+
+    // log2(exposure_time_s * iso / 100 / f_number^2), EV: larger means a brighter rendering of the same scene. Only
+    // when all three are known.
+    std::optional<double> exif_ev;
+};
+
+// All unknown.
+PictureMetadata unknown_metadata();
+
+// Reads what there is; a file without EXIF is no error (nor is a BigTIFF, see below). Throws Failure (unreadable)
+// when the file cannot be opened, is no picture or is damaged.
+PictureMetadata read_metadata(const std::string &path);
+
+// The XMP packet as it is in the picture; empty where there is none. Throws as read_metadata.
+std::string read_xmp_packet(const std::string &path);
+
+// Copies EXIF, maker notes, IPTC, XMP and comment of one picture to another (JPEG, PNG or TIFF) and replaces that
+// file, complete or not at all. Left out is what would no longer be true: the thumbnail, sizes of the old file, and in
+// TIFF all tags that describe how pixels are stored. Pixels, colour profile and resolution of the target stay.
+// False when nothing could be done because one of the files is a BigTIFF, which Exiv2 does not know. Throws Failure.
+bool copy_metadata(const std::string &source, const std::string &target);
+
+// Writes what is known as EXIF into a picture file, replacing these fields only (aperture from the key). False when
+// nothing could be done because the file is a BigTIFF. Throws Failure.
+bool write_metadata(const std::string &path, const PictureMetadata &metadata);
+
+}  // namespace lensprof

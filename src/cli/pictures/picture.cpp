@@ -1,0 +1,191 @@
+#include "cli/pictures/picture.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <optional>
+
+#include "cli/pictures/codec.hpp"
+#include "cli/pictures/row_reducer.hpp"
+#include "cli/program/error.hpp"
+#include "cli/program/output_file.hpp"
+
+namespace lensprof {
+
+namespace {
+
+FileFormat format_of_content(const std::string &path) {
+    const codec::File file = codec::open_for_reading(path);
+    unsigned char start[12] = {};
+    const size_t count = std::fread(start, 1, sizeof start, file.get());
+    const auto begins = [&](const char *bytes, size_t length) {
+        return count >= length && std::memcmp(start, bytes, length) == 0;
+    };
+    if (begins("\x89PNG\r\n\x1a\n", 8)) return FileFormat::png;
+    if (begins("\xff\xd8\xff", 3)) return FileFormat::jpeg;
+    if (count >= 10 && (start[8] == 'C' && start[9] == 'R') && begins("II*", 3))
+        codec::fail_unsupported(path, "camera raw file; develop it to TIFF first");
+    if (begins("II*\0", 4) || begins("MM\0*", 4) || begins("II+\0", 4) || begins("MM\0+", 4)) return FileFormat::tiff;
+    if (count < 8) codec::fail_damaged(path, count == 0 ? "it is empty" : "it has " + std::to_string(count) + " bytes");
+    codec::fail_unsupported(path, "is not a PNG, TIFF or JPEG picture; convert it first");
+}
+
+// What `read` does, with a text of its own where memory is not enough.
+template <class Read>
+auto reading(const std::string &path, const Read &read) -> decltype(read()) {
+    try {
+        return read();
+    } catch (const std::bad_alloc &) {
+        codec::fail_memory(path);
+    }
+}
+
+std::unique_ptr<codec::RowSource> open_source(const codec::ReadRequest &request) {
+    switch (format_of_content(request.path)) {
+    case FileFormat::png: return codec::open_png(request);
+    case FileFormat::tiff: return codec::open_tiff(request);
+    default: return codec::open_jpeg(request);
+    }
+}
+
+std::unique_ptr<codec::RowSink> create_sink(const std::string &file, FileFormat format, const Picture &header,
+                                            int jpeg_quality) {
+    switch (format) {
+    case FileFormat::png: return codec::create_png(file, header);
+    case FileFormat::tiff: return codec::create_tiff(file, header);
+    default: return codec::create_jpeg(file, header, jpeg_quality);
+    }
+}
+
+void check_held(const std::string &path, const Picture &picture) {
+    const bool sized = picture.width > 0 && picture.height > 0 && picture.width <= picture_max_side
+                       && picture.height <= picture_max_side;
+    const bool known = picture.layout <= LENSPROF_LAYOUT_RGBA && lensprof_sample_bytes(picture.sample) > 0;
+    if (!sized || !known || picture.row_bytes < codec::pixel_bytes(picture) * picture.width
+        || picture.pixels.size() / picture.height < picture.row_bytes)
+        throw Failure(ExitCode::failed, path + ": cannot write: no valid picture in memory; please report this");
+}
+
+}  // namespace
+
+lensprof_image Picture::view() {
+    return {pixels.data(), static_cast<ptrdiff_t>(row_bytes), width, height, sample, layout};
+}
+
+Picture read_picture(const std::string &path, const ReadOptions &options) {
+    return reading(path, [&] {
+        const auto source = open_source({path, options.max_side});
+        Picture picture = source->header();
+        codec::RowReducer reducer(picture, source->row_width(), source->halved());
+        for (uint32_t y = 0; y < source->row_count(); ++y) {
+            source->read(reducer.row());
+            reducer.accept();
+        }
+        source->finish();
+        return picture;
+    });
+}
+
+Picture read_header(const std::string &path, const ReadOptions &options) {
+    return reading(path, [&] { return open_source({path, options.max_side})->header(); });
+}
+
+PictureReader::PictureReader(const std::string &path)
+    : path_(path), source_(reading(path, [&] {
+          return open_source({path, 0});
+      })) {}
+
+PictureReader::~PictureReader() = default;
+
+const Picture &PictureReader::header() const { return source_->header(); }
+
+void PictureReader::read(const lensprof_image &rows) {
+    reading(path_, [&] {
+        for (uint32_t y = 0; y < rows.height; ++y)
+            source_->read(static_cast<uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes);
+        done_ += rows.height;
+        if (done_ == source_->row_count()) source_->finish();
+    });
+}
+
+PictureSize read_size(const std::string &path) {
+    const Picture picture = read_header(path);
+    return {picture.frame_width, picture.frame_height};
+}
+
+static std::optional<FileFormat> known_format(const std::string &path) {
+    const size_t slash = path.rfind('/');
+    const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
+    const size_t dot = name.rfind('.');
+    std::string extension = dot == std::string::npos ? std::string() : name.substr(dot + 1);
+    for (char &c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (extension == "png") return FileFormat::png;
+    if (extension == "tif" || extension == "tiff") return FileFormat::tiff;
+    if (extension == "jpg" || extension == "jpeg") return FileFormat::jpeg;
+    return std::nullopt;
+}
+
+bool is_picture_name(const std::string &path) { return known_format(path).has_value(); }
+
+FileFormat format_of_name(const std::string &path) {
+    if (const auto format = known_format(path)) return *format;
+    throw Failure(ExitCode::usage, path + ": unknown kind of picture; the name must end in .png, .tif or .jpg");
+}
+
+// The user knows the wanted name, not the temporary one.
+template <class Call>
+auto PictureWriter::named(const Call &call) -> decltype(call()) {
+    try {
+        return call();
+    } catch (const Failure &failure) {
+        std::string text = failure.what();
+        const size_t at = text.find(output_->temporary());
+        if (at != std::string::npos) text.replace(at, output_->temporary().size(), path_);
+        throw Failure(failure.code, text);
+    }
+}
+
+PictureWriter::PictureWriter(const std::string &path, const Picture &header, const WriteOptions &options)
+    : path_(path), options_(options) {
+    const FileFormat format = format_of_name(path);
+    output_ = std::make_unique<OutputFile>(path);
+    sink_ = named([&] { return create_sink(output_->temporary(), format, header, options.jpeg_quality); });
+}
+
+PictureWriter::~PictureWriter() = default;
+
+void PictureWriter::write(const lensprof_image &rows) {
+    named([&] {
+        for (uint32_t y = 0; y < rows.height; ++y)
+            sink_->write(static_cast<const uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes);
+    });
+}
+
+bool PictureWriter::finish() {
+    return named([&] {
+        const std::string &file = output_->temporary();
+        sink_->finish();
+        sink_.reset();
+        const bool copied = options_.metadata_from.empty() || copy_metadata(options_.metadata_from, file);
+        const bool written = !options_.metadata || write_metadata(file, *options_.metadata);
+        output_->sync();
+        return copied && written;
+    });
+}
+
+void PictureWriter::commit() { output_->commit(); }
+
+bool write_picture(const std::string &path, const Picture &picture, const WriteOptions &options) {
+    format_of_name(path);
+    check_held(path, picture);
+    PictureWriter writer(path, picture, options);
+    writer.write({const_cast<uint8_t *>(picture.pixels.data()), static_cast<ptrdiff_t>(picture.row_bytes),
+                  picture.width, picture.height, picture.sample, picture.layout});
+    const bool with_metadata = writer.finish();
+    writer.commit();
+    return with_metadata;
+}
+
+}  // namespace lensprof

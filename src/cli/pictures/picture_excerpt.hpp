@@ -1,0 +1,70 @@
+// A picture file without its pixels, whose metadata can be edited in memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/pictures/codec.hpp"
+#include "cli/program/output_file.hpp"
+
+namespace lensprof {
+
+namespace codec {
+
+// A file that takes the place of another, which parts of it are copied from.
+class Replacement {
+public:
+    Replacement(const std::string &path, std::FILE *from);
+
+    void write(const void *data, size_t bytes);
+    void copy(uint64_t start, uint64_t bytes);  // of the old file
+    void commit();
+
+private:
+    std::string path_;
+    std::FILE *from_;
+    OutputFile output_;
+    File to_;
+    std::vector<uint8_t> buffer_;
+};
+
+// Exiv2 holds the files that it changes in memory, several times. It gets a small file instead that has everything
+// but the coded pixels, which are then copied from the old file: the result is to the byte what Exiv2 makes of the
+// whole.
+class PictureExcerpt {
+public:
+    virtual ~PictureExcerpt() = default;
+
+    const std::vector<uint8_t> &bytes() const { return bytes_; }
+
+    // Replaces the file, complete or not at all, by one of the structure and metadata in `edited`, which is what
+    // became of bytes(). False, the file being as it was, when it is not clear where in it the pixels belong: do the
+    // same with the whole file. Throws Failure.
+    virtual bool replace(const uint8_t *edited, size_t size) const = 0;
+
+protected:
+    explicit PictureExcerpt(const std::string &path) : path_(path) {}
+
+    std::string path_;
+    std::vector<uint8_t> bytes_;
+};
+
+// The excerpt of a PNG, JPEG or TIFF that is laid out as this program writes them; else NULL.
+std::unique_ptr<PictureExcerpt> excerpt_of(const std::string &path);
+
+// The whole file.
+std::unique_ptr<PictureExcerpt> whole_file(const std::string &path);
+
+// The parts of excerpt_of().
+std::unique_ptr<PictureExcerpt> excerpt_of_tiff(const std::string &path);
+
+// `count` bytes from `start` on; false when there are fewer.
+bool read_at(std::FILE *file, uint64_t start, size_t count, std::vector<uint8_t> &bytes);
+uint64_t file_bytes(std::FILE *file);
+
+}  // namespace codec
+
+}  // namespace lensprof

@@ -1,0 +1,44 @@
+// Options that choose profiles by what they are for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <lensprof/lensprof.h>
+
+#include "cli/program/library.hpp"
+
+namespace lensprof {
+
+// Camera, lens and setting as asked for; what is not given may be anything.
+class KeyFilter {
+public:
+    void add_options(CLI::App &app);
+
+    // Failure (usage) for a word of --processing that is none, whatever is stored.
+    void check_words() const;
+
+    bool is_empty() const;
+    bool has_camera_or_lens() const { return !camera_.empty() || !lens_.empty(); }
+
+    // What was given, the rest unknown; `processing` where none was given.
+    lensprof_profile_key key(uint32_t processing) const;
+    bool has_processing() const { return !processing_.empty(); }
+
+    // Rows of the profiles that match, in the order of lensprof_store_list; `db` as given, for texts.
+    std::vector<lensprof_store_row> rows(lensprof_store *store, const std::string &db) const;
+
+    // The profiles with these ids, or where there are none all that match; Failure (not_found).
+    std::vector<StoredProfile> profiles(const std::string &db, std::vector<int64_t> ids) const;
+
+    // "no profile for CAMERA with this setting in FILE; what to do".
+    std::string nothing_found(const std::string &db) const;
+
+private:
+    std::string maker_, camera_, lens_, unit_, processing_;
+    double focal_ = LENSPROF_UNKNOWN, aperture_ = LENSPROF_UNKNOWN, distance_ = LENSPROF_UNKNOWN;
+};
+
+}  // namespace lensprof

@@ -1,0 +1,29 @@
+#include "cli/profiles/lookup_report.hpp"
+#include "cli/program/format.hpp"
+
+namespace lensprof {
+
+Json lookup_json(const lensprof_lookup &how) {
+    Json rows = Json::array();
+    for (uint32_t i = 0; i < how.rows; i++) rows.push_back({{"id", how.id[i]}, {"weight", how.weight[i]}});
+    return {{"exact", how.exact != 0},      {"rows", rows},
+            {"distance", how.distance},     {"sigma", how.sigma == LENSPROF_UNKNOWN ? Json() : Json(how.sigma)},
+            {"name_score", how.name_score}, {"reason", how.reason}};
+}
+
+std::string describe_prediction(const lensprof_lookup &how) {
+    return format("predicted from %u profiles of this lens, the nearest (%lld) at %.2f of the 0.5 that are allowed",
+                  how.rows, static_cast<long long>(how.id[0]), how.distance);
+}
+
+void print_lookup(const lensprof_lookup &how, std::ostream &out) {
+    if (how.exact)
+        out << "stored    as profile " << how.id[0] << "\n";
+    else
+        out << describe_prediction(how) << "\n";
+    if (how.sigma != LENSPROF_UNKNOWN) out << format("sigma     %.3f of M in the corner\n", how.sigma);
+    if (how.name_score < 1.0) out << format("name      matched with score %.1f\n", how.name_score);
+    if (*how.reason) out << "mind      " << how.reason << "\n";
+}
+
+}  // namespace lensprof

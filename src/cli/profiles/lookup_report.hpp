@@ -1,0 +1,18 @@
+// How a profile was found or predicted, for people and as JSON.
+#pragma once
+
+#include <string>
+
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+
+// docs/json.md, `lookup`.
+Json lookup_json(const lensprof_lookup &how);
+
+// "predicted from 6 profiles of this lens, ..."
+std::string describe_prediction(const lensprof_lookup &how);
+
+void print_lookup(const lensprof_lookup &how, std::ostream &out);
+
+}  // namespace lensprof

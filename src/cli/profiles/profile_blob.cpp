@@ -1,0 +1,49 @@
+#include "cli/profiles/profile_blob.hpp"
+
+#include <vector>
+
+#include "cli/program/format.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/output_file.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+namespace {
+
+// Bytes: no profile packs to more.
+constexpr uint64_t largest_blob = 1 << 20;
+
+// The CRC-32 is the last four bytes, the least significant first.
+BlobStamp stamp_of(const unsigned char *blob, size_t bytes) {
+    const unsigned char *crc = blob + bytes - 4;
+    return {bytes, format("%02x%02x%02x%02x", crc[3], crc[2], crc[1], crc[0])};
+}
+
+}  // namespace
+
+BlobStamp write_blob(const lensprof_profile &profile, bool with_covariance, const std::string &path) {
+    const uint32_t flags = with_covariance ? LENSPROF_PACK_COVARIANCE : 0;
+    size_t bytes = 0;
+    if (const auto status = lensprof_profile_pack(&profile, flags, nullptr, 0, &bytes);
+        status != LENSPROF_ERROR_CAPACITY)
+        check(status, path);
+    std::vector<unsigned char> blob(bytes);
+    check(lensprof_profile_pack(&profile, flags, blob.data(), blob.size(), &bytes), path);
+    write_file(path, blob.data(), blob.size());
+    return stamp_of(blob.data(), blob.size());
+}
+
+std::unique_ptr<lensprof_profile> read_blob(const std::string &path, BlobStamp &stamp) {
+    const std::string blob = read_text(path, largest_blob);
+    auto profile = std::make_unique<lensprof_profile>();
+    const lensprof_status status = lensprof_profile_unpack(blob.data(), blob.size(), profile.get());
+    if (status == LENSPROF_ERROR_LAYOUT)
+        throw Failure(ExitCode::unreadable, path + ": is a blob of a newer lensprof; read it with that version");
+    if (status != LENSPROF_OK)
+        throw Failure(ExitCode::unreadable, path + ": is not a profile blob, or is damaged; copy it again, or write it "
+                                                   "again with `lensprof profile export`");
+    stamp = stamp_of(reinterpret_cast<const unsigned char *>(blob.data()), blob.size());
+    return profile;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,145 @@
+// `lensprof profile check` and `lensprof profile stats`: the state of a database.
+#include "cli/program/format.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/run.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Fault {
+    int64_t id;
+    std::string reason;
+};
+
+lensprof_status collect(void *user, const lensprof_store_fault *fault) {
+    static_cast<std::vector<Fault> *>(user)->push_back({fault->id, fault->reason});
+    return LENSPROF_OK;
+}
+
+// What both have in common. Returns whether the command shall run.
+struct Options {
+    std::string db;
+    bool json = false;
+
+    bool read(CLI::App &app, const std::vector<std::string> &arguments, Streams &streams) {
+        declare_db(app, db);
+        app.add_flag("--json", json, "print one JSON object");
+        return parse(app, arguments, streams);
+    }
+};
+
+std::string range(const double *ends, const char *front, const char *behind) {
+    if (ends[0] == LENSPROF_UNKNOWN) return "not known of any";
+    const std::string one = format("%s%g%s", front, ends[0], behind);
+    return ends[0] == ends[1] ? one : one + " to " + format("%s%g%s", front, ends[1], behind);
+}
+
+Json range_json(const double *ends) {
+    const auto number = [](double value) {
+        return value == LENSPROF_UNKNOWN ? Json() : value > 1e300 ? Json("infinity") : Json(value);
+    };
+    return Json::array({number(ends[0]), number(ends[1])});
+}
+
+Json groups_json(const lensprof_store_group *groups) {
+    Json all = Json::array();
+    for (uint32_t i = 0; i < LENSPROF_STATS_GROUPS && groups[i].profiles; i++)
+        all.push_back({{"name", groups[i].name}, {"profiles", groups[i].profiles}});
+    return all;
+}
+
+void print_groups(const char *title, const lensprof_store_group *groups, uint32_t different, std::ostream &out) {
+    uint32_t shown = 0;
+    for (; shown < LENSPROF_STATS_GROUPS && groups[shown].profiles; shown++)
+        out << format("%-12s %8u  %s\n", shown ? "" : title, groups[shown].profiles,
+                      *groups[shown].name ? groups[shown].name : "not known");
+    if (different > shown) out << format("%-12s %8s  and %u more\n", "", "", different - shown);
+}
+
+Json stats_json(const std::string &file, const lensprof_store_stats &s) {
+    return {{"schema", 1},
+            {"file", file},
+            {"layout", s.layout},
+            {"bytes", s.bytes},
+            {"profiles", s.profiles},
+            {"cameras", s.cameras},
+            {"lenses", s.lenses},
+            {"units", s.units},
+            {"processing", {{"raw", s.processing[0]}, {"jpeg", s.processing[1]}, {"corrected", s.processing[2]}}},
+            {"with_covariance", s.with_covariance},
+            {"with_gain_grid", s.with_grid},
+            {"with_doubt", s.with_doubt},
+            {"focal_mm", range_json(s.focal_mm)},
+            {"aperture", range_json(s.aperture)},
+            {"distance_m", range_json(s.distance_m)},
+            {"methods", groups_json(s.method)},
+            {"different_methods", s.methods},
+            {"sources", groups_json(s.source)},
+            {"different_sources", s.sources}};
+}
+
+void print_stats(const std::string &file, const lensprof_store_stats &s, std::ostream &out) {
+    out << format("database     %s: layout %u, %lld bytes\n", file.c_str(), s.layout, static_cast<long long>(s.bytes));
+    out << format("profiles     %u of %u cameras, %u lenses, %u single units\n", s.profiles, s.cameras, s.lenses,
+                  s.units);
+    out << format("processing   %u raw, %u jpeg, %u corrected in camera\n", s.processing[0], s.processing[1],
+                  s.processing[2]);
+    out << format("with         %u a covariance, %u a gain grid, %u a doubt\n", s.with_covariance, s.with_grid,
+                  s.with_doubt);
+    out << "focal length " << range(s.focal_mm, "", " mm") << "\naperture     " << range(s.aperture, "f/", "")
+        << "\nfocus        " << range(s.distance_m, "", " m") << "\n";
+    print_groups("method", s.method, s.methods, out);
+    print_groups("source", s.source, s.sources, out);
+}
+
+}  // namespace
+
+int run_profile_check(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app(
+        "Reads and checks the whole database, and lists everything that is wrong. Exit code 0 when nothing is, 6 "
+        "otherwise. Writes nothing.",
+        "lensprof profile check");
+    if (!o.read(app, arguments, streams)) return 0;
+    Store store = open_store(o.db, LENSPROF_STORE_READ);
+    const std::string file = store_path(o.db);
+    std::vector<Fault> faults;
+    uint32_t profiles = 0;
+    lensprof_error error{};
+    check(lensprof_store_check(store.get(), collect, &faults, &profiles, nullptr, &error), file, &error);
+    if (o.json) {
+        Json list = Json::array();
+        for (const Fault &fault : faults)
+            list.push_back({{"id", fault.id ? Json(fault.id) : Json()}, {"reason", fault.reason}});
+        print_json(Json{{"schema", 1}, {"file", file}, {"profiles", profiles}, {"faults", list}}, streams.out);
+    } else {
+        for (const Fault &fault : faults)
+            streams.out << (fault.id ? "profile " + std::to_string(fault.id) : std::string("file")) << ": "
+                        << fault.reason << "\n";
+        streams.out << format("%s: %u profiles read, %zu fault%s\n", file.c_str(), profiles, faults.size(),
+                              faults.size() == 1 ? "" : "s");
+        if (!faults.empty())
+            streams.out
+                << "`lensprof profile remove` takes a damaged profile out; for the rest restore the file from a copy, "
+                   "or merge it into a new one\n";
+    }
+    return static_cast<int>(faults.empty() ? ExitCode::done : ExitCode::store);
+}
+
+int run_profile_stats(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app("Counts what is in the database.", "lensprof profile stats");
+    if (!o.read(app, arguments, streams)) return 0;
+    Store store = open_store(o.db, LENSPROF_STORE_READ);
+    auto stats = std::make_unique<lensprof_store_stats>();
+    lensprof_error error{};
+    check(lensprof_store_get_stats(store.get(), stats.get(), &error), store_path(o.db), &error);
+    if (o.json)
+        print_json(stats_json(store_path(o.db), *stats), streams.out);
+    else
+        print_stats(store_path(o.db), *stats, streams.out);
+    return 0;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,150 @@
+// `lensprof profile export`: profiles as files of other programs, and as blobs for firmware.
+#include <cstdlib>
+
+#include "cli/pictures/picture.hpp"
+#include "cli/profiles/foreign_file.hpp"
+#include "cli/profiles/foreign_options.hpp"
+#include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/profile_blob.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/run.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Options {
+    std::vector<int64_t> ids;
+    KeyFilter filter;
+    ForeignOptions foreign;
+    std::string db, output, blob, format;
+    double crop_factor = LENSPROF_UNKNOWN;
+    bool covariance = false, all = false, json = false;
+};
+
+void declare(CLI::App &app, Options &o) {
+    app.add_option("ID", o.ids, "profiles that `lensprof profile list` shows")->check(is_profile_id);
+    app.add_option("-o,--output", o.output,
+                   "file to write; its name chooses the format. DNG opcodes go into a file that is there");
+    app.add_option("--format", o.format, "another format than the name's")->check(CLI::IsMember(foreign_names(true)));
+    app.add_option("--blob", o.blob, "the same as --format blob -o FILE: for firmware to read in place (docs/blob.md)");
+    app.add_flag("--covariance", o.covariance, "blob: the covariance as well, which a camera has no use for");
+    app.add_flag("--all", o.all, "all profiles of the database");
+    declare_foreign(app, o.foreign, true);
+    app.add_option("--crop-factor", o.crop_factor,
+                   "43.27 mm over the sensor's diagonal, for profiles that do not know it; lensfun and lcp need it")
+        ->check(in_range(0.01, 1e4));
+    declare_db(app, o.db);
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.option_defaults()->group("Which profiles, instead of ids");
+    o.filter.add_options(app);
+    app.footer(about_foreign(true));
+}
+
+void check_options(Options &o) {
+    if (o.blob.empty() == o.output.empty())
+        throw Failure(ExitCode::usage, "profile export: name the file to be written with -o (or --blob)");
+    if (!o.blob.empty() && !o.format.empty() && o.format != "blob")
+        throw Failure(ExitCode::usage, "profile export: --blob and --format contradict each other; use -o");
+    if (!o.blob.empty()) o.output = o.blob, o.format = "blob";
+    if (int(!o.ids.empty()) + int(!o.filter.is_empty()) + int(o.all) != 1)
+        throw Failure(ExitCode::usage,
+                      "profile export: give either ids that `lensprof profile list` shows, or --camera, "
+                      "--lens and the like, or --all");
+    o.filter.check_words();
+    if (is_same_file(o.output, store_path(o.db)))
+        throw Failure(ExitCode::usage, o.output + ": is the profile database; give the output another name");
+}
+
+// One profile; its blob's size and checksum tell it from others.
+void export_blob(const Options &o, const StoredProfile &stored, Streams &streams) {
+    const lensprof_profile &profile = *stored.profile;
+    const BlobStamp stamp = write_blob(profile, o.covariance, o.output);
+    if (o.json) {
+        print_json(Json{{"schema", 1},
+                        {"profile", stored.id},
+                        {"blob", {{"file", o.output}, {"bytes", stamp.bytes}, {"crc32", stamp.crc32}}},
+                        {"covariance_size", o.covariance ? profile.covariance_size : 0}},
+                   streams.out);
+        return;
+    }
+    streams.out << format("wrote %s: profile %lld, %zu bytes, CRC-32 %s\n", o.output.c_str(),
+                          static_cast<long long>(stored.id), stamp.bytes, stamp.crc32.c_str());
+    if (o.covariance && !profile.covariance_size) streams.out << "its covariance is not known: there is none in it\n";
+}
+
+// Writers count the profiles that they are given from 0; here they have numbers.
+Failure with_ids(const Failure &failure, const std::vector<StoredProfile> &chosen) {
+    std::string text = failure.what();
+    const std::string word = "profile ";
+    const size_t at = text.find(": " + word), from = at + 2 + word.size();
+    if (at == std::string::npos) return failure;
+    const size_t to = text.find_first_not_of("0123456789", from),
+                 index = std::strtoul(text.c_str() + from, nullptr, 10);
+    if (to == from || to == std::string::npos || text[to] != ':' || index >= chosen.size()) return failure;
+    return Failure(failure.code, text.replace(from, to - from, std::to_string(chosen[index].id)));
+}
+
+// What a format cannot hold and is not refused.
+void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<StoredProfile> &chosen,
+                   Streams &streams) {
+    const bool is_mean = rule.format == ForeignFormat::lensfun || rule.format == ForeignFormat::lcp
+                         || (rule.format == ForeignFormat::map && format_of_name(o.output) == FileFormat::png);
+    if (!is_mean) return;
+    for (const StoredProfile &one : chosen)
+        if (one.profile->vignettings == 3)
+            streams.err << "profile " << one.id << ": has a falloff for each channel, of which " << rule.name
+                        << " holds the mean\n";
+}
+
+void export_foreign(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
+                    Streams &streams) {
+    std::vector<const lensprof_profile *> profiles;
+    Json ids = Json::array();
+    const bool needs_crop = rule.format == ForeignFormat::lensfun || rule.format == ForeignFormat::lcp;
+    for (const StoredProfile &one : chosen) {
+        double &crop = one.profile->key.crop_factor;
+        if (crop == LENSPROF_UNKNOWN) crop = o.crop_factor;
+        if (needs_crop && crop == LENSPROF_UNKNOWN)
+            throw Failure(ExitCode::usage, o.output + ": the crop factor of profile " + std::to_string(one.id)
+                                               + " is not known; give --crop-factor");
+        profiles.push_back(one.profile.get()), ids.push_back(one.id);
+    }
+    try {
+        write_foreign(rule, o.output, o.foreign, profiles);
+    } catch (const Failure &failure) {
+        throw with_ids(failure, chosen);
+    }
+    warn_of_means(rule, o, chosen, streams);
+    if (o.json)
+        print_json(Json{{"schema", 1}, {"profiles", ids}, {"format", rule.name}, {"file", o.output}}, streams.out);
+    else
+        streams.out << format("wrote %s: %zu profile%s as %s\n", o.output.c_str(), chosen.size(),
+                              chosen.size() == 1 ? "" : "s", rule.name);
+}
+
+}  // namespace
+
+int run_profile_export(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app("Writes profiles as files of other programs, complete or not at all.", "lensprof profile export");
+    declare(app, o);
+    if (!parse(app, arguments, streams)) return 0;
+    check_options(o);
+    const ForeignRule &rule = format_to_write(o.output, o.format);
+    if (o.covariance && rule.format != ForeignFormat::blob)
+        throw Failure(ExitCode::usage, "profile export: --covariance belongs to --format blob");
+    const std::vector<StoredProfile> chosen = o.filter.profiles(o.db, o.ids);
+    if (rule.format != ForeignFormat::blob) {
+        export_foreign(o, rule, chosen, streams);
+        return 0;
+    }
+    if (chosen.size() != 1)
+        throw Failure(ExitCode::usage, o.output + ": a blob holds one profile, and " + std::to_string(chosen.size())
+                                           + " were chosen; give one id");
+    export_blob(o, chosen[0], streams);
+    return 0;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,214 @@
+// `lensprof profile import`: profiles, responses and falloffs from the files of other programs.
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "cli/fitting/profile_store.hpp"
+#include "cli/profiles/foreign_file.hpp"
+#include "cli/profiles/foreign_options.hpp"
+#include "cli/profiles/key_filter.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/interrupt.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/run.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+namespace {
+
+// What the command is asked for.
+struct Options {
+    std::vector<std::string> files;
+    KeyFilter key;  // of what files do not say themselves
+    ForeignOptions foreign;
+    std::string db, format;
+    bool json = false;
+};
+
+// A file and how it is read.
+struct Input {
+    std::string file;
+    const ForeignRule *rule;
+};
+
+// What one call imports.
+struct Import {
+    lensprof_store *store = nullptr;
+    std::string db, file;
+    uint32_t stored = 0, known = 0;
+    std::set<std::string> lenses;
+    Json flagged = Json::array();                // file, key, doubt, stored
+    lensprof_status store_status = LENSPROF_OK;  // of the last call, and its text
+    lensprof_error error{};
+};
+
+// Samples that a file has rounded: the numbers of their kind count.
+lensprof_status remake_curve(lensprof_response &response) {
+    const std::vector<double> terms(response.emor, response.emor + response.modes);
+    switch (response.kind) {
+    case LENSPROF_RESPONSE_GAMMA: return lensprof_response_set_gamma(&response, response.gamma);
+    case LENSPROF_RESPONSE_EMOR: return lensprof_response_set_emor(&response, terms.data(), response.modes);
+    case LENSPROF_RESPONSE_LINEAR: lensprof_response_set_linear(&response); return LENSPROF_OK;
+    default: return LENSPROF_OK;
+    }
+}
+
+// The profile as it is stored here: what it holds is of another database.
+lensprof_status make_own(lensprof_profile &profile) {
+    lensprof_status status = lensprof_provenance_set_prior(&profile.provenance, 0);
+    for (uint32_t c = 0; c < profile.responses && status == LENSPROF_OK; c++)
+        status = remake_curve(profile.response[c]);
+    return status;
+}
+
+lensprof_status take(void *user, const lensprof_import_entry *entry) {
+    Import &import = *static_cast<Import *>(user);
+    const lensprof_profile &profile = *entry->profile;
+    if (*profile.provenance.doubt)
+        import.flagged.push_back({{"file", import.file},
+                                  {"key", key_json(profile.key)},
+                                  {"doubt", profile.provenance.doubt},
+                                  { "stored",
+                                    entry->usable != 0 }});
+    if (interrupted()) return LENSPROF_ERROR_CANCELLED;
+    if (!entry->usable) return LENSPROF_OK;
+    auto own = std::make_unique<lensprof_profile>(profile);
+    int64_t same = 0;
+    lensprof_status status = make_own(*own);
+    if (status == LENSPROF_OK) status = lensprof_store_find_same(import.store, own.get(), &same, &import.error);
+    if (same) import.known++;
+    if (same || status != LENSPROF_OK) return import.store_status = status;
+    status = lensprof_store_put(import.store, own.get(), nullptr, &import.error);
+    if (status == LENSPROF_OK) import.stored++, import.lenses.insert(profile.key.lens);
+    return import.store_status = status;
+}
+
+lensprof_status ignore(void *, const lensprof_import_entry *) { return LENSPROF_OK; }
+
+// Files that hold a response or a falloff alone make one profile, whose key the command line gives.
+std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector<Input> &inputs) {
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    std::string response, falloff, names;
+    for (const Input &input : inputs) {
+        if (input.rule->part == ForeignPart::profiles) continue;
+        std::string &taken = input.rule->part == ForeignPart::response ? response : falloff;
+        if (!taken.empty())
+            throw Failure(ExitCode::usage, input.file + ": holds a " + (&taken == &response ? "response" : "falloff")
+                                               + ", as " + taken + " does; import the one profile after the other");
+        taken = input.file;
+        names += (names.empty() ? "" : "; ") + std::filesystem::path(input.file).filename().string();
+    }
+    if (names.empty()) return nullptr;
+    profile->key = o.key.key(response.empty() ? LENSPROF_PROCESSING_RAW : LENSPROF_PROCESSING_JPEG);
+    for (const Input &input : inputs)
+        if (input.rule->part != ForeignPart::profiles) read_part(*input.rule, input.file, o.foreign, *profile);
+    if (!*profile->key.camera_model && !*profile->key.lens)
+        throw Failure(ExitCode::usage, (response.empty() ? falloff : response)
+                                           + ": does not say which camera and lens it is of; give --camera or --lens");
+    set_text(profile->provenance.method, sizeof profile->provenance.method, "import");
+    set_text(profile->provenance.software, sizeof profile->provenance.software,
+             std::string("lensprof ") + lensprof_version());
+    set_text(profile->provenance.source, sizeof profile->provenance.source, names);
+    check(lensprof_profile_validate(profile.get()), response.empty() ? falloff : response);
+    return profile;
+}
+
+// Every profile of every file.
+void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts,
+               lensprof_import_visitor visit) {
+    for (const Input &input : inputs) {
+        if (input.rule->part != ForeignPart::profiles) continue;
+        import.file = input.file;
+        try {
+            read_profiles(*input.rule, input.file, visit, &import);
+        } catch (const Failure &) {
+            stop_if_interrupted();
+            check(import.store_status, store_path(import.db),
+                  &import.error);  // the store's failure, and not the file's
+            throw;
+        }
+    }
+    if (!of_parts) return;
+    const lensprof_import_entry entry = {of_parts, 1, 0};
+    import.file = of_parts->provenance.source;
+    check(visit(&import, &entry), store_path(import.db), &import.error);
+}
+
+// A failure closes the store, and rolls back.
+void store_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts) {
+    const std::string db = store_path(import.db);
+    Store store = open_store(import.db, LENSPROF_STORE_CREATE);
+    import.store = store.get();
+    check(lensprof_store_begin(store.get(), &import.error), db, &import.error);
+    visit_all(import, inputs, of_parts, take);
+    check(lensprof_store_commit(store.get(), &import.error), db, &import.error);
+}
+
+void print_import(const Import &import, size_t files, Streams &streams) {
+    const size_t refused = static_cast<size_t>(
+        std::count_if(import.flagged.begin(), import.flagged.end(), [](const Json &one) { return !one["stored"]; }));
+    streams.out << format("imported %u profiles of %zu lenses from %zu file%s into %s\n", import.stored,
+                          import.lenses.size(), files, files == 1 ? "" : "s", store_path(import.db).c_str());
+    if (import.known) streams.out << format("%u were there already\n", import.known);
+    if (!import.flagged.empty())
+        streams.out << format(
+            "%zu are doubtful: %zu of them, which no lens has, were left out, the others stored with the "
+            "reason, and looked up only when asked for; --json lists them\n",
+            import.flagged.size(), refused);
+}
+
+}  // namespace
+
+int run_profile_import(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app(
+        "Stores what other programs' files hold, all of them or none. Their content, else their name, tells the "
+        "format.",
+        "lensprof profile import");
+    app.add_option("FILES", o.files,
+                   "files of profiles; or one with a response, one with a falloff, or both, for one profile")
+        ->required();
+    app.add_option("--format", o.format, "of all the files, where it is not what they look like")
+        ->check(CLI::IsMember(foreign_names(false)));
+    declare_foreign(app, o.foreign, false);
+    declare_db(app, o.db, ", made where there is none");
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.option_defaults()->group("Whose response or falloff it is");
+    o.key.add_options(app);
+    app.footer(about_foreign(false));
+    if (!parse(app, arguments, streams)) return 0;
+    o.key.check_words();
+    std::vector<Input> inputs;
+    std::set<std::string> seen;
+    for (const std::string &file : o.files)
+        if (seen.insert(std::filesystem::weakly_canonical(file).string()).second)
+            inputs.push_back({file, &format_to_read(file, o.format)});
+    const std::unique_ptr<lensprof_profile> of_parts = read_parts(o, inputs);
+    if (!of_parts && !o.key.is_empty())
+        throw Failure(ExitCode::usage,
+                      "profile import: these files say themselves whose profiles they hold; leave --camera, "
+                      "--lens and the like out");
+    Import import;
+    import.db = o.db;
+    visit_all(import, inputs, of_parts.get(), ignore);  // before a database is made
+    const bool is_new = !std::filesystem::exists(store_path(o.db));
+    try {
+        store_all(import, inputs, of_parts.get());
+    } catch (const Failure &) {
+        if (is_new) remove_empty_store(store_path(o.db));
+        throw;
+    }
+    if (o.json)
+        print_json(Json{{"schema", 1},
+                        {"stored", import.stored},
+                        {"known", import.known},
+                        {"lenses", import.lenses.size()},
+                        {"flagged", import.flagged}},
+                   streams.out);
+    else
+        print_import(import, inputs.size(), streams);
+    return 0;
+}
+
+}  // namespace lensprof

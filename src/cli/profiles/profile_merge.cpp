@@ -1,0 +1,77 @@
+// `lensprof profile merge`: profiles of other databases.
+#include <filesystem>
+
+#include "cli/fitting/profile_store.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/interrupt.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/run.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+namespace {
+
+// One of the databases to be merged.
+struct Other {
+    std::string file;
+    Store store;
+    uint32_t added = 0, known = 0;
+};
+
+// All of them before a database is made or locked.
+std::vector<Other> open_others(const std::string &db, const std::vector<std::string> &files) {
+    std::vector<Other> others;
+    for (const std::string &file : files) {
+        if (is_same_file(file, store_path(db)))
+            throw Failure(ExitCode::usage, file + ": is the database itself; name another one to be merged into it");
+        others.push_back({file, open_store(file, LENSPROF_STORE_READ)});
+    }
+    return others;
+}
+
+void merge_all(const std::string &db, std::vector<Other> &others) {
+    Store store = open_store(db, LENSPROF_STORE_CREATE);
+    lensprof_error error{};
+    check(lensprof_store_begin(store.get(), &error), store_path(db), &error);
+    for (Other &other : others) {  // a failure closes the store, and rolls back
+        stop_if_interrupted();
+        const auto status = lensprof_store_merge(store.get(), other.store.get(), &other.added, &other.known, &error);
+        check(status, error.text[0] ? "" : other.file, &error);
+    }
+    check(lensprof_store_commit(store.get(), &error), store_path(db), &error);
+}
+
+}  // namespace
+
+int run_profile_merge(const std::vector<std::string> &arguments, Streams &streams) {
+    std::string db;
+    std::vector<std::string> files;
+    bool json = false;
+    CLI::App app(
+        "Adds the profiles of other lensprof databases that are not there yet, with where they come from as it "
+        "is. All files or none.",
+        "lensprof profile merge");
+    app.add_option("OTHER.db", files, "databases to read; they stay as they are")->required();
+    declare_db(app, db, ", made where there is none");
+    app.add_flag("--json", json, "print one JSON object");
+    if (!parse(app, arguments, streams)) return 0;
+    std::vector<Other> others = open_others(db, files);
+    const bool is_new = !std::filesystem::exists(store_path(db));
+    try {
+        merge_all(db, others);
+    } catch (const Failure &) {
+        if (is_new) remove_empty_store(store_path(db));
+        throw;
+    }
+    Json merged = Json::array();
+    for (const Other &other : others) {
+        merged.push_back({{"file", other.file}, {"added", other.added}, {"known", other.known}});
+        if (!json)
+            streams.out << format("%s: %u profiles added to %s, %u were there\n", other.file.c_str(), other.added,
+                                  store_path(db).c_str(), other.known);
+    }
+    if (json) print_json(Json{{"schema", 1}, {"merged", merged}}, streams.out);
+    return 0;
+}
+
+}  // namespace lensprof

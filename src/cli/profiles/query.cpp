@@ -1,0 +1,126 @@
+// `lensprof query`: the profile of a camera, lens and setting.
+#include <algorithm>
+#include <cmath>
+
+#include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/lookup_report.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/run.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Options {
+    std::string db, rule = "weakest";
+    KeyFilter filter;
+    double crop_factor = LENSPROF_UNKNOWN;
+    bool doubtful = false, json = false;
+};
+
+void declare(CLI::App &app, Options &o) {
+    o.filter.add_options(app);
+    app.add_option("--crop-factor", o.crop_factor, "43.27 mm over the diagonal of the camera's sensor")
+        ->check(in_range(0.01, 1e4));
+    app.add_option("--unknown-distance", o.rule,
+                   "without --distance: weakest, the weakest falloff of all stored distances, which never corrects too "
+                   "much (default), or farthest")
+        ->check(CLI::IsMember({"weakest", "farthest"}));
+    app.add_flag("--doubtful", o.doubtful, "predict also from profiles that were imported with a doubt");
+    declare_db(app, o.db);
+    app.add_flag("--json", o.json, "print one JSON object");
+    app.footer(
+        "When no profile is stored for the setting, the falloff is predicted from those of the same lens at other\n"
+        "settings; the answer says from which, how far away they are, and how sure it is.");
+}
+
+// Profiles of another sensor are those of a lookup, which converts them.
+void keep_sensor(double crop_factor, std::vector<lensprof_store_row> &rows) {
+    constexpr double same = 0.02;  // as lensprof_store_lookup
+    const auto is_other = [=](const lensprof_store_row &row) {
+        return row.key.crop_factor != LENSPROF_UNKNOWN && std::fabs(row.key.crop_factor / crop_factor - 1.0) > same;
+    };
+    rows.erase(std::remove_if(rows.begin(), rows.end(), is_other), rows.end());
+}
+
+// As lookups do.
+void leave_out_doubtful(std::vector<lensprof_store_row> &rows) {
+    const auto has_doubt = [](const lensprof_store_row &row) { return *row.provenance.doubt != 0; };
+    rows.erase(std::remove_if(rows.begin(), rows.end(), has_doubt), rows.end());
+}
+
+// The newest of the profiles that match.
+void answer_stored(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows,
+                   Streams &streams) {
+    int64_t newest = 0;
+    for (const auto &row : rows) newest = std::max(newest, row.id);
+    lensprof_error error{};
+    auto profile = std::make_unique<lensprof_profile>();
+    check(lensprof_store_get(store, newest, profile.get(), &error), store_path(o.db), &error);
+    if (o.json) {
+        Json object = profile_json(newest, *profile);
+        object["matches"] = rows.size();
+        print_json(object, streams.out);
+        return;
+    }
+    print_profile(newest, *profile, streams.out);
+    if (rows.size() > 1)
+        streams.out << rows.size() << " profiles match; this is the newest. Give more of the setting to choose.\n";
+}
+
+// Of these the newest that matches will do.
+bool is_open(const lensprof_profile_key &key) {
+    return !*key.lens || key.focal_mm == LENSPROF_UNKNOWN || key.aperture == LENSPROF_UNKNOWN;
+}
+
+// The profile for the setting: stored, or between what is stored. False where the setting leaves open which of `rows`.
+bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows,
+                   Streams &streams) {
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    options.distance_rule = o.rule == "weakest" ? LENSPROF_DISTANCE_WEAKEST : LENSPROF_DISTANCE_FARTHEST;
+    options.with_doubt = o.doubtful;
+    options.any_processing = !o.filter.has_processing();
+    lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
+    key.crop_factor = o.crop_factor;
+    lensprof_lookup how{};
+    lensprof_error error{};
+    auto profile = std::make_unique<lensprof_profile>();
+    const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
+    if (status == LENSPROF_ERROR_NOT_FOUND && !rows.empty() && is_open(key)) return false;
+    if (status == LENSPROF_ERROR_NOT_FOUND)
+        throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db) + "; nor can it be predicted: " + how.reason);
+    check(status, store_path(o.db), &error);
+    if (o.json) {
+        Json object = profile_json(how.exact ? how.id[0] : 0, *profile);
+        object["matches"] = rows.size();
+        object["lookup"] = lookup_json(how);
+        print_json(object, streams.out);
+        return true;
+    }
+    print_profile(how.exact ? how.id[0] : 0, *profile, streams.out);
+    print_lookup(how, streams.out);
+    return true;
+}
+
+}  // namespace
+
+int run_query(const std::vector<std::string> &arguments, Streams &streams) {
+    Options o;
+    CLI::App app(
+        "Prints the profile for a camera, lens and setting: the newest that is stored, or one predicted from those of "
+        "the lens's other settings, and how sure it is.",
+        "lensprof query");
+    declare(app, o);
+    if (!parse(app, arguments, streams)) return 0;
+    o.filter.check_words();
+    if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
+    Store store = open_store(o.db, LENSPROF_STORE_READ);
+    auto rows = o.filter.rows(store.get(), o.db);
+    if (o.crop_factor != LENSPROF_UNKNOWN) keep_sensor(o.crop_factor, rows);
+    if (!o.doubtful) leave_out_doubtful(rows);
+    if (rows.size() == 1 || !answer_lookup(o, store.get(), rows, streams)) answer_stored(o, store.get(), rows, streams);
+    return 0;
+}
+
+}  // namespace lensprof

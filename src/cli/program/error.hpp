@@ -1,0 +1,28 @@
+// The one exception of the command line program.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace lensprof {
+
+// What the process returns to the shell. Scripts depend on the numbers: they are never changed.
+enum class ExitCode : int {
+    done = 0,
+    failed = 1,
+    usage = 2,
+    unreadable = 3,  // an input cannot be read
+    not_usable = 4,  // a fit ran, its result must not be used
+    not_found = 5,   // no such profile
+    store = 6,       // the profile database
+    interrupted = 130
+};
+
+// what() is a complete line for the user: it names the item and the next step.
+struct Failure : std::runtime_error {
+    Failure(ExitCode exit_code, const std::string &text) : std::runtime_error(text), code(exit_code) {}
+
+    ExitCode code;
+};
+
+}  // namespace lensprof

@@ -1,0 +1,31 @@
+#include "cli/program/interrupt.hpp"
+
+#include <csignal>
+
+#include "cli/program/error.hpp"
+
+namespace lensprof {
+namespace {
+
+volatile std::sig_atomic_t flag = 0;
+
+void on_signal(int number) {
+    flag = 1;
+    std::signal(number, SIG_DFL);
+}
+
+}  // namespace
+
+void catch_interrupts() {
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is an error of the write, as a full disk is
+}
+
+bool interrupted() { return flag != 0; }
+
+void stop_if_interrupted() {
+    if (interrupted()) throw Failure(ExitCode::interrupted, "interrupted");
+}
+
+}  // namespace lensprof

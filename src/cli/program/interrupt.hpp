@@ -1,0 +1,15 @@
+// Ctrl-C: work in progress stops at the next safe point and cleans up after itself.
+#pragma once
+
+namespace lensprof {
+
+// From now on SIGINT and SIGTERM only set a flag (a second one ends the process at once),
+// and a file beyond the limit of its size fails as any write does. Call once, from main.
+void catch_interrupts();
+
+bool interrupted();
+
+// Throws Failure (interrupted) when the flag is set.
+void stop_if_interrupted();
+
+}  // namespace lensprof

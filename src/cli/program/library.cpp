@@ -1,0 +1,151 @@
+#include "cli/program/library.hpp"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+namespace lensprof {
+namespace {
+
+ExitCode exit_code(lensprof_status status) {
+    switch (status) {
+    case LENSPROF_OK: return ExitCode::done;
+    case LENSPROF_ERROR_NO_OVERLAP:
+    case LENSPROF_ERROR_NO_SAMPLES: return ExitCode::not_usable;
+    case LENSPROF_ERROR_NO_UNKNOWNS: return ExitCode::usage;
+    case LENSPROF_ERROR_CANCELLED: return ExitCode::interrupted;
+    case LENSPROF_ERROR_NOT_FINITE:
+    case LENSPROF_ERROR_GEOMETRY:
+    case LENSPROF_ERROR_RESPONSE:
+    case LENSPROF_ERROR_VIGNETTING:
+    case LENSPROF_ERROR_EXPOSURE:
+    case LENSPROF_ERROR_SYNTAX:
+    case LENSPROF_ERROR_VARIABLE:
+    case LENSPROF_ERROR_UNSUPPORTED: return ExitCode::unreadable;
+    case LENSPROF_ERROR_NOT_FOUND: return ExitCode::not_found;
+    case LENSPROF_ERROR_STORE:
+    case LENSPROF_ERROR_CORRUPT:
+    case LENSPROF_ERROR_LAYOUT:
+    case LENSPROF_ERROR_READ_ONLY:
+    case LENSPROF_ERROR_FULL:
+    case LENSPROF_ERROR_BUSY: return ExitCode::store;
+    default: return ExitCode::failed;
+    }
+}
+
+bool is_utf8(const std::string &text) {
+    for (size_t i = 0; i < text.size();) {
+        auto c = static_cast<unsigned char>(text[i++]);
+        int more = c < 0x80                ? 0
+                   : c >= 0xC2 && c < 0xE0 ? 1
+                   : c >= 0xE0 && c < 0xF0 ? 2
+                   : c >= 0xF0 && c < 0xF5 ? 3
+                                           : -1;
+        if (more < 0) return false;
+        for (; more > 0; more--, i++)
+            if (i >= text.size() || (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+void check(lensprof_status status, const std::string &item, const lensprof_error *error) {
+    if (status == LENSPROF_OK) return;
+    std::string text = error && error->text[0] ? error->text : lensprof_status_name(status);
+    bool is_named = item.empty() || text.rfind(item, 0) == 0;
+    throw Failure(exit_code(status), is_named ? text : item + ": " + text);
+}
+
+std::string store_path(const std::string &path) {
+    if (!path.empty()) return path;
+    const char *data = std::getenv("XDG_DATA_HOME"), *home = std::getenv("HOME");
+    if (data && data[0] == '/') return std::string(data) + "/lensprof/profiles.db";
+    if (home && home[0] == '/') return std::string(home) + "/.local/share/lensprof/profiles.db";
+    throw Failure(ExitCode::usage, "no home folder for the profile database; name one with --db FILE");
+}
+
+void demand_folder(const std::string &path) {
+    const std::filesystem::path folder = std::filesystem::absolute(store_path(path)).parent_path();
+    std::error_code ignored;
+    if (!path.empty() && !std::filesystem::is_directory(folder, ignored))
+        throw Failure(ExitCode::store,
+                      path + ": there is no folder " + folder.string() + " for the database; make it first");
+}
+
+Store open_store(const std::string &path, lensprof_store_mode mode) {
+    std::string file = store_path(path);
+    if (path.empty() && mode == LENSPROF_STORE_CREATE) {
+        std::error_code ignored;  // a folder that cannot be made shows when the database is opened
+        std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
+    }
+    if (mode == LENSPROF_STORE_CREATE) demand_folder(path);
+    lensprof_store *store = nullptr;
+    lensprof_error error{};
+    check(lensprof_store_open(file.c_str(), mode, &store, &error), file, &error);
+    return Store(store);
+}
+
+bool is_same_file(const std::string &a, const std::string &b) {
+    if (a.empty() || b.empty()) return false;
+    std::error_code ignored;
+    auto plain = [](const std::string &path) { return std::filesystem::absolute(path).lexically_normal(); };
+    return plain(a) == plain(b) || std::filesystem::equivalent(a, b, ignored);
+}
+
+std::string read_text(const std::string &path, uint64_t most_bytes) {
+    if (std::filesystem::is_directory(path)) throw Failure(ExitCode::unreadable, path + ": is a folder; name a file");
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        throw Failure(ExitCode::unreadable, path + ": cannot be opened: " + std::strerror(errno) + "; check the name");
+    std::string text;
+    std::vector<char> room(1 << 16);
+    while (text.size() <= most_bytes && (file.read(room.data(), std::streamsize(room.size())), file.gcount() > 0))
+        text.append(room.data(), static_cast<size_t>(file.gcount()));
+    if (file.bad()) throw Failure(ExitCode::unreadable, path + ": cannot be read to its end; copy it again");
+    if (text.size() > most_bytes)
+        throw Failure(ExitCode::unreadable, path + ": is larger than such a file can be; check the name");
+    return text;
+}
+
+Pto read_pto(const std::string &path) {
+    std::string text = read_text(path);
+    lensprof_pto *pto = nullptr;
+    lensprof_error error{};
+    check(lensprof_pto_read(text.data(), text.size(), &pto, &error), path, &error);
+    return Pto(pto);
+}
+
+std::string pto_name(const lensprof_pto &pto, uint32_t index) {
+    size_t needed = 0;
+    if (lensprof_pto_get_name(&pto, index, nullptr, 0, &needed) != LENSPROF_ERROR_CAPACITY) return {};
+    std::string name(needed, 0);
+    check(lensprof_pto_get_name(&pto, index, name.data(), needed, &needed), "image name");
+    name.resize(needed - 1);
+    return name;
+}
+
+std::string pto_text(const lensprof_pto &pto) {
+    size_t needed = 0;
+    if (lensprof_pto_write(&pto, nullptr, 0, &needed) != LENSPROF_ERROR_CAPACITY) return {};
+    std::string text(needed, 0);
+    check(lensprof_pto_write(&pto, text.data(), needed, &needed), "project");
+    text.resize(needed);
+    return text;
+}
+
+void set_text(char *field, size_t size, const std::string &text) {
+    const bool readable = is_utf8(text);
+    size_t length = std::min(size - 1, text.size());
+    while (length > 0 && length < text.size() && (text[length] & 0xC0) == 0x80) length--;
+    std::memset(field, 0, size);
+    for (size_t i = 0; i < length; i++) {
+        auto c = static_cast<unsigned char>(text[i]);
+        field[i] = c < 0x20 || c == 0x7f ? ' ' : c >= 0x80 && !readable ? '?' : text[i];
+    }
+}
+
+}  // namespace lensprof

@@ -1,0 +1,55 @@
+// From the library's status codes to the program's failures, and its handles with an owner.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include <lensprof/lensprof.h>
+
+#include "cli/program/error.hpp"
+
+namespace lensprof {
+
+// Throws Failure with the exit code that belongs to the status, unless it is OK. The text is `item`: error text (or the
+// status's name where there is none).
+void check(lensprof_status status, const std::string &item, const lensprof_error *error = nullptr);
+
+struct StoreClose {
+    void operator()(lensprof_store *store) const { lensprof_store_close(store); }
+};
+using Store = std::unique_ptr<lensprof_store, StoreClose>;
+
+struct StoredProfile {
+    int64_t id;  // 0: of a file, alone
+    std::unique_ptr<lensprof_profile> profile;
+};
+
+// The database to use: `path`, or where that is empty the user's own, $XDG_DATA_HOME/lensprof/profiles.db (else under
+// ~/.local/share), whose folder is made when `mode` may create it.
+Store open_store(const std::string &path, lensprof_store_mode mode);
+std::string store_path(const std::string &path);
+
+// Failure (store) where the folder of a database that is named is not there.
+void demand_folder(const std::string &path);
+
+struct PtoDestroy {
+    void operator()(lensprof_pto *pto) const { lensprof_pto_destroy(pto); }
+};
+using Pto = std::unique_ptr<lensprof_pto, PtoDestroy>;
+
+Pto read_pto(const std::string &path);
+std::string pto_name(const lensprof_pto &pto, uint32_t index);
+std::string pto_text(const lensprof_pto &pto);
+
+// True when two paths name one file, which may not exist yet.
+bool is_same_file(const std::string &a, const std::string &b);
+
+// The whole file; Failure (unreadable) names it.
+std::string read_text(const std::string &path, uint64_t most_bytes = UINT64_MAX);
+
+// Copies a text into a fixed field of a key or provenance, cut at its size between UTF-8 characters; control
+// characters become blanks, and in a text that is not UTF-8 all bytes beyond ASCII question marks.
+void set_text(char *field, size_t size, const std::string &text);
+
+}  // namespace lensprof

@@ -1,0 +1,150 @@
+#include "cli/program/output_file.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace lensprof {
+
+namespace {
+
+[[noreturn]] void fail(const std::string &path, int error_number) {
+    const char *advice = "check the folder and its permissions";
+    if (error_number == ENOSPC || error_number == EDQUOT || error_number == EFBIG)
+        advice = "make room or write to another disk";
+    throw Failure(ExitCode::failed, path + ": cannot write: " + system_text(error_number) + "; " + advice);
+}
+
+// A rename would replace the link, not the file it points to.
+std::string follow_links(const std::string &path) {
+    std::unique_ptr<char, void (*)(void *)> real(realpath(path.c_str(), nullptr), std::free);
+    return real ? std::string(real.get()) : path;
+}
+
+std::string folder_of(const std::string &path) {
+    const size_t slash = path.rfind('/');
+    return slash == std::string::npos ? std::string() : path.substr(0, slash + 1);
+}
+
+std::string extension_of(const std::string &path) {
+    const size_t slash = path.rfind('/');
+    const size_t dot = path.rfind('.');
+    if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return std::string();
+    return path.substr(dot);
+}
+
+// Not derived from the wanted name, which may already be as long as the file system allows.
+int create_beside(const std::string &target, mode_t mode, std::string &name) {
+    static std::atomic<unsigned> counter{0};
+    for (int attempt = 0; attempt < 1000; ++attempt) {
+        name = folder_of(target) + ".lensprof-" + std::to_string(getpid()) + "-" + std::to_string(++counter)
+               + extension_of(target);
+        const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        if (file >= 0 || errno != EEXIST) return file;
+    }
+    return -1;
+}
+
+int sync_path(const std::string &path, int flags) {
+    const int file = open(path.c_str(), flags | O_CLOEXEC);
+    if (file < 0) return errno;
+    const int error_number = fsync(file) == 0 ? 0 : errno;
+    close(file);
+    return error_number;
+}
+
+}  // namespace
+
+int open_nameless(const std::string &beside) {
+#ifdef O_TMPFILE
+    const std::string folder = folder_of(beside);
+    const int nameless = open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (nameless >= 0) return nameless;
+#endif
+    std::string name;  // not every file system has files without one
+    const int created = create_beside(beside, 0600, name);
+    if (created < 0) return -1;
+    close(created);
+    const int file = open(name.c_str(), O_RDWR | O_CLOEXEC);
+    unlink(name.c_str());
+    return file;
+}
+
+void check_folder(const std::string &folder, const std::string &item, ExitCode code) {
+    std::error_code ignored;
+    std::filesystem::path place = std::filesystem::absolute(folder);
+    while (!std::filesystem::exists(place, ignored) && place.has_relative_path()) place = place.parent_path();
+    if (!std::filesystem::is_directory(place, ignored))
+        throw Failure(code, item + ": " + place.string() + " is not a folder; give another name");
+    if (access(place.c_str(), W_OK | X_OK) != 0)
+        throw Failure(code, item + ": cannot write in " + place.string() + ": " + system_text(errno)
+                                + "; check its permissions, or give another folder");
+}
+
+std::string system_text(int error_number) { return std::generic_category().message(error_number); }
+
+OutputFile::OutputFile(const std::string &path) : path_(path), target_(follow_links(path)) {
+    struct stat status = {};
+    const bool exists = stat(target_.c_str(), &status) == 0;
+    if (exists && !S_ISREG(status.st_mode))
+        throw Failure(ExitCode::failed, path_ + ": cannot write: is not a regular file; give the name of a file");
+    const int file = create_beside(target_, 0666, temporary_);
+    if (file < 0) fail(path_, errno);
+    // Best effort: a file system without permissions refuses, and the picture matters more.
+    if (exists && fchmod(file, status.st_mode & 07777) != 0) errno = 0;
+    close(file);
+}
+
+OutputFile::~OutputFile() {
+    if (!temporary_.empty()) unlink(temporary_.c_str());
+}
+
+void OutputFile::sync() {
+    const int error_number = sync_path(temporary_, O_RDONLY);
+    if (error_number != 0) fail(path_, error_number);
+    synced_ = true;
+}
+
+void OutputFile::commit() {
+    if (!synced_) sync();
+    if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, errno);
+    temporary_.clear();
+    // The data are safe and in place; that the new name survives a power cut is a bonus not all file systems give.
+    const std::string folder = folder_of(target_);
+    sync_path(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
+}
+
+void OutputFile::write(const void *data, size_t bytes) {
+    std::FILE *file = std::fopen(temporary_.c_str(), "wb");
+    if (!file) fail(path_, errno);
+    errno = 0;
+    const bool written = std::fwrite(data, 1, bytes, file) == bytes;
+    const int write_error = errno;
+    if (std::fclose(file) != 0 || !written) fail(path_, write_error != 0 ? write_error : errno);
+}
+
+void OutputFiles::add(const std::string &path, const std::string &text) {
+    files_.push_back(std::make_unique<OutputFile>(path));
+    files_.back()->write(text.data(), text.size());
+}
+
+void OutputFiles::commit() {
+    for (auto &file : files_) file->commit();
+}
+
+void write_file(const std::string &path, const void *data, size_t bytes) {
+    OutputFile output(path);
+    output.write(data, bytes);
+    output.commit();
+}
+
+}  // namespace lensprof

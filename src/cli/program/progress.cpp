@@ -1,0 +1,101 @@
+#include "cli/program/progress.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+#include <unistd.h>
+
+#include "cli/program/format.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr std::chrono::milliseconds between_details(200);
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+Progress::Progress(std::ostream &err, ShowProgress show)
+    : err_(err),
+      shown_(show == ShowProgress::always
+             || (show == ShowProgress::when_terminal && &err == &std::cerr && isatty(STDERR_FILENO))) {}
+
+Progress::~Progress() { clear(); }
+
+void Progress::update(const std::string &what, double fraction, const std::string &detail) {
+    if (!shown_) return;
+    std::lock_guard<std::mutex> lock(mutex_);
+    int percent = std::clamp(static_cast<int>(100.0 * fraction), 0, 100);
+    auto now = std::chrono::steady_clock::now();
+    bool same = percent == percent_ && what == what_;
+    if (same && (detail.empty() || now - drawn_ < between_details)) return;
+    percent_ = percent;
+    what_ = what;
+    drawn_ = now;
+    err_ << "\r\033[K" << what << " " << percent << " %" << detail << std::flush;
+}
+
+void Progress::clear() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    clear_line();
+}
+
+void Progress::clear_line() {
+    if (percent_ >= 0) err_ << "\r\033[K" << std::flush;
+    percent_ = -1;
+}
+
+void Progress::say(const std::string &line) {
+    if (!shown_) return;
+    std::lock_guard<std::mutex> lock(mutex_);
+    clear_line();
+    err_ << line << std::endl;
+}
+
+void Progress::warn(const std::string &line) {
+    std::lock_guard<std::mutex> lock(mutex_);
+    clear_line();
+    err_ << "lensprof: warning: " << line << std::endl;
+}
+
+Throughput::Throughput(Progress &progress, const std::string &what, uint32_t pictures, uint64_t pixels)
+    : progress_(progress), what_(what), pictures_(pictures), pixels_(pixels), begin_(std::chrono::steady_clock::now()) {
+    show();
+}
+
+void Throughput::add_pixels(uint64_t pixels) {
+    std::lock_guard<std::mutex> lock(mutex_);
+    pixels_done_ += pixels;
+    show();
+}
+
+void Throughput::add_picture() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    pictures_done_++;
+    show();
+}
+
+double Throughput::seconds() const { return seconds_since(begin_); }
+
+double Throughput::megapixels() const {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return 1e-6 * static_cast<double>(pixels_done_);
+}
+
+void Throughput::show() {
+    double s = std::max(seconds(), 1e-6), done = static_cast<double>(pixels_done_);
+    std::string detail = format(", %u of %u pictures", pictures_done_, pictures_);
+    if (pixels_done_ > 0) detail += format(", %.1f pictures/s, %.1f megapixels/s", pictures_done_ / s, 1e-6 * done / s);
+    progress_.update(what_, done / static_cast<double>(std::max<uint64_t>(pixels_, 1)), detail);
+}
+
+std::string Throughput::summary() const {
+    double s = std::max(seconds(), 1e-6), million = megapixels();
+    return format("%u pictures, %.1f megapixels in %.1f s: %.1f pictures/s, %.1f megapixels/s", pictures_done_, million,
+                  s, pictures_done_ / s, million / s);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,423 @@
+#include "cli/report/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/program/format.hpp"
+#include "cli/program/library.hpp"
+#include "cli/report/falloff.hpp"
+
+namespace lensprof {
+namespace {
+
+Json number_or_null(double value) { return value == LENSPROF_UNKNOWN || !std::isfinite(value) ? Json() : Json(value); }
+
+// Distances can be infinite, which JSON has no number for.
+Json distance_json(double distance_m) { return std::isinf(distance_m) ? Json("infinity") : number_or_null(distance_m); }
+
+}  // namespace
+
+Json covariance_json(const double *values, uint32_t n) {
+    Json rows = Json::array();
+    for (uint32_t i = 0; i < n; i++) rows.push_back(std::vector<double>(values + i * n, values + (i + 1) * n));
+    return rows;
+}
+
+Json response_json(const lensprof_response *responses, uint32_t count) {
+    static const char *const kinds[] = {"linear", "gamma", "emor", "table"};
+    Json json, values = Json::array();
+    for (uint32_t c = 0; c < count; c++)
+        values.push_back(std::vector<double>(responses[c].table, responses[c].table + LENSPROF_RESPONSE_SAMPLES));
+    json["kind"] = kinds[responses[0].kind];
+    if (responses[0].kind == LENSPROF_RESPONSE_EMOR)
+        json["emor"] = std::vector<double>(responses[0].emor, responses[0].emor + responses[0].modes);
+    if (responses[0].kind == LENSPROF_RESPONSE_GAMMA) json["gamma"] = responses[0].gamma;
+    json["values"] = values;
+    return json;
+}
+
+Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count) {
+    Json json, k = Json::array();
+    for (uint32_t c = 0; c < count; c++) k.push_back(std::vector<double>(vignettings[c].k, vignettings[c].k + 3));
+    json["k"] = k;
+    json["center"] = {vignettings[0].center[0], vignettings[0].center[1]};
+    return json;
+}
+
+namespace {
+
+void print_gain_grid(const lensprof_gain_grid &grid, std::ostream &out) {
+    if (!grid.columns) return;
+    const float *end = grid.attenuation + grid.channels * grid.rows * grid.columns;
+    const auto range = std::minmax_element(grid.attenuation, end);
+    out << format("gain grid %u x %u nodes, %s; multiplies the falloff by %.3f to %.3f\n", grid.columns, grid.rows,
+                  grid.channels == 3 ? "one grid a channel" : "all channels", double(*range.first),
+                  double(*range.second));
+}
+
+double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
+
+// " +- ", the standard error of 100 M at r^2, or nothing where it is not known.
+std::string falloff_error(const Certainty &certainty, uint32_t curve, double r2) {
+    const double sigma = certainty.falloff_sigma(curve, r2);
+    return sigma > 0.0 ? format(" +- %.1f", 100.0 * sigma) : std::string();
+}
+
+}  // namespace
+
+void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, const Certainty &certainty,
+                       std::ostream &out) {
+    static const char *const channels[3] = {" of red", " of green", " of blue"};
+    for (uint32_t c = 0; c < count; c++) {
+        const lensprof_vignetting &v = vignettings[c];
+        if (!has_falloff(v)) {
+            out << "falloff" << (count == 3 ? channels[c] : "") << "   none: not measured, or held at none\n";
+            continue;
+        }
+        out << "falloff" << (count == 3 ? channels[c] : "")
+            << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
+                      v.center[0], v.center[1]);
+        out << format("          light at r = 0.5: %.1f%s %%, in the corner: %.1f%s %% (%.2f stops)\n",
+                      100.0 * lensprof_vignetting_eval(&v, 0.25, nullptr), falloff_error(certainty, c, 0.25).c_str(),
+                      100.0 * corner(v), falloff_error(certainty, c, 1.0).c_str(), -std::log2(corner(v)));
+    }
+}
+
+void print_response(const lensprof_response &r, std::ostream &out) {
+    static const char *const kinds[] = {"linear", "gamma", "EMoR", "table"};
+    std::string kind = kinds[r.kind];
+    if (r.kind == LENSPROF_RESPONSE_EMOR) kind += format(", %u modes", r.modes);
+    if (r.kind == LENSPROF_RESPONSE_GAMMA) kind += format(" %.3g", r.gamma);
+    out << "response  " << kind << ";  grey value (of 255) at irradiance";
+    for (double x : {0.01, 0.05, 0.2, 0.5})
+        out << format("  %g: %.1f", x, 255.0 * lensprof_response_eval(&r, x, nullptr));
+    out << "\n";
+}
+
+const char *gamma_name(uint32_t from) {
+    static const char *const names[] = {"auto", "prior", "exif", "known", "none", "profile"};
+    return from <= LENSPROF_GAMMA_PROFILE ? names[from] : "unknown";
+}
+
+const char *camera_kind_name(uint32_t kind) {
+    static const char *const names[] = {"any", "film", "digital"};
+    return kind <= LENSPROF_CAMERA_DIGITAL ? names[kind] : "unknown";
+}
+
+uint32_t camera_kind_of_name(const std::string &name) {
+    for (uint32_t kind = 0; kind <= LENSPROF_CAMERA_DIGITAL; kind++)
+        if (name == camera_kind_name(kind)) return kind;
+    throw Failure(ExitCode::usage, name + ": not a kind of camera; use any, film or digital");
+}
+
+const char *processing_name(uint32_t processing) {
+    static const char *const names[] = {"raw", "jpeg", "corrected"};
+    return processing <= LENSPROF_PROCESSING_CORRECTED ? names[processing] : "unknown";
+}
+
+uint32_t processing_of_name(const std::string &name) {
+    for (uint32_t p = 0; p <= LENSPROF_PROCESSING_CORRECTED; p++)
+        if (name == processing_name(p)) return p;
+    throw Failure(ExitCode::usage, name + ": not a processing state; use raw, jpeg or corrected");
+}
+
+void print_json(const Json &json, std::ostream &out) {
+    out << json.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+}
+
+namespace {
+
+Json numbers(const double *values, size_t count) { return std::vector<double>(values, values + count); }
+
+// Exposure and quality of every image.
+Json images_json(const BuildReport &report) {
+    Json images = Json::array();
+    for (size_t i = 0; i < report.names.size(); i++) {
+        const auto &e = report.exposures[i];
+        Json image = {{"file", report.names[i]},
+                      {"ev", std::isnan(e.ev) ? Json() : Json(e.ev)},
+                      {"white_balance", numbers(e.white_balance, 3)}};
+        if (i < report.quality.size()) {
+            const auto &q = report.quality[i];
+            image["ev_sigma"] = q.ev_sigma;
+            image["white_balance_sigma"] = numbers(q.white_balance_sigma, 3);
+            image["median_residual"] = q.pairs ? Json(q.median_residual) : Json();
+            image["known_ev_residual"] = q.known_ev_residual;
+            image["pairs"] = q.pairs;
+            image["inliers"] = q.inliers;
+            image["component"] = q.component;
+            image["radius"] = q.radius;
+            image["grey"] = {q.grey_low, q.grey_high};
+        } else {
+            image["median_residual"] = Json();
+        }
+        images.push_back(image);
+    }
+    return images;
+}
+
+// Where the exponent comes from, its standard error, and how strongly every parameter hangs on it.
+Json gamma_json(const BuildReport &report) {
+    const auto &fit = report.fit;
+    Json correlation = Json::array();
+    for (uint32_t i = 0; i < fit.covariance_size; i++) {
+        double sigma = std::sqrt(fit.covariance[i * fit.covariance_size + i]);
+        correlation.push_back(sigma > 0.0 ? fit.gamma_sigma * fit.gamma_direction[i] / sigma : 0.0);
+    }
+    Json json;
+    json["from"] = gamma_name(fit.gamma_from);
+    json["sigma"] = number_or_null(fit.gamma_sigma);
+    json["camera_kind"] = camera_kind_name(report.camera_kind);
+    json["direction"] = numbers(fit.gamma_direction, fit.covariance_size);
+    json["correlation"] = correlation;
+    return json;
+}
+
+// The stored profile that the fit was given; null where none was asked for.
+Json prior_json(const BuildReport &report) {
+    if (!report.prior_id && report.no_prior.empty()) return Json();
+    return {
+        {"profile", report.prior_id ? Json(report.prior_id) : Json()},
+        {"used", report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED},
+        {"reason", report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_OVERRULED ? report.fit.reason : report.no_prior}};
+}
+
+}  // namespace
+
+Json build_json(const BuildReport &report) {
+    const auto &fit = report.fit;
+    Json json;
+    json["schema"] = 1;
+    json["usable"] = fit.usable != 0;
+    json["reason"] = fit.reason;
+    json["reference"] = report.reference;
+    json["images"] = images_json(report);
+    if (report.has_falloff) json["vignetting"] = vignetting_json(fit.vignetting, fit.vignettings);
+    json["response"] = response_json(&fit.response, 1);
+    json["residual"] = {{"before_rms", number_or_null(fit.before_rms)},
+                        {"heldout_rms", number_or_null(fit.heldout_rms)},
+                        {"heldout_median", number_or_null(fit.heldout_median)},
+                        {"noise", fit.noise_levels},
+                        {"frame_share", fit.frame_share},
+                        {"image_share", fit.image_share},
+                        {"inlier_share", fit.inlier_share}};
+    json["gamma_from"] = gamma_name(fit.gamma_from);
+    json["gamma"] = gamma_json(report);
+    json["coverage"] = {{"radius", std::vector<uint32_t>(fit.radius_ends, fit.radius_ends + LENSPROF_COVERAGE_BINS)},
+                        {"grey", std::vector<uint32_t>(fit.grey_ends, fit.grey_ends + LENSPROF_COVERAGE_BINS)}};
+    json["pairs"] = fit.pairs;
+    json["components"] = fit.components;
+    json["iterations"] = fit.iterations;
+    json["covariance"] = covariance_json(fit.covariance, fit.covariance_size);
+    json["seconds"] = {{"load", report.load_s}, {"sample", report.sample_s}, {"solve", fit.seconds}};
+    json["prior"] = prior_json(report);
+    json["profile"] = report.profile_id ? Json(report.profile_id) : Json();
+    return json;
+}
+
+namespace {
+
+void print_exposures(const BuildReport &report, std::ostream &out) {
+    size_t width = 5;
+    for (const auto &name : report.names) width = std::max(width, name.size());
+    out << format("%-*s  %8s  %6s  %7s  %7s\n", static_cast<int>(width), "image", "EV", "+-", "red", "blue");
+    for (size_t i = 0; i < report.names.size(); i++) {
+        const auto &e = report.exposures[i];
+        double sigma = i < report.quality.size() ? report.quality[i].ev_sigma : 0.0;
+        std::string error = sigma > 0.0 ? format("%.3f", sigma) : std::string("-");
+        if (std::isnan(e.ev)) {
+            out << format("%-*s  %8s\n", static_cast<int>(width), report.names[i].c_str(), "unknown");
+            continue;
+        }
+        out << format("%-*s  %+8.3f  %6s  %7.4f  %7.4f%s\n", static_cast<int>(width), report.names[i].c_str(), e.ev,
+                      error.c_str(), e.white_balance[0], e.white_balance[2],
+                      i == report.reference ? "  reference" : "");
+    }
+}
+
+void print_gamma(const BuildReport &report, std::ostream &out) {
+    const auto &fit = report.fit;
+    if (fit.gamma_from == LENSPROF_GAMMA_KNOWN) {
+        out << "gamma     known by what is held\n";
+        return;
+    }
+    const bool is_given = report.exposures_given && fit.gamma_from == LENSPROF_GAMMA_EXPOSURES;
+    out << "gamma     from " << (is_given ? "the exposures given" : gamma_name(fit.gamma_from));
+    if (fit.gamma_from == LENSPROF_GAMMA_PRIOR) out << " (" << camera_kind_name(report.camera_kind) << " camera)";
+    if (fit.gamma_sigma > 0.0) out << format(", +- %.0f %%", 100.0 * fit.gamma_sigma);
+    if (fit.gamma_from == LENSPROF_GAMMA_NONE) out << " (no prior; no +- here holds its error)";
+    out << ": the common exponent of " << (report.has_falloff ? "exposure, falloff" : "exposure")
+        << " and response, which pictures leave open (docs/model.md)\n";
+}
+
+void print_prior(const BuildReport &report, std::ostream &out) {
+    if (!report.no_prior.empty()) out << "prior     of all cameras: " << report.no_prior << "\n";
+    if (!report.prior_id) return;
+    const bool used = report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED;
+    out << "prior     profile " << report.prior_id
+        << (used ? ", which the result holds\n" : ", overruled by the pictures\n");
+}
+
+}  // namespace
+
+void print_build(const BuildReport &report, std::ostream &out) {
+    const auto &fit = report.fit;
+    print_exposures(report, out);
+    if (report.has_falloff)
+        print_vignettings(fit.vignetting, fit.vignettings, {fit.covariance, fit.covariance_size, fit.response.modes},
+                          out);
+    print_response(fit.response, out);
+    print_gamma(report, out);
+    print_prior(report, out);
+    std::string heldout = "not measured: too few pairs";
+    if (fit.heldout_rms != LENSPROF_UNKNOWN)
+        heldout = format("%.2f (RMS; median %.2f) on pairs left out of the fit", fit.heldout_rms, fit.heldout_median);
+    out << format("residual  before %.2f, after %s, levels of 255; %.1f %% inliers of %u pairs\n", fit.before_rms,
+                  heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
+    out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
+    if (!fit.usable)
+        out << "NOT USABLE: " << fit.reason << "\n";
+    else if (*fit.reason)
+        out << "mind      " << fit.reason << "\n";
+}
+
+Json key_json(const lensprof_profile_key &key) {
+    return {{"camera_maker", key.camera_maker},
+            {"camera_model", key.camera_model},
+            {"lens", key.lens},
+            {"unit", key.unit},
+            {"crop_factor", number_or_null(key.crop_factor)},
+            {"focal_mm", number_or_null(key.focal_mm)},
+            {"aperture", number_or_null(key.aperture)},
+            {"distance_m", distance_json(key.distance_m)},
+            {"processing", processing_name(key.processing)}};
+}
+
+Json provenance_json(const lensprof_provenance &p) {
+    return {{"method", p.method},
+            {"software", p.software},
+            {"source", p.source},
+            {"created_unix_s", p.created_unix_s},
+            {"images", p.images},
+            {"pairs", p.pairs},
+            {"heldout_rms", number_or_null(p.heldout_rms)},
+            {"inlier_share", number_or_null(p.inlier_share)},
+            {"doubt", p.doubt}};
+}
+
+Json profile_json(int64_t id, const lensprof_profile &profile) {
+    const lensprof_profile *const pointer = &profile;
+    lensprof_error error{};
+    size_t bytes = 0;
+    lensprof_status status = lensprof_json_write(&pointer, 1, nullptr, 0, &bytes, &error);
+    std::string text(bytes, '\0');
+    if (status == LENSPROF_ERROR_CAPACITY)
+        status = lensprof_json_write(&pointer, 1, text.data(), bytes, &bytes, &error);
+    check(status, "profile as JSON", &error);
+    Json json = Json::parse(text);
+    if (id) json["id"] = id;
+    return json;
+}
+
+KeyParts key_parts(const lensprof_profile_key &key) {
+    KeyParts parts;
+    parts[0] = std::string(key.camera_maker) + (*key.camera_maker && *key.camera_model ? " " : "") + key.camera_model;
+    parts[1] = key.lens;
+    if (key.focal_mm != LENSPROF_UNKNOWN) parts[2] = format("%g mm", key.focal_mm);
+    if (key.aperture != LENSPROF_UNKNOWN) parts[3] = format("f/%g", key.aperture);
+    if (std::isinf(key.distance_m))
+        parts[4] = "focus at infinity";
+    else if (key.distance_m != LENSPROF_UNKNOWN)
+        parts[4] = format("focus at %g m", key.distance_m);
+    parts[5] = processing_name(key.processing);
+    return parts;
+}
+
+std::string spell_part(const KeyParts &parts, size_t part) {
+    static const char *const names[] = {"camera", "lens", "focal length", "aperture", "focus", "processing"};
+    return parts[part].empty() ? std::string(names[part]) + " unknown" : parts[part];
+}
+
+std::string describe_key(const lensprof_profile_key &key) {
+    const KeyParts parts = key_parts(key);
+    std::string text = spell_part(parts, 0);
+    for (size_t part = 1; part < parts.size(); part++) text += ", " + spell_part(parts, part);
+    return text;
+}
+
+void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out) {
+    const auto &p = profile.provenance;
+    out << "profile   " << (id ? std::to_string(id) + ": " : std::string()) << describe_key(profile.key) << "\n";
+    if (*profile.key.unit) out << "unit      " << profile.key.unit << ", and no other\n";
+    print_vignettings(profile.vignetting, profile.vignettings, certainty_of(profile), out);
+    print_gain_grid(profile.grid, out);
+    for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
+    out << "source    " << (*p.method ? p.method : "unknown method") << ", " << p.images << " images, " << p.pairs
+        << " pairs";
+    if (p.heldout_rms != LENSPROF_UNKNOWN) out << format(", residual %.2f levels", p.heldout_rms);
+    out << (*p.source ? std::string(", ") + p.source : std::string()) << "\n";
+    if (*p.doubt) out << "doubt     " << p.doubt << "\n";
+}
+
+TrueValues read_truth(const std::string &path, size_t images) {
+    TrueValues truth;
+    try {
+        Json json = Json::parse(read_text(path));
+        for (const Json &image : json.at("images")) truth.ev.push_back(image.at("ev").get<double>());
+        const Json &curves = json.at("vignetting").at("k"), &center = json.at("vignetting").at("center");
+        for (size_t n = 0; n < 3; n++) truth.vignetting.k[n] = curves.at(curves.size() / 2).at(n).get<double>();
+        for (size_t d = 0; d < 2; d++) truth.vignetting.center[d] = center.at(d).get<double>();
+    } catch (const Json::exception &) {
+        throw Failure(ExitCode::unreadable, path + ": is not the truth.json of `lensprof simulate`");
+    }
+    if (truth.ev.size() != images)
+        throw Failure(ExitCode::unreadable,
+                      path
+                          + format(": is the truth of %zu images, not of %zu; give that of this project",
+                                   truth.ev.size(), images));
+    return truth;
+}
+
+const lensprof_vignetting &green_falloff(const lensprof_fit_result &fit) {
+    return fit.vignetting[fit.vignettings == 3 ? 1 : 0];
+}
+
+void print_comparison(const BuildReport &report, const TrueValues &truth, std::ostream &out) {
+    size_t n = report.exposures.size();
+    std::vector<double> true_ev, ev;
+    for (size_t i = 0; i < n; i++) {
+        true_ev.push_back(truth.ev[i] - truth.ev[report.reference]);
+        ev.push_back(report.exposures[i].ev);
+    }
+    double mean = 0, true_mean = 0, cross = 0, square = 0;
+    for (size_t i = 0; i < n; i++)
+        mean += ev[i] / static_cast<double>(n), true_mean += true_ev[i] / static_cast<double>(n);
+    for (size_t i = 0; i < n; i++) {
+        cross += (ev[i] - mean) * (true_ev[i] - true_mean);
+        square += (true_ev[i] - true_mean) * (true_ev[i] - true_mean);
+    }
+    double gamma = square > 1e-6 && cross > 0 ? cross / square : 1.0;
+    double ev_error = 0, ev_aligned = 0, m_error = 0, m_aligned = 0;
+    out << "\nrecovered beside true (aligned: with the exponent " << format("%.3f", gamma)
+        << " that pictures alone leave open taken out)\n";
+    out << "image      EV  recovered     true  aligned\n";
+    for (size_t i = 0; i < n; i++) {
+        ev_error = std::max(ev_error, std::abs(ev[i] - true_ev[i]));
+        ev_aligned = std::max(ev_aligned, std::abs((ev[i] - mean) / gamma - (true_ev[i] - true_mean)));
+        out << format("%5zu          %+8.3f %+8.3f %+8.3f\n", i, ev[i], true_ev[i], ev[i] / gamma);
+    }
+    out << "radius falloff  recovered     true  aligned\n";
+    for (int k = 0; k <= 4; k++) {
+        double r2 = k * k / 16.0, m = lensprof_vignetting_eval(&green_falloff(report.fit), r2, nullptr);
+        double t = lensprof_vignetting_eval(&truth.vignetting, r2, nullptr), a = std::pow(m, 1.0 / gamma);
+        m_error = std::max(m_error, std::abs(m - t));
+        m_aligned = std::max(m_aligned, std::abs(a - t));
+        out << format("%6.2f         %8.4f %8.4f %8.4f\n", k / 4.0, m, t, a);
+    }
+    out << format("centre         %+.4f %+.4f, true %+.4f %+.4f half diagonals\n", report.fit.vignetting[0].center[0],
+                  report.fit.vignetting[0].center[1], truth.vignetting.center[0], truth.vignetting.center[1]);
+    out << format("largest error  exposure %.4f EV (aligned %.4f), falloff %.4f (aligned %.4f)\n", ev_error, ev_aligned,
+                  m_error, m_aligned);
+}
+
+}  // namespace lensprof

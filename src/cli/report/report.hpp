@@ -1,0 +1,94 @@
+// What the program says about a fit or a profile: JSON objects and tables for people.
+#pragma once
+
+#include <array>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <lensprof/lensprof.h>
+
+#include "cli/report/falloff.hpp"
+
+namespace lensprof {
+
+using Json = nlohmann::ordered_json;
+
+// Everything `build` found out.
+struct BuildReport {
+    std::vector<std::string> names;
+    std::vector<lensprof_exposure> exposures;  // relative to the reference
+    std::vector<lensprof_fit_image_quality> quality;
+    lensprof_fit_result fit{};
+    uint32_t reference = 0;
+    bool has_falloff = true;       // else it cancels in these pictures
+    bool exposures_given = false;  // on the command line, and not by EXIF
+    double load_s = 0, sample_s = 0;
+    uint32_t camera_kind = LENSPROF_CAMERA_ANY;  // whose prior settled gamma
+    int64_t profile_id = 0;                      // 0 = not stored
+    int64_t prior_id = 0;                        // of the profile that was the prior; 0 = none
+    std::string no_prior;                        // why none was, where one was asked for
+};
+
+// One line. Names of files need not be UTF-8, JSON must: bytes that are not become U+FFFD.
+void print_json(const Json &json, std::ostream &out);
+
+// The object that `build --json` prints; docs/json.md describes the schema.
+Json build_json(const BuildReport &report);
+
+// The falloff that stands for all channels where only one can be written.
+const lensprof_vignetting &green_falloff(const lensprof_fit_result &fit);
+
+void print_build(const BuildReport &report, std::ostream &out);
+
+// What is true about a simulated sequence: exposures and (green) falloff.
+struct TrueValues {
+    std::vector<double> ev;
+    lensprof_vignetting vignetting{};
+};
+
+// Reads the truth.json of `simulate`; Failure (unreadable) when it is something else or of another number of images.
+TrueValues read_truth(const std::string &path, size_t images);
+
+// Recovered beside true values, raw and with the exponent gamma aligned (what pictures alone cannot tell).
+void print_comparison(const BuildReport &report, const TrueValues &truth, std::ostream &out);
+
+// Parts of such objects, and of tables.
+Json covariance_json(const double *values, uint32_t n);
+Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count);
+Json response_json(const lensprof_response *responses, uint32_t count);
+
+void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, const Certainty &certainty,
+                       std::ostream &out);
+void print_response(const lensprof_response &r, std::ostream &out);
+
+Json key_json(const lensprof_profile_key &key);
+Json provenance_json(const lensprof_provenance &provenance);
+// `id` is the number in the database; 0 = not of one.
+Json profile_json(int64_t id, const lensprof_profile &profile);
+void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out);
+
+// Camera, lens, focal length, aperture, focus and processing in words; empty where not known.
+using KeyParts = std::array<std::string, 6>;
+KeyParts key_parts(const lensprof_profile_key &key);
+
+// A part of a key, "aperture unknown" where it is not known.
+std::string spell_part(const KeyParts &parts, size_t part);
+
+// "Canon EOS 5D, EF 50mm, 50 mm, f/1.8, focus unknown, jpeg".
+std::string describe_key(const lensprof_profile_key &key);
+
+// raw, jpeg, corrected; and back, with Failure (usage) for another word.
+const char *processing_name(uint32_t processing);
+uint32_t processing_of_name(const std::string &name);
+
+// prior, exif, known, none.
+const char *gamma_name(uint32_t from);
+
+// any, film, digital; and back, with Failure (usage) for another word.
+const char *camera_kind_name(uint32_t kind);
+uint32_t camera_kind_of_name(const std::string &name);
+
+}  // namespace lensprof

@@ -1,0 +1,71 @@
+#include "cli/simulate/scene.hpp"
+
+#include <cmath>
+
+namespace lensprof {
+namespace {
+
+uint32_t hash(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+    uint32_t h = a * 0x9e3779b1u ^ b * 0x85ebca77u ^ c * 0xc2b2ae3du ^ d * 0x27d4eb2fu;
+    h ^= h >> 15;
+    h *= 0x2c1b3c6du;
+    h ^= h >> 12;
+    h *= 0x297a2d39u;
+    return h ^ (h >> 15);
+}
+
+double unit(uint32_t h) { return h * (1.0 / 4294967296.0); }
+
+double smooth(double t) { return t * t * (3.0 - 2.0 * t); }
+
+double mix(double a, double b, double t) { return a + (b - a) * t; }
+
+}  // namespace
+
+// Value noise in -1..1 on a lattice of the sphere's space.
+double Scene::noise(double x, double y, double z, uint32_t octave) const {
+    double fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
+    auto ix = static_cast<uint32_t>(static_cast<int32_t>(fx)), iy = static_cast<uint32_t>(static_cast<int32_t>(fy)),
+         iz = static_cast<uint32_t>(static_cast<int32_t>(fz));
+    double tx = smooth(x - fx), ty = smooth(y - fy), tz = smooth(z - fz), corner[8];
+    for (uint32_t k = 0; k < 8; k++)
+        corner[k] = unit(hash(ix + (k & 1), iy + (k >> 1 & 1), iz + (k >> 2), seed_ * 64 + octave));
+    double low = mix(mix(corner[0], corner[1], tx), mix(corner[2], corner[3], tx), ty);
+    double high = mix(mix(corner[4], corner[5], tx), mix(corner[6], corner[7], tx), ty);
+    return 2.0 * mix(low, high, tz) - 1.0;
+}
+
+double Scene::fractal(const double d[3], double frequency, int octaves) const {
+    double sum = 0.0, amplitude = 0.5;
+    for (int o = 0; o < octaves; o++, frequency *= 2.03, amplitude *= 0.55)
+        sum += amplitude
+               * noise(frequency * d[0] + 17.0 * o, frequency * d[1], frequency * d[2], static_cast<uint32_t>(o));
+    return sum;
+}
+
+void Scene::radiance(double longitude, double latitude, double rgb[3]) const {
+    double d[3] = {std::cos(latitude) * std::sin(longitude), std::sin(latitude),
+                   std::cos(latitude) * std::cos(longitude)};
+    double horizon = 0.06 * fractal(d, 4.0, 3);
+    double above = horizon - latitude;  // positive: sky
+    double day = smooth(std::fmin(std::fmax(above / 0.02 + 0.5, 0.0), 1.0));
+
+    double height = std::fmin(std::fmax(above, 0.0), 1.2), cloud = std::fmax(0.0, fractal(d, 3.0, 5) + 0.05);
+    double sky[3] = {0.55 - 0.36 * height + 0.9 * cloud, 0.62 - 0.30 * height + 0.85 * cloud,
+                     0.75 - 0.15 * height + 0.75 * cloud};
+
+    // Fields and walls: patches of one colour each, with soft borders and some texture.
+    double u = longitude * 9.0 + 0.3 * fractal(d, 6.0, 2), v = latitude * 14.0, fu = std::floor(u), fv = std::floor(v);
+    double edge = std::fmin(std::fmin(u - fu, 1.0 - (u - fu)), std::fmin(v - fv, 1.0 - (v - fv)));
+    double border = smooth(std::fmin(edge / 0.06, 1.0)), texture = std::exp(0.9 * fractal(d, 25.0, 4));
+    for (uint32_t c = 0; c < 3; c++) {
+        auto cell_u = static_cast<uint32_t>(static_cast<int32_t>(fu)),
+             cell_v = static_cast<uint32_t>(static_cast<int32_t>(fv));
+        double brightness = std::exp(-3.6 + 3.4 * unit(hash(cell_u, cell_v, 7, seed_)));
+        double tint = std::exp(0.9 * (unit(hash(cell_u, cell_v, 11 + c, seed_)) - 0.5));
+        double ground = mix(0.05, brightness * tint, border) * texture;
+        rgb[c] = std::fmax(mix(ground, sky[c], day), 1e-3);
+    }
+}
+
+}  // namespace lensprof

@@ -1,0 +1,62 @@
+// What moves: blocks that are in one picture only, and record radiances of their own.
+#include <algorithm>
+#include <cmath>
+
+#include "cli/simulate/simulate.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr int kGrid = 128;  // points a side on which the covered share is measured
+
+Block random_block(const lensprof_camera &camera, Random &random) {
+    Block block;
+    double width = camera.width * random.uniform(0.05, 0.25), height = camera.height * random.uniform(0.05, 0.25);
+    double x = random.uniform(0.0, camera.width), y = random.uniform(0.0, camera.height);
+    block.left = x - width / 2.0, block.right = x + width / 2.0;
+    block.top = y - height / 2.0, block.bottom = y + height / 2.0;
+    double brightness = std::exp(random.uniform(-4.5, 0.0));
+    for (double &v : block.rgb) v = brightness * std::exp(random.uniform(-0.45, 0.45));
+    block.texture = random.uniform() < 0.5 ? 0.9 : 0.0;
+    block.depth = random.uniform(0.0, 1000.0);
+    return block;
+}
+
+// Marks the points of the grid inside a block; how many are marked now.
+int mark(const lensprof_camera &camera, const Block &block, std::vector<char> &covered) {
+    for (int j = 0; j < kGrid; j++)
+        for (int i = 0; i < kGrid; i++)
+            if (block.holds((i + 0.5) / kGrid * camera.width, (j + 0.5) / kGrid * camera.height))
+                covered[static_cast<size_t>(j * kGrid + i)] = 1;
+    return static_cast<int>(std::count(covered.begin(), covered.end(), 1));
+}
+
+}  // namespace
+
+std::vector<Block> random_blocks(const lensprof_camera &camera, double share, Random &random) {
+    std::vector<Block> blocks;
+    std::vector<char> covered(kGrid * kGrid);
+    const double wanted = share * kGrid * kGrid;
+    for (int before = 0, now = 0; now < wanted; before = now) {
+        Block block = random_block(camera, random);
+        now = mark(camera, block, covered);
+        // The last block is taken when that is nearer to the share than to be without: on average neither more nor
+        // less than the share is covered.
+        if (now < wanted || now - wanted < wanted - before) blocks.push_back(block);
+    }
+    return blocks;
+}
+
+bool object_radiance(const Truth &truth, const Scene &scene, uint32_t index, double x, double y, double rgb[3]) {
+    if (truth.objects.empty()) return false;
+    const auto &camera = truth.cameras[index];
+    const auto &blocks = truth.objects[index];
+    auto found = std::find_if(blocks.rbegin(), blocks.rend(), [&](const Block &b) { return b.holds(x, y); });
+    if (found == blocks.rend()) return false;
+    const double scale = 2.0 / std::hypot(camera.width, camera.height), p[3] = {x * scale, y * scale, found->depth};
+    double factor = found->texture > 0.0 ? std::exp(found->texture * scene.fractal(p, 25.0, 3)) : 1.0;
+    for (int c = 0; c < 3; c++) rgb[c] = found->rgb[c] * factor;
+    return true;
+}
+
+}  // namespace lensprof

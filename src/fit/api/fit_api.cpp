@@ -1,0 +1,321 @@
+// The C face of the overlap fit: checks, and the exception fence.
+#include <cmath>
+#include <new>
+
+#include "fit/base/fail.hpp"
+#include "fit/methods/debevec.hpp"
+#include "fit/methods/overlap.hpp"
+#include "fit/methods/transfer_function/transfer_function.hpp"
+#include "fit/prior/stored_prior.hpp"
+#include "fit/problem/residual.hpp"
+#include "fit/problem/tracks.hpp"
+
+using namespace lensprof;
+
+namespace {
+
+constexpr uint32_t kSharedFlags =
+    LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
+constexpr uint32_t kImageFlags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
+
+// The profile that is to be the prior.
+lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *error) {
+    if (o.method != LENSPROF_METHOD_TRANSFER && o.method != LENSPROF_METHOD_RADIANCE)
+        return fail(LENSPROF_ERROR_UNSUPPORTED, error,
+                    "fit options: a profile as the prior is for the methods transfer and radiance; leave it out");
+    if (!(o.prior_weight > 0.0))
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit options: a profile as the prior wants a prior weight above 0");
+    lensprof_status status = lensprof_profile_validate(o.profile);
+    if (status != LENSPROF_OK)
+        return fail(status, error, "fit options: the profile is not valid; see lensprof_profile_validate");
+    bool knows = false;
+    for (uint32_t i = 0; i < o.profile->covariance_size; i++)
+        knows = knows || o.profile->covariance[i * o.profile->covariance_size + i] > 0.0;
+    if (knows && !is_covariance(*o.profile))
+        return fail(
+            LENSPROF_ERROR_ARGUMENT, error,
+            "fit options: the profile's covariance is none (a combination of parameters has a variance below 0); "
+            "leave it out");
+    return knows ? LENSPROF_OK
+                 : fail(LENSPROF_ERROR_ARGUMENT, error,
+                        "fit options: the profile has no covariance, and says nothing of how sure it is; leave it out");
+}
+
+lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_count, lensprof_error *error) {
+    if (o.struct_size != sizeof o)
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit options: call lensprof_fit_options_init first");
+    if ((o.channels != 1 && o.channels != 3) || o.reference >= image_count || o.loss > LENSPROF_LOSS_SQUARED
+        || (o.modes > LENSPROF_EMOR_MODES && o.modes != LENSPROF_MODES_AUTO)
+        || !(o.huber_levels > 0.0 && o.huber_levels <= 255.0) || !(o.prior_weight >= 0.0 && o.prior_weight <= 1e6)
+        || o.max_iterations == 0 || o.max_iterations > 1000000 || (o.free & ~kSharedFlags)
+        || (o.vignettings > 1 && o.vignettings != 3) || o.gamma_from > LENSPROF_GAMMA_EXPOSURES
+        || o.camera_kind > LENSPROF_CAMERA_DIGITAL || o.method > LENSPROF_METHOD_DEBEVEC || o.refine > 1 || o.reserved)
+        return fail(LENSPROF_ERROR_ARGUMENT, error,
+                    "fit options: channels 1 or 3, reference < images, modes 0..25 or automatic, Huber 0..255 levels, "
+                    "prior weight >= 0, iterations 1..1000000, flags of the shared unknowns only, vignettings 0, 1 or "
+                    "3, gamma automatic or from prior or exposures, a known kind of camera and method, refine 0 or 1");
+    lensprof_status status = lensprof_vignetting_validate(&o.vignetting);
+    if (status != LENSPROF_OK)
+        return fail(status, error, "fit options: the given vignetting is not positive and finite");
+    status = o.response ? lensprof_response_validate(o.response) : LENSPROF_OK;
+    if (status != LENSPROF_OK)
+        return fail(status, error, "fit options: the given response is not monotone from 0 to 1");
+    return o.profile ? check_profile(o, error) : LENSPROF_OK;
+}
+
+lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, lensprof_error *error) {
+    for (uint32_t i = 0; i < count; i++) {
+        const auto &image = images[i];
+        if (!image.width || !image.height || image.width > (1u << 20) || image.height > (1u << 20))
+            return fail(LENSPROF_ERROR_SIZE, error, "image %u: sizes must be 1..1048576", i);
+        if (lensprof_exposure_validate(&image.exposure) != LENSPROF_OK)
+            return fail(LENSPROF_ERROR_EXPOSURE, error, "image %u: exposure or white balance out of range", i);
+        if (image.known_ev_sigma != 0.0
+            && !(image.known_ev_sigma >= 1e-3 && image.known_ev_sigma <= 100.0 && std::abs(image.known_ev) <= 64.0))
+            return fail(LENSPROF_ERROR_EXPOSURE, error,
+                        "image %u: known exposure beyond 64 EV, or its sigma neither 0 nor 0.001..100", i);
+        if (image.free & ~kImageFlags)
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: only EV, RED and BLUE can be free in an image", i);
+        for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})
+            if (of >= count)
+                return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to image %u of %u", i, of, count);
+        if (images[image.ev_of].ev_of != image.ev_of || images[image.red_of].red_of != image.red_of
+            || images[image.blue_of].blue_of != image.blue_of)
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to an image that is linked itself", i);
+    }
+    return LENSPROF_OK;
+}
+
+// A position and grey values in an image; `what` and its number name them in the error.
+lensprof_status check_end(const double xy[2], const double value[3], const lensprof_fit_image &frame, uint32_t image,
+                          int channels, const char *what, uint32_t number, lensprof_error *error) {
+    double x = xy[0], y = xy[1];
+    if (!std::isfinite(x) || !std::isfinite(y))
+        return fail(LENSPROF_ERROR_NOT_FINITE, error, "%s %u: a position is not a number", what, number);
+    if (x < -1.0 || y < -1.0 || x > frame.width || y > frame.height)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "%s %u: position %g, %g is outside image %u", what, number, x, y,
+                    image);
+    for (int c = 0; c < channels; c++) {
+        if (!std::isfinite(value[c]))
+            return fail(LENSPROF_ERROR_NOT_FINITE, error, "%s %u: a grey value is not a number", what, number);
+        if (value[c] < 0.0 || value[c] > 1.0)
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "%s %u: grey values must be 0..1", what, number);
+    }
+    return LENSPROF_OK;
+}
+
+lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const lensprof_fit_image *images,
+                            uint32_t image_count, int channels, lensprof_error *error) {
+    for (uint32_t p = 0; p < count; p++) {
+        const auto &pair = pairs[p];
+        if (pair.image[0] >= image_count || pair.image[1] >= image_count || pair.image[0] == pair.image[1])
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: images %u and %u of %u", p, pair.image[0],
+                        pair.image[1], image_count);
+        for (int side = 0; side < 2; side++) {
+            uint32_t image = pair.image[side];
+            lensprof_status status =
+                check_end(pair.xy[side], pair.value[side], images[image], image, channels, "pair", p, error);
+            if (status != LENSPROF_OK) return status;
+        }
+    }
+    return LENSPROF_OK;
+}
+
+lensprof_status check_observations(const lensprof_observation *observations, uint32_t count,
+                                   const lensprof_fit_image *images, uint32_t image_count, int channels,
+                                   lensprof_error *error) {
+    for (uint32_t n = 0; n < count; n++) {
+        const auto &o = observations[n];
+        if (o.image >= image_count)
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "observation %u: image %u of %u", n, o.image, image_count);
+        lensprof_status status = check_end(o.xy, o.value, images[o.image], o.image, channels, "observation", n, error);
+        if (status != LENSPROF_OK) return status;
+    }
+    return LENSPROF_OK;
+}
+
+lensprof_status check_tracks(const Tracks &tracks, lensprof_error *error) {
+    for (const Range &track : tracks.tracks) {
+        const auto &first = tracks.observations[track.first];
+        if (track.last - track.first < 2)
+            return fail(LENSPROF_ERROR_ARGUMENT, error,
+                        "point %u is observed in one image only; leave out points without a second observation",
+                        first.point);
+        for (size_t i = track.first + 1; i < track.last; i++)
+            if (tracks.observations[i].image == tracks.observations[i - 1].image)
+                return fail(LENSPROF_ERROR_ARGUMENT, error, "point %u is observed twice in image %u", first.point,
+                            tracks.observations[i].image);
+    }
+    return LENSPROF_OK;
+}
+
+// What the method `debevec` takes as known, and the one thing that it finds.
+lensprof_status check_debevec(const lensprof_fit_options &o, const lensprof_fit_image *images, uint32_t image_count,
+                              lensprof_error *error) {
+    if (o.free != LENSPROF_FREE_RESPONSE)
+        return fail(LENSPROF_ERROR_ARGUMENT, error,
+                    "fit options: the method debevec finds the response alone; free it, and hold falloff and centre");
+    for (uint32_t i = 0; i < image_count; i++)
+        if (!(images[i].known_ev_sigma > 0.0))
+            return fail(LENSPROF_ERROR_ARGUMENT, error,
+                        "image %u: the method debevec wants the known exposures of all images (known_ev, and a "
+                        "known_ev_sigma above 0); give it, or use the method transfer",
+                        i);
+    for (uint32_t i = 0; i < image_count; i++)
+        if (!(std::abs(known_exposure(images, o.reference, i)) <= 64.0))
+            return fail(LENSPROF_ERROR_EXPOSURE, error,
+                        "image %u: known exposure beyond 64 EV relative to the reference", i);
+    return LENSPROF_OK;
+}
+
+bool has_unknowns(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t count) {
+    if (options.method == LENSPROF_METHOD_DEBEVEC) return true;  // the response, by no modes
+    Problem problem = make_problem(options, images, count, nullptr, {});
+    return problem.image_unknowns > 0 || !free_columns(problem, options.modes == 0 ? 0 : 1).empty();
+}
+
+// What both fits ask of everything but the pairs or observations.
+lensprof_status check_call(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
+                           bool has_data, const lensprof_exposure *exposures, const lensprof_fit_result *result,
+                           lensprof_error *error) {
+    if (error) error->text[0] = 0;
+    if (!options || !images || !exposures || !result || !has_data)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: a pointer is NULL");
+    if (image_count < 2) return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: at least two images are needed");
+    if (result->struct_size != sizeof *result)
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit result: call lensprof_fit_result_init first");
+    lensprof_status status = check_options(*options, image_count, error);
+    return status == LENSPROF_OK ? check_images(images, image_count, error) : status;
+}
+
+// The exception fence around a fit.
+template <class Fit>
+lensprof_status run(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                    lensprof_error *error, Fit fit) {
+    try {
+        if (!has_unknowns(options, images, image_count))
+            return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "fit: every parameter is fixed; free at least one");
+        return fit();
+    } catch (const Cancelled &) {
+        return fail(LENSPROF_ERROR_CANCELLED, error, "fit: cancelled");
+    } catch (const std::bad_alloc &) {
+        return fail(LENSPROF_ERROR_MEMORY, error, "fit: out of memory");
+    } catch (const std::exception &e) {
+        return fail(LENSPROF_ERROR_INTERNAL, error, "fit: %s", e.what());
+    } catch (...) {
+        return fail(LENSPROF_ERROR_INTERNAL, error, "fit: an unknown exception");
+    }
+}
+
+lensprof_status fit_tracks(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                           const lensprof_observation *observations, uint32_t count, lensprof_exposure *exposures,
+                           lensprof_fit_result &result, lensprof_error *error) {
+    Tracks tracks = tracks_of(observations, count);
+    lensprof_status status = check_tracks(tracks, error);
+    if (status != LENSPROF_OK) return status;
+    if (pairs_of(tracks, static_cast<int>(options.channels)).empty())
+        return fail(LENSPROF_ERROR_NO_SAMPLES, error,
+                    "fit: no point has two observations that are neither black nor saturated");
+    fit_radiance(options, images, image_count, tracks, exposures, result);
+    return LENSPROF_OK;
+}
+
+}  // namespace
+
+extern "C" {
+
+void lensprof_fit_options_init(lensprof_fit_options *options) {
+    *options = lensprof_fit_options{};
+    options->struct_size = sizeof *options;
+    options->channels = 3;
+    options->free =
+        LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
+    options->modes = LENSPROF_MODES_AUTO;
+    options->huber_levels = 5.0;
+    options->prior_weight = 1.0;
+    options->max_iterations = 200;
+}
+
+void lensprof_fit_result_init(lensprof_fit_result *result) {
+    *result = lensprof_fit_result{};
+    result->struct_size = sizeof *result;
+    lensprof_response_set_linear(&result->response);
+}
+
+lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const lensprof_fit_image *images,
+                                     uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
+                                     lensprof_exposure *exposures, lensprof_fit_result *result, lensprof_error *error) {
+    lensprof_status status =
+        check_call(options, images, image_count, pairs || pair_count == 0, exposures, result, error);
+    if (status == LENSPROF_OK)
+        status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(options->channels), error);
+    if (status == LENSPROF_OK && options->method == LENSPROF_METHOD_DEBEVEC)
+        status = check_debevec(*options, images, image_count, error);
+    if (status != LENSPROF_OK) return status;
+    if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
+    return run(*options, images, image_count, error, [&] {
+        if (options->method == LENSPROF_METHOD_TRANSFER) {
+            fit_overlap(*options, images, image_count, pairs, pair_count, exposures, *result);
+            return LENSPROF_OK;
+        }
+        if (options->method == LENSPROF_METHOD_TRANSFER_FUNCTION) {
+            fit_transfer_functions(*options, images, image_count, pairs, pair_count, exposures, *result);
+            return LENSPROF_OK;
+        }
+        if (options->method == LENSPROF_METHOD_DEBEVEC) {
+            fit_debevec(*options, images, image_count, pairs, pair_count, exposures, *result);
+            return LENSPROF_OK;
+        }
+        std::vector<lensprof_observation> observations =
+            observations_of(pairs, pair_count, static_cast<int>(options->channels));
+        return fit_tracks(*options, images, image_count, observations.data(),
+                          static_cast<uint32_t>(observations.size()), exposures, *result, error);
+    });
+}
+
+lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const lensprof_fit_image *images,
+                                      uint32_t image_count, const lensprof_observation *observations,
+                                      uint32_t observation_count, lensprof_exposure *exposures,
+                                      lensprof_fit_result *result, lensprof_error *error) {
+    lensprof_status status =
+        check_call(options, images, image_count, observations || observation_count == 0, exposures, result, error);
+    if (status == LENSPROF_OK && options->method != LENSPROF_METHOD_RADIANCE)
+        return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: tracks are for the method radiance");
+    if (status == LENSPROF_OK)
+        status = check_observations(observations, observation_count, images, image_count,
+                                    static_cast<int>(options->channels), error);
+    if (status != LENSPROF_OK) return status;
+    if (observation_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no observations were given");
+    return run(*options, images, image_count, error, [&] {
+        return fit_tracks(*options, images, image_count, observations, observation_count, exposures, *result, error);
+    });
+}
+
+lensprof_status lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting vignetting[3],
+                                      const lensprof_fit_image *images, const lensprof_exposure *exposures,
+                                      uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
+                                      uint32_t channels, double *rms, double *median) {
+    if (!response || !vignetting || !images || !exposures || !pairs || !rms || !pair_count
+        || (channels != 1 && channels != 3))
+        return LENSPROF_ERROR_ARGUMENT;
+    lensprof_status status = lensprof_response_validate(response);
+    for (uint32_t c = 0; c < channels && status == LENSPROF_OK; c++)
+        status = lensprof_vignetting_validate(&vignetting[c]);
+    if (status == LENSPROF_OK) status = check_images(images, image_count, nullptr);
+    if (status == LENSPROF_OK)
+        status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(channels), nullptr);
+    for (uint32_t i = 0; i < image_count && status == LENSPROF_OK; i++)
+        status = lensprof_exposure_validate(&exposures[i]);
+    if (status != LENSPROF_OK) return status;
+    try {
+        Summary summary = transfer_summary(*response, vignetting, images, exposures, image_count, pairs, pair_count,
+                                           static_cast<int>(channels));
+        *rms = summary.rms;
+        if (median) *median = summary.median;
+        return LENSPROF_OK;
+    } catch (const std::exception &) {
+        return LENSPROF_ERROR_MEMORY;
+    }
+}
+
+}  // extern "C"

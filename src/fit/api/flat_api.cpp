@@ -1,0 +1,115 @@
+// The C face of the flat field fit: checks, and the exception fence.
+#include <cmath>
+#include <memory>
+#include <new>
+
+#include "fit/base/fail.hpp"
+#include "fit/base/parallel.hpp"
+#include "fit/flat/fit.hpp"
+
+using namespace lensprof;
+
+namespace {
+
+constexpr uint32_t kLensFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
+constexpr double kLargestTurn = 360.0;
+
+lensprof_status check_options(const lensprof_flat_options &o, uint32_t count, lensprof_error *error) {
+    if (o.struct_size != sizeof o)
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "flat options: call lensprof_flat_options_init first");
+    if (count == 0 || count > LENSPROF_FLAT_IMAGES)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "flat: %u pictures; give 1 to %d", count, LENSPROF_FLAT_IMAGES);
+    if ((o.channels != 1 && o.channels != 3) || (o.free & ~kLensFlags) || (o.vignettings > 1 && o.vignettings != 3)
+        || o.light > LENSPROF_FLAT_LIGHT_QUADRATIC || o.own_light > 1 || o.several > 1 || o.find_card > 1
+        || o.grid > LENSPROF_FLAT_GRID_ALWAYS || (o.responses != 1 && o.responses != 3) || o.reserved
+        || (o.vignettings == 3 && o.channels == 1) || !(o.ev_sigma >= 1e-3 && o.ev_sigma <= 1.0)
+        || !(o.prior_weight >= 0.0 && o.prior_weight <= 1e6))
+        return fail(
+            LENSPROF_ERROR_ARGUMENT, error,
+            "flat options: channels and responses 1 or 3, flags of falloff and centre only, vignettings 0, 1 "
+            "or (of three channels) 3, a known light and grid, switches 0 or 1, 0.001..1 EV, prior weight >= 0");
+    if (o.several && o.light > LENSPROF_FLAT_LIGHT_EVEN)
+        return fail(LENSPROF_ERROR_ARGUMENT, error,
+                    "flat options: a card at several places has one brightness; its light must be even");
+    if (!o.free)
+        return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "flat: falloff and centre are fixed; free at least one");
+    lensprof_status status = lensprof_vignetting_validate(&o.vignetting);
+    if (status != LENSPROF_OK)
+        return fail(status, error, "flat options: the given vignetting is not positive and finite");
+    for (uint32_t c = 0; o.response && c < o.responses && status == LENSPROF_OK; c++)
+        status = lensprof_response_validate(&o.response[c]);
+    return status == LENSPROF_OK ? status : fail(status, error, "flat options: a response is not monotone from 0 to 1");
+}
+
+lensprof_status check_image(const lensprof_flat_options &o, const lensprof_flat_image *images, uint32_t i,
+                            lensprof_error *error) {
+    const auto &image = images[i];
+    lensprof_status status = check_view(sample_image_of(image), i, error);
+    if (status != LENSPROF_OK) return status;
+    if (image.width != images[0].width || image.height != images[0].height)
+        return fail(LENSPROF_ERROR_SIZE, error, "image %u: a frame of %u x %u, not %u x %u as the first", i,
+                    image.width, image.height, images[0].width, images[0].height);
+    if (o.channels == 3 && lensprof_layout_channels(image.view.layout) != 3)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: a grey picture; set channels to 1", i);
+    if (!(std::abs(image.ev) <= 64.0))
+        return fail(LENSPROF_ERROR_EXPOSURE, error, "image %u: exposure beyond 64 EV", i);
+    if (!(std::abs(image.turn_deg) <= kLargestTurn))
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: turned by more than 360 degrees", i);
+    for (uint32_t j = 0; j < i; j++)
+        if (images[j].shot == image.shot && images[j].turn_deg != image.turn_deg)
+            return fail(LENSPROF_ERROR_ARGUMENT, error, "images %u and %u: one shot, turned differently", j, i);
+    return LENSPROF_OK;
+}
+
+}  // namespace
+
+extern "C" {
+
+void lensprof_flat_options_init(lensprof_flat_options *options) {
+    *options = lensprof_flat_options{};
+    options->struct_size = sizeof *options;
+    options->channels = 3;
+    options->free = kLensFlags;
+    options->responses = 1;
+    options->ev_sigma = 0.02;
+    options->prior_weight = 1.0;
+}
+
+void lensprof_flat_result_init(lensprof_flat_result *result) {
+    *result = lensprof_flat_result{};
+    result->struct_size = sizeof *result;
+}
+
+lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const lensprof_flat_image *images,
+                                  uint32_t count, lensprof_flat_result *result, lensprof_error *error) {
+    if (error) error->text[0] = 0;
+    if (!options || !images || !result) return fail(LENSPROF_ERROR_ARGUMENT, error, "flat: a pointer is NULL");
+    if (result->struct_size != sizeof *result)
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "flat result: call lensprof_flat_result_init first");
+    lensprof_status status = check_options(*options, count, error);
+    for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = check_image(*options, images, i, error);
+    if (status != LENSPROF_OK) return status;
+    try {
+        auto stop = [&] { return options->progress && options->progress(0.0, options->progress_user) != 0; };
+        auto place = [&](uint32_t i) { return sample_image_of(images[i]); };
+        status = check_finite(place, count, options->threads, stop, error);
+        if (status != LENSPROF_OK) return status;
+        auto found = std::make_unique<lensprof_flat_result>(*result);
+        if (!fit_flat(*options, images, count, *found))
+            return fail(
+                LENSPROF_ERROR_NO_SAMPLES, error,
+                "no part of a card lies between black and white; check exposures, limits, and where the card is");
+        *result = *found;
+        return LENSPROF_OK;
+    } catch (const Cancelled &) {
+        return fail(LENSPROF_ERROR_CANCELLED, error, "flat: cancelled");
+    } catch (const std::bad_alloc &) {
+        return fail(LENSPROF_ERROR_MEMORY, error, "flat: out of memory");
+    } catch (const std::exception &e) {
+        return fail(LENSPROF_ERROR_INTERNAL, error, "flat: %s", e.what());
+    } catch (...) {
+        return fail(LENSPROF_ERROR_INTERNAL, error, "flat: an unknown exception");
+    }
+}
+
+}  // extern "C"

@@ -1,0 +1,117 @@
+// The residual gain grid: what the polynomial leaves, by least squares on bilinear nodes that are kept smooth.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/SparseCholesky>
+
+#include "core/gain_grid.h"
+#include "fit/flat/fit.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr int kNodes = 24;               // along the longer side
+constexpr int kCellsPerNode = 3;         // at least
+constexpr double kSmallestNoise = 2e-3;  // of a cell's light: what its noise does not tell
+constexpr double kStiffness = 0.02;      // of second differences, of the weight of a node's cells
+constexpr double kRidge = 1e-6;          // pull to 1, of the same: nodes that no cell reaches
+constexpr double kSmallestCover = 0.8;   // of the frame's cells
+
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+// Nodes about a place and their shares.
+struct Bilinear {
+    int node[4];
+    double share[4];
+};
+
+// The shares with which lensprof_gain_grid_eval takes the nodes about a cell.
+Bilinear bilinear(const lensprof_gain_grid &gain, const CellGrid &grid, const FlatCell &cell) {
+    const lp_grid_cell column = lp_grid_cell_at(cell.x, grid.width, gain.columns);
+    const lp_grid_cell row = lp_grid_cell_at(cell.y, grid.height, gain.rows);
+    const double u = column.fraction, v = row.fraction;
+    const int columns = static_cast<int>(gain.columns),
+              first = static_cast<int>(row.node) * columns + static_cast<int>(column.node);
+    return {{first, first + 1, first + columns, first + columns + 1},
+            {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
+}
+
+// Squared second differences of nodes in one direction.
+void add_stiffness(const lensprof_gain_grid &gain, bool across, double weight, Entries &entries) {
+    const int columns = static_cast<int>(gain.columns), rows = static_cast<int>(gain.rows);
+    const int step = across ? 1 : columns;
+    for (int row = across ? 0 : 1; row < (across ? rows : rows - 1); row++)
+        for (int column = across ? 1 : 0; column < (across ? columns - 1 : columns); column++) {
+            const int middle = row * columns + column, node[3] = {middle - step, middle, middle + step};
+            const double by[3] = {1.0, -2.0, 1.0};
+            for (int a = 0; a < 3; a++)
+                for (int b = 0; b < 3; b++) entries.emplace_back(node[a], node[b], weight * by[a] * by[b]);
+        }
+}
+
+bool fit_channel(const FlatFit &fit, int channel, lensprof_gain_grid &gain) {
+    const auto nodes = static_cast<Eigen::Index>(gain.columns * gain.rows);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(nodes);
+    Entries entries;
+    double total = 0.0;
+    for (const FlatCell &cell : fit.problem.cells) {
+        double p = flat_residual(fit.problem, fit.estimate, cell, channel).prediction.value;
+        double weight = 1.0 / (cell.variance[static_cast<size_t>(channel)] / (p * p) + kSmallestNoise * kSmallestNoise);
+        Bilinear at = bilinear(gain, fit.grid, cell);
+        total += weight;
+        for (int a = 0; a < 4; a++) {
+            right[at.node[a]] += weight * at.share[a] * (cell.value[static_cast<size_t>(channel)] / p);
+            for (int b = 0; b < 4; b++)
+                entries.emplace_back(at.node[a], at.node[b], weight * at.share[a] * at.share[b]);
+        }
+    }
+    double typical = total / static_cast<double>(nodes);
+    add_stiffness(gain, true, kStiffness * typical, entries);
+    add_stiffness(gain, false, kStiffness * typical, entries);
+    for (Eigen::Index i = 0; i < nodes; i++) {
+        entries.emplace_back(i, i, kRidge * typical);
+        right[i] += kRidge * typical;
+    }
+    Eigen::SparseMatrix<double> normal(nodes, nodes);
+    normal.setFromTriplets(entries.begin(), entries.end());
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(normal);
+    if (factor.info() != Eigen::Success) return false;
+    Eigen::VectorXd value = factor.solve(right);
+    for (Eigen::Index i = 0; i < nodes; i++) gain.attenuation[channel * nodes + i] = static_cast<float>(value[i]);
+    return value.allFinite() && value.minCoeff() > 0.0;
+}
+
+}  // namespace
+
+bool fit_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain) {
+    std::vector<bool> covered(static_cast<size_t>(fit.grid.count()));
+    for (const FlatCell &cell : fit.problem.cells) covered[static_cast<size_t>(cell.cell)] = true;
+    lensprof_gain_grid_init(&gain);
+    if (static_cast<double>(std::count(covered.begin(), covered.end(), true)) < kSmallestCover * fit.grid.count())
+        return false;
+    const int longer = std::max(fit.grid.columns, fit.grid.rows);
+    const double nodes = std::max(2, std::min(kNodes, longer / kCellsPerNode));
+    auto side = [&](int cells) { return static_cast<uint32_t>(std::max(2L, std::lround(nodes * cells / longer))); };
+    gain.columns = side(fit.grid.columns);
+    gain.rows = side(fit.grid.rows);
+    gain.channels = fit.problem.model.channels == 3 ? 3 : 1;
+    bool good = true;
+    for (int c = 0; c < fit.problem.model.channels; c++) good = good && fit_channel(fit, c, gain);
+    good = good && lensprof_gain_grid_validate(&gain) == LENSPROF_OK;
+    if (!good) lensprof_gain_grid_init(&gain);
+    return good;
+}
+
+void normalise_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain) {
+    lensprof_vignetting v = falloff_of(fit.problem.model, fit.estimate.u, 0);
+    double half = 0.5 * std::hypot(fit.grid.width, fit.grid.height);
+    double x = 0.5 * (fit.grid.width - 1.0) + half * v.center[0];
+    double y = 0.5 * (fit.grid.height - 1.0) + half * v.center[1];
+    for (uint32_t c = 0; c < gain.channels; c++) {
+        float *node = gain.attenuation + c * gain.rows * gain.columns;
+        auto at_center = static_cast<float>(lensprof_gain_grid_eval(&gain, fit.grid.width, fit.grid.height, x, y, c));
+        for (uint32_t i = 0; i < gain.rows * gain.columns; i++) node[i] /= at_center;
+    }
+}
+
+}  // namespace lensprof

@@ -1,0 +1,56 @@
+#include "fit/flat/model.hpp"
+
+#include <cmath>
+
+namespace lensprof {
+
+lensprof_vignetting falloff_of(const FlatModel &model, const Eigen::VectorXd &u, int curve) {
+    lensprof_vignetting v;
+    for (int i = 0; i < 3; i++) v.k[i] = u[model.k(curve) + i];
+    for (int d = 0; d < 2; d++) v.center[d] = u[model.center() + d];
+    return v;
+}
+
+void set_falloff(const FlatModel &model, const lensprof_vignetting &vignetting, Eigen::VectorXd &u) {
+    for (int curve = 0; curve < model.curves; curve++)
+        for (int i = 0; i < 3; i++) u[model.k(curve) + i] = vignetting.k[i];
+    for (int d = 0; d < 2; d++) u[model.center() + d] = vignetting.center[d];
+}
+
+Prediction predict(const FlatModel &model, const Eigen::VectorXd &u, int shot, int channel, double x, double y) {
+    const CellGrid &grid = model.grid;
+    const int curve = model.curve_of(channel), level = model.level(shot, channel);
+    lensprof_vignetting v = falloff_of(model, u, curve);
+    double by_center[2], slope, r2 = lensprof_vignetting_r2(&v, grid.width, grid.height, x, y, by_center);
+    Prediction p;
+    p.falloff = lensprof_vignetting_eval(&v, r2, &slope);
+    double log_light = u[level] + (model.several ? u[model.exposure_error(shot)] : 0.0);
+    double half = 0.5 * std::hypot(grid.width, grid.height), cosine = model.turn[static_cast<size_t>(shot)][0];
+    double dx = (x - 0.5 * (grid.width - 1.0)) / half, dy = (y - 0.5 * (grid.height - 1.0)) / half;
+    double sine = model.turn[static_cast<size_t>(shot)][1], qx = cosine * dx - sine * dy, qy = sine * dx + cosine * dy;
+    const double basis[kMostLightTerms] = {qx, qy, qx * qx - qy * qy, 2.0 * qx * qy};
+    for (int j = 0; j < model.light_terms; j++) log_light += u[model.light(shot, channel) + j] * basis[j];
+    const double light = std::exp(log_light);
+    p.value = light * p.falloff;
+    p.add(model.k(curve), light * r2);
+    p.add(model.k(curve) + 1, light * r2 * r2);
+    p.add(model.k(curve) + 2, light * r2 * r2 * r2);
+    for (int d = 0; d < 2; d++) p.add(model.center() + d, light * slope * by_center[d]);
+    p.add(level, p.value);
+    if (model.several) p.add(model.exposure_error(shot), p.value);
+    for (int j = 0; j < model.light_terms; j++) p.add(model.light(shot, channel) + j, p.value * basis[j]);
+    return p;
+}
+
+std::array<double, 2> light_gradient(const FlatModel &model, const Eigen::VectorXd &u, int shot) {
+    std::array<double, 2> scene{}, frame{};
+    if (model.light_terms < 2) return frame;
+    for (int c = 0; c < model.channels; c++)
+        for (int d = 0; d < 2; d++) scene[static_cast<size_t>(d)] += u[model.light(shot, c) + d] / model.channels;
+    const auto [cosine, sine] = model.turn[static_cast<size_t>(shot)];
+    frame[0] = cosine * scene[0] + sine * scene[1];
+    frame[1] = -sine * scene[0] + cosine * scene[1];
+    return frame;
+}
+
+}  // namespace lensprof

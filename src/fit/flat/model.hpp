@@ -1,0 +1,60 @@
+// The light that the model predicts in a cell, and its derivatives (Goldman & Chen 2005, equation 14):
+//     P = t L0 M(r) = exp(level + light . basis(q)) (1 + k1 r^2 + k2 r^4 + k3 r^6)
+// q is the cell's place turned into the scene, in half diagonals about the frame's centre.
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "fit/flat/shots.hpp"
+
+namespace lensprof {
+
+constexpr int kMostLightTerms = 4;  // x, y, x^2 - y^2, 2 x y
+
+// What is unknown, and where it stands in the vector of unknowns: curves, centre, levels, light.
+struct FlatModel {
+    CellGrid grid;
+    int channels = 3, curves = 1, shots = 1;
+    int light_terms = 2;
+    bool own_light = false, several = false;
+    std::vector<std::array<double, 2>> turn;  // of the shots: cosine and sine
+
+    int k(int curve) const { return 3 * curve; }
+    int center() const { return 3 * curves; }
+    int levels() const { return center() + 2; }
+    // A shot's level is level(channel) alone, or with `several` that plus the error of its exposure.
+    int level(int shot, int channel) const { return levels() + (several ? 0 : shot * channels) + channel; }
+    int exposure_error(int shot) const { return levels() + channels + shot; }
+    int light(int shot, int channel) const {
+        int first = levels() + (several ? channels + shots : shots * channels);
+        return first + ((own_light ? shot : 0) * channels + channel) * light_terms;
+    }
+    int unknowns() const { return light(own_light ? shots - 1 : 0, channels - 1) + light_terms; }
+    int curve_of(int channel) const { return curves == 3 ? channel : 0; }
+};
+
+lensprof_vignetting falloff_of(const FlatModel &model, const Eigen::VectorXd &u, int curve);
+void set_falloff(const FlatModel &model, const lensprof_vignetting &vignetting, Eigen::VectorXd &u);
+
+// A prediction and its derivatives by the unknowns it depends on.
+struct Prediction {
+    static constexpr int kMost = 3 + 2 + 2 + kMostLightTerms;
+    double value = 0.0, falloff = 0.0;
+    int count = 0;
+    std::array<int, kMost> index;
+    std::array<double, kMost> by;
+
+    void add(int i, double derivative) {
+        index[static_cast<size_t>(count)] = i;
+        by[static_cast<size_t>(count++)] = derivative;
+    }
+};
+
+Prediction predict(const FlatModel &model, const Eigen::VectorXd &u, int shot, int channel, double x, double y);
+
+// Slope of the light's logarithm in a shot's frame, to the right and down, a half diagonal: mean of the channels.
+std::array<double, 2> light_gradient(const FlatModel &model, const Eigen::VectorXd &u, int shot);
+
+}  // namespace lensprof

@@ -1,0 +1,335 @@
+#include "fit/flat/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "fit/base/quantile.hpp"
+#include "fit/prior/prior.hpp"
+#include "fit/problem/loss.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kCutoff = 4.0;    // of the robust loss, sigmas of a cell's typical size
+constexpr int kRounds = 12;        // of noise and fit in turn
+constexpr double kSettled = 1e-3;  // change of what measures the noise
+constexpr int kMostSteps = 60;
+constexpr double kSmallestGain = 1e-8;  // of the objective, at which a fit has settled
+constexpr double kLargestDamping = 1e12;
+constexpr double kSmallestScale = 0.2;
+constexpr double kMedianChi2 = 0.4549, kMedianChi2Of3 = 2.366;  // of chi-squared, 1 and 3 degrees of freedom
+constexpr double kLn2 = 0.6931471805599453;
+constexpr double kInlierSquare = 0.973, kInlierSquare3 = 0.988;  // mean square of what inlier_limit lets through
+constexpr int kBlocks[] = {4, 8, 16, 32};                        // cells along a block
+constexpr double kSmallestPivot = 1e-11;  // of the scaled normal equations: below, they are singular
+
+double cutoff(const FlatProblem &problem) { return kCutoff * kCutoff * problem.model.channels; }
+
+// Standard deviation of a cell's residual.
+double sigma_of(const FlatEstimate &estimate, double variance, double predicted) {
+    return std::sqrt(variance + std::pow(estimate.unevenness * predicted, 2));
+}
+
+// Normal equations over the free unknowns at an estimate, and the objective there.
+struct Normal {
+    Eigen::MatrixXd hessian;
+    Eigen::VectorXd gradient;  // of -objective
+    double objective = 0.0;
+};
+
+double prior_objective(const FlatProblem &problem, const Eigen::VectorXd &u) {
+    Eigen::VectorXd d = u - problem.prior.mean;
+    return 0.5 * d.dot(problem.prior.precision * d);
+}
+
+// What sigma is relative to, held while the solver steps: the prediction at its start.
+using Sigmas = std::vector<std::array<double, 3>>;
+
+Sigmas all_sigmas(const FlatProblem &problem, const FlatEstimate &estimate) {
+    Sigmas sigmas(problem.cells.size());
+    for (size_t i = 0; i < sigmas.size(); i++)
+        for (int c = 0; c < problem.model.channels; c++)
+            sigmas[i][static_cast<size_t>(c)] =
+                estimate.scale * flat_residual(problem, estimate, problem.cells[i], c).sigma;
+    return sigmas;
+}
+
+Prediction predict_cell(const FlatProblem &problem, const Eigen::VectorXd &u, const FlatCell &cell, int channel) {
+    return predict(problem.model, u, cell.shot, channel, cell.x, cell.y);
+}
+
+double objective(const FlatProblem &problem, const Eigen::VectorXd &u, const Sigmas &sigmas, double inflation) {
+    double sum = 0.0, divisor;
+    for (size_t i = 0; i < sigmas.size(); i++) {
+        double chi2 = 0.0;
+        for (int c = 0; c < problem.model.channels; c++) {
+            const auto at = static_cast<size_t>(c);
+            double r =
+                (problem.cells[i].value[at] - predict_cell(problem, u, problem.cells[i], c).value) / sigmas[i][at];
+            chi2 += r * r;
+        }
+        sum += 0.5 * robust_cost(chi2, cutoff(problem), &divisor);
+    }
+    return sum / inflation + prior_objective(problem, u);
+}
+
+Normal normal_equations(const FlatProblem &problem, const Eigen::VectorXd &u, const Sigmas &sigmas, double inflation) {
+    const int n = problem.model.unknowns();
+    Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+    Normal normal;
+    for (size_t i = 0; i < sigmas.size(); i++) {
+        const FlatCell &cell = problem.cells[i];
+        std::array<Prediction, 3> p;
+        double residual[3], chi2 = 0.0, divisor;
+        for (int c = 0; c < problem.model.channels; c++) {
+            const auto at = static_cast<size_t>(c);
+            p[at] = predict_cell(problem, u, cell, c);
+            residual[c] = (cell.value[at] - p[at].value) / sigmas[i][at];
+            chi2 += residual[c] * residual[c];
+        }
+        normal.objective += 0.5 * robust_cost(chi2, cutoff(problem), &divisor);
+        for (int c = 0; c < problem.model.channels; c++) {
+            const Prediction &one = p[static_cast<size_t>(c)];
+            const double sigma = sigmas[i][static_cast<size_t>(c)], weight = 1.0 / (divisor * sigma * sigma);
+            for (size_t a = 0; a < static_cast<size_t>(one.count); a++) {
+                gradient[one.index[a]] += residual[c] / (divisor * sigma) * one.by[a];
+                for (size_t b = 0; b <= a; b++) data(one.index[a], one.index[b]) += weight * one.by[a] * one.by[b];
+            }
+        }
+    }
+    Eigen::MatrixXd full = data + data.transpose();  // an entry stands in one triangle, whichever: both are filled
+    full.diagonal() -= data.diagonal();
+    normal.hessian = full(problem.free, problem.free) / inflation + problem.prior.precision(problem.free, problem.free);
+    gradient = gradient / inflation + problem.prior.precision * (problem.prior.mean - u);
+    normal.gradient = gradient(problem.free);
+    normal.objective = normal.objective / inflation + prior_objective(problem, u);
+    return normal;
+}
+
+bool is_falloff(const FlatModel &model, const Eigen::VectorXd &u) {
+    for (int curve = 0; curve < model.curves; curve++) {
+        lensprof_vignetting v = falloff_of(model, u, curve);
+        if (lensprof_vignetting_validate(&v) != LENSPROF_OK) return false;
+    }
+    return u.allFinite();
+}
+
+// Steps until the objective settles, sigmas held.
+void descend(const FlatProblem &problem, FlatEstimate &estimate) {
+    Sigmas sigmas = all_sigmas(problem, estimate);
+    double damping = 1e-6;
+    estimate.converged = false;
+    for (int step = 0; step < kMostSteps && !estimate.converged && damping < kLargestDamping; step++) {
+        Normal normal = normal_equations(problem, estimate.u, sigmas, estimate.inflation);
+        bool better = false;
+        for (; !better && damping < kLargestDamping; damping *= better ? 0.1 : 10.0) {
+            Eigen::MatrixXd damped = normal.hessian;
+            damped.diagonal() *= 1.0 + damping;
+            damped.diagonal().array() += 1e-12;
+            Eigen::VectorXd change = damped.ldlt().solve(normal.gradient), next = estimate.u;
+            next(problem.free) += change;
+            if (!is_falloff(problem.model, next)) continue;
+            double gain = normal.objective - objective(problem, next, sigmas, estimate.inflation);
+            better = gain >= 0.0;
+            if (!better && std::abs(gain) > kSmallestGain * normal.objective) continue;
+            if (better) estimate.u = next;
+            estimate.converged = gain <= kSmallestGain * normal.objective;
+            if (estimate.converged) break;
+        }
+        estimate.iterations++;
+    }
+}
+
+// Residuals of all cells, (E - P) / sigma / scale, and their chi-squared.
+struct Scaled {
+    std::vector<std::array<double, 3>> z;
+    std::vector<double> chi2;
+};
+
+// How many times the variance of independent cells the residuals' sums over blocks have.
+double block_inflation(const FlatProblem &problem, const Scaled &residuals, int side) {
+    const CellGrid &grid = problem.model.grid;
+    const int across = (grid.columns + side - 1) / side, blocks = across * ((grid.rows + side - 1) / side);
+    double worst = 1.0;
+    for (int curve = 0; curve < problem.model.curves; curve++) {
+        std::vector<double> sum(static_cast<size_t>(blocks)), count(sum.size());
+        for (size_t i = 0; i < problem.cells.size(); i++) {
+            if (residuals.chi2[i] > inlier_limit(problem.model.channels)) continue;
+            const int cell = problem.cells[i].cell;
+            auto block = static_cast<size_t>(cell / grid.columns / side * across + cell % grid.columns / side);
+            for (int c = 0; c < problem.model.channels; c++)
+                if (problem.model.curve_of(c) == curve) {
+                    sum[block] += residuals.z[i][static_cast<size_t>(c)];
+                    count[block] += 1.0;
+                }
+        }
+        double ratio = 0.0, used = 0.0;
+        for (size_t b = 0; b < sum.size(); b++)
+            if (count[b] >= 16.0) ratio += sum[b] * sum[b] / count[b], used += 1.0;
+        if (used > 0.0) worst = std::max(worst, ratio / used);
+    }
+    return worst;
+}
+
+// Unevenness, from relative residuals and the relative variance of their noise, robust against cells that are wrong.
+double unevenness(const FlatProblem &problem, const std::vector<std::array<double, 3>> &predicted) {
+    std::vector<double> squares, noises;
+    for (size_t i = 0; i < predicted.size(); i++)
+        for (size_t c = 0; c < static_cast<size_t>(problem.model.channels); c++) {
+            double p = predicted[i][c], r = problem.cells[i].value[c] / p - 1.0;
+            squares.push_back(r * r);
+            noises.push_back(problem.cells[i].variance[c] / (p * p));
+        }
+    double beyond = median(squares) / kMedianChi2 - median(noises);
+    return std::sqrt(std::max(beyond, 0.0));
+}
+
+// Mean square of the residuals that are no outliers, per degree of freedom.
+double residual_variance(const FlatProblem &problem, const std::vector<double> &chi2) {
+    std::vector<double> order = chi2;
+    const int channels = problem.model.channels;
+    double variance = std::max(median(order) / (channels == 3 ? kMedianChi2Of3 : kMedianChi2), 1e-12);
+    for (int round = 0; round < 10; round++) {
+        double sum = 0.0, count = 0.0;
+        for (double value : chi2)
+            if (value < inlier_limit(channels) * variance) sum += value, count += channels;
+        if (count > 0.0) variance = sum / count / (channels == 3 ? kInlierSquare3 : kInlierSquare);
+    }
+    const auto data = static_cast<double>(channels) * static_cast<double>(chi2.size());
+    return variance * data / std::max(data - static_cast<double>(problem.free.size()), 1.0);
+}
+
+// Unevenness, scale and inflation from the residuals.
+void measure_noise(const FlatProblem &problem, FlatEstimate &estimate) {
+    const auto channels = static_cast<size_t>(problem.model.channels);
+    std::vector<std::array<double, 3>> predicted(problem.cells.size());
+    for (size_t i = 0; i < predicted.size(); i++)
+        for (size_t c = 0; c < channels; c++)
+            predicted[i][c] = predict_cell(problem, estimate.u, problem.cells[i], static_cast<int>(c)).value;
+    estimate.unevenness = unevenness(problem, predicted);
+    Scaled residuals{std::vector<std::array<double, 3>>(predicted.size()), std::vector<double>(predicted.size())};
+    for (size_t i = 0; i < predicted.size(); i++)
+        for (size_t c = 0; c < channels; c++) {
+            const double sigma = sigma_of(estimate, problem.cells[i].variance[c], predicted[i][c]);
+            residuals.z[i][c] = (problem.cells[i].value[c] - predicted[i][c]) / sigma;
+            residuals.chi2[i] += residuals.z[i][c] * residuals.z[i][c];
+        }
+    estimate.scale = std::max(std::sqrt(residual_variance(problem, residuals.chi2)), kSmallestScale);
+    for (size_t i = 0; i < predicted.size(); i++) {
+        residuals.chi2[i] /= estimate.scale * estimate.scale;
+        for (size_t c = 0; c < channels; c++) residuals.z[i][c] /= estimate.scale;
+    }
+    estimate.inflation = 1.0;
+    for (int side : kBlocks)
+        estimate.inflation = std::max(estimate.inflation, block_inflation(problem, residuals, side));
+}
+
+}  // namespace
+
+FlatPrior make_flat_prior(const lensprof_flat_options &options, const FlatModel &model) {
+    const int n = model.unknowns();
+    FlatPrior prior{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
+    Prior lens = make_prior(options.prior_weight, model.curves);
+    auto column = [&](int i) { return i < model.center() ? kFalloff + i : kCenter + i - model.center(); };
+    for (int i = 0; i < model.levels(); i++) {
+        prior.mean[i] = lens.mean[column(i)];
+        for (int j = 0; j < model.levels(); j++) prior.precision(i, j) = lens.precision(column(i), column(j));
+    }
+    for (int shot = 0; shot < model.shots && model.several; shot++) {
+        double sigma = options.ev_sigma * kLn2;
+        prior.precision(model.exposure_error(shot), model.exposure_error(shot)) = 1.0 / (sigma * sigma);
+    }
+    return prior;
+}
+
+std::vector<int> free_unknowns(const FlatModel &model, uint32_t free) {
+    const uint32_t flags[3] = {LENSPROF_FREE_K1, LENSPROF_FREE_K2, LENSPROF_FREE_K3};
+    std::vector<int> unknowns;
+    for (int i = 0; i < model.unknowns(); i++) {
+        bool held = i < model.center()   ? !(free & flags[i % 3])
+                    : i < model.levels() ? !(free & LENSPROF_FREE_CENTER)
+                                         : false;
+        if (!held) unknowns.push_back(i);
+    }
+    return unknowns;
+}
+
+Eigen::VectorXd flat_start(const FlatProblem &problem, const lensprof_vignetting &given) {
+    const FlatModel &model = problem.model;
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(model.unknowns());
+    set_falloff(model, given, u);
+    for (int i : problem.free)
+        if (i < model.levels()) u[i] = 0.0;
+    if (!is_falloff(model, u)) set_falloff(model, given, u);
+    for (int shot = 0; shot < (model.several ? 1 : model.shots); shot++)
+        for (int c = 0; c < model.channels; c++) {
+            std::vector<double> values;
+            for (const FlatCell &cell : problem.cells)
+                if (model.several || cell.shot == shot) {
+                    double p = predict_cell(problem, u, cell, c).falloff;
+                    values.push_back(std::log(cell.value[static_cast<size_t>(c)] / p));
+                }
+            u[model.level(shot, c)] = median(values);
+        }
+    return u;
+}
+
+FlatResidual flat_residual(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell,
+                           int channel) {
+    const auto c = static_cast<size_t>(channel);
+    FlatResidual r;
+    r.prediction = predict_cell(problem, estimate.u, cell, channel);
+    r.sigma = sigma_of(estimate, cell.variance[c], r.prediction.value);
+    r.z = (cell.value[c] - r.prediction.value) / r.sigma;
+    return r;
+}
+
+double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell) {
+    double sum = 0.0;
+    for (int c = 0; c < problem.model.channels; c++) {
+        double z = flat_residual(problem, estimate, cell, c).z / estimate.scale;
+        sum += z * z;
+    }
+    return sum;
+}
+
+void solve_flat(const FlatProblem &problem, FlatEstimate &estimate) {
+    auto state = [&] { return Eigen::Vector3d(estimate.unevenness, estimate.scale, estimate.inflation); };
+    // First with the centre held and every cell counted as one: before the falloff is near, all cells err together, and
+    // the priors would hold what they should not.
+    FlatProblem held = problem;
+    const FlatModel &model = problem.model;
+    auto is_center = [&](int i) { return i >= model.center() && i < model.levels(); };
+    held.free.erase(std::remove_if(held.free.begin(), held.free.end(), is_center), held.free.end());
+    measure_noise(held, estimate);
+    estimate.inflation = 1.0;
+    descend(held, estimate);
+    measure_noise(problem, estimate);
+    for (int round = 0; round < kRounds; round++) {
+        Eigen::Vector3d before = state();
+        descend(problem, estimate);
+        measure_noise(problem, estimate);
+        if ((state() - before).norm() < kSettled * before.norm()) break;
+    }
+}
+
+Eigen::MatrixXd flat_covariance(const FlatProblem &problem, const FlatEstimate &estimate) {
+    const Eigen::MatrixXd hessian =
+        normal_equations(problem, estimate.u, all_sigmas(problem, estimate), estimate.inflation).hessian;
+    Eigen::VectorXd size = hessian.diagonal().cwiseSqrt();
+    if (!(size.minCoeff() > 0.0)) return {};
+    Eigen::MatrixXd scaled = size.cwiseInverse().asDiagonal() * hessian * size.cwiseInverse().asDiagonal();
+    Eigen::LDLT<Eigen::MatrixXd> factor(scaled);
+    if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > kSmallestPivot)) return {};
+    Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+    inverse = size.cwiseInverse().asDiagonal() * inverse * size.cwiseInverse().asDiagonal();
+    inverse = 0.5 * (inverse + inverse.transpose()).eval();
+    Eigen::MatrixXd full = Eigen::MatrixXd::Zero(problem.model.unknowns(), problem.model.unknowns());
+    full(problem.free, problem.free) = inverse;
+    return full;
+}
+
+}  // namespace lensprof

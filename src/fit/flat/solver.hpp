@@ -1,0 +1,61 @@
+// Equation 14 as a robust weighted least squares problem: Levenberg-Marquardt, noise, covariance.
+#pragma once
+
+#include "fit/flat/model.hpp"
+
+namespace lensprof {
+
+// A cell of a shot that takes part.
+struct FlatCell {
+    int shot, cell;
+    double x, y;                            // px of the frame
+    std::array<double, 3> value, variance;  // E and the variance of its noise
+};
+
+// Gaussian knowledge of the unknowns: (u - mean)' precision (u - mean) / 2.
+struct FlatPrior {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd precision;
+};
+FlatPrior make_flat_prior(const lensprof_flat_options &options, const FlatModel &model);
+
+struct FlatProblem {
+    FlatModel model;
+    FlatPrior prior;
+    std::vector<int> free;  // unknowns that are estimated
+    std::vector<FlatCell> cells;
+};
+
+struct FlatEstimate {
+    Eigen::VectorXd u;
+    double unevenness = 0.0;  // relative standard deviation of a cell beyond its noise
+    double inflation = 1.0;   // variance of the residuals' sums over blocks of cells, in that of independent cells
+    double scale = 1.0;       // residuals are so many times what noise and unevenness say
+    uint32_t iterations = 0;
+    bool converged = false;
+};
+
+// Which unknowns are estimated: those of the lens as `free` (LENSPROF_FREE_...) says, and all others.
+std::vector<int> free_unknowns(const FlatModel &model, uint32_t free);
+
+// From k = 0 (or the values held), even light and the levels that the cells have.
+Eigen::VectorXd flat_start(const FlatProblem &problem, const lensprof_vignetting &given);
+
+// Residual of a cell and channel, (E - P) / sigma, and P with its derivatives.
+struct FlatResidual {
+    Prediction prediction;
+    double z = 0.0, sigma = 1.0;
+};
+FlatResidual flat_residual(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell, int channel);
+
+// Sum of squared residuals of a cell, in units of scale^2: chi-squared, one degree of freedom a channel.
+double flat_chi2(const FlatProblem &problem, const FlatEstimate &estimate, const FlatCell &cell);
+
+// Neighbouring cells whose residuals agree count as fewer: what all cells say weighs less, beside the prior and in the
+// covariance, by what their sums over blocks of 4 to 32 cells a side vary more than those of independent cells.
+void solve_flat(const FlatProblem &problem, FlatEstimate &estimate);
+
+// Covariance of all unknowns, zero where held. Empty when the cells do not determine every free unknown.
+Eigen::MatrixXd flat_covariance(const FlatProblem &problem, const FlatEstimate &estimate);
+
+}  // namespace lensprof

@@ -1,0 +1,443 @@
+#include "fit/methods/overlap.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <numeric>
+
+#include "fit/methods/refine.hpp"
+#include "fit/problem/monotone.hpp"
+#include "fit/solver/heldout.hpp"
+#include "fit/solver/objective.hpp"
+#include "fit/solver/start.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr int kStartModes = 5;               // enough to tell the starts apart
+constexpr double kFollows = 0.02;            // of ln gamma, that modes may be away from where it is asked to be
+constexpr uint32_t kEnoughForModes = 20000;  // pairs, where more are there to refine the response
+
+// A fit to the training data.
+struct Candidate : HeldoutLoss {
+    Estimate estimate;
+};
+
+class Fit {
+public:
+    // make(keep): the problem of some of `count` pairs or tracks.
+    using Make = std::function<Problem(const std::vector<uint32_t> &keep)>;
+
+    // `profile`: of the options, or NULL for a fit without it. Progress goes from `from` to `to`.
+    Fit(const lensprof_fit_options &options, uint32_t image_count, Make make, uint32_t count,
+        const lensprof_profile *profile, double from, double to)
+        : options_(options),
+          image_count_(image_count),
+          problem_(std::move(make)),
+          split_(split_pairs(count, image_count)),
+          step_(options.refine ? 1 + count / kEnoughForModes : 1),
+          all_(problem_(thinned(split_.all))),
+          stored_(stored_prior(options, profile, all_)),
+          gauge_(options, all_, stored_.get()) {
+        if (split_.has_heldout()) heldout_ = problem_(thinned(split_.heldout));
+        has_heldout_ = heldout_.pairs.size() >= kFewestHeldout;
+        train_ = problem_(thinned(has_heldout_ ? split_.train : split_.all));
+        control_.max_iterations = static_cast<int>(options.max_iterations);
+        control_.cancelled = [this, from, to] {
+            return options_.progress && options_.progress(from + (to - from) * done_, options_.progress_user) != 0;
+        };
+    }
+
+    void run();
+
+    // Standard errors by which held-out pairs are worse for this fit than for one without its profile; 0 without such
+    // pairs.
+    double worse_than(const Fit &other) const;
+
+    double falloff_distance(const lensprof_fit_result &alone) const { return stored_->falloff_distance(alone); }
+
+    void describe(lensprof_exposure *exposures, lensprof_fit_result &result);
+
+private:
+    static std::unique_ptr<StoredPrior> stored_prior(const lensprof_fit_options &options,
+                                                     const lensprof_profile *profile, const Problem &problem) {
+        if (!profile) return nullptr;
+        const bool is_free = options.free & LENSPROF_FREE_RESPONSE;
+        const int most = !is_free ? 0 : static_cast<int>(std::min<uint32_t>(options.modes, LENSPROF_EMOR_MODES));
+        return std::make_unique<StoredPrior>(*profile, problem, most);
+    }
+    Loss loss() const {
+        Loss l;
+        l.kind = options_.loss;
+        l.huber = options_.huber_levels / 255.0;
+        return l;
+    }
+    std::vector<uint32_t> thinned(const std::vector<uint32_t> &items) const {
+        std::vector<uint32_t> some;
+        for (size_t i = 0; i < items.size(); i += step_) some.push_back(items[i]);
+        return some;
+    }
+    void take_all();
+    void set_vignettings(int count) {
+        for (Problem *p : {&all_, &train_, &heldout_}) p->vignettings = count;
+        prior_ = make_prior(options_.prior_weight, count, all_.by_radiance);
+        if (stored_) stored_->put_into(prior_, count, options_.prior_weight);
+    }
+    int first_vignettings() const {
+        const bool three =
+            options_.vignettings == 3 || (options_.vignettings == 0 && stored_ && stored_->vignettings() == 3);
+        return three && options_.channels == 3 ? 3 : 1;
+    }
+    // Fewer modes than the profile's would leave out what is known of the others.
+    int start_modes() const { return stored_ ? std::max(kStartModes, stored_->modes()) : kStartModes; }
+    Estimate best_start(int modes);
+    void reconsider(const Problem &problem, const Loss &used, Estimate &estimate);
+    Candidate candidate(const Estimate &from, int modes);
+    void refine(const Problem &problem, Loss &used, Estimate &estimate);
+    bool is_as_good_refined(const Candidate &best, const Loss &used, Candidate &refined);
+    Candidate choose_modes(const Estimate &start);
+    void choose_vignettings(Candidate &best);
+    Candidate choose(Loss &used);
+    bool follows(const Loss &used, Estimate &estimate, Outcome &outcome);
+    void free_response(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome);
+
+    const lensprof_fit_options &options_;
+    uint32_t image_count_;
+    const Make problem_;
+    Split split_;
+    size_t step_;  // of the pairs, every so manieth is taken until the response is refined
+    Problem all_, train_, heldout_;
+    bool has_heldout_ = false;
+    const bool is_free_ = (options_.free & LENSPROF_FREE_RESPONSE) && options_.modes != 0;  // the response
+    std::unique_ptr<StoredPrior> stored_;
+    Gauge gauge_;
+    Prior prior_;
+    Loss used_;
+    Candidate best_;     // of the training pairs
+    Estimate estimate_;  // of all
+    Outcome outcome_;
+    Loss common_;  // of the candidates: what held-out losses are measured with
+    Control control_;
+    double done_ = 0.0;
+};
+
+// Short fits from every start at one fixed noise level, so that their costs compare; the best one, its gamma settled.
+Estimate Fit::best_start(int modes) {
+    Problem few = problem_(split_.few.empty() ? split_.all : split_.few);
+    few.vignettings = all_.vignettings;
+    Control brief = control_;
+    brief.max_iterations = std::min(control_.max_iterations, 10);
+    brief.rounds = 1;
+    brief.flat = 1.0;
+    Gauge unheld = gauge_.unheld();
+    Estimate best;
+    double lowest = 0.0;
+    bool first = true;
+    for (Estimate &start : start_estimates(few, options_, modes)) {
+        Loss used = loss();
+        used.noise = 3.0 / 255.0;
+        Outcome outcome = solve(few, prior_, unheld, used, false, brief, start);
+        if (first || outcome.cost < lowest) {
+            best = start;
+            lowest = outcome.cost;
+            first = false;
+        }
+    }
+    start_exposures(all_, kRoughWidth, best);  // images that had few pairs here get theirs
+    gauge_.settle(train_, best);
+    return best;
+}
+
+void set_modes(Estimate &estimate, int modes) {
+    if (estimate.modes >= 0 && modes < estimate.modes)
+        set_response(estimate, project_curve(estimate.curve.table.data(), modes).data(), modes);
+    else if (estimate.modes >= 0)
+        set_response(estimate, estimate.emor.data(), modes);
+}
+
+// A fit to the training pairs at the common noise level.
+Candidate Fit::candidate(const Estimate &from, int modes) {
+    Candidate result;
+    result.estimate = from;
+    set_modes(result.estimate, modes);
+    Control brief = control_;
+    brief.rounds = 1;
+    brief.flat = 0.05;
+    brief.max_iterations = std::min(control_.max_iterations, 12);
+    Loss used = common_;
+    solve(train_, prior_, gauge_, used, false, brief, result.estimate);
+    static_cast<HeldoutLoss &>(result) = heldout_loss(heldout_, result.estimate, common_);
+    done_ = std::min(0.75, done_ + 0.08);
+    return result;
+}
+
+// Frees the response of its modes, once at the noise that they left and once at the noise that is left then.
+void Fit::refine(const Problem &problem, Loss &used, Estimate &estimate) {
+    const Estimate of_modes = estimate;
+    refine_response(problem, used, estimate);
+    used.noise = estimate_noise(problem, estimate, used.noise);
+    estimate = of_modes;
+    refine_response(problem, used, estimate);
+}
+
+// Whether held-out pairs are not worse by more than a standard error for a response free of its modes.
+bool Fit::is_as_good_refined(const Candidate &best, const Loss &used, Candidate &refined) {
+    HeldoutLoss modes = heldout_loss(heldout_, best.estimate, common_);
+    refined.estimate = best.estimate;
+    Loss own = used;
+    refine(train_, own, refined.estimate);
+    static_cast<HeldoutLoss &>(refined) = heldout_loss(heldout_, refined.estimate, common_);
+    double error, difference = loss_difference(refined, modes, error);
+    return difference < error;
+}
+
+// Exposures anew from the response as fitted and all pairs: where an image was drawn to pairs that agree by chance, the
+// fit of `problem` from there costs less.
+void Fit::reconsider(const Problem &problem, const Loss &used, Estimate &estimate) {
+    constexpr double kAway = 0.15;  // natural logarithm
+    Estimate other = estimate;
+    start_exposures(all_, kFineWidth, other);
+    double away = 0.0;
+    for (size_t i = 0; i < other.log_exposure.size(); i++)
+        for (size_t c = 0; c < 3; c++)
+            away = std::max(away, std::abs(other.log_exposure[i][c] - estimate.log_exposure[i][c]));
+    if (away < kAway) return;
+    Control brief = control_;
+    brief.rounds = 1;
+    brief.flat = 0.05;
+    Loss fixed = used;
+    double cost = solve(problem, prior_, gauge_, fixed, false, brief, estimate).cost;
+    if (solve(problem, prior_, gauge_, fixed, false, brief, other).cost < cost) estimate = other;
+}
+
+// The smallest number of modes whose held-out loss is within one standard error (of the paired difference) of the best.
+// More modes are tried until two in a row have not helped, fewer until one is worse.
+Candidate Fit::choose_modes(const Estimate &start) {
+    std::vector<Candidate> tried;  // by falling number of modes, once complete
+    tried.push_back(candidate(start, start_modes()));
+    double lowest = tried[0].mean;
+    int failures = 0;
+    for (int modes : {7, 9, 12, 16}) {
+        if (modes <= start_modes()) continue;
+        tried.insert(tried.begin(), candidate(tried.front().estimate, modes));
+        failures = tried.front().mean < lowest ? 0 : failures + 1;
+        lowest = std::min(lowest, tried.front().mean);
+        if (failures == 2) break;
+    }
+    auto best_of = [&] {
+        return *std::min_element(tried.begin(), tried.end(),
+                                 [](const Candidate &a, const Candidate &b) { return a.mean < b.mean; });
+    };
+    auto is_good = [&](const Candidate &one) {
+        double error, difference = loss_difference(one, best_of(), error);
+        return difference <= error;
+    };
+    for (int modes : {3, 2, 1}) {
+        if (!is_good(tried.back()) || (stored_ && modes < stored_->modes())) break;
+        tried.push_back(candidate(tried.back().estimate, modes));
+    }
+    for (size_t i = tried.size(); i-- > 1;)
+        if (is_good(tried[i])) return tried[i];
+    return tried[0];
+}
+
+// One falloff curve a channel when held-out pairs are clearly (three standard errors) better for it.
+void Fit::choose_vignettings(Candidate &best) {
+    set_vignettings(3);
+    Candidate chromatic = candidate(best.estimate, best.estimate.modes);
+    double error, difference = loss_difference(chromatic, best, error);
+    if (difference < -3.0 * error)
+        best = chromatic;
+    else
+        set_vignettings(1);
+}
+
+// Start, modes and falloff curves.
+Candidate Fit::choose(Loss &used) {
+    constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+    bool any_modes = is_free_ && options_.modes == LENSPROF_MODES_AUTO && has_heldout_;
+    bool any_curves = options_.vignettings == 0 && options_.channels == 3 && (options_.free & falloff) && has_heldout_;
+    int modes = options_.modes == LENSPROF_MODES_AUTO ? start_modes() : static_cast<int>(options_.modes);
+    if (any_curves && stored_ && stored_->vignettings() == 3) any_curves = false;
+
+    set_vignettings(first_vignettings());
+    Candidate best;
+    best.estimate = best_start(is_free_ ? std::min(std::max(modes, 1), start_modes()) : 0);
+    done_ = 0.2;
+    set_modes(best.estimate, modes);
+    Control first = control_;
+    if (any_modes || any_curves) first.flat = 0.05, first.rounds = 3;
+    solve(train_, prior_, gauge_, used, true, first, best.estimate);
+    reconsider(train_, used, best.estimate);
+    common_ = used;
+    if (options_.loss != LENSPROF_LOSS_ROBUST) common_.noise = estimate_noise(train_, best.estimate, used.noise);
+    if (any_modes)
+        best = choose_modes(best.estimate);
+    else if (any_curves)
+        best = candidate(best.estimate, modes);
+    if (any_curves) choose_vignettings(best);
+    done_ = 0.8;
+    return best;
+}
+
+void Fit::take_all() {
+    if (step_ == 1) return;
+    step_ = 1;
+    const int vignettings = all_.vignettings;
+    all_ = problem_(split_.all);
+    train_ = problem_(split_.train);
+    heldout_ = problem_(split_.heldout);
+    set_vignettings(vignettings);
+}
+
+// Whether modes can follow to the gamma that is asked: the estimate is then that of a fit which holds it.
+bool Fit::follows(const Loss &used, Estimate &estimate, Outcome &outcome) {
+    Estimate there = estimate;
+    Loss own = used;
+    Outcome result = solve(all_, prior_, gauge_, own, true, control_, there);
+    HeldoutLoss before = heldout_loss(heldout_, estimate, common_), after = heldout_loss(heldout_, there, common_);
+    double error, difference = loss_difference(after, before, error);
+    if (difference > error || std::abs(gauge_.distance(all_, there)) > kFollows) return false;
+    estimate = there, outcome = result;
+    return true;
+}
+
+// The response freed of its modes where that is better, or where these cannot follow to the gamma that is asked. What
+// was fitted until here has the gamma of most cameras.
+void Fit::free_response(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome) {
+    const bool was_thinned = step_ > 1;
+    take_all();
+    Candidate refined;
+    const bool is_refined = options_.method == LENSPROF_METHOD_TRANSFER && is_as_good_refined(best, used, refined);
+    if (is_refined)
+        best = refined, refine(all_, used, estimate);
+    else if (was_thinned)
+        outcome = solve(all_, prior_, gauge_, used, true, control_, estimate);
+    gauge_ = asked;
+    if (!is_refined && follows(used, estimate, outcome)) return;
+    for (Estimate *one : {&estimate, &best.estimate}) {
+        if (!one->is_refined) set_table(*one, one->curve.table.data());
+        gauge_.settle(all_, *one);
+    }
+}
+
+void Fit::run() {
+    bool frees = options_.refine && is_free_ && has_heldout_ && image_count_ <= kMostRefinedImages;
+    const Gauge asked = gauge_;
+    if (frees) gauge_ = gauge_.by_prior();
+    used_ = loss();
+    used_.distrusts = true;
+    best_ = choose(used_);
+    estimate_ = best_.estimate;
+    if (has_heldout_) reconsider(all_, used_, estimate_);
+    outcome_ = solve(all_, prior_, gauge_, used_, true, control_, estimate_);
+    if (frees)
+        free_response(asked, used_, best_, estimate_, outcome_);
+    else
+        take_all();
+}
+
+double Fit::worse_than(const Fit &other) const {
+    if (!has_heldout_) return 0.0;
+    HeldoutLoss own = heldout_loss(other.heldout_, best_.estimate, other.common_),
+                others = heldout_loss(other.heldout_, other.best_.estimate, other.common_);
+    double error, difference = loss_difference(own, others, error);
+    return error > 0.0 ? difference / error : 0.0;
+}
+
+void Fit::describe(lensprof_exposure *exposures, lensprof_fit_result &result) {
+    lensprof_fit_result r = result;
+    r.iterations = static_cast<uint32_t>(outcome_.iterations);
+    r.converged = outcome_.converged;
+    std::vector<lensprof_fit_image_quality> own(image_count_);
+    if (!r.image_quality) r.image_quality = own.data();
+    describe_model(all_, estimate_, r);
+    describe_heldout(has_heldout_ ? heldout_ : all_, best_.estimate, has_heldout_, r);
+    describe_quality(all_, prior_, gauge_, used_, estimate_, r);
+    judge(all_, estimate_, r);
+    r.image_quality = result.image_quality;
+    write_exposures(all_, estimate_, exposures);
+    result = r;
+}
+
+// Fits, and where a profile is the prior, without it too: that is the result where the pictures contradict the profile.
+void run_fits(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count,
+              lensprof_exposure *exposures, lensprof_fit_result &result) {
+    constexpr double kClearly = 3.0, kFarApart = 5.0;  // standard errors
+    auto began = std::chrono::steady_clock::now();
+    std::vector<lensprof_exposure> found(image_count);  // the caller's stay as they are until all is done
+    std::vector<lensprof_fit_image_quality> quality(image_count);
+    lensprof_fit_result r = result;
+    r.image_quality = quality.data();
+    r.profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
+    Fit alone(options, image_count, make, count, nullptr, 0.0, options.profile ? 0.5 : 1.0);
+    alone.run();
+    alone.describe(found.data(), r);
+    if (options.profile) {
+        Fit informed(options, image_count, make, count, options.profile, 0.5, 1.0);
+        informed.run();
+        const double worse = informed.worse_than(alone), apart = informed.falloff_distance(r);
+        const bool overruled = worse > kClearly || apart > kFarApart;
+        r.profile_prior = overruled ? LENSPROF_PROFILE_PRIOR_OVERRULED : LENSPROF_PROFILE_PRIOR_USED;
+        if (!overruled)
+            informed.describe(found.data(), r);
+        else if (r.usable)
+            std::snprintf(
+                r.reason, sizeof r.reason,
+                "the profile given as the prior contradicts the pictures (its falloff is %.1f, held-out pairs "
+                "%.1f standard errors off) and was left out: is it of this lens and setting?",
+                apart, worse);
+    }
+    r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    r.image_quality = result.image_quality;
+    if (r.image_quality) std::copy(quality.begin(), quality.end(), r.image_quality);
+    std::copy(found.begin(), found.end(), exposures);
+    result = r;
+}
+
+}  // namespace
+
+void fit_overlap(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                 const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
+                 lensprof_fit_result &result) {
+    auto make = [&](const std::vector<uint32_t> &keep) {
+        return make_problem(options, images, image_count, pairs, keep);
+    };
+    run_fits(options, image_count, make, pair_count, exposures, result);
+}
+
+void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                  const Tracks &tracks, lensprof_exposure *exposures, lensprof_fit_result &result) {
+    auto make = [&](const std::vector<uint32_t> &keep) {
+        return make_problem(options, images, image_count, tracks, keep);
+    };
+    run_fits(options, image_count, make, static_cast<uint32_t>(tracks.tracks.size()), exposures, result);
+}
+
+Summary transfer_summary(const lensprof_response &response, const lensprof_vignetting vignetting[3],
+                         const lensprof_fit_image *images, const lensprof_exposure *exposures, uint32_t image_count,
+                         const lensprof_pair *pairs, uint32_t pair_count, int channels) {
+    lensprof_fit_options options;
+    lensprof_fit_options_init(&options);
+    options.channels = static_cast<uint32_t>(channels);
+    std::vector<uint32_t> keep(pair_count);
+    std::iota(keep.begin(), keep.end(), 0u);
+    Problem problem = make_problem(options, images, image_count, pairs, keep);
+    problem.vignettings = channels;
+    Estimate estimate;
+    estimate.modes = -1;
+    estimate.fixed = response;
+    std::copy(vignetting, vignetting + 3, estimate.vignetting.begin());
+    for (uint32_t i = 0; i < image_count; i++) {
+        std::array<double, 3> a{};
+        for (size_t c = 0; c < 3; c++)
+            a[c] = exposures[i].ev * std::log(2.0) + (channels == 1 ? 0.0 : std::log(exposures[i].white_balance[c]));
+        estimate.log_exposure.push_back(a);
+    }
+    return summarise(residual_levels(problem, estimate));
+}
+
+}  // namespace lensprof

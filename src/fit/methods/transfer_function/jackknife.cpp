@@ -1,0 +1,60 @@
+#include "fit/methods/transfer_function/jackknife.hpp"
+
+#include "fit/base/parallel.hpp"
+#include "fit/solver/heldout.hpp"
+
+namespace lensprof {
+namespace {
+
+// Logarithms of the images' exposures and white balance factors, by unknown.
+Eigen::VectorXd image_vector(const Problem &problem, const Estimate &estimate) {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(problem.image_unknowns);
+    auto measured = static_cast<size_t>(problem.measured_channel());
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        const auto &a = estimate.log_exposure[i];
+        if (problem.ev_unknown[i] >= 0) q[problem.ev_unknown[i]] = a[measured];
+        for (size_t c = 0; c < 3; c++)
+            if (problem.balance_unknown[i][c] >= 0) q[problem.balance_unknown[i][c]] = a[c] - a[1];
+    }
+    return q;
+}
+
+}  // namespace
+
+Covariance jackknife(const Problem &problem, uint32_t pair_count,
+                     const std::function<Estimate(const std::vector<uint32_t> &keep)> &without,
+                     const std::function<bool()> &cancelled) {
+    std::vector<Estimate> found(kJackknifeGroups);
+    bool is_done = for_each_parallel(
+        kJackknifeGroups, problem.threads,
+        [&](uint32_t group) {
+            std::vector<uint32_t> keep;
+            for (uint32_t p = 0; p < pair_count; p++)
+                if ((pair_hash(p) >> 8) % kJackknifeGroups != group) keep.push_back(p);
+            found[group] = without(keep);
+        },
+        cancelled);
+    if (!is_done) throw Cancelled();
+    Covariance result;
+    result.shared = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
+    result.images = Eigen::VectorXd::Zero(problem.image_unknowns);
+    for (const Estimate &one : found)
+        if (one.log_exposure.empty()) return result;
+    constexpr double n = kJackknifeGroups, scale = (n - 1.0) / n;
+    Eigen::VectorXd shared = Eigen::VectorXd::Zero(kMaxShared), images = result.images;
+    for (const Estimate &one : found) {
+        shared += shared_vector(one) / n;
+        images += image_vector(problem, one) / n;
+    }
+    for (const Estimate &one : found) {
+        Eigen::VectorXd off = shared_vector(one) - shared, own = image_vector(problem, one) - images;
+        result.shared += off * off.transpose();  // symmetric to the bit, which scale * off * off' is not
+        result.images += own.cwiseAbs2();
+    }
+    result.shared *= scale;
+    result.images *= scale;
+    result.is_determined = result.shared.allFinite() && result.images.allFinite();
+    return result;
+}
+
+}  // namespace lensprof

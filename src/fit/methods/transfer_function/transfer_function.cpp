@@ -1,0 +1,365 @@
+#include "fit/methods/transfer_function/transfer_function.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "fit/methods/transfer_function/jackknife.hpp"
+#include "fit/methods/transfer_function/log_equations.hpp"
+#include "fit/problem/monotone.hpp"
+#include "fit/solver/heldout.hpp"
+#include "fit/solver/start.hpp"
+#include "fit/verdict/quality.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t kFalloff123 = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+constexpr int kFirstModes = 5;  // of the fits that look for falloff and gauge
+constexpr int kFirstRounds = 6, kCandidateRounds = 2, kAgainRounds = 4, kLastRounds = 20;
+constexpr double kStill = 1e-3;  // nothing a user sees moves by more in a round
+// Paths that flip between two neighbours let the rounds cycle: a change this small that no longer falls is that.
+constexpr double kCycle = 0.03;
+constexpr int kFewestRounds = 4;
+constexpr double kHalf = 128.0 / 255.0, kLn2 = 0.6931471805599453;
+const double kPaperGrey = std::log(0.5);  // g(128) where nothing settles gamma (section 2.4)
+
+// What the rounds improve.
+struct State {
+    Estimate estimate;  // response fixed at that of `model`
+    LogModel model;
+    double grey = kPaperGrey;  // g(128)
+    bool is_solved = false;
+};
+
+struct Candidate : HeldoutLoss {
+    State state;
+};
+
+double log_grey(const Estimate &estimate) {
+    return std::log(std::clamp(estimate.curve.invert(kHalf, nullptr), 1e-9, 1.0 - 1e-9));
+}
+
+// Moves a state along its family to where g(128) is what it should be.
+void restore_grey(const Problem &problem, State &state) {
+    Estimate moved = with_exponent(problem, state.estimate, std::log(state.grey / log_grey(state.estimate)));
+    if (!is_feasible(moved, problem.vignettings)) moved.vignetting = state.estimate.vignetting;
+    state.estimate = moved;
+    state.model.g = log_inverse(state.estimate.fixed);
+}
+
+class Fit {
+public:
+    Fit(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+        const lensprof_pair *pairs, uint32_t pair_count)
+        : options_(options),
+          images_(images),
+          image_count_(image_count),
+          pairs_(pairs),
+          pair_count_(pair_count),
+          split_(split_pairs(pair_count, image_count)),
+          all_(problem(split_.all)),
+          gauge_(options, all_),
+          is_free_((options.free & LENSPROF_FREE_RESPONSE) && options.modes != 0),
+          has_falloff_(options.free & (kFalloff123 | LENSPROF_FREE_CENTER)),
+          as_paper_(options.loss == LENSPROF_LOSS_SQUARED) {
+        train_ = problem(split_.has_heldout() ? split_.train : split_.all);
+        if (split_.has_heldout()) heldout_ = problem(split_.heldout);
+    }
+
+    void run(lensprof_exposure *exposures, lensprof_fit_result &result);
+
+private:
+    Problem problem(const std::vector<uint32_t> &keep) const {
+        return make_problem(options_, images_, image_count_, pairs_, keep);
+    }
+    void set_vignettings(int count) {
+        for (Problem *p : {&all_, &train_, &heldout_}) p->vignettings = count;
+        prior_ = make_prior(options_.prior_weight, count);
+    }
+    bool is_cancelled() const { return options_.progress && options_.progress(done_, options_.progress_user) != 0; }
+    void advance(double done) {
+        done_ = std::max(done_, done);
+        if (is_cancelled()) throw Cancelled();
+    }
+    Loss loss() const {
+        Loss l;
+        l.kind = options_.loss;
+        l.huber = options_.huber_levels / 255.0;
+        return l;
+    }
+    // True where pictures leave gamma open: g(128) is then held, where gamma is settled or at the paper's number.
+    bool holds_grey() const { return is_free_ && (gauge_.is_open() || gauge_.from() == LENSPROF_GAMMA_NONE); }
+
+    State start();
+    bool fit_response(const Problem &problem, Gauge &gauge, bool settle, State &state) const;
+    void fit_falloff(const Problem &problem, Gauge &gauge, State &state) const;
+    int alternate(const Problem &problem, Gauge &gauge, bool settle, int rounds, State &state,
+                  const std::function<void()> &tell, bool &is_still) const;
+    Candidate candidate(const State &from, int modes);
+    Candidate choose_modes(const State &start);
+    void choose_vignettings(Candidate &best);
+    Estimate in_emor(const State &state) const;
+    void judge_exposures(const State &state, lensprof_fit_result &result) const;
+    double log_exponent(const Estimate &estimate, const Estimate &other) const;
+    Covariance scatter(const State &state);
+
+    const lensprof_fit_options &options_;
+    const lensprof_fit_image *images_;
+    uint32_t image_count_;
+    const lensprof_pair *pairs_;
+    uint32_t pair_count_;
+    Split split_;
+    Problem all_, train_, heldout_;
+    Gauge gauge_;
+    Prior prior_;
+    Loss common_;
+    const bool is_free_, has_falloff_, as_paper_;
+    double done_ = 0.0;
+};
+
+// From several responses, each held: the one under which falloff and exposures explain most. Without a falloff to look
+// for, the mean of the model.
+State Fit::start() {
+    Problem few = problem(split_.few.empty() ? split_.all : split_.few);
+    few.vignettings = all_.vignettings;
+    Control brief;
+    brief.max_iterations = std::min(static_cast<int>(options_.max_iterations), 10);
+    brief.rounds = 1;
+    brief.flat = 1.0;
+    Gauge unheld = gauge_.unheld();
+    State best;
+    double lowest = 0.0;
+    bool first = true;
+    for (Estimate &start : start_estimates(has_falloff_ ? few : train_, options_, is_free_ ? kFirstModes : 0)) {
+        if (start.modes >= 0) set_fixed(start, table_response(start));
+        Loss used = loss();
+        used.noise = 3.0 / 255.0;
+        double cost = has_falloff_ ? solve(few, prior_, unheld, used, false, brief, start).cost : 0.0;
+        if (!first && cost >= lowest) continue;
+        best.estimate = start;
+        lowest = cost;
+        first = false;
+    }
+    start_exposures(train_, kRoughWidth, best.estimate);
+    if (gauge_.is_open() && is_free_) gauge_.settle(train_, best.estimate);
+    best.model.is_free = is_free_;
+    best.model.modes = is_free_ ? kFirstModes : 0;
+    best.model.g = log_inverse(best.estimate.fixed);
+    if (gauge_.is_open()) best.grey = log_grey(best.estimate);
+    return best;
+}
+
+// Transfer functions under the falloff as it is, and the response and exposures that explain them. With `settle`, what
+// settles gamma is asked anew.
+bool Fit::fit_response(const Problem &problem, Gauge &gauge, bool settle, State &state) const {
+    constexpr int kRounds = 4;
+    std::vector<TransferCurve> curves = transfer_curves(problem, state.estimate, as_paper_);
+    std::vector<double> noise;
+    for (const TransferCurve &curve : curves)
+        if (curve.noise > 0.0) noise.push_back(curve.noise);
+    LogWeights weights;
+    weights.as_paper = as_paper_;
+    if (!noise.empty()) weights.noise = median(noise);
+    Prior known;
+    gauge.renew(problem, state.estimate, known);
+    for (int round = 0; round < kRounds; round++) {
+        weights.adjusted = !as_paper_ && state.is_solved;
+        LogEquations equations(problem, curves, weights, state.model, state.estimate);
+        equations.add_known(known.known, state.estimate);
+        if (!equations.eliminate()) return false;
+        if (!equations.solve(options_.prior_weight, holds_grey(), state.model, state.estimate)) return false;
+        state.is_solved = equations.points() > 0.0;
+        if (!is_free_) continue;
+        set_fixed(state.estimate, response_of(state.model.g));
+        if (settle && gauge.is_open()) {
+            gauge.settle(problem, state.estimate);
+            state.model.g = log_inverse(state.estimate.fixed);
+            state.grey = log_grey(state.estimate);
+        } else if (holds_grey()) {
+            restore_grey(problem, state);
+        }
+    }
+    return true;
+}
+
+void Fit::fit_falloff(const Problem &problem, Gauge &gauge, State &state) const {
+    if (!has_falloff_) return;
+    Control brief;
+    brief.max_iterations = std::min(static_cast<int>(options_.max_iterations), 12);
+    brief.rounds = 1;
+    brief.flat = 1e-2;
+    Loss used = loss();
+    solve(problem, prior_, gauge, used, true, brief, state.estimate);
+}
+
+// Falloff and response in turn, until neither moves; the number of rounds.
+int Fit::alternate(const Problem &problem, Gauge &gauge, bool settle, int rounds, State &state,
+                   const std::function<void()> &tell, bool &is_still) const {
+    is_still = false;
+    int round = 0;
+    double last = 0.0;
+    while (round < rounds && !is_still) {
+        tell();
+        Estimate before = state.estimate;
+        if (!fit_response(problem, gauge, settle, state)) {
+            state.is_solved = false;
+            return round;
+        }
+        round++;
+        fit_falloff(problem, gauge, state);
+        double moved = largest_change(before, state.estimate);
+        bool cycles = round >= kFewestRounds && moved < kCycle && moved > 0.5 * last;
+        is_still = moved < kStill || cycles || (!has_falloff_ && round > 1);
+        last = moved;
+    }
+    return round;
+}
+
+// A fit to the training pairs, and what it makes of the others.
+Candidate Fit::candidate(const State &from, int modes) {
+    Candidate result;
+    result.state = from;
+    result.state.model.modes = modes;
+    bool is_still;
+    alternate(
+        train_, gauge_, true, kCandidateRounds, result.state, [this] { advance(done_); }, is_still);
+    static_cast<HeldoutLoss &>(result) = heldout_loss(heldout_, result.state.estimate, common_);
+    advance(std::min(0.7, done_ + 0.06));
+    return result;
+}
+
+// The smallest number of modes whose held-out loss is within one standard error of the best.
+Candidate Fit::choose_modes(const State &start) {
+    std::vector<Candidate> tried;
+    for (int modes : {1, 2, 3, 4, 5, 7, 9, 12, 15, 20}) tried.push_back(candidate(start, modes));
+    const Candidate &best = *std::min_element(tried.begin(), tried.end(),
+                                              [](const Candidate &a, const Candidate &b) { return a.mean < b.mean; });
+    for (const Candidate &one : tried) {
+        double error, difference = loss_difference(one, best, error);
+        if (&one == &best || difference <= error) return one;
+    }
+    return best;
+}
+
+// One falloff curve a channel when held-out pairs are clearly (three standard errors) better for it.
+void Fit::choose_vignettings(Candidate &best) {
+    set_vignettings(3);
+    Candidate chromatic = candidate(best.state, best.state.model.modes);
+    double error, difference = loss_difference(chromatic, best, error);
+    if (difference < -3.0 * error)
+        best = chromatic;
+    else
+        set_vignettings(1);
+}
+
+// The response as coefficients of all EMoR modes, as the other methods tell it; a held one stays.
+Estimate Fit::in_emor(const State &state) const {
+    Estimate estimate = state.estimate;
+    if (is_free_) set_response(estimate, project_curve(estimate.fixed.table, kMaxModes).data(), kMaxModes);
+    return estimate;
+}
+
+// Transfer functions of pictures that are exposed alike are the identity, whatever the response.
+void Fit::judge_exposures(const State &state, lensprof_fit_result &r) const {
+    if ((!r.usable && r.converged) || !is_free_) return;  // alike, they do not settle either
+    double usual = exposure_spread(all_, state.estimate);
+    if (usual >= kSmallestSpread) return;
+    r.usable = 0;
+    std::snprintf(r.reason, sizeof r.reason,
+                  "the pictures that overlap differ by %.2f EV, which shows transfer functions no response; take "
+                  "pictures of other exposures, hold a response that is known, or use the method transfer",
+                  usual);
+}
+
+// ln of the exponent that takes the exposures of an estimate to those of another, as near as one exponent can; 0 where
+// they hardly differ and show none.
+double Fit::log_exponent(const Estimate &estimate, const Estimate &other) const {
+    double own = 0.0, both = 0.0;
+    for (uint32_t i = 0; i < image_count_; i++)
+        for (size_t c = 0; c < static_cast<size_t>(all_.channels); c++) {
+            double x = estimate.log_exposure[i][c] - estimate.log_exposure[all_.reference][c];
+            own += x * x;
+            both += x * (other.log_exposure[i][c] - other.log_exposure[all_.reference][c]);
+        }
+    const double spread = kSmallestSpread * kLn2, terms = static_cast<double>(image_count_) * all_.channels;
+    return own > spread * spread * terms && both > 0.0 ? std::log(both / own) : 0.0;
+}
+
+// Along the family nothing scatters: gamma has an error of its own (Gauge::sigma).
+Covariance Fit::scatter(const State &state) {
+    return jackknife(
+        all_, pair_count_,
+        [&](const std::vector<uint32_t> &keep) {
+            Problem part = problem(keep);
+            part.vignettings = all_.vignettings;
+            part.threads = 1;
+            Gauge gauge = gauge_;
+            State own = state;
+            bool is_still;
+            alternate(
+                part, gauge, false, kAgainRounds, own, [] {}, is_still);
+            if (!own.is_solved) return Estimate();
+            if (holds_grey())
+                own.estimate = with_exponent(part, own.estimate, log_exponent(own.estimate, state.estimate));
+            return in_emor(own);
+        },
+        [this] { return is_cancelled(); });
+}
+
+void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
+    auto began = std::chrono::steady_clock::now();
+    bool any_modes = is_free_ && options_.modes == LENSPROF_MODES_AUTO && split_.has_heldout();
+    bool any_curves =
+        options_.vignettings == 0 && options_.channels == 3 && (options_.free & kFalloff123) && split_.has_heldout();
+    int most = std::min(static_cast<int>(std::min(options_.max_iterations, 1000u)), kLastRounds);
+    auto tell = [this] { advance(done_); };
+    bool is_still;
+
+    set_vignettings(options_.vignettings == 3 && options_.channels == 3 ? 3 : 1);
+    advance(0.0);
+    Candidate best;
+    best.state = start();
+    advance(0.1);
+    if (is_free_ && options_.modes != LENSPROF_MODES_AUTO) best.state.model.modes = static_cast<int>(options_.modes);
+    alternate(train_, gauge_, true, std::min(most, kFirstRounds), best.state, tell, is_still);
+    common_ = loss();
+    common_.noise = estimate_noise(train_, best.state.estimate, common_.noise);
+    if (any_modes)
+        best = choose_modes(best.state);
+    else if (any_curves)
+        best = candidate(best.state, best.state.model.modes);
+    if (any_curves) choose_vignettings(best);
+    advance(0.7);
+
+    State last = best.state;
+    int rounds = alternate(all_, gauge_, true, most, last, tell, is_still);
+    advance(0.8);
+    Covariance found = scatter(last);
+    Estimate estimate = in_emor(last);
+    lensprof_fit_result r = result;
+    r.iterations = static_cast<uint32_t>(rounds);
+    r.converged = is_still;
+    std::vector<lensprof_fit_image_quality> own(image_count_);
+    if (!r.image_quality) r.image_quality = own.data();
+    describe_model(all_, estimate, r);
+    describe_heldout(split_.has_heldout() ? heldout_ : all_, best.state.estimate, split_.has_heldout(), r);
+    describe_quality(all_, gauge_, estimate_noise(all_, estimate, common_.noise), found, estimate, r);
+    judge(all_, estimate, r);
+    judge_exposures(last, r);
+    r.image_quality = result.image_quality;
+    write_exposures(all_, estimate, exposures);
+    r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    result = r;
+}
+
+}  // namespace
+
+void fit_transfer_functions(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                            const lensprof_pair *pairs, uint32_t pair_count, lensprof_exposure *exposures,
+                            lensprof_fit_result &result) {
+    Fit(options, images, image_count, pairs, pair_count).run(exposures, result);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,190 @@
+#include "fit/methods/transfer_function/transfer_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/base/parallel.hpp"
+#include "fit/base/quantile.hpp"
+#include "fit/methods/transfer_function/joint_histogram.hpp"
+#include "fit/problem/residual.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kSmoothing = 1.5;      // bins: noise of neighbouring pictures
+constexpr double kPathSmoothing = 2.0;  // bins: what the path's steps are evened out by
+constexpr int kLevels = 256;
+constexpr double kNear = 4.0;            // sigmas of the noise within which a pair is of the curve
+constexpr double kSmallestNoise = 0.25;  // levels: that of rounding
+constexpr double kEnds = 2.0;            // sigmas from black and white where the mean of what is left is off
+
+// Fewer and wider bins where pairs are sparse; deeper data than 8 bit fall into bins of 8 bit.
+int bins_for(size_t pairs) {
+    return pairs >= 4000 ? kLevels : pairs >= 500 ? kLevels / 2 : pairs >= 100 ? kLevels / 4 : kLevels / 8;
+}
+
+// Irradiance behind a grey value, of a response that is fixed for the moment.
+double evened(const Estimate &estimate, double value, double ratio) {
+    double x = lensprof_response_invert(&estimate.fixed, value, nullptr);
+    return lensprof_response_eval(&estimate.fixed, x * ratio, nullptr);
+}
+
+// Levels of the pairs of an edge in one channel, as both ends would have recorded them at the geometric mean of their
+// falloffs. Pairs without a value between black and white say nothing.
+std::vector<LevelPair> levels_of(const Problem &problem, const Estimate &estimate, const Edge &edge, int channel) {
+    std::vector<LevelPair> levels;
+    const auto &vignetting = estimate.vignetting[problem.vignettings == 3 ? static_cast<size_t>(channel) : 0];
+    bool even = vignetting.k[0] != 0.0 || vignetting.k[1] != 0.0 || vignetting.k[2] != 0.0;
+    for (size_t p = edge.first; p < edge.last; p++) {
+        const auto &pair = problem.pairs[p];
+        double value[2] = {pair.value[0][channel], pair.value[1][channel]};
+        if (std::max(value[0], value[1]) >= 1.0 || std::min(value[0], value[1]) <= 0.0) continue;
+        if (even) {
+            double root = std::sqrt(falloff(problem, vignetting, pair).ratio);
+            value[0] = evened(estimate, value[0], 1.0 / root);
+            value[1] = evened(estimate, value[1], root);
+            if (std::max(value[0], value[1]) >= 1.0) continue;
+        }
+        levels.push_back({255.0 * value[0], 255.0 * value[1]});
+    }
+    return levels;
+}
+
+// T as a function of levels: the path with its steps evened out.
+struct SmoothTransfer {
+    std::array<double, kLevels> to;
+
+    SmoothTransfer(const JointHistogram &histogram, const TransferPath &path) {
+        auto reach = static_cast<int>(3 * kPathSmoothing);
+        for (int i = 0; i < kLevels; i++) {
+            double centre = histogram.bin(i), sum = 0.0, weights = 0.0;
+            for (int b = static_cast<int>(centre) - reach; b <= static_cast<int>(centre) + reach + 1; b++) {
+                double z = (b - centre) / kPathSmoothing, weight = std::exp(-0.5 * z * z);
+                // Beyond the ends the path goes on as its mirror image there.
+                int last = histogram.bins - 1, inside = b < 0 ? -b : b > last ? 2 * last - b : b;
+                double at = path.to[static_cast<size_t>(inside)];
+                sum += weight * (b < 0 ? -at : b > last ? 2 * last - at : at);
+                weights += weight;
+            }
+            to[static_cast<size_t>(i)] = histogram.level(sum / weights);
+        }
+    }
+
+    double at(double level, double &slope) const {
+        auto i = static_cast<size_t>(std::clamp(level, 0.0, kLevels - 1.001));
+        slope = to[i + 1] - to[i];
+        return to[i] + (level - static_cast<double>(i)) * slope;
+    }
+};
+
+// A pair beside the curve: how far along the curve its nearest point lies (both its levels added up: a steep curve is
+// then told as finely as a flat one), and its distance.
+struct Beside {
+    double along;
+    double distance;
+};
+
+Beside beside(const SmoothTransfer &transfer, const LevelPair &pair) {
+    double foot = pair[0], slope = 1.0, off = 0.0;
+    for (int step = 0; step < 4; step++) {
+        off = pair[1] - transfer.at(foot, slope);
+        double next = foot + ((pair[0] - foot) + slope * off) / (1.0 + slope * slope);
+        foot = std::clamp(0.5 * (foot + next), 0.0, kLevels - 1.0);
+    }
+    off = pair[1] - transfer.at(foot, slope);
+    double distance = (off - slope * (pair[0] - foot)) / std::sqrt(1.0 + slope * slope);
+    return {foot + transfer.at(foot, slope), distance};
+}
+
+// Mean of the pairs whose nearest points of the path lie together, pairs off the curve left out: across the curve and
+// not along an axis, so that noise in both values does not tilt it. What lies by the ends of `range` is left out.
+void add_means(const SmoothTransfer &transfer, const std::vector<LevelPair> &pairs, bool is_swapped, double reach,
+               const double range[2], TransferCurve &curve) {
+    std::vector<Beside> besides;
+    std::vector<double> near;
+    for (const LevelPair &pair : pairs) {
+        besides.push_back(beside(transfer, pair));
+        if (std::abs(besides.back().distance) < reach) near.push_back(std::abs(besides.back().distance));
+    }
+    if (near.empty()) return;
+    double noise = std::max(1.4826 * median(near), kSmallestNoise);
+    struct Sum {
+        double weight = 0.0, level[2] = {0.0, 0.0};
+    };
+    std::array<Sum, 2 * kLevels> sums;
+    for (size_t p = 0; p < pairs.size(); p++) {
+        double z = besides[p].distance / (kNear * noise);
+        if (std::abs(z) >= 1.0) continue;
+        double weight = (1.0 - z * z) * (1.0 - z * z);
+        Sum &sum = sums[static_cast<size_t>(std::clamp(std::lround(besides[p].along), 0l, 2l * kLevels - 1))];
+        sum.weight += weight;
+        for (size_t side = 0; side < 2; side++) sum.level[side] += weight * pairs[p][side];
+    }
+    for (const Sum &sum : sums) {
+        if (sum.weight < 0.5) continue;
+        double first = sum.level[0] / sum.weight, second = sum.level[1] / sum.weight;
+        if (std::min(first, second) < range[0] + kEnds * noise || std::max(first, second) > range[1] - kEnds * noise)
+            continue;
+        if (is_swapped) std::swap(first, second);
+        curve.points.push_back({{first, second}, 0.5 * sum.weight});  // half: the other direction says it again
+    }
+    curve.noise = std::max(curve.noise, noise);
+}
+
+// The path's own points, as far as a pair stands behind them.
+void add_path(const JointHistogram &likelihood, const TransferPath &path, bool is_swapped, TransferCurve &curve) {
+    double nothing = *std::min_element(likelihood.count.begin(), likelihood.count.end());
+    for (int b = 1; b < likelihood.bins - 1; b++) {
+        int to = path.to[static_cast<size_t>(b)];
+        if (likelihood.at(b, to) <= nothing || to <= 0 || to >= likelihood.bins - 1) continue;
+        double first = likelihood.level(b), second = likelihood.level(to);
+        if (is_swapped) std::swap(first, second);
+        curve.points.push_back({{first, second}, 1.0});
+    }
+}
+
+TransferCurve transfer_curve(const Problem &problem, const Estimate &estimate, size_t edge, int channel,
+                             const double range[2], bool as_paper) {
+    TransferCurve curve{edge, channel, 0.0, {}};
+    std::vector<LevelPair> pairs = levels_of(problem, estimate, problem.edges[edge], channel);
+    if (pairs.empty()) return curve;
+    JointHistogram histogram = joint_histogram(pairs, as_paper ? kLevels : bins_for(pairs.size()));
+    JointHistogram likelihood = log_likelihood(histogram, kSmoothing);
+    double reach = 2.0 * kNear * std::max(1.0, 255.0 / (histogram.bins - 1));
+    for (bool is_swapped : {false, true}) {
+        if (is_swapped) {
+            likelihood = transposed(likelihood);
+            for (LevelPair &pair : pairs) std::swap(pair[0], pair[1]);
+        }
+        TransferPath path = most_likely_path(likelihood);
+        if (as_paper)
+            add_path(likelihood, path, is_swapped, curve);
+        else
+            add_means(SmoothTransfer(histogram, path), pairs, is_swapped, reach, range, curve);
+    }
+    return curve;
+}
+
+}  // namespace
+
+std::vector<TransferCurve> transfer_curves(const Problem &problem, const Estimate &estimate, bool as_paper) {
+    double range[2] = {255.0, 0.0};  // of all grey levels: beyond, the sampler or the camera has cut
+    for (const auto &pair : problem.pairs)
+        for (const auto &side : pair.value)
+            for (int c = 0; c < problem.channels; c++) {
+                range[0] = std::min(range[0], 255.0 * side[c]);
+                range[1] = std::max(range[1], 255.0 * side[c]);
+            }
+    auto channels = static_cast<size_t>(problem.channels);
+    std::vector<TransferCurve> curves(problem.edges.size() * channels);
+    for_each_parallel(
+        static_cast<uint32_t>(curves.size()), problem.threads,
+        [&](uint32_t k) {
+            curves[k] =
+                transfer_curve(problem, estimate, k / channels, static_cast<int>(k % channels), range, as_paper);
+        },
+        [] { return false; });
+    return curves;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,250 @@
+#include "fit/prior/gauge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "core/response.h"
+#include "fit/problem/monotone.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kLn2 = 0.6931471805599453;
+
+// How firmly gamma is held, as a standard error of ln gamma at kPinPairs pairs and the prior's own standard error.
+// Modes left out prefer some gamma by accident, the more the more pairs there are: the hold keeps up with them.
+constexpr double kPinSigma = 0.05, kSmallestPinSigma = 1e-3, kLargestPinSigma = 0.1, kPinPairs = 2000.0;
+constexpr double kLargestStep = 1.2;    // of ln gamma in one move along the family
+constexpr double kDoubtful = 3.0;       // known exposures farther off, in standard errors, count for less
+constexpr double kChanceScatter = 2.0;  // standard errors: a scatter up to this may be chance
+constexpr double kSmallestSlope = 0.1;  // and its inverse: beyond, known exposures are of something else
+
+double known_sigma(const lensprof_fit_image &image) { return std::max(image.known_ev_sigma, kKnownSigma); }
+
+// Images whose exposure or white balance is held away from the reference's.
+bool has_fixed_exposure(const Problem &problem) {
+    auto given = [&](uint32_t i, int c) {  // log exposure that the unknowns of channel c start from
+        lensprof_exposure e = given_exposure(problem.images, i);
+        return problem.channels == 1 ? e.ev * kLn2 : e.ev * kLn2 + std::log(e.white_balance[c]);
+    };
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        for (int c = 0; c < problem.channels; c++)
+            if (problem.ev_unknown[i] < 0 && problem.balance_unknown[i][c] < 0
+                && given(i, c) != given(problem.reference, c))
+                return true;
+    return false;
+}
+
+// Nothing that is held fixed tells one member of the family from another.
+bool nothing_fixes_gamma(const lensprof_fit_options &options, const Problem &problem) {
+    for (int n = 0; n < 3; n++)
+        if (!(options.free & (LENSPROF_FREE_K1 << n)) && options.vignetting.k[n] != 0.0) return false;
+    return (options.free & LENSPROF_FREE_RESPONSE) && options.modes != 0 && !has_fixed_exposure(problem);
+}
+
+// Least squares k1..k3 (those that are free) of M^gamma over the frame.
+void raise_falloff(const Problem &problem, double gamma, lensprof_vignetting &v) {
+    std::vector<int> columns;
+    for (int n = 0; n < 3; n++)
+        if (problem.free & (LENSPROF_FREE_K1 << n)) columns.push_back(n);
+    if (columns.empty()) return;
+    auto count = static_cast<Eigen::Index>(columns.size());
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(count), row(count);
+    for (int i = 1; i <= 40; i++) {
+        double r2 = i * i / 1600.0, m = std::max(lensprof_vignetting_eval(&v, r2, nullptr), 1e-3);
+        for (Eigen::Index u = 0; u < count; u++) row[u] = std::pow(r2, columns[static_cast<size_t>(u)] + 1);
+        normal += row * row.transpose();
+        right += row * (std::pow(m, gamma) - 1.0);
+    }
+    Eigen::VectorXd k = normal.ldlt().solve(right);
+    for (Eigen::Index u = 0; u < count; u++) v.k[columns[static_cast<size_t>(u)]] = k[u];
+}
+
+// Standard deviation by the median of what two parameters leave, less what may be chance; 1 where there is no more.
+double scatter_of(std::vector<double> off) {
+    if (off.size() < 3) return 1.0;
+    auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+    std::nth_element(off.begin(), middle, off.end());
+    double count = static_cast<double>(off.size()), scatter = 1.4826 * *middle * std::sqrt(count / (count - 2.0));
+    return std::sqrt(1.0 + std::max(0.0, scatter * scatter - kChanceScatter * kChanceScatter));
+}
+
+}  // namespace
+
+// dx = -h(x) / f'(x) at the grey value that defines it.
+Eigen::VectorXd gamma_slope(const Estimate &estimate) {
+    Eigen::VectorXd by_mode = Eigen::VectorXd::Zero(kMaxModes);
+    double slope, x = estimate.curve.invert(kGaugeGrey, &slope);
+    for (int l = 0; l < estimate.modes; l++)
+        by_mode[l] =
+            -lp_curve_eval(lensprof_emor_table(static_cast<uint32_t>(l) + 1), x, nullptr) * slope / (x * std::log(x));
+    return by_mode;
+}
+
+Estimate with_exponent(const Problem &problem, const Estimate &estimate, double log_gamma) {
+    Estimate moved = estimate;
+    double gamma = std::exp(log_gamma), curve[LENSPROF_RESPONSE_SAMPLES];
+    for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++)
+        curve[j] = lp_curve_eval(estimate.curve.table.data(), std::pow(j / 1023.0, 1.0 / gamma), nullptr);
+    if (estimate.modes >= 0)
+        set_response(moved, project_curve(curve, estimate.modes).data(), estimate.modes);
+    else
+        set_table(moved, curve);
+    for (auto &v : moved.vignetting) raise_falloff(problem, gamma, v);
+    const auto &reference = estimate.log_exposure[problem.reference];
+    for (auto &a : moved.log_exposure)
+        for (size_t c = 0; c < 3; c++) a[c] = reference[c] + gamma * (a[c] - reference[c]);
+    return moved;
+}
+
+Gauge::Gauge(const lensprof_fit_options &options, const Problem &problem, const StoredPrior *stored)
+    : prior_(&gamma_prior(options.camera_kind)),
+      stored_(stored && stored->gamma_sigma() > 0.0 ? stored : nullptr),
+      wanted_(static_cast<lensprof_gamma_from>(options.gamma_from)) {
+    bool is_family = nothing_fixes_gamma(options, problem);
+    open_ = is_family && options.prior_weight > 0.0;
+    if (is_family && !open_) from_ = LENSPROF_GAMMA_NONE;
+    bool any = false;
+    for (uint32_t i = 0; i < problem.image_count; i++) any = any || problem.images[i].known_ev_sigma > 0.0;
+    if (any) known_weight_.assign(problem.image_count, 1.0);
+}
+
+double Gauge::expected(const double *table) const {
+    return stored_ ? stored_->gamma_position() : expected_position(*prior_, table);
+}
+
+double Gauge::prior_sigma() const { return stored_ ? stored_->gamma_sigma() : prior_->sigma; }
+
+Gauge Gauge::unheld() const {
+    Gauge other = *this;
+    other.open_ = false;
+    other.known_weight_.clear();
+    return other;
+}
+
+Gauge Gauge::by_prior() const {
+    Gauge other = *this;
+    other.wanted_ = LENSPROF_GAMMA_PRIOR;
+    other.known_weight_.clear();
+    return other;
+}
+
+// Regression of the known exposures on the estimate's, over the reference's component: the known ones carry the error.
+// What they vary beyond their own error is what they say about gamma: equal ones say nothing. Where they scatter more
+// than stated, their error is what they scatter.
+void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
+    slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0, scatter_ = 1.0;
+    if (known_weight_.empty()) return;
+    std::vector<uint32_t> members;
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        if (problem.images[i].known_ev_sigma > 0.0 && problem.component[i] == problem.component[problem.reference])
+            members.push_back(i);
+    if (members.size() < 2) known_weight_.clear();  // only differences say something
+    if (known_weight_.empty()) return;
+    for (uint32_t i : members) known_weight_[i] = 1.0;
+    auto found = [&](uint32_t i) { return estimate.log_exposure[i][problem.measured_channel()] / kLn2; };
+    auto error = [&](uint32_t i) { return scatter_ * known_sigma(problem.images[i]); };
+    double per_known = 1.0;  // known EV per found EV
+    for (int round = 0; round < 8 && !members.empty(); round++) {
+        double sum = 0, mean_found = 0, mean_known = 0, xx = 0, xy = 0, yy = 0, own = 0;
+        for (uint32_t i : members) {
+            double w = known_weight_[i] / std::pow(error(i), 2);
+            sum += w, mean_found += w * found(i), mean_known += w * problem.images[i].known_ev;
+            own += known_weight_[i];
+        }
+        mean_found /= sum, mean_known /= sum;
+        for (uint32_t i : members) {
+            double w = known_weight_[i] / std::pow(error(i), 2);
+            double dx = found(i) - mean_found, dy = problem.images[i].known_ev - mean_known;
+            xx += w * dx * dx, xy += w * dx * dy, yy += w * dy * dy;
+        }
+        double excess = yy > 0.0 ? std::max(0.0, 1.0 - own / yy) : 0.0;  // yy is chi-squared where exposures are equal
+        bool says = open_ && excess > 0.0 && members.size() > 1 && xy > kSmallestSlope * xx && xy * kSmallestSlope < xx;
+        per_known = says ? xy / xx : 1.0;
+        slope_ = 1.0 / per_known;
+        slope_sigma_ = says ? 1.0 / (per_known * std::sqrt(xx * excess)) : 0.0;
+        known_offset_ = kLn2 * (mean_found - slope_ * mean_known);
+        std::vector<double> off;  // in stated standard errors
+        for (uint32_t i : members)
+            off.push_back(std::abs(mean_known + per_known * (found(i) - mean_found) - problem.images[i].known_ev)
+                          / known_sigma(problem.images[i]));
+        scatter_ = scatter_of(off);
+        for (size_t m = 0; m < members.size(); m++) {
+            double z = off[m] / (kDoubtful * scatter_);
+            known_weight_[members[m]] = 1.0 / (1.0 + z * z);
+        }
+    }
+}
+
+// From where prior and known exposures, each by its standard error, want it.
+double Gauge::distance(const Problem &problem, const Estimate &estimate) {
+    compare_known(problem, estimate);
+    if (!open_) return 0.0;
+    const double *table = estimate.curve.table.data();
+    double offset = gamma_position(table) - expected(table);
+    bool says = slope_sigma_ > 0.0 && wanted_ != LENSPROF_GAMMA_PRIOR;
+    double prior_precision = 1.0 / (prior_sigma() * prior_sigma());
+    if (says) {  // errors of the prior have heavy tails: where exposures contradict it, it counts for less
+        double z = (offset - std::log(slope_)) / std::hypot(prior_sigma(), slope_sigma_);
+        if (stored_) z /= kDoubtful;  // those of a profile's have not
+        prior_precision *= wanted_ == LENSPROF_GAMMA_EXPOSURES ? 0.0 : 1.0 / (1.0 + z * z);
+    }
+    double precision = says ? 1.0 / (slope_sigma_ * slope_sigma_) : 0.0;
+    from_ = precision > prior_precision ? LENSPROF_GAMMA_EXPOSURES
+            : stored_                   ? LENSPROF_GAMMA_PROFILE
+                                        : LENSPROF_GAMMA_PRIOR;
+    sigma_ = 1.0 / std::sqrt(precision + prior_precision);
+    return (prior_precision * offset + precision * std::log(slope_)) / (precision + prior_precision);
+}
+
+void Gauge::settle(const Problem &problem, Estimate &estimate) {
+    if (!open_) return;
+    for (int round = 0; round < 3; round++) {
+        double step = -std::clamp(distance(problem, estimate), -kLargestStep, kLargestStep);
+        if (std::abs(step) < 0.01) return;
+        Estimate moved = with_exponent(problem, estimate, step);
+        for (int half = 0; half < 6; half++) {
+            if (is_feasible(moved, problem.vignettings)) break;
+            step *= 0.5;
+            moved = with_exponent(problem, estimate, step);
+        }
+        if (!is_feasible(moved, problem.vignettings)) return;
+        estimate = moved;
+    }
+}
+
+void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior) {
+    prior.pin.setZero();
+    prior.pin_precision = prior.pin_value = 0.0;
+    if (open_) {
+        double here = distance(problem, estimate);
+        prior.pin = gamma_slope(estimate);
+        double pairs = static_cast<double>(std::max<size_t>(problem.pairs.size(), 1));
+        double hold = std::min(kLargestPinSigma, kPinSigma * std::sqrt(kPinPairs / pairs));
+        hold = std::max(hold * std::pow(sigma_ / prior_sigma(), 4), kSmallestPinSigma);
+        prior.pin_precision = 1.0 / (hold * hold);
+        prior.pin_value = prior.pin.dot(Eigen::Map<const Eigen::VectorXd>(estimate.emor.data(), kMaxModes)) - here;
+    } else {
+        compare_known(problem, estimate);
+    }
+    prior.known.clear();
+    if (known_weight_.empty()) return;
+    prior.known.resize(problem.image_count);
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        const auto &image = problem.images[i];
+        if (!(image.known_ev_sigma > 0.0) || problem.component[i] != problem.component[problem.reference]) continue;
+        prior.known[i].log_exposure = known_offset_ + slope_ * kLn2 * image.known_ev;
+        prior.known[i].precision = known_weight_[i] / std::pow(slope_ * kLn2 * scatter_ * known_sigma(image), 2);
+    }
+}
+
+Eigen::VectorXd Gauge::direction(const Problem &problem, const Estimate &estimate) {
+    constexpr double h = 0.01;
+    Eigen::VectorXd up = shared_vector(with_exponent(problem, estimate, h));
+    return (up - shared_vector(with_exponent(problem, estimate, -h))) / (2 * h);
+}
+
+}  // namespace lensprof

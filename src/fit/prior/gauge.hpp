@@ -1,0 +1,73 @@
+// The gauge gamma: (f, M, e, w) and (f o x^(1/gamma), M^gamma, e^gamma, w^gamma) make the same pictures.
+//
+// A basis of few modes represents some members of that family better than others, so that a fit left to itself settles
+// gamma by accident. Here it is settled by what is known - the prior on the response's shape, and known exposures that
+// differ - and then held while everything else is fitted.
+#pragma once
+
+#include "fit/prior/gamma_prior.hpp"
+#include "fit/prior/prior.hpp"
+#include "fit/prior/stored_prior.hpp"
+#include "fit/problem/problem.hpp"
+
+namespace lensprof {
+
+// Known exposures are not taken to be better than this, EV: shutters and apertures are not.
+constexpr double kKnownSigma = 0.02;
+
+class Gauge {
+public:
+    // `stored` (NULL where there is none, else it outlives this): a profile whose gamma is expected in place of that of
+    // most cameras.
+    Gauge(const lensprof_fit_options &options, const Problem &problem, const StoredPrior *stored = nullptr);
+
+    // False where parameters held fixed settle gamma, or where no prior is wanted (the paper's method).
+    bool is_open() const { return open_; }
+
+    // The same knowledge, which nothing holds gamma to: for first fits, whose shape is to find its own optimum.
+    Gauge unheld() const;
+
+    // The prior alone: few modes can follow to the gamma of most cameras without loss of shape, not to any that known
+    // exposures may ask for, which would draw the pictures' exposures along. A refined response can.
+    Gauge by_prior() const;
+
+    // Moves the estimate along its family to where gamma is settled, as well as its modes and falloff can follow.
+    void settle(const Problem &problem, Estimate &estimate);
+
+    // Writes what holds gamma, and the known exposures, into the prior, linearised at the estimate.
+    void renew(const Problem &problem, const Estimate &estimate, Prior &prior);
+
+    lensprof_gamma_from from() const { return from_; }
+    double sigma() const { return sigma_; }                // standard error of ln gamma; 0 when known
+    double slope() const { return slope_; }                // of the estimate's exposures on the known ones
+    bool knows() const { return !known_weight_.empty(); }  // of exposures that can be compared
+    double known_offset() const { return known_offset_; }  // common offset of the known exposures, natural logarithm
+
+    // Change of the full shared vector per unit of ln gamma.
+    static Eigen::VectorXd direction(const Problem &problem, const Estimate &estimate);
+
+    // ln gamma by which an estimate is away from where it is to be; 0 where nothing is open.
+    double distance(const Problem &problem, const Estimate &estimate);
+
+private:
+    void compare_known(const Problem &problem, const Estimate &estimate);
+
+    double expected(const double *table) const;  // position within the family
+    double prior_sigma() const;                  // standard error of that
+
+    const GammaPrior *prior_;
+    const StoredPrior *stored_;  // where it knows gamma, it is asked instead
+    lensprof_gamma_from wanted_, from_ = LENSPROF_GAMMA_KNOWN;
+    bool open_ = false;
+    double sigma_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
+    double scatter_ = 1.0;  // of the known exposures about the estimate's, in their stated standard errors; 1 at least
+    std::vector<double> known_weight_;  // trust in each known exposure, 0..1
+};
+
+// Change of a response's position within its family for each of its coefficients.
+Eigen::VectorXd gamma_slope(const Estimate &estimate);
+
+// The same estimate with the exponent gamma = exp(log_gamma) put in; a response without modes follows exactly.
+Estimate with_exponent(const Problem &problem, const Estimate &estimate, double log_gamma);
+
+}  // namespace lensprof

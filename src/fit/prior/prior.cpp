@@ -1,0 +1,95 @@
+#include "fit/prior/prior.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace lensprof {
+
+const double kEmorSigma[kMaxModes] = {3.416,  1.294,  0.469,  0.202,  0.0961, 0.0706, 0.0520, 0.0371, 0.0368,
+                                      0.0303, 0.0194, 0.0143, 0.0103, 0.0085, 0.0069, 0.0055, 0.0049, 0.0049,
+                                      0.0035, 0.0030, 0.0029, 0.0019, 0.0018, 0.0016, 0.0014};
+
+namespace {
+
+// Mean and covariance of (k1, k2, k3) over the 19,920 falloff entries of the Lensfun database.
+const double kFalloffMean[3] = {-0.347, 0.139, -0.118};
+const double kFalloffCovariance[3][3] = {
+    {0.1298, -0.1369, 0.0682}, {-0.1369, 0.3262, -0.2656}, {0.0682, -0.2656, 0.4005}};
+
+// The falloff's centre lies where the optical axis meets the sensor: mounting tolerances, in half diagonals.
+constexpr double kCenterSigma = 0.02;
+
+// Falloff curves of the channels about that of green: lateral colour and sensor stacks.
+constexpr double kChannelSigma = 0.1;
+
+}  // namespace
+
+Prior make_prior(double weight, int vignettings, bool by_covariance) {
+    Prior prior;
+    prior.covariance_weight = by_covariance ? weight : 0.0;
+    prior.mean = Eigen::VectorXd::Zero(kMaxShared);
+    prior.precision = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
+    for (int l = 0; l < kMaxModes; l++) prior.precision(l, l) = weight / (kEmorSigma[l] * kEmorSigma[l]);
+    Eigen::Matrix3d covariance;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) covariance(i, j) = kFalloffCovariance[i][j];
+    int green = green_falloff(vignettings);
+    prior.precision.block<3, 3>(green, green) = weight * covariance.inverse();
+    for (int c = 0; c < vignettings; c++)
+        for (int i = 0; i < 3; i++) prior.mean(kFalloff + 3 * c + i) = kFalloffMean[i];
+    tie_channels(weight, vignettings, prior);
+    for (int d = 0; d < 2; d++) prior.precision(kCenter + d, kCenter + d) = weight / (kCenterSigma * kCenterSigma);
+    return prior;
+}
+
+void tie_channels(double weight, int vignettings, Prior &prior) {
+    const int green = green_falloff(vignettings);
+    const double tie = weight / (kChannelSigma * kChannelSigma);
+    for (int own = kFalloff; own < kFalloff + 3 * vignettings; own++) {
+        const int of_green = green + (own - kFalloff) % 3;
+        if (own == of_green) continue;
+        prior.precision(own, own) += tie;
+        prior.precision(of_green, of_green) += tie;
+        prior.precision(own, of_green) = prior.precision(of_green, own) = -tie;
+    }
+}
+
+Eigen::MatrixXd scatter_of_all() {
+    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
+    for (int l = 0; l < kMaxModes; l++) scatter(l, l) = kEmorSigma[l] * kEmorSigma[l];
+    for (int a = 0; a < 9; a++)
+        for (int b = 0; b < 9; b++) scatter(kFalloff + a, kFalloff + b) = kFalloffCovariance[a % 3][b % 3];
+    for (int d = 0; d < 2; d++) scatter(kCenter + d, kCenter + d) = kCenterSigma * kCenterSigma;
+    return scatter;
+}
+
+Prior prior_of(const Prior &prior, int modes) {
+    Prior result = prior;
+    if (prior.covariance_weight == 0.0 || modes <= 0) return result;
+    Eigen::MatrixXd covariance(modes, modes);
+    for (int l = 0; l < modes; l++)
+        for (int m = 0; m <= l; m++)
+            covariance(l, m) = covariance(m, l) =
+                kEmorSigma[l] * kEmorSigma[m] * (l == m ? 1.0 : kEmorCorrelation[l * (l - 1) / 2 + m]);
+    result.precision.topLeftCorner(modes, modes) =
+        prior.covariance_weight * covariance.llt().solve(Eigen::MatrixXd::Identity(modes, modes));
+    return result;
+}
+
+double prior_cost(const Prior &prior, const Problem &problem, const std::vector<int> &columns,
+                  const Estimate &estimate) {
+    Eigen::VectorXd full = shared_vector(estimate), d = Eigen::VectorXd::Zero(kMaxShared);
+    for (int column : columns) d[column] = full[column] - prior.mean[column];
+    double cost = 0.5 * d.dot(prior.precision * d);
+    if (prior.pin_precision > 0.0) {
+        double off = prior.pin.dot(full.head(kMaxModes)) - prior.pin_value;
+        cost += 0.5 * prior.pin_precision * off * off;
+    }
+    for (size_t i = 0; i < prior.known.size(); i++) {
+        double off = estimate.log_exposure[i][problem.measured_channel()] - prior.known[i].log_exposure;
+        if (problem.ev_unknown[i] >= 0) cost += 0.5 * prior.known[i].precision * off * off;
+    }
+    return cost;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,174 @@
+#include "fit/prior/stored_prior.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "core/response.h"
+#include "fit/prior/gauge.hpp"
+#include "fit/problem/monotone.hpp"
+
+namespace lensprof {
+namespace {
+
+// Two sequences of one lens differ by more than noise (focus, stray light, registration): share of the scatter over all
+// cameras and lenses that is added to what a profile says of itself, so that no number of sequences makes it certain.
+constexpr double kDrift = 0.01;
+
+int modes_before_falloff(const lensprof_profile &profile) {
+    int modes = 0;
+    for (uint32_t c = 0; c < profile.responses; c++)
+        if (profile.response[c].kind == LENSPROF_RESPONSE_EMOR) modes += static_cast<int>(profile.response[c].modes);
+    return modes;
+}
+
+}  // namespace
+
+bool is_covariance(const lensprof_profile &profile) {
+    const auto n = static_cast<Eigen::Index>(profile.covariance_size);
+    Eigen::VectorXd sigma(n);
+    for (Eigen::Index i = 0; i < n; i++) sigma[i] = std::sqrt(profile.covariance[i * n + i]);
+    Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index i = 0; i < n; i++)
+        for (Eigen::Index j = 0; j < n; j++) {
+            const double value = profile.covariance[i * n + j];
+            if (i != j && sigma[i] > 0.0 && sigma[j] > 0.0)
+                correlation(i, j) = value / sigma[i] / sigma[j];
+            else if (i != j && value != 0.0)
+                return false;
+        }
+    if (!correlation.allFinite()) return false;
+    constexpr double kRounding = 1e-6;
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation, Eigen::EigenvaluesOnly).eigenvalues().minCoeff()
+           > -kRounding;
+}
+
+StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem, int most_modes)
+    : vignettings_(static_cast<int>(profile.vignettings)) {
+    const bool is_emor = profile.responses == 1 && profile.response[0].kind == LENSPROF_RESPONSE_EMOR;
+    if (is_emor) modes_ = std::min(static_cast<int>(profile.response[0].modes), most_modes);
+    const int stored = static_cast<int>(profile.covariance_size), before = modes_before_falloff(profile);
+    const auto is_known = [&](int row, int count) {  // parameters that were held say nothing, nor what goes with them
+        bool all = row + count <= stored;
+        for (int i = row; i < row + count && all; i++) all = profile.covariance[i * stored + i] > 0.0;
+        return all;
+    };
+    const Eigen::MatrixXd scatter = scatter_of_all();
+    if (modes_ > 0 && !is_known(0, modes_)) modes_ = 0;
+    std::vector<int> from, to;  // row of the profile's covariance, column of the full shared vector
+    for (int l = 0; l < modes_; l++) from.push_back(l), to.push_back(l);
+    for (int i = 0; i < 3 * vignettings_ && is_known(before, 3 * vignettings_); i++)
+        from.push_back(before + i), to.push_back(kFalloff + i);
+    for (int d = 0; d < 2 && is_known(before + 3 * vignettings_, 2); d++)
+        from.push_back(before + 3 * vignettings_ + d), to.push_back(kCenter + d);
+    for (size_t i = 0; i < from.size(); i++)
+        for (size_t j = 0; j < from.size(); j++)
+            covariance_(to[i], to[j]) =
+                profile.covariance[from[i] * stored + from[j]] + kDrift * kDrift * scatter(to[i], to[j]);
+    if (modes_ > 0) {
+        const auto coefficients = modes_ == static_cast<int>(profile.response[0].modes)
+                                      ? std::vector<double>(profile.response[0].emor, profile.response[0].emor + modes_)
+                                      : project_curve(profile.response[0].table, modes_);
+        for (int l = 0; l < modes_; l++) mean_[l] = coefficients[static_cast<size_t>(l)];
+    }
+    for (int c = 0; c < vignettings_; c++)
+        for (int n = 0; n < 3; n++) mean_[kFalloff + 3 * c + n] = profile.vignetting[c].k[n];
+    for (int d = 0; d < 2; d++) mean_[kCenter + d] = profile.vignetting[0].center[d];
+    if (modes_ > 0) settle_gamma(problem, profile);
+}
+
+void StoredPrior::settle_gamma(const Problem &problem, const lensprof_profile &profile) {
+    Estimate stored;
+    set_response(stored, mean_.data(), modes_);
+    for (size_t c = 0; c < 3; c++) stored.vignetting[c] = profile.vignetting[profile.vignettings == 3 ? c : 0];
+    stored.log_exposure.assign(problem.image_count, {});
+    gamma_direction_ = Gauge::direction(problem, stored);
+    for (Eigen::Index i = 0; i < kMaxShared; i++)
+        if (covariance_(i, i) <= 0.0) gamma_direction_[i] = 0.0;
+    gamma_position_ = lensprof::gamma_position(stored.curve.table.data());
+    const Eigen::VectorXd slope = gamma_slope(stored);
+    gamma_sigma_ = std::sqrt(std::max(slope.dot(covariance_.topLeftCorner(kMaxModes, kMaxModes) * slope), 0.0));
+}
+
+// Where the knowledge goes: green's curve for one, or one for green's, to which those of the other channels are tied.
+StoredPrior::Places StoredPrior::places(int vignettings) const {
+    Places places;
+    const auto take = [&](int source, int target) {
+        if (covariance_(source, source) > 0.0) places.from.push_back(source), places.to.push_back(target);
+    };
+    for (int l = 0; l < modes_; l++) take(l, l);
+    const bool all_three = vignettings_ == 3 && vignettings == 3;
+    for (int i = 0; i < (all_three ? 9 : 3); i++)
+        take((all_three ? kFalloff : green_falloff(vignettings_)) + i,
+             (all_three ? kFalloff : green_falloff(vignettings)) + i);
+    for (int d = 0; d < 2; d++) take(kCenter + d, kCenter + d);
+    return places;
+}
+
+// The inverse of the covariance of what is known. Any gamma is as good as another: along its direction the precision is
+// taken out.
+Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from) const {
+    const auto count = static_cast<Eigen::Index>(from.size());
+    Eigen::MatrixXd covariance(count, count);
+    Eigen::VectorXd direction(count);
+    for (Eigen::Index i = 0; i < count; i++) {
+        direction[i] = gamma_direction_[from[static_cast<size_t>(i)]];
+        for (Eigen::Index j = 0; j < count; j++)
+            covariance(i, j) = covariance_(from[static_cast<size_t>(i)], from[static_cast<size_t>(j)]);
+    }
+    Eigen::MatrixXd precision = covariance.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+    const Eigen::VectorXd along = precision * direction;
+    const double length = direction.dot(along);
+    if (length > 0.0) precision -= along * along.transpose() / length;
+    return 0.5 * (precision + precision.transpose());
+}
+
+double StoredPrior::falloff_distance(const lensprof_fit_result &alone) const {
+    const int own = green_falloff(vignettings_), size = static_cast<int>(alone.covariance_size);
+    const int theirs = static_cast<int>(alone.response.modes) + (alone.vignettings == 3 ? 3 : 0);
+    if (covariance_(own, own) <= 0.0 || size < theirs + 3) return 0.0;
+    double farthest = 0.0;
+    for (double r2 : {0.1, 0.25, 0.5, 1.0}) {
+        const double power[3] = {r2, r2 * r2, r2 * r2 * r2};
+        double variance = 0.0, difference = 0.0;
+        for (int i = 0; i < 3; i++) {
+            difference += power[i] * (mean_[own + i] - alone.vignetting[1].k[i]);
+            for (int j = 0; j < 3; j++)
+                variance += power[i] * power[j]
+                            * (covariance_(own + i, own + j) + alone.covariance[(theirs + i) * size + theirs + j]);
+        }
+        if (variance > 0.0) farthest = std::max(farthest, std::abs(difference) / std::sqrt(variance));
+    }
+    return farthest;
+}
+
+void StoredPrior::put_into(Prior &prior, int vignettings, double weight) const {
+    const Places places = this->places(vignettings);
+    if (modes_ > 0) prior.covariance_weight = 0.0;
+    const auto forget = [&](int row) { prior.precision.row(row).setZero(), prior.precision.col(row).setZero(); };
+    for (int row : places.to) {
+        if (row < kFalloff || row >= kCenter)
+            forget(row);
+        else
+            for (int k = kFalloff; k < kCenter; k++) forget(k);
+    }
+    const bool tied = vignettings_ == 1 || vignettings == 1;
+    for (size_t i = 0; i < places.to.size(); i++) {
+        const int row = places.to[i];
+        prior.mean[row] = mean_[places.from[i]];
+        if (tied && row >= kFalloff && row < kCenter)  // the other channels' curves are expected where green's is
+            for (int c = 0; c < 3; c++) prior.mean[kFalloff + 3 * c + (row - kFalloff) % 3] = prior.mean[row];
+    }
+    const bool has_falloff =
+        std::any_of(places.to.begin(), places.to.end(), [](int row) { return row >= kFalloff && row < kCenter; });
+    if (tied && has_falloff) tie_channels(weight, vignettings, prior);
+    const Eigen::MatrixXd precision = precision_of(places.from);
+    for (size_t i = 0; i < places.to.size(); i++)
+        for (size_t j = 0; j < places.to.size(); j++)
+            prior.precision(places.to[i], places.to[j]) +=
+                weight * precision(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+}
+
+}  // namespace lensprof

@@ -1,0 +1,139 @@
+#include "fit/problem/tracks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <tuple>
+
+namespace lensprof {
+namespace {
+
+bool is_measured(const lensprof_observation &o, int channels) {
+    for (int c = 0; c < channels; c++)
+        if (o.value[c] > kWhite || o.value[c] < kBlack) return false;
+    return true;
+}
+
+lensprof_observation end_of(const lensprof_pair &pair, int side, int channels) {
+    lensprof_observation o{};
+    o.image = pair.image[side];
+    std::copy(pair.xy[side], pair.xy[side] + 2, o.xy);
+    std::copy(pair.value[side], pair.value[side] + channels, o.value);  // the others may be anything
+    return o;
+}
+
+auto key(const lensprof_observation &o) {
+    return std::tuple(o.image, o.xy[0], o.xy[1], o.value[0], o.value[1], o.value[2]);
+}
+
+// Numbers of the ends, equal ones alike: 2p and 2p + 1 are those of pair p.
+std::vector<uint32_t> number_ends(const std::vector<lensprof_observation> &ends) {
+    std::vector<uint32_t> order(ends.size()), number(ends.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(ends[a]) < key(ends[b]); });
+    for (size_t n = 0, first = 0; n < order.size(); n++) {
+        if (key(ends[order[n]]) != key(ends[order[first]])) first = n;
+        number[order[n]] = order[first];
+    }
+    return number;
+}
+
+// Points as lists of ends, while pairs are joined to them.
+class Joiner {
+public:
+    explicit Joiner(const std::vector<lensprof_observation> &ends) : ends_(ends), point_(ends.size(), kNone) {}
+
+    void join(uint32_t a, uint32_t b) {
+        uint32_t p = point_[a], q = point_[b];
+        if (p != kNone && p == q) return;
+        std::vector<uint32_t> mine = p == kNone ? std::vector<uint32_t>{a} : points_[p];
+        std::vector<uint32_t> other = q == kNone ? std::vector<uint32_t>{b} : points_[q];
+        if (!are_apart(mine, other)) return keep_apart(a, b);
+        if (p == kNone) p = static_cast<uint32_t>(points_.size()), points_.emplace_back();
+        mine.insert(mine.end(), other.begin(), other.end());
+        for (uint32_t end : mine) point_[end] = p;
+        points_[p] = std::move(mine);
+        if (q != kNone) points_[q].clear();
+    }
+
+    const std::vector<std::vector<uint32_t>> &points() const { return points_; }
+
+private:
+    static constexpr uint32_t kNone = 0xFFFFFFFFu;
+
+    bool are_apart(const std::vector<uint32_t> &one, const std::vector<uint32_t> &other) const {
+        for (uint32_t a : one)
+            for (uint32_t b : other)
+                if (ends_[a].image == ends_[b].image) return false;
+        return true;
+    }
+    // A point of its own; an end that has none yet gets this one.
+    void keep_apart(uint32_t a, uint32_t b) {
+        for (uint32_t end : {a, b})
+            if (point_[end] == kNone) point_[end] = static_cast<uint32_t>(points_.size());
+        points_.push_back({a, b});
+    }
+
+    const std::vector<lensprof_observation> &ends_;
+    std::vector<uint32_t> point_;  // of each end
+    std::vector<std::vector<uint32_t>> points_;
+};
+
+}  // namespace
+
+Tracks tracks_of(const lensprof_observation *observations, uint32_t count) {
+    Tracks result;
+    auto &all = result.observations;
+    all.assign(observations, observations + count);
+    std::sort(all.begin(), all.end(), [](const lensprof_observation &a, const lensprof_observation &b) {
+        return std::tuple(a.point, a.image) < std::tuple(b.point, b.image);
+    });
+    for (size_t i = 0; i < all.size(); i++) {
+        if (i == 0 || all[i].point != all[i - 1].point) result.tracks.push_back({i, i});
+        result.tracks.back().last = i + 1;
+    }
+    return result;
+}
+
+std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, uint32_t count, int channels) {
+    std::vector<lensprof_observation> ends, result;
+    for (uint32_t p = 0; p < count; p++)
+        for (int side = 0; side < 2; side++) ends.push_back(end_of(pairs[p], side, channels));
+    std::vector<uint32_t> number = number_ends(ends);
+    Joiner joiner(ends);
+    for (uint32_t p = 0; p < count; p++) joiner.join(number[2 * p], number[2 * p + 1]);
+    uint32_t point = 0;
+    for (const auto &members : joiner.points()) {
+        for (uint32_t end : members) {
+            result.push_back(ends[end]);
+            result.back().point = point;
+        }
+        point += !members.empty();
+    }
+    return result;
+}
+
+std::vector<lensprof_pair> pairs_of(const Tracks &tracks, int channels) {
+    std::vector<lensprof_pair> pairs;
+    for (const Range &track : tracks.tracks) {
+        const lensprof_observation *last = nullptr;
+        for (size_t i = track.first; i < track.last; i++) {
+            const lensprof_observation &next = tracks.observations[i];
+            if (!is_measured(next, channels)) continue;
+            if (last) {
+                lensprof_pair pair{};
+                const lensprof_observation *ends[2] = {last, &next};
+                for (int side = 0; side < 2; side++) {
+                    pair.image[side] = ends[side]->image;
+                    std::copy(ends[side]->xy, ends[side]->xy + 2, pair.xy[side]);
+                    std::copy(ends[side]->value, ends[side]->value + 3, pair.value[side]);
+                }
+                pairs.push_back(pair);
+            }
+            last = &next;
+        }
+    }
+    return pairs;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,353 @@
+#include "fit/sampling/sampler.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "fit/base/parallel.hpp"
+#include "fit/sampling/balance.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t kPiece = 32;  // places of one image that a thread looks at in one go
+constexpr uint32_t kPaperRound = 8192;
+constexpr double kWidestCone = 1.5;  // radians: beyond, the border of a frame may be farther off than its samples
+constexpr double kAlike = 0.5;       // correlation of places that may show the same,
+constexpr double kSurely = 0.8;      // and of those that clearly do
+// Shares of the places with texture. Alike: .05 to .31 where a project is wrong, .43 and more in real sequences and
+// with 30 % of random pixels. Where things moved on 44 % of the places it can be .22, too, but .08 and more are surely
+// alike, 3.2 times as many as beside; of a wrong project up to .1 are, 2.4 times.
+constexpr double kEnoughAlike = 0.4, kFewestSurely = 0.05, kAboveChance = 2.8;
+constexpr double kBeside = 12.0;  // coarse pixels
+constexpr uint32_t kFewestTold = 20;
+constexpr size_t kMostNeighbours = 8;  // of an image that are registered, those with the largest overlap
+constexpr size_t kMostRefused = 4;     // pairs of places for one wanted candidate, before the search ends
+
+double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+double angle_between(const double a[3], const double b[3]) { return std::acos(std::clamp(dot(a, b), -1.0, 1.0)); }
+
+// Unit vector of a pixel's direction; false when it has none.
+bool direction_of(const lensprof_camera &camera, double x, double y, double v[3]) {
+    double direction[2];
+    if (!lensprof_camera_unproject(&camera, x, y, direction)) return false;
+    unit_vector(direction, v);
+    return true;
+}
+
+// How many of a few places of the first image the second sees.
+int overlap_of(const lensprof_camera &first, const lensprof_camera &second) {
+    constexpr int columns = 8, rows = 6;
+    int seen = 0;
+    double xy[2];
+    for (int k = 0; k < columns * rows; k++)
+        seen += place_of(first, second, {}, 1.0, (k % columns + 0.5) / columns * first.width - 0.5,
+                         (k / columns + 0.5) / rows * first.height - 0.5, xy)
+                && xy[0] >= 0.0 && xy[1] >= 0.0 && xy[0] < second.width && xy[1] < second.height;
+    return seen;
+}
+
+// Moves the lists, in order, behind each other.
+template <class T>
+void append(std::vector<std::vector<T>> &lists, std::vector<T> &all) {
+    for (auto &list : lists) {
+        all.insert(all.end(), list.begin(), list.end());
+        list = {};
+    }
+}
+
+}  // namespace
+
+Sampler::Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count)
+    : options_(options) {
+    for (uint32_t i = 0; i < count; i++) views_.emplace_back(images[i]);
+    find_neighbours();
+}
+
+// Cones do not tell anything about translated cameras or frames that reach beyond the projection.
+Sampler::Cone Sampler::cone_of(const lensprof_camera &camera) {
+    Cone cone{};
+    cone.known = !camera.translation[0] && !camera.translation[1] && !camera.translation[2]
+                 && direction_of(camera, 0.5 * (camera.width - 1.0), 0.5 * (camera.height - 1.0), cone.axis);
+    for (int k = 0; k < 16 && cone.known; k++) {
+        double x = (k % 4) / 3.0 * (camera.width - 1.0), y = (k / 4) / 3.0 * (camera.height - 1.0), v[3];
+        cone.known = direction_of(camera, x, y, v);
+        if (cone.known) cone.reach = std::max(cone.reach, 1.05 * angle_between(cone.axis, v));
+    }
+    cone.known = cone.known && cone.reach < kWidestCone;
+    cone.cosine = cone.known ? std::cos(std::min(cone.reach, std::acos(-1.0))) : -2.0;
+    return cone;
+}
+
+// Images whose view cones touch; an image without a cone is everybody's neighbour.
+void Sampler::find_neighbours() {
+    for (const View &view : views_) cones_.push_back(cone_of(view.image().camera));
+    neighbours_.resize(views_.size());
+    for (uint32_t i = 0; i < views_.size(); i++)
+        for (uint32_t j = i + 1; j < views_.size(); j++) {
+            const Cone &a = cones_[i], &b = cones_[j];
+            if (a.known && b.known && angle_between(a.axis, b.axis) > a.reach + b.reach) continue;
+            neighbours_[i].push_back(j);
+            neighbours_[j].push_back(i);
+        }
+    for (const auto &list : neighbours_) {
+        first_edge_.push_back(edge_numbers_);
+        edge_numbers_ += static_cast<uint32_t>(list.size());
+    }
+}
+
+bool Sampler::are_neighbours(uint32_t i, uint32_t j) const {
+    return std::binary_search(neighbours_[i].begin(), neighbours_[i].end(), j);
+}
+
+// Number of the pair of images, the same both ways round.
+uint32_t Sampler::edge_of(uint32_t i, uint32_t j) const {
+    auto [low, high] = std::minmax(i, j);
+    const auto &list = neighbours_[low];
+    auto place = std::lower_bound(list.begin(), list.end(), high) - list.begin();
+    return first_edge_[low] + static_cast<uint32_t>(place);
+}
+
+// Work on all threads; the caller hears the fraction done() as long as it rises.
+void Sampler::each(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done) {
+    auto stop = [&] {
+        shown_ = std::max(shown_, std::min(done(), 1.0));
+        return options_.progress && options_.progress(shown_, options_.progress_user) != 0;
+    };
+    if (!for_each_parallel(count, options_.threads, work, stop)) throw Cancelled();
+}
+
+// Where the project is off between neighbours, as the pictures show. A camera that stands still is not off: pictures
+// that are mostly white, or mostly black, would only seem to be.
+void Sampler::register_neighbours() {
+    rotations_.assign(edge_numbers_, {});
+    likenesses_ = std::vector<Likenesses>(edge_numbers_);
+    if (options_.sampling == LENSPROF_SAMPLING_BRACKET) return;
+    struct Edge {
+        uint32_t i, j;
+        int overlap;
+    };
+    const auto count = static_cast<uint32_t>(views_.size());
+    grey_.resize(count);
+    each(
+        count, [&](uint32_t i) { grey_[i] = std::make_unique<GreyLevels>(views_[i]); }, [] { return 0.0; });
+    std::vector<Edge> edges;
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t j : neighbours_[i])
+            if (j > i) edges.push_back({i, j, 0});
+    auto size = static_cast<uint32_t>(edges.size());
+    auto camera = [&](uint32_t i) -> const lensprof_camera & { return views_[i].image().camera; };
+    each(
+        size, [&](uint32_t e) { edges[e].overlap = overlap_of(camera(edges[e].i), camera(edges[e].j)); },
+        [] { return 0.0; });
+    std::stable_sort(edges.begin(), edges.end(), [](const Edge &a, const Edge &b) { return a.overlap > b.overlap; });
+    std::vector<size_t> registered(count, 0);
+    auto is_left_out = [&](const Edge &e) {
+        bool wanted = e.overlap > 0 && std::min(registered[e.i], registered[e.j]) < kMostNeighbours;
+        if (wanted) registered[e.i]++, registered[e.j]++;
+        return !wanted;
+    };
+    edges.erase(std::remove_if(edges.begin(), edges.end(), is_left_out), edges.end());
+    auto work = [&](uint32_t e) {
+        auto [i, j, overlap] = edges[e];
+        rotations_[edge_of(i, j)] = registration(camera(i), *grey_[i], camera(j), *grey_[j]);
+    };
+    each(static_cast<uint32_t>(edges.size()), work, [] { return 0.0; });
+}
+
+const Rotation &Sampler::rotation(uint32_t i, uint32_t j) const {
+    static constexpr Rotation none{};
+    return patches_ ? rotations_[edge_of(i, j)] : none;
+}
+
+// Where image j sees what image i sees at (x, y); false when it does not.
+bool Sampler::correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const {
+    return place_of(views_[i].image().camera, views_[j].image().camera, rotation(i, j), i < j ? 1.0 : -1.0, x, y, xy)
+           && views_[j].holds(xy[0], xy[1]);
+}
+
+// Whether both show the same there, as far as texture tells. Single points, as the paper samples them, are not asked.
+bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
+    Sight at;
+    if (!patches_ || options_.sampling == LENSPROF_SAMPLING_BRACKET) return true;
+    if (!sight(views_[i].image().camera, views_[j].image().camera, rotation(i, j), i < j ? 1.0 : -1.0, x, y, at))
+        return false;
+    std::optional<double> told = likeness(*grey_[i], x, y, *grey_[j], at);
+    if (!told) return true;
+    Likenesses &edge = likenesses_[edge_of(i, j)];
+    edge.told++;
+    if (*told > kAlike) edge.alike++;
+    if (*told > kSurely) edge.surely++;
+    const auto side = static_cast<int>(std::abs(x) + std::abs(y));  // another one from place to place
+    (side % 2 ? at.x : at.y) += (side / 2 % 2 ? kBeside : -kBeside) * grey_[j]->level[0].pixel;
+    std::optional<double> beside = likeness(*grey_[i], x, y, *grey_[j], at);
+    if (beside) edge.beside++;
+    if (beside && *beside > kSurely) edge.chance++;
+    return *told > kAlike;
+}
+
+// Where hardly more places show the same than do beside where they should, the project has one of the two images
+// somewhere else: what agrees there agrees by chance.
+bool Sampler::is_in_place(uint32_t number) const {
+    const Likenesses &edge = likenesses_[number];
+    const double surely = edge.surely, told = edge.told, chance = edge.chance, beside = edge.beside;
+    if (told < kFewestTold || edge.alike > kEnoughAlike * told) return true;
+    return surely > kFewestSurely * told && surely * beside > kAboveChance * chance * told;
+}
+
+bool Sampler::measure(uint32_t i, double x, double y, End &end) const {
+    const View &view = views_[i];
+    if (!(patches_ ? view.patch(x, y, keep_white_, end.patch) : view.point(x, y, keep_white_, end.patch))) return false;
+    const double mean = (end.patch.value[0] + end.patch.value[1] + end.patch.value[2]) / 3.0;
+    const lensprof_vignetting centred{};
+    const auto &camera = view.image().camera;
+    double r = std::sqrt(lensprof_vignetting_r2(&centred, camera.width, camera.height, x, y, nullptr));
+    end.radius = static_cast<uint8_t>(std::min(static_cast<int>(r * kRadiusBins), kRadiusBins - 1));
+    end.grey = static_cast<uint8_t>(std::min(static_cast<int>(mean * kGreyBins), kGreyBins - 1));
+    return true;
+}
+
+// The candidates between a place of image i and the other images that see it.
+void Sampler::look(uint32_t i, double x, double y, const uint32_t *others, size_t count,
+                   std::vector<Candidate> &found) {
+    double v[3], xy[2];
+    if (!views_[i].holds(x, y) || !direction_of(views_[i].image().camera, x, y, v)) return;
+    End own, other;
+    bool measured = false;
+    for (size_t n = 0; n < count; n++) {
+        const uint32_t j = others[n];
+        if (dot(cones_[j].axis, v) < cones_[j].cosine - kSlack || !correspond(i, j, x, y, xy)) continue;
+        if (!overlaps_) overlaps_ = true;
+        if (!measured && !measure(i, x, y, own)) return;
+        measured = true;
+        if (!measure(j, xy[0], xy[1], other)) continue;
+        if (!is_the_same(i, j, x, y)) {
+            refused_++;
+            continue;
+        }
+        found.push_back({x,
+                         y,
+                         {i, j},
+                         static_cast<float>(own.patch.gradient + other.patch.gradient),
+                         {own.radius, other.radius},
+                         {own.grey, other.grey}});
+    }
+}
+
+// Candidates spread evenly over every image (a low-discrepancy sequence), until there are enough or overlaps are used
+// up. The rounds end where they end on any number of threads.
+std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
+    std::vector<Candidate> all;
+    Random random{options_.seed};
+    const double shift[2] = {random.next(), random.next()};
+    size_t sights = 0;  // ways from image to image: a round looks `chunk` times along each
+    for (const auto &list : neighbours_) sights += list.size();
+    auto chunk = static_cast<uint32_t>(std::clamp<size_t>(4 * wanted / std::max<size_t>(sights, 1), 4, 256));
+    const uint32_t most = 102400 / chunk, hopeless = 2560 / chunk, pieces = (chunk + kPiece - 1) / kPiece;
+    for (uint32_t round = 0;
+         round < most && all.size() < wanted && refused_ < kMostRefused * wanted && !(round > hopeless && all.empty());
+         round++) {
+        std::vector<std::vector<Candidate>> found(views_.size() * pieces);
+        std::atomic<size_t> count{all.size()};
+        auto work = [&](uint32_t n) {
+            const uint32_t i = n / pieces, first = n % pieces * kPiece, end = std::min(first + kPiece, chunk);
+            const auto &camera = views_[i].image().camera;
+            for (uint32_t k = round * chunk + first; k < round * chunk + end; k++) {
+                // Roberts' R2 sequence: the plane's generalised golden ratio.
+                double a = shift[0] + 0.7548776662466927 * (k + 1.0), b = shift[1] + 0.5698402909980532 * (k + 1.0);
+                double x = (a - std::floor(a)) * camera.width - 0.5, y = (b - std::floor(b)) * camera.height - 0.5;
+                look(i, x, y, neighbours_[i].data(), neighbours_[i].size(), found[n]);
+            }
+            count += found[n].size();
+        };
+        each(static_cast<uint32_t>(found.size()), work,
+             [&] { return 0.95 * static_cast<double>(count) / static_cast<double>(wanted); });
+        append(found, all);
+    }
+    return all;
+}
+
+std::vector<lensprof_pair> Sampler::pairs_of(const std::vector<Candidate> &chosen) {
+    std::vector<lensprof_pair> pairs(chosen.size());
+    const auto pieces = static_cast<uint32_t>((chosen.size() + kPiece - 1) / kPiece);
+    auto work = [&](uint32_t piece) {
+        for (size_t n = size_t{piece} * kPiece; n < std::min(chosen.size(), (size_t{piece} + 1) * kPiece); n++) {
+            const Candidate &c = chosen[n];
+            lensprof_pair &pair = pairs[n];
+            pair = {{c.image[0], c.image[1]}, {{c.x, c.y}, {0.0, 0.0}}, {}};
+            End end{};
+            bool good = correspond(c.image[0], c.image[1], c.x, c.y, pair.xy[1]);
+            for (int side = 0; side < 2 && good; side++) {
+                good = measure(c.image[side], pair.xy[side][0], pair.xy[side][1], end);
+                std::copy(end.patch.value, end.patch.value + 3, pair.value[side]);
+            }
+        }
+    };
+    each(pieces, work, [] { return 0.97; });
+    each(
+        1, [](uint32_t) {}, [] { return 1.0; });
+    return pairs;
+}
+
+// As long as no image pair, radius or grey level has had more than its share; the shares grow until enough are found.
+std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
+    patches_ = true;
+    register_neighbours();
+    std::vector<Candidate> all = candidates(8 * static_cast<size_t>(wanted));
+    auto out_of_place = [&](const Candidate &c) { return !is_in_place(edge_of(c.image[0], c.image[1])); };
+    all.erase(std::remove_if(all.begin(), all.end(), out_of_place), all.end());
+    auto chosen = balance(
+        all.size(), wanted, 2.0 * wanted, edge_numbers_, [&](uint32_t i) { return all[i].gradient; },
+        [&](uint32_t i) { return edge_of(all[i].image[0], all[i].image[1]); },
+        [&](uint32_t i, auto use) {
+            for (int side = 0; side < 2; side++) use(all[i].radius[side], all[i].grey[side]);
+        });
+    std::vector<Candidate> best;
+    for (uint32_t index : chosen) best.push_back(all[index]);
+    return pairs_of(best);
+}
+
+// A random place of a random image, and one of its neighbours; the image itself when it has none.
+Sampler::Look Sampler::draw(Random &random) const {
+    auto i = static_cast<uint32_t>(random.next() * static_cast<double>(views_.size()));
+    const auto &camera = views_[i].image().camera;
+    double x = random.next() * camera.width - 0.5, y = random.next() * camera.height - 0.5, pick = random.next();
+    const auto &list = neighbours_[i];
+    return {x, y, {i, list.empty() ? i : list[static_cast<size_t>(pick * static_cast<double>(list.size()))]}};
+}
+
+std::vector<lensprof_pair> Sampler::paper(uint32_t wanted) {
+    patches_ = false;
+    Random random{options_.seed};
+    std::vector<Candidate> all, best;
+    const size_t enough = 5 * static_cast<size_t>(wanted), most = 200 * static_cast<size_t>(wanted) + 10000;
+    for (size_t trials = 0; trials < most && all.size() < enough; trials += kPaperRound) {
+        std::vector<Look> looks(std::min<size_t>(kPaperRound, most - trials));
+        for (Look &l : looks) l = draw(random);
+        std::vector<std::vector<Candidate>> found((looks.size() + kPiece - 1) / kPiece);
+        auto work = [&](uint32_t n) {
+            for (size_t k = size_t{n} * kPiece; k < std::min(looks.size(), (size_t{n} + 1) * kPiece); k++) {
+                const Look &l = looks[k];
+                look(l.image[0], l.x, l.y, &l.image[1], l.image[1] == l.image[0] ? 0 : 1, found[n]);
+            }
+        };
+        double done = 0.95 * static_cast<double>(all.size()) / static_cast<double>(enough);
+        each(static_cast<uint32_t>(found.size()), work, [=] { return done; });
+        append(found, all);
+    }
+    all.resize(std::min(all.size(), enough));
+    for (uint8_t bin = 0; bin < kRadiusBins; bin++) {
+        std::vector<Candidate> own;
+        std::copy_if(all.begin(), all.end(), std::back_inserter(own),
+                     [=](const Candidate &c) { return c.radius[0] == bin; });
+        std::stable_sort(own.begin(), own.end(),
+                         [](const Candidate &a, const Candidate &b) { return a.gradient < b.gradient; });
+        own.resize(std::min<size_t>(own.size(), std::max(1u, wanted / kRadiusBins)));
+        own.resize(std::min(own.size(), wanted - best.size()));
+        best.insert(best.end(), own.begin(), own.end());
+    }
+    return pairs_of(best);
+}
+
+}  // namespace lensprof

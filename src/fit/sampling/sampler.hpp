@@ -1,0 +1,125 @@
+// Finding correspondences: candidates from image to image through the geometry, then a choice among them. What looks
+// for tracks stands in track_sampler.cpp.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "fit/base/parallel.hpp"
+#include "fit/base/random.hpp"
+#include "fit/sampling/registration.hpp"
+#include "fit/sampling/view.hpp"
+
+namespace lensprof {
+
+constexpr uint32_t kLongestTrack = 16;
+constexpr double kSlack = 0.02;  // of the cosine to a cone's edge: projects may be off
+
+class Sampler {
+public:
+    Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count);
+
+    // The quietest candidates first, balanced over image pairs, radius and grey level.
+    std::vector<lensprof_pair> balanced(uint32_t wanted);
+
+    // d'Angelo 5.1: 5n random points, binned by radius; from each of 10 bins the n/10 of lowest gradient.
+    std::vector<lensprof_pair> paper(uint32_t wanted);
+
+    // Points spread evenly over what the pictures see, each in every picture that sees it (kLongestTrack at most),
+    // saturated channels with the value 1; of those near each other the quietest, balanced over radius and grey level.
+    std::vector<lensprof_observation> balanced_tracks(uint32_t wanted);
+
+    // Goldman & Chen, section 5: points uniform in a cylindrical system, as they come.
+    std::vector<lensprof_observation> paper_tracks(uint32_t wanted);
+
+    bool overlaps() const { return overlaps_; }
+
+private:
+    // One end of a correspondence. Bins of radius and grey level count from 0.
+    struct End {
+        Patch patch;
+        uint8_t radius, grey;
+    };
+    // There may be millions: their grey values are measured again for those chosen.
+    struct Candidate {
+        double x, y;  // in image[0], px of the full frame
+        uint32_t image[2];
+        float gradient;  // both ends together
+        uint8_t radius[2], grey[2];
+    };
+    // A point of paper sampling: where to look, and in which other image.
+    struct Look {
+        double x, y;
+        uint32_t image[2];
+    };
+
+    // One image's part of a candidate for a track.
+    struct Visit {
+        double xy[2];
+        uint32_t image;
+        uint8_t radius, grey;
+    };
+    struct TrackCandidate {
+        std::vector<Visit> visits;  // the first is the anchor, from which the others were found
+        float gradient = 0.0f;      // mean of the visits
+        uint32_t cell = 0;          // candidates near each other have one
+    };
+    // Where to look for a track, and its cell.
+    struct Aim {
+        double direction[2];
+        uint32_t cell;
+    };
+
+    // What an image sees lies within `reach` of its axis, radians (a little is added to it).
+    struct Cone {
+        double axis[3], reach;
+        double cosine;  // of reach; less than any where the cone is not known
+        bool known;
+    };
+
+    // Places of a pair of neighbours that have texture, and those of them that may and that clearly do show the same;
+    // places beside where the other image should show them, and those that clearly do.
+    struct Likenesses {
+        std::atomic<uint32_t> told{0}, alike{0}, surely{0}, beside{0}, chance{0};
+    };
+
+    static Cone cone_of(const lensprof_camera &camera);
+    void find_neighbours();
+    void register_neighbours();
+    const Rotation &rotation(uint32_t i, uint32_t j) const;
+    bool correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const;
+    bool is_the_same(uint32_t i, uint32_t j, double x, double y);
+    bool is_in_place(uint32_t number) const;
+    bool measure(uint32_t i, double x, double y, End &end) const;
+    void look(uint32_t i, double x, double y, const uint32_t *others, size_t count, std::vector<Candidate> &found);
+    Look draw(Random &random) const;
+    std::vector<Candidate> candidates(size_t wanted);
+    std::vector<lensprof_pair> pairs_of(const std::vector<Candidate> &chosen);
+    bool are_neighbours(uint32_t i, uint32_t j) const;
+    uint32_t edge_of(uint32_t i, uint32_t j) const;  // of neighbours
+    Cone cone_of_all() const;
+    bool find_track(const Aim &aim, uint32_t number, TrackCandidate &found);
+    std::vector<TrackCandidate> track_candidates(size_t wanted, const std::function<Aim(uint32_t)> &aim);
+    std::vector<TrackCandidate> in_place(std::vector<TrackCandidate> all) const;
+    std::vector<lensprof_observation> observations_of(const std::vector<TrackCandidate> &chosen);
+    void each(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done);
+
+    const lensprof_sample_options &options_;
+    std::vector<View> views_;
+    std::vector<Cone> cones_;
+    std::vector<std::vector<uint32_t>> neighbours_;  // ascending
+    std::vector<uint32_t> first_edge_;               // number of every image's first pair with a neighbour
+    uint32_t edge_numbers_ = 0;                      // edge_of() is less
+    std::vector<std::unique_ptr<GreyLevels>> grey_;  // of every view
+    std::vector<Rotation> rotations_;                // of every pair of neighbours, from the lower image to the other
+    std::vector<Likenesses> likenesses_;             // of every pair of neighbours
+    std::atomic<size_t> refused_{0};                 // pairs of places that do not show the same
+    bool patches_ = true;                            // else single points
+    bool keep_white_ = false;                        // saturated channels are samples, too
+    std::atomic<bool> overlaps_{false};
+    double shown_ = 0.0;  // the last fraction that the caller saw
+};
+
+}  // namespace lensprof

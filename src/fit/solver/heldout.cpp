@@ -1,0 +1,54 @@
+#include "fit/solver/heldout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "fit/solver/objective.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t kStartPairs = 800, kStartPairsPerImage = 10;
+
+}  // namespace
+
+uint64_t pair_hash(uint32_t pair) {
+    uint64_t x = pair + 0x9e3779b97f4a7c15ull;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+    return x ^ (x >> 31);
+}
+
+Split split_pairs(uint32_t count, uint32_t images) {
+    Split split;
+    for (uint32_t p = 0; p < count; p++) {
+        split.all.push_back(p);
+        (pair_hash(p) % 5 == 0 ? split.heldout : split.train).push_back(p);
+    }
+    uint32_t wanted = std::max(kStartPairs, kStartPairsPerImage * images);
+    uint32_t step = std::max(1u, static_cast<uint32_t>(split.train.size()) / wanted);
+    for (size_t i = 0; i < split.train.size(); i += step) split.few.push_back(split.train[i]);
+    return split;
+}
+
+HeldoutLoss heldout_loss(const Problem &heldout, const Estimate &estimate, const Loss &common) {
+    HeldoutLoss result;
+    result.losses = all_costs(heldout, common, estimate);
+    result.mean =
+        std::accumulate(result.losses.begin(), result.losses.end(), 0.0) / static_cast<double>(result.losses.size());
+    return result;
+}
+
+double loss_difference(const HeldoutLoss &a, const HeldoutLoss &b, double &standard_error) {
+    double difference = a.mean - b.mean, sum2 = 0.0;
+    auto n = static_cast<double>(a.losses.size());
+    for (size_t p = 0; p < a.losses.size(); p++) {
+        double d = a.losses[p] - b.losses[p] - difference;
+        sum2 += d * d;
+    }
+    standard_error = std::sqrt(sum2 / (n * (n - 1.0)));
+    return difference;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,32 @@
+// What the fits compare their candidates by: pairs or tracks that are left out, and what these cost under each.
+#pragma once
+
+#include "fit/problem/loss.hpp"
+
+namespace lensprof {
+
+constexpr size_t kFewestHeldout = 20;
+
+// Of all pairs or tracks by their numbers: four fifths to fit, one fifth that is left out, and a few of the former for
+// first fits. The same every time.
+struct Split {
+    std::vector<uint32_t> all, train, heldout, few;
+
+    bool has_heldout() const { return heldout.size() >= kFewestHeldout; }
+};
+Split split_pairs(uint32_t count, uint32_t images);
+
+// A number of 0..2^64-1 that belongs to a pair's number: independent of order along images, same every time.
+uint64_t pair_hash(uint32_t pair);
+
+// What every held-out pair or track costs under an estimate, at a loss common to all candidates.
+struct HeldoutLoss {
+    std::vector<double> losses;
+    double mean = 0.0;
+};
+HeldoutLoss heldout_loss(const Problem &heldout, const Estimate &estimate, const Loss &common);
+
+// Mean and standard error of the difference of two candidates' held-out losses.
+double loss_difference(const HeldoutLoss &a, const HeldoutLoss &b, double &standard_error);
+
+}  // namespace lensprof

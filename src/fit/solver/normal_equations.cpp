@@ -1,0 +1,167 @@
+#include "fit/solver/normal_equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lensprof {
+
+NormalEquations::Sums::Sums(Eigen::Index n, uint32_t image_count)
+    : shared(Eigen::MatrixXd::Zero(n, n)),
+      cross(Eigen::MatrixXd::Zero(n, 3 * image_count)),
+      gradient(Eigen::VectorXd::Zero(n)),
+      image_gradient(Eigen::VectorXd::Zero(3 * image_count)) {}
+
+void NormalEquations::Sums::add(const Sums &part) {
+    objective += part.objective;
+    shared += part.shared;
+    cross += part.cross;
+    gradient += part.gradient;
+    image_gradient += part.image_gradient;
+}
+
+NormalEquations::NormalEquations(const Problem &problem, const Estimate &estimate)
+    : problem_(problem),
+      columns_(free_columns(problem, estimate.modes)),
+      modes_(static_cast<size_t>(std::lower_bound(columns_.begin(), columns_.end(), kMaxModes) - columns_.begin())) {}
+
+void NormalEquations::by_lens(const double by_k[3], const double by_center[2], int curve, double *by) const {
+    for (size_t u = modes_; u < columns_.size(); u++) {
+        int column = columns_[u], k = column - kFalloff - 3 * curve;
+        by[u] = column >= kCenter ? by_center[column - kCenter] : k >= 0 && k < 3 ? by_k[k] : 0.0;
+    }
+}
+
+void NormalEquations::complete(const Sums &sums, const Prior &prior, const Estimate &estimate) {
+    objective_ = sums.objective;
+    shared_ = sums.shared.selfadjointView<Eigen::Lower>();
+    gradient_ = sums.gradient;
+    objective_ += prior_cost(prior, problem_, columns_, estimate);
+    add_prior(prior, estimate);
+    map_images(sums, prior, estimate);
+}
+
+void NormalEquations::add_prior(const Prior &prior, const Estimate &estimate) {
+    Eigen::VectorXd full = shared_vector(estimate);
+    double off = prior.pin.dot(full.head(kMaxModes)) - prior.pin_value;
+    auto pin = [&](int column) { return column < kMaxModes ? prior.pin[column] : 0.0; };
+    for (size_t u = 0; u < columns_.size(); u++) {
+        auto i = static_cast<Eigen::Index>(u);
+        gradient_[i] -= prior.pin_precision * off * pin(columns_[u]);
+        for (size_t v = 0; v < columns_.size(); v++) {
+            double precision = prior.precision(columns_[u], columns_[v]);
+            shared_(i, static_cast<Eigen::Index>(v)) +=
+                precision + prior.pin_precision * pin(columns_[u]) * pin(columns_[v]);
+            gradient_[i] -= precision * (full[columns_[v]] - prior.mean[columns_[v]]);
+        }
+    }
+}
+
+// From log exposures a_ic to the images' unknowns q.
+void NormalEquations::map_images(const Sums &sums, const Prior &prior, const Estimate &estimate) {
+    int count = problem_.image_unknowns;
+    auto columns_of = [&](uint32_t i, int c) {
+        return std::array<int, 2>{problem_.ev_unknown[i], problem_.balance_unknown[i][c]};
+    };
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(8 * sums.links.size() * static_cast<size_t>(problem_.channels));
+    for (const Link &link : sums.links)
+        for (int c = 0; c < problem_.channels; c++)
+            for (int end = 0; end < 2; end++)
+                for (int other = 0; other < 2; other++)
+                    for (int q : columns_of(link.image[end], c))
+                        for (int r : columns_of(link.image[other], c))
+                            if (q >= 0 && r >= 0)
+                                entries.emplace_back(q, r, (end == other ? 1.0 : -1.0) * link.weight[c]);
+    cross_q_ = Eigen::MatrixXd::Zero(count, static_cast<Eigen::Index>(columns_.size()));
+    gradient_q_ = Eigen::VectorXd::Zero(count);
+    for (uint32_t i = 0; i < problem_.image_count; i++)
+        for (int c = 0; c < problem_.channels; c++)
+            for (int q : columns_of(i, c))
+                if (q >= 0) {
+                    cross_q_.row(q) += sums.cross.col(3 * static_cast<Eigen::Index>(i) + c).transpose();
+                    gradient_q_[q] += sums.image_gradient[3 * static_cast<Eigen::Index>(i) + c];
+                }
+    for (size_t i = 0; i < prior.known.size(); i++) {
+        int q = problem_.ev_unknown[i];
+        double precision = prior.known[i].precision;
+        if (q < 0 || precision == 0.0) continue;
+        entries.emplace_back(q, q, precision);
+        gradient_q_[q] -=
+            precision * (estimate.log_exposure[i][problem_.measured_channel()] - prior.known[i].log_exposure);
+    }
+    images_.resize(count, count);
+    images_.setFromTriplets(entries.begin(), entries.end());
+}
+
+bool NormalEquations::reduce(double lambda) {
+    auto n = static_cast<Eigen::Index>(columns_.size());
+    S_ = shared_;
+    for (Eigen::Index u = 0; u < n; u++) S_(u, u) += lambda * shared_(u, u) + 1e-12;
+    b_ = gradient_;
+    if (problem_.image_unknowns == 0) return true;
+    // A weak pull (sigma 30 EV) keeps images without usable pairs, and unconnected groups, where they are.
+    Eigen::SparseMatrix<double> damped = images_, diagonal(images_.rows(), images_.cols());
+    diagonal.setIdentity();
+    for (Eigen::Index q = 0; q < images_.rows(); q++) diagonal.coeffRef(q, q) = lambda * images_.coeff(q, q) + 2e-3;
+    damped += diagonal;
+    factor_.compute(damped);
+    if (factor_.info() != Eigen::Success) return false;
+    eliminated_ = factor_.solve(cross_q_);
+    image_only_ = factor_.solve(gradient_q_);
+    S_ -= cross_q_.transpose() * eliminated_;
+    S_ = 0.5 * (S_ + S_.transpose()).eval();
+    b_ -= eliminated_.transpose() * gradient_q_;
+    return S_.allFinite() && b_.allFinite();
+}
+
+std::vector<std::array<double, 3>> NormalEquations::image_step(const Eigen::VectorXd &shared_step) const {
+    std::vector<std::array<double, 3>> step(problem_.image_count, {0.0, 0.0, 0.0});
+    if (problem_.image_unknowns == 0) return step;
+    Eigen::VectorXd q = image_only_ - eliminated_ * shared_step;
+    for (uint32_t i = 0; i < problem_.image_count; i++)
+        for (int c = 0; c < problem_.channels; c++) {
+            if (problem_.ev_unknown[i] >= 0) step[i][c] += q[problem_.ev_unknown[i]];
+            if (problem_.balance_unknown[i][c] >= 0) step[i][c] += q[problem_.balance_unknown[i][c]];
+        }
+    return step;
+}
+
+double NormalEquations::expected_gain(const Eigen::VectorXd &shared_step) const {
+    double images = problem_.image_unknowns ? 0.5 * image_only_.dot(gradient_q_) : 0.0;
+    return images + b_.dot(shared_step) - 0.5 * shared_step.dot(S_ * shared_step);
+}
+
+Eigen::VectorXd NormalEquations::image_variance(const Eigen::MatrixXd &shared) const {
+    if (problem_.image_unknowns == 0) return {};
+    return inverse_diagonal(factor_) + (eliminated_ * shared).cwiseProduct(eliminated_).rowwise().sum();
+}
+
+Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> &factor) {
+    // Z = D^-1 L^-1 + (I - L') Z  for the permuted matrix L D L', from the last column to the first; Z_ij is needed
+    // where L_ij is not zero, and there only from such entries.
+    Eigen::SparseMatrix<double> l = factor.matrixL();
+    l.makeCompressed();
+    Eigen::VectorXd d = factor.vectorD(), diagonal(l.cols());
+    const int *start = l.outerIndexPtr(), *row = l.innerIndexPtr();
+    std::vector<double> z(static_cast<size_t>(l.nonZeros()), 0.0);
+    auto first_below = [&](int j) { return start[j] + (start[j] < start[j + 1] && row[start[j]] == j); };
+    auto entry = [&](int i, int j) {  // Z_ij, i > j
+        const int *end = row + start[j + 1], *at = std::lower_bound(row + first_below(j), end, i);
+        return at != end && *at == i ? z[static_cast<size_t>(at - row)] : 0.0;
+    };
+    for (int j = static_cast<int>(l.cols()) - 1; j >= 0; j--) {
+        for (int a = start[j + 1] - 1; a >= first_below(j); a--) {
+            double sum = 0.0;
+            for (int b = first_below(j); b < start[j + 1]; b++) {
+                int i = row[a], k = row[b];
+                sum -= l.valuePtr()[b] * (i == k ? diagonal[i] : entry(std::max(i, k), std::min(i, k)));
+            }
+            z[static_cast<size_t>(a)] = sum;
+        }
+        diagonal[j] = 1.0 / d[j];
+        for (int b = first_below(j); b < start[j + 1]; b++) diagonal[j] -= l.valuePtr()[b] * z[static_cast<size_t>(b)];
+    }
+    return factor.permutationPinv() * diagonal;
+}
+
+}  // namespace lensprof

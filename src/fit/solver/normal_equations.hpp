@@ -1,0 +1,89 @@
+// The quadratic model of the objective about an estimate, with the images' unknowns eliminated (Schur complement).
+//
+// Shared unknowns s (response, falloff, centre) are dense and few. The images' log exposures a_ic count only relative
+// to each other, so their Hessian is a sum over pairs of images: a weighted graph Laplacian for each channel. Links and
+// fixed values are a linear map a = T q. Cost is linear in pairs, and nearly so in images (sparse Cholesky).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+
+#include "fit/prior/prior.hpp"
+#include "fit/problem/problem.hpp"
+
+namespace lensprof {
+
+class NormalEquations {
+public:
+    virtual ~NormalEquations() = default;
+
+    double objective() const { return objective_; }  // at the estimate, priors included
+    const std::vector<int> &columns() const { return columns_; }
+
+    // Eliminates the images under damping `lambda`; false when that failed numerically.
+    bool reduce(double lambda);
+    const Eigen::MatrixXd &reduced_hessian() const { return S_; }
+    const Eigen::VectorXd &reduced_gradient() const { return b_; }  // of -objective
+
+    // The images' step that belongs to a shared step, as changes of a_ic.
+    std::vector<std::array<double, 3>> image_step(const Eigen::VectorXd &shared_step) const;
+
+    // What the model expects the objective to fall by under a shared step and the images' that belongs to it.
+    double expected_gain(const Eigen::VectorXd &shared_step) const;
+
+    // Variance of every unknown of the images, when `shared` is the covariance of the shared unknowns.
+    Eigen::VectorXd image_variance(const Eigen::MatrixXd &shared) const;
+
+protected:
+    // Two images and the weight of the Laplacian between them, of each channel.
+    struct Link {
+        uint32_t image[2];
+        std::array<double, 3> weight;
+    };
+    // What the residuals add to the model, as derivatives by a_ic: before links, fixed values and priors.
+    struct Sums {
+        double objective = 0.0;
+        Eigen::MatrixXd shared, cross;  // shared: its lower half
+        Eigen::VectorXd gradient, image_gradient;
+        std::vector<Link> links;
+
+        Sums(Eigen::Index n, uint32_t image_count);
+        void add(const Sums &part);  // all but the links
+    };
+
+    NormalEquations(const Problem &problem, const Estimate &estimate);
+
+    // Derivatives by the lens, behind those by the modes, from those by k and centre of a falloff curve.
+    void by_lens(const double by_k[3], const double by_center[2], int curve, double *by) const;
+
+    void complete(const Sums &sums, const Prior &prior, const Estimate &estimate);
+
+    const Problem &problem_;
+    const std::vector<int> columns_;
+    const size_t modes_;  // of the columns, the first ones
+
+private:
+    void add_prior(const Prior &prior, const Estimate &estimate);
+    void map_images(const Sums &sums, const Prior &prior, const Estimate &estimate);
+
+    double objective_ = 0.0;
+    Eigen::MatrixXd shared_;              // shared x shared
+    Eigen::VectorXd gradient_;            // shared, of -objective
+    Eigen::SparseMatrix<double> images_;  // in q
+    Eigen::MatrixXd cross_q_;
+    Eigen::VectorXd gradient_q_;
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+    Eigen::MatrixXd eliminated_;  // images_^-1 cross_q_
+    Eigen::VectorXd image_only_;  // images_^-1 gradient_q_
+    Eigen::MatrixXd S_;
+    Eigen::VectorXd b_;
+};
+
+// Diagonal of the inverse of a factored matrix (Takahashi, Fagan and Chen 1973): only entries in the pattern of the
+// factor are ever formed, so that the cost follows the factor's.
+Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> &factor);
+
+}  // namespace lensprof

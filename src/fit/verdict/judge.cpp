@@ -1,0 +1,371 @@
+// The verdict: why a result is not usable, or what to mind about it, in plain words.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "fit/prior/known_exposures.hpp"
+#include "fit/verdict/quality.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kBlack = 0.004;                        // one level of 255
+constexpr uint32_t kFewestGreys = 4, kEnoughGreys = 8;  // tenths of the grey values that hold more than a few
+constexpr double kSmallestRadius = 0.6;                 // half diagonals: beyond, k1..k3 extrapolate
+constexpr double kLargestNoise = 6.0;          // levels of 255: no camera's noise, but a model that does not fit
+constexpr double kLargestImageShare = 0.2;     // of residual variance that follows a map of each image's own,
+constexpr double kSuspiciousImageShare = 0.1;  // and worth a word; noise and moving things stay below
+constexpr double kContradiction = 5.0;         // standard errors between an exposure and its known value
+constexpr int kMany = 12;                      // known exposures
+constexpr double kUnfollowed = 0.05;           // of ln gamma
+constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a word
+constexpr double kStillPattern = 1.0;          // where no falloff can be misled: what JPEG does is less,
+constexpr double kHarmfulPattern = 2.0;        // and this is too much
+constexpr double kNotRadial = 0.3;             // share that follows one map over the frame
+constexpr double kLargestCornerSigma = 0.1;    // of M
+constexpr double kLargestEvSigma = 0.3;        // EV, gamma apart
+constexpr uint32_t kFewestInliers = 3;         // of an image: fewer agree by chance,
+constexpr double kSmallestShare = 0.2;         // or a smaller share of its pairs
+constexpr double kSmallestStillShare = 0.7;    // of all pairs, where equal places are compared,
+constexpr double kStillMedian = 1.5;           // and levels of 255 that half of them are farther off than
+constexpr double kFarCentre = 0.1;             // half diagonals: five standard errors of its prior
+constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
+
+// Pairs that tell something: different from each other, with both grey values of a channel between black and white.
+size_t count_informative(const Problem &problem) {
+    std::vector<std::array<double, 10>> seen;
+    for (const auto &p : problem.pairs) {
+        bool tells = false;
+        for (int c = 0; c < problem.channels; c++)
+            tells = tells
+                    || (std::min(p.value[0][c], p.value[1][c]) > kBlack
+                        && std::max(p.value[0][c], p.value[1][c]) < 1.0 - kBlack);
+        if (!tells) continue;
+        seen.push_back({p.xy[0][0], p.xy[0][1], p.xy[1][0], p.xy[1][1]});
+        for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++)
+            seen.back()[4 + c] = p.value[0][c], seen.back()[7 + c] = p.value[1][c];
+    }
+    std::sort(seen.begin(), seen.end());
+    return static_cast<size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
+}
+
+// So many ends of pairs in a bin are no more than a few.
+uint32_t few(const lensprof_fit_result &r) { return 2 + r.pairs / 1000; }
+
+// Whether a tenth of the grey values holds more than a few samples.
+bool is_covered(const Problem &problem, const lensprof_fit_result &r, int bin) {
+    return r.grey_ends[bin] > static_cast<uint32_t>(problem.channels) * few(r);
+}
+
+uint32_t covered_greys(const Problem &problem, const lensprof_fit_result &r) {
+    uint32_t covered = 0;
+    for (int bin = 0; bin < LENSPROF_COVERAGE_BINS; bin++) covered += is_covered(problem, r, bin);
+    return covered;
+}
+
+// The longest run of tenths without samples: [first, last).
+std::pair<int, int> missing_greys(const Problem &problem, const lensprof_fit_result &r) {
+    std::pair<int, int> longest{0, 0};
+    for (int bin = 0, first = 0; bin < LENSPROF_COVERAGE_BINS; bin++) {
+        if (is_covered(problem, r, bin))
+            first = bin + 1;
+        else if (bin + 1 - first > longest.second - longest.first)
+            longest = {first, bin + 1};
+    }
+    return longest;
+}
+
+bool fits_response(const Estimate &estimate) { return estimate.modes > 0 || estimate.is_refined; }
+
+// Outer edge of the outermost ring that holds more than a few pair ends.
+double covered_radius(const lensprof_fit_result &r) {
+    for (int bin = LENSPROF_COVERAGE_BINS; bin > 0; bin--)
+        if (r.radius_ends[bin - 1] > few(r)) return bin / static_cast<double>(LENSPROF_COVERAGE_BINS);
+    return 0.0;
+}
+
+// Standard error of M in the corner, gamma held.
+double corner_sigma(const Problem &problem, const lensprof_fit_result &r) {
+    auto n = r.covariance_size;
+    double worst = 0.0;
+    for (int curve = 0; curve < problem.vignettings; curve++) {
+        double sum = 0.0;
+        uint32_t first = r.response.modes + 3 * static_cast<uint32_t>(curve);
+        for (uint32_t i = first; i < first + 3 && n; i++)
+            for (uint32_t j = first; j < first + 3; j++)
+                sum += r.covariance[i * n + j]
+                       - r.gamma_sigma * r.gamma_sigma * r.gamma_direction[i] * r.gamma_direction[j];
+        worst = std::max(worst, sum);
+    }
+    return std::sqrt(worst);
+}
+
+// The image that disagrees most with those it overlaps, when it clearly does; else -1.
+int odd_image(const Problem &problem, const lensprof_fit_result &r) {
+    int odd = -1;
+    double limit = std::max(kOddImage, 4.0 * r.noise_levels);
+    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++)
+        if (r.image_quality[i].median_residual > limit) {
+            limit = r.image_quality[i].median_residual;
+            odd = static_cast<int>(i);
+        }
+    return odd;
+}
+
+// The image whose exposure the pairs leave most uncertain, when they do, and by how many EV (`limit`); else -1.
+int uncertain_image(const Problem &problem, const Estimate &estimate, const lensprof_fit_result &r, double &limit) {
+    int worst = -1;
+    limit = kLargestEvSigma;
+    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
+        auto measured = static_cast<size_t>(problem.measured_channel());
+        double away = estimate.log_exposure[i][measured] - estimate.log_exposure[problem.reference][measured];
+        double of_gamma = std::max(r.gamma_sigma, 0.0) * away / std::log(2.0), sigma = r.image_quality[i].ev_sigma;
+        double own = std::sqrt(std::max(0.0, sigma * sigma - of_gamma * of_gamma));
+        if (own > limit) limit = own, worst = static_cast<int>(i);
+    }
+    return worst;
+}
+
+template <class... Values>
+void say(lensprof_fit_result &r, const char *reason, Values... values) {
+    std::snprintf(r.reason, sizeof r.reason, reason, values...);
+}
+
+template <class... Values>
+bool refuse(lensprof_fit_result &r, const char *reason, Values... values) {
+    r.usable = 0;
+    say(r, reason, values...);
+    return true;
+}
+
+// The first image that is not in the reference's group.
+uint32_t apart_image(const Problem &problem) {
+    const auto &group = problem.component;
+    auto apart = std::find_if(group.begin(), group.end(), [&](uint32_t g) { return g != group[problem.reference]; });
+    return static_cast<uint32_t>(apart - group.begin());
+}
+
+// Too few, too alike, or in places that tell nothing.
+bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    size_t unknowns = free_columns(problem, estimate.modes).size() + static_cast<size_t>(problem.image_unknowns);
+    size_t informative = count_informative(problem);
+    if (r.components > 1 && problem.image_unknowns > 0)
+        return refuse(r,
+                      "the images fall into %u groups: no usable overlap joins image %u to the reference, not even "
+                      "through others; add pictures or pairs that join them, or check its place in the project",
+                      r.components, apart_image(problem));
+    if (informative * static_cast<size_t>(problem.channels) < 2 * unknowns)
+        return refuse(r, "%zu different pairs between black and white are too few for %zu unknowns; sample more",
+                      informative, unknowns);
+    if (fits_response(estimate) && covered_greys(problem, r) < kFewestGreys)
+        return refuse(
+            r,
+            "the pairs cover %u tenths of the grey values only, which does not show a response; take pictures "
+            "of other exposures, or hold a response that is known",
+            covered_greys(problem, r));
+    bool falloff = problem.free & (LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3);
+    if (falloff && covered_radius(r) < kSmallestRadius)
+        return refuse(r,
+                      "the pairs reach to %.1f of the half diagonal only, which does not show the falloff in the "
+                      "corners; overlap the pictures more, or fix the falloff",
+                      covered_radius(r));
+    return false;
+}
+
+// Pictures by a camera that did not move: every place is compared with itself, and the falloff cancels.
+bool is_static(const Problem &problem) {
+    return std::all_of(problem.pairs.begin(), problem.pairs.end(), [](const lensprof_pair &pair) {
+        constexpr double kSame = 0.01;  // px
+        return std::abs(pair.xy[0][0] - pair.xy[1][0]) < kSame && std::abs(pair.xy[0][1] - pair.xy[1][1]) < kSame;
+    });
+}
+
+// What to look at where pairs of an image disagree with all others.
+const char *next_step(const Problem &problem) {
+    return is_static(problem) ? "something moved, its light changed, or its black is raised (bracket --black)"
+                              : "check its place in the project";
+}
+
+const char *pattern_reason(bool is_static, bool is_free) {
+    if (is_static)
+        return "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no response explains: "
+               "the camera moved, the light changed between the pictures, or local tone mapping (HDR)";
+    return is_free ? "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no "
+                     "response and falloff explain: local tone mapping (HDR), or light that changed between "
+                     "the pictures"
+                   : "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which the "
+                     "response or falloff that are held do not explain; free them";
+}
+
+bool contradicts_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+    // else it is what was held that does not fit
+    bool is_free = (estimate.modes >= 0 || estimate.is_refined) && (problem.free & falloff) == falloff;
+    bool still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
+    bool is_far = r.heldout_median == LENSPROF_UNKNOWN || r.heldout_median > kStillMedian;
+    if (still && r.inlier_share < kSmallestStillShare && is_far)
+        return refuse(r,
+                      "only %.0f %% of the pairs agree with one response; are the pictures of one scene, by a camera "
+                      "that did not move, and is their black 0 (bracket --black)?",
+                      100.0 * r.inlier_share);
+    if (r.inlier_share < 0.3)
+        return refuse(r, "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
+                      100.0 * r.inlier_share);
+    double pattern = r.noise_levels * std::sqrt(r.image_share);
+    if (r.image_share > kLargestImageShare && pattern > (still ? kHarmfulPattern : kSmallestPattern))
+        return refuse(r, pattern_reason(still, is_free), 100.0 * r.image_share, pattern);
+    if (r.noise_levels > kLargestNoise)
+        return refuse(r,
+                      "the pairs scatter by %.1f levels about the best camera model; free more parameters, or check "
+                      "the alignment",
+                      r.noise_levels);
+    return false;
+}
+
+// The first image whose exposure has fewer pairs behind it than could agree by chance. Images that share an exposure
+// count together; so do those that are held, the reference among them.
+bool has_few_inliers(const Problem &problem, const lensprof_fit_result &r, uint32_t &image, uint32_t &behind) {
+    if (problem.image_unknowns == 0 || !r.image_quality) return false;
+    auto held = static_cast<size_t>(problem.image_unknowns);
+    auto owner = [&](uint32_t i) {
+        return problem.ev_unknown[i] < 0 ? held : static_cast<size_t>(problem.ev_unknown[i]);
+    };
+    std::vector<uint32_t> inliers(held + 1, 0u);
+    for (uint32_t i = 0; i < problem.image_count; i++) inliers[owner(i)] += r.image_quality[i].inliers;
+    for (image = 0; image < problem.image_count; image++)
+        if ((behind = inliers[owner(image)]) < kFewestInliers) return true;
+    return false;
+}
+
+// The first image that hardly any of its pairs agrees with.
+bool disagrees(const Problem &problem, const lensprof_fit_result &r, uint32_t &image) {
+    for (image = 0; image < problem.image_count && r.image_quality; image++)
+        if (r.image_quality[image].inliers < kSmallestShare * r.image_quality[image].pairs) return true;
+    return false;
+}
+
+bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    if (!r.converged) return refuse(r, "the fit did not settle in %u iterations", r.iterations);
+    if (r.covariance_size == 0 && !free_columns(problem, estimate.modes).empty())
+        return refuse(r, "the pairs do not determine all parameters; fix some, or take pictures of more exposures");
+    double corner = corner_sigma(problem, r);
+    if (corner > kLargestCornerSigma)
+        return refuse(r,
+                      "the pairs leave the falloff in the corners uncertain by %.0f %%; sample more, or overlap more",
+                      100.0 * corner);
+    uint32_t image, behind;
+    if (has_few_inliers(problem, r, image, behind))
+        return refuse(
+            r,
+            "the exposure of image %u rests on %u pairs that agree with the camera model; overlap it more, or "
+            "%s",
+            image, behind, next_step(problem));
+    if (disagrees(problem, r, image))
+        return refuse(r, "only %u of the %u pairs of image %u agree with the camera model; %s",
+                      r.image_quality[image].inliers, r.image_quality[image].pairs, image, next_step(problem));
+    double uncertain_by;
+    int uncertain = uncertain_image(problem, estimate, r, uncertain_by);
+    if (uncertain >= 0)
+        return refuse(r, "the pairs leave the exposure of image %d uncertain by %.1f EV; overlap it more", uncertain,
+                      uncertain_by);
+    return false;
+}
+
+// The image whose exposure is farthest from its known one, when it clearly is; else -1.
+int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
+    int odd = -1;
+    double limit = kContradiction;
+    for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
+        double sigma = problem.images[i].known_ev_sigma;
+        double off = sigma > 0.0 ? std::abs(r.image_quality[i].known_ev_residual) / std::max(sigma, kKnownSigma) : 0.0;
+        if (off > limit) limit = off, odd = static_cast<int>(i);
+    }
+    return odd;
+}
+
+// Says how known exposures contradict each other, or the exponent of the result, if they do. Of many, whose errors are
+// known from their scatter, only single ones are told (contradicting_image).
+bool minds_known_exposures(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    using Explanation = KnownExposures::Explanation;
+    bool open = r.gamma_from == LENSPROF_GAMMA_EXPOSURES || r.gamma_from == LENSPROF_GAMMA_PRIOR;
+    KnownExposures known = compare_known(problem, estimate, open);
+    if (known.count > kMany) return false;
+    const int image = static_cast<int>(known.image);
+    double away = std::abs(std::log(std::max(known.slope, 1e-3)));
+    if (known.explanation == Explanation::order)
+        say(r,
+            "the known exposures do not follow the pictures, which differ by %.1f EV: are they in another order, or of "
+            "other pictures?",
+            known.off_ev);
+    else if (known.explanation == Explanation::one)
+        say(r,
+            "the exposure of image %d is %.1f EV away from its known one: one of the two is wrong, or its light changed",
+            image, std::abs(known.off_ev));
+    else if (known.explanation == Explanation::step)
+        say(r,
+            "from image %d on the known exposures are %.1f EV %s than the pictures: ISO, aperture or the light changed "
+            "there unnoticed",
+            image, std::abs(known.off_ev), known.off_ev > 0.0 ? "more" : "less");
+    else if (known.explanation == Explanation::any)
+        say(r,
+            "the known exposures contradict each other: one is wrong by more than %.1f EV, and they do not tell which; "
+            "gamma is as uncertain. Check them, or take more pictures",
+            known.off_ev);
+    else if (r.gamma_from == LENSPROF_GAMMA_EXPOSURES && away > std::max(kUnfollowed, 3.0 * r.gamma_sigma))
+        say(r,
+            "the known exposures want all exposures %.2f times as large: the modes of the response cannot follow there; "
+            "exposures, falloff and response have another exponent than what is known",
+            1.0 / known.slope);
+    else
+        return false;
+    return true;
+}
+
+}  // namespace
+
+void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    if (lacks_data(problem, estimate, r) || contradicts_model(problem, estimate, r)
+        || is_undetermined(problem, estimate, r))
+        return;
+    r.usable = 1;
+    r.reason[0] = 0;
+    int odd = odd_image(problem, r), contradicting = contradicting_image(problem, r);
+    bool is_still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
+    double off_centre = std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]);
+    if (odd >= 0)
+        say(r,
+            "most pairs of image %d disagree with the camera model (median residual %.1f levels): %s, or what moved "
+            "there",
+            odd, r.image_quality[odd].median_residual, next_step(problem));
+    else if (minds_known_exposures(problem, estimate, r))
+        return;
+    else if (contradicting >= 0)
+        say(r,
+            "the exposure of image %d is %.1f EV away from its known one: one of the two is wrong, or its light changed",
+            contradicting, std::abs(r.image_quality[contradicting].known_ev_residual));
+    else if (r.image_share > kSuspiciousImageShare
+             && r.noise_levels * std::sqrt(r.image_share) > (is_still ? kStillPattern : kSmallestPattern))
+        say(r,
+            "%.0f %% of the residual follows patterns of each image's own (%.1f levels), as weak local tone mapping "
+            "(HDR) makes them: exposures may be farther off than stated",
+            100.0 * r.image_share, r.noise_levels * std::sqrt(r.image_share));
+    else if (r.frame_share > kNotRadial && r.noise_levels * std::sqrt(r.frame_share) > kSmallestPattern)
+        say(r, "%.0f %% of the residual follows one pattern over the frame (%.1f levels): the falloff is not radial",
+            100.0 * r.frame_share, r.noise_levels * std::sqrt(r.frame_share));
+    else if (off_centre > kFarCentre && (problem.free & LENSPROF_FREE_CENTER))
+        say(r,
+            "the centre of the falloff lies %.2f half diagonals from the middle of the frame: are the pictures cropped, "
+            "or in the wrong place of the project?",
+            off_centre);
+    else if (fits_response(estimate) && covered_greys(problem, r) < kEnoughGreys) {
+        auto [first, last] = missing_greys(problem, r);
+        say(r,
+            "hardly a pair has grey values from %.1f to %.1f (of 1): what is said of the response there, and of gamma, "
+            "rests on the prior",
+            0.1 * first, 0.1 * last);
+    }
+}
+
+}  // namespace lensprof

@@ -1,0 +1,97 @@
+#include "fit/verdict/pattern.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Core>
+
+namespace lensprof {
+namespace {
+
+constexpr int kColumns = 8, kRows = 6, kCells = kColumns * kRows;
+constexpr double kRidge = 4.0;  // pairs' worth of belief that a cell shows nothing
+constexpr int kIterations = 40;
+
+// A pair as the maps see it.
+struct Sample {
+    Eigen::Index cell[2];  // of all maps together
+    double residual;
+};
+
+Eigen::Index cell_of(const Problem &problem, const lensprof_pair &pair, int side, bool own_maps) {
+    const auto &image = problem.images[pair.image[side]];
+    auto at = [](double value, double size, int count) {
+        return std::clamp(static_cast<int>((value + 0.5) / size * count), 0, count - 1);
+    };
+    int cell = at(pair.xy[side][0], image.width, kColumns) + kColumns * at(pair.xy[side][1], image.height, kRows);
+    return cell + (own_maps ? kCells * static_cast<Eigen::Index>(pair.image[side]) : 0);
+}
+
+// Ridge regression of the residuals on the maps, by conjugate gradients: cost linear in pairs.
+Eigen::VectorXd fit_maps(const std::vector<Sample> &samples, Eigen::Index cells) {
+    auto times = [&](const Eigen::VectorXd &h) {
+        Eigen::VectorXd product = kRidge * h;
+        for (const Sample &s : samples) {
+            double difference = h[s.cell[0]] - h[s.cell[1]];
+            product[s.cell[0]] += difference;
+            product[s.cell[1]] -= difference;
+        }
+        return product;
+    };
+    Eigen::VectorXd h = Eigen::VectorXd::Zero(cells), gradient = h;
+    for (const Sample &s : samples) {
+        gradient[s.cell[0]] += s.residual;
+        gradient[s.cell[1]] -= s.residual;
+    }
+    Eigen::VectorXd direction = gradient;
+    double length2 = gradient.squaredNorm(), enough = 1e-12 * length2;
+    for (int i = 0; i < kIterations && length2 > enough; i++) {
+        Eigen::VectorXd product = times(direction);
+        double step = length2 / direction.dot(product);
+        h += step * direction;
+        gradient -= step * product;
+        double next = gradient.squaredNorm();
+        direction = gradient + next / length2 * direction;
+        length2 = next;
+    }
+    return h;
+}
+
+// Share of the variance of every second pair that the others' maps explain, both ways round.
+double explained(const std::vector<Sample> (&halves)[2], Eigen::Index cells) {
+    double before = 0.0, after = 0.0;
+    for (int half = 0; half < 2; half++) {
+        Eigen::VectorXd h = fit_maps(halves[half], cells);
+        for (const Sample &s : halves[1 - half]) {
+            before += s.residual * s.residual;
+            after += std::pow(s.residual - (h[s.cell[0]] - h[s.cell[1]]), 2);
+        }
+    }
+    return before > 0.0 ? std::max(0.0, 1.0 - after / before) : 0.0;
+}
+
+}  // namespace
+
+PatternShares pattern_shares(const Problem &problem, const std::vector<double> &residual,
+                             const std::vector<bool> &is_inlier) {
+    PatternShares shares;
+    for (bool own_maps : {false, true}) {
+        std::vector<Sample> halves[2];
+        size_t count = 0;
+        for (size_t p = 0; p < problem.pairs.size(); p++) {
+            if (!is_inlier[p]) continue;
+            const auto &pair = problem.pairs[p];
+            halves[count++ % 2].push_back(
+                {{cell_of(problem, pair, 0, own_maps), cell_of(problem, pair, 1, own_maps)}, residual[p]});
+        }
+        auto cells = static_cast<Eigen::Index>(own_maps ? kCells * static_cast<size_t>(problem.image_count) : kCells);
+        double share = explained(halves, cells);
+        if (own_maps)
+            shares.image = std::max(0.0, share - shares.frame);
+        else
+            shares.frame = share;
+    }
+    return shares;
+}
+
+}  // namespace lensprof

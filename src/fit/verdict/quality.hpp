@@ -1,0 +1,43 @@
+// What a result is worth: residuals, covariance, coverage, and in plain words why it is not usable.
+#pragma once
+
+#include "fit/base/quantile.hpp"
+#include "fit/solver/solver.hpp"
+
+namespace lensprof {
+
+// Root mean square and median absolute value of transfer residuals, levels of 255.
+struct Summary {
+    double rms = 0.0, median = 0.0;
+};
+Summary summarise(std::vector<double> values);
+
+// Absolute transfer residuals of all pairs, channels and directions, levels of 255.
+std::vector<double> residual_levels(const Problem &problem, const Estimate &estimate);
+
+// Fills response, vignetting and the number of pairs.
+void describe_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &result);
+
+// Fills what pairs leave that the estimate has not seen; without such pairs only how different they were before.
+void describe_heldout(const Problem &tested, const Estimate &train, bool is_heldout, lensprof_fit_result &result);
+
+// Fills noise, inlier share, patterns, covariance, coverage and the images' quality.
+void describe_quality(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
+                      const Estimate &estimate, lensprof_fit_result &result);
+
+// The same from a covariance that is known already, and the noise of a grey value, 0..1.
+void describe_quality(const Problem &problem, const Gauge &gauge, double noise, const Covariance &found,
+                      const Estimate &estimate, lensprof_fit_result &result);
+
+// Root mean square difference, EV, of pictures that overlap, over pairs and channels. Below kSmallestSpread they show
+// no response without falloff: their transfer functions are the identity.
+constexpr double kSmallestSpread = 0.15;
+double exposure_spread(const Problem &problem, const Estimate &estimate);
+
+// What every image got, as far as it was free.
+void write_exposures(const Problem &problem, const Estimate &estimate, lensprof_exposure *exposures);
+
+// Fills `usable` and `reason` from everything else.
+void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result &result);
+
+}  // namespace lensprof

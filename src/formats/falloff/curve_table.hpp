@@ -1,0 +1,30 @@
+// Responses as other programs tabulate them: mostly turned round, as the irradiances of evenly spaced grey values.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <lensprof/model.h>
+
+#include "formats/text/text.hpp"
+
+namespace lensprof {
+
+constexpr size_t kMostCurveRows = 65536;
+constexpr double kDarkest = 1e-6;  // of full irradiance: what stands for 0 in formats that take its logarithm
+
+// First index whose value is below (strict: not above) that before it; the size where there is none.
+size_t find_fall(const std::vector<double> &values, bool strict);
+
+// The response with these irradiances at the grey values i / (size - 1), to any scale: the last is that of full grey.
+// At least 2, finite, none below 0 or below that before it, and the last above 0; below the first of them the response
+// is 0.
+lensprof_response response_of_irradiances(const std::vector<double> &irradiances);
+
+// Irradiances 0..1 of `count` evenly spaced grey values.
+std::vector<double> irradiances_of(const lensprof_response &response, size_t count);
+
+// Throws, with the status of lensprof_response_validate, for what is no response. what: "response 1".
+void check_response(const lensprof_response &response, const std::string &what);
+
+}  // namespace lensprof

@@ -1,0 +1,151 @@
+#include "formats/falloff/map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <string>
+
+#include "formats/text/text.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t kMostSide = 65536;
+constexpr uint32_t kKeptSide = 1024;  // larger maps are averaged down first: more tells a profile nothing
+
+[[noreturn]] void fail_at(uint32_t i, uint32_t j, const char *what, lensprof_status status) {
+    throw FormatFailure{status, "value at column " + std::to_string(i) + ", row " + std::to_string(j) + " " + what};
+}
+
+// Attenuation of a value, 0 where it is not known.
+double attenuation_of(float value, bool gain, uint32_t i, uint32_t j) {
+    if (!std::isfinite(value)) fail_at(i, j, "is not finite; write 0 for what is not known", LENSPROF_ERROR_NOT_FINITE);
+    if (value < 0.0f) fail_at(i, j, "is below 0; correct it, or give another map", LENSPROF_ERROR_ARGUMENT);
+    return gain ? (value > 0.0f ? 1.0 / double(value) : 0.0) : double(value);
+}
+
+// Values that become one.
+struct Block {
+    uint32_t columns, rows;
+};
+
+// Sets a map's attenuations to the means over blocks of values, of those that are known.
+void fill(const MapValues &form, const float *values, Block side, FalloffMap &map) {
+    std::vector<double> sum(size_t(map.columns) * map.channels);
+    std::vector<uint32_t> count(sum.size());
+    map.attenuation.assign(size_t(map.columns) * map.rows * map.channels, 0.0);
+    for (uint32_t j = 0; j < form.rows; j++) {
+        const uint32_t row = j / side.rows;
+        for (uint32_t i = 0; i < form.columns; i++)
+            for (uint32_t c = 0; c < form.channels; c++) {
+                const float value = values[(size_t(j) * form.columns + i) * form.channels + form.order[c]];
+                const double attenuation = attenuation_of(value, form.gain, i, j);
+                const uint32_t column = i / side.columns;
+                if (attenuation == 0.0 || column >= map.columns || row >= map.rows) continue;
+                sum[size_t(column) * form.channels + c] += attenuation;
+                count[size_t(column) * form.channels + c]++;
+            }
+        if ((j + 1) % side.rows || row >= map.rows) continue;
+        for (uint32_t i = 0; i < map.columns; i++)
+            for (uint32_t c = 0; c < form.channels; c++) {
+                const size_t at = size_t(i) * form.channels + c;
+                if (count[at]) map.attenuation[(size_t(c) * map.rows + row) * map.columns + i] = sum[at] / count[at];
+                sum[at] = 0.0, count[at] = 0;
+            }
+    }
+}
+
+}  // namespace
+
+void check_frame(uint32_t width, uint32_t height) {
+    if (width < 2 || height < 2 || width > kMostSide || height > kMostSide)
+        throw FormatFailure{LENSPROF_ERROR_SIZE, std::to_string(width) + " x " + std::to_string(height)
+                                                     + " values or pixels; give sides of 2 to 65536"};
+}
+
+void check_profile(const lensprof_profile &profile) {
+    const lensprof_status status = lensprof_profile_validate(&profile);
+    if (status != LENSPROF_OK)
+        throw FormatFailure{status, std::string("the profile is not valid (") + lensprof_status_name(status)
+                                        + "); see lensprof_profile_validate"};
+}
+
+double fit_values(const MapValues &form, const float *values, uint32_t width, uint32_t height,
+                  lensprof_profile &profile) {
+    check_frame(form.columns, form.rows);
+    check_frame(width, height);
+    const Block side{(form.columns + kKeptSide - 1) / kKeptSide, (form.rows + kKeptSide - 1) / kKeptSide};
+    FalloffMap map{width, height, form.columns, form.rows, form.channels, 0, 0, 0, 0, {}};
+    place_as_cells(map);
+    map.columns = form.columns / side.columns, map.rows = form.rows / side.rows;
+    map.x0 += map.dx * (side.columns - 1) / 2.0, map.y0 += map.dy * (side.rows - 1) / 2.0;
+    map.dx *= side.columns, map.dy *= side.rows;
+    fill(form, values, side, map);
+    const double worst = fit_map(map, profile);
+    profile.covariance_size = 0;
+    std::fill(std::begin(profile.covariance), std::end(profile.covariance), 0.0);
+    return worst;
+}
+
+std::vector<double> attenuations_of(const lensprof_profile &profile, uint32_t width, uint32_t height, uint32_t columns,
+                                    uint32_t rows, uint32_t channels) {
+    FalloffMap map{width, height, columns, rows, channels, 0, 0, 0, 0, {}};
+    place_as_cells(map);
+    std::vector<double> &all = map.attenuation;
+    all.reserve(size_t(columns) * rows * channels);
+    for (uint32_t c = 0; c < channels; c++)
+        for (uint32_t j = 0; j < rows; j++)
+            for (uint32_t i = 0; i < columns; i++) {
+                double sum = 0.0;
+                for (uint32_t from = channels == 3 ? c : 0; from <= (channels == 3 ? c : 2); from++)
+                    sum += profile_attenuation(profile, width, height, map.x0 + i * map.dx, map.y0 + j * map.dy, from);
+                all.push_back(channels == 3 ? sum : sum / 3.0);
+            }
+    const double largest = *std::max_element(all.begin(), all.end());
+    for (double &value : all) value /= largest;
+    return all;
+}
+
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_map_read(const lensprof_map *map, uint32_t width, uint32_t height, lensprof_profile *profile,
+                                  double *worst, lensprof_error *error) {
+    if (!map || !map->values || !profile || (map->channels != 1 && map->channels != 3)
+        || map->sense > LENSPROF_MAP_GAIN) {
+        set_error(error,
+                  "lensprof_map_read: give a map with values, of 1 or 3 channels and a known sense, and a profile");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return at_boundary(error, [&] {
+        const MapValues form{map->columns, map->rows, map->channels, map->sense == LENSPROF_MAP_GAIN, {0, 1, 2}};
+        auto found = std::make_unique<lensprof_profile>(*profile);
+        const double error_found = fit_values(form, map->values, width, height, *found);
+        *profile = *found;
+        if (worst) *worst = error_found;
+    });
+}
+
+lensprof_status lensprof_map_write(const lensprof_profile *profile, uint32_t width, uint32_t height, uint32_t columns,
+                                   uint32_t rows, uint32_t channels, uint32_t sense, float *values,
+                                   lensprof_error *error) {
+    if (!profile || !values || (channels != 1 && channels != 3) || sense > LENSPROF_MAP_GAIN) {
+        set_error(error, "lensprof_map_write: give a profile, values, 1 or 3 channels and a known sense");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return at_boundary(error, [&] {
+        check_profile(*profile);
+        check_frame(width, height);
+        check_frame(columns, rows);
+        const std::vector<double> all = attenuations_of(*profile, width, height, columns, rows, channels);
+        const size_t pixels = size_t(columns) * rows;
+        for (size_t i = 0; i < pixels; i++)
+            for (uint32_t c = 0; c < channels; c++) {
+                const double attenuation = all[c * pixels + i];
+                values[i * channels + c] =
+                    static_cast<float>(sense == LENSPROF_MAP_GAIN ? 1.0 / attenuation : attenuation);
+            }
+    });
+}

@@ -1,0 +1,35 @@
+// Falloffs as maps of attenuations or gains, to and from profiles; what pictures, radical's maps and ALSC's tables
+// share.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <lensprof/formats.h>
+
+#include "formats/falloff/map_fit.hpp"
+
+namespace lensprof {
+
+// Values of a map that are the means of equal cells of a frame, interleaved; channel c of a pixel is value order[c].
+// Attenuations, or gains where `gain`, to any scale; 0 = not known. Sets falloff and grid of the profile, whose
+// covariance no longer holds, and returns the largest relative error. Throws SIZE, NOT_FINITE, ARGUMENT for values
+// below 0, VIGNETTING.
+struct MapValues {
+    uint32_t columns, rows, channels;
+    bool gain;
+    uint32_t order[3];
+};
+double fit_values(const MapValues &form, const float *values, uint32_t width, uint32_t height,
+                  lensprof_profile &profile);
+
+// Attenuations of a valid profile at the middles of columns x rows cells of a frame, [channel][row][column], for 3
+// channels, or 1: their mean. The largest of all is 1.
+std::vector<double> attenuations_of(const lensprof_profile &profile, uint32_t width, uint32_t height, uint32_t columns,
+                                    uint32_t rows, uint32_t channels);
+
+// Throws SIZE for a side below 2 or over 65536, and what lensprof_profile_validate says.
+void check_frame(uint32_t width, uint32_t height);
+void check_profile(const lensprof_profile &profile);
+
+}  // namespace lensprof

@@ -1,0 +1,305 @@
+#include "formats/falloff/map_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include "core/gain_grid.h"
+#include "formats/falloff/falloff_doubt.hpp"
+#include "formats/text/text.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t kMostSamples = 128;   // of a map, a side: more tell a polynomial nothing
+constexpr double kGridFrom = 0.002;      // relative error of a radial falloff that a grid is for
+constexpr uint32_t kGridNodes = 24;      // along the longer side
+constexpr size_t kFewValues = 4;         // of a map, a node
+constexpr int kRefinements = 20;         // of such a grid: the error of a table of 16 x 12 falls from 3.5 to 0.3 %
+constexpr double kFarthestCenter = 0.5;  // half diagonals; beyond it is not the centre of a falloff
+
+[[noreturn]] void fail(const char *text) { throw FormatFailure{LENSPROF_ERROR_VIGNETTING, text}; }
+
+// A known value of a map.
+struct Sample {
+    double x, y, value;
+};
+
+// The known values of a channel over its largest, at most kMostSamples a side.
+struct Channel {
+    double largest;
+    std::vector<Sample> samples;
+};
+
+Channel channel_of(const FalloffMap &map, uint32_t index) {
+    const size_t size = size_t(map.columns) * map.rows;
+    const double *values = map.attenuation.data() + size * index;
+    Channel channel{*std::max_element(values, values + size), {}};
+    if (!(channel.largest > 0.0)) fail("a map without a value above 0; correct it");
+    const uint32_t across = std::min(map.columns, kMostSamples), down = std::min(map.rows, kMostSamples);
+    for (uint32_t b = 0; b < down; b++)
+        for (uint32_t a = 0; a < across; a++) {
+            const uint32_t i = static_cast<uint32_t>((2 * uint64_t(a) + 1) * map.columns / (2 * across));
+            const uint32_t j = static_cast<uint32_t>((2 * uint64_t(b) + 1) * map.rows / (2 * down));
+            const double value = values[size_t(j) * map.columns + i] / channel.largest;
+            if (value >= kLowestFalloff) channel.samples.push_back({map.x0 + i * map.dx, map.y0 + j * map.dy, value});
+        }
+    if (channel.samples.size() < 8) fail("too little of the map is above 0; give one that covers the frame");
+    return channel;
+}
+
+// Unknowns: scale c0 and c1..c3 = c0 k of every channel, so that with a fixed centre all is linear; then the centre.
+class MapFit {
+public:
+    explicit MapFit(const FalloffMap &map) : map_(map) {
+        for (uint32_t c = 0; c < map.channels; c++) channels_.push_back(channel_of(map, c));
+        terms_ = Eigen::VectorXd::Zero(4 * map.channels + 2);
+    }
+
+    void run() {
+        solve_linear();
+        double cost = cost_of(terms_), damping = 1e-3;
+        for (int round = 0; round < 50 && damping < 1e9; round++) {
+            const Eigen::VectorXd next = step(damping);
+            const bool inside = std::hypot(next[center()], next[center() + 1]) <= kFarthestCenter;
+            const double reached = inside ? cost_of(next) : INFINITY;
+            damping = reached < cost ? damping / 10.0 : damping * 10.0;
+            if (!(reached < cost)) continue;
+            const bool done = reached > cost * (1.0 - 1e-12);
+            terms_ = next, cost = reached;
+            if (done) break;
+        }
+    }
+
+    std::array<double, 3> k(uint32_t channel) const {
+        const Eigen::Index at = 4 * channel;
+        return {terms_[at + 1] / terms_[at], terms_[at + 2] / terms_[at], terms_[at + 3] / terms_[at]};
+    }
+    const Channel &channel(uint32_t index) const { return channels_[index]; }
+    // What M = 1 is, of the channel's largest value.
+    double one(uint32_t channel) const { return terms_[4 * channel]; }
+    double center_of(int axis) const { return terms_[center() + axis]; }
+
+private:
+    Eigen::Index center() const { return terms_.size() - 2; }
+
+    lensprof_vignetting shape(const Eigen::VectorXd &terms, uint32_t c) const {
+        return {{terms[4 * c + 1], terms[4 * c + 2], terms[4 * c + 3]}, {terms[center()], terms[center() + 1]}};
+    }
+
+    // M to scale, less 1, over the sample; and its derivatives.
+    double residual(const Eigen::VectorXd &terms, uint32_t c, const Sample &s, Eigen::VectorXd *slope) const {
+        const lensprof_vignetting v = shape(terms, c);
+        double gradient[2], by_r2;
+        const double r2 = lensprof_vignetting_r2(&v, map_.width, map_.height, s.x, s.y, gradient);
+        const double m = lensprof_vignetting_eval(&v, r2, &by_r2) - 1.0 + terms[4 * c];
+        if (slope) {
+            slope->setZero(terms.size());
+            double power = 1.0 / s.value;
+            for (int n = 0; n < 4; n++, power *= r2) (*slope)[4 * c + n] = power;
+            for (int axis = 0; axis < 2; axis++) (*slope)[center() + axis] = by_r2 * gradient[axis] / s.value;
+        }
+        return m / s.value - 1.0;
+    }
+
+    void solve_linear() {
+        for (uint32_t c = 0; c < map_.channels; c++) {
+            Eigen::MatrixXd rows(channels_[c].samples.size(), 4);
+            Eigen::VectorXd slope;
+            for (size_t i = 0; i < channels_[c].samples.size(); i++) {
+                residual(terms_, c, channels_[c].samples[i], &slope);
+                rows.row(static_cast<Eigen::Index>(i)) = slope.segment(4 * c, 4);
+            }
+            terms_.segment(4 * c, 4) = rows.colPivHouseholderQr().solve(Eigen::VectorXd::Ones(rows.rows()));
+        }
+    }
+
+    double cost_of(const Eigen::VectorXd &terms) const {
+        double cost = 0.0;
+        for (uint32_t c = 0; c < map_.channels; c++)
+            for (const Sample &s : channels_[c].samples) cost += std::pow(residual(terms, c, s, nullptr), 2);
+        return cost;
+    }
+
+    Eigen::VectorXd step(double damping) const {
+        const Eigen::Index n = terms_.size();
+        Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(n), slope;
+        for (uint32_t c = 0; c < map_.channels; c++)
+            for (const Sample &s : channels_[c].samples) {
+                const double left = residual(terms_, c, s, &slope);
+                right -= left * slope;
+                normal.selfadjointView<Eigen::Lower>().rankUpdate(slope);
+            }
+        for (Eigen::Index i = 0; i < n; i++) normal(i, i) += damping * normal(i, i) + 1e-12;
+        return terms_ + normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+    }
+
+    const FalloffMap &map_;
+    std::vector<Channel> channels_;
+    Eigen::VectorXd terms_;
+};
+
+// The values whose places lie within [from, to], at least the nearest one.
+struct Range {
+    uint32_t low, high;
+};
+Range values_within(double from, double to, double first, double step, uint32_t count) {
+    double low = std::ceil((from - first) / step - 1e-9), high = std::floor((to - first) / step + 1e-9);
+    if (low > high) low = high = std::round(((from + to) / 2.0 - first) / step);
+    const double last = count - 1.0;
+    return {static_cast<uint32_t>(std::clamp(low, 0.0, last)), static_cast<uint32_t>(std::clamp(high, 0.0, last))};
+}
+
+// Values of a channel that stand for 1, and below which they are not known.
+struct Scale {
+    double one, lowest;
+};
+
+// What the falloff leaves at a node: the plane through the values within half a node's spacing, which is not drawn
+// aside at the frame's edge as a mean would be; their mean where they are too few, 1 where nothing is known.
+double left_at(const FalloffMap &map, const lensprof_vignetting &falloff, uint32_t channel, const Scale &scale,
+               double x, double y, double step_x, double step_y) {
+    const Range across = values_within(x - step_x / 2.0, x + step_x / 2.0, map.x0, map.dx, map.columns),
+                down = values_within(y - step_y / 2.0, y + step_y / 2.0, map.y0, map.dy, map.rows);
+    const double *values = map.attenuation.data() + size_t(map.columns) * map.rows * channel;
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (uint32_t j = down.low; j <= down.high; j++)
+        for (uint32_t i = across.low; i <= across.high; i++) {
+            const double value = values[size_t(j) * map.columns + i];
+            const double px = map.x0 + i * map.dx, py = map.y0 + j * map.dy;
+            if (value < scale.lowest) continue;
+            const double r2 = lensprof_vignetting_r2(&falloff, map.width, map.height, px, py, nullptr);
+            const Eigen::Vector3d at(1.0, (px - x) / step_x, (py - y) / step_y);
+            normal += at * at.transpose();
+            right += at * (value / scale.one / lensprof_vignetting_eval(&falloff, r2, nullptr));
+        }
+    const double count = normal(0, 0);
+    if (count == 0.0) return 1.0;
+    const double spread = std::min(normal(1, 1), normal(2, 2));
+    const bool plane = count >= 6.0 && spread > 0.01 * count;
+    normal.diagonal().array() += 1e-6 * count;
+    const double left = plane ? normal.ldlt().solve(right)[0] : right[0] / count;
+    return std::clamp(left, kLowestFalloff, 1.0 / kLowestFalloff);
+}
+
+void set_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &profile) {
+    lensprof_gain_grid &grid = profile.grid;
+    const uint32_t longer = std::max(map.width, map.height);
+    const auto nodes = [&](uint32_t side, uint32_t values) {
+        const uint32_t even = static_cast<uint32_t>(std::lround(double(kGridNodes - 1) * side / longer)) + 1;
+        return std::clamp<uint32_t>(std::min(even, values), 2, LENSPROF_GRID_SIDE);
+    };
+    grid.columns = nodes(map.width, map.columns), grid.rows = nodes(map.height, map.rows);
+    grid.channels = map.channels;
+    const double step_x = (map.width - 1.0) / (grid.columns - 1), step_y = (map.height - 1.0) / (grid.rows - 1);
+    float *node = grid.attenuation;
+    for (uint32_t c = 0; c < grid.channels; c++) {
+        const double largest = fit.channel(c).largest;
+        const Scale scale{fit.one(c) * largest, kLowestFalloff * largest};
+        for (uint32_t j = 0; j < grid.rows; j++)
+            for (uint32_t i = 0; i < grid.columns; i++)
+                *node++ = static_cast<float>(
+                    left_at(map, profile.vignetting[c], c, scale, i * step_x, j * step_y, step_x, step_y));
+    }
+}
+
+// Draws the nodes to the values: each by the mean, over the values that it is interpolated for and weighted as they
+// are, of what they are over the model. For tables with few values a node, which planes smooth; where there are many,
+// the planes are means over more of them.
+void refine_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &profile) {
+    lensprof_gain_grid &grid = profile.grid;
+    const size_t nodes = size_t(grid.columns) * grid.rows;
+    if (size_t(map.columns) * map.rows >= kFewValues * nodes) return;
+    for (uint32_t c = 0; c < map.channels; c++) {
+        for (int round = 0; round < kRefinements; round++) {
+            std::vector<double> sum(nodes), weight(nodes);
+            for (const Sample &s : fit.channel(c).samples) {
+                const double model = fit.one(c) * profile_attenuation(profile, map.width, map.height, s.x, s.y, c);
+                const lp_grid_cell x = lp_grid_cell_at(s.x, map.width, grid.columns),
+                                   y = lp_grid_cell_at(s.y, map.height, grid.rows);
+                for (uint32_t k = 0; k < 4; k++) {
+                    const double share =
+                        (k & 1 ? x.fraction : 1.0 - x.fraction) * (k & 2 ? y.fraction : 1.0 - y.fraction);
+                    const size_t at = size_t(y.node + (k >> 1)) * grid.columns + x.node + (k & 1);
+                    sum[at] += share * s.value / model, weight[at] += share;
+                }
+            }
+            for (size_t i = 0; i < nodes; i++) {
+                float &node = grid.attenuation[c * nodes + i];
+                if (weight[i] > 0.0)
+                    node =
+                        static_cast<float>(std::clamp(node * sum[i] / weight[i], kLowestFalloff, 1.0 / kLowestFalloff));
+            }
+        }
+    }
+}
+
+// Largest |model / attenuation - 1| over what is known.
+double worst_error(const FalloffMap &map, const MapFit &fit, const lensprof_profile &profile) {
+    double worst = 0.0;
+    for (uint32_t c = 0; c < map.channels; c++) {
+        for (const Sample &s : fit.channel(c).samples) {
+            const double model = fit.one(c) * profile_attenuation(profile, map.width, map.height, s.x, s.y, c);
+            worst = std::max(worst, std::fabs(model / s.value - 1.0));
+        }
+    }
+    return worst;
+}
+
+}  // namespace
+
+void place_as_cells(FalloffMap &map) {
+    map.dx = double(map.width) / map.columns, map.dy = double(map.height) / map.rows;
+    map.x0 = map.dx / 2.0 - 0.5, map.y0 = map.dy / 2.0 - 0.5;
+}
+
+FalloffMap sampled_map(uint32_t width, uint32_t height, uint32_t channels, const Attenuation &attenuation) {
+    const double longer = std::max(width, height);
+    const auto cells = [&](uint32_t side) {
+        return std::min(side, static_cast<uint32_t>(std::ceil(kMostSamples * (side / longer))));
+    };
+    FalloffMap map{width, height, cells(width), cells(height), channels, 0, 0, 0, 0, {}};
+    place_as_cells(map);
+    map.attenuation.reserve(size_t(map.columns) * map.rows * channels);
+    for (uint32_t c = 0; c < channels; c++)
+        for (uint32_t j = 0; j < map.rows; j++)
+            for (uint32_t i = 0; i < map.columns; i++)
+                map.attenuation.push_back(attenuation(map.x0 + i * map.dx, map.y0 + j * map.dy, c));
+    return map;
+}
+
+double profile_attenuation(const lensprof_profile &profile, uint32_t width, uint32_t height, double x, double y,
+                           uint32_t channel) {
+    const lensprof_vignetting &v = profile.vignetting[profile.vignettings == 3 ? channel : 0];
+    return lensprof_vignetting_eval(&v, lensprof_vignetting_r2(&v, width, height, x, y, nullptr), nullptr)
+           * lensprof_gain_grid_eval(&profile.grid, width, height, x, y, channel);
+}
+
+double fit_map(const FalloffMap &map, lensprof_profile &profile) {
+    for (double value : map.attenuation)
+        if (!std::isfinite(value))
+            throw FormatFailure{LENSPROF_ERROR_NOT_FINITE, "a map that is not finite; correct it"};
+    MapFit fit(map);
+    fit.run();
+    profile.vignettings = map.channels;
+    for (uint32_t c = 0; c < map.channels; c++) {
+        lensprof_vignetting &v = profile.vignetting[c];
+        const std::array<double, 3> k = fit.k(c);
+        v = {{k[0], k[1], k[2]}, {fit.center_of(0), fit.center_of(1)}};
+        if (!(fit.one(c) > 0.0) || lensprof_vignetting_validate(&v) != LENSPROF_OK)
+            fail("a map that no radial falloff comes near; check that it is of one frame, and its sense");
+    }
+    lensprof_gain_grid_init(&profile.grid);
+    const double worst = worst_error(map, fit, profile);
+    if (!(worst > kGridFrom)) return worst;
+    set_grid(map, fit, profile);
+    refine_grid(map, fit, profile);
+    return worst_error(map, fit, profile);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,30 @@
+// What counts as r = 1 in other programs' falloffs, in one place (docs/formats.md). Here it is half the diagonal of the
+// frame; a polynomial in another unit of radius is rescaled exactly.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+namespace lensprof {
+
+// Half the diagonal, in mm, of a sensor with this crop factor: that of 36 mm x 24 mm over the crop factor.
+inline double half_diagonal_mm(double crop_factor) { return std::hypot(36.0, 24.0) / 2.0 / crop_factor; }
+
+// Coefficients of r^2, r^4, r^6 for r in half diagonals, from those for r in `unit` half diagonals:
+// (rho / unit)^2n a_n = rho^2n a_n unit^-2n. Units: Hugin and Lensfun's pa 1; Lensfun's and Adobe's acm
+// focal_mm / half_diagonal_mm(crop_factor).
+inline std::array<double, 3> in_half_diagonals(const std::array<double, 3> &terms, double unit) {
+    const double s = 1.0 / (unit * unit);
+    return {terms[0] * s, terms[1] * s * s, terms[2] * s * s * s};
+}
+
+// Half the shorter side in half diagonals, for a frame of this ratio of its sides: the unit of Lensfun's centres.
+inline double half_short_side(double aspect_ratio) { return 1.0 / std::hypot(aspect_ratio, 1.0); }
+
+// From the centre of a falloff, in half diagonals from that of the frame, to the frame's farthest corner.
+inline double farthest_corner(const double center[2], double width, double height) {
+    const double rho = std::hypot(width, height) / 2.0;
+    return std::hypot(width / 2.0 / rho + std::fabs(center[0]), height / 2.0 / rho + std::fabs(center[1]));
+}
+
+}  // namespace lensprof

@@ -1,0 +1,29 @@
+// Radial falloffs of other shapes than ours (gains, higher powers, knots), to M = 1 + k1 r^2 + k2 r^4 + k3 r^6. Least
+// squares of the relative error M / attenuation - 1, which is that of a corrected value: a truncated series of 1 /
+// gain, which other programs use, is wrong by up to a quarter at two stops.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace lensprof {
+
+// 1 + terms[0] t + terms[1] t^2 + ... for a target sampled evenly in t over 0..1, target(0) taken as 1. Throws
+// NOT_FINITE or VIGNETTING for what is not finite, or not above 0, there.
+struct EvenRefit {
+    std::vector<double> terms;
+    double worst;  // largest |polynomial / target - 1|
+};
+EvenRefit refit_even(const std::function<double(double t)> &target, uint32_t count);
+
+// A radial attenuation, r^2 in half diagonals, sampled evenly in r^2, that is evenly over the area, up to r = `reach`
+// half diagonals. The attenuation in the centre is taken as 1. Throws as refit_even.
+struct RadialRefit {
+    std::array<double, 3> k;
+    double worst;  // largest |M / attenuation - 1|
+};
+RadialRefit refit_radial(const std::function<double(double r2)> &attenuation, double reach = 1.0);
+
+}  // namespace lensprof

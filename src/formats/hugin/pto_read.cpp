@@ -1,0 +1,317 @@
+// Reading a Hugin project: images (`i`), variables (`v`) and masks (`k`). Other lines are kept and not looked at.
+#include <algorithm>
+#include <cmath>
+
+#include "formats/hugin/pto.hpp"
+#include "formats/text/text.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr size_t kMaxBytes = size_t{64} << 20;
+constexpr size_t kMaxImages = 100000;
+constexpr double kMaxSide = 1 << 20;
+constexpr double kMaxPlace = 1 << 24;  // of crops and masks, px either way
+constexpr uint32_t kVignettingRadial = 1;
+
+// ---- i lines -------------------------------------------------------------------------------------------------
+
+// Value of a token that must be a whole number; `fallback` when the line has no such token.
+uint32_t whole_item(const std::vector<PtoToken> &tokens, std::string_view name, double low, double high,
+                    double fallback, size_t line) {
+    const PtoToken *token = find_pto_token(tokens, name);
+    double value = fallback;
+    bool good = token ? read_whole(token->value, low, high, value) : value >= low;
+    if (!good)
+        fail_at_line(line, std::string(name) + (token ? " is " + quoted(token->value) : " is missing")
+                               + "; write a whole number from " + std::to_string(std::lround(low)) + " to "
+                               + std::to_string(std::lround(high)));
+    return static_cast<uint32_t>(value);
+}
+
+void read_parameter(const PtoToken &token, size_t parameter, const std::vector<PtoImage> &before, PtoImage &image) {
+    if (token.value.empty() || token.value[0] != '=') {
+        if (!read_number(token.value, image.value[parameter]))
+            fail_at_line(image.line, std::string(token.name) + " is " + quoted(token.value)
+                                         + ", not a finite number; write " + std::string(token.name) + " and a number");
+        return;
+    }
+    double target;
+    if (!read_whole(token.value.substr(1), 0, static_cast<double>(before.size()) - 1, target))
+        fail_at_line(image.line, std::string(token.name) + std::string(token.value.substr(0, 20)) + " in image " +
+                                     std::to_string(before.size()) + " is no link to an earlier image; write a number "
+                                     "or = with a smaller image number");
+    const PtoImage &linked = before[static_cast<size_t>(target)];
+    image.value[parameter] = linked.value[parameter];
+    image.root[parameter] = linked.root[parameter];
+}
+
+// left,right,top,bottom; an empty rectangle means no crop.
+void read_crop(const std::vector<PtoToken> &tokens, size_t line, lensprof_pto_image &result) {
+    const lensprof_camera &camera = result.camera;
+    int32_t width = static_cast<int32_t>(camera.width), height = static_cast<int32_t>(camera.height);
+    const int32_t frame[4] = {0, 0, width, height};
+    std::copy(frame, frame + 4, result.crop);
+    const PtoToken *token = find_pto_token(tokens, "S");
+    if (!token) token = find_pto_token(tokens, "C");
+    if (!token) return;
+    double side[4];
+    std::string_view rest = token->value;
+    for (int i = 0; i < 4; i++) {
+        size_t comma = i < 3 ? rest.find(',') : rest.size();
+        if (comma == std::string_view::npos || !read_number(rest.substr(0, comma), side[i])
+            || std::abs(side[i]) > kMaxPlace)
+            fail_at_line(line, "crop " + std::string(token->name) + " is " + quoted(token->value)
+                                   + "; write left,right,top,bottom in pixels");
+        rest.remove_prefix(i < 3 ? comma + 1 : comma);
+    }
+    const int order[4] = {0, 2, 1, 3};
+    int32_t crop[4];
+    for (int i = 0; i < 4; i++) crop[i] = static_cast<int32_t>(std::lround(side[order[i]]));
+    if (crop[0] >= crop[2] || crop[1] >= crop[3] || std::equal(crop, crop + 4, frame)) return;
+    std::copy(crop, crop + 4, result.crop);
+    result.crop_circular = camera.projection == LENSPROF_PROJECTION_CIRCULAR_FISHEYE
+                           || camera.projection == LENSPROF_PROJECTION_ORTHOGRAPHIC
+                           || camera.projection == LENSPROF_PROJECTION_THOBY;
+}
+
+void fill_camera(const PtoImage &image, lensprof_camera &camera) {
+    const auto &value = image.value;
+    camera.hfov_deg = value[kHfov];
+    camera.yaw_deg = value[kYaw];
+    camera.pitch_deg = value[kPitch];
+    camera.roll_deg = value[kRoll];
+    for (size_t i = 0; i < 3; i++) {
+        camera.radial[i] = value[kRadialA + i];
+        camera.translation[i] = value[kTranslationX + i];
+    }
+    for (size_t i = 0; i < 2; i++) {
+        camera.shift_px[i] = value[kShiftD + i];
+        camera.shear_px[i] = value[kShearG + i];
+        camera.plane_deg[i] = value[kPlaneYaw + i];
+    }
+    lensprof_camera probe = {};  // what is known to be possible, but for the lens type
+    probe.projection = camera.projection;
+    probe.width = probe.height = 1;
+    probe.hfov_deg = 50;
+    if (lensprof_camera_validate(&probe) != LENSPROF_OK)
+        fail_at_line(image.line,
+                     "lens type f" + std::to_string(camera.projection)
+                         + " is not supported; use f0, f1, f2, f3, f4, f8, f10, f20 or f21",
+                     LENSPROF_ERROR_UNSUPPORTED);
+    if (lensprof_camera_validate(&camera) != LENSPROF_OK)
+        fail_at_line(image.line, "a camera with field of view v" + number_text(camera.hfov_deg)
+                                     + ", this distortion and this position is not possible with lens type f"
+                                     + std::to_string(camera.projection) + "; correct v, a b c, g t or Tr*");
+}
+
+// Root of a group that Hugin links as one; the image itself when its members are linked to different images.
+uint32_t group_root(const PtoImage &image, size_t first, size_t last, uint32_t self) {
+    for (size_t i = first; i <= last; i++)
+        if (image.root[i] != image.root[first]) return self;
+    return image.root[first];
+}
+
+void fill_photometry(PtoImage &image, uint32_t self) {
+    const auto &value = image.value;
+    lensprof_pto_image &result = image.result;
+    if (!(value[kRed] > 0) || !(value[kBlue] > 0))
+        fail_at_line(image.line, "Er or Eb is not positive; write white balance factors greater than 0");
+    result.exposure.ev = value[kExposureValue] == 0 ? 0 : -value[kExposureValue];
+    result.exposure.white_balance[0] = value[kRed];
+    result.exposure.white_balance[1] = 1;
+    result.exposure.white_balance[2] = value[kBlue];
+    for (size_t i = 0; i < 5; i++) result.emor[i] = value[kResponseA + i];
+    if (image.vignetting_mode & kVignettingRadial) {
+        double rho = 0.5 * std::hypot(result.camera.width, result.camera.height);
+        if (!(value[kVignettingA] > 0))
+            fail_at_line(image.line, "Va is not positive; write Va1 and divide Vb, Vc and Vd by the old value");
+        for (size_t i = 0; i < 3; i++) result.vignetting.k[i] = value[kVignettingB + i] / value[kVignettingA];
+        for (size_t i = 0; i < 2; i++) result.vignetting.center[i] = value[kCenterX + i] / rho;
+    }
+    result.response_of = group_root(image, kResponseA, kResponseE, self);
+    result.vignetting_of = group_root(image, kVignettingB, kVignettingD, self);
+    result.center_of = group_root(image, kCenterX, kCenterY, self);
+    result.ev_of = image.root[kExposureValue];
+    result.red_of = image.root[kRed];
+    result.blue_of = image.root[kBlue];
+}
+
+PtoImage read_image(const LineReader &reader, const std::vector<PtoImage> &before) {
+    if (before.size() == kMaxImages)
+        fail_at_line(reader.number, "more than 100000 images; split the project", LENSPROF_ERROR_UNSUPPORTED);
+    PtoImage image = {};
+    image.line = reader.number;
+    image.begin = reader.begin;
+    image.length = reader.line.size();
+    uint32_t self = static_cast<uint32_t>(before.size());
+    image.root.fill(self);
+    for (size_t i = 0; i < kPtoParameters; i++) image.value[i] = kPtoParameterInfo[i].fallback;
+    const std::vector<PtoToken> tokens = split_pto_line(reader.line, reader.number);
+    std::bitset<kPtoParameters> seen;
+    for (const PtoToken &token : tokens) {
+        size_t parameter = find_pto_parameter(token.name);
+        if (parameter == kPtoParameters || seen[parameter]) continue;
+        seen.set(parameter);
+        read_parameter(token, parameter, before, image);
+    }
+    lensprof_pto_image &result = image.result;
+    result.camera.width = whole_item(tokens, "w", 1, kMaxSide, 0, image.line);
+    result.camera.height = whole_item(tokens, "h", 1, kMaxSide, 0, image.line);
+    result.camera.projection = whole_item(tokens, "f", 0, 1000, 0, image.line);
+    result.response_type = whole_item(tokens, "Rt", 0, 4, 0, image.line);
+    image.vignetting_mode = whole_item(tokens, "Vm", 0, 255, 0, image.line);
+    if (result.response_type > 1)
+        fail_at_line(image.line,
+                     "response type Rt" + std::to_string(result.response_type)
+                         + " is not supported; use Rt0 (EMoR) or Rt1 (linear)",
+                     LENSPROF_ERROR_UNSUPPORTED);
+    image.name = find_pto_text(tokens, "n");
+    fill_camera(image, result.camera);
+    fill_photometry(image, self);
+    read_crop(tokens, image.line, result);
+    return image;
+}
+
+// ---- v and k lines: they may come before the images they name ---------------------------------------------------
+
+struct Line {
+    std::string_view text;
+    size_t number;
+};
+
+std::string image_range(const lensprof_pto &pto) { return "images 0 to " + std::to_string(pto.images.size() - 1); }
+
+void read_variables(const Line &line, lensprof_pto &pto) {
+    for (const PtoToken &token : split_pto_line(line.text, line.number)) {
+        size_t parameter = find_pto_parameter(token.name);
+        std::string word = quoted(std::string(token.name) + std::string(token.value));
+        if (parameter == kPtoParameters || parameter == kStack) {
+            std::string names;
+            for (size_t i = 0; i < kStack; i++) names += " " + std::string(kPtoParameterInfo[i].name);
+            fail_at_line(line.number, "variable " + word + " is unknown; write one of" + names + " and an image number",
+                         LENSPROF_ERROR_VARIABLE);
+        }
+        double number;
+        if (!read_whole(token.value, 0, static_cast<double>(pto.images.size()) - 1, number))
+            fail_at_line(line.number,
+                         "variable " + word + " has no image of the project; write " + std::string(token.name)
+                             + " with a number, " + image_range(pto) + " exist",
+                         LENSPROF_ERROR_VARIABLE);
+        const PtoImage &image = pto.images[static_cast<size_t>(number)];
+        pto.images[image.root[parameter]].asked.set(parameter);
+    }
+}
+
+void share_variables(lensprof_pto &pto) {
+    for (PtoImage &image : pto.images) {
+        for (size_t i = 0; i < kPtoParameters; i++)
+            if (pto.images[image.root[i]].asked[i]) image.result.free |= kPtoParameterInfo[i].free;
+    }
+}
+
+PtoMask read_mask(const Line &line, const lensprof_pto &pto) {
+    const std::vector<PtoToken> tokens = split_pto_line(line.text, line.number);
+    double last_image = static_cast<double>(pto.images.size()) - 1;
+    PtoMask mask;
+    mask.line = line.number;
+    mask.image = whole_item(tokens, "i", 0, last_image, -1, line.number);
+    mask.type = whole_item(tokens, "t", 0, kMaskTypes - 1, 0, line.number);
+    std::string_view rest = find_pto_text(tokens, "p");
+    for (;;) {
+        std::array<double, 2> corner;
+        std::string_view x = next_word(rest), y = next_word(rest);
+        if (x.empty()) break;
+        if (!read_number(x, corner[0]) || !read_number(y, corner[1]) || std::abs(corner[0]) > kMaxPlace
+            || std::abs(corner[1]) > kMaxPlace)
+            fail_at_line(line.number, "mask corner " + std::to_string(mask.corners.size()) + " is "
+                                          + quoted(std::string(x) + " " + std::string(y))
+                                          + "; write p\"x y x y ...\" in pixels");
+        mask.corners.push_back(corner);
+    }
+    return mask;
+}
+
+// 'i' for "i w100 ...", '#' or 0 for lines that are only kept.
+char record_of(std::string_view line) {
+    if (line.empty() || (line.size() > 1 && !is_blank(line[1]))) return 0;
+    return line[0];
+}
+
+}  // namespace
+
+lensprof_pto parse_pto(std::string text) {
+    lensprof_pto pto;
+    pto.text = std::move(text);
+    std::vector<Line> variables, masks;
+    LineReader reader(pto.text);
+    while (reader.next()) {
+        if (reader.line.find('\0') != std::string_view::npos)
+            fail_at_line(reader.number, "zero byte in a text; this is not a Hugin project");
+        char record = record_of(reader.line);
+        if (record == 'i') pto.images.push_back(read_image(reader, pto.images));
+        if (record == 'v') variables.push_back({reader.line, reader.number});
+        if (record == 'k') masks.push_back({reader.line, reader.number});
+    }
+    if (pto.images.empty()) fail_at_line(reader.number + 1, "end of text without an image; a project has `i` lines");
+    for (const Line &line : variables) read_variables(line, pto);
+    share_variables(pto);
+    for (const Line &line : masks) pto.masks.push_back(read_mask(line, pto));
+    return pto;
+}
+
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_pto_read(const char *text, size_t bytes, lensprof_pto **pto, lensprof_error *error) {
+    if (!text || !pto) {
+        set_error(error, "lensprof_pto_read: text or pto is NULL; pass a project and where to put the handle");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    if (bytes > kMaxBytes) {
+        set_error(error, "the project is larger than 64 MiB; check that it is a Hugin project");
+        return LENSPROF_ERROR_SIZE;
+    }
+    return at_boundary(error, [&] { *pto = new lensprof_pto(parse_pto(std::string(text, bytes))); });
+}
+
+void lensprof_pto_destroy(lensprof_pto *pto) { delete pto; }
+
+uint32_t lensprof_pto_image_count(const lensprof_pto *pto) {
+    return pto ? static_cast<uint32_t>(pto->images.size()) : 0;
+}
+
+lensprof_status lensprof_pto_get_image(const lensprof_pto *pto, uint32_t index, lensprof_pto_image *image) {
+    if (!pto || !image || index >= pto->images.size()) return LENSPROF_ERROR_ARGUMENT;
+    *image = pto->images[index].result;
+    return LENSPROF_OK;
+}
+
+lensprof_status lensprof_pto_get_response(const lensprof_pto *pto, uint32_t index, lensprof_response *response) {
+    if (!pto || !response || index >= pto->images.size()) return LENSPROF_ERROR_ARGUMENT;
+    const lensprof_pto_image &image = pto->images[index].result;
+    if (image.response_type == 1) {
+        lensprof_response_set_linear(response);
+        return LENSPROF_OK;
+    }
+    if (lensprof_response_set_emor(response, image.emor, 5) == LENSPROF_OK) return LENSPROF_OK;
+    double table[LENSPROF_RESPONSE_SAMPLES], highest = 0.0;
+    for (uint32_t j = 0; j + 1 < LENSPROF_RESPONSE_SAMPLES; j++) {
+        double value = lensprof_emor_table(0)[j];
+        for (uint32_t l = 0; l < 5; l++) value += image.emor[l] * lensprof_emor_table(l + 1)[j];
+        table[j] = highest = std::min(std::max(highest, value), 1.0);
+    }
+    table[0] = 0.0;
+    table[LENSPROF_RESPONSE_SAMPLES - 1] = 1.0;
+    return lensprof_response_set_table(response, table, LENSPROF_RESPONSE_SAMPLES);
+}
+
+lensprof_status lensprof_pto_get_name(const lensprof_pto *pto, uint32_t index, char *name, size_t capacity,
+                                      size_t *needed) {
+    if (!pto || index >= pto->images.size() || (!name && capacity)) return LENSPROF_ERROR_ARGUMENT;
+    const std::string &source = pto->images[index].name;
+    if (needed) *needed = source.size() + 1;
+    if (capacity <= source.size()) return LENSPROF_ERROR_CAPACITY;
+    return copy_text(source, name, capacity, nullptr);
+}

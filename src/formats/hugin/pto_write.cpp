@@ -1,0 +1,165 @@
+// Writing a Hugin project: new values go into the lines as they are, nothing else changes.
+#include <algorithm>
+#include <cmath>
+
+#include "formats/hugin/pto.hpp"
+#include "formats/text/text.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t kHuginModes = 5;
+
+// A new value for an item of an `i` line.
+struct Edit {
+    std::string_view name;
+    std::string value;
+};
+
+// The EMoR coefficients that Hugin can hold. The modes are orthonormal on the grid, so that the least squares
+// projection of the curve on the first five is a dot product with each.
+std::array<double, kHuginModes> hugin_modes(const lensprof_response &response) {
+    std::array<double, kHuginModes> coefficients;
+    bool exact = response.kind == LENSPROF_RESPONSE_EMOR && response.modes <= kHuginModes;
+    const double *mean = lensprof_emor_table(0);
+    for (uint32_t l = 0; l < kHuginModes; l++) {
+        const double *mode = lensprof_emor_table(l + 1);
+        double sum = 0;
+        for (size_t j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) sum += (response.table[j] - mean[j]) * mode[j];
+        coefficients[l] = exact ? response.emor[l] : sum;
+    }
+    return coefficients;
+}
+
+// New text of an `i` line. A link stays a link: the image it leads to receives the value. A missing item is added.
+std::string edit_line(std::string_view line, size_t number, const std::vector<Edit> &edits) {
+    const std::vector<PtoToken> tokens = split_pto_line(line, number);
+    std::vector<std::pair<const PtoToken *, const Edit *>> changes;
+    std::string added;
+    for (const Edit &edit : edits) {
+        const PtoToken *token = find_pto_token(tokens, edit.name);
+        if (!token)
+            added += " " + std::string(edit.name) + edit.value;
+        else if (token->value.empty() || token->value[0] != '=')
+            changes.push_back({token, &edit});
+    }
+    std::sort(changes.begin(), changes.end(),
+              [](const auto &a, const auto &b) { return a.first->begin < b.first->begin; });
+    std::string text;
+    size_t done = 0;
+    for (const auto &[token, edit] : changes) {
+        text.append(line.substr(done, token->begin - done)).append(edit->value);
+        done = token->begin + token->value.size();
+    }
+    return text.append(line.substr(done)).append(added);
+}
+
+// Exposure and white balance of an image in Hugin's terms: relative to the reference, whose own values stay.
+std::vector<Edit> exposure_edits(const lensprof_exposure &exposure, const lensprof_exposure &reference,
+                                 const PtoImage &written) {
+    const auto &value = written.value;
+    auto balance = [&](size_t c) {
+        return (exposure.white_balance[c] / exposure.white_balance[1])
+               / (reference.white_balance[c] / reference.white_balance[1]);
+    };
+    return {{"Eev", number_text(value[kExposureValue] - (exposure.ev - reference.ev))},
+            {"Er", number_text(value[kRed] * balance(0))},
+            {"Eb", number_text(value[kBlue] * balance(2))}};
+}
+
+// Vm5: radial falloff, corrected by division. Rt0: EMoR, which is also what a line without Rt means.
+std::vector<Edit> model_edits(const std::array<double, kHuginModes> &modes, const lensprof_vignetting &vignetting,
+                              const PtoImage &image) {
+    std::vector<Edit> edits;
+    for (size_t i = 0; i < kHuginModes; i++)
+        edits.push_back({kPtoParameterInfo[kResponseA + i].name, number_text(modes[i])});
+    const lensprof_camera &camera = image.result.camera;
+    double rho = 0.5 * std::hypot(camera.width, camera.height);
+    edits.push_back({"Va", "1"});
+    for (size_t i = 0; i < 3; i++)
+        edits.push_back({kPtoParameterInfo[kVignettingB + i].name, number_text(vignetting.k[i])});
+    for (size_t i = 0; i < 2; i++)
+        edits.push_back({kPtoParameterInfo[kCenterX + i].name, number_text(vignetting.center[i] * rho)});
+    edits.push_back({"Vm", "5"});
+    if (image.result.response_type != 0) edits.push_back({"Rt", "0"});
+    return edits;
+}
+
+// The `i` line as it is now.
+std::string_view line_of(const lensprof_pto &pto, const PtoImage &image) {
+    return image.renamed.empty() ? std::string_view(pto.text).substr(image.begin, image.length)
+                                 : std::string_view(image.renamed);
+}
+
+// The text with line_text(i) in the place of every `i` line.
+template <class LineText>
+std::string replace_lines(const lensprof_pto &pto, const LineText &line_text) {
+    std::string text;
+    std::string_view old = pto.text;
+    size_t done = 0;
+    for (uint32_t i = 0; i < pto.images.size(); i++) {
+        const PtoImage &image = pto.images[i];
+        text.append(old.substr(done, image.begin - done)).append(line_text(i));
+        done = image.begin + image.length;
+    }
+    return text.append(old.substr(done));
+}
+
+// The project with edited `i` lines, parsed again, so that reading and writing cannot disagree.
+template <class EditsOf>
+lensprof_pto rewrite(const lensprof_pto &pto, const EditsOf &edits_of) {
+    return parse_pto(replace_lines(
+        pto, [&](uint32_t i) { return edit_line(line_of(pto, pto.images[i]), pto.images[i].line, edits_of(i)); }));
+}
+
+// A name that can stand between the quotes of a line.
+bool is_name(std::string_view name) {
+    return !name.empty() && std::none_of(name.begin(), name.end(), [](char c) {
+        return c == '"' || static_cast<unsigned char>(c) < 0x20;
+    });
+}
+
+}  // namespace
+}  // namespace lensprof
+
+using namespace lensprof;
+
+lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_response *response,
+                                        const lensprof_vignetting *vignetting, const lensprof_exposure *exposures,
+                                        uint32_t count, uint32_t reference) {
+    if (!pto || !response || !vignetting || !exposures || count != pto->images.size() || reference >= count)
+        return LENSPROF_ERROR_ARGUMENT;
+    lensprof_status status = lensprof_response_validate(response);
+    if (status == LENSPROF_OK) status = lensprof_vignetting_validate(vignetting);
+    for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = lensprof_exposure_validate(&exposures[i]);
+    if (status != LENSPROF_OK) return status;
+    return at_boundary(nullptr, [&] {
+        const std::array<double, kHuginModes> modes = hugin_modes(*response);
+        *pto = rewrite(*pto, [&](uint32_t i) {
+            std::vector<Edit> edits = model_edits(modes, *vignetting, pto->images[i]);
+            for (Edit &edit : exposure_edits(exposures[i], exposures[reference], pto->images[reference]))
+                edits.push_back(std::move(edit));
+            return edits;
+        });
+    });
+}
+
+lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index, const char *name) {
+    if (!pto || !name || index >= pto->images.size() || !is_name(name)) return LENSPROF_ERROR_ARGUMENT;
+    // Only this line is made and read again: a project may have thousands, all of which get a new name.
+    return at_boundary(nullptr, [&] {
+        PtoImage &image = pto->images[index];
+        std::string line = edit_line(line_of(*pto, image), image.line, {{"n", '"' + std::string(name) + '"'}});
+        std::string written(find_pto_text(split_pto_line(line, image.line), "n"));
+        image.renamed = std::move(line);
+        image.name = std::move(written);
+    });
+}
+
+lensprof_status lensprof_pto_write(const lensprof_pto *pto, char *text, size_t capacity, size_t *needed) {
+    if (!pto || (!text && capacity)) return LENSPROF_ERROR_ARGUMENT;
+    std::string all;
+    lensprof_status status = at_boundary(
+        nullptr, [&] { all = replace_lines(*pto, [&](uint32_t i) { return line_of(*pto, pto->images[i]); }); });
+    return status == LENSPROF_OK ? copy_text(all, text, capacity, needed) : status;
+}

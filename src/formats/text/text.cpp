@@ -1,0 +1,110 @@
+#include "formats/text/text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+namespace lensprof {
+
+void fail_at_line(size_t line, const std::string &text, lensprof_status status) {
+    throw FormatFailure{status, "line " + std::to_string(line) + ": " + text};
+}
+
+std::string quoted(std::string_view word) {
+    std::string text = "\"";
+    for (char c : word.substr(0, 40)) text += c >= ' ' && c != 127 ? c : '?';
+    return text + (word.size() > 40 ? "...\"" : "\"");
+}
+
+void set_error(lensprof_error *error, const char *text) noexcept {
+    if (!error) return;
+    size_t length = strnlen(text, sizeof error->text - 1);
+    std::memcpy(error->text, text, length);
+    error->text[length] = '\0';
+}
+
+bool LineReader::next() {
+    begin = end_;
+    if (begin == text_.size()) return false;
+    size_t stop = text_.find('\n', begin);
+    end_ = stop == std::string_view::npos ? text_.size() : stop + 1;
+    line = text_.substr(begin, (stop == std::string_view::npos ? text_.size() : stop) - begin);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    number++;
+    return true;
+}
+
+std::string_view next_word(std::string_view &line) {
+    size_t begin = 0;
+    while (begin < line.size() && is_blank(line[begin])) begin++;
+    size_t end = begin;
+    while (end < line.size() && !is_blank(line[end])) end++;
+    std::string_view word = line.substr(begin, end - begin);
+    line.remove_prefix(end);
+    return word;
+}
+
+bool read_number(std::string_view text, double &value) {
+    if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+    double number;
+    auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (failed != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return false;
+    value = number;
+    return true;
+}
+
+bool read_whole(std::string_view text, double low, double high, double &value) {
+    double number;
+    if (!read_number(text, number) || number != std::floor(number) || number < low || number > high) return false;
+    value = number;
+    return true;
+}
+
+size_t find_not_utf8(std::string_view text) {
+    size_t at = 0;
+    const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+    while (at < text.size()) {
+        const unsigned lead = byte(at);
+        const size_t more = lead < 0x80 ? 0 : lead < 0xC2 ? 4 : lead < 0xE0 ? 1 : lead < 0xF0 ? 2 : lead < 0xF5 ? 3 : 4;
+        if (more == 4) return at;
+        for (size_t i = 1; i <= more; i++)
+            if ((byte(at + i) & 0xC0) != 0x80) return at;
+        const unsigned next = byte(at + 1);  // overlong forms, surrogates, beyond U+10FFFF
+        if ((lead == 0xE0 && next < 0xA0) || (lead == 0xED && next > 0x9F) || (lead == 0xF0 && next < 0x90)
+            || (lead == 0xF4 && next > 0x8F))
+            return at;
+        at += 1 + more;
+    }
+    return at;
+}
+
+void put_text(char *field, size_t capacity, std::string_view text) {
+    size_t length = std::min(text.size(), capacity - 1);
+    while (length < text.size() && length && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) length--;
+    std::memset(field, 0, capacity);
+    std::memcpy(field, text.data(), length);
+}
+
+void put_name(char *field, size_t capacity, const char *name) {
+    put_text(field, capacity, name ? name : "");
+    for (char *c = field; *c; c++)
+        if ((*c > 0 && *c < ' ') || *c == 127) *c = '?';
+    if (find_not_utf8(field) < std::string_view(field).size()) std::memset(field, 0, capacity);
+}
+
+std::string number_text(double value) {
+    char buffer[32];
+    auto result = std::to_chars(buffer, buffer + sizeof buffer, value == 0 ? 0.0 : value);  // no "-0"
+    return std::string(buffer, result.ptr);
+}
+
+lensprof_status copy_text(const std::string &source, char *text, size_t capacity, size_t *needed) noexcept {
+    if (needed) *needed = source.size();
+    if (capacity < source.size()) return LENSPROF_ERROR_CAPACITY;
+    if (!source.empty()) std::memcpy(text, source.data(), source.size());
+    if (capacity > source.size()) text[source.size()] = '\0';
+    return LENSPROF_OK;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,100 @@
+// What the readers and writers of this layer share: text in the C locale, and the boundary to C.
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include <lensprof/base.h>
+
+namespace lensprof {
+
+// The exception of this layer. The text is complete: "line 12: what is wrong; next step".
+struct FormatFailure {
+    lensprof_status status;
+    std::string text;
+};
+
+[[noreturn]] void fail_at_line(size_t line, const std::string &text, lensprof_status status = LENSPROF_ERROR_SYNTAX);
+
+// Word of a file for an error text: in quotes, shortened, control characters as '?'.
+std::string quoted(std::string_view word);
+
+// error may be NULL; the text is cut to fit.
+void set_error(lensprof_error *error, const char *text) noexcept;
+
+// Runs `body` and turns what it throws into a status and an error text.
+template <typename Body>
+lensprof_status at_boundary(lensprof_error *error, Body body) noexcept {
+    set_error(error, "");
+    try {
+        body();
+        return LENSPROF_OK;
+    } catch (const FormatFailure &failure) {
+        set_error(error, failure.text.c_str());
+        return failure.status;
+    } catch (const std::bad_alloc &) {
+        set_error(error, "out of memory; close other programs or use fewer images");
+        return LENSPROF_ERROR_MEMORY;
+    } catch (...) {
+        set_error(error, "unexpected exception in lensprof; please report it");
+        return LENSPROF_ERROR_INTERNAL;
+    }
+}
+
+// Walks over the lines of a text. Line ends are LF or CRLF; they are not part of `line`.
+class LineReader {
+public:
+    explicit LineReader(std::string_view text) : text_(text) {}
+
+    bool next();
+
+    std::string_view line;
+    size_t number = 0;  // from 1
+    size_t begin = 0;   // of the line in the text
+
+private:
+    std::string_view text_;
+    size_t end_ = 0;
+};
+
+inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+// Next word between blanks; moves `line` behind it. Empty at the end of the line.
+std::string_view next_word(std::string_view &line);
+
+// The whole of `text` as a finite number, whatever the process locale.
+bool read_number(std::string_view text, double &value);
+
+// The same as a whole number within [low, high].
+bool read_whole(std::string_view text, double low, double high, double &value);
+
+// Offset of the first byte that is not part of well-formed UTF-8; the size where there is none.
+size_t find_not_utf8(std::string_view text);
+
+// Copies to a text field of a value struct; what does not fit is cut between characters.
+void put_text(char *field, size_t capacity, std::string_view text);
+
+// Shortest decimal form that reads back as the same number.
+std::string number_text(double value);
+
+// The same for a name that a caller gives, a file's say: control characters as '?', nothing where it is not UTF-8.
+void put_name(char *field, size_t capacity, const char *name);
+
+// Copies to a caller's buffer; CAPACITY when it is too small. A terminator is added where there is room for one.
+lensprof_status copy_text(const std::string &source, char *text, size_t capacity, size_t *needed) noexcept;
+
+// Runs `make`, which returns a whole file, and copies it to the caller's buffer as copy_text does.
+template <typename Make>
+lensprof_status write_at_boundary(char *text, size_t capacity, size_t *needed, lensprof_error *error,
+                                  Make make) noexcept {
+    std::string all;
+    lensprof_status status = at_boundary(error, [&] { all = make(); });
+    if (status != LENSPROF_OK) return status;
+    status = copy_text(all, text, capacity, needed);
+    if (status != LENSPROF_OK) set_error(error, "the text is longer than the buffer; call again with the size needed");
+    return status;
+}
+
+}  // namespace lensprof

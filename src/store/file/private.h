@@ -1,0 +1,148 @@
+/* What the files of the store share. SQLite stays behind this header. */
+#ifndef LENSPROF_STORE_PRIVATE_H
+#define LENSPROF_STORE_PRIVATE_H
+
+#include <lensprof/store.h>
+#include <sqlite3.h>
+#include <stdbool.h>
+
+#define LP_STORE_APPLICATION_ID 0x4C505246 /* as in 0001_profiles.sql */
+#define LP_STORE_LAYOUT 3                  /* that of the newest schema */
+#define LP_STORE_BUSY_MS 5000
+
+#define LP_STORE_STATEMENTS 48 /* more than there are in the sources; what is beyond is prepared each time */
+
+struct lensprof_store {
+    sqlite3 *db;
+    uint32_t mode;
+    int busy_ms;       /* how long it waits for other processes */
+    bool settled;      /* the journal mode is what it is to be */
+    bool immutable;    /* read without locks, from where nobody can write a log */
+    int layout;        /* of the file, as the transaction found or made it */
+    bool batch;        /* the caller's transaction is open: calls are savepoints in it */
+    uint32_t prepared; /* statements that are kept for the next call */
+    struct {
+        const char *sql; /* a literal, known by its address */
+        sqlite3_stmt *statement;
+    } kept[LP_STORE_STATEMENTS];
+    char damage[64];          /* what lp_store_fail_profile said last */
+    lensprof_profile scratch; /* 50 kB: a profile is read here first, so that on error outputs are untouched */
+    char path[];              /* as the caller wrote it, for error texts */
+};
+
+/* profiles/schema: number n makes layout n of layout n - 1. */
+extern const char lp_schema_0001[], lp_schema_0002[], lp_schema_0003[];
+
+/* store_error.c: each sets `error` (may be NULL) to "path: what; next" and returns the status. */
+lensprof_status lp_store_fail(const char *path, lensprof_status status, const char *what, const char *next,
+                              lensprof_error *error);
+/* For a result code of SQLite on this store; `db` (may be NULL) adds its message. Never LENSPROF_OK. */
+lensprof_status lp_store_fail_sql(const char *path, sqlite3 *db, int rc, lensprof_error *error);
+/* For a wrong argument; the text names it and not the file. */
+lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error);
+/* CORRUPT and NOT_FOUND for the profile with an id. */
+lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const char *what, lensprof_error *error);
+lensprof_status lp_store_fail_missing(const lensprof_store *store, int64_t id, lensprof_error *error);
+void lp_store_clear(lensprof_error *error);
+
+/* store_header.c: what the first 100 bytes say, read without lock, journal or trace. */
+typedef enum lp_store_file {
+    LP_STORE_FILE_MISSING,
+    LP_STORE_FILE_EMPTY,
+    LP_STORE_FILE_OURS,
+    LP_STORE_FILE_LOGGED, /* ours, in write-ahead mode */
+    LP_STORE_FILE_FOREIGN
+} lp_store_file;
+/* `full` receives the full path, sqlite3_free it. Errors: NOT_FOUND, STORE, MEMORY ... with text. */
+lensprof_status lp_store_probe(const char *path, lp_store_file *file, char **full, lensprof_error *error);
+
+/* store_log.c: the write-ahead log. */
+int lp_store_settle_journal(lensprof_store *store); /* behind a commit: result code, of no matter to that */
+bool lp_store_has_log(const char *full);            /* a log that is not empty lies beside the file */
+bool lp_store_is_folder_writable(const char *full, bool *exists);
+void lp_store_clear_log(const char *full);      /* files of a log that could not be begun; never one in use */
+char *lp_store_immutable_uri(const char *full); /* sqlite3_free it; NULL = no memory */
+
+/* store_open.c. Connects again where another process has begun to write beside an immutable file. */
+lensprof_status lp_store_refresh(lensprof_store *store, lensprof_error *error);
+/* lensprof_store_open waits LP_STORE_BUSY_MS for other processes; tests wait less. */
+lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_ms, lensprof_store **store,
+                                      lensprof_error *error);
+
+/* store_transaction.c */
+int lp_store_number(sqlite3 *db, const char *sql, int64_t *value); /* result code; one integer from one row */
+int lp_store_migrate(sqlite3 *db, int layout); /* result code; from tables of `layout` to those of LP_STORE_LAYOUT */
+/* Starts a transaction and checks that the file is (still) a database. One of an older layout is read as it is, and
+ * brought up to date by the first transaction that writes, as a part of it. */
+lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error *error);
+lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error); /* rolls back when it fails */
+void lp_store_rollback(lensprof_store *store);
+
+/* store_statements.c: statements are prepared once a handle. `sql` is a literal. The statement is the caller's until he
+ * releases it, whatever happened to it. */
+lensprof_status lp_store_prepare(lensprof_store *store, const char *sql, sqlite3_stmt **statement,
+                                 lensprof_error *error);
+void lp_store_release(lensprof_store *store, sqlite3_stmt *statement);
+void lp_store_forget_statements(lensprof_store *store);       /* before the connection is closed */
+int lp_store_execute(lensprof_store *store, const char *sql); /* result code; without parameters, rows */
+int lp_store_integer(lensprof_store *store, const char *sql, int64_t *value); /* as lp_store_number */
+
+/* store_read.c: the profile with an id, within a transaction, into store->scratch. */
+lensprof_status lp_store_fetch(lensprof_store *store, int64_t id, lensprof_error *error);
+
+/* store_columns.c (and lp_store_run in store_statements.c): parameters and columns, each call takes the next one. */
+typedef struct lp_store_binder {
+    sqlite3_stmt *statement;
+    int column;
+    int rc; /* the first failure */
+} lp_store_binder;
+void lp_bind_integer(lp_store_binder *binder, int64_t value);
+void lp_bind_real(lp_store_binder *binder, double value);
+void lp_bind_known(lp_store_binder *binder, double value); /* LENSPROF_UNKNOWN becomes NULL */
+void lp_bind_null(lp_store_binder *binder);
+void lp_bind_text(lp_store_binder *binder, const char *text);
+void lp_bind_doubles(lp_store_binder *binder, const double *values, uint32_t count); /* little-endian blobs */
+void lp_bind_floats(lp_store_binder *binder, const float *values, uint32_t count);
+
+/* Runs a statement that returns no row, and releases it. */
+lensprof_status lp_store_run(lensprof_store *store, lp_store_binder *binder, lensprof_error *error);
+
+typedef struct lp_store_reader {
+    sqlite3_stmt *statement;
+    int column;
+    const char *bad; /* name of the first column with an impossible value; NULL = none */
+} lp_store_reader;
+int64_t lp_read_integer(lp_store_reader *reader, int64_t low, int64_t high);
+double lp_read_real(lp_store_reader *reader);  /* finite */
+double lp_read_known(lp_store_reader *reader); /* >= 0, infinity too, or LENSPROF_UNKNOWN for NULL */
+bool lp_read_null(lp_store_reader *reader);    /* true and past it when the next column is NULL */
+void lp_read_nothing(lp_store_reader *reader); /* NULL */
+void lp_read_text(lp_store_reader *reader, char *text, size_t capacity); /* zero-filled to capacity */
+void lp_read_doubles(lp_store_reader *reader, double *values, uint32_t count);
+void lp_read_floats(lp_store_reader *reader, float *values, uint32_t count);
+uint32_t lp_read_name(lp_store_reader *reader, const char *const *names, uint32_t count); /* index of the text */
+
+/* store_write.c: a profile known to be valid, within a transaction; and its columns, in the order of that INSERT. */
+lensprof_status lp_store_insert(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
+                                lensprof_error *error);
+void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *profile, const char *lens_name);
+
+/* store_same.c: the id of the same valid profile, 0 where there is none; within a transaction that writes. */
+lensprof_status lp_store_find_same(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
+                                   lensprof_error *error);
+
+/* Words of the database for enum values; the position is the value. They are part of the layout. */
+#define LP_STORE_PROCESSINGS 3
+#define LP_STORE_KINDS 4
+extern const char *const lp_store_processings[LP_STORE_PROCESSINGS];
+extern const char *const lp_store_kinds[LP_STORE_KINDS];
+
+/* store_curves.c: rows of responses, emor_coefficients, vignettings and gain_grids. */
+/* The response that its kind, gamma, coefficients or table describe, from nothing else. */
+lensprof_status lp_store_rebuild(const lensprof_response *from, lensprof_response *response);
+lensprof_status lp_store_put_curves(lensprof_store *store, int64_t id, const lensprof_profile *profile,
+                                    lensprof_error *error);
+/* Into store->scratch, which knows how many curves there are; `grids` is the number of gain grids, 0 or 1. */
+lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, uint32_t grids, lensprof_error *error);
+
+#endif

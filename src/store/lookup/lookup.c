@@ -1,0 +1,471 @@
+/* The profile for a setting that need not be stored: which rows of the lens are used, and what is made of them. */
+#include "store/lookup/lookup_candidates.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SAME_SENSOR 0.02    /* crop factors that differ by so much are of one sensor: EXIF rounds */
+#define CROP_TOLERANCE 0.96 /* a sensor may be larger by so much than the one that was measured */
+#define SAME_FOCAL 0.02     /* of a lens that cannot be changed */
+#define SAME_FOCAL_MM 0.1
+#define MOST_DISTANCES 8 /* stored focus distances that are tried where it is not known */
+
+void lensprof_lookup_options_init(lensprof_lookup_options *options) {
+    memset(options, 0, sizeof *options);
+    options->struct_size = sizeof *options;
+}
+
+/* ---- which of them ---- */
+
+static int is_sensor_covered(const lp_candidate *c, const lensprof_profile_key *key) {
+    return c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
+           || key->crop_factor / c->crop >= CROP_TOLERANCE;
+}
+
+/* Larger is better: unit, camera, then the sensor nearest to the key's; where that is not known, the smallest, whose
+ * falloff is the weakest. */
+static double rank_of(const lp_candidate *c, const lensprof_profile_key *key) {
+    const int own = c->crop != LENSPROF_UNKNOWN, asked = key->crop_factor != LENSPROF_UNKNOWN;
+    const double sensor = !own ? 0.5 : asked ? fmin(c->crop / key->crop_factor, 1.0) : 1.0 - 1.0 / (1.0 + c->crop);
+    return 100.0 * c->of_unit + 10.0 * c->of_camera + sensor;
+}
+
+static int has_several_sensors(const lp_candidates *found) {
+    double low = INFINITY, high = 0.0;
+    for (uint32_t i = 0; i < found->count; i++) {
+        const double crop = found->all[i].crop;
+        if (crop != LENSPROF_UNKNOWN) low = fmin(low, crop), high = fmax(high, crop);
+    }
+    return high > low * (1.0 + SAME_SENSOR);
+}
+
+/* Keeps the best group; returns how many there are. */
+static uint32_t keep_best(lp_candidates *found, const lensprof_profile_key *key) {
+    double best = -1.0;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < found->count; i++)
+        if (is_sensor_covered(&found->all[i], key)) best = fmax(best, rank_of(&found->all[i], key));
+    for (uint32_t i = 0; i < found->count; i++)
+        if (is_sensor_covered(&found->all[i], key) && rank_of(&found->all[i], key) >= best - SAME_SENSOR)
+            found->all[kept++] = found->all[i];
+    return found->count = kept;
+}
+
+/* Curves of pictures that were processed otherwise are others: where any will do, those of the newest profile, which is
+ * the last. */
+static void keep_one_processing(lp_candidates *found) {
+    const uint32_t processing = found->all[found->count - 1].processing;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < found->count; i++)
+        if (found->all[i].processing == processing) found->all[kept++] = found->all[i];
+    found->count = kept;
+}
+
+/* k in half diagonals of the key's sensor: r there is r times the ratio here. */
+static void rescale(lp_candidate *c, const lensprof_profile_key *key) {
+    if (c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN) return;
+    const double ratio2 = (c->crop / key->crop_factor) * (c->crop / key->crop_factor);
+    for (int curve = 0; curve < 3; curve++) {
+        double scale = 1.0;
+        for (int n = 0; n < 3; n++) c->node.k[curve][n] *= scale *= ratio2;
+    }
+}
+
+/* ---- settings ---- */
+
+/* Focal length for 0, aperture for 1. */
+static double setting(const lp_falloff_node *node, int which) { return which ? node->aperture : node->focal_mm; }
+
+static void set(lp_falloff_node *node, int which, double value) {
+    *(which ? &node->aperture : &node->focal_mm) = value;
+}
+
+static int is_same(double a, double b) { return a == b || fabs(a - b) <= 1e-6 * fmin(a, b); }
+
+static int is_same_setting(const lp_falloff_node *a, const lp_falloff_node *b) {
+    return is_same(a->focal_mm, b->focal_mm) && is_same(a->aperture, b->aperture)
+           && is_same(a->distance_m, b->distance_m);
+}
+
+/* Of profiles of one setting the newest counts, as everywhere: it may hold the others, or have overruled them. They
+ * come by rising id. */
+static uint32_t keep_newest(lp_falloff_node *nodes, uint32_t count) {
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t j = i + 1;
+        while (j < count && !is_same_setting(&nodes[i], &nodes[j])) j++;
+        if (j == count) nodes[kept++] = nodes[i];
+    }
+    return kept;
+}
+
+/* Rows that lack a number which the key has are of no use; one that the key lacks must be the same in all rows. Returns
+ * NULL, or what is wrong. */
+static const char *settle(lp_candidates *found, lp_falloff_node *at, int which) {
+    static const char *const missing[] = {"the focal length is not known, and the lens has several; give it",
+                                          "the aperture is not known, and the lens has several; give it"};
+    static const char *const useless[] = {"no profile of this lens has a focal length",
+                                          "no profile of this lens has an aperture"};
+    uint32_t kept = 0;
+    if (setting(at, which) == LENSPROF_UNKNOWN) {
+        const double only = setting(&found->all[0].node, which);
+        for (uint32_t i = 1; i < found->count; i++)
+            if (!is_same(setting(&found->all[i].node, which), only)) return missing[which];
+        set(at, which, only != LENSPROF_UNKNOWN ? only : 1.0); /* where nobody knows it makes no difference */
+        for (uint32_t i = 0; i < found->count && only == LENSPROF_UNKNOWN; i++) set(&found->all[i].node, which, 1.0);
+        return NULL;
+    }
+    for (uint32_t i = 0; i < found->count; i++)
+        if (setting(&found->all[i].node, which) != LENSPROF_UNKNOWN) found->all[kept++] = found->all[i];
+    found->count = kept;
+    return kept ? NULL : useless[which];
+}
+
+/* 0 within the stored settings, 1 outside, 2 too far. Nothing is predicted more than one node beyond the last: the
+ * outermost two nodes' spacing (in stops or octaves), or a twelfth of an octave in focal length and a third of a stop
+ * where there is one node only. */
+static int place_of(const lp_candidates *found, const lp_falloff_node *at, int which) {
+    double low = INFINITY, high = 0.0, above_low = INFINITY, below_high = 0.0;
+    const double single = which ? 1.0 / 6.0 : 1.0 / 12.0; /* log2; of the f-number half a stop counts as 1/4 */
+    for (uint32_t i = 0; i < found->count; i++) {
+        const double value = log2(setting(&found->all[i].node, which));
+        low = fmin(low, value), high = fmax(high, value);
+    }
+    for (uint32_t i = 0; i < found->count; i++) {
+        const double value = log2(setting(&found->all[i].node, which));
+        if (value > low + 1e-6) above_low = fmin(above_low, value);
+        if (value < high - 1e-6) below_high = fmax(below_high, value);
+    }
+    const double asked = log2(setting(at, which)), least = 1e-6;
+    const double before = high - low > 1e-6 ? fmax(above_low - low, single) : single;
+    const double behind = high - low > 1e-6 ? fmax(high - below_high, single) : single;
+    if (asked < low - before - least || asked > high + behind + least) return 2;
+    return asked < low - least || asked > high + least;
+}
+
+/* ---- predictions ---- */
+
+/* The weakest, radius by radius, of the falloffs at all distances that are stored; or that at the farthest. */
+static int predict_any_distance(const lp_falloff_node *nodes, uint32_t count, lp_falloff_node at, uint32_t rule,
+                                lp_falloff_prediction *best) {
+    double distances[MOST_DISTANCES], weakest[3][LP_FALLOFF_RADII], own[LP_FALLOFF_RADII], corner = -INFINITY;
+    uint32_t known = 0;
+    int found = 0;
+    double sigma = 0.0;
+    for (double below = INFINITY; known < MOST_DISTANCES; known++) { /* from far to near */
+        double next = 0.0;
+        for (uint32_t i = 0; i < count; i++)
+            if ((known == 0 || nodes[i].distance_m < below) && nodes[i].distance_m > next) next = nodes[i].distance_m;
+        if (next <= 0.0) break;
+        distances[known] = below = next;
+        if (rule == LENSPROF_DISTANCE_FARTHEST) {
+            known++;
+            break;
+        }
+    }
+    for (uint32_t d = 0; d < known; d++) {
+        lp_falloff_prediction one;
+        at.distance_m = distances[d];
+        const int done = lp_predict_falloff(nodes, count, &at, &one);
+        if (done < 0) return done;
+        if (!done) {
+            if (!found) *best = one;
+            continue;
+        }
+        sigma = fmax(sigma, one.sigma);
+        for (int c = 0; c < 3; c++) {
+            lp_sample_falloff(one.k[c], own);
+            for (int j = 0; j < LP_FALLOFF_RADII; j++) weakest[c][j] = found ? fmax(weakest[c][j], own[j]) : own[j];
+        }
+        if (one.k[1][0] + one.k[1][1] + one.k[1][2] > corner) {
+            corner = one.k[1][0] + one.k[1][1] + one.k[1][2];
+            *best = one;
+        }
+        found++;
+    }
+    for (int c = 0; c < 3 && found > 1; c++) lp_fit_falloff(weakest[c], best->k[c]);
+    best->sigma = sigma;
+    return found > 0;
+}
+
+static lensprof_status refuse(lensprof_store *store, lensprof_lookup *lookup, const char *reason,
+                              lensprof_error *error) {
+    snprintf(lookup->reason, sizeof lookup->reason, "%s", reason);
+    return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile for this setting", reason, error);
+}
+
+/* Variance of M in the corner by a covariance whose first k stands at `first`; 0 = not known. */
+static double corner_variance(const double *covariance, uint32_t size, uint32_t first) {
+    double sum = 0.0;
+    if (size < first + 3) return 0.0;
+    for (uint32_t i = first; i < first + 3; i++)
+        for (uint32_t j = first; j < first + 3; j++) sum += covariance[i * size + j];
+    return sum > 0.0 && isfinite(sum) ? sum : 0.0;
+}
+
+/* Of a stored profile. */
+static double variance_of(const lensprof_profile *p) {
+    uint32_t first = 0;
+    for (uint32_t c = 0; c < p->responses; c++)
+        if (p->response[c].kind == LENSPROF_RESPONSE_EMOR) first += p->response[c].modes;
+    return corner_variance(p->covariance, p->covariance_size, first);
+}
+
+/* The same without the rest of the profile, which takes longer to read. */
+static lensprof_status read_variance(lensprof_store *store, int64_t id, double *variance, lensprof_error *error) {
+    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    lensprof_status status = lp_store_prepare(
+        store,
+        "SELECT covariance_size, covariance, CAST(total(emor_modes) AS INTEGER) AS emor_modes FROM profiles"
+        " JOIN responses ON profile_id = id WHERE id = ?1",
+        &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_bind_integer(&binder, id);
+    const int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
+    if (rc == SQLITE_ROW) {
+        lp_store_reader reader = {binder.statement, 0, NULL};
+        const uint32_t size = (uint32_t)lp_read_integer(&reader, 1, LENSPROF_COVARIANCE_MAX);
+        lp_read_doubles(&reader, covariance, size * size);
+        const uint32_t first = (uint32_t)lp_read_integer(&reader, 0, 3 * LENSPROF_EMOR_MODES);
+        if (reader.bad)
+            status = lp_store_fail_profile(store, id, reader.bad, error);
+        else
+            *variance = corner_variance(covariance, size, first);
+    } else
+        status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, binder.statement);
+    return status;
+}
+
+/* The profile that the prediction makes, of the nearest stored one. */
+static lensprof_status make_profile(lensprof_store *store, const lensprof_profile_key *key,
+                                    const lp_falloff_prediction *p, lensprof_lookup *lookup, lensprof_error *error) {
+    lensprof_profile *profile = &store->scratch;
+    lensprof_status status = lp_store_fetch(store, lookup->id[0], error);
+    if (status != LENSPROF_OK) return status;
+    profile->key = *key;
+    profile->vignettings = memcmp(p->k[0], p->k[1], sizeof p->k[0]) || memcmp(p->k[0], p->k[2], sizeof p->k[0]) ? 3 : 1;
+    for (uint32_t c = 0; c < 3; c++) {
+        memcpy(profile->vignetting[c].k, p->k[c], sizeof p->k[c]);
+        memcpy(profile->vignetting[c].center, profile->vignetting[0].center, sizeof profile->vignetting[0].center);
+    }
+    lensprof_gain_grid_init(&profile->grid);
+    profile->covariance_size = 0;
+    memset(profile->covariance, 0, sizeof profile->covariance);
+    snprintf(profile->provenance.method, sizeof profile->provenance.method, "lookup");
+    profile->provenance.images = profile->provenance.pairs = 0;
+    profile->provenance.heldout_rms = profile->provenance.inlier_share = LENSPROF_UNKNOWN;
+    for (uint32_t c = profile->vignettings; c < 3; c++)
+        memset(&profile->vignetting[c], 0, sizeof profile->vignetting[c]);
+    if (lensprof_profile_validate(profile) != LENSPROF_OK)
+        return refuse(store, lookup, "the profiles near it contradict each other: the falloff between them is none",
+                      error);
+    return LENSPROF_OK;
+}
+
+/* Profiles with a covariance count the less the less is known of them. */
+static lensprof_status weigh(lensprof_store *store, lp_candidates *found, lensprof_error *error) {
+    lensprof_status status = LENSPROF_OK;
+    for (uint32_t i = 0; i < found->count && status == LENSPROF_OK; i++) {
+        if (!found->all[i].has_covariance) continue;
+        status = read_variance(store, found->all[i].node.id, &found->all[i].node.variance, error);
+    }
+    return status;
+}
+
+static lensprof_status predict(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
+                               lp_candidates *found, lp_falloff_node at, lensprof_lookup *lookup,
+                               lensprof_error *error) {
+    lp_falloff_prediction p;
+    lp_falloff_node *nodes = malloc(found->count * sizeof *nodes);
+    if (!nodes) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
+    for (uint32_t i = 0; i < found->count; i++) {
+        rescale(&found->all[i], key);
+        nodes[i] = found->all[i].node;
+        if (nodes[i].distance_m == LENSPROF_UNKNOWN) nodes[i].distance_m = INFINITY;
+    }
+    const uint32_t count = lp_drop_repeated(nodes, keep_newest(nodes, found->count));
+    const int done = at.distance_m == LENSPROF_UNKNOWN ? predict_any_distance(nodes, count, at, o->distance_rule, &p)
+                                                       : lp_predict_falloff(nodes, count, &at, &p);
+    if (done > 0) {
+        lookup->rows = p.used;
+        lookup->sigma = p.sigma;
+        for (uint32_t i = 0; i < p.used; i++) {
+            lookup->id[i] = nodes[p.row[i].node].id;
+            lookup->weight[i] = p.row[i].weight;
+        }
+    }
+    free(nodes);
+    if (done < 0) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
+    lookup->distance = p.nearest;
+    if (!done) return refuse(store, lookup, "the nearest profile of this lens is too far from this setting", error);
+    return make_profile(store, key, &p, lookup, error);
+}
+
+/* Adds to what the caller has to mind. */
+static void mind(lensprof_lookup *lookup, const char *what) {
+    const size_t used = strlen(lookup->reason);
+    snprintf(lookup->reason + used, sizeof lookup->reason - used, "%s%s", used ? "; " : "", what);
+}
+
+/* Cameras with a fixed lens round its focal length as they like (4.25, 4.2, 4.3 mm): one that differs by no more than
+ * that is the stored one. */
+static void round_focal(const lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup) {
+    double nearest = LENSPROF_UNKNOWN, off = fmax(SAME_FOCAL * at->focal_mm, SAME_FOCAL_MM);
+    for (uint32_t i = 0; i < found->count && at->focal_mm != LENSPROF_UNKNOWN; i++) {
+        const lp_candidate *c = &found->all[i];
+        const double d = fabs(c->node.focal_mm - at->focal_mm);
+        if (c->is_fixed && c->node.focal_mm != LENSPROF_UNKNOWN && d <= off + 1e-9 && (d < off || nearest < 0.0))
+            off = d, nearest = c->node.focal_mm;
+    }
+    if (nearest < 0.0 || is_same(nearest, at->focal_mm)) return;
+    at->focal_mm = nearest;
+    mind(lookup, "the focal length is rounded otherwise than in the profiles of this camera");
+}
+
+/* The newest row that is at the setting, or -1. */
+static int64_t find_exact(const lp_candidates *found, const lp_falloff_node *at, const lensprof_profile_key *key) {
+    int64_t newest = -1;
+    for (uint32_t i = 0; i < found->count; i++) {
+        const lp_candidate *c = &found->all[i];
+        const int same_sensor = c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
+                                || fabs(c->crop / key->crop_factor - 1.0) <= SAME_SENSOR;
+        if (same_sensor && is_same(c->node.focal_mm, at->focal_mm) && is_same(c->node.aperture, at->aperture)
+            && is_same(c->node.distance_m, at->distance_m) && c->node.id > newest)
+            newest = c->node.id;
+    }
+    return newest;
+}
+
+/* No row: the lens or camera is not there at all, or only with what the options leave out. */
+static lensprof_status refuse_unknown(lensprof_store *store, const lensprof_profile_key *key,
+                                      const lensprof_lookup_options *o, lensprof_lookup *lookup,
+                                      lensprof_error *error) {
+    static const char *const reasons[] = {
+        "the profiles of this lens are of pictures processed otherwise (raw, jpeg, corrected), and so are their curves",
+        "the profiles of this lens are doubtful ones; ask for these, too, to have them",
+        "the profiles of this lens are of other cameras, or of single units of it; ask for these",
+        "no profile of a lens of this name; list the profiles to see which there are",
+        "no profile of this camera; list the profiles to see which there are"};
+    const bool has_lens = lp_is_known(key->lens);
+    lensprof_lookup_options wider = *o;
+    lensprof_profile_key any = *key;
+    for (int which = 0; which < (has_lens ? 3 : 2); which++) {
+        lp_candidates others;
+        memset(&others, 0, sizeof others);
+        if (which == 0) wider.any_processing = 1;
+        if (which == 1) wider.with_doubt = 1;
+        if (which == 2) memset(any.camera_model, 0, sizeof any.camera_model);
+        others.any_unit = which == 2;
+        const lensprof_status status = lp_find_candidates(store, &any, &wider, &others, error);
+        const uint32_t count = others.count;
+        free(others.all);
+        if (status != LENSPROF_OK) return status;
+        if (count) return refuse(store, lookup, reasons[which], error);
+    }
+    return refuse(store, lookup, reasons[has_lens || !*key->camera_model ? 3 : 4], error);
+}
+
+static lensprof_status answer_exact(lensprof_store *store, int64_t id, lensprof_lookup *lookup, lensprof_error *error) {
+    lookup->exact = lookup->rows = 1;
+    lookup->id[0] = id, lookup->weight[0] = 1.0;
+    const lensprof_status status = lp_store_fetch(store, id, error);
+    const double variance = status == LENSPROF_OK ? variance_of(&store->scratch) : 0.0;
+    lookup->sigma = variance > 0.0 ? sqrt(variance) : LENSPROF_UNKNOWN;
+    return status;
+}
+
+/* Focal length and aperture, where they are not given and the same everywhere. Returns NULL, or why not. */
+static const char *settle_all(lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup) {
+    static const char *const beyond[] = {"the focal length is beyond those at which this lens is known",
+                                         "the aperture is beyond those at which this lens is known"};
+    static const char *const outside[] = {"the focal length is outside those that are stored",
+                                          "the aperture is outside those that are stored"};
+    for (int which = 0; which < 2; which++) {
+        const char *wrong = settle(found, at, which);
+        if (wrong) return wrong;
+        const int side = place_of(found, at, which);
+        if (side > 1) return beyond[which];
+        if (side > 0) mind(lookup, outside[which]);
+    }
+    return NULL;
+}
+
+/* What those that are used have in common, where the key leaves it open. */
+static lensprof_profile_key complete_key(const lensprof_profile_key *key, const lp_candidates *found) {
+    lensprof_profile_key whole = *key;
+    whole.processing = found->all[0].processing;
+    for (uint32_t i = 0; i < found->count && whole.crop_factor == LENSPROF_UNKNOWN; i++)
+        whole.crop_factor = found->all[i].crop;
+    return whole;
+}
+
+/* The candidates that count. Returns NULL, or why there are none. */
+static const char *choose(lp_candidates *found, const lensprof_profile_key *key, lensprof_lookup *lookup) {
+    char text[200];
+    const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
+    if (!keep_best(found, key)) return "this lens was measured on smaller sensors only";
+    keep_one_processing(found);
+    if (several) mind(lookup, "the sensor's size is not known: of those measured the smallest is taken");
+    snprintf(text, sizeof text,
+             found->by_words ? "the lens was found by the words and numbers of its name: %s"
+                             : "no lens of this name; that of the camera is built in: %s",
+             found->last.lens);
+    if (found->by_words || found->by_camera) mind(lookup, text);
+    return NULL;
+}
+
+static lensprof_status answer(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
+                              lp_candidates *found, lensprof_lookup *lookup, lensprof_error *error) {
+    lp_falloff_node at = {0, key->focal_mm, key->aperture, key->distance_m, {{0}}, 0.0};
+    lookup->name_score = found->name_score;
+    if (found->has_lenses)
+        return refuse(store, lookup, "this camera has profiles of several lenses; give the lens", error);
+    if (!found->count) return refuse_unknown(store, key, o, lookup, error);
+    const char *wrong = choose(found, key, lookup);
+    if (wrong) return refuse(store, lookup, wrong, error);
+    round_focal(found, &at, lookup);
+    int64_t same = find_exact(found, &at, key);
+    if (same < 0) {
+        wrong = settle_all(found, &at, lookup);
+        if (wrong) return refuse(store, lookup, wrong, error);
+        same = find_exact(found, &at, key);
+    }
+    if (same > 0) return answer_exact(store, same, lookup, error);
+    if (at.distance_m == LENSPROF_UNKNOWN)
+        mind(lookup, o->distance_rule == LENSPROF_DISTANCE_WEAKEST
+                         ? "the focus distance is not known: the weakest falloff of those stored is taken"
+                         : "the focus distance is not known: the falloff at the farthest one stored is taken");
+    const lensprof_profile_key whole = complete_key(key, found);
+    lensprof_status status = weigh(store, found, error);
+    return status == LENSPROF_OK ? predict(store, &whole, o, found, at, lookup, error) : status;
+}
+
+lensprof_status lensprof_store_lookup(lensprof_store *store, const lensprof_profile_key *key,
+                                      const lensprof_lookup_options *options, lensprof_profile *profile,
+                                      lensprof_lookup *lookup, lensprof_error *error) {
+    lensprof_lookup result;
+    lp_candidates found;
+    lp_store_clear(error);
+    if (!store || !key || !options || !profile || !lookup)
+        return lp_store_fail_argument("store, key, options, profile or lookup is NULL", error);
+    if (options->struct_size != sizeof *options) return LENSPROF_ERROR_STRUCT_SIZE;
+    if (options->distance_rule > LENSPROF_DISTANCE_FARTHEST || options->with_doubt > 1 || options->any_processing > 1)
+        return lp_store_fail_argument("an option is unknown; see lensprof_lookup_options", error);
+    if (lensprof_profile_key_validate(key) != LENSPROF_OK)
+        return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
+    memset(&result, 0, sizeof result);
+    memset(&found, 0, sizeof found);
+    lensprof_status status = lp_store_begin(store, false, error);
+    if (status != LENSPROF_OK) return status;
+    status = lp_find_candidates(store, key, options, &found, error);
+    if (status == LENSPROF_OK) status = answer(store, key, options, &found, &result, error);
+    lp_store_rollback(store);
+    free(found.all);
+    if (status == LENSPROF_OK) *profile = store->scratch;
+    if (status == LENSPROF_OK || status == LENSPROF_ERROR_NOT_FOUND) *lookup = result;
+    return status;
+}

@@ -1,0 +1,227 @@
+/* The rows that a lookup may use, found by the names of lens and camera. */
+#include "store/lookup/lookup_candidates.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "store/lookup/names.h"
+
+#define BUILT_IN_SCORE 0.6 /* of a lens that was found by its camera */
+#define SHORTEST_CAMERA 3  /* characters of a name that says something within another one */
+
+#define ROWS_OF_LENS(name, unit, crop, doubt)                                                                       \
+    "SELECT id, camera_model, lens, " unit ", " crop                                                                \
+    ", focal_mm, aperture, distance_m, curve, k1, k2, k3,"                                                          \
+    " vignetting_curves, covariance_size, processing FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
+    " = ?1 AND (?2 OR " doubt " = '') AND (?3 OR processing = ?4) ORDER BY id, curve"
+
+static const char *const rows_sql[2] = {ROWS_OF_LENS("lower(replace(replace(replace(replace(replace(replace(lens,"
+                                                     " ' ', ''), '-', ''), '/', ''), '.', ''), '(', ''), ')', ''))",
+                                                     "''", "NULL", "''"),
+                                        ROWS_OF_LENS("lens_name", "unit", "crop_factor", "doubt")};
+
+static lp_candidate *add(lp_candidates *found) {
+    if (found->count == found->room) {
+        const uint32_t room = found->room ? 2 * found->room : 64;
+        lp_candidate *all = realloc(found->all, room * sizeof *all);
+        if (!all) return NULL;
+        found->all = all, found->room = room;
+    }
+    return memset(&found->all[found->count++], 0, sizeof(lp_candidate));
+}
+
+/* -1 for a row of another camera or unit. */
+static int fits(const char *own, const char *asked) {
+    if (!*own) return 0;
+    return lp_name_score(own, asked) >= 0.8 ? 1 : -1;
+}
+
+/* One curve of a row, as rows_sql has it. */
+typedef struct row {
+    lensprof_profile_key key;
+    int64_t id, curve, curves, covariance_size;
+    double k[3];
+} row;
+
+/* False, with the reader's column, for what no profile has. */
+static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r) {
+    *reader = (lp_store_reader){statement, 0, NULL};
+    lensprof_profile_key_init(&r->key);
+    r->id = lp_read_integer(reader, 1, INT64_MAX);
+    lp_read_text(reader, r->key.camera_model, sizeof r->key.camera_model);
+    lp_read_text(reader, r->key.lens, sizeof r->key.lens);
+    lp_read_text(reader, r->key.unit, sizeof r->key.unit);
+    r->key.crop_factor = lp_read_known(reader);
+    r->key.focal_mm = lp_read_known(reader);
+    r->key.aperture = lp_read_known(reader);
+    r->key.distance_m = lp_read_known(reader);
+    r->curve = lp_read_integer(reader, 0, 2);
+    for (int n = 0; n < 3; n++) r->k[n] = lp_read_real(reader);
+    r->curves = lp_read_integer(reader, 1, 3);
+    r->covariance_size = lp_read_integer(reader, 0, LENSPROF_COVARIANCE_MAX);
+    r->key.processing = lp_read_name(reader, lp_store_processings, LP_STORE_PROCESSINGS);
+    if (!reader->bad && lensprof_profile_key_validate(&r->key) != LENSPROF_OK) reader->bad = "key";
+    return !reader->bad;
+}
+
+bool lp_is_known(const char *text) { return text[strspn(text, " ")] != 0; }
+
+/* Of the lens's name, or of the camera's where no lens is asked for. */
+static double score_of(const row *r, const lensprof_profile_key *key, const lp_candidates *found) {
+    if (!lp_is_known(key->lens)) return lp_name_score(r->key.camera_model, key->camera_model);
+    if (found->by_camera) return BUILT_IN_SCORE;
+    return found->by_words ? lp_words_score(r->key.lens, key->lens, key->camera_maker)
+                           : lp_name_score(r->key.lens, key->lens);
+}
+
+/* Into found->last_...: comparing names takes longer than reading the row. */
+static void compare_names(const row *r, const lensprof_profile_key *key, lp_candidates *found) {
+    lensprof_profile_key *last = &found->last;
+    if (found->last_score > 0.0 && !strcmp(last->lens, r->key.lens) && !strcmp(last->camera_model, r->key.camera_model))
+        return;
+    memcpy(last->lens, r->key.lens, sizeof last->lens);
+    memcpy(last->camera_model, r->key.camera_model, sizeof last->camera_model);
+    found->last_score = score_of(r, key, found);
+    found->last_camera = fits(r->key.camera_model, key->camera_model);
+}
+
+/* Takes a row that fits the key; its first curve comes first. False without memory. */
+static bool take_row(const row *r, const lensprof_profile_key *key, lp_candidates *found) {
+    lp_candidate *one = found->count ? &found->all[found->count - 1] : NULL;
+    if (!one || one->node.id != r->id) {
+        compare_names(r, key, found);
+        const int unit = found->any_unit ? 0 : fits(r->key.unit, key->unit), camera = found->last_camera;
+        if (unit < 0 || (camera < 0 && *key->camera_model) || r->curve != 0) return true;
+        if ((!lp_is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
+        if (!(one = add(found))) return false;
+        found->name_score = fmax(found->name_score, found->last_score);
+        one->is_fixed = !lp_is_known(key->lens) || !lp_is_known(r->key.lens) || found->by_camera;
+        one->of_unit = unit, one->of_camera = camera > 0, one->has_covariance = r->covariance_size > 0;
+        one->processing = r->key.processing;
+        one->crop = r->key.crop_factor;
+        one->node.id = r->id;
+        one->node.focal_mm = r->key.focal_mm;
+        one->node.aperture = r->key.aperture;
+        one->node.distance_m = r->key.distance_m;
+        for (int c = 0; c < 3; c++) memcpy(one->node.k[c], r->k, sizeof r->k); /* of all, unless others follow */
+    } else
+        memcpy(one->node.k[r->curve], r->k, sizeof r->k);
+    return true;
+}
+
+static lensprof_status read_rows(lensprof_store *store, const char *name, const lensprof_profile_key *key,
+                                 const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error) {
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    lensprof_status status = lp_store_prepare(store, rows_sql[store->layout >= 3], &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_bind_text(&binder, name);
+    lp_bind_integer(&binder, o->with_doubt);
+    lp_bind_integer(&binder, o->any_processing);
+    lp_bind_text(&binder, lp_store_processings[key->processing]);
+    int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
+    while (rc == SQLITE_ROW && status == LENSPROF_OK) {
+        lp_store_reader reader;
+        row r;
+        if (!read_row(binder.statement, &reader, &r))
+            status = lp_store_fail_profile(store, r.id, reader.bad, error);
+        else
+            rc = take_row(&r, key, found) ? sqlite3_step(binder.statement) : SQLITE_NOMEM;
+    }
+    if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, binder.statement);
+    return status;
+}
+
+/* Every name of a lens once; the first through the index profiles_by_lens, name by name. */
+static const char *const lenses_sql[2] = {
+    "SELECT DISTINCT lens FROM profiles ORDER BY lens",
+    "WITH RECURSIVE names(name) AS (SELECT min(lens_name) FROM profiles UNION ALL"
+    " SELECT (SELECT min(lens_name) FROM profiles WHERE lens_name > name) FROM names WHERE name IS NOT NULL)"
+    " SELECT (SELECT lens FROM profiles WHERE lens_name = name LIMIT 1) FROM names WHERE name IS NOT NULL"};
+
+/* The squeezed name of the first lens that has the same words; empty where there is none. */
+static lensprof_status find_by_words(lensprof_store *store, const lensprof_profile_key *key, char *name,
+                                     lensprof_error *error) {
+    sqlite3_stmt *statement;
+    *name = 0;
+    lensprof_status status = lp_store_prepare(store, lenses_sql[store->layout >= 3], &statement, error);
+    if (status != LENSPROF_OK) return status;
+    int rc = sqlite3_step(statement);
+    for (; rc == SQLITE_ROW; rc = sqlite3_step(statement)) {
+        const char *stored = (const char *)sqlite3_column_text(statement, 0);
+        if (!stored || (size_t)sqlite3_column_bytes(statement, 0) >= sizeof((lensprof_profile_key *)0)->lens) continue;
+        if (lp_words_score(stored, key->lens, key->camera_maker) <= 0.0) continue;
+        lp_squeeze(stored, name);
+        break;
+    }
+    if (rc != SQLITE_ROW && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, statement);
+    return status;
+}
+
+/* Whether a lens is named after its camera, which it is built in then: "Canon PowerShot S110 & compatibles". */
+static bool is_built_in(const char *squeezed_lens, const char *camera) {
+    char squeezed[LP_NAME_BYTES];
+    lp_squeeze(camera, squeezed);
+    const char *bare = lp_without_maker(squeezed);
+    return strlen(bare) >= SHORTEST_CAMERA && strstr(squeezed_lens, bare) != NULL;
+}
+
+/* The squeezed name of the only lens of a camera. *lenses: how many there are, 2 for more. Where a lens is asked for,
+ * one that is built in. */
+static lensprof_status find_only_lens(lensprof_store *store, const lensprof_profile_key *key, char *name, int *lenses,
+                                      lensprof_error *error) {
+    lp_store_reader reader = {NULL, 0, NULL};
+    *lenses = 0;
+    lensprof_status status = lp_store_prepare(
+        store, "SELECT DISTINCT camera_model, lens FROM profiles WHERE camera_model <> '' AND lens <> ''",
+        &reader.statement, error);
+    if (status != LENSPROF_OK) return status;
+    int rc = sqlite3_step(reader.statement);
+    for (; rc == SQLITE_ROW && *lenses < 2; rc = sqlite3_step(reader.statement)) {
+        char camera[LP_NAME_BYTES], lens[LP_NAME_BYTES], squeezed[LP_NAME_BYTES];
+        reader.column = 0, reader.bad = NULL;
+        lp_read_text(&reader, camera, sizeof camera);
+        lp_read_text(&reader, lens, sizeof lens);
+        if (reader.bad || lp_name_score(camera, key->camera_model) < 0.8) continue;
+        lp_squeeze(lens, squeezed);
+        if (lp_is_known(key->lens) && !is_built_in(squeezed, camera)) continue;
+        if (*lenses && !strcmp(name, squeezed)) continue; /* of a camera by another of its names */
+        memcpy(name, squeezed, sizeof squeezed);
+        ++*lenses;
+    }
+    if (rc != SQLITE_DONE && rc != SQLITE_ROW) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, reader.statement);
+    return status;
+}
+
+static lensprof_status find_camera(lensprof_store *store, const lensprof_profile_key *key,
+                                   const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error) {
+    char name[LP_NAME_BYTES] = "";
+    int lenses = 0;
+    lensprof_status status = lp_is_known(key->lens) ? LENSPROF_OK : read_rows(store, "", key, o, found, error);
+    if (status != LENSPROF_OK || found->count) return status;
+    status = find_only_lens(store, key, name, &lenses, error);
+    found->has_lenses = lenses > 1 && !lp_is_known(key->lens);
+    found->by_camera = lenses == 1 && lp_is_known(key->lens);
+    return status == LENSPROF_OK && lenses == 1 ? read_rows(store, name, key, o, found, error) : status;
+}
+
+lensprof_status lp_find_candidates(lensprof_store *store, const lensprof_profile_key *key,
+                                   const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error) {
+    lp_names names;
+    char name[LP_NAME_BYTES];
+    lensprof_status status = LENSPROF_OK;
+    if (!lp_is_known(key->lens))
+        return lp_is_known(key->camera_model) ? find_camera(store, key, o, found, error) : LENSPROF_OK;
+    lp_name_variants(key->lens, key->camera_maker, &names);
+    for (uint32_t i = 0; i < names.count && status == LENSPROF_OK && !found->count; i++)
+        status = read_rows(store, names.name[i], key, o, found, error);
+    if (status != LENSPROF_OK || found->count) return status;
+    status = find_by_words(store, key, name, error);
+    found->by_words = *name != 0;
+    if (status == LENSPROF_OK && *name) return read_rows(store, name, key, o, found, error);
+    return status == LENSPROF_OK && lp_is_known(key->camera_model) ? find_camera(store, key, o, found, error) : status;
+}

@@ -1,0 +1,39 @@
+/* The rows that a lookup may use. */
+#ifndef LENSPROF_STORE_LOOKUP_CANDIDATES_H
+#define LENSPROF_STORE_LOOKUP_CANDIDATES_H
+
+#include "store/file/private.h"
+#include "store/lookup/falloff_prediction.h"
+
+/* A row of the lens: how well it fits the camera, and its node. */
+typedef struct lp_candidate {
+    lp_falloff_node node;
+    int of_unit, of_camera, has_covariance;
+    int is_fixed; /* of a camera whose lens has no name of its own: it cannot be changed */
+    uint32_t processing;
+    double crop;
+} lp_candidate;
+
+typedef struct lp_candidates {
+    lp_candidate *all; /* free it */
+    uint32_t count, room;
+    double name_score;
+    lensprof_profile_key last; /* names of the row before, which most rows share, and what they were found to be */
+    double last_score;
+    int last_camera;
+    bool by_words;   /* the lens was found by the words of its name */
+    bool by_camera;  /* no lens has the name: it is that which the camera has built in */
+    bool any_unit;   /* asked for: profiles of single units, whatever the key's */
+    bool has_lenses; /* nothing was found, since the camera has several lenses and none was asked for */
+} lp_candidates;     /* by rising id */
+
+/* Not blanks alone. */
+bool lp_is_known(const char *text);
+
+/* All rows of the lens under the first of its names that any has, else of the lens with the same words; without a lens
+ * those of the camera, its own or those of the only lens it has; these, too, where no lens has the name and the
+ * camera's is named after it, as it is built in. Within a transaction. */
+lensprof_status lp_find_candidates(lensprof_store *store, const lensprof_profile_key *key,
+                                   const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error);
+
+#endif

@@ -1,0 +1,184 @@
+#include "store/lookup/names.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* Spellings of makers in EXIF and in names of lenses (own observation), squeezed; longer ones first where one begins
+ * with another. */
+static const struct spelling {
+    const char *text, *maker;
+} spellings[] = {
+    {"canoninc", "canon"},
+    {"canon", "canon"},
+    {"nikoncorporation", "nikon"},
+    {"nikkor", "nikon"},
+    {"nikon", "nikon"},
+    {"sony", "sony"},
+    {"olympusimagingcorp", "olympus"},
+    {"olympusopticalco,ltd", "olympus"},
+    {"olympuscorporation", "olympus"},
+    {"olympus", "olympus"},
+    {"omdigitalsolutions", "olympus"},
+    {"omsystem", "olympus"},
+    {"fujifilmcorporation", "fujifilm"},
+    {"fujiphotofilmco,ltd", "fujifilm"},
+    {"fujifilm", "fujifilm"},
+    {"fujinon", "fujifilm"},
+    {"fuji", "fujifilm"},
+    {"pentaxricohimaging", "pentax"},
+    {"pentaxcorporation", "pentax"},
+    {"ricohimagingcompany,ltd", "pentax"},
+    {"asahioptical", "pentax"},
+    {"pentax", "pentax"},
+    {"ricoh", "ricoh"},
+    {"panasonic", "panasonic"},
+    {"lumix", "panasonic"},
+    {"leicacameraag", "leica"},
+    {"leica", "leica"},
+    {"samsungtechwin", "samsung"},
+    {"samsungelectronics", "samsung"},
+    {"samsung", "samsung"},
+    {"eastmankodakcompany", "kodak"},
+    {"kodak", "kodak"},
+    {"konicaminoltacamera,inc", "minolta"},
+    {"konicaminolta", "minolta"},
+    {"minolta", "minolta"},
+    {"carlzeiss", "zeiss"},
+    {"zeiss", "zeiss"},
+    {"casiocomputerco,ltd", "casio"},
+    {"casio", "casio"},
+    {"hasselblad", "hasselblad"},
+    {"sigma", "sigma"},
+    {"tamron", "tamron"},
+    {"tokina", "tokina"},
+    {"samyang", "samyang"},
+    {"rokinon", "samyang"},
+    {"voigtlander", "voigtlander"},
+    {"laowa", "laowa"},
+    {"viltrox", "viltrox"},
+    {"apple", "apple"},
+    {"google", "google"},
+    {"huawei", "huawei"},
+    {"xiaomi", "xiaomi"},
+};
+#define SPELLINGS (sizeof spellings / sizeof *spellings)
+
+/* One camera under three names, without its maker: Europe, America, Japan. */
+static const char *const cameras[][3] = {
+    {"eos300ddigital", "eosdigitalrebel", "eoskissdigital"},
+    {"eos350ddigital", "eosdigitalrebelxt", "eoskissdigitaln"},
+    {"eos400ddigital", "eosdigitalrebelxti", "eoskissdigitalx"},
+    {"eos450d", "eosdigitalrebelxsi", "eoskissx2"},
+    {"eos500d", "eosrebelt1i", "eoskissx3"},
+    {"eos550d", "eosrebelt2i", "eoskissx4"},
+    {"eos600d", "eosrebelt3i", "eoskissx5"},
+    {"eos650d", "eosrebelt4i", "eoskissx6i"},
+    {"eos700d", "eosrebelt5i", "eoskissx7i"},
+    {"eos750d", "eosrebelt6i", "eoskissx8i"},
+    {"eos800d", "eosrebelt7i", "eoskissx9i"},
+    {"eos100d", "eosrebelsl1", "eoskissx7"},
+    {"eos200d", "eosrebelsl2", "eoskissx9"},
+    {"eos1000d", "eosdigitalrebelxs", "eoskissf"},
+    {"eos1100d", "eosrebelt3", "eoskissx50"},
+    {"eos1200d", "eosrebelt5", "eoskissx70"},
+    {"eos1300d", "eosrebelt6", "eoskissx80"},
+};
+
+static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
+
+void lp_squeeze(const char *name, char *text) {
+    uint32_t n = 0;
+    for (; *name && n + 1 < LP_NAME_BYTES; name++)
+        if (!strchr(" -/.()", *name)) text[n++] = lower(*name);
+    text[n] = 0;
+}
+
+static const struct spelling *spelling_in_front(const char *squeezed) {
+    for (size_t i = 0; i < SPELLINGS; i++)
+        if (!strncmp(squeezed, spellings[i].text, strlen(spellings[i].text))) return &spellings[i];
+    return NULL;
+}
+
+const char *lp_maker_of(const char *word) {
+    for (size_t i = 0; i < SPELLINGS; i++)
+        if (!strcmp(word, spellings[i].text)) return spellings[i].maker;
+    return NULL;
+}
+
+const char *lp_maker_in_front(const char *squeezed) {
+    const struct spelling *found = spelling_in_front(squeezed);
+    return found ? found->maker : NULL;
+}
+
+/* Behind the makers' names in front ("Panasonic Lumix"), or the whole; *maker is the first of them, or NULL. */
+static const char *without_maker(const char *squeezed, const char **maker) {
+    const struct spelling *found;
+    *maker = NULL;
+    while ((found = spelling_in_front(squeezed)) && squeezed[strlen(found->text)]) {
+        if (*maker && strcmp(*maker, found->maker)) break;
+        *maker = found->maker;
+        squeezed += strlen(found->text);
+    }
+    return squeezed;
+}
+
+const char *lp_without_maker(const char *squeezed) {
+    const char *maker;
+    return without_maker(squeezed, &maker);
+}
+
+static int is_same_but_for_case(const char *a, const char *b) {
+    while (*a == ' ') a++;
+    while (*b == ' ') b++;
+    while (*a && lower(*a) == lower(*b)) a++, b++;
+    return strspn(a, " ") == strlen(a) && strspn(b, " ") == strlen(b);
+}
+
+static int is_same_camera(const char *a, const char *b) {
+    for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++) {
+        int has_a = 0, has_b = 0;
+        for (int n = 0; n < 3; n++) has_a |= !strcmp(cameras[i][n], a), has_b |= !strcmp(cameras[i][n], b);
+        if (has_a && has_b) return 1;
+    }
+    return 0;
+}
+
+double lp_name_score(const char *a, const char *b) {
+    char x[LP_NAME_BYTES], y[LP_NAME_BYTES];
+    const char *maker_x, *maker_y;
+    if (is_same_but_for_case(a, b)) return 1.0;
+    lp_squeeze(a, x);
+    lp_squeeze(b, y);
+    if (!strcmp(x, y)) return 0.9;
+    const char *bare_x = without_maker(x, &maker_x), *bare_y = without_maker(y, &maker_y);
+    if (maker_x && maker_y && strcmp(maker_x, maker_y)) return 0.0;
+    return !strcmp(bare_x, bare_y) || is_same_camera(bare_x, bare_y) ? 0.8 : 0.0;
+}
+
+static void add(lp_names *names, const char *front, const char *name) {
+    char whole[LP_NAME_BYTES];
+    const size_t first = strlen(front), second = strlen(name);
+    if (!second || first + second >= sizeof whole || names->count == LP_NAME_VARIANTS) return;
+    memcpy(whole, front, first);
+    memcpy(whole + first, name, second + 1);
+    for (uint32_t i = 0; i < names->count; i++)
+        if (!strcmp(names->name[i], whole)) return;
+    strcpy(names->name[names->count++], whole);
+}
+
+void lp_name_variants(const char *lens, const char *camera_maker, lp_names *names) {
+    char own[LP_NAME_BYTES], camera[LP_NAME_BYTES];
+    const char *maker;
+    names->count = 0;
+    lp_squeeze(lens, own);
+    lp_squeeze(camera_maker, camera);
+    const char *bare = without_maker(own, &maker);
+    const struct spelling *of_camera = spelling_in_front(camera);
+    add(names, "", own);
+    add(names, "", bare);
+    if (!maker) add(names, of_camera ? of_camera->maker : camera, own);
+    if (!maker && of_camera) maker = of_camera->maker;
+    if (maker) add(names, maker, own); /* "Nikon Nikkor Z 50mm" */
+    for (size_t i = 0; maker && i < SPELLINGS; i++)
+        if (!strcmp(spellings[i].maker, maker)) add(names, spellings[i].text, bare);
+}

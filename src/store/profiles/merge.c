@@ -1,0 +1,128 @@
+/* Profiles of another database, as they are. */
+#include "store/file/private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A profile of the other database, and what it is here. */
+typedef struct arrival {
+    int64_t from, to;
+} arrival;
+
+typedef struct merging {
+    lensprof_store *store, *other;
+    arrival *all; /* by rising `from` */
+    size_t count, room;
+    uint32_t added, known;
+} merging;
+
+/* False without memory. */
+static bool remember(merging *m, int64_t from, int64_t to) {
+    if (m->count == m->room) {
+        const size_t room = m->room ? 2 * m->room : 256;
+        arrival *all = realloc(m->all, room * sizeof *all);
+        if (!all) return false;
+        m->all = all, m->room = room;
+    }
+    m->all[m->count++] = (arrival){from, to};
+    return true;
+}
+
+/* The profile here; 0 for one that the other database has no more. */
+static int64_t arrived(const merging *m, int64_t from) {
+    size_t low = 0, high = m->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (m->all[middle].from < from)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < m->count && m->all[low].from == from ? m->all[low].to : 0;
+}
+
+/* What is in the profile has another number here, and is older: it has arrived. */
+static int64_t prior_here(const merging *m, const lensprof_provenance *provenance) {
+    const int64_t prior = lensprof_provenance_prior(provenance);
+    return prior ? arrived(m, prior) : 0;
+}
+
+/* A new profile. */
+static lensprof_status add(merging *m, lensprof_profile *profile, int64_t *here, lensprof_error *error) {
+    lensprof_provenance *provenance = &profile->provenance;
+    lensprof_status status = LENSPROF_OK;
+    m->added++;
+    if (lensprof_provenance_prior(provenance))
+        status = lensprof_provenance_set_prior(provenance, prior_here(m, provenance));
+    if (status != LENSPROF_OK) /* no room for the number; there is for none */
+        status = lensprof_provenance_set_prior(provenance, 0);
+    return status == LENSPROF_OK ? lp_store_insert(m->store, profile, here, error) : status;
+}
+
+/* A known profile, now in the store's scratch, learns what is in it where only the other database says so. */
+static lensprof_status complete(merging *m, const lensprof_profile *profile, int64_t here, lensprof_error *error) {
+    lensprof_provenance *known = &m->store->scratch.provenance;
+    const int64_t prior = prior_here(m, &profile->provenance);
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    m->known++;
+    if (!prior || lensprof_provenance_prior(known) || lensprof_provenance_set_prior(known, prior) != LENSPROF_OK)
+        return LENSPROF_OK;
+    lensprof_status status =
+        lp_store_prepare(m->store, "UPDATE profiles SET method = ?1 WHERE id = ?2", &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_bind_text(&binder, known->method);
+    lp_bind_integer(&binder, here);
+    return lp_store_run(m->store, &binder, error);
+}
+
+static lensprof_status take(merging *m, int64_t id, lensprof_error *error) {
+    int64_t here = 0;
+    lensprof_profile *profile = &m->other->scratch;
+    lensprof_status status = lp_store_fetch(m->other, id, error);
+    if (status == LENSPROF_OK) status = lp_store_find_same(m->store, profile, &here, error);
+    if (status == LENSPROF_OK) status = here ? complete(m, profile, here, error) : add(m, profile, &here, error);
+    if (status == LENSPROF_OK && !remember(m, id, here))
+        return lp_store_fail_sql(m->store->path, NULL, SQLITE_NOMEM, error);
+    return status;
+}
+
+/* The oldest first, so that the newest of a key stays the newest. */
+static lensprof_status take_all(merging *m, lensprof_error *error) {
+    lensprof_store *other = m->other;
+    sqlite3_stmt *statement;
+    lensprof_status status = lp_store_prepare(other, "SELECT id FROM profiles ORDER BY id", &statement, error);
+    if (status != LENSPROF_OK) return status;
+    int rc = sqlite3_step(statement);
+    while (rc == SQLITE_ROW && status == LENSPROF_OK) {
+        status = take(m, sqlite3_column_int64(statement, 0), error);
+        if (status == LENSPROF_OK) rc = sqlite3_step(statement);
+    }
+    if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(other->path, other->db, rc, error);
+    lp_store_release(other, statement);
+    return status;
+}
+
+lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *other, uint32_t *added, uint32_t *known,
+                                     lensprof_error *error) {
+    lp_store_clear(error);
+    if (!store || !other) return lp_store_fail_argument("store or other is NULL", error);
+    if (store == other || !strcmp(sqlite3_db_filename(store->db, "main"), sqlite3_db_filename(other->db, "main")))
+        return lp_store_fail(other->path, LENSPROF_ERROR_ARGUMENT, "is the database itself",
+                             "name another one to be merged into it", error);
+    lensprof_status status = lp_store_begin(store, true, error);
+    if (status != LENSPROF_OK) return status;
+    status = lp_store_begin(other, false, error);
+    merging m = {store, other, NULL, 0, 0, 0, 0};
+    if (status == LENSPROF_OK) {
+        status = take_all(&m, error);
+        lp_store_rollback(other);
+        free(m.all);
+    }
+    if (status == LENSPROF_OK)
+        status = lp_store_commit(store, error);
+    else
+        lp_store_rollback(store);
+    if (status == LENSPROF_OK && added) *added = m.added;
+    if (status == LENSPROF_OK && known) *known = m.known;
+    return status;
+}

@@ -1,0 +1,255 @@
+/* Finding, fetching and listing profiles. */
+#include "store/file/private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What layout 3 added, and what stands for it in older ones. */
+#define UNIT_3 "unit"
+#define CROP_3 "crop_factor"
+#define DOUBT_3 "doubt"
+#define UNIT_1 "''"
+#define CROP_1 "NULL"
+#define DOUBT_1 "''"
+
+/* clang-format off */
+#define ROW_COLUMNS(unit, crop, doubt) \
+    "id, camera_maker, camera_model, lens, " unit " AS unit, " crop " AS crop_factor, focal_mm, aperture," \
+    " distance_m, processing, method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, " doubt " AS doubt"
+/* clang-format on */
+
+/* Texts are equal without ASCII case and outer blanks. */
+#define SAME_TEXT(column, value) "trim(" column ") COLLATE NOCASE = trim(" value ")"
+/* Numbers are equal to 1e-6 of the smaller one, so that infinity equals infinity (IS) and nothing else. */
+#define SAME_NUMBER(column, value) \
+    "(" column " IS " value " OR abs(" column " - " value ") <= 1e-6 * min(" column ", " value "))"
+#define ANY_TEXT(column, value) "(trim(" value ") = '' OR " SAME_TEXT(column, value) ")"
+#define ANY_NUMBER(column, value) "(" value " IS NULL OR " SAME_NUMBER(column, value) ")"
+
+static void bind_key(lp_store_binder *binder, const lensprof_profile_key *key) {
+    lp_bind_text(binder, key->camera_maker);
+    lp_bind_text(binder, key->camera_model);
+    lp_bind_text(binder, key->lens);
+    lp_bind_text(binder, key->unit);
+    lp_bind_known(binder, key->crop_factor);
+    lp_bind_known(binder, key->focal_mm);
+    lp_bind_known(binder, key->aperture);
+    lp_bind_known(binder, key->distance_m);
+}
+
+/* Columns ROW_COLUMNS. Texts are zero-filled. The caller validates key and provenance. */
+static void read_row(lp_store_reader *reader, lensprof_store_row *row) {
+    lensprof_profile_key *key = &row->key;
+    lensprof_provenance *provenance = &row->provenance;
+    memset(row, 0, sizeof *row);
+    row->id = lp_read_integer(reader, 1, INT64_MAX);
+    lp_read_text(reader, key->camera_maker, sizeof key->camera_maker);
+    lp_read_text(reader, key->camera_model, sizeof key->camera_model);
+    lp_read_text(reader, key->lens, sizeof key->lens);
+    lp_read_text(reader, key->unit, sizeof key->unit);
+    key->crop_factor = lp_read_known(reader);
+    key->focal_mm = lp_read_known(reader);
+    key->aperture = lp_read_known(reader);
+    key->distance_m = lp_read_known(reader);
+    key->processing = lp_read_name(reader, lp_store_processings, LP_STORE_PROCESSINGS);
+    lp_read_text(reader, provenance->method, sizeof provenance->method);
+    lp_read_text(reader, provenance->software, sizeof provenance->software);
+    lp_read_text(reader, provenance->source, sizeof provenance->source);
+    if (!lp_read_null(reader)) provenance->created_unix_s = lp_read_integer(reader, INT64_MIN, INT64_MAX);
+    provenance->images = (uint32_t)lp_read_integer(reader, 0, UINT32_MAX);
+    provenance->pairs = (uint32_t)lp_read_integer(reader, 0, UINT32_MAX);
+    provenance->heldout_rms = lp_read_known(reader);
+    provenance->inlier_share = lp_read_known(reader);
+    lp_read_text(reader, provenance->doubt, sizeof provenance->doubt);
+}
+
+/* From the row at which `statement` stands, and its curves, into store->scratch. */
+static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *statement, int64_t *id,
+                                    lensprof_error *error) {
+    lensprof_store_row row;
+    lensprof_profile *profile = &store->scratch;
+    lp_store_reader reader = {statement, 0, NULL};
+    lensprof_profile_init(profile);
+    read_row(&reader, &row);
+    profile->key = row.key;
+    profile->provenance = row.provenance;
+    profile->responses = (uint32_t)lp_read_integer(&reader, 1, 3); /* lensprof_profile_validate refuses 2 */
+    profile->vignettings = (uint32_t)lp_read_integer(&reader, 1, 3);
+    profile->covariance_size = (uint32_t)lp_read_integer(&reader, 0, LENSPROF_COVARIANCE_MAX);
+    if (profile->covariance_size)
+        lp_read_doubles(&reader, profile->covariance, profile->covariance_size * profile->covariance_size);
+    else
+        lp_read_nothing(&reader);
+    uint32_t grids = (uint32_t)lp_read_integer(&reader, 0, 1);
+    *id = sqlite3_column_int64(statement, 0);
+    if (reader.bad) return lp_store_fail_profile(store, *id, reader.bad, error);
+    lensprof_status status = lp_store_read_curves(store, *id, grids, error);
+    if (status != LENSPROF_OK) return status;
+    status = lensprof_profile_validate(profile);
+    return status == LENSPROF_OK ? LENSPROF_OK : lp_store_fail_profile(store, *id, lensprof_status_name(status), error);
+}
+
+/* clang-format off */
+#define SELECT_PROFILE(unit, crop, doubt, grids) \
+    "SELECT " ROW_COLUMNS(unit, crop, doubt) ", response_curves, vignetting_curves, covariance_size, covariance, " \
+    grids " FROM profiles WHERE "
+#define WITH_KEY(unit, crop) \
+    SAME_TEXT("camera_maker", "?1") " AND " SAME_TEXT("camera_model", "?2") " AND " SAME_TEXT("lens", "?3") " AND " \
+    SAME_TEXT(unit, "?4") " AND " SAME_NUMBER(crop, "?5") " AND " SAME_NUMBER("focal_mm", "?6") " AND " \
+    SAME_NUMBER("aperture", "?7") " AND " SAME_NUMBER("distance_m", "?8") " AND processing = ?9 ORDER BY id DESC LIMIT 1"
+#define WITH_ID "id = ?1"
+#define LIST(unit, crop, doubt) /* one order for all: that of the index profiles_by_key */ \
+    "SELECT " ROW_COLUMNS(unit, crop, doubt) " FROM profiles WHERE " \
+    ANY_TEXT("camera_maker", "?1") " AND " ANY_TEXT("camera_model", "?2") " AND " ANY_TEXT("lens", "?3") " AND " \
+    ANY_TEXT(unit, "?4") " AND " ANY_NUMBER(crop, "?5") " AND " ANY_NUMBER("focal_mm", "?6") " AND " \
+    ANY_NUMBER("aperture", "?7") " AND " ANY_NUMBER("distance_m", "?8") \
+    " ORDER BY trim(camera_maker) COLLATE NOCASE, trim(camera_model) COLLATE NOCASE, trim(lens) COLLATE NOCASE," \
+    " focal_mm, aperture, distance_m, id"
+/* clang-format on */
+
+/* By layout. */
+static const struct statements {
+    const char *find, *get, *list;
+} statements[LP_STORE_LAYOUT] = {
+    {SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "0 AS gain_grids") WITH_KEY(UNIT_1, CROP_1),
+     SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "0 AS gain_grids") WITH_ID, LIST(UNIT_1, CROP_1, DOUBT_1)},
+    {SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "gain_grids") WITH_KEY(UNIT_1, CROP_1),
+     SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "gain_grids") WITH_ID, LIST(UNIT_1, CROP_1, DOUBT_1)},
+    {SELECT_PROFILE(UNIT_3, CROP_3, DOUBT_3, "gain_grids") WITH_KEY(UNIT_3, CROP_3),
+     SELECT_PROFILE(UNIT_3, CROP_3, DOUBT_3, "gain_grids") WITH_ID, LIST(UNIT_3, CROP_3, DOUBT_3)}};
+
+/* Reads the profile with `key`, or with `*id` when key is NULL, into store->scratch. */
+static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *key, int64_t *id,
+                             lensprof_error *error) {
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    const struct statements *of_layout = &statements[store->layout - 1];
+    lensprof_status status = lp_store_prepare(store, key ? of_layout->find : of_layout->get, &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    if (key) {
+        bind_key(&binder, key);
+        lp_bind_text(&binder, lp_store_processings[key->processing]);
+    } else
+        lp_bind_integer(&binder, *id);
+    int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
+    if (rc == SQLITE_ROW)
+        status = read_profile(store, binder.statement, id, error);
+    else if (rc != SQLITE_DONE)
+        status = lp_store_fail_sql(store->path, store->db, rc, error);
+    else if (!key)
+        status = lp_store_fail_missing(store, *id, error);
+    else
+        status = lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile with this key",
+                               "list the profiles to see which there are", error);
+    lp_store_release(store, binder.statement);
+    return status;
+}
+
+lensprof_status lp_store_fetch(lensprof_store *store, int64_t id, lensprof_error *error) {
+    return fetch(store, NULL, &id, error);
+}
+
+static lensprof_status fetch_in_transaction(lensprof_store *store, const lensprof_profile_key *key, int64_t *id,
+                                            lensprof_error *error) {
+    lensprof_status status = lp_store_begin(store, false, error);
+    if (status != LENSPROF_OK) return status;
+    status = fetch(store, key, id, error);
+    lp_store_rollback(store);
+    return status;
+}
+
+lensprof_status lensprof_store_find(lensprof_store *store, const lensprof_profile_key *key, lensprof_profile *profile,
+                                    int64_t *id, lensprof_error *error) {
+    int64_t found = 0;
+    lp_store_clear(error);
+    if (!store || !key || !profile) return lp_store_fail_argument("store, key or profile is NULL", error);
+    lensprof_status status = lensprof_profile_key_validate(key);
+    if (status != LENSPROF_OK) return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
+    status = fetch_in_transaction(store, key, &found, error);
+    if (status != LENSPROF_OK) return status;
+    *profile = store->scratch;
+    if (id) *id = found;
+    return LENSPROF_OK;
+}
+
+lensprof_status lensprof_store_get(lensprof_store *store, int64_t id, lensprof_profile *profile,
+                                   lensprof_error *error) {
+    lp_store_clear(error);
+    if (!store || !profile) return lp_store_fail_argument("store or profile is NULL", error);
+    lensprof_status status = fetch_in_transaction(store, NULL, &id, error);
+    if (status == LENSPROF_OK) *profile = store->scratch;
+    return status;
+}
+
+/* Rows as they come, in a buffer that grows, so that the caller's stays untouched when a later row fails. */
+typedef struct listing {
+    lensprof_store_row *rows;
+    uint32_t kept, room, capacity, found;
+} listing;
+
+static bool keep(listing *list, const lensprof_store_row *row) {
+    if (list->found < UINT32_MAX) list->found++;
+    if (list->kept == list->capacity) return true;
+    if (list->kept == list->room) {
+        uint32_t room = list->room > list->capacity / 2 ? list->capacity : list->room ? 2 * list->room : 16;
+        if (room > list->capacity) room = list->capacity;
+        uint64_t bytes = (uint64_t)room * sizeof *list->rows;
+        lensprof_store_row *rows = bytes == (size_t)bytes ? realloc(list->rows, (size_t)bytes) : NULL;
+        if (!rows) return false;
+        list->rows = rows;
+        list->room = room;
+    }
+    list->rows[list->kept++] = *row;
+    return true;
+}
+
+static lensprof_status list_row(lensprof_store *store, sqlite3_stmt *statement, listing *list, lensprof_error *error) {
+    lensprof_store_row row;
+    lp_store_reader reader = {statement, 0, NULL};
+    read_row(&reader, &row);
+    if (reader.bad) return lp_store_fail_profile(store, sqlite3_column_int64(statement, 0), reader.bad, error);
+    store->scratch.key = row.key; /* the rest of it is valid */
+    store->scratch.provenance = row.provenance;
+    if (lensprof_profile_validate(&store->scratch) != LENSPROF_OK)
+        return lp_store_fail_profile(store, row.id, "key or provenance", error);
+    return keep(list, &row) ? LENSPROF_OK : lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
+}
+
+static lensprof_status list_rows(lensprof_store *store, const lensprof_profile_key *filter, listing *list,
+                                 lensprof_error *error) {
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    lensprof_status status = lp_store_prepare(store, statements[store->layout - 1].list, &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    bind_key(&binder, filter);
+    lensprof_profile_init(&store->scratch);
+    int rc = binder.rc;
+    if (rc == SQLITE_OK) rc = sqlite3_step(binder.statement);
+    while (rc == SQLITE_ROW && status == LENSPROF_OK) {
+        status = list_row(store, binder.statement, list, error);
+        if (status == LENSPROF_OK) rc = sqlite3_step(binder.statement);
+    }
+    if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, binder.statement);
+    return status;
+}
+
+lensprof_status lensprof_store_list(lensprof_store *store, const lensprof_profile_key *filter, lensprof_store_row *rows,
+                                    uint32_t capacity, uint32_t *found, lensprof_error *error) {
+    lensprof_profile_key any;
+    listing list = {NULL, 0, 0, capacity, 0};
+    lp_store_clear(error);
+    if (!store || !found || (capacity && !rows)) return lp_store_fail_argument("store, rows or found is NULL", error);
+    lensprof_profile_key_init(&any);
+    if (!filter) filter = &any;
+    if (lensprof_profile_key_validate(filter) != LENSPROF_OK)
+        return lp_store_fail_argument("the filter is not valid; see lensprof_profile_key", error);
+    lensprof_status status = lp_store_begin(store, false, error);
+    if (status != LENSPROF_OK) return status;
+    status = list_rows(store, filter, &list, error);
+    lp_store_rollback(store);
+    if (status == LENSPROF_OK) {
+        if (list.kept) memcpy(rows, list.rows, list.kept * sizeof *rows);
+        *found = list.found;
+    }
+    free(list.rows);
+    return status;
+}
