@@ -2,6 +2,7 @@
 """Layer rules, by the #include lines: who may use what (docs/architecture.md, section 2).
 
 usage: include_rules.py SOURCE_DIR       list violations; exit 1 when there are any
+       include_rules.py --draw SOURCE_DIR   print the rooms of every layer, whom each includes, and how many floors they make
        include_rules.py --self-check     plant violations in made-up trees; exit 1 when one is not found
 """
 
@@ -220,6 +221,31 @@ def check_tree(root):
     return violations, files
 
 
+def draw(root):
+    """Every room with the rooms that it includes, the ground floor first."""
+    below = {}
+    for path in sorted(p for p in (root / "src").rglob("*") if p.suffix in SOURCES):
+        room = path.parent.relative_to(root / "src").as_posix()
+        below.setdefault(room, set())
+        for line in path.read_text(encoding="utf-8").splitlines():
+            match = INCLUDE.match(line)
+            target = match and match.group(2) and match.group(2).rpartition("/")[0]
+            if target and target != room:
+                below[room].add(target)
+
+    def floor(room, above=()):
+        if room in above:
+            sys.exit(f"circle: {' -> '.join((*above, room))}")
+        return 1 + max((floor(r, (*above, room)) for r in below.get(room, ())), default=-1)
+
+    for layer in sorted({room.split("/")[0] for room in below}):
+        rooms = sorted((floor(room), room) for room in below if room.split("/")[0] == layer)
+        arrows = sum(r.split("/")[0] == layer for _, room in rooms for r in below[room])
+        print(f"{layer}: {len(rooms)} rooms, {arrows} arrows between them")
+        for level, room in rooms:
+            print(f"  floor {level}  {room:36} {', '.join(sorted(below[room]))}")
+
+
 GOOD = {
     "include/lensprof/base.h": "#include <stddef.h>\n#include <stdint.h>\n",
     "include/lensprof/store.h": '#include "base.h"\n',
@@ -306,6 +332,9 @@ def self_check():
 def main():
     if sys.argv[1:] == ["--self-check"]:
         return self_check()
+    if len(sys.argv) == 3 and sys.argv[1] == "--draw":
+        draw(pathlib.Path(sys.argv[2]))
+        return 0
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     violations, files = check_tree(pathlib.Path(sys.argv[1]))
