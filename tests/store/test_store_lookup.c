@@ -2,7 +2,7 @@
 #include "store_fixture.h"
 
 #include "store/lookup/falloff_prediction.h"
-#include "store/lookup/names.h"
+#include "store/names/names.h"
 
 static lensprof_profile shared; /* 50 kB */
 

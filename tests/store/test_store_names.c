@@ -1,7 +1,7 @@
 /* Names that are written in many ways: what is the same lens or camera, and above all what is not. */
 #include "store_fixture.h"
 
-#include "store/lookup/names.h"
+#include "store/names/names.h"
 
 static void test_scores(void **state) {
     static const struct {

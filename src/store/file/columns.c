@@ -4,9 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-const char *const lp_store_processings[LP_STORE_PROCESSINGS] = {"raw", "jpeg", "corrected"};
-const char *const lp_store_kinds[LP_STORE_KINDS] = {"linear", "gamma", "emor", "table"};
-
 #define LARGEST_BLOB                                                                                \
     (4 * 3 * LENSPROF_GRID_SIDE * LENSPROF_GRID_SIDE) /* bytes: a gain grid; a covariance has 10368 \
                                                        */

@@ -1,44 +1,7 @@
 /* The write-ahead log: readers and one writer at once, and a commit is one synchronised write. */
 #include "store/file/private.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #define SETTLE_MS 50 /* others that read keep the mode from being changed; the next write tries again */
-
-bool lp_store_has_log(const char *full) {
-    sqlite3_vfs *vfs = sqlite3_vfs_find(NULL);
-    char *log = sqlite3_mprintf("%s-wal", full);
-    int there = 0;
-    if (log) (void)vfs->xAccess(vfs, log, SQLITE_ACCESS_EXISTS, &there); /* false for one of no bytes */
-    sqlite3_free(log);
-    return there != 0;
-}
-
-bool lp_store_is_folder_writable(const char *full, bool *exists) {
-    sqlite3_vfs *vfs = sqlite3_vfs_find(NULL); /* there is one: it was asked to open the file */
-    const char *slash = strrchr(full, '/');
-    char *folder = slash ? sqlite3_mprintf("%.*s", (int)(slash - full) + 1, full) : sqlite3_mprintf(".");
-    int is_there = 1, writable = 1;
-    if (folder) (void)vfs->xAccess(vfs, folder, SQLITE_ACCESS_EXISTS, &is_there);
-    if (folder) (void)vfs->xAccess(vfs, folder, SQLITE_ACCESS_READWRITE, &writable);
-    sqlite3_free(folder);
-    *exists = is_there != 0;
-    return writable != 0;
-}
-
-char *lp_store_immutable_uri(const char *full) {
-    char *uri = sqlite3_malloc64(3 * strlen(full) + 32), *end = uri;
-    if (!uri) return NULL;
-    end += sprintf(end, "file:");
-    for (; *full; full++) {
-        const bool plain = (*full >= 'a' && *full <= 'z') || (*full >= 'A' && *full <= 'Z')
-                           || (*full >= '0' && *full <= '9') || strchr("/._-", *full);
-        end += plain ? sprintf(end, "%c", *full) : sprintf(end, "%%%02X", (unsigned)(unsigned char)*full);
-    }
-    sprintf(end, "?immutable=1");
-    return uri;
-}
 
 /* Those who use a log hold a lock on the file. Without them its index can go; SQLite removes the log itself. */
 void lp_store_clear_log(const char *full) {

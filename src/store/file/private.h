@@ -33,7 +33,11 @@ struct lensprof_store {
 /* profiles/schema: number n makes layout n of layout n - 1. */
 extern const char lp_schema_0001[], lp_schema_0002[], lp_schema_0003[];
 
-/* store_error.c: each sets `error` (may be NULL) to "path: what; next" and returns the status. */
+/* place.c: what lies around the file with the full path `full`. */
+bool lp_store_has_log(const char *full); /* a log that is not empty lies beside the file */
+bool lp_store_is_folder_writable(const char *full, bool *exists);
+
+/* error.c: each sets `error` (may be NULL) to "path: what; next" and returns the status. */
 lensprof_status lp_store_fail(const char *path, lensprof_status status, const char *what, const char *next,
                               lensprof_error *error);
 /* For a result code of SQLite on this store; `db` (may be NULL) adds its message. Never LENSPROF_OK. */
@@ -45,7 +49,7 @@ lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const c
 lensprof_status lp_store_fail_missing(const lensprof_store *store, int64_t id, lensprof_error *error);
 void lp_store_clear(lensprof_error *error);
 
-/* store_header.c: what the first 100 bytes say, read without lock, journal or trace. */
+/* header.c: what the first 100 bytes say, read without lock, journal or trace. */
 typedef enum lp_store_file {
     LP_STORE_FILE_MISSING,
     LP_STORE_FILE_EMPTY,
@@ -56,20 +60,21 @@ typedef enum lp_store_file {
 /* `full` receives the full path, sqlite3_free it. Errors: NOT_FOUND, STORE, MEMORY ... with text. */
 lensprof_status lp_store_probe(const char *path, lp_store_file *file, char **full, lensprof_error *error);
 
-/* store_log.c: the write-ahead log. */
+/* log.c: the write-ahead log. */
 int lp_store_settle_journal(lensprof_store *store); /* behind a commit: result code, of no matter to that */
-bool lp_store_has_log(const char *full);            /* a log that is not empty lies beside the file */
-bool lp_store_is_folder_writable(const char *full, bool *exists);
-void lp_store_clear_log(const char *full);      /* files of a log that could not be begun; never one in use */
-char *lp_store_immutable_uri(const char *full); /* sqlite3_free it; NULL = no memory */
+void lp_store_clear_log(const char *full);          /* files of a log that could not be begun; never one in use */
 
-/* store_open.c. Connects again where another process has begun to write beside an immutable file. */
+/* connection.c: a new connection, configured for the store's mode; result code. */
+int lp_store_connect(const lensprof_store *store, const char *full, bool immutable, sqlite3 **db);
+/* Connects again where another process has begun to write beside an immutable file. */
 lensprof_status lp_store_refresh(lensprof_store *store, lensprof_error *error);
+
+/* open.c. */
 /* lensprof_store_open waits LP_STORE_BUSY_MS for other processes; tests wait less. */
 lensprof_status lp_store_open_waiting(const char *path, uint32_t mode, int busy_ms, lensprof_store **store,
                                       lensprof_error *error);
 
-/* store_transaction.c */
+/* transaction.c */
 int lp_store_number(sqlite3 *db, const char *sql, int64_t *value); /* result code; one integer from one row */
 int lp_store_migrate(sqlite3 *db, int layout); /* result code; from tables of `layout` to those of LP_STORE_LAYOUT */
 /* Starts a transaction and checks that the file is (still) a database. One of an older layout is read as it is, and
@@ -78,7 +83,7 @@ lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error
 lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error); /* rolls back when it fails */
 void lp_store_rollback(lensprof_store *store);
 
-/* store_statements.c: statements are prepared once a handle. `sql` is a literal. The statement is the caller's until he
+/* statements.c: statements are prepared once a handle. `sql` is a literal. The statement is the caller's until he
  * releases it, whatever happened to it. */
 lensprof_status lp_store_prepare(lensprof_store *store, const char *sql, sqlite3_stmt **statement,
                                  lensprof_error *error);
@@ -87,10 +92,7 @@ void lp_store_forget_statements(lensprof_store *store);       /* before the conn
 int lp_store_execute(lensprof_store *store, const char *sql); /* result code; without parameters, rows */
 int lp_store_integer(lensprof_store *store, const char *sql, int64_t *value); /* as lp_store_number */
 
-/* store_read.c: the profile with an id, within a transaction, into store->scratch. */
-lensprof_status lp_store_fetch(lensprof_store *store, int64_t id, lensprof_error *error);
-
-/* store_columns.c (and lp_store_run in store_statements.c): parameters and columns, each call takes the next one. */
+/* columns.c (and lp_store_run in statements.c): parameters and columns, each call takes the next one. */
 typedef struct lp_store_binder {
     sqlite3_stmt *statement;
     int column;
@@ -121,28 +123,5 @@ void lp_read_text(lp_store_reader *reader, char *text, size_t capacity); /* zero
 void lp_read_doubles(lp_store_reader *reader, double *values, uint32_t count);
 void lp_read_floats(lp_store_reader *reader, float *values, uint32_t count);
 uint32_t lp_read_name(lp_store_reader *reader, const char *const *names, uint32_t count); /* index of the text */
-
-/* store_write.c: a profile known to be valid, within a transaction; and its columns, in the order of that INSERT. */
-lensprof_status lp_store_insert(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
-                                lensprof_error *error);
-void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *profile, const char *lens_name);
-
-/* store_same.c: the id of the same valid profile, 0 where there is none; within a transaction that writes. */
-lensprof_status lp_store_find_same(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
-                                   lensprof_error *error);
-
-/* Words of the database for enum values; the position is the value. They are part of the layout. */
-#define LP_STORE_PROCESSINGS 3
-#define LP_STORE_KINDS 4
-extern const char *const lp_store_processings[LP_STORE_PROCESSINGS];
-extern const char *const lp_store_kinds[LP_STORE_KINDS];
-
-/* store_curves.c: rows of responses, emor_coefficients, vignettings and gain_grids. */
-/* The response that its kind, gamma, coefficients or table describe, from nothing else. */
-lensprof_status lp_store_rebuild(const lensprof_response *from, lensprof_response *response);
-lensprof_status lp_store_put_curves(lensprof_store *store, int64_t id, const lensprof_profile *profile,
-                                    lensprof_error *error);
-/* Into store->scratch, which knows how many curves there are; `grids` is the number of gain grids, 0 or 1. */
-lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, uint32_t grids, lensprof_error *error);
 
 #endif

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "store/lookup/names.h"
+#include "store/names/names.h"
 
 #define BUILT_IN_SCORE 0.6 /* of a lens that was found by its camera */
 #define SHORTEST_CAMERA 3  /* characters of a name that says something within another one */

@@ -2,8 +2,8 @@
 #ifndef LENSPROF_STORE_LOOKUP_CANDIDATES_H
 #define LENSPROF_STORE_LOOKUP_CANDIDATES_H
 
-#include "store/file/private.h"
 #include "store/lookup/falloff_prediction.h"
+#include "store/profiles/profiles.h"
 
 /* A row of the lens: how well it fits the camera, and its node. */
 typedef struct lp_candidate {

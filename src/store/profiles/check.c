@@ -1,11 +1,11 @@
 /* Everything in a database read and checked, with all that is wrong and not only the first. */
-#include "store/file/private.h"
+#include "store/profiles/profiles.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "store/lookup/names.h"
+#include "store/names/names.h"
 
 typedef struct inspection {
     lensprof_store *store;

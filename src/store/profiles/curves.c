@@ -1,7 +1,9 @@
 /* The rows that hang on a profile: responses with their coefficients, vignettings, and the gain grid. */
-#include "store/file/private.h"
+#include "store/profiles/profiles.h"
 
 #include <string.h>
+
+const char *const lp_store_kinds[LP_STORE_KINDS] = {"linear", "gamma", "emor", "table"};
 
 lensprof_status lp_store_rebuild(const lensprof_response *from, lensprof_response *response) {
     lensprof_response_set_linear(response);

@@ -1,5 +1,5 @@
 /* Profiles of another database, as they are. */
-#include "store/file/private.h"
+#include "store/profiles/profiles.h"
 
 #include <stdlib.h>
 #include <string.h>

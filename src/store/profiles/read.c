@@ -1,8 +1,10 @@
 /* Finding, fetching and listing profiles. */
-#include "store/file/private.h"
+#include "store/profiles/profiles.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+const char *const lp_store_processings[LP_STORE_PROCESSINGS] = {"raw", "jpeg", "corrected"};
 
 /* What layout 3 added, and what stands for it in older ones. */
 #define UNIT_3 "unit"

@@ -1,9 +1,9 @@
 /* Whether a profile is there already: the one rule of merging and importing. */
-#include "store/file/private.h"
+#include "store/profiles/profiles.h"
 
 #include <string.h>
 
-#include "store/lookup/names.h"
+#include "store/names/names.h"
 
 /* Rows of `profiles` with the columns as lp_store_bind_profile binds them, but method and software: which profile is in
  * one, and which version of a program made it, make no other. The first three lines are the way through the index

@@ -1,5 +1,5 @@
 /* How much of what is in a database. */
-#include "store/file/private.h"
+#include "store/profiles/profiles.h"
 
 #include <string.h>
 

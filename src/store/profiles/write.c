@@ -1,10 +1,10 @@
 /* Adding and removing profiles. */
-#include "store/file/private.h"
+#include "store/profiles/profiles.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#include "store/lookup/names.h"
+#include "store/names/names.h"
 
 #define SAME_CURVE 1e-9 /* of the grey range; far below what a picture can show */
 

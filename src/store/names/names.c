@@ -1,4 +1,4 @@
-#include "store/lookup/names.h"
+#include "store/names/names.h"
 
 #include <stddef.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Names of lenses compared word by word, where nothing else finds one. */
-#include "store/lookup/names.h"
+#include "store/names/names.h"
 
 #include <stdlib.h>
 #include <string.h>
