@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/correct/correction.hpp"
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/fitting/static_camera.hpp"
 #include "cli/pictures/clipping.hpp"
+#include "cli/program/commands.hpp"
+#include "cli/program/options.hpp"
 
 namespace lensprof {
 namespace {

@@ -5,10 +5,15 @@
 #include <memory>
 #include <set>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/correct/correction.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/profiles/lookup_report.hpp"
+#include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 
 namespace lensprof {

@@ -5,7 +5,11 @@
 #include <filesystem>
 #include <set>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/pictures/picture.hpp"
+#include "cli/program/options.hpp"
 
 namespace lensprof {
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures) {

@@ -5,11 +5,17 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/pictures/contact_sheet.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace lensprof {
 

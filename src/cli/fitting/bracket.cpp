@@ -4,11 +4,16 @@
 #include <numeric>
 #include <optional>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/static_camera.hpp"
+#include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/numbers.hpp"
+#include "cli/program/options.hpp"
 
 namespace lensprof {
 namespace {

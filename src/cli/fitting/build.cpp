@@ -2,10 +2,15 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/project.hpp"
+#include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 
 namespace lensprof {

@@ -4,8 +4,12 @@
 #include <cmath>
 #include <regex>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/fitting/project.hpp"
 #include "cli/program/interrupt.hpp"
+#include "cli/program/options.hpp"
 
 namespace lensprof {
 namespace {

@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/stored_prior.hpp"
 #include "cli/pictures/metadata.hpp"
@@ -15,6 +13,10 @@
 #include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace lensprof {
 

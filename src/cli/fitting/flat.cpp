@@ -4,8 +4,13 @@
 #include <chrono>
 #include <regex>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/fitting/fitting.hpp"
+#include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 
 namespace lensprof {

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/fitting/profile_store.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli/program/library.hpp"

@@ -1,6 +1,8 @@
 // What `lensprof flat` says: a JSON object, and a table for people.
 #include <algorithm>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/fitting/flat.hpp"
 #include "cli/program/format.hpp"
 

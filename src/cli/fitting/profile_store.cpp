@@ -3,6 +3,9 @@
 #include <ctime>
 #include <filesystem>
 
+#include <CLI/CLI.hpp>
+
+#include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"

@@ -4,9 +4,11 @@
 #include <memory>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/program/library.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace lensprof {
 

@@ -2,6 +2,9 @@
 
 #include <cstdio>
 
+#include <CLI/CLI.hpp>
+
+#include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 
 namespace lensprof {

@@ -1,9 +1,11 @@
 // The options of `profile import` and `profile export` that say what files do not.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "cli/profiles/foreign_file.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace lensprof {
 

@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include <lensprof/lensprof.h>
 
 #include "cli/program/library.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace lensprof {
 

@@ -1,4 +1,6 @@
 #include "cli/profiles/lookup_report.hpp"
+#include <nlohmann/json.hpp>
+
 #include "cli/program/format.hpp"
 
 namespace lensprof {

@@ -1,10 +1,15 @@
 // `lensprof profile list | show | remove | export`, and the way to the verbs that have files of their own.
 #include <algorithm>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/profile_blob.hpp"
+#include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/chart.hpp"
 #include "cli/report/falloff.hpp"

@@ -1,6 +1,11 @@
 // `lensprof profile check` and `lensprof profile stats`: the state of a database.
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 

@@ -1,13 +1,18 @@
 // `lensprof profile export`: profiles as files of other programs, and as blobs for firmware.
 #include <cstdlib>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/pictures/picture.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/foreign_options.hpp"
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/profile_blob.hpp"
+#include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 

@@ -3,13 +3,18 @@
 #include <filesystem>
 #include <set>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/fitting/profile_store.hpp"
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/foreign_options.hpp"
 #include "cli/profiles/key_filter.hpp"
+#include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 

@@ -1,10 +1,15 @@
 // `lensprof profile merge`: profiles of other databases.
 #include <filesystem>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/fitting/profile_store.hpp"
+#include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 

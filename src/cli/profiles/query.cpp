@@ -2,9 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/lookup_report.hpp"
+#include "cli/program/commands.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/program/error.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
 #include "cli/report/falloff.hpp"

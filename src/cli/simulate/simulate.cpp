@@ -6,10 +6,15 @@
 #include <cstring>
 #include <filesystem>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "cli/fitting/project.hpp"
 #include "cli/pictures/picture.hpp"
+#include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/numbers.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/parallel.hpp"
 #include "cli/program/progress.hpp"
