@@ -1,4 +1,5 @@
 // The C face of the overlap fit: checks, and the exception fence.
+#include <chrono>
 #include <cmath>
 #include <new>
 
@@ -188,14 +189,18 @@ lensprof_status check_call(const lensprof_fit_options *options, const lensprof_f
     return status == LENSPROF_OK ? check_images(images, image_count, error) : status;
 }
 
-// The exception fence around a fit.
+// The exception fence around a fit, and its time.
 template <class Fit>
 lensprof_status run(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-                    lensprof_error *error, Fit fit) {
+                    lensprof_fit_result &result, lensprof_error *error, Fit fit) {
     try {
         if (!has_unknowns(options, images, image_count))
             return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "fit: every parameter is fixed; free at least one");
-        return fit();
+        const auto began = std::chrono::steady_clock::now();
+        const lensprof_status status = fit();
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - began;
+        if (status == LENSPROF_OK) result.seconds = taken.count();
+        return status;
     } catch (const Cancelled &) {
         return fail(LENSPROF_ERROR_CANCELLED, error, "fit: cancelled");
     } catch (const std::bad_alloc &) {
@@ -253,7 +258,7 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
         status = check_debevec(*options, images, image_count, error);
     if (status != LENSPROF_OK) return status;
     if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
-    return run(*options, images, image_count, error, [&] {
+    return run(*options, images, image_count, *result, error, [&] {
         if (options->method == LENSPROF_METHOD_TRANSFER) {
             fit_overlap(*options, images, image_count, pairs, pair_count, exposures, *result);
             return LENSPROF_OK;
@@ -286,7 +291,7 @@ lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const
                                     static_cast<int>(options->channels), error);
     if (status != LENSPROF_OK) return status;
     if (observation_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no observations were given");
-    return run(*options, images, image_count, error, [&] {
+    return run(*options, images, image_count, *result, error, [&] {
         return fit_tracks(*options, images, image_count, observations, observation_count, exposures, *result, error);
     });
 }

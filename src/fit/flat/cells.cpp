@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/base/constants.hpp"
 #include "fit/base/parallel.hpp"
 #include "fit/base/quantile.hpp"
 
@@ -16,8 +17,7 @@ constexpr double kLargestBeyond = 0.01;  // of a cell's pixels beyond black or w
 constexpr float kCut = 3.0f;             // sigmas from the median that the mean takes in
 constexpr float kFar = 5.0f;             // sigmas: no noise
 constexpr double kFewestLow = 4.0;       // pixels far below the rest: fewer come by chance, or are single dead ones
-constexpr float kMadToSigma = 1.4826f;
-constexpr size_t kNoiseLevels = 8;  // grey levels of a noise curve
+constexpr size_t kNoiseLevels = 8;       // grey levels of a noise curve
 
 // One step of the samples: what two neighbours differ by at least when they differ.
 float quantum(uint32_t sample) {
@@ -31,7 +31,7 @@ float noise_of(std::vector<float> &differences, float step) {
     std::vector<float> away(differences.size());
     for (size_t i = 0; i < away.size(); i++) away[i] = std::abs(differences[i] - center);
     std::vector<float> order = away;
-    float limit = 4.0f * std::max(kMadToSigma * median(order), step);
+    float limit = 4.0f * std::max(static_cast<float>(kMadToSigma) * median(order), step);
     double sum = 0.0, kept = 0.0;
     for (float a : away)
         if (a <= limit) sum += static_cast<double>(a) * a, kept += 1.0;
@@ -48,7 +48,7 @@ Robust robust_mean_of(std::vector<float> &values, float noise) {
     float center = median(values);
     std::vector<float> away(values.size());
     for (size_t i = 0; i < away.size(); i++) away[i] = std::abs(values[i] - center);
-    float spread = std::max(kMadToSigma * median(away), noise);
+    float spread = std::max(static_cast<float>(kMadToSigma) * median(away), noise);
     double sum = 0.0, kept = 0.0, low = 0.0;
     for (float v : values) {
         if (std::abs(v - center) <= kCut * spread) sum += v - center, kept += 1.0;

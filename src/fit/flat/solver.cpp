@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
 #include "fit/prior/prior.hpp"
 #include "fit/problem/loss.hpp"
@@ -19,8 +20,7 @@ constexpr int kMostSteps = 60;
 constexpr double kSmallestGain = 1e-8;  // of the objective, at which a fit has settled
 constexpr double kLargestDamping = 1e12;
 constexpr double kSmallestScale = 0.2;
-constexpr double kMedianChi2 = 0.4549, kMedianChi2Of3 = 2.366;  // of chi-squared, 1 and 3 degrees of freedom
-constexpr double kLn2 = 0.6931471805599453;
+constexpr double kMedianChi2 = 0.4549, kMedianChi2Of3 = 2.366;   // of chi-squared, 1 and 3 degrees of freedom
 constexpr double kInlierSquare = 0.973, kInlierSquare3 = 0.988;  // mean square of what inlier_limit lets through
 constexpr int kBlocks[] = {4, 8, 16, 32};                        // cells along a block
 constexpr double kSmallestPivot = 1e-11;  // of the scaled normal equations: below, they are singular

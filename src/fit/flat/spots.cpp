@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
 #include "fit/flat/fit.hpp"
 
@@ -61,7 +62,7 @@ SpotMap spots_of_shot(const FlatFit &fit, int shot) {
         map.below[i] = residual[i] - median(near);
         size.push_back(std::abs(map.below[i]) / noise[i]);
     }
-    const double sigma = std::max(1.4826 * median(size), 1.0);
+    const double sigma = std::max(kMadToSigma * median(size), 1.0);
     for (size_t i = 0; i < count; i++)
         map.dark[i] = map.below[i] < -std::max(kFar * sigma * noise[i], kSmallestDepth)
                       || (!std::isnan(residual[i])

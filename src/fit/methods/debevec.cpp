@@ -1,6 +1,5 @@
 #include "fit/methods/debevec.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -11,6 +10,7 @@
 #include "fit/problem/residual.hpp"
 #include "fit/solver/heldout.hpp"
 #include "fit/solver/start.hpp"
+#include "fit/verdict/finish.hpp"
 #include "fit/verdict/quality.hpp"
 
 namespace lensprof {
@@ -146,7 +146,6 @@ void Fit::judge_exposures(const Estimate &estimate, bool is_rising, lensprof_fit
 }
 
 void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) const {
-    auto began = std::chrono::steady_clock::now();
     const bool has_heldout = split_.has_heldout();
     bool is_rising;
     advance(0.0);
@@ -158,19 +157,10 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) const {
     Gauge gauge(options_, all_);
     Prior prior;
     gauge.renew(all_, estimate, prior);
-    lensprof_fit_result r = result;
-    r.iterations = r.converged = 1;
-    std::vector<lensprof_fit_image_quality> own(images_.size());
-    if (!r.image_quality) r.image_quality = own.data();
-    describe_model(all_, estimate, r);
-    describe_heldout(has_heldout ? problem(split_.heldout) : all_, train, has_heldout, r);
-    describe_quality(all_, gauge, estimate_noise(all_, estimate, kFirstNoise), Covariance(), estimate, r);
-    judge(all_, estimate, r);
-    judge_exposures(estimate, is_rising, r);
-    r.image_quality = result.image_quality;
-    write_exposures(all_, estimate, exposures);
-    r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    result = r;
+    finish(
+        {all_, gauge, estimate, has_heldout ? problem(split_.heldout) : all_, train, has_heldout,
+         estimate_noise(all_, estimate, kFirstNoise), Covariance(), 1, true},
+        [&](lensprof_fit_result &r) { judge_exposures(estimate, is_rising, r); }, exposures, result);
 }
 
 }  // namespace

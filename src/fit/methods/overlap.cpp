@@ -1,18 +1,19 @@
 #include "fit/methods/overlap.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <functional>
 #include <memory>
 #include <numeric>
 
+#include "fit/base/constants.hpp"
+#include "fit/methods/method.hpp"
 #include "fit/methods/refine.hpp"
 #include "fit/problem/monotone.hpp"
-#include "fit/solver/heldout.hpp"
 #include "fit/solver/objective.hpp"
 #include "fit/solver/start.hpp"
+#include "fit/verdict/finish.hpp"
 
 namespace lensprof {
 namespace {
@@ -26,7 +27,7 @@ struct Candidate : HeldoutLoss {
     Estimate estimate;
 };
 
-class Fit {
+class Fit : Method {
 public:
     // make(keep): the problem of some of `count` pairs or tracks.
     using Make = std::function<Problem(const std::vector<uint32_t> &keep)>;
@@ -34,21 +35,17 @@ public:
     // `profile`: of the options, or NULL for a fit without it. Progress goes from `from` to `to`.
     Fit(const lensprof_fit_options &options, uint32_t image_count, Make make, uint32_t count,
         const lensprof_profile *profile, double from, double to)
-        : options_(options),
+        : Method(options, count, image_count),
           image_count_(image_count),
           problem_(std::move(make)),
-          split_(split_pairs(count, image_count)),
           step_(options.refine ? 1 + count / kEnoughForModes : 1),
-          all_(problem_(thinned(split_.all))),
-          stored_(stored_prior(options, profile, all_)),
+          stored_(stored_prior(options, profile, all_ = problem_(thinned(split_.all)))),
           gauge_(options, all_, stored_.get()) {
         if (split_.has_heldout()) heldout_ = problem_(thinned(split_.heldout));
         has_heldout_ = heldout_.pairs.size() >= kFewestHeldout;
         train_ = problem_(thinned(has_heldout_ ? split_.train : split_.all));
         control_.max_iterations = static_cast<int>(options.max_iterations);
-        control_.cancelled = [this, from, to] {
-            return options_.progress && options_.progress(from + (to - from) * done_, options_.progress_user) != 0;
-        };
+        control_.cancelled = [this, from, to] { return is_cancelled(from + (to - from) * done_); };
     }
 
     void run();
@@ -69,12 +66,6 @@ private:
         const int most = !is_free ? 0 : static_cast<int>(std::min<uint32_t>(options.modes, LENSPROF_EMOR_MODES));
         return std::make_unique<StoredPrior>(*profile, problem, most);
     }
-    Loss loss() const {
-        Loss l;
-        l.kind = options_.loss;
-        l.huber = options_.huber_levels / 255.0;
-        return l;
-    }
     std::vector<uint32_t> thinned(const std::vector<uint32_t> &items) const {
         std::vector<uint32_t> some;
         for (size_t i = 0; i < items.size(); i += step_) some.push_back(items[i]);
@@ -82,8 +73,7 @@ private:
     }
     void take_all();
     void set_vignettings(int count) {
-        for (Problem *p : {&all_, &train_, &heldout_}) p->vignettings = count;
-        prior_ = make_prior(options_.prior_weight, count, all_.by_radiance);
+        Method::set_vignettings(count);
         if (stored_) stored_->put_into(prior_, count, options_.prior_weight);
     }
     int first_vignettings() const {
@@ -99,29 +89,22 @@ private:
     void refine(const Problem &problem, Loss &used, Estimate &estimate);
     bool is_as_good_refined(const Candidate &best, const Loss &used, Candidate &refined);
     Candidate choose_modes(const Estimate &start);
-    void choose_vignettings(Candidate &best);
     Candidate choose(Loss &used);
     bool follows(const Loss &used, Estimate &estimate, Outcome &outcome);
     void free_response(const Gauge &asked, Loss &used, Candidate &best, Estimate &estimate, Outcome &outcome);
 
-    const lensprof_fit_options &options_;
     uint32_t image_count_;
     const Make problem_;
-    Split split_;
     size_t step_;  // of the pairs, every so manieth is taken until the response is refined
-    Problem all_, train_, heldout_;
     bool has_heldout_ = false;
     const bool is_free_ = (options_.free & LENSPROF_FREE_RESPONSE) && options_.modes != 0;  // the response
     std::unique_ptr<StoredPrior> stored_;
     Gauge gauge_;
-    Prior prior_;
     Loss used_;
     Candidate best_;     // of the training pairs
     Estimate estimate_;  // of all
     Outcome outcome_;
-    Loss common_;  // of the candidates: what held-out losses are measured with
     Control control_;
-    double done_ = 0.0;
 };
 
 // Short fits from every start at one fixed noise level, so that their costs compare; the best one, its gamma settled.
@@ -227,14 +210,7 @@ Candidate Fit::choose_modes(const Estimate &start) {
         lowest = std::min(lowest, tried.front().mean);
         if (failures == 2) break;
     }
-    auto best_of = [&] {
-        return *std::min_element(tried.begin(), tried.end(),
-                                 [](const Candidate &a, const Candidate &b) { return a.mean < b.mean; });
-    };
-    auto is_good = [&](const Candidate &one) {
-        double error, difference = loss_difference(one, best_of(), error);
-        return difference <= error;
-    };
+    auto is_good = [&](const Candidate &one) { return is_as_good(one, best_of(tried)); };
     for (int modes : {3, 2, 1}) {
         if (!is_good(tried.back()) || (stored_ && modes < stored_->modes())) break;
         tried.push_back(candidate(tried.back().estimate, modes));
@@ -244,22 +220,10 @@ Candidate Fit::choose_modes(const Estimate &start) {
     return tried[0];
 }
 
-// One falloff curve a channel when held-out pairs are clearly (three standard errors) better for it.
-void Fit::choose_vignettings(Candidate &best) {
-    set_vignettings(3);
-    Candidate chromatic = candidate(best.estimate, best.estimate.modes);
-    double error, difference = loss_difference(chromatic, best, error);
-    if (difference < -3.0 * error)
-        best = chromatic;
-    else
-        set_vignettings(1);
-}
-
 // Start, modes and falloff curves.
 Candidate Fit::choose(Loss &used) {
-    constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
     bool any_modes = is_free_ && options_.modes == LENSPROF_MODES_AUTO && has_heldout_;
-    bool any_curves = options_.vignettings == 0 && options_.channels == 3 && (options_.free & falloff) && has_heldout_;
+    bool any_curves = may_choose_vignettings(has_heldout_);
     int modes = options_.modes == LENSPROF_MODES_AUTO ? start_modes() : static_cast<int>(options_.modes);
     if (any_curves && stored_ && stored_->vignettings() == 3) any_curves = false;
 
@@ -278,7 +242,10 @@ Candidate Fit::choose(Loss &used) {
         best = choose_modes(best.estimate);
     else if (any_curves)
         best = candidate(best.estimate, modes);
-    if (any_curves) choose_vignettings(best);
+    if (any_curves)
+        choose_vignettings(
+            best, [this](int count) { set_vignettings(count); },
+            [&] { return candidate(best.estimate, best.estimate.modes); });
     done_ = 0.8;
     return best;
 }
@@ -349,25 +316,18 @@ double Fit::worse_than(const Fit &other) const {
 }
 
 void Fit::describe(lensprof_exposure *exposures, lensprof_fit_result &result) {
-    lensprof_fit_result r = result;
-    r.iterations = static_cast<uint32_t>(outcome_.iterations);
-    r.converged = outcome_.converged;
-    std::vector<lensprof_fit_image_quality> own(image_count_);
-    if (!r.image_quality) r.image_quality = own.data();
-    describe_model(all_, estimate_, r);
-    describe_heldout(has_heldout_ ? heldout_ : all_, best_.estimate, has_heldout_, r);
-    describe_quality(all_, prior_, gauge_, used_, estimate_, r);
-    judge(all_, estimate_, r);
-    r.image_quality = result.image_quality;
-    write_exposures(all_, estimate_, exposures);
-    result = r;
+    Loss last = used_;
+    last.noise = estimate_noise(all_, estimate_, used_.noise);
+    const Covariance found = covariance(all_, prior_, gauge_, last, estimate_);
+    finish({all_, gauge_, estimate_, has_heldout_ ? heldout_ : all_, best_.estimate, has_heldout_, last.noise, found,
+            static_cast<uint32_t>(outcome_.iterations), outcome_.converged},
+           nullptr, exposures, result);
 }
 
 // Fits, and where a profile is the prior, without it too: that is the result where the pictures contradict the profile.
 void run_fits(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count,
               lensprof_exposure *exposures, lensprof_fit_result &result) {
-    constexpr double kClearly = 3.0, kFarApart = 5.0;  // standard errors
-    auto began = std::chrono::steady_clock::now();
+    constexpr double kClearly = 3.0, kFarApart = 5.0;   // standard errors
     std::vector<lensprof_exposure> found(image_count);  // the caller's stay as they are until all is done
     std::vector<lensprof_fit_image_quality> quality(image_count);
     lensprof_fit_result r = result;
@@ -391,7 +351,6 @@ void run_fits(const lensprof_fit_options &options, uint32_t image_count, const F
                 "%.1f standard errors off) and was left out: is it of this lens and setting?",
                 apart, worse);
     }
-    r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     r.image_quality = result.image_quality;
     if (r.image_quality) std::copy(quality.begin(), quality.end(), r.image_quality);
     std::copy(found.begin(), found.end(), exposures);
@@ -434,7 +393,7 @@ Summary transfer_summary(const lensprof_response &response, const lensprof_vigne
     for (uint32_t i = 0; i < image_count; i++) {
         std::array<double, 3> a{};
         for (size_t c = 0; c < 3; c++)
-            a[c] = exposures[i].ev * std::log(2.0) + (channels == 1 ? 0.0 : std::log(exposures[i].white_balance[c]));
+            a[c] = exposures[i].ev * kLn2 + (channels == 1 ? 0.0 : std::log(exposures[i].white_balance[c]));
         estimate.log_exposure.push_back(a);
     }
     return summarise(residual_levels(problem, estimate));

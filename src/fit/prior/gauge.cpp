@@ -6,12 +6,11 @@
 #include <Eigen/Cholesky>
 
 #include "core/response.h"
+#include "fit/base/constants.hpp"
 #include "fit/problem/monotone.hpp"
 
 namespace lensprof {
 namespace {
-
-constexpr double kLn2 = 0.6931471805599453;
 
 // How firmly gamma is held, as a standard error of ln gamma at kPinPairs pairs and the prior's own standard error.
 // Modes left out prefer some gamma by accident, the more the more pairs there are: the hold keeps up with them.
@@ -68,7 +67,7 @@ double scatter_of(std::vector<double> off) {
     if (off.size() < 3) return 1.0;
     auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
     std::nth_element(off.begin(), middle, off.end());
-    double count = static_cast<double>(off.size()), scatter = 1.4826 * *middle * std::sqrt(count / (count - 2.0));
+    double count = static_cast<double>(off.size()), scatter = kMadToSigma * *middle * std::sqrt(count / (count - 2.0));
     return std::sqrt(1.0 + std::max(0.0, scatter * scatter - kChanceScatter * kChanceScatter));
 }
 

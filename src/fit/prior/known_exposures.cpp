@@ -6,12 +6,12 @@
 
 #include <Eigen/Cholesky>
 
+#include "fit/base/constants.hpp"
 #include "fit/prior/gauge.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr double kLn2 = 0.6931471805599453;
 constexpr double kOneIn = 2.33;         // standard deviations of a normal number that one in a hundred exceeds
 constexpr double kWorthAWord = 0.1;     // EV
 constexpr double kClearSpread = 0.7;    // EV, from the darkest to the brightest: what shows in any pictures

@@ -9,6 +9,8 @@
 
 #include <lensprof/fit.h>
 
+#include "fit/base/constants.hpp"
+
 namespace lensprof {
 
 // The full shared vector: EMoR coefficients, k1..k3 of up to three falloff curves, centre x, y. Where one curve serves
@@ -18,7 +20,7 @@ constexpr int kFalloff = kMaxModes;
 constexpr int kCenter = kFalloff + 9;
 constexpr int kMaxShared = kCenter + 2;
 
-constexpr double kLargestLogExposure = 20.0 * 0.6931471805599453;  // 20 EV beside the reference
+constexpr double kLargestLogExposure = 20.0 * kLn2;  // 20 EV beside the reference
 
 // Two images that share pairs, and these pairs: [first, last) of Problem::pairs.
 struct Edge {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <vector>
 
+#include "fit/base/constants.hpp"
 #include "fit/base/fail.hpp"
 #include "fit/base/parallel.hpp"
 
@@ -122,7 +123,7 @@ Lanes robust_mean(const Lanes *values) {
     std::copy(values, values + kCount, scratch);
     Lanes center = median<kCount>(scratch);
     for (int i = 0; i < kCount; i++) scratch[i] = absolute(values[i] - center);
-    Lanes spread = 1.4826f * median<kCount>(scratch);
+    Lanes spread = static_cast<float>(kMadToSigma) * median<kCount>(scratch);
     const Lanes none = {}, one = none + 1.0f;
     for (int round = 0; round < 3; round++) {
         const Lanes limit = 2.5f * higher(spread, none + kSmallestSpread);

@@ -51,4 +51,14 @@ double loss_difference(const HeldoutLoss &a, const HeldoutLoss &b, double &stand
     return difference;
 }
 
+bool is_as_good(const HeldoutLoss &one, const HeldoutLoss &best) {
+    double error, difference = loss_difference(one, best, error);
+    return difference <= error;
+}
+
+bool is_clearly_better(const HeldoutLoss &one, const HeldoutLoss &other) {
+    double error, difference = loss_difference(one, other, error);
+    return difference < -3.0 * error;
+}
+
 }  // namespace lensprof

@@ -1,6 +1,9 @@
 // What the fits compare their candidates by: pairs or tracks that are left out, and what these cost under each.
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "fit/problem/loss.hpp"
 
 namespace lensprof {
@@ -28,5 +31,18 @@ HeldoutLoss heldout_loss(const Problem &heldout, const Estimate &estimate, const
 
 // Mean and standard error of the difference of two candidates' held-out losses.
 double loss_difference(const HeldoutLoss &a, const HeldoutLoss &b, double &standard_error);
+
+// Whether a candidate is within one standard error (of the paired difference) of the best one.
+bool is_as_good(const HeldoutLoss &one, const HeldoutLoss &best);
+
+// Whether it is better by more than three standard errors.
+bool is_clearly_better(const HeldoutLoss &one, const HeldoutLoss &other);
+
+// The candidate with the smallest held-out loss.
+template <class Candidate>
+const Candidate &best_of(const std::vector<Candidate> &tried) {
+    return *std::min_element(tried.begin(), tried.end(),
+                             [](const Candidate &a, const Candidate &b) { return a.mean < b.mean; });
+}
 
 }  // namespace lensprof

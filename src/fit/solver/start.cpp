@@ -5,6 +5,7 @@
 
 #include <Eigen/SparseCholesky>
 
+#include "fit/base/constants.hpp"
 #include "fit/problem/monotone.hpp"
 #include "fit/problem/residual.hpp"
 
@@ -197,7 +198,7 @@ std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit
         std::array<double, 3> a{};
         for (int c = 0; c < 3; c++) {
             bool grey = problem.channels == 1;
-            a[c] = (problem.ev_unknown[i] >= 0 ? reference.ev : exposure.ev) * std::log(2.0)
+            a[c] = (problem.ev_unknown[i] >= 0 ? reference.ev : exposure.ev) * kLn2
                    + (grey || problem.balance_unknown[i][c] >= 0 ? 0.0 : std::log(exposure.white_balance[c]));
         }
         base.log_exposure.push_back(a);

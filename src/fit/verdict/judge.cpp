@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "fit/base/constants.hpp"
 #include "fit/prior/known_exposures.hpp"
 #include "fit/verdict/quality.hpp"
 
@@ -121,7 +122,7 @@ int uncertain_image(const Problem &problem, const Estimate &estimate, const lens
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
         auto measured = static_cast<size_t>(problem.measured_channel());
         double away = estimate.log_exposure[i][measured] - estimate.log_exposure[problem.reference][measured];
-        double of_gamma = std::max(r.gamma_sigma, 0.0) * away / std::log(2.0), sigma = r.image_quality[i].ev_sigma;
+        double of_gamma = std::max(r.gamma_sigma, 0.0) * away / kLn2, sigma = r.image_quality[i].ev_sigma;
         double own = std::sqrt(std::max(0.0, sigma * sigma - of_gamma * of_gamma));
         if (own > limit) limit = own, worst = static_cast<int>(i);
     }

@@ -5,13 +5,12 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "fit/base/constants.hpp"
 #include "fit/problem/residual.hpp"
 #include "fit/verdict/pattern.hpp"
 
 namespace lensprof {
 namespace {
-
-constexpr double kLn2 = 0.6931471805599453;
 
 double radius(const Problem &problem, const lensprof_vignetting &vignetting, const lensprof_pair &pair, int side) {
     const auto &image = problem.images[pair.image[side]];
@@ -168,14 +167,6 @@ void describe_heldout(const Problem &tested, const Estimate &train, bool is_held
         for (int c = 0; c < tested.channels; c++)
             before.push_back(255.0 * std::abs(pair.value[0][c] - pair.value[1][c]));
     r.before_rms = summarise(before).rms;
-}
-
-void describe_quality(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
-                      const Estimate &estimate, lensprof_fit_result &r) {
-    Loss final = loss;
-    final.noise = estimate_noise(problem, estimate, loss.noise);
-    Covariance found = covariance(problem, prior, gauge, final, estimate);
-    describe_quality(problem, gauge, final.noise, found, estimate, r);
 }
 
 void describe_quality(const Problem &problem, const Gauge &gauge, double noise, const Covariance &found,

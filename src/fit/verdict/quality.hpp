@@ -21,11 +21,7 @@ void describe_model(const Problem &problem, const Estimate &estimate, lensprof_f
 // Fills what pairs leave that the estimate has not seen; without such pairs only how different they were before.
 void describe_heldout(const Problem &tested, const Estimate &train, bool is_heldout, lensprof_fit_result &result);
 
-// Fills noise, inlier share, patterns, covariance, coverage and the images' quality.
-void describe_quality(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
-                      const Estimate &estimate, lensprof_fit_result &result);
-
-// The same from a covariance that is known already, and the noise of a grey value, 0..1.
+// Fills noise (from that of a grey value, 0..1), inlier share, patterns, covariance, coverage and the images' quality.
 void describe_quality(const Problem &problem, const Gauge &gauge, double noise, const Covariance &found,
                       const Estimate &estimate, lensprof_fit_result &result);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
 
 namespace lensprof {
@@ -80,7 +81,7 @@ std::vector<std::vector<double>> point_weights(const Problem &problem, const std
     }
     if (weights.as_paper || z.empty()) return all;
     std::vector<double> distances = z;
-    double usual = kDoubtful * std::max(1.0, 1.4826 * median(distances));
+    double usual = kDoubtful * std::max(1.0, kMadToSigma * median(distances));
     size_t p = 0;
     for (auto &curve : all)
         for (double &weight : curve) {

@@ -1,15 +1,16 @@
 #include "fit/methods/transfer_function/transfer_function.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
+#include "fit/base/constants.hpp"
+#include "fit/methods/method.hpp"
 #include "fit/methods/transfer_function/jackknife.hpp"
 #include "fit/methods/transfer_function/log_equations.hpp"
 #include "fit/problem/monotone.hpp"
-#include "fit/solver/heldout.hpp"
 #include "fit/solver/start.hpp"
+#include "fit/verdict/finish.hpp"
 #include "fit/verdict/quality.hpp"
 
 namespace lensprof {
@@ -22,7 +23,7 @@ constexpr double kStill = 1e-3;  // nothing a user sees moves by more in a round
 // Paths that flip between two neighbours let the rounds cycle: a change this small that no longer falls is that.
 constexpr double kCycle = 0.03;
 constexpr int kFewestRounds = 4;
-constexpr double kHalf = 128.0 / 255.0, kLn2 = 0.6931471805599453;
+constexpr double kHalf = 128.0 / 255.0;
 const double kPaperGrey = std::log(0.5);  // g(128) where nothing settles gamma (section 2.4)
 
 // What the rounds improve.
@@ -49,18 +50,16 @@ void restore_grey(const Problem &problem, State &state) {
     state.model.g = log_inverse(state.estimate.fixed);
 }
 
-class Fit {
+class Fit : Method {
 public:
     Fit(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
         const lensprof_pair *pairs, uint32_t pair_count)
-        : options_(options),
+        : Method(options, pair_count, image_count),
           images_(images),
           image_count_(image_count),
           pairs_(pairs),
           pair_count_(pair_count),
-          split_(split_pairs(pair_count, image_count)),
-          all_(problem(split_.all)),
-          gauge_(options, all_),
+          gauge_(options, all_ = problem(split_.all)),
           is_free_((options.free & LENSPROF_FREE_RESPONSE) && options.modes != 0),
           has_falloff_(options.free & (kFalloff123 | LENSPROF_FREE_CENTER)),
           as_paper_(options.loss == LENSPROF_LOSS_SQUARED) {
@@ -74,20 +73,9 @@ private:
     Problem problem(const std::vector<uint32_t> &keep) const {
         return make_problem(options_, images_, image_count_, pairs_, keep);
     }
-    void set_vignettings(int count) {
-        for (Problem *p : {&all_, &train_, &heldout_}) p->vignettings = count;
-        prior_ = make_prior(options_.prior_weight, count);
-    }
-    bool is_cancelled() const { return options_.progress && options_.progress(done_, options_.progress_user) != 0; }
     void advance(double done) {
         done_ = std::max(done_, done);
-        if (is_cancelled()) throw Cancelled();
-    }
-    Loss loss() const {
-        Loss l;
-        l.kind = options_.loss;
-        l.huber = options_.huber_levels / 255.0;
-        return l;
+        if (is_cancelled(done_)) throw Cancelled();
     }
     // True where pictures leave gamma open: g(128) is then held, where gamma is settled or at the paper's number.
     bool holds_grey() const { return is_free_ && (gauge_.is_open() || gauge_.from() == LENSPROF_GAMMA_NONE); }
@@ -99,24 +87,17 @@ private:
                   const std::function<void()> &tell, bool &is_still) const;
     Candidate candidate(const State &from, int modes);
     Candidate choose_modes(const State &start);
-    void choose_vignettings(Candidate &best);
     Estimate in_emor(const State &state) const;
     void judge_exposures(const State &state, lensprof_fit_result &result) const;
     double log_exponent(const Estimate &estimate, const Estimate &other) const;
     Covariance scatter(const State &state);
 
-    const lensprof_fit_options &options_;
     const lensprof_fit_image *images_;
     uint32_t image_count_;
     const lensprof_pair *pairs_;
     uint32_t pair_count_;
-    Split split_;
-    Problem all_, train_, heldout_;
     Gauge gauge_;
-    Prior prior_;
-    Loss common_;
     const bool is_free_, has_falloff_, as_paper_;
-    double done_ = 0.0;
 };
 
 // From several responses, each held: the one under which falloff and exposures explain most. Without a falloff to look
@@ -234,24 +215,10 @@ Candidate Fit::candidate(const State &from, int modes) {
 Candidate Fit::choose_modes(const State &start) {
     std::vector<Candidate> tried;
     for (int modes : {1, 2, 3, 4, 5, 7, 9, 12, 15, 20}) tried.push_back(candidate(start, modes));
-    const Candidate &best = *std::min_element(tried.begin(), tried.end(),
-                                              [](const Candidate &a, const Candidate &b) { return a.mean < b.mean; });
-    for (const Candidate &one : tried) {
-        double error, difference = loss_difference(one, best, error);
-        if (&one == &best || difference <= error) return one;
-    }
+    const Candidate &best = best_of(tried);
+    for (const Candidate &one : tried)
+        if (&one == &best || is_as_good(one, best)) return one;
     return best;
-}
-
-// One falloff curve a channel when held-out pairs are clearly (three standard errors) better for it.
-void Fit::choose_vignettings(Candidate &best) {
-    set_vignettings(3);
-    Candidate chromatic = candidate(best.state, best.state.model.modes);
-    double error, difference = loss_difference(chromatic, best, error);
-    if (difference < -3.0 * error)
-        best = chromatic;
-    else
-        set_vignettings(1);
 }
 
 // The response as coefficients of all EMoR modes, as the other methods tell it; a held one stays.
@@ -305,14 +272,12 @@ Covariance Fit::scatter(const State &state) {
                 own.estimate = with_exponent(part, own.estimate, log_exponent(own.estimate, state.estimate));
             return in_emor(own);
         },
-        [this] { return is_cancelled(); });
+        [this] { return is_cancelled(done_); });
 }
 
 void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
-    auto began = std::chrono::steady_clock::now();
     bool any_modes = is_free_ && options_.modes == LENSPROF_MODES_AUTO && split_.has_heldout();
-    bool any_curves =
-        options_.vignettings == 0 && options_.channels == 3 && (options_.free & kFalloff123) && split_.has_heldout();
+    bool any_curves = may_choose_vignettings(split_.has_heldout());
     int most = std::min(static_cast<int>(std::min(options_.max_iterations, 1000u)), kLastRounds);
     auto tell = [this] { advance(done_); };
     bool is_still;
@@ -330,7 +295,10 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
         best = choose_modes(best.state);
     else if (any_curves)
         best = candidate(best.state, best.state.model.modes);
-    if (any_curves) choose_vignettings(best);
+    if (any_curves)
+        choose_vignettings(
+            best, [this](int count) { set_vignettings(count); },
+            [&] { return candidate(best.state, best.state.model.modes); });
     advance(0.7);
 
     State last = best.state;
@@ -338,20 +306,10 @@ void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) {
     advance(0.8);
     Covariance found = scatter(last);
     Estimate estimate = in_emor(last);
-    lensprof_fit_result r = result;
-    r.iterations = static_cast<uint32_t>(rounds);
-    r.converged = is_still;
-    std::vector<lensprof_fit_image_quality> own(image_count_);
-    if (!r.image_quality) r.image_quality = own.data();
-    describe_model(all_, estimate, r);
-    describe_heldout(split_.has_heldout() ? heldout_ : all_, best.state.estimate, split_.has_heldout(), r);
-    describe_quality(all_, gauge_, estimate_noise(all_, estimate, common_.noise), found, estimate, r);
-    judge(all_, estimate, r);
-    judge_exposures(last, r);
-    r.image_quality = result.image_quality;
-    write_exposures(all_, estimate, exposures);
-    r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    result = r;
+    finish(
+        {all_, gauge_, estimate, split_.has_heldout() ? heldout_ : all_, best.state.estimate, split_.has_heldout(),
+         estimate_noise(all_, estimate, common_.noise), found, static_cast<uint32_t>(rounds), is_still},
+        [&](lensprof_fit_result &r) { judge_exposures(last, r); }, exposures, result);
 }
 
 }  // namespace

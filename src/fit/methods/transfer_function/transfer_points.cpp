@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/base/constants.hpp"
 #include "fit/base/parallel.hpp"
 #include "fit/base/quantile.hpp"
 #include "fit/methods/transfer_function/joint_histogram.hpp"
@@ -107,7 +108,7 @@ void add_means(const SmoothTransfer &transfer, const std::vector<LevelPair> &pai
         if (std::abs(besides.back().distance) < reach) near.push_back(std::abs(besides.back().distance));
     }
     if (near.empty()) return;
-    double noise = std::max(1.4826 * median(near), kSmallestNoise);
+    double noise = std::max(kMadToSigma * median(near), kSmallestNoise);
     struct Sum {
         double weight = 0.0, level[2] = {0.0, 0.0};
     };

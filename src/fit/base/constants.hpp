@@ -1,0 +1,9 @@
+// Numbers that several rooms need.
+#pragma once
+
+namespace lensprof {
+
+constexpr double kLn2 = 0.6931471805599453;  // natural logarithm per EV
+constexpr double kMadToSigma = 1.4826;  // standard deviation of a normal distribution per median absolute deviation
+
+}  // namespace lensprof

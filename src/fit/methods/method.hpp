@@ -1,0 +1,60 @@
+// What the methods that alternate between candidates have in common: the pairs or tracks in three parts, the prior of
+// the falloff curves, and how candidates are chosen by held-out error.
+#pragma once
+
+#include <algorithm>
+
+#include "fit/prior/prior.hpp"
+#include "fit/solver/heldout.hpp"
+
+namespace lensprof {
+
+class Method {
+protected:
+    // The problems come later: `all_` with a method's own, `train_` and `heldout_` from the split.
+    Method(const lensprof_fit_options &options, uint32_t count, uint32_t image_count)
+        : options_(options), split_(split_pairs(count, image_count)) {}
+
+    Loss loss() const {
+        Loss l;
+        l.kind = options_.loss;
+        l.huber = options_.huber_levels / 255.0;
+        return l;
+    }
+
+    bool is_cancelled(double done) const {
+        return options_.progress && options_.progress(done, options_.progress_user) != 0;
+    }
+
+    void set_vignettings(int count) {
+        for (Problem *p : {&all_, &train_, &heldout_}) p->vignettings = count;
+        prior_ = make_prior(options_.prior_weight, count, all_.by_radiance);
+    }
+
+    // Whether held-out error may choose between one falloff curve and three.
+    bool may_choose_vignettings(bool has_heldout) const {
+        constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+        return options_.vignettings == 0 && options_.channels == 3 && (options_.free & falloff) && has_heldout;
+    }
+
+    // One falloff curve per channel when held-out pairs are clearly better for it. set(curves) sets their number;
+    // fit() fits a candidate with what is set.
+    template <class Candidate, class Set, class FitAgain>
+    static void choose_vignettings(Candidate &best, Set set, FitAgain fit) {
+        set(3);
+        Candidate chromatic = fit();
+        if (is_clearly_better(chromatic, best))
+            best = chromatic;
+        else
+            set(1);
+    }
+
+    const lensprof_fit_options &options_;
+    const Split split_;
+    Problem all_, train_, heldout_;
+    Prior prior_;
+    Loss common_;  // of the candidates: what held-out losses are measured with
+    double done_ = 0.0;
+};
+
+}  // namespace lensprof
