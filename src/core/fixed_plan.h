@@ -4,8 +4,8 @@
 
 #include <lensprof/fixed.h>
 
+#include "core/image.h"
 #include "core/options.h"
-#include "core/plan.h"
 
 #define LP_FIXED_MAGIC 0x3258464cu /* "LFX2" in memory; the last byte is the layout's version */
 #define LP_LOG_SHIFT 22            /* logarithms to base 2, in units of 2^-22 */

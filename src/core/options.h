@@ -2,12 +2,10 @@
 #ifndef LENSPROF_CORE_OPTIONS_H
 #define LENSPROF_CORE_OPTIONS_H
 
-#include <lensprof/apply.h>
-
 #include "core/blob.h"
+#include "core/image.h"
 
-#define LP_LARGEST_SIDE (1u << 20) /* px */
-#define LP_LARGEST_GAIN_CAP 1e6    /* over all attenuations that are allowed */
+#define LP_LARGEST_GAIN_CAP 1e6 /* over all attenuations that are allowed */
 
 /* The model. Of structs no more is checked than its size depends on; the vignetting may not be there yet. */
 lensprof_status lp_options_model(const lensprof_apply_options *options, lp_model *model);

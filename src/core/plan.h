@@ -1,11 +1,9 @@
-/* What a plan holds: made by apply.c, read by the kernels. */
+/* What a plan holds: made by plan.c, read by the kernels. */
 #ifndef LENSPROF_CORE_PLAN_H
 #define LENSPROF_CORE_PLAN_H
 
-#include <lensprof/apply.h>
+#include "core/image.h"
 
-#define LP_CHANNELS 3
-#define LP_ALPHA 3          /* in the place of a channel */
 #define LP_FORWARD_SHIFT 10 /* log2 of the samples of a response */
 #define LP_CELLS 1024       /* that values 0..1 are divided into, to find them among the samples */
 
@@ -51,18 +49,6 @@ struct lensprof_plan {
     const float *start;              /* for g of values: curves x LP_CELLS + 1, the last sample below cell / LP_CELLS */
     int32_t step;                    /* from there the first step up the samples is this, then half of it, ... */
 };
-
-/* What the tiles of a plan must be. */
-typedef struct lp_tiles {
-    uint32_t source_sample, target_sample, layout, frame_width, frame_height;
-} lp_tiles;
-
-/* Whether a tile may be applied to; its status as that of lensprof_apply. */
-lensprof_status lp_tile_validate(const lp_tiles *tiles, const lensprof_image *source, const lensprof_image *target,
-                                 uint32_t x0, uint32_t y0);
-
-/* Channels of a layout: by the samples of a pixel, and by row and column parity where it is a mosaic. */
-void lp_layout_sites(uint32_t layout, uint8_t channel_of_sample[4], uint8_t site[2][2]);
 
 /* The kernels. Each gives the same bytes. */
 lp_row_kernel lp_row_scalar, lp_row_sse41, lp_row_avx2, lp_row_avx512, lp_row_neon;

@@ -94,7 +94,7 @@ def check_core(nm, archive):
 
 # What applies a profile, without the rest of the core. The first set prepares plans: a stated handful of functions.
 APPLY_PATH = {"apply", "base", "best", "blob", "fixed", "fixed_open", "fixed_plan", "fixed_table",
-              "gain_grid", "options", "profile", "response",
+              "gain_grid", "image", "options", "plan", "plan_curves", "profile", "response",
               "row_avx2", "row_avx512", "row_neon", "row_scalar", "row_sse41", "vignetting"}
 # log: what newlib makes of log2.
 APPLY_MAY_NEED = {"exp2", "fabs", "floor", "fmax", "hypot", "ldexp", "log", "log2", "pow", "sqrt", "copysign",

@@ -278,6 +278,33 @@ static void test_planes_that_are_refused(void **state) {
     free(memory);
 }
 
+/* All six views are checked before any two are compared: what a view holds must not be calculated with before. */
+static void test_planes_are_checked_before_they_are_compared(void **state) {
+    (void)state;
+    enum {
+        W = 8,
+        H = 8
+    };
+    static const ptrdiff_t strides[] = {PTRDIFF_MIN, PTRDIFF_MAX, PTRDIFF_MIN / 2};
+    static uint8_t data[6][W * H], before[6][W * H];
+    model m;
+    make_model(&m, 1);
+    m.options.source_layout = LENSPROF_LAYOUT_PLANAR;
+    m.options.source_sample = m.options.target_sample = LENSPROF_SAMPLE_U8;
+    const lensprof_plan *plan;
+    void *memory = make_plan(&m, 0, &plan);
+    for (int n = 0; n < 6; n++)
+        for (size_t i = 0; i < sizeof strides / sizeof *strides; i++) {
+            lensprof_image views[6];
+            for (int v = 0; v < 6; v++)
+                views[v] = (lensprof_image){data[v], W, W, H, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY};
+            views[n].row_bytes = strides[i];
+            assert_int_equal(lensprof_apply_planar(plan, views, views + 3, 0, 0), LENSPROF_ERROR_SIZE);
+        }
+    assert_memory_equal(data, before, sizeof data);
+    free(memory);
+}
+
 /* Each site of a mosaic gets what its channel gets in a picture of that colour alone. */
 static void test_mosaics_follow_their_pattern(void **state) {
     (void)state;
@@ -369,9 +396,13 @@ static void test_half_floats(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_lane_count_gives_the_same_bytes), cmocka_unit_test(test_pieces_give_the_row),
-        cmocka_unit_test(test_planes_are_the_same_picture),           cmocka_unit_test(test_planes_that_are_refused),
-        cmocka_unit_test(test_mosaics_follow_their_pattern),          cmocka_unit_test(test_half_floats),
+        cmocka_unit_test(test_every_lane_count_gives_the_same_bytes),
+        cmocka_unit_test(test_pieces_give_the_row),
+        cmocka_unit_test(test_planes_are_the_same_picture),
+        cmocka_unit_test(test_planes_that_are_refused),
+        cmocka_unit_test(test_planes_are_checked_before_they_are_compared),
+        cmocka_unit_test(test_mosaics_follow_their_pattern),
+        cmocka_unit_test(test_half_floats),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,124 @@
+/* Plans: options prepared for the kernels (lensprof/apply.h).
+ *
+ * Pixels go  code -> irradiance -> times gain(x, y) -> code. The curves are tables (plan_curves.c); gains are
+ * calculated by pixel from what the plan holds about the falloff. */
+#include "core/plan.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/plan_curves.h"
+
+static size_t nodes_of(const lp_model *m) { return (size_t)m->channels * m->rows * m->columns; }
+
+static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m) {
+    return sizeof(lensprof_plan) + (lp_curve_numbers(o, m) + nodes_of(m)) * sizeof(float);
+}
+
+size_t lensprof_plan_bytes(const lensprof_apply_options *o) {
+    lp_model model;
+    if (!o || o->struct_size != sizeof *o || !lensprof_sample_bytes(o->source_sample)
+        || !lensprof_sample_bytes(o->target_sample) || !lensprof_layout_samples(o->source_layout))
+        return 0;
+    return lp_options_model(o, &model) == LENSPROF_OK ? bytes_of(o, &model) : 0;
+}
+
+/* Copies the nodes of the gain grid, less 1, to `memory`. */
+static void prepare_grid(lensprof_plan *plan, const lp_model *m, float *memory) {
+    if (!nodes_of(m)) return;
+    plan->columns = m->columns;
+    plan->rows = m->rows;
+    for (uint32_t i = 0; i < nodes_of(m); i++) memory[i] = lp_model_node(m, i) - 1.0f;
+    for (uint32_t c = 0; c < LP_CHANNELS; c++)
+        plan->nodes[c] = memory + (m->channels == 3 ? c : 0) * m->rows * m->columns;
+}
+
+static void prepare_layout(lensprof_plan *plan, const lensprof_apply_options *o) {
+    plan->layout = o->source_layout;
+    plan->samples = lensprof_layout_samples(plan->layout);
+    plan->channels = lensprof_layout_channels(plan->layout);
+    lp_layout_sites(plan->layout, plan->channel_of_sample, plan->site);
+}
+
+/* White in the linear numbers of a kernel: where no curve is between, codes stay codes. */
+static double white_of(uint32_t sample, uint32_t curve) {
+    if (curve != LP_CURVE_NONE) return 1.0;
+    return sample == LENSPROF_SAMPLE_U8 ? 255.0 : sample == LENSPROF_SAMPLE_U16 ? 65535.0 : 1.0;
+}
+
+/* Falloff and factor of a channel. The gain is factor / M, or M / factor to simulate. */
+static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m, uint32_t channel) {
+    const double w = o->frame_width, h = o->frame_height, per_rho2 = 4.0 / (w * w + h * h);
+    const double *k = m->vignetting[m->vignettings == 3 ? channel : 0].k;
+    const uint32_t at = plan->channels == 1 ? 0 : channel; /* grey is treated as green */
+    double scale = plan->columns ? 1.0 : o->strength;
+    for (int n = 0; n < 3; n++) plan->k[at][n] = (float)(k[n] * (scale *= per_rho2));
+    const double units =
+        (plan->encode == LP_CURVE_TABLE ? LENSPROF_RESPONSE_SAMPLES - 1 : white_of(o->target_sample, plan->encode))
+        / white_of(o->source_sample, plan->decode);
+    const double ratio = lp_exposure_ratio(o, channel);
+    plan->factor[at] = (float)(plan->simulate ? ratio / units : ratio * units);
+    plan->times[at] = 1.0f;
+    if (at != channel) plan->nodes[at] = plan->nodes[channel];
+}
+
+/* Channels that differ by their factors alone share one division a pixel, where what that rounds is not seen. */
+static void share_gains(lensprof_plan *plan) {
+    if (plan->gains == 1 || plan->target_sample == LENSPROF_SAMPLE_F32) return;
+    for (uint32_t c = 1; c < LP_CHANNELS; c++)
+        if (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0]) || plan->nodes[c] != plan->nodes[0]) return;
+    for (uint32_t c = 0; c < LP_CHANNELS; c++) {
+        plan->times[c] = plan->simulate ? 1.0f / plan->factor[c] : plan->factor[c];
+        plan->factor[c] = 1.0f;
+    }
+    plan->gains = 1;
+}
+
+static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
+    for (int d = 0; d < 2; d++) {
+        const double center = lp_center(o, m, d);
+        plan->center_px[d] = (int32_t)floor(center + 0.5);
+        plan->center_part[d] = (float)(center - plan->center_px[d]);
+    }
+    plan->least = (float)(1.0 / (o->gain_cap > 0.0 ? o->gain_cap : LP_LARGEST_GAIN_CAP));
+    plan->strength = (float)o->strength;
+    plan->gains = 1;
+    for (uint32_t c = 0; c < LP_CHANNELS; c++) {
+        if (plan->channels == 1 && c != 1) continue;
+        prepare_gain(plan, o, m, c);
+        if (plan->channels == 3
+            && (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0]) || plan->factor[c] != plan->factor[0]
+                || plan->nodes[c] != plan->nodes[0]))
+            plan->gains = 3;
+    }
+    share_gains(plan);
+}
+
+lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_apply_options *options,
+                                   const lensprof_plan **result) {
+    if (!memory || !options || !result) return LENSPROF_ERROR_ARGUMENT;
+    lp_model model;
+    const lensprof_status status = lp_options_validate(options, &model);
+    if (status != LENSPROF_OK) return status;
+    if (bytes < bytes_of(options, &model) || (uintptr_t)memory % 8) return LENSPROF_ERROR_CAPACITY;
+
+    lensprof_plan *plan = memory;
+    memset(plan, 0, sizeof *plan);
+    plan->row = lp_row_best(0);
+    plan->simulate = options->direction == LENSPROF_DIRECTION_SIMULATE;
+    plan->frame_width = options->frame_width;
+    plan->frame_height = options->frame_height;
+    plan->source_sample = options->source_sample;
+    plan->target_sample = options->target_sample;
+    plan->dither = options->dither && options->target_sample == LENSPROF_SAMPLE_U8;
+    prepare_layout(plan, options);
+    plan->neutral_white = options->saturated == LENSPROF_SATURATED_NEUTRAL && !plan->simulate && plan->channels == 3
+                          && !lp_is_mosaic(plan->layout) && options->input == LENSPROF_ENCODING_RESPONSE
+                          && options->output == LENSPROF_ENCODING_RESPONSE;
+    float *tables = (float *)(void *)(plan + 1);
+    tables = lp_prepare_curves(plan, options, &model, tables);
+    prepare_grid(plan, &model, tables);
+    prepare_gains(plan, options, &model);
+    *result = plan;
+    return LENSPROF_OK;
+}

@@ -1,0 +1,116 @@
+/* The curves of a plan as float tables: `inverse` maps every integer code to irradiance (8 and 16 bit input),
+ * `forward` is the response on its 1024 grid. */
+#include "core/plan_curves.h"
+
+#include <string.h>
+
+#include "core/response.h"
+
+/* The kind of curve of all channels. */
+static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m) {
+    uint32_t kind = LP_CURVE_NONE;
+    for (uint32_t c = 0; c < lp_curves(o, m); c++) {
+        uint32_t own = lp_response(o, m, c)->kind;
+        own = own == LENSPROF_RESPONSE_LINEAR  ? LP_CURVE_CLIP
+              : own == LENSPROF_RESPONSE_GAMMA ? LP_CURVE_POWER
+                                               : LP_CURVE_TABLE;
+        kind = c && own != kind ? (uint32_t)LP_CURVE_MIXED : own;
+        if (kind == LP_CURVE_MIXED) break;
+    }
+    return kind;
+}
+
+static int is_integer(uint32_t sample) { return sample == LENSPROF_SAMPLE_U8 || sample == LENSPROF_SAMPLE_U16; }
+
+/* Codes of a linear response lie within 0..1 as they are. */
+static uint32_t decode_of(const lensprof_apply_options *o, const lp_model *m) {
+    uint32_t kind = o->input == LENSPROF_ENCODING_LINEAR ? (uint32_t)LP_CURVE_NONE : kind_of(o, m);
+    if (!is_integer(o->source_sample)) return kind;
+    if (kind == LP_CURVE_CLIP) return LP_CURVE_NONE;
+    if (kind == LP_CURVE_POWER && o->source_sample == LENSPROF_SAMPLE_U16) return kind;
+    return kind == LP_CURVE_NONE ? kind : (uint32_t)LP_CURVE_TABLE;
+}
+
+static uint32_t encode_of(const lensprof_apply_options *o, const lp_model *m) {
+    uint32_t kind = o->output == LENSPROF_ENCODING_LINEAR ? (uint32_t)LP_CURVE_NONE : kind_of(o, m);
+    return kind == LP_CURVE_CLIP && is_integer(o->target_sample) ? (uint32_t)LP_CURVE_NONE : kind;
+}
+
+/* Entries of the table of all codes; 0 without. */
+static size_t codes_of(const lensprof_apply_options *o, const lp_model *m) {
+    if (!is_integer(o->source_sample) || decode_of(o, m) != LP_CURVE_TABLE) return 0;
+    return o->source_sample == LENSPROF_SAMPLE_U8 ? 256 : 65536;
+}
+
+/* Entries of the table of where to begin among the samples; 0 where values do not go through the inverse. */
+static size_t starts_of(const lensprof_apply_options *o, const lp_model *m) {
+    const uint32_t decode = codes_of(o, m) ? (uint32_t)LP_CURVE_NONE : decode_of(o, m);
+    return decode == LP_CURVE_TABLE || decode == LP_CURVE_MIXED ? LP_CELLS + 1 : 0;
+}
+
+/* Entries of the table of the response; 0 where none is asked. */
+static size_t samples_of(const lensprof_apply_options *o, const lp_model *m) {
+    const uint32_t encode = encode_of(o, m);
+    const int is_asked = starts_of(o, m) || encode == LP_CURVE_TABLE || encode == LP_CURVE_MIXED;
+    return is_asked ? LENSPROF_RESPONSE_SAMPLES : 0;
+}
+
+/* g of every code. As codes rise, so does the place among the response's samples. */
+static void fill_inverse(const struct lp_model_response *response, size_t codes, float *inverse) {
+    const double last = (double)(codes - 1);
+    inverse[0] = 0.0f;
+    for (size_t code = 1; lp_is_power(response) && code < codes; code++)
+        inverse[code] = (float)lp_curve_power((double)code / last, response->gamma, NULL);
+    if (lp_is_power(response)) return;
+    double below = 0.0, above = lp_model_sample(response, 1);
+    uint32_t j = 0;
+    for (size_t code = 1; code < codes; code++) {
+        const double b = (double)code / last;
+        for (; above < b && j + 2 < LENSPROF_RESPONSE_SAMPLES; j++) {
+            below = above;
+            above = lp_model_sample(response, j + 2);
+        }
+        inverse[code] = (float)lp_curve_between(below, above, b, j);
+    }
+}
+
+/* Where to begin among the samples, for every cell of values, and the first step from there. */
+static void fill_start(lensprof_plan *plan, const float *samples, float *start) {
+    uint32_t j = 0;
+    for (uint32_t cell = 0; cell <= LP_CELLS; cell++) {
+        const float least = (float)cell / LP_CELLS;
+        const uint32_t before = j;
+        while (j + 1 < LENSPROF_RESPONSE_SAMPLES && samples[j + 1] < least) j++;
+        start[cell] = (float)j;
+        while (plan->step <= (int32_t)(j - before) / 2) plan->step = plan->step ? 2 * plan->step : 1;
+    }
+}
+
+float *lp_prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m, float *memory) {
+    const size_t samples = samples_of(o, m), codes = codes_of(o, m), starts = starts_of(o, m);
+    plan->curves = lp_curves(o, m);
+    plan->decode = decode_of(o, m);
+    plan->encode = encode_of(o, m);
+    float *inverse = memory + plan->curves * samples + (samples ? 1 : 0), *start = inverse + plan->curves * codes;
+    if (samples) inverse[-1] = 0.0f; /* kernels read it, times 0 */
+    plan->forward = memory;
+    plan->inverse = codes ? inverse : NULL;
+    plan->start = starts ? start : NULL;
+    plan->inverse_shift = codes == 256 ? 8 : 16;
+    for (uint32_t c = 0; c < plan->curves; c++) {
+        const struct lp_model_response *response = lp_response(o, m, c);
+        plan->exponent[c] = lp_is_power(response) ? (float)(1.0 / response->gamma) : 0.0f;
+        plan->inverse_exponent[c] = lp_is_power(response) ? (float)response->gamma : 0.0f;
+        for (size_t j = 0; j < samples; j++) /* not read where there is an exponent */
+            memory[c * samples + j] = lp_is_power(response) ? 0.0f : (float)lp_model_sample(response, (uint32_t)j);
+        if (codes) fill_inverse(response, codes, inverse + c * codes);
+        memset(start + c * starts, 0, starts * sizeof *start);
+        if (starts && !lp_is_power(response)) fill_start(plan, memory + c * samples, start + c * starts);
+    }
+    return start + plan->curves * starts;
+}
+
+size_t lp_curve_numbers(const lensprof_apply_options *o, const lp_model *m) {
+    const size_t samples = samples_of(o, m), after = samples ? 1 : 0;
+    return lp_curves(o, m) * (samples + codes_of(o, m) + starts_of(o, m)) + after;
+}

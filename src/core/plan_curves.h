@@ -1,0 +1,15 @@
+/* The curves of a plan, as tables. */
+#ifndef LENSPROF_CORE_PLAN_CURVES_H
+#define LENSPROF_CORE_PLAN_CURVES_H
+
+#include "core/options.h"
+#include "core/plan.h"
+
+/* Floats that the tables take. */
+size_t lp_curve_numbers(const lensprof_apply_options *options, const lp_model *model);
+
+/* Fills the tables at `memory` and what the plan holds about curves; returns the memory after the tables. */
+float *lp_prepare_curves(lensprof_plan *plan, const lensprof_apply_options *options, const lp_model *model,
+                         float *memory);
+
+#endif
