@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply bench-store bench-lookup install format clean
+.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply bench-store bench-lookup install abi format clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -62,6 +62,9 @@ bench-lookup: build ## measure lookups between stored settings on Lensfun's data
 
 install: build ## install under PREFIX (default /usr/local)
 	cmake --install build --prefix $(PREFIX)
+
+abi: ## generate _abi.py and abi_dump.c of the Python package from the public headers (package python3-pycparser)
+	python3 bindings/python/tools/make_abi.py
 
 format: ## format C and C++ as .clang-format says (package clang-format)
 	git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' | grep -vE '$(TABLES)' | xargs clang-format -i

@@ -68,6 +68,14 @@ def _load() -> ctypes.CDLL:
 lib = _load()
 
 
+def initialise(struct: ctypes.Structure) -> None:
+    """Calls the structure's `_init` function, which sets its size and its defaults; without one nothing changes."""
+    for kind in type(struct).__mro__:
+        if kind in _abi.INITS:
+            name, sizes = _abi.INITS[kind]
+            getattr(lib, name)(ctypes.byref(struct), *map(ctypes.sizeof, sizes))
+
+
 def version() -> str:
     """Version of the shared library, e.g. "0.1.0"."""
     return lib.lensprof_version().decode()

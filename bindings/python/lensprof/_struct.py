@@ -12,6 +12,8 @@ from typing import Any, Generic, Iterable, Optional, Type, TypeVar, Union
 
 import numpy as np
 
+from ._library import initialise
+
 T = TypeVar("T")
 
 _LIMITS: dict[type, tuple[int, int]] = {ctypes.c_uint32: (0, 2**32 - 1), ctypes.c_int64: (-2**63, 2**63 - 1)}
@@ -40,7 +42,7 @@ class Struct:
             setattr(self, name, value)
 
     def _set_defaults(self) -> None:
-        """Calls the structure's _init function; those without one are all zeros."""
+        initialise(self)
 
     @classmethod
     def _names(cls: Any) -> list[str]:

@@ -66,9 +66,6 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     blob = Bytes("blob_bytes")
     blob_bytes = Count("assign blob")
 
-    def _set_defaults(self) -> None:
-        lib.lensprof_apply_options_init(byref(self))
-
 
 class Plan:
     """Everything prepared for one picture; may be applied to any of its tiles, by several threads at once."""

@@ -75,9 +75,6 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     response = OptionalReference(Response)
     vignetting = Nested(Vignetting)
 
-    def _set_defaults(self) -> None:
-        lib.lensprof_fit_options_init(byref(self))
-
 
 class FitResult(Struct, _abi.FitResult):
     """What a fit found. Arrays are views on this object.
@@ -126,9 +123,6 @@ class FitResult(Struct, _abi.FitResult):
     @classmethod
     def _names(cls) -> list[str]:
         return [name for name in super()._names() if name != "image_quality"]
-
-    def _set_defaults(self) -> None:
-        lib.lensprof_fit_result_init(byref(self))
 
     @property
     def exposures(self) -> np.ndarray:

@@ -75,9 +75,6 @@ class FlatOptions(WithProgress, Struct, _abi.FlatOptions):
     response = Referenced(Response, "responses")
     vignetting = Nested(Vignetting)
 
-    def _set_defaults(self) -> None:
-        lib.lensprof_flat_options_init(byref(self))
-
 
 class FlatResult(Struct, _abi.FlatResult):
     """What a flat field fit found; shares are of the light.
@@ -120,9 +117,6 @@ class FlatResult(Struct, _abi.FlatResult):
     @classmethod
     def _names(cls) -> list[str]:
         return [name for name in super()._names() if name != "image_quality"]
-
-    def _set_defaults(self) -> None:
-        lib.lensprof_flat_result_init(byref(self))
 
     @property
     def spot(self) -> np.ndarray:

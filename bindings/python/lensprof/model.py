@@ -213,9 +213,6 @@ class GainGrid(Value, _abi.GainGrid):
     def __init__(self, attenuation: Any = None) -> None:
         super().__init__(**({} if attenuation is None else {"attenuation": attenuation}))
 
-    def _set_defaults(self) -> None:
-        lib.lensprof_gain_grid_init(byref(self))
-
     def validate(self) -> None:
         """Raises lensprof.Error unless there is no grid or all its attenuations are within 0.001..1000."""
         check(lib.lensprof_gain_grid_validate(byref(self)),
@@ -239,9 +236,6 @@ class Exposure(Value, _abi.Exposure):
 
     ev: float
     white_balance = Vector()
-
-    def _set_defaults(self) -> None:
-        lib.lensprof_exposure_init(byref(self))
 
     def validate(self) -> None:
         """Raises lensprof.Error unless |ev| <= 64 and the factors are in 1e-6..1e6."""

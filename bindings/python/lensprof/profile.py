@@ -30,9 +30,6 @@ class ProfileKey(Value, _abi.ProfileKey):
     distance_m: float
     processing = Enumerated(Processing)
 
-    def _set_defaults(self) -> None:
-        lib.lensprof_profile_key_init(byref(self))
-
     def validate(self) -> None:
         """Raises lensprof.Error unless the numbers are in range and the texts without control characters."""
         check(lib.lensprof_profile_key_validate(byref(self)),
@@ -110,9 +107,6 @@ class Profile(Value, _abi.Profile):
     grid = Nested(GainGrid)
     covariance_size: int
     covariance = Covariance()
-
-    def _set_defaults(self) -> None:
-        lib.lensprof_profile_init(byref(self))
 
     def validate(self) -> None:
         """Raises lensprof.Error unless key, curves, gain grid and covariance are valid."""

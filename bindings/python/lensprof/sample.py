@@ -55,9 +55,6 @@ class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
     seed: int
     threads: int
 
-    def _set_defaults(self) -> None:
-        lib.lensprof_sample_options_init(byref(self))
-
 
 def _sample(function: Any, images: Sequence[SampleImage], options: Optional[SampleOptions], dtype: np.dtype,
             data: Callable[[np.ndarray], tuple[Any, int]]) -> np.ndarray:

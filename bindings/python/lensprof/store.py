@@ -30,9 +30,6 @@ class LookupOptions(Struct, _abi.LookupOptions):
     with_doubt = Flag()
     any_processing = Flag()
 
-    def _set_defaults(self) -> None:
-        lib.lensprof_lookup_options_init(byref(self))
-
 
 class Lookup(Value, _abi.Lookup):
     """How Store.lookup came to its answer: id[:rows] and weight[:rows] of the profiles used, nearest first; exact when it
