@@ -88,13 +88,13 @@ class Tables(unittest.TestCase):
             self.assertRegex(sources, rf"lib(rary)?\.{name}\b")
 
     def test_structures_with_a_size_have_it_set_by_their_init(self):
-        sized = {struct for struct in _abi.STRUCTS.values() if struct._fields_[0][0] == "struct_size"}
+        sized = {name: struct for name, struct in _abi.STRUCTS.items() if struct._fields_[0][0] == "struct_size"}
         self.assertGreater(len(sized), 5)
-        self.assertEqual(sized - set(_abi.INITS), set())
-        for struct in sized:
-            value = struct()
-            _library.initialise(value)
-            self.assertEqual(value.struct_size, ctypes.sizeof(struct), struct.__name__)
+        for name, struct in sized.items():
+            with self.subTest(struct=name):
+                if f"{name}_init_sized" in _abi.FUNCTIONS and struct not in _abi.INITS:
+                    continue  # takes more than sizes: its class calls it
+                self.assertEqual(_library.initialised(struct).struct_size, ctypes.sizeof(struct))
 
     def test_everything_public_is_exported(self):
         import lensprof

@@ -13,10 +13,12 @@ import pathlib
 import sys
 import threading
 import weakref
-from typing import Callable, Iterator, Optional
+from typing import Callable, Iterator, Optional, Type, TypeVar
 
 from . import _abi
 from ._abi import Status
+
+S = TypeVar("S", bound=ctypes.Structure)
 
 
 def _file_names() -> list[str]:
@@ -74,6 +76,15 @@ def initialise(struct: ctypes.Structure) -> None:
         if kind in _abi.INITS:
             name, sizes = _abi.INITS[kind]
             getattr(lib, name)(ctypes.byref(struct), *map(ctypes.sizeof, sizes))
+
+
+def initialised(kind: Type[S], **fields: object) -> S:
+    """A raw structure with its defaults and the given fields."""
+    struct = kind()
+    initialise(struct)
+    for name, value in fields.items():
+        setattr(struct, name, value)
+    return struct
 
 
 def version() -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _abi, _arrays
 from ._abi import FlatGrid, FlatLight, Free, Layout
-from ._library import check, lib, version
+from ._library import check, initialised, lib, version
 from ._progress import WithProgress, calling
 from ._struct import Count, Curves, Enumerated, Flag, Nested, Referenced, Struct, Text, integer
 from .model import GainGrid, Response, Vignetting
@@ -45,9 +45,9 @@ class FlatImage:
         reduction = integer(self.reduction, "reduction")
         width = view.width * reduction if self.width is None else integer(self.width, "width")
         height = view.height * reduction if self.height is None else integer(self.height, "height")
-        return _abi.FlatImage(view, integer(width, "width"), integer(height, "height"), reduction,
-                              integer(self.shot, "shot"), mask, row_bytes, self.black, self.white, self.ev,
-                              self.turn_deg)
+        return initialised(_abi.FlatImage, view=view, width=integer(width, "width"), height=integer(height, "height"),
+                           reduction=reduction, shot=integer(self.shot, "shot"), mask=mask, mask_row_bytes=row_bytes,
+                           black=self.black, white=self.white, ev=self.ev, turn_deg=self.turn_deg)
 
 
 class FlatOptions(WithProgress, Struct, _abi.FlatOptions):

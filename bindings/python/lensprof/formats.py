@@ -8,7 +8,7 @@ import numpy as np
 
 from . import _abi, _arrays
 from ._abi import CurveKind, DngForm, Free, Layout, MapSense, Status
-from ._library import Handle, check, lib
+from ._library import Handle, check, initialised, lib
 from ._struct import Enumerated, Flag, Nested, Text, Value, Vector, integer, one_or_three
 from .geometry import Camera
 from .model import Exposure, Response, Vignetting
@@ -299,8 +299,8 @@ def map_read(values: np.ndarray, sense: MapSense = MapSense.ATTENUATION, frame: 
     if array.ndim not in (2, 3):
         raise ValueError(f"a map of shape {array.shape}; give (rows, columns) or (rows, columns, 3)")
     rows, columns = array.shape[:2]
-    given = _abi.Map(columns, rows, array.shape[2] if array.ndim == 3 else 1, int(MapSense(sense)),
-                     _arrays.address(array, c_float))
+    given = initialised(_abi.Map, columns=columns, rows=rows, channels=array.shape[2] if array.ndim == 3 else 1,
+                        sense=int(MapSense(sense)), values=_arrays.address(array, c_float))
     width, height = frame if frame is not None else (columns, rows)
     return _refitted(lambda *out: lib.lensprof_map_read(byref(given), integer(width, "width"), integer(height, "height"),
                                                         *out), profile, "the map cannot be read")

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _abi, _arrays
 from ._abi import Layout, Sampling
-from ._library import check, lib
+from ._library import check, initialised, lib
 from ._progress import WithProgress, calling
 from ._struct import Enumerated, Struct, integer
 from .geometry import Camera
@@ -39,8 +39,9 @@ class SampleImage:
         """Points into this object's arrays."""
         view = _arrays.image(self.array, self.layout, what=f"image {index}")
         mask, row_bytes = (None, 0) if self.mask is None else _arrays.mask(self.mask, self.array.shape[:2])
-        return _abi.SampleImage(view, self.camera, integer(self.reduction, "reduction"),
-                                int(bool(self.every_pixel)), mask, row_bytes, self.black, self.white)
+        return initialised(_abi.SampleImage, view=view, camera=self.camera, mask=mask, mask_row_bytes=row_bytes,
+                           reduction=integer(self.reduction, "reduction"), every_pixel=int(bool(self.every_pixel)),
+                           black=self.black, white=self.white)
 
 
 class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
