@@ -83,6 +83,7 @@ typedef enum lensprof_pack { LENSPROF_PACK_COVARIANCE = 1 } lensprof_pack;
         self.assertEqual((made.SIDE, made.CELLS, made.UNKNOWN, made.ALL, made.VERSION),
                          (32, 96, -1.5, 2**32 - 1, "0.1.2"))
         self.assertEqual(made.Light.__members__, {"ANY": 0, "AREA": 7, "NEXT": 8})
+        self.assertIn("lensprof/lensprof.h", made.Free.__doc__)
         self.assertEqual(made.Free.A | made.Free.B, 0x81)
         self.assertTrue(issubclass(made.Pack, made.IntFlag))
         self.assertEqual(made.ENUMS, {"LENSPROF_LIGHT_": made.Light, "LENSPROF_PACK_": made.Pack,

@@ -224,7 +224,7 @@ class DistanceRule(IntEnum):
 
 
 class Free(IntFlag):
-    """LENSPROF_FREE_*; see lensprof/<stdin>."""
+    """LENSPROF_FREE_*; see lensprof/fit.h."""
     RESPONSE = 0x01
     K1 = 0x02
     K2 = 0x04

@@ -5,8 +5,9 @@ usage: make_abi.py [--cc CC]           write lensprof/_abi.py and tests/python/a
        make_abi.py [--cc CC] --check   exit 1 where one of them is not what the headers give; write nothing
 
 Needs pycparser (package python3-pycparser) and a C preprocessor. Users of the package need neither. The names of
-classes come from those in C: lensprof_gain_grid is GainGrid; the exceptions are listed below. A declaration that has
-no form here (union, bit field, inline function that is more than a call) is refused, with its place.
+classes come from those in C: lensprof_gain_grid is GainGrid; the exceptions are listed below. Macros of a single bit
+in hexadecimal make an IntFlag: LENSPROF_FREE_K1 0x02u is Free.K1. A declaration that has no form here (union, bit
+field, inline function that is more than a call) is refused, with its place.
 """
 from __future__ import annotations
 
@@ -93,16 +94,25 @@ class Interface:
         self.inits: dict = {}  # C name of a structure -> (function that sets defaults, C types whose sizes it takes)
         self._known = dict(SCALARS)  # C type -> ctypes expression
         self._values: dict = {}  # enumerators
-        defined = preprocess(include, cc, options=("-dD",))
-        macros = re.findall(r"^#define (LENSPROF_\w+) +\S", defined, flags=re.MULTILINE)
-        extra = "".join(f"double {name}_value = {name};\n".replace("LENSPROF_", "value_of_LENSPROF_", 1)
-                        for name in macros)
+        extra = "".join(f"double value_of_{name} = {name};\n" for name in self._macros(include, cc))
         for node in c_parser.CParser().parse(preprocess(include, cc, extra)).ext:
             self._read(node)
         classes = [class_name(name) for name in [*self.enums, *self.flags, *(kind[1] for kind in self.types)]]
         twice = [name for name, count in collections.Counter(classes).items() if count > 1]
         if twice:
             raise Refused(f"two types are named {twice[0]} in Python; add one to NAMES")
+
+    def _macros(self, include: pathlib.Path, cc: str) -> list:
+        """Names of the macros with a text and without parameters."""
+        names, header = [], ""
+        for line in preprocess(include, cc, options=("-dD",)).splitlines():
+            place, macro = re.match(r'# \d+ "(.*?)"', line), re.match(r"#define (LENSPROF_\w+) +\S", line)
+            if place:
+                header = os.path.basename(place[1])
+            elif macro:
+                names.append(macro[1])
+                self.headers[macro[1]] = header
+        return names
 
     def _read(self, node: c_ast.Node) -> None:
         name = getattr(node, "name", None) or (node.decl.name if isinstance(node, c_ast.FuncDef) else "")
@@ -114,7 +124,7 @@ class Interface:
         elif isinstance(node, c_ast.Typedef):
             self._read_typedef(name, node.type)
         elif isinstance(node, c_ast.Decl) and name and name.startswith("value_of_"):
-            self._read_macro(name[len("value_of_"):-len("_value")], node.init)
+            self._read_macro(name[len("value_of_"):], node.init)
         elif isinstance(node, c_ast.Decl) and isinstance(node.type, c_ast.FuncDecl):
             self.functions[name] = result, parameters = self._signature(node.type)
             of = name[:-len("_init")]
@@ -252,8 +262,7 @@ def python_text(interface: Interface) -> str:
         if "_VERSION_" not in name:
             body += f"{name[len('LENSPROF_'):]} = {value}\n"
     for name, members in all_enums.items():
-        header = interface.headers[name] if name in interface.enums else interface.headers[
-            f"value_of_{next(iter(members))}_value"]
+        header = interface.headers[name if name in interface.enums else next(iter(members))]
         body += python_enum(name, members, name in interface.flags or name in FLAGS, header)
     for kind in interface.types:
         body += python_type(kind)
