@@ -821,7 +821,7 @@ CALLBACKS = {
 }
 
 # The function that sets a structure's defaults, and the types whose sizes it takes.
-INITS = {
+INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     GainGrid: ("lensprof_gain_grid_init", []),
     Exposure: ("lensprof_exposure_init", []),
     ApplyOptions: ("lensprof_apply_options_init", []),

@@ -13,7 +13,7 @@ import pathlib
 import sys
 import threading
 import weakref
-from typing import Callable, Iterator, Optional, Type, TypeVar
+from typing import Any, Callable, Iterator, Optional, Type, TypeVar
 
 from . import _abi
 from ._abi import Status
@@ -70,8 +70,8 @@ def _load() -> ctypes.CDLL:
 lib = _load()
 
 
-def initialise(struct: ctypes.Structure) -> None:
-    """Calls the structure's `_init` function, which sets its size and its defaults; without one nothing changes."""
+def initialise(struct: Any) -> None:
+    """Calls the `_init` function of a raw or public structure, which sets size and defaults. Some have none."""
     for kind in type(struct).__mro__:
         if kind in _abi.INITS:
             name, sizes = _abi.INITS[kind]

@@ -56,7 +56,7 @@ def calling(options: Any) -> Iterator[Any]:
     """The raw options for one call of the library, which lasts as long as the block; what they point to is kept alive
     by `options`."""
     raised: list[BaseException] = []
-    raw = next(base for base in type(options).__mro__ if "_fields_" in vars(base))
+    raw: Any = next(base for base in type(options).__mro__ if "_fields_" in vars(base))
     call = raw.from_buffer_copy(options)
 
     def on_progress(done: float, _user: Any) -> int:

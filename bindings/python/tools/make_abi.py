@@ -270,7 +270,8 @@ def python_text(interface: Interface) -> str:
     body += python_table("ENUMS", prefixes)
     for table, wanted in (("STRUCTS", "struct"), ("OPAQUE", "opaque"), ("CALLBACKS", "callback")):
         body += python_table(table, {kind[1]: class_name(kind[1]) for kind in interface.types if kind[0] == wanted})
-    body += "\n# The function that sets a structure's defaults, and the types whose sizes it takes.\nINITS = {\n"
+    body += "\n# The function that sets a structure's defaults, and the types whose sizes it takes.\n"
+    body += "INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {\n"
     for name, (function, sizes) in interface.inits.items():
         body += f'    {class_name(name)}: ("{function}", [{", ".join(map(class_name, sizes))}]),\n'
     body += "}\n"
