@@ -18,6 +18,7 @@ static int put_and_find(lensprof_store *store) {
     int64_t id;
 
     lensprof_profile_init(&profile);
+    lensprof_profile_init(&found);
     strcpy(profile.key.camera_model, "Example Camera");
     strcpy(profile.key.lens, "50 mm F1.8");
     profile.key.focal_mm = 50.0;

@@ -43,7 +43,7 @@ static void make_pairs(void) {
 }
 
 int main(void) {
-    lensprof_fit_image images[IMAGES] = {{0}};
+    lensprof_fit_image images[IMAGES];
     lensprof_exposure exposures[IMAGES];
     lensprof_fit_options options;
     lensprof_error error;
@@ -51,11 +51,7 @@ int main(void) {
 
     make_pairs();
     for (i = 0; i < IMAGES; i++) {
-        images[i].width = 640;
-        images[i].height = 480;
-        lensprof_exposure_init(&images[i].exposure);
-        images[i].free = LENSPROF_FREE_EV;
-        images[i].ev_of = images[i].red_of = images[i].blue_of = i;
+        lensprof_fit_image_init(&images[i], i, 640, 480);
         images[i].known_ev = true_ev[i]; /* what EXIF says, give or take a tenth: settles the exponent */
         images[i].known_ev_sigma = 0.1;
     }

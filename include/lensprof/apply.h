@@ -105,7 +105,10 @@ typedef struct lensprof_apply_options {
 
 /* Correct, encoded in and out, u8 RGB in and out, exposures 0 EV, strength 1; the rest zero, to be set by the caller.
  */
-LENSPROF_API void lensprof_apply_options_init(lensprof_apply_options *options);
+LENSPROF_API void lensprof_apply_options_init_sized(lensprof_apply_options *options, size_t size);
+static inline void lensprof_apply_options_init(lensprof_apply_options *options) {
+    lensprof_apply_options_init_sized(options, sizeof *options);
+}
 
 typedef struct lensprof_plan lensprof_plan;
 

@@ -4,8 +4,16 @@
  *  - Every function that can fail returns lensprof_status; on error its outputs are untouched.
  *  - Heavy calls also take an optional caller-owned lensprof_error (may be NULL) for a sentence that names
  *    the offending item and the next step. There is no global or thread-local error state.
- *  - Structs that may grow begin with `uint32_t struct_size` and have an `_init` function that sets it and
- *    the defaults. All other public structs are frozen values.
+ *  - Structs that grow begin with `uint32_t struct_size`. Their `_init` function sets it to the size that the program
+ * was compiled with, and every other member to its default; call it before anything else, for outputs too. New members
+ *    come last. A library takes every size from that of the struct's first version up to its own: members that an older
+ *    program does not have count as their defaults, and outputs are filled up to the program's size, whose struct_size
+ *    stays. It refuses larger structs (the program is newer than the library) and smaller ones (_init was not called)
+ *    with STRUCT_SIZE. Elements of an array have one struct_size, which is the step from one to the next. Never copy
+ * such a struct between an address of the library and one of the program by assignment.
+ *  - lensprof_profile_key and lensprof_provenance, which lie within other structs, have fixed sizes and room for new
+ *    members, which is 0. Structs that the library owns and only shows (lensprof_import_entry, lensprof_store_fault)
+ *    get new members at their end. All other public structs are frozen values.
  *  - Input and output live in the caller's buffers. Nothing is kept after a call returns unless said so.
  *
  * Threads: everything declared here may be called from any thread at any time.
@@ -17,7 +25,7 @@
 #include <stdint.h>
 
 #define LENSPROF_VERSION_MAJOR 0
-#define LENSPROF_VERSION_MINOR 1
+#define LENSPROF_VERSION_MINOR 2
 #define LENSPROF_VERSION_PATCH 0
 
 #if defined(__GNUC__)
@@ -37,7 +45,7 @@ extern "C" {
 typedef enum lensprof_status {
     LENSPROF_OK = 0,
     LENSPROF_ERROR_ARGUMENT = 1,     /* NULL, unknown enum value, index out of range */
-    LENSPROF_ERROR_STRUCT_SIZE = 2,  /* struct_size not set by the _init function of this version */
+    LENSPROF_ERROR_STRUCT_SIZE = 2,  /* struct_size not set by an _init function, or by that of a newer version */
     LENSPROF_ERROR_SIZE = 3,         /* zero or overflowing size, stride too small, tile outside the frame */
     LENSPROF_ERROR_CAPACITY = 4,     /* the caller's buffer is too small; the needed size is reported */
     LENSPROF_ERROR_NOT_FINITE = 5,   /* NaN or infinity where a finite number is needed */
@@ -75,7 +83,7 @@ typedef int (*lensprof_progress)(double done, void *user);
 /* Name of a status, e.g. "LENSPROF_ERROR_SIZE"; "unknown status" for other numbers. Static storage. */
 LENSPROF_API const char *lensprof_status_name(lensprof_status status);
 
-/* "0.1.0". Static storage. */
+/* "0.2.0". Static storage. */
 LENSPROF_API const char *lensprof_version(void);
 
 #ifdef __cplusplus

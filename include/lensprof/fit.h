@@ -77,17 +77,27 @@ typedef enum lensprof_camera_kind {
     LENSPROF_CAMERA_DIGITAL = 2 /* digital and video cameras with a tone curve: 29 curves */
 } lensprof_camera_kind;
 
-/* One image of the fit. Frozen value struct. */
+/* One image of the fit. */
 typedef struct lensprof_fit_image {
+    uint32_t struct_size;
     uint32_t width, height;     /* full frame, px */
-    lensprof_exposure exposure; /* the value where fixed, else unused */
     uint32_t free;              /* LENSPROF_FREE_EV | _RED | _BLUE */
     uint32_t ev_of;             /* index of the image whose ev this one shares (links); own index = its own */
     uint32_t red_of, blue_of;   /* the same for the white balance factors */
+    uint32_t reserved;          /* 0 */
+    lensprof_exposure exposure; /* the value where fixed, else unused */
     double known_ev;            /* exposure from elsewhere (EXIF), EV up to a common offset: a soft observation */
     double known_ev_sigma;      /* its standard error, 0.001..100 EV; 0 = not known. Rounded EXIF: about 0.1; below
                                    0.02 counts as 0.02. One alone says nothing: only differences do */
 } lensprof_fit_image;
+
+/* Image `index` of the array, of a frame of width x height px: exposure and white balance of its own, free, 0 EV and 1,
+ * 1, 1 where fixed, and not known from elsewhere. */
+LENSPROF_API void lensprof_fit_image_init_sized(lensprof_fit_image *image, size_t size, uint32_t index, uint32_t width,
+                                                uint32_t height);
+static inline void lensprof_fit_image_init(lensprof_fit_image *image, uint32_t index, uint32_t width, uint32_t height) {
+    lensprof_fit_image_init_sized(image, sizeof *image, index, width, height);
+}
 
 /* What became of lensprof_fit_options.profile. */
 typedef enum lensprof_profile_prior {
@@ -129,9 +139,12 @@ typedef struct lensprof_fit_options {
 
 /* 3 channels, reference 0, everything free, modes AUTO, loss ROBUST, Huber 5 levels, prior weight 1,
  * 200 iterations, vignettings and gamma AUTO, any camera, threads on all cores. */
-LENSPROF_API void lensprof_fit_options_init(lensprof_fit_options *options);
+LENSPROF_API void lensprof_fit_options_init_sized(lensprof_fit_options *options, size_t size);
+static inline void lensprof_fit_options_init(lensprof_fit_options *options) {
+    lensprof_fit_options_init_sized(options, sizeof *options);
+}
 
-/* How well one image is determined. Frozen value struct. */
+/* How well one image is determined. It grows by lensprof_fit_result.image_quality_size. */
 typedef struct lensprof_fit_image_quality {
     double ev_sigma;               /* standard error of ev, EV; 0 where fixed or not determined */
     double white_balance_sigma[3]; /* of the factors */
@@ -149,8 +162,10 @@ typedef struct lensprof_fit_image_quality {
 
 typedef struct lensprof_fit_result {
     uint32_t struct_size;
-    uint32_t usable;  /* 1, or 0 with the reason in words */
-    char reason[256]; /* why not usable; when usable empty, or what to mind */
+    uint32_t usable;             /* 1, or 0 with the reason in words */
+    uint32_t image_quality_size; /* bytes of an element of image_quality, set by the _init function */
+    uint32_t reserved;           /* 0 */
+    char reason[256];            /* why not usable; when usable empty, or what to mind */
     lensprof_response response;
     lensprof_vignetting vignetting[3]; /* of the channels; all alike when `vignettings` is 1; they share one centre */
     uint32_t vignettings;              /* 1 or 3 */
@@ -180,7 +195,11 @@ typedef struct lensprof_fit_result {
     lensprof_fit_image_quality *image_quality; /* the caller's array of image_count, set before the call; or NULL */
 } lensprof_fit_result;
 
-LENSPROF_API void lensprof_fit_result_init(lensprof_fit_result *result);
+/* No result, a linear response. */
+LENSPROF_API void lensprof_fit_result_init_sized(lensprof_fit_result *result, size_t size, size_t image_quality_size);
+static inline void lensprof_fit_result_init(lensprof_fit_result *result) {
+    lensprof_fit_result_init_sized(result, sizeof *result, sizeof(lensprof_fit_image_quality));
+}
 
 /* Fits `pair_count` pairs over `image_count` images. exposures[image_count] receives what every image got,
  * relative to the reference. A fit that ran returns OK even when the result is poor: see `usable`.

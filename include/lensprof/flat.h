@@ -27,12 +27,14 @@ extern "C" {
 #define LENSPROF_FLAT_IMAGES 128 /* most pictures of a call */
 #define LENSPROF_FLAT_SPOTS 32   /* most spots of dust that are told one by one */
 
-/* One picture. Frozen value struct. */
+/* One picture. */
 typedef struct lensprof_flat_image {
-    lensprof_image view;      /* the frame, reduced or not; layouts with alpha: alpha below half = excluded */
+    uint32_t struct_size;
     uint32_t width, height;   /* full frame, px; the same for all pictures */
     uint32_t reduction;       /* as in lensprof_sample_image */
     uint32_t shot;            /* pictures of one shot (same pose, same light, other exposure) carry one number */
+    uint32_t reserved;        /* 0 */
+    lensprof_image view;      /* the frame, reduced or not; layouts with alpha: alpha below half = excluded */
     const uint8_t *mask;      /* one byte a view pixel, 0 = not the card; NULL = all of it */
     ptrdiff_t mask_row_bytes; /* at least the width of the view, or at most minus that; unused without a mask */
     double black, white;      /* samples outside [black, white] in any channel are not used; 0..1 */
@@ -40,6 +42,12 @@ typedef struct lensprof_flat_image {
                                  count, and, for a card at several places, between shots */
     double turn_deg;          /* camera turned about its axis, clockwise as seen from behind it: degrees; one a shot */
 } lensprof_flat_image;
+
+/* Full size, shot 0, no mask, 2/255 to 250/255, 0 EV, not turned; view and frame zero, to be set by the caller. */
+LENSPROF_API void lensprof_flat_image_init_sized(lensprof_flat_image *image, size_t size);
+static inline void lensprof_flat_image_init(lensprof_flat_image *image) {
+    lensprof_flat_image_init_sized(image, sizeof *image);
+}
 
 typedef enum lensprof_flat_light {
     LENSPROF_FLAT_LIGHT_AUTO = 0,     /* PLANE; for a card at several places EVEN */
@@ -78,9 +86,13 @@ typedef struct lensprof_flat_options {
 
 /* 3 channels, everything free, curves, light and grid AUTO, frame-filling shots of one light, linear, 0.02 EV, prior
  * weight 1, threads on all cores. */
-LENSPROF_API void lensprof_flat_options_init(lensprof_flat_options *options);
+LENSPROF_API void lensprof_flat_options_init_sized(lensprof_flat_options *options, size_t size);
+static inline void lensprof_flat_options_init(lensprof_flat_options *options) {
+    lensprof_flat_options_init_sized(options, sizeof *options);
+}
 
-/* What one picture gave. Frozen value struct. Shares are of the card's part of the frame. */
+/* What one picture gave. It grows by lensprof_flat_result.image_quality_size. Shares are of the card's part of the
+ * frame. */
 typedef struct lensprof_flat_image_quality {
     double white_share, black_share; /* of its cells that hold samples beyond the limits */
     double noise_levels;             /* noise of a pixel of the view, levels of 255; median over the cells */
@@ -105,6 +117,9 @@ typedef struct lensprof_flat_spot {
 typedef struct lensprof_flat_result {
     uint32_t struct_size;
     uint32_t usable;                   /* 1, or 0 with the reason in words */
+    uint32_t image_quality_size;       /* bytes of an element of image_quality, set by the _init function */
+    uint32_t covariance_size;          /* order as in profile.h; parameters held fixed have zero rows; 0 = not
+                                          determined */
     char reason[256];                  /* why not usable; when usable empty, or what to mind */
     lensprof_vignetting vignetting[3]; /* of the channels; all alike when `vignettings` is 1; they share one centre */
     uint32_t vignettings;              /* 1 or 3 */
@@ -127,15 +142,17 @@ typedef struct lensprof_flat_result {
     double inlier_share;  /* of cells: within 3 sigma */
     double corner_sigma;  /* standard error of M at r = 1 */
     double grid_residual; /* what falloff and grid together leave of frame_residual; 0 without a grid */
-    uint32_t covariance_size; /* order as in profile.h; parameters held fixed have zero rows; 0 = not determined */
-    uint32_t reserved;
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
     lensprof_gain_grid gain_grid; /* what the polynomial leaves: the attenuation is M times it, and it is 1 at the
                                      centre of M. 0 x 0 where it is not asked for, or nothing shows it */
     lensprof_flat_image_quality *image_quality; /* the caller's array of `count`, set before the call; or NULL */
 } lensprof_flat_result;
 
-LENSPROF_API void lensprof_flat_result_init(lensprof_flat_result *result);
+/* No result. */
+LENSPROF_API void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size, size_t image_quality_size);
+static inline void lensprof_flat_result_init(lensprof_flat_result *result) {
+    lensprof_flat_result_init_sized(result, sizeof *result, sizeof(lensprof_flat_image_quality));
+}
 
 /* Fits the falloff to `count` pictures. A fit that ran returns OK even when the result is poor: see `usable`.
  * Errors: unusable options, shots with different turns or pictures with different frames ARGUMENT or SIZE; NaN in a

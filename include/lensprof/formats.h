@@ -20,20 +20,26 @@ extern "C" {
 
 typedef struct lensprof_pto lensprof_pto;
 
-/* One `i` line with its links resolved, in lensprof's conventions. Frozen value struct. */
+/* One `i` line with its links resolved, in lensprof's conventions. */
 typedef struct lensprof_pto_image {
+    uint32_t struct_size;
+    uint32_t response_type; /* Rt: 0 EMoR, 1 linear */
     lensprof_camera camera;
     lensprof_exposure exposure;     /* ev = -Eev (Hugin's larger Eev means less light); white balance Er, 1, Eb */
     lensprof_vignetting vignetting; /* Vb/Va, Vc/Va, Vd/Va; Vx, Vy in half diagonals; none where Vm asks for none */
     double emor[5];                 /* Ra..Re */
-    uint32_t response_type;         /* Rt: 0 EMoR, 1 linear */
     uint32_t free;        /* LENSPROF_FREE_* that the `v` lines ask for on this image or on the one it is linked to */
     uint32_t response_of; /* index of the image at the end of the link, own index when not linked */
     uint32_t vignetting_of, center_of, ev_of, red_of, blue_of;
     int32_t crop[4];        /* left, top, right, bottom (right and bottom exclusive), the frame when none */
     uint32_t crop_circular; /* 1 when only the circle about the crop's middle that touches its nearer sides counts */
-    uint32_t reserved;      /* 0 */
 } lensprof_pto_image;
+
+/* All zero, to be filled by lensprof_pto_get_image. */
+LENSPROF_API void lensprof_pto_image_init_sized(lensprof_pto_image *image, size_t size);
+static inline void lensprof_pto_image_init(lensprof_pto_image *image) {
+    lensprof_pto_image_init_sized(image, sizeof *image);
+}
 
 /* Parses a project. *pto is created and must be destroyed by the caller.
  * Errors (the text names the line): ARGUMENT; SIZE over 64 MiB; SYNTAX; VARIABLE for an unknown name or image number on
@@ -102,9 +108,10 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_write(const lensp
 
 /* ---- Falloffs of other programs' databases ---------------------------------------------------------------- */
 
-/* One falloff of a file. Frozen value struct. */
+/* One falloff of a file. */
 typedef struct lensprof_import_entry {
-    const lensprof_profile *profile; /* until the visitor returns: key, provenance, vignetting; a linear response */
+    const lensprof_profile *profile; /* until the visitor returns: key, provenance, vignetting; a linear response. To
+                                      * be kept by lensprof_profile_copy */
     uint32_t usable;   /* 0: what the file has is no falloff (provenance.doubt says why), and lensprof_profile_validate
                         * refuses it; 1: a valid profile, which provenance.doubt may still warn of */
     uint32_t reserved; /* 0 */

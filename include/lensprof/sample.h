@@ -30,17 +30,24 @@ typedef struct lensprof_observation {
 } lensprof_observation;
 
 /* A picture to sample. The view may be a reduced picture: pixel (u, v) is then the mean of the square of frame
- * pixels from (u, v) * reduction on, or of some pixels of it whose places vary from square to square. Frozen value
- * struct. */
+ * pixels from (u, v) * reduction on, or of some pixels of it whose places vary from square to square. */
 typedef struct lensprof_sample_image {
-    lensprof_image view;      /* the frame, reduced or not; layouts with alpha: alpha below half = excluded */
-    lensprof_camera camera;   /* full frame */
+    uint32_t struct_size;
     uint32_t reduction;       /* side of that square, px; 1 = full size. view.width * reduction <= camera.width */
     uint32_t every_pixel;     /* 1: no pixel of a patch may be outside [black, white]; 0: its robust mean counts */
+    uint32_t reserved;        /* 0 */
+    lensprof_image view;      /* the frame, reduced or not; layouts with alpha: alpha below half = excluded */
+    lensprof_camera camera;   /* full frame */
     const uint8_t *mask;      /* one byte a view pixel, 0 = excluded; NULL = all included */
     ptrdiff_t mask_row_bytes; /* at least the width of the view, or at most minus that; unused without a mask */
     double black, white;      /* samples outside [black, white] in any channel are not used; 0..1 */
 } lensprof_sample_image;
+
+/* Full size, robust means, no mask, 2/255 to 250/255; view and camera zero, to be set by the caller. */
+LENSPROF_API void lensprof_sample_image_init_sized(lensprof_sample_image *image, size_t size);
+static inline void lensprof_sample_image_init(lensprof_sample_image *image) {
+    lensprof_sample_image_init_sized(image, sizeof *image);
+}
 
 typedef enum lensprof_sampling {
     LENSPROF_SAMPLING_BALANCED = 0, /* balanced over image pairs, radius and grey level; quiet patches preferred */
@@ -63,7 +70,10 @@ typedef struct lensprof_sample_options {
 
 /* Balanced, 0 pairs (= 300 per image, or 150 points with tracks; at least 2000), seed 1, threads on all cores, no
  * progress. */
-LENSPROF_API void lensprof_sample_options_init(lensprof_sample_options *options);
+LENSPROF_API void lensprof_sample_options_init_sized(lensprof_sample_options *options, size_t size);
+static inline void lensprof_sample_options_init(lensprof_sample_options *options) {
+    lensprof_sample_options_init_sized(options, sizeof *options);
+}
 
 /* Finds correspondences between `count` pictures. Balanced sampling corrects the cameras first, between neighbours and
  * for its own use, where the pictures show that they are some pixels off, leaves out places whose surroundings differ

@@ -38,9 +38,9 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_put(lensprof_store
                                                                   const lensprof_profile *profile, int64_t *id,
                                                                   lensprof_error *error);
 
-/* The newest profile whose key is equal, and its *id (may be NULL) (texts ignoring ASCII case and outer blanks; focal
- * length, aperture and distance to 1e-6 relative; unknown equals unknown only; the same processing). NOT_FOUND when
- * there is none. */
+/* The newest profile whose key is equal, to an initialised *profile, and its *id (may be NULL) (texts ignoring ASCII
+ * case and outer blanks; focal length, aperture and distance to 1e-6 relative; unknown equals unknown only; the same
+ * processing). NOT_FOUND when there is none. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find(lensprof_store *store,
                                                                    const lensprof_profile_key *key,
                                                                    lensprof_profile *profile, int64_t *id,
@@ -61,14 +61,19 @@ typedef struct lensprof_lookup_options {
 } lensprof_lookup_options;
 
 /* WEAKEST, without doubt, the same processing. */
-LENSPROF_API void lensprof_lookup_options_init(lensprof_lookup_options *options);
+LENSPROF_API void lensprof_lookup_options_init_sized(lensprof_lookup_options *options, size_t size);
+static inline void lensprof_lookup_options_init(lensprof_lookup_options *options) {
+    lensprof_lookup_options_init_sized(options, sizeof *options);
+}
 
 #define LENSPROF_LOOKUP_ROWS 24
 
-/* How a lookup came to its answer. Frozen value struct. */
+/* How a lookup came to its answer. */
 typedef struct lensprof_lookup {
+    uint32_t struct_size;
     uint32_t exact;                      /* 1: a stored profile, as it is */
     uint32_t rows;                       /* profiles that were used, 1..LENSPROF_LOOKUP_ROWS */
+    uint32_t reserved;                   /* 0 */
     int64_t id[LENSPROF_LOOKUP_ROWS];    /* of them, nearest first */
     double weight[LENSPROF_LOOKUP_ROWS]; /* of each; they add up to about 1, and may be below 0 */
     double distance;   /* from the setting to the nearest one; 0 = the same, refused beyond 0.5: two stops from wide
@@ -82,6 +87,10 @@ typedef struct lensprof_lookup {
     char reason[256];  /* what to mind; where nothing is found, why */
 } lensprof_lookup;
 
+/* All zero. */
+LENSPROF_API void lensprof_lookup_init_sized(lensprof_lookup *lookup, size_t size);
+static inline void lensprof_lookup_init(lensprof_lookup *lookup) { lensprof_lookup_init_sized(lookup, sizeof *lookup); }
+
 /* The profile for a setting: a stored one, or the falloff predicted from those of the same lens at other settings
  * (docs/database.md says how). The lens's name decides, then the camera, unit and sensor - without a lens the camera,
  * whose profiles without a lens, or of its only lens, count (their focal lengths to 2 % or 0.1 mm, for such cameras
@@ -89,7 +98,7 @@ typedef struct lensprof_lookup {
  * these, those of the smallest sensor that is not smaller than the key's, their radii rescaled, and of the smallest of
  * all where the key's is not known. A predicted profile has key `key`, the response of the nearest profile, no gain
  * grid, and provenance method "lookup". Nothing is written. NOT_FOUND, with *lookup filled as far as it goes, where
- * there is no such lens, or nothing near enough; profile is then untouched. */
+ * there is no such lens, or nothing near enough; profile is then untouched. Both are initialised ones. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup(lensprof_store *store,
                                                                      const lensprof_profile_key *key,
                                                                      const lensprof_lookup_options *options,
@@ -102,7 +111,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_begin(lensprof_sto
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_commit(lensprof_store *store, lensprof_error *error);
 LENSPROF_API void lensprof_store_rollback(lensprof_store *store);
 
-/* The profile with an id. */
+/* The profile with an id, to an initialised *profile. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_get(lensprof_store *store, int64_t id,
                                                                   lensprof_profile *profile, lensprof_error *error);
 
@@ -146,7 +155,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_merge(lensprof_sto
                                                                     uint32_t *added, uint32_t *known,
                                                                     lensprof_error *error);
 
-/* Something that is wrong in a database. Frozen value struct. */
+/* Something that is wrong in a database. */
 typedef struct lensprof_store_fault {
     int64_t id;       /* of the profile; 0 = of the file as a whole */
     char reason[256]; /* in words, or as SQLite says it */
@@ -174,8 +183,10 @@ typedef struct lensprof_store_group {
     uint32_t reserved; /* 0 */
 } lensprof_store_group;
 
-/* What is in a database. Names that differ in ASCII case or outer blanks are one. Frozen value struct. */
+/* What is in a database. Names that differ in ASCII case or outer blanks are one. */
 typedef struct lensprof_store_stats {
+    uint32_t struct_size;
+    uint32_t layout; /* number of profiles/schema */
     uint32_t profiles;
     uint32_t cameras, lenses, units;                 /* different ones that are known */
     uint32_t processing[3];                          /* profiles, by lensprof_processing */
@@ -186,11 +197,16 @@ typedef struct lensprof_store_stats {
     double distance_m[2];
     lensprof_store_group method[LENSPROF_STATS_GROUPS]; /* those with the most profiles, largest first */
     lensprof_store_group source[LENSPROF_STATS_GROUPS];
-    int64_t bytes;     /* of the file, what a log beside it holds included */
-    uint32_t layout;   /* number of profiles/schema */
-    uint32_t reserved; /* 0 */
+    int64_t bytes; /* of the file, what a log beside it holds included */
 } lensprof_store_stats;
 
+/* All zero. */
+LENSPROF_API void lensprof_store_stats_init_sized(lensprof_store_stats *stats, size_t size);
+static inline void lensprof_store_stats_init(lensprof_store_stats *stats) {
+    lensprof_store_stats_init_sized(stats, sizeof *stats);
+}
+
+/* To an initialised *stats. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_get_stats(lensprof_store *store,
                                                                         lensprof_store_stats *stats,
                                                                         lensprof_error *error);

@@ -140,13 +140,11 @@ static int copy_text(const lp_blob *blob, uint32_t index, char *text, size_t cap
 
 int lp_blob_key(const lp_blob *blob, lensprof_profile_key *key) {
     const uint8_t *b = blob->bytes;
-    memset(key->unit, 0, sizeof key->unit);
-    key->crop_factor = LENSPROF_UNKNOWN;
+    lensprof_profile_key_init(key);
     key->focal_mm = lp_f64_at(b + LP_BLOB_KEY);
     key->aperture = lp_f64_at(b + LP_BLOB_KEY + 8);
     key->distance_m = lp_f64_at(b + LP_BLOB_KEY + 16);
     key->processing = b[LP_BLOB_PROCESSING];
-    key->reserved = 0;
     return copy_text(blob, 0, key->camera_maker, sizeof key->camera_maker)
            && copy_text(blob, 1, key->camera_model, sizeof key->camera_model)
            && copy_text(blob, 2, key->lens, sizeof key->lens);
@@ -154,8 +152,7 @@ int lp_blob_key(const lp_blob *blob, lensprof_profile_key *key) {
 
 int lp_blob_provenance(const lp_blob *blob, lensprof_provenance *provenance) {
     const uint8_t *b = blob->bytes;
-    memset(provenance->source, 0, sizeof provenance->source);
-    memset(provenance->doubt, 0, sizeof provenance->doubt);
+    memset(provenance, 0, sizeof *provenance);
     provenance->created_unix_s = (int64_t)lp_u64_at(b + LP_BLOB_CREATED);
     provenance->images = lp_u32_at(b + LP_BLOB_COUNTS);
     provenance->pairs = lp_u32_at(b + LP_BLOB_COUNTS + 4);

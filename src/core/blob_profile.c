@@ -1,5 +1,6 @@
 /* Profiles to blobs and back (docs/blob.md). */
 #include "core/blob.h"
+#include "core/profile.h"
 
 /* ---- writing ---- */
 
@@ -145,10 +146,11 @@ static void copy_covariance(const lp_blob *blob, lensprof_profile *profile) {
 lensprof_status lensprof_profile_unpack(const void *blob, size_t bytes, lensprof_profile *profile) {
     lp_blob b;
     if (!blob || !profile) return LENSPROF_ERROR_ARGUMENT;
+    if (lp_sized_wrong(profile, LP_FIRST_PROFILE, sizeof *profile)) return LENSPROF_ERROR_STRUCT_SIZE;
     const lensprof_status status = lp_blob_open(blob, bytes, &b);
     if (status != LENSPROF_OK) return status;
     const lp_model *m = &b.model;
-    lensprof_profile_init(profile);
+    lensprof_profile_init_sized(profile, profile->struct_size);
     if (!lp_blob_key(&b, &profile->key) || !lp_blob_provenance(&b, &profile->provenance))
         return LENSPROF_ERROR_INTERNAL; /* both were read before */
     profile->responses = m->responses;

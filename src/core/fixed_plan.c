@@ -93,8 +93,8 @@ static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_optio
 
 /* ---- plan ---- */
 
-static lensprof_status validate(const lensprof_apply_options *o, lp_model *m) {
-    const lensprof_status status = lp_options_validate(o, m);
+static lensprof_status validate(const lensprof_apply_options *given, lensprof_apply_options *o, lp_model *m) {
+    const lensprof_status status = lp_options_validate(given, o, m);
     if (status != LENSPROF_OK) return status;
     if (o->source_sample > LENSPROF_SAMPLE_U16 || o->target_sample != o->source_sample
         || o->source_layout == LENSPROF_LAYOUT_PLANAR || m->columns || o->dither)
@@ -105,8 +105,9 @@ static lensprof_status validate(const lensprof_apply_options *o, lp_model *m) {
 }
 
 size_t lensprof_fixed_plan_bytes(const lensprof_apply_options *options) {
+    lensprof_apply_options own;
     lp_model model;
-    return options && validate(options, &model) == LENSPROF_OK ? bytes_of(options, &model) : 0;
+    return options && validate(options, &own, &model) == LENSPROF_OK ? bytes_of(&own, &model) : 0;
 }
 
 static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
@@ -135,13 +136,15 @@ static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_option
                           && o->output == LENSPROF_ENCODING_RESPONSE;
 }
 
-lensprof_status lensprof_fixed_plan_init(void *memory, size_t bytes, const lensprof_apply_options *options,
+lensprof_status lensprof_fixed_plan_init(void *memory, size_t bytes, const lensprof_apply_options *given,
                                          const lensprof_fixed_plan **result) {
-    if (!memory || !options || !result) return LENSPROF_ERROR_ARGUMENT;
+    if (!memory || !given || !result) return LENSPROF_ERROR_ARGUMENT;
+    lensprof_apply_options own;
+    const lensprof_apply_options *options = &own;
     lensprof_fixed_plan head;
     memset(&head, 0, sizeof head);
     lp_model model;
-    const lensprof_status status = validate(options, &model);
+    const lensprof_status status = validate(given, &own, &model);
     if (status != LENSPROF_OK) return status;
     prepare_layout(&head, options, &model);
     if (!prepare_falloffs(&head, options, &model)) return LENSPROF_ERROR_UNSUPPORTED;

@@ -6,14 +6,20 @@
 
 #include "core/response.h"
 
-void lensprof_apply_options_init(lensprof_apply_options *options) {
-    memset(options, 0, sizeof *options);
-    options->struct_size = sizeof *options;
+#define FIRST_OPTIONS LP_END_OF(lensprof_apply_options, blob_bytes)
+
+void lensprof_apply_options_init_sized(lensprof_apply_options *options, size_t size) {
+    if (!lp_sized_begin(options, size, FIRST_OPTIONS)) return;
     options->source_layout = LENSPROF_LAYOUT_RGB;
     options->responses = options->vignettings = 1;
     options->strength = 1.0;
     lensprof_exposure_init(&options->source);
     lensprof_exposure_init(&options->target);
+}
+
+lensprof_status lp_options_take(const lensprof_apply_options *given, lensprof_apply_options *own) {
+    lensprof_apply_options_init(own);
+    return lp_sized_take(own, given, FIRST_OPTIONS) ? LENSPROF_ERROR_STRUCT_SIZE : LENSPROF_OK;
 }
 
 static void view_response(struct lp_model_response *view, const lensprof_response *response) {
@@ -96,8 +102,8 @@ double lp_exposure_ratio(const lensprof_apply_options *o, uint32_t channel) {
     return lensprof_exposure_factor(&o->target, channel) / lensprof_exposure_factor(&o->source, channel);
 }
 
-lensprof_status lp_options_validate(const lensprof_apply_options *o, lp_model *model) {
-    if (o->struct_size != sizeof *o) return LENSPROF_ERROR_STRUCT_SIZE;
+/* All but what the model decides. */
+static lensprof_status validate_options(const lensprof_apply_options *o) {
     if (o->direction > LENSPROF_DIRECTION_SIMULATE || o->input > LENSPROF_ENCODING_LINEAR
         || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE
         || !lensprof_sample_bytes(o->source_sample) || !lensprof_sample_bytes(o->target_sample)
@@ -112,6 +118,11 @@ lensprof_status lp_options_validate(const lensprof_apply_options *o, lp_model *m
     if (status == LENSPROF_OK) status = lensprof_exposure_validate(&o->target);
     for (uint32_t c = 0; c < 3 && status == LENSPROF_OK; c++) /* single precision must hold the factor */
         if (!(lp_exposure_ratio(o, c) >= 1e-12 && lp_exposure_ratio(o, c) <= 1e12)) status = LENSPROF_ERROR_EXPOSURE;
-    if (status == LENSPROF_OK && !o->blob) status = validate_structs(o);
-    return status == LENSPROF_OK ? lp_options_model(o, model) : status;
+    return status == LENSPROF_OK && !o->blob ? validate_structs(o) : status;
+}
+
+lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *own, lp_model *model) {
+    lensprof_status status = lp_options_take(given, own);
+    if (status == LENSPROF_OK) status = validate_options(own);
+    return status == LENSPROF_OK ? lp_options_model(own, model) : status;
 }

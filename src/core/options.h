@@ -4,14 +4,18 @@
 
 #include "core/blob.h"
 #include "core/image.h"
+#include "core/sized.h"
 
 #define LP_LARGEST_GAIN_CAP 1e6 /* over all attenuations that are allowed */
+
+/* The caller's options, of any version, as this library's: OK or STRUCT_SIZE. */
+lensprof_status lp_options_take(const lensprof_apply_options *given, lensprof_apply_options *own);
 
 /* The model. Of structs no more is checked than its size depends on; the vignetting may not be there yet. */
 lensprof_status lp_options_model(const lensprof_apply_options *options, lp_model *model);
 
-/* The status that lensprof_plan_init gives these options, and their model. */
-lensprof_status lp_options_validate(const lensprof_apply_options *options, lp_model *model);
+/* The status that lensprof_plan_init gives the caller's options; these as this library's, and their model. */
+lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *own, lp_model *model);
 
 /* The responses that pixels pass through: grey is treated as green. */
 uint32_t lp_curves(const lensprof_apply_options *options, const lp_model *model);

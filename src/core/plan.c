@@ -15,12 +15,13 @@ static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m) {
     return sizeof(lensprof_plan) + (lp_curve_numbers(o, m) + nodes_of(m)) * sizeof(float);
 }
 
-size_t lensprof_plan_bytes(const lensprof_apply_options *o) {
+size_t lensprof_plan_bytes(const lensprof_apply_options *options) {
+    lensprof_apply_options o;
     lp_model model;
-    if (!o || o->struct_size != sizeof *o || !lensprof_sample_bytes(o->source_sample)
-        || !lensprof_sample_bytes(o->target_sample) || !lensprof_layout_samples(o->source_layout))
+    if (!options || lp_options_take(options, &o) != LENSPROF_OK || !lensprof_sample_bytes(o.source_sample)
+        || !lensprof_sample_bytes(o.target_sample) || !lensprof_layout_samples(o.source_layout))
         return 0;
-    return lp_options_model(o, &model) == LENSPROF_OK ? bytes_of(o, &model) : 0;
+    return lp_options_model(&o, &model) == LENSPROF_OK ? bytes_of(&o, &model) : 0;
 }
 
 /* Copies the nodes of the gain grid, less 1, to `memory`. */
@@ -94,11 +95,13 @@ static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, 
     share_gains(plan);
 }
 
-lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_apply_options *options,
+lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_apply_options *given,
                                    const lensprof_plan **result) {
-    if (!memory || !options || !result) return LENSPROF_ERROR_ARGUMENT;
+    if (!memory || !given || !result) return LENSPROF_ERROR_ARGUMENT;
+    lensprof_apply_options own;
+    const lensprof_apply_options *options = &own;
     lp_model model;
-    const lensprof_status status = lp_options_validate(options, &model);
+    const lensprof_status status = lp_options_validate(given, &own, &model);
     if (status != LENSPROF_OK) return status;
     if (bytes < bytes_of(options, &model) || (uintptr_t)memory % 8) return LENSPROF_ERROR_CAPACITY;
 

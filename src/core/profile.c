@@ -4,9 +4,11 @@
 #include <math.h>
 #include <string.h>
 
+_Static_assert(sizeof(lensprof_profile_key) == 512 && sizeof(lensprof_provenance) == 768, "fixed for ever");
+
 void lensprof_profile_key_init(lensprof_profile_key *key) {
     memset(key, 0, sizeof *key);
-    key->crop_factor = key->focal_mm = key->aperture = key->distance_m = LENSPROF_UNKNOWN;
+    key->crop_factor = key->focal_mm = key->aperture = key->distance_m = key->color_temperature_k = LENSPROF_UNKNOWN;
     key->processing = LENSPROF_PROCESSING_JPEG;
 }
 
@@ -24,19 +26,29 @@ static int is_known_or_unknown(double value, double largest) {
     return value == LENSPROF_UNKNOWN || (value > 0.0 && value <= largest);
 }
 
+/* Room for members to come: another value is of a newer lensprof. */
+static int is_empty(const uint32_t *reserved, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (reserved[i]) return 0;
+    return 1;
+}
+
 lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key) {
-    if (!key || key->processing > LENSPROF_PROCESSING_CORRECTED || key->reserved) return LENSPROF_ERROR_ARGUMENT;
+    if (!key || key->processing > LENSPROF_PROCESSING_CORRECTED
+        || !is_empty(key->reserved, sizeof key->reserved / sizeof *key->reserved))
+        return LENSPROF_ERROR_ARGUMENT;
     if (!is_text(key->camera_maker, sizeof key->camera_maker) || !is_text(key->camera_model, sizeof key->camera_model)
         || !is_text(key->lens, sizeof key->lens) || !is_text(key->unit, sizeof key->unit))
         return LENSPROF_ERROR_ARGUMENT;
     if (!is_known_or_unknown(key->crop_factor, 1e4) || !is_known_or_unknown(key->focal_mm, 1e5)
-        || !is_known_or_unknown(key->aperture, 1e4) || !is_known_or_unknown(key->distance_m, INFINITY))
+        || !is_known_or_unknown(key->aperture, 1e4) || !is_known_or_unknown(key->distance_m, INFINITY)
+        || !is_known_or_unknown(key->color_temperature_k, 1e6))
         return LENSPROF_ERROR_ARGUMENT;
     return LENSPROF_OK;
 }
 
-void lensprof_profile_init(lensprof_profile *profile) {
-    memset(profile, 0, sizeof *profile);
+void lensprof_profile_init_sized(lensprof_profile *profile, size_t size) {
+    if (!lp_sized_begin(profile, size, LP_FIRST_PROFILE)) return;
     lensprof_profile_key_init(&profile->key);
     profile->provenance.heldout_rms = profile->provenance.inlier_share = LENSPROF_UNKNOWN;
     profile->responses = profile->vignettings = 1;
@@ -44,9 +56,20 @@ void lensprof_profile_init(lensprof_profile *profile) {
     for (int c = 0; c < 3; c++) lensprof_response_set_linear(&profile->response[c]);
 }
 
+lensprof_status lensprof_profile_copy(lensprof_profile *to, const lensprof_profile *from) {
+    if (!to || !from) return LENSPROF_ERROR_ARGUMENT;
+    if (to == from) return LENSPROF_OK;
+    if (lp_sized_wrong(to, LP_FIRST_PROFILE, sizeof *to) || lp_sized_wrong(from, LP_FIRST_PROFILE, sizeof *from))
+        return LENSPROF_ERROR_STRUCT_SIZE;
+    if (to->struct_size > from->struct_size) lensprof_profile_init_sized(to, to->struct_size);
+    lp_sized_copy(to, from);
+    return LENSPROF_OK;
+}
+
 lensprof_status lp_provenance_validate(const lensprof_provenance *p) {
     if (!is_text(p->method, sizeof p->method) || !is_text(p->software, sizeof p->software)
-        || !is_text(p->source, sizeof p->source) || !is_text(p->doubt, sizeof p->doubt))
+        || !is_text(p->source, sizeof p->source) || !is_text(p->doubt, sizeof p->doubt) || p->prior_id < 0
+        || p->forced > 1 || !is_empty(p->reserved, sizeof p->reserved / sizeof *p->reserved))
         return LENSPROF_ERROR_ARGUMENT;
     if (!(p->heldout_rms == LENSPROF_UNKNOWN || (p->heldout_rms >= 0.0 && p->heldout_rms <= 255.0)))
         return LENSPROF_ERROR_ARGUMENT;
@@ -76,7 +99,8 @@ static lensprof_status validate_falloff(const lensprof_vignetting *vignetting, c
 }
 
 lensprof_status lensprof_profile_validate(const lensprof_profile *profile) {
-    if (!profile || profile->reserved) return LENSPROF_ERROR_ARGUMENT;
+    if (!profile) return LENSPROF_ERROR_ARGUMENT;
+    if (lp_sized_wrong(profile, LP_FIRST_PROFILE, sizeof *profile)) return LENSPROF_ERROR_STRUCT_SIZE;
     if ((profile->responses != 1 && profile->responses != 3)
         || (profile->vignettings != 1 && profile->vignettings != 3))
         return LENSPROF_ERROR_ARGUMENT;

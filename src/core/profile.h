@@ -1,8 +1,14 @@
-/* The checks of a profile's parts that lensprof_profile_validate makes, for blobs. */
+/* Profiles of all versions; and the checks of their parts that lensprof_profile_validate makes, for blobs. */
 #ifndef LENSPROF_CORE_PROFILE_H
 #define LENSPROF_CORE_PROFILE_H
 
 #include <lensprof/profile.h>
+
+#include "core/sized.h"
+
+/* Profiles are large: they are read where the caller has them, whatever their version. Members after this one are not
+ * always there; read them through a function here, which knows their default. */
+#define LP_FIRST_PROFILE LP_END_OF(lensprof_profile, covariance)
 
 lensprof_status lp_provenance_validate(const lensprof_provenance *provenance);
 

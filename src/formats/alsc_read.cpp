@@ -119,9 +119,10 @@ lensprof_status lensprof_alsc_read(const char *text, size_t bytes, double ct, ui
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {
-        auto found = std::make_unique<lensprof_profile>(*profile);
-        const double error_found = read_alsc({bytes ? text : "", bytes}, ct, {columns, rows, width, height}, *found);
-        *profile = *found;
+        double error_found = 0.0;
+        change_profile(profile, [&](lensprof_profile &own) {
+            error_found = read_alsc({bytes ? text : "", bytes}, ct, {columns, rows, width, height}, own);
+        });
         if (worst) *worst = error_found;
     });
 }

@@ -64,6 +64,7 @@ void read_key(const JsonValue &object, lensprof_profile_key &key) {
         key.distance_m = INFINITY;
     else
         key.distance_m = read_known(object, "distance_m");
+    key.color_temperature_k = read_known(object, "color_temperature_k");
     key.processing = read_word(object.required("processing"), kJsonProcessings);
     check(lensprof_profile_key_validate(&key), object, "no valid key");
 }

@@ -35,6 +35,7 @@ void write_key(JsonWriter &json, const lensprof_profile_key &key) {
         write_text(json, "distance_m", "infinity");
     else
         write_known(json, "distance_m", key.distance_m);
+    if (key.color_temperature_k != LENSPROF_UNKNOWN) write_known(json, "color_temperature_k", key.color_temperature_k);
     write_text(json, "processing", kJsonProcessings[key.processing]);
     json.close('}');
 }

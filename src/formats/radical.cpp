@@ -273,9 +273,10 @@ lensprof_status lensprof_radical_vignetting_read(const void *data, size_t bytes,
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {
-        auto found = std::make_unique<lensprof_profile>(*profile);
-        const double error_found = read_vignetting({bytes ? static_cast<const char *>(data) : "", bytes}, *found);
-        *profile = *found;
+        double error_found = 0.0;
+        change_profile(profile, [&](lensprof_profile &own) {
+            error_found = read_vignetting({bytes ? static_cast<const char *>(data) : "", bytes}, own);
+        });
         if (worst) *worst = error_found;
     });
 }

@@ -66,7 +66,7 @@ static int is_less(const void *a, const void *b) {
 static double lookup_median(lensprof_store *store, int profiles, int focals, double off) {
     static double seconds[LOOKUPS];
     uint32_t random = 1;
-    lensprof_lookup how;
+    lensprof_lookup how = {.struct_size = sizeof how};
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
     for (int i = 0; i < LOOKUPS; i++) {

@@ -150,6 +150,7 @@ void test_gain_grid(void **) {
     lensprof_store *store = nullptr;
     assert_ok(lensprof_store_open(db.c_str(), LENSPROF_STORE_WRITE, &store, nullptr));
     auto p = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(p.get());
     assert_ok(lensprof_store_get(store, 2, p.get(), nullptr));
     p->grid.columns = 3, p->grid.rows = 2, p->grid.channels = 3;
     for (int i = 0; i < 18; i++) p->grid.attenuation[i] = 1.0f + 0.125f * float(i % 7 - 3);

@@ -86,7 +86,8 @@ struct FlatPictures {
                     random = random * 6364136223846793005ull + 1442695040888963407ull;
                     put(at, lensprof_response_eval(&response, irradiance, nullptr) + noise * normals[random >> 48]);
                 }
-        lensprof_flat_image image{};
+        lensprof_flat_image image;
+        lensprof_flat_image_init(&image);
         image.view = {data.back()->data(),
                       static_cast<ptrdiff_t>(width) * channels * bytes,
                       width,

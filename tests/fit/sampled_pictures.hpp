@@ -20,7 +20,8 @@ struct Pictures {
 
     Pictures(uint32_t count, uint32_t width, uint32_t height, double step_deg, uint32_t reduction = 1) {
         for (uint32_t i = 0; i < count; i++) {
-            lensprof_sample_image image{};
+            lensprof_sample_image image;
+            lensprof_sample_image_init(&image);
             image.camera.width = width * reduction;
             image.camera.height = height * reduction;
             image.camera.hfov_deg = 50;

@@ -37,12 +37,8 @@ struct Simulation {
             if (i > 0) e = {ev_range * (2 * draws[0] - 1), {0.85 + 0.3 * draws[1], 1.0, 0.85 + 0.3 * draws[2]}};
             if (channels == 1) e.white_balance[0] = e.white_balance[2] = 1.0;
             if (!is_given) exposures.push_back(e);
-            lensprof_fit_image image{};
-            image.width = width;
-            image.height = height;
-            lensprof_exposure_init(&image.exposure);
-            image.free = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
-            image.ev_of = image.red_of = image.blue_of = i;
+            lensprof_fit_image image;
+            lensprof_fit_image_init(&image, i, width, height);
             fit_images.push_back(image);
         }
         while (pairs.size() < count) {

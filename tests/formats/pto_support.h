@@ -48,6 +48,7 @@ static inline lensprof_pto *read_pto(const char *text) {
 
 static inline lensprof_pto_image image_of(const lensprof_pto *pto, uint32_t index) {
     lensprof_pto_image image;
+    lensprof_pto_image_init(&image);
     assert_ok(lensprof_pto_get_image(pto, index, &image));
     return image;
 }

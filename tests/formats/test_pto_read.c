@@ -51,7 +51,7 @@ static void test_defaults(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
     lensprof_pto_image image = image_of(pto, 3), expected;
-    memset(&expected, 0, sizeof expected);
+    lensprof_pto_image_init(&expected);
     expected.camera.width = 200;
     expected.camera.height = 100;
     expected.camera.hfov_deg = 50;
@@ -247,6 +247,7 @@ static void test_arguments(void **state) {
     lensprof_pto *pto = read_pto("i w10 h10\n");
     lensprof_pto_image image;
     lensprof_error error;
+    lensprof_pto_image_init(&image);
     assert_int_equal(lensprof_pto_read(NULL, 0, &pto, &error), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_pto_read("", 0, NULL, &error), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_pto_get_image(pto, 1, &image), LENSPROF_ERROR_ARGUMENT);

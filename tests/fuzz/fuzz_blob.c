@@ -59,13 +59,14 @@ static void compare_plans(const uint8_t *blob, size_t bytes, const lensprof_prof
 
 static int is_untouched(const lensprof_profile *profile) {
     const uint8_t *bytes = (const uint8_t *)profile;
-    return bytes[0] == 0xA5 && memcmp(bytes, bytes + 1, sizeof *profile - 1) == 0;
+    return bytes[4] == 0xA5 && memcmp(bytes + 4, bytes + 5, sizeof *profile - 5) == 0;
 }
 
 /* Returns whether it is a profile. */
 static int try_blob(const uint8_t *blob, size_t bytes) {
     static lensprof_profile profile;
     memset(&profile, 0xA5, sizeof profile);
+    profile.struct_size = sizeof profile;
     const lensprof_status status = lensprof_profile_unpack(blob, bytes, &profile);
     if (status != LENSPROF_OK) {
         demand(status == LENSPROF_ERROR_CORRUPT || status == LENSPROF_ERROR_LAYOUT, "another status");

@@ -28,8 +28,8 @@ if grep -rl "$build_dir" "$prefix/include" "$lib_dir/cmake" "$lib_dir/pkgconfig"
 say "program"
 version=$(sed -n 's/^#define LENSPROF_VERSION_\(MAJOR\|MINOR\|PATCH\) //p' "$source_dir/include/lensprof/base.h" | paste -sd.)
 [ "$(env -i "$prefix/bin/lensprof" version)" = "lensprof $version" ] || wrong "bin/lensprof does not print lensprof $version"
-used=$(ldd "$prefix/bin/lensprof" | sed -n 's/.*liblensprof.so.0 => \(.*\) (.*/\1/p')
-[ "$(realpath "$used")" = "$(realpath "$lib_dir/liblensprof.so.0")" ] || wrong "bin/lensprof uses $used, not the installed library"
+used=$(ldd "$prefix/bin/lensprof" | sed -n 's/.*liblensprof.so.0.2 => \(.*\) (.*/\1/p')
+[ "$(realpath "$used")" = "$(realpath "$lib_dir/liblensprof.so.0.2")" ] || wrong "bin/lensprof uses $used, not the installed library"
 
 say "pkg-config"
 export PKG_CONFIG_PATH=$lib_dir/pkgconfig

@@ -70,6 +70,7 @@ static void print_structs(void) {
     FIELD(lensprof_profile_key, focal_mm);
     FIELD(lensprof_profile_key, aperture);
     FIELD(lensprof_profile_key, distance_m);
+    FIELD(lensprof_profile_key, color_temperature_k);
     FIELD(lensprof_profile_key, processing);
     FIELD(lensprof_profile_key, reserved);
     STRUCT(lensprof_provenance);
@@ -82,16 +83,19 @@ static void print_structs(void) {
     FIELD(lensprof_provenance, heldout_rms);
     FIELD(lensprof_provenance, inlier_share);
     FIELD(lensprof_provenance, doubt);
+    FIELD(lensprof_provenance, prior_id);
+    FIELD(lensprof_provenance, forced);
+    FIELD(lensprof_provenance, reserved);
     STRUCT(lensprof_profile);
-    FIELD(lensprof_profile, key);
-    FIELD(lensprof_profile, provenance);
+    FIELD(lensprof_profile, struct_size);
     FIELD(lensprof_profile, responses);
     FIELD(lensprof_profile, vignettings);
+    FIELD(lensprof_profile, covariance_size);
+    FIELD(lensprof_profile, key);
+    FIELD(lensprof_profile, provenance);
     FIELD(lensprof_profile, response);
     FIELD(lensprof_profile, vignetting);
     FIELD(lensprof_profile, grid);
-    FIELD(lensprof_profile, covariance_size);
-    FIELD(lensprof_profile, reserved);
     FIELD(lensprof_profile, covariance);
     STRUCT(lensprof_camera);
     FIELD(lensprof_camera, projection);
@@ -116,10 +120,12 @@ static void print_structs(void) {
     FIELD(lensprof_observation, xy);
     FIELD(lensprof_observation, value);
     STRUCT(lensprof_sample_image);
-    FIELD(lensprof_sample_image, view);
-    FIELD(lensprof_sample_image, camera);
+    FIELD(lensprof_sample_image, struct_size);
     FIELD(lensprof_sample_image, reduction);
     FIELD(lensprof_sample_image, every_pixel);
+    FIELD(lensprof_sample_image, reserved);
+    FIELD(lensprof_sample_image, view);
+    FIELD(lensprof_sample_image, camera);
     FIELD(lensprof_sample_image, mask);
     FIELD(lensprof_sample_image, mask_row_bytes);
     FIELD(lensprof_sample_image, black);
@@ -134,13 +140,15 @@ static void print_structs(void) {
     FIELD(lensprof_sample_options, progress);
     FIELD(lensprof_sample_options, progress_user);
     STRUCT(lensprof_fit_image);
+    FIELD(lensprof_fit_image, struct_size);
     FIELD(lensprof_fit_image, width);
     FIELD(lensprof_fit_image, height);
-    FIELD(lensprof_fit_image, exposure);
     FIELD(lensprof_fit_image, free);
     FIELD(lensprof_fit_image, ev_of);
     FIELD(lensprof_fit_image, red_of);
     FIELD(lensprof_fit_image, blue_of);
+    FIELD(lensprof_fit_image, reserved);
+    FIELD(lensprof_fit_image, exposure);
     FIELD(lensprof_fit_image, known_ev);
     FIELD(lensprof_fit_image, known_ev_sigma);
     STRUCT(lensprof_fit_options);
@@ -180,6 +188,8 @@ static void print_structs(void) {
     STRUCT(lensprof_fit_result);
     FIELD(lensprof_fit_result, struct_size);
     FIELD(lensprof_fit_result, usable);
+    FIELD(lensprof_fit_result, image_quality_size);
+    FIELD(lensprof_fit_result, reserved);
     FIELD(lensprof_fit_result, reason);
     FIELD(lensprof_fit_result, response);
     FIELD(lensprof_fit_result, vignetting);
@@ -206,11 +216,13 @@ static void print_structs(void) {
     FIELD(lensprof_fit_result, gamma_direction);
     FIELD(lensprof_fit_result, image_quality);
     STRUCT(lensprof_flat_image);
-    FIELD(lensprof_flat_image, view);
+    FIELD(lensprof_flat_image, struct_size);
     FIELD(lensprof_flat_image, width);
     FIELD(lensprof_flat_image, height);
     FIELD(lensprof_flat_image, reduction);
     FIELD(lensprof_flat_image, shot);
+    FIELD(lensprof_flat_image, reserved);
+    FIELD(lensprof_flat_image, view);
     FIELD(lensprof_flat_image, mask);
     FIELD(lensprof_flat_image, mask_row_bytes);
     FIELD(lensprof_flat_image, black);
@@ -257,6 +269,8 @@ static void print_structs(void) {
     STRUCT(lensprof_flat_result);
     FIELD(lensprof_flat_result, struct_size);
     FIELD(lensprof_flat_result, usable);
+    FIELD(lensprof_flat_result, image_quality_size);
+    FIELD(lensprof_flat_result, covariance_size);
     FIELD(lensprof_flat_result, reason);
     FIELD(lensprof_flat_result, vignetting);
     FIELD(lensprof_flat_result, vignettings);
@@ -277,17 +291,16 @@ static void print_structs(void) {
     FIELD(lensprof_flat_result, inlier_share);
     FIELD(lensprof_flat_result, corner_sigma);
     FIELD(lensprof_flat_result, grid_residual);
-    FIELD(lensprof_flat_result, covariance_size);
-    FIELD(lensprof_flat_result, reserved);
     FIELD(lensprof_flat_result, covariance);
     FIELD(lensprof_flat_result, gain_grid);
     FIELD(lensprof_flat_result, image_quality);
     STRUCT(lensprof_pto_image);
+    FIELD(lensprof_pto_image, struct_size);
+    FIELD(lensprof_pto_image, response_type);
     FIELD(lensprof_pto_image, camera);
     FIELD(lensprof_pto_image, exposure);
     FIELD(lensprof_pto_image, vignetting);
     FIELD(lensprof_pto_image, emor);
-    FIELD(lensprof_pto_image, response_type);
     FIELD(lensprof_pto_image, free);
     FIELD(lensprof_pto_image, response_of);
     FIELD(lensprof_pto_image, vignetting_of);
@@ -297,7 +310,6 @@ static void print_structs(void) {
     FIELD(lensprof_pto_image, blue_of);
     FIELD(lensprof_pto_image, crop);
     FIELD(lensprof_pto_image, crop_circular);
-    FIELD(lensprof_pto_image, reserved);
     STRUCT(lensprof_import_entry);
     FIELD(lensprof_import_entry, profile);
     FIELD(lensprof_import_entry, usable);
@@ -318,8 +330,10 @@ static void print_structs(void) {
     FIELD(lensprof_lookup_options, with_doubt);
     FIELD(lensprof_lookup_options, any_processing);
     STRUCT(lensprof_lookup);
+    FIELD(lensprof_lookup, struct_size);
     FIELD(lensprof_lookup, exact);
     FIELD(lensprof_lookup, rows);
+    FIELD(lensprof_lookup, reserved);
     FIELD(lensprof_lookup, id);
     FIELD(lensprof_lookup, weight);
     FIELD(lensprof_lookup, distance);
@@ -338,6 +352,8 @@ static void print_structs(void) {
     FIELD(lensprof_store_group, profiles);
     FIELD(lensprof_store_group, reserved);
     STRUCT(lensprof_store_stats);
+    FIELD(lensprof_store_stats, struct_size);
+    FIELD(lensprof_store_stats, layout);
     FIELD(lensprof_store_stats, profiles);
     FIELD(lensprof_store_stats, cameras);
     FIELD(lensprof_store_stats, lenses);
@@ -354,8 +370,6 @@ static void print_structs(void) {
     FIELD(lensprof_store_stats, method);
     FIELD(lensprof_store_stats, source);
     FIELD(lensprof_store_stats, bytes);
-    FIELD(lensprof_store_stats, layout);
-    FIELD(lensprof_store_stats, reserved);
 }
 
 static void print_values(void) {

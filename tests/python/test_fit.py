@@ -255,7 +255,7 @@ class Refused(unittest.TestCase):
         self.expect(lp.Status.ERROR_ARGUMENT, pairs=far)
         self.expect(lp.Status.ERROR_ARGUMENT, pairs=bright)
         self.expect(lp.Status.ERROR_NO_SAMPLES, pairs=simple_pairs()[:0])
-        self.expect(lp.Status.ERROR_NO_UNKNOWNS, images=[lp.FitImage(i, 800, 600) for i in range(2)])
+        self.expect(lp.Status.ERROR_NO_UNKNOWNS, images=[lp.FitImage(i, 800, 600, free=lp.Free(0)) for i in range(2)])
         self.expect(lp.Status.ERROR_ARGUMENT, images=two_images()[:1])
         self.expect(lp.Status.ERROR_SIZE, images=[lp.FitImage(i, 0, 10) for i in range(2)])
         self.expect(lp.Status.ERROR_ARGUMENT, options=linear_options(channels=2))

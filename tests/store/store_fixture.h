@@ -171,6 +171,19 @@ static inline void fill_grid(lensprof_gain_grid *grid, uint32_t columns, uint32_
     for (uint32_t i = 0; i < columns * rows * channels; i++) grid->attenuation[i] = 3.0f / (float)(i % 1000 + 7);
 }
 
+/* An initialised one; free() it. */
+static inline lensprof_profile *new_profile(void) {
+    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile_init(profile);
+    return profile;
+}
+
+/* An output whose every byte must be written. */
+static inline void scribble(lensprof_profile *profile) {
+    memset(profile, 0x5A, sizeof *profile);
+    profile->struct_size = sizeof *profile;
+}
+
 /* A profile with something in every field: EMoR, one curve, gain grid, covariance 10 x 10. */
 static inline void fill_profile(lensprof_profile *profile) {
     static const double coefficients[] = {-0.625, 0.1, -0.05, 0.02, 1.0 / 30.0};

@@ -2,16 +2,16 @@
 #include "store_fixture.h"
 
 static void round_trip(const place *here, const lensprof_profile *profile) {
-    lensprof_profile *found = malloc(sizeof *found);
+    lensprof_profile *found = new_profile();
     int64_t id;
-    memset(found, 0x55, sizeof *found);
+    scribble(found);
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     int64_t put = put_at(store, profile);
     lensprof_store_close(store);
     store = store_at(here->path, LENSPROF_STORE_READ);
     assert_ok(lensprof_store_get(store, put, found, NULL));
     assert_same_profile(profile, found);
-    memset(found, 0x55, sizeof *found);
+    scribble(found);
     assert_ok(lensprof_store_find(store, &profile->key, found, &id, NULL));
     assert_int_equal(id, put);
     assert_same_profile(profile, found);
@@ -21,14 +21,14 @@ static void round_trip(const place *here, const lensprof_profile *profile) {
 }
 
 static void test_every_field_round_trips(void **state) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     fill_profile(profile);
     round_trip(*state, profile);
     free(profile);
 }
 
 static void test_three_curves_round_trip(void **state) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     double values[LENSPROF_RESPONSE_SAMPLES], coefficients[LENSPROF_EMOR_MODES] = {0};
     uint64_t seed = 1;
     fill_profile(profile);
@@ -52,7 +52,7 @@ static void test_three_curves_round_trip(void **state) {
 }
 
 static void test_unknown_and_infinite_round_trip(void **state) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_profile_init(profile);
     round_trip(*state, profile); /* everything unknown */
     profile->key.distance_m = INFINITY;
@@ -72,7 +72,7 @@ static void test_unknown_and_infinite_round_trip(void **state) {
 
 /* The one number that SQLite does not keep to the bit; see 0001_profiles.sql. */
 static void test_negative_zero_becomes_zero(void **state) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     fill_profile(profile);
     profile->vignetting[0].k[0] = -0.0;
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
@@ -85,7 +85,7 @@ static void test_negative_zero_becomes_zero(void **state) {
 }
 
 static void test_longest_texts_round_trip(void **state) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_profile_init(profile);
     memset(profile->key.camera_maker, 'a', sizeof profile->key.camera_maker - 1);
     memset(profile->key.camera_model, 'b', sizeof profile->key.camera_model - 1);
@@ -101,7 +101,7 @@ static void test_longest_texts_round_trip(void **state) {
 /* The columns are for other SQL users: this asks as they would. */
 static void test_numbers_can_be_queried(void **state) {
     const place *here = *state;
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     sqlite3 *db;
     sqlite3_stmt *statement;
     fill_profile(profile);
@@ -136,7 +136,7 @@ static void test_numbers_can_be_queried(void **state) {
 static void test_blobs_are_little_endian(void **state) {
     const place *here = *state;
     static const unsigned char one[] = {0, 0, 0, 0, 0, 0, 0xf0, 0x3f}, quarter[] = {0, 0, 0x80, 0x3e}; /* IEEE 754 */
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     sqlite3 *db;
     sqlite3_stmt *statement;
     fill_profile(profile);
@@ -162,7 +162,7 @@ static void test_blobs_are_little_endian(void **state) {
 }
 
 static void test_newest_wins(void **state) {
-    lensprof_profile *profile = malloc(sizeof *profile), *found = malloc(sizeof *found);
+    lensprof_profile *profile = new_profile(), *found = new_profile();
     int64_t id;
     fill_profile(profile);
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
@@ -188,7 +188,7 @@ static void test_newest_wins(void **state) {
 /* Puts a profile with `put` and looks for `asked`. */
 static lensprof_status match(void **state, const lensprof_profile_key *put, const lensprof_profile_key *asked) {
     const place *here = *state;
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     int64_t id;
     unlink(here->path);
     lensprof_profile_init(profile);
@@ -271,7 +271,7 @@ static void test_infinity_matches_infinity_only(void **state) {
 }
 
 static void put_key(lensprof_store *store, const char *maker, const char *lens, double focal, double distance) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_profile_init(profile);
     strcpy(profile->key.camera_maker, maker);
     strcpy(profile->key.lens, lens);
@@ -380,7 +380,7 @@ static void test_long_list(void **state) {
 
 static void test_remove(void **state) {
     const place *here = *state;
-    lensprof_profile *profile = malloc(sizeof *profile), *found = malloc(sizeof *found);
+    lensprof_profile *profile = new_profile(), *found = new_profile();
     lensprof_error error;
     int64_t left = 0;
     fill_profile(profile);
@@ -404,7 +404,7 @@ static void test_remove(void **state) {
 }
 
 static void test_put_refuses_what_is_not_a_profile(void **state) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_error error;
     int64_t id = 77;
     uint32_t found = 9;
@@ -434,7 +434,7 @@ static void test_put_refuses_what_is_not_a_profile(void **state) {
 
 static void test_wrong_arguments(void **state) {
     const place *here = *state;
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_store *store = NULL;
     lensprof_error error;
     int64_t id;

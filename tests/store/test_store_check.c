@@ -34,7 +34,7 @@ static bool has_fault(const faults *all, int64_t id, const char *part) {
 }
 
 static void make_database(const char *path) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_store *store = store_at(path, LENSPROF_STORE_CREATE);
     fill_profile(profile);
     for (int i = 0; i < 4; i++) put_at(store, profile);
@@ -68,7 +68,7 @@ static void test_sound(void **state) {
 static void test_older_layout(void **state) {
     const place *here = *state;
     faults *all = malloc(sizeof *all);
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     fill_profile(profile);
     lensprof_gain_grid_init(&profile->grid);
     make_layout_1(here->path, profile, 1);
@@ -193,7 +193,7 @@ static void test_visitor_ends_the_check(void **state) {
 }
 
 static void put_counted(lensprof_store *store, const char *camera, const char *lens, const char *unit, double focal) {
-    static lensprof_profile p;
+    static lensprof_profile p = {.struct_size = sizeof p};
     lensprof_profile_init(&p);
     strcpy(p.key.camera_model, camera);
     strcpy(p.key.lens, lens);

@@ -1,8 +1,8 @@
 /* Which profiles a lookup goes by, where there are several kinds: states of processing, repeated settings, cameras. */
 #include "store_fixture.h"
 
-static lensprof_profile shared, answered; /* 50 kB each */
-static lensprof_lookup how;
+static lensprof_profile shared, answered = {.struct_size = sizeof answered}; /* 50 kB each */
+static lensprof_lookup how = {.struct_size = sizeof how};
 
 typedef struct entry {
     const char *camera, *lens, *unit;

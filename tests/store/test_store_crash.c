@@ -17,7 +17,7 @@ typedef struct report {
 
 /* Puts profiles of changing size for ever, and removes every fourth of its own again. */
 static void work(const char *path, int pipe_end, uint32_t number) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_store *store = NULL;
     if (lensprof_store_open(path, LENSPROF_STORE_CREATE, &store, NULL)) _exit(1);
     for (;; number++) {
@@ -59,7 +59,7 @@ static size_t work_and_kill(const char *path, uint32_t number, double seconds, r
 
 /* Every report of the round holds; `extra` (0 or 1) call may have been done but not reported. */
 static void check_reports(const char *path, uint32_t mode, const report *reports, size_t count, uint32_t expected) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_store *store = store_at(path, mode);
     uint32_t found = count_at(store);
     assert_in_range(found, expected ? expected - 1 : 0, expected + 1);
@@ -131,7 +131,7 @@ enum {
 };
 
 static void work_in_batches(const char *path, int pipe_end, uint32_t number) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_store *store = NULL;
     fill_profile(profile);
     if (lensprof_store_open(path, LENSPROF_STORE_CREATE, &store, NULL)) _exit(1);
@@ -147,10 +147,10 @@ static void work_in_batches(const char *path, int pipe_end, uint32_t number) {
 
 /* Looks up and checks for ever; nothing that it sees may be half of a batch. */
 static void read_for_ever(const char *path) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_profile_key key;
     lensprof_lookup_options options;
-    lensprof_lookup how;
+    lensprof_lookup how = {.struct_size = sizeof how};
     lensprof_error error;
     uint32_t found;
     fill_profile(profile);

@@ -8,7 +8,7 @@
 
 /* A database of three profiles: 1 with every field, 2 with three table curves, 3 with gamma; returns its bytes. */
 static unsigned char *make_three(const place *here, size_t *size) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     double values[LENSPROF_RESPONSE_SAMPLES];
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     fill_profile(profile);
@@ -41,14 +41,15 @@ static lensprof_store *crafted(const place *here, const char *sql) {
 
 /* Profile 1 is refused with a text that names it and `named`, outputs stay, and profile 3 can still be had. */
 static void assert_damaged(const place *here, const char *sql, const char *named, bool in_list) {
-    lensprof_profile *profile = malloc(sizeof *profile), *before = malloc(sizeof *before);
-    lensprof_store_row rows[3];
+    lensprof_profile *profile = new_profile(), *before = new_profile();
+    lensprof_store_row rows[3], rows_before[3];
     lensprof_error error = {""};
     uint32_t found = 77;
     lensprof_store *store = crafted(here, sql);
-    memset(profile, 0x55, sizeof *profile);
-    memset(before, 0x55, sizeof *before);
+    scribble(profile);
+    scribble(before);
     memset(rows, 0x55, sizeof rows);
+    memcpy(rows_before, rows, sizeof rows);
     lensprof_status status = lensprof_store_get(store, 1, profile, &error);
     if (status != LENSPROF_ERROR_CORRUPT) fail_msg("%s: get gives %s", sql, lensprof_status_name(status));
     if (!strstr(error.text, "profiles.db: profile 1 is damaged (")) fail_msg("%s: %s", sql, error.text);
@@ -58,7 +59,7 @@ static void assert_damaged(const place *here, const char *sql, const char *named
     status = lensprof_store_list(store, NULL, rows, 3, &found, &error);
     if (status != (in_list ? LENSPROF_ERROR_CORRUPT : LENSPROF_OK))
         fail_msg("%s: list gives %s", sql, lensprof_status_name(status));
-    if (in_list) assert_memory_equal(rows, before, sizeof rows);
+    if (in_list) assert_memory_equal(rows, rows_before, sizeof rows);
     if (in_list) assert_int_equal(found, 77);
     assert_ok(lensprof_store_remove(store, 1, NULL)); /* the next step of the text helps */
     assert_int_equal(count_at(store), 2);
@@ -231,7 +232,7 @@ static void test_other_tables(void **state) {
 }
 
 static void test_missing_column(void **state) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_error error;
     uint32_t found;
     lensprof_store *store = crafted(*state, "ALTER TABLE profiles RENAME COLUMN source TO origin");
@@ -246,7 +247,7 @@ static void test_missing_column(void **state) {
 
 /* Triggers in the file do not run. */
 static void test_triggers_are_ignored(void **state) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     const char *sql = "CREATE TRIGGER t AFTER INSERT ON profiles BEGIN DELETE FROM profiles; END";
     lensprof_store *store = crafted(*state, sql);
     fill_profile(profile);
@@ -258,11 +259,11 @@ static void test_triggers_are_ignored(void **state) {
 }
 
 static void use_everything(lensprof_store *store) {
-    static lensprof_profile found, asked;
+    static lensprof_profile found = {.struct_size = sizeof found}, asked = {.struct_size = sizeof asked};
     lensprof_lookup_options options;
-    lensprof_lookup how;
+    lensprof_lookup how = {.struct_size = sizeof how};
     lensprof_error error;
-    lensprof_store_stats stats;
+    lensprof_store_stats stats = {.struct_size = sizeof stats};
     uint32_t count;
     fill_profile(&asked);
     lensprof_lookup_options_init(&options);
@@ -320,7 +321,7 @@ static void test_crafted_schemas(void **state) {
 
 /* A constraint of somebody else's fails the put and leaves nothing of it. */
 static void test_foreign_constraint(void **state) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_error error;
     int64_t id = 99;
     lensprof_store *store = crafted(*state, "CREATE UNIQUE INDEX u ON emor_coefficients (mode)");
@@ -349,7 +350,7 @@ static void assert_sane(lensprof_status status, const lensprof_error *error, con
 
 /* Every call on the file at `path`; what is delivered must be valid. */
 static lensprof_status use(const char *path, uint32_t mode, int round) {
-    static lensprof_profile profile, asked;
+    static lensprof_profile profile = {.struct_size = sizeof profile}, asked = {.struct_size = sizeof asked};
     lensprof_store *store = NULL;
     lensprof_store_row rows[4];
     lensprof_error error = {""};

@@ -101,11 +101,11 @@ static int faulty_delete(sqlite3_vfs *vfs, const char *name, int sync) {
 
 /* A batch that is taken back, a check of everything, a lookup, and another database merged and taken back. */
 static lensprof_status whole_database(lensprof_store *store, const lensprof_profile *profile, lensprof_error *error) {
-    static lensprof_profile found;
+    static lensprof_profile found = {.struct_size = sizeof found};
     lensprof_lookup_options options;
-    lensprof_lookup how;
+    lensprof_lookup how = {.struct_size = sizeof how};
     lensprof_store *other = NULL;
-    lensprof_store_stats stats;
+    lensprof_store_stats stats = {.struct_size = sizeof stats};
     uint32_t bad = 0, added = 99;
     lensprof_lookup_options_init(&options);
     lensprof_status status = lensprof_store_lookup(store, &profile->key, &options, &found, &how, error);
@@ -125,7 +125,7 @@ static lensprof_status whole_database(lensprof_store *store, const lensprof_prof
 
 /* One call after another, as a program would; puts one profile. `done` tells whether it is in the file. */
 static lensprof_status session(const char *path, const lensprof_profile *profile, bool *done, lensprof_error *error) {
-    static lensprof_profile found;
+    static lensprof_profile found = {.struct_size = sizeof found};
     lensprof_store *store = NULL;
     lensprof_store_row rows[40];
     uint32_t count;
@@ -154,7 +154,7 @@ typedef enum start {
 
 /* Lets the n-th operation fail for growing n until a session is over before; returns that n. */
 static int fail_each(const place *here, int first, start start_at, lensprof_status only) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_error error;
     lensprof_status status = LENSPROF_ERROR_INTERNAL;
     uint32_t stored = 0;
@@ -200,7 +200,7 @@ static int fail_each(const place *here, int first, start start_at, lensprof_stat
 
 static void fail_each_way(void **state, int fault, lensprof_status only) {
     const place *here = *state;
-    lensprof_profile *another = malloc(sizeof *another);
+    lensprof_profile *another = new_profile();
     fill_profile(another);
     another->key.aperture = 11.0;
     snprintf(other_path, sizeof other_path, "%s/other-profiles.db", here->directory);

@@ -33,7 +33,7 @@ static void assert_refused_untouched(const place *here, lensprof_status status) 
 
 /* A database with one profile. */
 static void make_database(const place *here) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     fill_profile(profile);
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     put_at(store, profile);
@@ -204,7 +204,7 @@ static void test_symbolic_link(void **state) {
 
 /* What a handle that may not write does, on a database with one profile. */
 static void assert_reads_only(lensprof_store *store) {
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_error error;
     int64_t id = 99;
     assert_int_equal(count_at(store), 1);
@@ -295,7 +295,7 @@ static void test_removed_while_open(void **state) {
 /* The store's own limit stands for the end of the disk. */
 static void test_no_page_left(void **state) {
     const place *here = *state;
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_error error;
     int64_t id = 99, pages;
     char sql[60];
@@ -329,7 +329,7 @@ static int fill_limited(const char *path, rlim_t bytes, uint32_t there) {
     pid_t child = fork();
     if (child == 0) {
         struct rlimit limit = {bytes, bytes};
-        lensprof_profile *profile = malloc(sizeof *profile);
+        lensprof_profile *profile = new_profile();
         lensprof_store *store = NULL;
         int64_t id;
         int stored = 0;
@@ -376,7 +376,7 @@ static void test_no_room_for_the_file(void **state) {
 
 static void test_busy(void **state) {
     const place *here = *state;
-    lensprof_profile *profile = malloc(sizeof *profile);
+    lensprof_profile *profile = new_profile();
     lensprof_store *store = NULL;
     lensprof_error error;
     int64_t id = 99;
@@ -431,7 +431,7 @@ static void test_several_processes_create_and_put(void **state) {
     };
     for (int i = 0; i < PROCESSES; i++)
         if (fork() == 0) {
-            lensprof_profile *profile = malloc(sizeof *profile);
+            lensprof_profile *profile = new_profile();
             lensprof_store *store = NULL;
             int64_t id;
             fill_profile(profile);

@@ -42,13 +42,13 @@ static lensprof_store *zoom_store(const place *here) {
     return store;
 }
 
-static lensprof_profile answered;
-static lensprof_lookup how;
+static lensprof_profile answered = {.struct_size = sizeof answered};
+static lensprof_lookup how = {.struct_size = sizeof how};
 
 static lensprof_status ask_with(lensprof_store *store, const lensprof_profile_key *key,
                                 const lensprof_lookup_options *options) {
     lensprof_error error;
-    memset(&how, 0, sizeof how);
+    lensprof_lookup_init(&how);
     return lensprof_store_lookup(store, key, options, &answered, &how, &error);
 }
 
@@ -135,7 +135,7 @@ static void test_refusals(void **state) {
                  {LENSPROF_UNKNOWN, 2.8, "focal length is not known"},
                  {35, LENSPROF_UNKNOWN, "aperture is not known"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        memset(&answered, 0x5A, sizeof answered);
+        scribble(&answered);
         assert_int_equal(ask(store, zoom, cases[i].focal, cases[i].aperture, INFINITY), LENSPROF_ERROR_NOT_FOUND);
         assert_non_null(strstr(how.reason, cases[i].why));
         assert_int_equal(((unsigned char *)&answered)[7], 0x5A);
@@ -328,7 +328,7 @@ static void test_damaged_rows(void **state) {
         lensprof_store *store = zoom_store(here);
         snprintf(sql, sizeof sql, "PRAGMA ignore_check_constraints = ON; UPDATE %s", damages[i]);
         run_sql(here->path, sql);
-        memset(&answered, 0x5A, sizeof answered);
+        scribble(&answered);
         assert_int_equal(ask(store, zoom, 28, 2.4, INFINITY), LENSPROF_ERROR_CORRUPT);
         assert_int_equal(((unsigned char *)&answered)[7], 0x5A);
         lensprof_store_close(store);
@@ -392,6 +392,7 @@ static void test_arguments(void **state) {
     lensprof_lookup_options_init(&options);
     options.struct_size = 1;
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_STRUCT_SIZE);
+    assert_non_null(strstr(error.text, "lensprof_lookup_options: struct_size"));
     lensprof_lookup_options_init(&options);
     key.focal_mm = NAN;
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_ARGUMENT);

@@ -1,7 +1,7 @@
 /* Databases merged: everything arrives as it was, nothing twice, all or nothing. */
 #include "store_fixture.h"
 
-static lensprof_profile sample[3], found;
+static lensprof_profile sample[3], found = {.struct_size = sizeof found};
 
 /* Profiles with something in every field: EMoR and a grid; three tables; unknown numbers, gamma and a doubt. */
 static void fill_samples(void) {
@@ -70,7 +70,7 @@ static void test_what_differs_is_added(void **state) {
     enum {
         CHANGES = 13
     };
-    lensprof_profile *p = malloc(sizeof *p);
+    lensprof_profile *p = new_profile();
     fill_samples();
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     put_at(store, &sample[0]);

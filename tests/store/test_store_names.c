@@ -72,8 +72,8 @@ static void test_words(void **state) {
     assert_close(lp_words_score(longest, longest, longest), 0.6, 0.0);
 }
 
-static lensprof_profile profile;
-static lensprof_lookup how;
+static lensprof_profile profile = {.struct_size = sizeof profile};
+static lensprof_lookup how = {.struct_size = sizeof how};
 
 static int64_t put(lensprof_store *store, const char *maker, const char *camera, const char *lens, double focal,
                    double aperture) {
@@ -97,7 +97,7 @@ static lensprof_status ask(lensprof_store *store, const char *maker, const char 
     strcpy(key.camera_model, camera);
     strcpy(key.lens, lens);
     key.focal_mm = focal, key.aperture = aperture;
-    memset(&how, 0, sizeof how);
+    lensprof_lookup_init(&how);
     return lensprof_store_lookup(store, &key, &options, &profile, &how, &error);
 }
 

@@ -4,7 +4,7 @@
 #include <sys/wait.h>
 
 /* Two profiles as layout 1 can hold them, made once. */
-static lensprof_profile old[2], found;
+static lensprof_profile old[2], found = {.struct_size = sizeof found};
 
 static void make_old(const char *path) {
     for (int i = 0; i < 2; i++) {
@@ -31,7 +31,7 @@ static void assert_old_profiles(lensprof_store *store) {
     uint32_t count;
     int64_t id;
     for (int i = 0; i < 2; i++) {
-        memset(&found, 0x55, sizeof found);
+        scribble(&found);
         assert_ok(lensprof_store_get(store, i + 1, &found, NULL));
         assert_same_profile(&found, &old[i]);
     }
@@ -62,7 +62,7 @@ static void test_reading_changes_nothing(void **state) {
 
 static void test_first_put_brings_up_to_date(void **state) {
     const place *here = *state;
-    lensprof_profile *newer = malloc(sizeof *newer);
+    lensprof_profile *newer = new_profile();
     make_old(here->path);
     fill_profile(newer);
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_WRITE), *other = store_at(here->path, 0);

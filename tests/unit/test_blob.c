@@ -55,6 +55,7 @@ static uint8_t *golden_blob(int which, size_t *bytes) {
 static lensprof_profile *poisoned(void) {
     lensprof_profile *p = malloc(sizeof *p);
     memset(p, 0xA5, sizeof *p);
+    p->struct_size = sizeof *p;
     return p;
 }
 
@@ -172,7 +173,7 @@ static void test_any_address(void **state) {
     for (int which = 0; which < GOLDEN; which++) {
         size_t bytes;
         uint8_t *blob = golden_blob(which, &bytes), *memory = aligned_alloc(8, (bytes + 15) / 8 * 8);
-        lensprof_profile *there = malloc(sizeof *there), *here = malloc(sizeof *here);
+        lensprof_profile *there = poisoned(), *here = poisoned();
         assert_ok(lensprof_profile_unpack(blob, bytes, there));
         for (size_t shift = 0; shift < 8; shift++) {
             size_t packed = 0;

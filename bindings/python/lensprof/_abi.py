@@ -10,7 +10,7 @@ from ctypes import (CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c
                     c_size_t, c_ssize_t, c_uint32, c_uint8, c_void_p)
 from enum import IntEnum, IntFlag
 
-VERSION = "0.1.0"  # of the headers
+VERSION = "0.2.0"  # of the headers
 
 RESPONSE_SAMPLES = 1024
 EMOR_MODES = 25
@@ -331,8 +331,9 @@ class ProfileKey(Structure):
         ("focal_mm", c_double),
         ("aperture", c_double),
         ("distance_m", c_double),
+        ("color_temperature_k", c_double),
         ("processing", c_uint32),
-        ("reserved", c_uint32),
+        ("reserved", c_uint32 * 37),
     ]
 
 
@@ -347,20 +348,23 @@ class Provenance(Structure):
         ("heldout_rms", c_double),
         ("inlier_share", c_double),
         ("doubt", c_char * 64),
+        ("prior_id", c_int64),
+        ("forced", c_uint32),
+        ("reserved", c_uint32 * 85),
     ]
 
 
 class Profile(Structure):
     _fields_ = [
-        ("key", ProfileKey),
-        ("provenance", Provenance),
+        ("struct_size", c_uint32),
         ("responses", c_uint32),
         ("vignettings", c_uint32),
+        ("covariance_size", c_uint32),
+        ("key", ProfileKey),
+        ("provenance", Provenance),
         ("response", Response * 3),
         ("vignetting", Vignetting * 3),
         ("grid", GainGrid),
-        ("covariance_size", c_uint32),
-        ("reserved", c_uint32),
         ("covariance", c_double * 1296),
     ]
 
@@ -401,10 +405,12 @@ class Observation(Structure):
 
 class SampleImage(Structure):
     _fields_ = [
-        ("view", Image),
-        ("camera", Camera),
+        ("struct_size", c_uint32),
         ("reduction", c_uint32),
         ("every_pixel", c_uint32),
+        ("reserved", c_uint32),
+        ("view", Image),
+        ("camera", Camera),
         ("mask", POINTER(c_uint8)),
         ("mask_row_bytes", c_ssize_t),
         ("black", c_double),
@@ -427,13 +433,15 @@ class SampleOptions(Structure):
 
 class FitImage(Structure):
     _fields_ = [
+        ("struct_size", c_uint32),
         ("width", c_uint32),
         ("height", c_uint32),
-        ("exposure", Exposure),
         ("free", c_uint32),
         ("ev_of", c_uint32),
         ("red_of", c_uint32),
         ("blue_of", c_uint32),
+        ("reserved", c_uint32),
+        ("exposure", Exposure),
         ("known_ev", c_double),
         ("known_ev_sigma", c_double),
     ]
@@ -485,6 +493,8 @@ class FitResult(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
         ("usable", c_uint32),
+        ("image_quality_size", c_uint32),
+        ("reserved", c_uint32),
         ("reason", c_char * 256),
         ("response", Response),
         ("vignetting", Vignetting * 3),
@@ -519,11 +529,13 @@ class FixedPlan(Structure):
 
 class FlatImage(Structure):
     _fields_ = [
-        ("view", Image),
+        ("struct_size", c_uint32),
         ("width", c_uint32),
         ("height", c_uint32),
         ("reduction", c_uint32),
         ("shot", c_uint32),
+        ("reserved", c_uint32),
+        ("view", Image),
         ("mask", POINTER(c_uint8)),
         ("mask_row_bytes", c_ssize_t),
         ("black", c_double),
@@ -586,6 +598,8 @@ class FlatResult(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
         ("usable", c_uint32),
+        ("image_quality_size", c_uint32),
+        ("covariance_size", c_uint32),
         ("reason", c_char * 256),
         ("vignetting", Vignetting * 3),
         ("vignettings", c_uint32),
@@ -606,8 +620,6 @@ class FlatResult(Structure):
         ("inlier_share", c_double),
         ("corner_sigma", c_double),
         ("grid_residual", c_double),
-        ("covariance_size", c_uint32),
-        ("reserved", c_uint32),
         ("covariance", c_double * 1296),
         ("gain_grid", GainGrid),
         ("image_quality", POINTER(FlatImageQuality)),
@@ -620,11 +632,12 @@ class Pto(Structure):
 
 class PtoImage(Structure):
     _fields_ = [
+        ("struct_size", c_uint32),
+        ("response_type", c_uint32),
         ("camera", Camera),
         ("exposure", Exposure),
         ("vignetting", Vignetting),
         ("emor", c_double * 5),
-        ("response_type", c_uint32),
         ("free", c_uint32),
         ("response_of", c_uint32),
         ("vignetting_of", c_uint32),
@@ -634,7 +647,6 @@ class PtoImage(Structure):
         ("blue_of", c_uint32),
         ("crop", c_int32 * 4),
         ("crop_circular", c_uint32),
-        ("reserved", c_uint32),
     ]
 
 
@@ -682,8 +694,10 @@ class LookupOptions(Structure):
 
 class Lookup(Structure):
     _fields_ = [
+        ("struct_size", c_uint32),
         ("exact", c_uint32),
         ("rows", c_uint32),
+        ("reserved", c_uint32),
         ("id", c_int64 * 24),
         ("weight", c_double * 24),
         ("distance", c_double),
@@ -721,6 +735,8 @@ class StoreGroup(Structure):
 
 class StoreStats(Structure):
     _fields_ = [
+        ("struct_size", c_uint32),
+        ("layout", c_uint32),
         ("profiles", c_uint32),
         ("cameras", c_uint32),
         ("lenses", c_uint32),
@@ -737,8 +753,6 @@ class StoreStats(Structure):
         ("method", StoreGroup * 8),
         ("source", StoreGroup * 8),
         ("bytes", c_int64),
-        ("layout", c_uint32),
-        ("reserved", c_uint32),
     ]
 
 
@@ -824,15 +838,20 @@ CALLBACKS = {
 INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     GainGrid: ("lensprof_gain_grid_init", []),
     Exposure: ("lensprof_exposure_init", []),
-    ApplyOptions: ("lensprof_apply_options_init", []),
+    ApplyOptions: ("lensprof_apply_options_init_sized", [ApplyOptions]),
     ProfileKey: ("lensprof_profile_key_init", []),
-    Profile: ("lensprof_profile_init", []),
-    SampleOptions: ("lensprof_sample_options_init", []),
-    FitOptions: ("lensprof_fit_options_init", []),
-    FitResult: ("lensprof_fit_result_init", []),
-    FlatOptions: ("lensprof_flat_options_init", []),
-    FlatResult: ("lensprof_flat_result_init", []),
-    LookupOptions: ("lensprof_lookup_options_init", []),
+    Profile: ("lensprof_profile_init_sized", [Profile]),
+    SampleImage: ("lensprof_sample_image_init_sized", [SampleImage]),
+    SampleOptions: ("lensprof_sample_options_init_sized", [SampleOptions]),
+    FitOptions: ("lensprof_fit_options_init_sized", [FitOptions]),
+    FitResult: ("lensprof_fit_result_init_sized", [FitResult, FitImageQuality]),
+    FlatImage: ("lensprof_flat_image_init_sized", [FlatImage]),
+    FlatOptions: ("lensprof_flat_options_init_sized", [FlatOptions]),
+    FlatResult: ("lensprof_flat_result_init_sized", [FlatResult, FlatImageQuality]),
+    PtoImage: ("lensprof_pto_image_init_sized", [PtoImage]),
+    LookupOptions: ("lensprof_lookup_options_init_sized", [LookupOptions]),
+    Lookup: ("lensprof_lookup_init_sized", [Lookup]),
+    StoreStats: ("lensprof_store_stats_init_sized", [StoreStats]),
 }
 
 # name: (restype, argtypes)
@@ -864,7 +883,7 @@ FUNCTIONS = {
     "lensprof_layout_channels": (c_uint32, [c_uint32]),
     "lensprof_sample_bytes": (c_uint32, [c_uint32]),
     "lensprof_image_validate": (c_int, [POINTER(Image)]),
-    "lensprof_apply_options_init": (None, [POINTER(ApplyOptions)]),
+    "lensprof_apply_options_init_sized": (None, [POINTER(ApplyOptions), c_size_t]),
     "lensprof_plan_bytes": (c_size_t, [POINTER(ApplyOptions)]),
     "lensprof_plan_init": (c_int, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(POINTER(Plan))]),
     "lensprof_apply": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Image), c_uint32, c_uint32]),
@@ -872,7 +891,8 @@ FUNCTIONS = {
     # profile.h
     "lensprof_profile_key_init": (None, [POINTER(ProfileKey)]),
     "lensprof_profile_key_validate": (c_int, [POINTER(ProfileKey)]),
-    "lensprof_profile_init": (None, [POINTER(Profile)]),
+    "lensprof_profile_init_sized": (None, [POINTER(Profile), c_size_t]),
+    "lensprof_profile_copy": (c_int, [POINTER(Profile), POINTER(Profile)]),
     "lensprof_profile_validate": (c_int, [POINTER(Profile)]),
     "lensprof_profile_pack": (c_int, [POINTER(Profile), c_uint32, c_void_p, c_size_t, POINTER(c_size_t)]),
     "lensprof_profile_unpack": (c_int, [c_void_p, c_size_t, POINTER(Profile)]),
@@ -881,14 +901,16 @@ FUNCTIONS = {
     "lensprof_camera_project": (c_int, [POINTER(Camera), c_double, c_double, POINTER(c_double)]),
     "lensprof_camera_unproject": (c_int, [POINTER(Camera), c_double, c_double, POINTER(c_double)]),
     # sample.h
-    "lensprof_sample_options_init": (None, [POINTER(SampleOptions)]),
+    "lensprof_sample_image_init_sized": (None, [POINTER(SampleImage), c_size_t]),
+    "lensprof_sample_options_init_sized": (None, [POINTER(SampleOptions), c_size_t]),
     "lensprof_sample_overlap": (c_int, [POINTER(SampleOptions), POINTER(SampleImage), c_uint32, POINTER(Pair), c_uint32,
                                         POINTER(c_uint32), POINTER(ErrorText)]),
     "lensprof_sample_tracks": (c_int, [POINTER(SampleOptions), POINTER(SampleImage), c_uint32, POINTER(Observation),
                                        c_uint32, POINTER(c_uint32), POINTER(ErrorText)]),
     # fit.h
-    "lensprof_fit_options_init": (None, [POINTER(FitOptions)]),
-    "lensprof_fit_result_init": (None, [POINTER(FitResult)]),
+    "lensprof_fit_image_init_sized": (None, [POINTER(FitImage), c_size_t, c_uint32, c_uint32, c_uint32]),
+    "lensprof_fit_options_init_sized": (None, [POINTER(FitOptions), c_size_t]),
+    "lensprof_fit_result_init_sized": (None, [POINTER(FitResult), c_size_t, c_size_t]),
     "lensprof_fit_overlap": (c_int, [POINTER(FitOptions), POINTER(FitImage), c_uint32, POINTER(Pair), c_uint32,
                                      POINTER(Exposure), POINTER(FitResult), POINTER(ErrorText)]),
     "lensprof_fit_radiance": (c_int, [POINTER(FitOptions), POINTER(FitImage), c_uint32, POINTER(Observation), c_uint32,
@@ -902,11 +924,13 @@ FUNCTIONS = {
     "lensprof_fixed_plan_open": (c_int, [c_void_p, c_size_t, POINTER(POINTER(FixedPlan))]),
     "lensprof_fixed_apply": (c_int, [POINTER(FixedPlan), POINTER(Image), POINTER(Image), c_uint32, c_uint32]),
     # flat.h
-    "lensprof_flat_options_init": (None, [POINTER(FlatOptions)]),
-    "lensprof_flat_result_init": (None, [POINTER(FlatResult)]),
+    "lensprof_flat_image_init_sized": (None, [POINTER(FlatImage), c_size_t]),
+    "lensprof_flat_options_init_sized": (None, [POINTER(FlatOptions), c_size_t]),
+    "lensprof_flat_result_init_sized": (None, [POINTER(FlatResult), c_size_t, c_size_t]),
     "lensprof_fit_flat": (c_int, [POINTER(FlatOptions), POINTER(FlatImage), c_uint32, POINTER(FlatResult),
                                   POINTER(ErrorText)]),
     # formats.h
+    "lensprof_pto_image_init_sized": (None, [POINTER(PtoImage), c_size_t]),
     "lensprof_pto_read": (c_int, [c_char_p, c_size_t, POINTER(POINTER(Pto)), POINTER(ErrorText)]),
     "lensprof_pto_destroy": (None, [POINTER(Pto)]),
     "lensprof_pto_image_count": (c_uint32, [POINTER(Pto)]),
@@ -968,7 +992,8 @@ FUNCTIONS = {
     "lensprof_store_put": (c_int, [POINTER(Store), POINTER(Profile), POINTER(c_int64), POINTER(ErrorText)]),
     "lensprof_store_find": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(Profile), POINTER(c_int64),
                                     POINTER(ErrorText)]),
-    "lensprof_lookup_options_init": (None, [POINTER(LookupOptions)]),
+    "lensprof_lookup_options_init_sized": (None, [POINTER(LookupOptions), c_size_t]),
+    "lensprof_lookup_init_sized": (None, [POINTER(Lookup), c_size_t]),
     "lensprof_store_lookup": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(LookupOptions), POINTER(Profile),
                                       POINTER(Lookup), POINTER(ErrorText)]),
     "lensprof_store_begin": (c_int, [POINTER(Store), POINTER(ErrorText)]),
@@ -984,6 +1009,7 @@ FUNCTIONS = {
                                      POINTER(ErrorText)]),
     "lensprof_store_check": (c_int, [POINTER(Store), FaultVisitor, c_void_p, POINTER(c_uint32), POINTER(c_uint32),
                                      POINTER(ErrorText)]),
+    "lensprof_store_stats_init_sized": (None, [POINTER(StoreStats), c_size_t]),
     "lensprof_store_get_stats": (c_int, [POINTER(Store), POINTER(StoreStats), POINTER(ErrorText)]),
     "lensprof_store_remove": (c_int, [POINTER(Store), c_int64, POINTER(ErrorText)]),
 }

@@ -1,7 +1,7 @@
 """Recovering response, vignetting, exposure and white balance from correspondences; see lensprof/fit.h."""
 from __future__ import annotations
 
-from ctypes import byref, c_double
+from ctypes import byref, c_double, sizeof
 from typing import Any, Iterable, Optional, Sequence, Union
 
 import numpy as np
@@ -20,7 +20,7 @@ class FitImage(Value, _abi.FitImage):
     """One image of a fit.
 
     index: its own place among the images. width, height: full frame, px. exposure: the value where fixed. free:
-    Free.EV, RED, BLUE. ev_of, red_of, blue_of: index of the image whose ev or white balance factor this one shares;
+    Free.EV, RED, BLUE, all by default. ev_of, red_of, blue_of: index of the image whose ev or white balance factor this one shares;
     its own unless told. known_ev: exposure from elsewhere (EXIF), EV up to a common offset, a soft observation;
     known_ev_sigma: its standard error, EV, 0 = not known.
     """
@@ -36,8 +36,9 @@ class FitImage(Value, _abi.FitImage):
     known_ev_sigma: float
 
     def __init__(self, index: int, width: int, height: int, **fields: Any):
-        own = {"exposure": Exposure(), "ev_of": index, "red_of": index, "blue_of": index}
-        super().__init__(width=width, height=height, **{**own, **fields})
+        numbers = [integer(n, what) for n, what in ((index, "index"), (width, "width"), (height, "height"))]
+        lib.lensprof_fit_image_init_sized(byref(self), sizeof(self), *numbers)
+        super().__init__(**fields)
 
 
 class FitOptions(WithProgress, Struct, _abi.FitOptions):

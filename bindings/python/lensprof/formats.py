@@ -167,7 +167,7 @@ def _imported(read: Callable[..., int], source: str, what: str) -> list[tuple[Pr
 
     def visit(_user: Any, entry: Any) -> int:
         try:
-            found.append((Profile.from_buffer_copy(entry.contents.profile.contents), bool(entry.contents.usable)))
+            found.append((Profile._copy_of(entry.contents.profile), bool(entry.contents.usable)))
             return Status.OK
         except BaseException as exception:  # must not cross C
             raised.append(exception)

@@ -16,8 +16,9 @@ from .model import GainGrid, Response, Vignetting
 class ProfileKey(Value, _abi.ProfileKey):
     """What a profile is for; empty texts and lensprof.UNKNOWN where not known, processing JPEG by default.
 
-    unit: serial numbers, where a profile is of one camera and lens. crop_factor, focal_mm, aperture (f-number) and
-    distance_m (may be infinite) are above 0, or UNKNOWN.
+    unit: serial numbers, where a profile is of one camera and lens. crop_factor, focal_mm, aperture (f-number),
+    distance_m (may be infinite) and color_temperature_k (of the light, where the falloff depends on it) are above 0, or
+    UNKNOWN.
     """
 
     camera_maker = Text()
@@ -28,6 +29,7 @@ class ProfileKey(Value, _abi.ProfileKey):
     focal_mm: float
     aperture: float
     distance_m: float
+    color_temperature_k: float
     processing = Enumerated(Processing)
 
     def validate(self) -> None:
@@ -53,6 +55,8 @@ class Provenance(Value, _abi.Provenance):
     heldout_rms: float
     inlier_share: float
     doubt = Text()
+    prior_id: int
+    forced: int
 
     @property
     def prior(self) -> int:
@@ -107,6 +111,13 @@ class Profile(Value, _abi.Profile):
     grid = Nested(GainGrid)
     covariance_size: int
     covariance = Covariance()
+
+    @classmethod
+    def _copy_of(cls, shown: Any) -> Profile:
+        """Of a profile that the library shows by a pointer."""
+        profile = cls()
+        check(lib.lensprof_profile_copy(byref(profile), shown), "the library is older than this package; install both")
+        return profile
 
     def validate(self) -> None:
         """Raises lensprof.Error unless key, curves, gain grid and covariance are valid."""

@@ -57,8 +57,7 @@ void declare(CLI::App &app, Options &o) {
 }
 
 std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
-    auto profile = std::make_shared<lensprof_profile>();
-    lensprof_profile_init(profile.get());
+    auto profile = std::shared_ptr<lensprof_profile>(new_profile());
     check(lensprof_pto_get_response(project.pto.get(), project.reference, &profile->response[0]), project.path);
     profile->vignetting[0] = project.images[project.reference].vignetting;
     return profile;
@@ -73,7 +72,7 @@ uint32_t image_of_file(const Project &project, const std::string &file) {
 }
 
 void look_up(lensprof_store *store, const Options &o, Correction &job) {
-    auto profile = std::make_shared<lensprof_profile>();
+    auto profile = std::shared_ptr<lensprof_profile>(new_profile());
     lensprof_error error{};
     job.profile_id = o.profile;
     if (o.profile) {
@@ -82,7 +81,8 @@ void look_up(lensprof_store *store, const Options &o, Correction &job) {
         const lensprof_profile_key key = read_metadata(job.source).key;
         lensprof_lookup_options options;
         lensprof_lookup_options_init(&options);
-        lensprof_lookup how{};
+        lensprof_lookup how;
+        lensprof_lookup_init(&how);
         const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
         if (status == LENSPROF_ERROR_NOT_FOUND)
             throw Failure(ExitCode::not_found, job.source + ": no profile for " + describe_key(key) + " in "

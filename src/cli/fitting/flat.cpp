@@ -114,8 +114,7 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
 }
 
 int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &report) {
-    auto profile = std::make_unique<lensprof_profile>();
-    lensprof_profile_init(profile.get());
+    auto profile = new_profile();
     const auto &fit = report.fit;
     profile->key = input.key;
     profile->responses = static_cast<uint32_t>(input.response.size());

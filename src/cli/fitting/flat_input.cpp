@@ -75,7 +75,7 @@ std::vector<lensprof_response> response_of(const FlatCommand &o) {
     if (o.gamma) check(lensprof_response_set_gamma(response.data(), *o.gamma), "--gamma");
     if (o.profile) {
         Store store = open_store(o.store.db, LENSPROF_STORE_READ);
-        auto profile = std::make_unique<lensprof_profile>();
+        auto profile = new_profile();
         lensprof_error error{};
         check(lensprof_store_get(store.get(), o.profile, profile.get(), &error), store_path(o.store.db), &error);
         response.assign(profile->response, profile->response + profile->responses);
@@ -154,7 +154,8 @@ FlatInput prepare_flat(const FlatCommand &o) {
     std::vector<uint32_t> shots = shots_of(o);
     std::vector<double> ev = exposures_of(o, shots, metadata), turns = turns_of(o, shots);
     for (size_t i = 0; i < o.files.size(); i++) {
-        lensprof_flat_image image{};
+        lensprof_flat_image image;
+        lensprof_flat_image_init(&image);
         image.shot = shots[i];
         image.ev = ev[i];
         image.turn_deg = turns[i];

@@ -79,8 +79,7 @@ void remove_empty_store(const std::string &file) {
 }
 
 std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit) {
-    auto profile = std::make_unique<lensprof_profile>();
-    lensprof_profile_init(profile.get());
+    auto profile = new_profile();
     profile->response[0] = fit.response;
     profile->vignettings = fit.vignettings;
     std::copy(fit.vignetting, fit.vignetting + 3, profile->vignetting);

@@ -79,6 +79,7 @@ Project read_project(const std::string &path, bool one_lens) {
     std::filesystem::path folder = std::filesystem::path(path).parent_path();
     for (uint32_t i = 0; i < lensprof_pto_image_count(project.pto.get()); i++) {
         lensprof_pto_image image;
+        lensprof_pto_image_init(&image);
         check(lensprof_pto_get_image(project.pto.get(), i, &image), path);
         project.images.push_back(image);
         project.names.push_back(pto_name(*project.pto, i));
@@ -116,7 +117,8 @@ std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pic
                          const GreyRange &range, Progress &progress, Function function) {
     std::vector<lensprof_sample_image> images;
     for (size_t i = 0; i < pictures.size(); i++) {
-        lensprof_sample_image image{};
+        lensprof_sample_image image;
+        lensprof_sample_image_init(&image);
         image.view = pictures[i].picture.view();
         image.camera = project.images[i].camera;
         image.reduction = pictures[i].picture.reduction;
@@ -238,9 +240,8 @@ std::vector<lensprof_fit_image> fit_images(const Project &project) {
     std::vector<lensprof_fit_image> images;
     auto exposures = project_exposures(project);
     for (const auto &from : project.images) {
-        lensprof_fit_image image{};
-        image.width = from.camera.width;
-        image.height = from.camera.height;
+        lensprof_fit_image image;
+        lensprof_fit_image_init(&image, static_cast<uint32_t>(images.size()), from.camera.width, from.camera.height);
         image.exposure = exposures[images.size()];
         image.free = from.free & (LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE);
         image.ev_of = from.ev_of;

@@ -27,7 +27,8 @@ void mask_ringing(SamplePicture &own) {
 }
 
 lensprof_pto_image still_image(PictureSize size, uint32_t number, uint32_t free) {
-    lensprof_pto_image image{};
+    lensprof_pto_image image;
+    lensprof_pto_image_init(&image);
     image.camera.projection = LENSPROF_PROJECTION_RECTILINEAR;
     image.camera.width = size.width;
     image.camera.height = size.height;

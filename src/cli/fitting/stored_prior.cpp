@@ -30,9 +30,10 @@ EarlierProfile find_stored_prior(const StoreOptions &o, const lensprof_profile_k
     const std::string file = store_path(o.db);
     if (!std::filesystem::exists(file)) return {0, nullptr, "there is no database yet"};
     Store store = open_store(o.db, LENSPROF_STORE_READ);
-    auto profile = std::make_unique<lensprof_profile>();
+    auto profile = new_profile();
     lensprof_error error{};
-    lensprof_lookup how{};
+    lensprof_lookup how;
+    lensprof_lookup_init(&how);
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
     const lensprof_status status = lensprof_store_lookup(store.get(), &key, &options, profile.get(), &how, &error);

@@ -70,7 +70,7 @@ std::vector<StoredProfile> KeyFilter::profiles(const std::string &db, std::vecto
     if (ids.empty()) throw Failure(ExitCode::not_found, nothing_found(db));
     std::vector<StoredProfile> profiles;
     for (int64_t id : ids) {
-        auto profile = std::make_unique<lensprof_profile>();
+        auto profile = new_profile();
         lensprof_error error{};
         check(lensprof_store_get(store.get(), id, profile.get(), &error), store_path(db), &error);
         profiles.push_back({id, std::move(profile)});

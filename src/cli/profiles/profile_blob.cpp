@@ -35,7 +35,7 @@ BlobStamp write_blob(const lensprof_profile &profile, bool with_covariance, cons
 
 std::unique_ptr<lensprof_profile> read_blob(const std::string &path, BlobStamp &stamp) {
     const std::string blob = read_text(path, largest_blob);
-    auto profile = std::make_unique<lensprof_profile>();
+    auto profile = new_profile();
     const lensprof_status status = lensprof_profile_unpack(blob.data(), blob.size(), profile.get());
     if (status == LENSPROF_ERROR_LAYOUT)
         throw Failure(ExitCode::unreadable, path + ": is a blob of a newer lensprof; read it with that version");

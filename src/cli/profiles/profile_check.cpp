@@ -138,6 +138,7 @@ int run_profile_stats(const std::vector<std::string> &arguments, Streams &stream
     if (!o.read(app, arguments, streams)) return 0;
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     auto stats = std::make_unique<lensprof_store_stats>();
+    lensprof_store_stats_init(stats.get());
     lensprof_error error{};
     check(lensprof_store_get_stats(store.get(), stats.get(), &error), store_path(o.db), &error);
     if (o.json)

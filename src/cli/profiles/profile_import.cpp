@@ -77,9 +77,10 @@ lensprof_status take(void *user, const lensprof_import_entry *entry) {
                                     entry->usable != 0 }});
     if (interrupted()) return LENSPROF_ERROR_CANCELLED;
     if (!entry->usable) return LENSPROF_OK;
-    auto own = std::make_unique<lensprof_profile>(profile);
+    auto own = new_profile();
     int64_t same = 0;
-    lensprof_status status = make_own(*own);
+    lensprof_status status = lensprof_profile_copy(own.get(), &profile);
+    if (status == LENSPROF_OK) status = make_own(*own);
     if (status == LENSPROF_OK) status = lensprof_store_find_same(import.store, own.get(), &same, &import.error);
     if (same) import.known++;
     if (same || status != LENSPROF_OK) return import.store_status = status;
@@ -92,8 +93,7 @@ lensprof_status ignore(void *, const lensprof_import_entry *) { return LENSPROF_
 
 // Files that hold a response or a falloff alone make one profile, whose key the command line gives.
 std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector<Input> &inputs) {
-    auto profile = std::make_unique<lensprof_profile>();
-    lensprof_profile_init(profile.get());
+    auto profile = new_profile();
     std::string response, falloff, names;
     for (const Input &input : inputs) {
         if (input.rule->part == ForeignPart::profiles) continue;

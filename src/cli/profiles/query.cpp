@@ -60,7 +60,7 @@ void answer_stored(const Options &o, lensprof_store *store, const std::vector<le
     int64_t newest = 0;
     for (const auto &row : rows) newest = std::max(newest, row.id);
     lensprof_error error{};
-    auto profile = std::make_unique<lensprof_profile>();
+    auto profile = new_profile();
     check(lensprof_store_get(store, newest, profile.get(), &error), store_path(o.db), &error);
     if (o.json) {
         Json object = profile_json(newest, *profile);
@@ -88,9 +88,10 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
     options.any_processing = !o.filter.has_processing();
     lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
     key.crop_factor = o.crop_factor;
-    lensprof_lookup how{};
+    lensprof_lookup how;
+    lensprof_lookup_init(&how);
     lensprof_error error{};
-    auto profile = std::make_unique<lensprof_profile>();
+    auto profile = new_profile();
     const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
     if (status == LENSPROF_ERROR_NOT_FOUND && !rows.empty() && is_open(key)) return false;
     if (status == LENSPROF_ERROR_NOT_FOUND)

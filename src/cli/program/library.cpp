@@ -76,6 +76,12 @@ void demand_folder(const std::string &path) {
                       path + ": there is no folder " + folder.string() + " for the database; make it first");
 }
 
+std::unique_ptr<lensprof_profile> new_profile() {
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    return profile;
+}
+
 Store open_store(const std::string &path, lensprof_store_mode mode) {
     std::string file = store_path(path);
     if (path.empty() && mode == LENSPROF_STORE_CREATE) {

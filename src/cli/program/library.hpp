@@ -20,6 +20,8 @@ struct StoreClose {
 };
 using Store = std::unique_ptr<lensprof_store, StoreClose>;
 
+std::unique_ptr<lensprof_profile> new_profile();  // initialised
+
 struct StoredProfile {
     int64_t id;  // 0: of a file, alone
     std::unique_ptr<lensprof_profile> profile;

@@ -1,9 +1,10 @@
 // The C face of the overlap fit: checks, and the exception fence.
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <new>
 
-#include "fit/base/fail.hpp"
+#include "fit/base/sized.hpp"
 #include "fit/methods/debevec.hpp"
 #include "fit/methods/overlap.hpp"
 #include "fit/methods/transfer_function/transfer_function.hpp"
@@ -18,6 +19,10 @@ namespace {
 constexpr uint32_t kSharedFlags =
     LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
 constexpr uint32_t kImageFlags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
+constexpr size_t kFirstOptions = LP_END_OF(lensprof_fit_options, progress_user);
+constexpr size_t kFirstImage = LP_END_OF(lensprof_fit_image, known_ev_sigma);
+constexpr size_t kFirstResult = LP_END_OF(lensprof_fit_result, image_quality);
+constexpr size_t kFirstQuality = LP_END_OF(lensprof_fit_image_quality, reserved);
 
 // The profile that is to be the prior.
 lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *error) {
@@ -43,8 +48,6 @@ lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *err
 }
 
 lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_count, lensprof_error *error) {
-    if (o.struct_size != sizeof o)
-        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit options: call lensprof_fit_options_init first");
     if ((o.channels != 1 && o.channels != 3) || o.reference >= image_count || o.loss > LENSPROF_LOSS_SQUARED
         || (o.modes > LENSPROF_EMOR_MODES && o.modes != LENSPROF_MODES_AUTO)
         || !(o.huber_levels > 0.0 && o.huber_levels <= 255.0) || !(o.prior_weight >= 0.0 && o.prior_weight <= 1e6)
@@ -75,8 +78,9 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
             && !(image.known_ev_sigma >= 1e-3 && image.known_ev_sigma <= 100.0 && std::abs(image.known_ev) <= 64.0))
             return fail(LENSPROF_ERROR_EXPOSURE, error,
                         "image %u: known exposure beyond 64 EV, or its sigma neither 0 nor 0.001..100", i);
-        if (image.free & ~kImageFlags)
-            return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: only EV, RED and BLUE can be free in an image", i);
+        if ((image.free & ~kImageFlags) || image.reserved)
+            return fail(LENSPROF_ERROR_ARGUMENT, error,
+                        "image %u: only EV, RED and BLUE can be free in an image, and reserved is 0", i);
         for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})
             if (of >= count)
                 return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to image %u of %u", i, of, count);
@@ -175,32 +179,51 @@ bool has_unknowns(const lensprof_fit_options &options, const lensprof_fit_image 
     return problem.image_unknowns > 0 || !free_columns(problem, options.modes == 0 ? 0 : 1).empty();
 }
 
+// Everything that a call reads and writes but pairs, observations and exposures, as this library's structs.
+struct Call {
+    lensprof_fit_options options;
+    std::vector<lensprof_fit_image> images;
+    lensprof_fit_result result;
+    std::vector<lensprof_fit_image_quality> quality;
+
+    uint32_t count() const { return static_cast<uint32_t>(images.size()); }
+    int channels() const { return static_cast<int>(options.channels); }
+};
+
+lensprof_status take_images(const lensprof_fit_image *given, uint32_t count, std::vector<lensprof_fit_image> &own,
+                            lensprof_error *error) {
+    auto init = [](lensprof_fit_image &image, uint32_t i) { lensprof_fit_image_init(&image, i, 0, 0); };
+    lensprof_status status = take_all(given, count, kFirstImage, "image", init, own, error);
+    return status == LENSPROF_OK ? check_images(own.data(), count, error) : status;
+}
+
 // What both fits ask of everything but the pairs or observations.
-lensprof_status check_call(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
-                           bool has_data, const lensprof_exposure *exposures, const lensprof_fit_result *result,
-                           lensprof_error *error) {
+lensprof_status take_call(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
+                          bool has_data, const lensprof_exposure *exposures, const lensprof_fit_result *result,
+                          Call &call, lensprof_error *error) {
     if (error) error->text[0] = 0;
     if (!options || !images || !exposures || !result || !has_data)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: a pointer is NULL");
     if (image_count < 2) return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: at least two images are needed");
-    if (result->struct_size != sizeof *result)
-        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit result: call lensprof_fit_result_init first");
-    lensprof_status status = check_options(*options, image_count, error);
-    return status == LENSPROF_OK ? check_images(images, image_count, error) : status;
+    lensprof_status status =
+        check_result(*result, kFirstResult, kFirstQuality, result->image_quality, "fit result", error);
+    if (status != LENSPROF_OK) return status;
+    lensprof_fit_options_init(&call.options);
+    if (const char *wrong = lp_sized_take(&call.options, options, kFirstOptions))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit options: %s", wrong);
+    status = check_options(call.options, image_count, error);
+    if (status == LENSPROF_OK) status = take_images(images, image_count, call.images, error);
+    lensprof_fit_result_init(&call.result);
+    if (status == LENSPROF_OK && result->image_quality) call.quality.resize(image_count);
+    call.result.image_quality = call.quality.empty() ? nullptr : call.quality.data();
+    return status;
 }
 
-// The exception fence around a fit, and its time.
+// The exception fence around a fit, which returns a status.
 template <class Fit>
-lensprof_status run(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-                    lensprof_fit_result &result, lensprof_error *error, Fit fit) {
+lensprof_status at_boundary(lensprof_error *error, Fit fit) {
     try {
-        if (!has_unknowns(options, images, image_count))
-            return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "fit: every parameter is fixed; free at least one");
-        const auto began = std::chrono::steady_clock::now();
-        const lensprof_status status = fit();
-        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - began;
-        if (status == LENSPROF_OK) result.seconds = taken.count();
-        return status;
+        return fit();
     } catch (const Cancelled &) {
         return fail(LENSPROF_ERROR_CANCELLED, error, "fit: cancelled");
     } catch (const std::bad_alloc &) {
@@ -212,16 +235,46 @@ lensprof_status run(const lensprof_fit_options &options, const lensprof_fit_imag
     }
 }
 
-lensprof_status fit_tracks(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-                           const lensprof_observation *observations, uint32_t count, lensprof_exposure *exposures,
-                           lensprof_fit_result &result, lensprof_error *error) {
+// A fit, whose result and time the caller receives.
+template <class Fit>
+lensprof_status run(Call &call, lensprof_fit_result *result, lensprof_error *error, Fit fit) {
+    if (!has_unknowns(call.options, call.images.data(), call.count()))
+        return fail(LENSPROF_ERROR_NO_UNKNOWNS, error, "fit: every parameter is fixed; free at least one");
+    const auto began = std::chrono::steady_clock::now();
+    const lensprof_status status = fit();
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - began;
+    if (status != LENSPROF_OK) return status;
+    call.result.seconds = taken.count();
+    give_result(call.result, call.quality, result);
+    return LENSPROF_OK;
+}
+
+lensprof_status fit_tracks(Call &call, const lensprof_observation *observations, uint32_t count,
+                           lensprof_exposure *exposures, lensprof_error *error) {
     Tracks tracks = tracks_of(observations, count);
     lensprof_status status = check_tracks(tracks, error);
     if (status != LENSPROF_OK) return status;
-    if (pairs_of(tracks, static_cast<int>(options.channels)).empty())
+    if (pairs_of(tracks, call.channels()).empty())
         return fail(LENSPROF_ERROR_NO_SAMPLES, error,
                     "fit: no point has two observations that are neither black nor saturated");
-    fit_radiance(options, images, image_count, tracks, exposures, result);
+    fit_radiance(call.options, call.images.data(), call.count(), tracks, exposures, call.result);
+    return LENSPROF_OK;
+}
+
+lensprof_status fit_pairs(Call &call, const lensprof_pair *pairs, uint32_t count, lensprof_exposure *exposures,
+                          lensprof_error *error) {
+    const auto &options = call.options;
+    const lensprof_fit_image *images = call.images.data();
+    if (options.method == LENSPROF_METHOD_RADIANCE) {
+        std::vector<lensprof_observation> observations = observations_of(pairs, count, call.channels());
+        return fit_tracks(call, observations.data(), static_cast<uint32_t>(observations.size()), exposures, error);
+    }
+    if (options.method == LENSPROF_METHOD_TRANSFER)
+        fit_overlap(options, images, call.count(), pairs, count, exposures, call.result);
+    else if (options.method == LENSPROF_METHOD_TRANSFER_FUNCTION)
+        fit_transfer_functions(options, images, call.count(), pairs, count, exposures, call.result);
+    else
+        fit_debevec(options, images, call.count(), pairs, count, exposures, call.result);
     return LENSPROF_OK;
 }
 
@@ -229,9 +282,18 @@ lensprof_status fit_tracks(const lensprof_fit_options &options, const lensprof_f
 
 extern "C" {
 
-void lensprof_fit_options_init(lensprof_fit_options *options) {
-    *options = lensprof_fit_options{};
-    options->struct_size = sizeof *options;
+void lensprof_fit_image_init_sized(lensprof_fit_image *image, size_t size, uint32_t index, uint32_t width,
+                                   uint32_t height) {
+    if (!lp_sized_begin(image, size, kFirstImage)) return;
+    image->width = width;
+    image->height = height;
+    image->free = kImageFlags;
+    image->ev_of = image->red_of = image->blue_of = index;
+    lensprof_exposure_init(&image->exposure);
+}
+
+void lensprof_fit_options_init_sized(lensprof_fit_options *options, size_t size) {
+    if (!lp_sized_begin(options, size, kFirstOptions)) return;
     options->channels = 3;
     options->free =
         LENSPROF_FREE_RESPONSE | LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
@@ -241,40 +303,26 @@ void lensprof_fit_options_init(lensprof_fit_options *options) {
     options->max_iterations = 200;
 }
 
-void lensprof_fit_result_init(lensprof_fit_result *result) {
-    *result = lensprof_fit_result{};
-    result->struct_size = sizeof *result;
+void lensprof_fit_result_init_sized(lensprof_fit_result *result, size_t size, size_t image_quality_size) {
+    if (!lp_sized_begin(result, size, kFirstResult)) return;
+    result->image_quality_size = static_cast<uint32_t>(image_quality_size);
     lensprof_response_set_linear(&result->response);
 }
 
 lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const lensprof_fit_image *images,
                                      uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
                                      lensprof_exposure *exposures, lensprof_fit_result *result, lensprof_error *error) {
-    lensprof_status status =
-        check_call(options, images, image_count, pairs || pair_count == 0, exposures, result, error);
-    if (status == LENSPROF_OK)
-        status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(options->channels), error);
-    if (status == LENSPROF_OK && options->method == LENSPROF_METHOD_DEBEVEC)
-        status = check_debevec(*options, images, image_count, error);
-    if (status != LENSPROF_OK) return status;
-    if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
-    return run(*options, images, image_count, *result, error, [&] {
-        if (options->method == LENSPROF_METHOD_TRANSFER) {
-            fit_overlap(*options, images, image_count, pairs, pair_count, exposures, *result);
-            return LENSPROF_OK;
-        }
-        if (options->method == LENSPROF_METHOD_TRANSFER_FUNCTION) {
-            fit_transfer_functions(*options, images, image_count, pairs, pair_count, exposures, *result);
-            return LENSPROF_OK;
-        }
-        if (options->method == LENSPROF_METHOD_DEBEVEC) {
-            fit_debevec(*options, images, image_count, pairs, pair_count, exposures, *result);
-            return LENSPROF_OK;
-        }
-        std::vector<lensprof_observation> observations =
-            observations_of(pairs, pair_count, static_cast<int>(options->channels));
-        return fit_tracks(*options, images, image_count, observations.data(),
-                          static_cast<uint32_t>(observations.size()), exposures, *result, error);
+    return at_boundary(error, [&] {
+        const auto call = std::make_unique<Call>();
+        lensprof_status status =
+            take_call(options, images, image_count, pairs || pair_count == 0, exposures, result, *call, error);
+        if (status == LENSPROF_OK)
+            status = check_pairs(pairs, pair_count, call->images.data(), image_count, call->channels(), error);
+        if (status == LENSPROF_OK && call->options.method == LENSPROF_METHOD_DEBEVEC)
+            status = check_debevec(call->options, call->images.data(), image_count, error);
+        if (status != LENSPROF_OK) return status;
+        if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
+        return run(*call, result, error, [&] { return fit_pairs(*call, pairs, pair_count, exposures, error); });
     });
 }
 
@@ -282,17 +330,19 @@ lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const
                                       uint32_t image_count, const lensprof_observation *observations,
                                       uint32_t observation_count, lensprof_exposure *exposures,
                                       lensprof_fit_result *result, lensprof_error *error) {
-    lensprof_status status =
-        check_call(options, images, image_count, observations || observation_count == 0, exposures, result, error);
-    if (status == LENSPROF_OK && options->method != LENSPROF_METHOD_RADIANCE)
-        return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: tracks are for the method radiance");
-    if (status == LENSPROF_OK)
-        status = check_observations(observations, observation_count, images, image_count,
-                                    static_cast<int>(options->channels), error);
-    if (status != LENSPROF_OK) return status;
-    if (observation_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no observations were given");
-    return run(*options, images, image_count, *result, error, [&] {
-        return fit_tracks(*options, images, image_count, observations, observation_count, exposures, *result, error);
+    return at_boundary(error, [&] {
+        const auto call = std::make_unique<Call>();
+        lensprof_status status = take_call(options, images, image_count, observations || observation_count == 0,
+                                           exposures, result, *call, error);
+        if (status == LENSPROF_OK && call->options.method != LENSPROF_METHOD_RADIANCE)
+            return fail(LENSPROF_ERROR_UNSUPPORTED, error, "fit options: tracks are for the method radiance");
+        if (status == LENSPROF_OK)
+            status = check_observations(observations, observation_count, call->images.data(), image_count,
+                                        call->channels(), error);
+        if (status != LENSPROF_OK) return status;
+        if (observation_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no observations were given");
+        return run(*call, result, error,
+                   [&] { return fit_tracks(*call, observations, observation_count, exposures, error); });
     });
 }
 
@@ -306,14 +356,16 @@ lensprof_status lensprof_transfer_rms(const lensprof_response *response, const l
     lensprof_status status = lensprof_response_validate(response);
     for (uint32_t c = 0; c < channels && status == LENSPROF_OK; c++)
         status = lensprof_vignetting_validate(&vignetting[c]);
-    if (status == LENSPROF_OK) status = check_images(images, image_count, nullptr);
-    if (status == LENSPROF_OK)
-        status = check_pairs(pairs, pair_count, images, image_count, static_cast<int>(channels), nullptr);
     for (uint32_t i = 0; i < image_count && status == LENSPROF_OK; i++)
         status = lensprof_exposure_validate(&exposures[i]);
     if (status != LENSPROF_OK) return status;
     try {
-        Summary summary = transfer_summary(*response, vignetting, images, exposures, image_count, pairs, pair_count,
+        std::vector<lensprof_fit_image> own;
+        status = take_images(images, image_count, own, nullptr);
+        if (status == LENSPROF_OK)
+            status = check_pairs(pairs, pair_count, own.data(), image_count, static_cast<int>(channels), nullptr);
+        if (status != LENSPROF_OK) return status;
+        Summary summary = transfer_summary(*response, vignetting, own.data(), exposures, image_count, pairs, pair_count,
                                            static_cast<int>(channels));
         *rms = summary.rms;
         if (median) *median = summary.median;

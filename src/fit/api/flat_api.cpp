@@ -3,8 +3,8 @@
 #include <memory>
 #include <new>
 
-#include "fit/base/fail.hpp"
 #include "fit/base/parallel.hpp"
+#include "fit/base/sized.hpp"
 #include "fit/flat/fit.hpp"
 
 using namespace lensprof;
@@ -13,10 +13,12 @@ namespace {
 
 constexpr uint32_t kLensFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3 | LENSPROF_FREE_CENTER;
 constexpr double kLargestTurn = 360.0;
+constexpr size_t kFirstOptions = LP_END_OF(lensprof_flat_options, progress_user);
+constexpr size_t kFirstImage = LP_END_OF(lensprof_flat_image, turn_deg);
+constexpr size_t kFirstResult = LP_END_OF(lensprof_flat_result, image_quality);
+constexpr size_t kFirstQuality = LP_END_OF(lensprof_flat_image_quality, reserved);
 
 lensprof_status check_options(const lensprof_flat_options &o, uint32_t count, lensprof_error *error) {
-    if (o.struct_size != sizeof o)
-        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "flat options: call lensprof_flat_options_init first");
     if (count == 0 || count > LENSPROF_FLAT_IMAGES)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "flat: %u pictures; give 1 to %d", count, LENSPROF_FLAT_IMAGES);
     if ((o.channels != 1 && o.channels != 3) || (o.free & ~kLensFlags) || (o.vignettings > 1 && o.vignettings != 3)
@@ -44,6 +46,7 @@ lensprof_status check_options(const lensprof_flat_options &o, uint32_t count, le
 lensprof_status check_image(const lensprof_flat_options &o, const lensprof_flat_image *images, uint32_t i,
                             lensprof_error *error) {
     const auto &image = images[i];
+    if (image.reserved) return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: reserved is not 0", i);
     lensprof_status status = check_view(sample_image_of(image), i, error);
     if (status != LENSPROF_OK) return status;
     if (image.width != images[0].width || image.height != images[0].height)
@@ -61,13 +64,59 @@ lensprof_status check_image(const lensprof_flat_options &o, const lensprof_flat_
     return LENSPROF_OK;
 }
 
+// Everything that the call reads and writes, as this library's structs.
+struct Call {
+    lensprof_flat_options options;
+    std::vector<lensprof_flat_image> images;
+    lensprof_flat_result result;
+    std::vector<lensprof_flat_image_quality> quality;
+};
+
+lensprof_status take_call(const lensprof_flat_options *options, const lensprof_flat_image *images, uint32_t count,
+                          const lensprof_flat_result &result, Call &call, lensprof_error *error) {
+    lensprof_status status =
+        check_result(result, kFirstResult, kFirstQuality, result.image_quality, "flat result", error);
+    if (status != LENSPROF_OK) return status;
+    lensprof_flat_options_init(&call.options);
+    if (const char *wrong = lp_sized_take(&call.options, options, kFirstOptions))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "flat options: %s", wrong);
+    status = check_options(call.options, count, error);
+    auto init = [](lensprof_flat_image &image, uint32_t) { lensprof_flat_image_init(&image); };
+    if (status == LENSPROF_OK) status = take_all(images, count, kFirstImage, "image", init, call.images, error);
+    for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++)
+        status = check_image(call.options, call.images.data(), i, error);
+    lensprof_flat_result_init(&call.result);
+    if (result.image_quality) call.quality.resize(count);
+    call.result.image_quality = result.image_quality ? call.quality.data() : nullptr;
+    return status;
+}
+
+lensprof_status run(Call &call, lensprof_error *error) {
+    const auto &options = call.options;
+    const auto count = static_cast<uint32_t>(call.images.size());
+    auto stop = [&] { return options.progress && options.progress(0.0, options.progress_user) != 0; };
+    auto place = [&](uint32_t i) { return sample_image_of(call.images[i]); };
+    const lensprof_status status = check_finite(place, count, options.threads, stop, error);
+    if (status != LENSPROF_OK) return status;
+    if (!fit_flat(options, call.images.data(), count, call.result))
+        return fail(LENSPROF_ERROR_NO_SAMPLES, error,
+                    "no part of a card lies between black and white; check exposures, limits, and where the card is");
+    return LENSPROF_OK;
+}
+
 }  // namespace
 
 extern "C" {
 
-void lensprof_flat_options_init(lensprof_flat_options *options) {
-    *options = lensprof_flat_options{};
-    options->struct_size = sizeof *options;
+void lensprof_flat_image_init_sized(lensprof_flat_image *image, size_t size) {
+    if (!lp_sized_begin(image, size, kFirstImage)) return;
+    image->reduction = 1;
+    image->black = 2.0 / 255.0;
+    image->white = 250.0 / 255.0;
+}
+
+void lensprof_flat_options_init_sized(lensprof_flat_options *options, size_t size) {
+    if (!lp_sized_begin(options, size, kFirstOptions)) return;
     options->channels = 3;
     options->free = kLensFlags;
     options->responses = 1;
@@ -75,32 +124,21 @@ void lensprof_flat_options_init(lensprof_flat_options *options) {
     options->prior_weight = 1.0;
 }
 
-void lensprof_flat_result_init(lensprof_flat_result *result) {
-    *result = lensprof_flat_result{};
-    result->struct_size = sizeof *result;
+void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size, size_t image_quality_size) {
+    if (lp_sized_begin(result, size, kFirstResult))
+        result->image_quality_size = static_cast<uint32_t>(image_quality_size);
 }
 
 lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const lensprof_flat_image *images,
                                   uint32_t count, lensprof_flat_result *result, lensprof_error *error) {
     if (error) error->text[0] = 0;
     if (!options || !images || !result) return fail(LENSPROF_ERROR_ARGUMENT, error, "flat: a pointer is NULL");
-    if (result->struct_size != sizeof *result)
-        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "flat result: call lensprof_flat_result_init first");
-    lensprof_status status = check_options(*options, count, error);
-    for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = check_image(*options, images, i, error);
-    if (status != LENSPROF_OK) return status;
     try {
-        auto stop = [&] { return options->progress && options->progress(0.0, options->progress_user) != 0; };
-        auto place = [&](uint32_t i) { return sample_image_of(images[i]); };
-        status = check_finite(place, count, options->threads, stop, error);
-        if (status != LENSPROF_OK) return status;
-        auto found = std::make_unique<lensprof_flat_result>(*result);
-        if (!fit_flat(*options, images, count, *found))
-            return fail(
-                LENSPROF_ERROR_NO_SAMPLES, error,
-                "no part of a card lies between black and white; check exposures, limits, and where the card is");
-        *result = *found;
-        return LENSPROF_OK;
+        const auto call = std::make_unique<Call>();
+        lensprof_status status = take_call(options, images, count, *result, *call, error);
+        if (status == LENSPROF_OK) status = run(*call, error);
+        if (status == LENSPROF_OK) give_result(call->result, call->quality, result);
+        return status;
     } catch (const Cancelled &) {
         return fail(LENSPROF_ERROR_CANCELLED, error, "flat: cancelled");
     } catch (const std::bad_alloc &) {

@@ -3,7 +3,7 @@
 #include <new>
 #include <vector>
 
-#include "fit/base/fail.hpp"
+#include "fit/base/sized.hpp"
 #include "fit/sampling/sampler.hpp"
 
 using namespace lensprof;
@@ -11,16 +11,17 @@ using namespace lensprof;
 namespace {
 
 constexpr uint32_t kLargestCount = 1u << 24;
+constexpr size_t kFirstOptions = LP_END_OF(lensprof_sample_options, progress_user);
+constexpr size_t kFirstImage = LP_END_OF(lensprof_sample_image, white);
 
 lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, lensprof_error *error) {
+    if (image.reserved) return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: reserved is not 0", i);
     lensprof_status status = lensprof_camera_validate(&image.camera);
     if (status != LENSPROF_OK) return fail(status, error, "image %u: not a valid camera", i);
     return check_view(image, i, error);
 }
 
 lensprof_status check_options(const lensprof_sample_options &options, uint32_t count, lensprof_error *error) {
-    if (options.struct_size != sizeof options)
-        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "sample options: call lensprof_sample_options_init first");
     if (count < 2) return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: at least two images are needed");
     if (options.sampling > LENSPROF_SAMPLING_BRACKET || options.pairs > kLargestCount || count > kLargestCount / 300
         || options.reserved)
@@ -29,16 +30,30 @@ lensprof_status check_options(const lensprof_sample_options &options, uint32_t c
     return LENSPROF_OK;
 }
 
+// The caller's options as this library's.
+lensprof_status take_options(const lensprof_sample_options *given, uint32_t count, lensprof_sample_options &own,
+                             lensprof_error *error) {
+    lensprof_sample_options_init(&own);
+    if (const char *wrong = lp_sized_take(&own, given, kFirstOptions))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "sample options: %s", wrong);
+    return check_options(own, count, error);
+}
+
 // draw(sampler) -> what was found.
 template <class Item, class Draw>
-lensprof_status sample(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count,
+lensprof_status sample(const lensprof_sample_options &options, const lensprof_sample_image *given, uint32_t count,
                        Draw draw, std::vector<Item> &items, lensprof_error *error) {
     try {
+        std::vector<lensprof_sample_image> images;
+        auto init = [](lensprof_sample_image &image, uint32_t) { lensprof_sample_image_init(&image); };
+        lensprof_status status = take_all(given, count, kFirstImage, "image", init, images, error);
+        for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = check_image(images[i], i, error);
+        if (status != LENSPROF_OK) return status;
         auto stop = [&] { return options.progress && options.progress(0.0, options.progress_user) != 0; };
         auto image = [&](uint32_t i) { return images[i]; };
-        lensprof_status status = check_finite(image, count, options.threads, stop, error);
+        status = check_finite(image, count, options.threads, stop, error);
         if (status != LENSPROF_OK) return status;
-        Sampler sampler(options, images, count);
+        Sampler sampler(options, images.data(), count);
         items = draw(sampler);
         if (items.empty() && options.sampling == LENSPROF_SAMPLING_BRACKET)
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
@@ -62,7 +77,7 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
 
 // Both samplings: `room` for what is wanted, what `draw` finds into `items`.
 template <class Item, class Draw>
-lensprof_status sample_into(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
+lensprof_status sample_into(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count,
                             uint64_t room, Item *items, uint32_t capacity, uint32_t *found, Draw draw,
                             lensprof_error *error) {
     if (capacity == 0) {
@@ -71,11 +86,8 @@ lensprof_status sample_into(const lensprof_sample_options *options, const lenspr
     }
     if (capacity < room)
         return fail(LENSPROF_ERROR_CAPACITY, error, "sample: room for %u items is needed", static_cast<uint32_t>(room));
-    lensprof_status status = LENSPROF_OK;
-    for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = check_image(images[i], i, error);
-    if (status != LENSPROF_OK) return status;
     std::vector<Item> result;
-    status = sample(*options, images, count, draw, result, error);
+    const lensprof_status status = sample(options, images, count, draw, result, error);
     if (status != LENSPROF_OK) return status;
     std::copy(result.begin(), result.end(), items);
     *found = static_cast<uint32_t>(result.size());
@@ -86,39 +98,46 @@ lensprof_status sample_into(const lensprof_sample_options *options, const lenspr
 
 extern "C" {
 
-void lensprof_sample_options_init(lensprof_sample_options *options) {
-    *options = lensprof_sample_options{};
-    options->struct_size = sizeof *options;
-    options->seed = 1;
+void lensprof_sample_options_init_sized(lensprof_sample_options *options, size_t size) {
+    if (lp_sized_begin(options, size, kFirstOptions)) options->seed = 1;
 }
 
-lensprof_status lensprof_sample_overlap(const lensprof_sample_options *options, const lensprof_sample_image *images,
+void lensprof_sample_image_init_sized(lensprof_sample_image *image, size_t size) {
+    if (!lp_sized_begin(image, size, kFirstImage)) return;
+    image->reduction = 1;
+    image->black = 2.0 / 255.0;
+    image->white = 250.0 / 255.0;
+}
+
+lensprof_status lensprof_sample_overlap(const lensprof_sample_options *given, const lensprof_sample_image *images,
                                         uint32_t count, lensprof_pair *pairs, uint32_t capacity, uint32_t *found,
                                         lensprof_error *error) {
     if (error) error->text[0] = 0;
-    if (!options || !images || !found || (capacity && !pairs))
+    if (!given || !images || !found || (capacity && !pairs))
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: a pointer is NULL");
-    lensprof_status status = check_options(*options, count, error);
+    lensprof_sample_options options;
+    lensprof_status status = take_options(given, count, options, error);
     if (status != LENSPROF_OK) return status;
-    uint32_t wanted = options->pairs ? options->pairs : std::max(2000u, 300 * count);
+    uint32_t wanted = options.pairs ? options.pairs : std::max(2000u, 300 * count);
     auto draw = [&](Sampler &sampler) {
-        return options->sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper(wanted) : sampler.balanced(wanted);
+        return options.sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper(wanted) : sampler.balanced(wanted);
     };
     return sample_into(options, images, count, wanted, pairs, capacity, found, draw, error);
 }
 
-lensprof_status lensprof_sample_tracks(const lensprof_sample_options *options, const lensprof_sample_image *images,
+lensprof_status lensprof_sample_tracks(const lensprof_sample_options *given, const lensprof_sample_image *images,
                                        uint32_t count, lensprof_observation *observations, uint32_t capacity,
                                        uint32_t *found, lensprof_error *error) {
     if (error) error->text[0] = 0;
-    if (!options || !images || !found || (capacity && !observations))
+    if (!given || !images || !found || (capacity && !observations))
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: a pointer is NULL");
-    lensprof_status status = check_options(*options, count, error);
+    lensprof_sample_options options;
+    lensprof_status status = take_options(given, count, options, error);
     if (status != LENSPROF_OK) return status;
-    uint32_t wanted = options->pairs ? options->pairs : std::max(2000u, 150 * count);
+    uint32_t wanted = options.pairs ? options.pairs : std::max(2000u, 150 * count);
     auto draw = [&](Sampler &sampler) {
-        return options->sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper_tracks(wanted)
-                                                            : sampler.balanced_tracks(wanted);
+        return options.sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper_tracks(wanted)
+                                                           : sampler.balanced_tracks(wanted);
     };
     uint64_t room = uint64_t{wanted} * std::min(count, kLongestTrack);
     return sample_into(options, images, count, room, observations, capacity, found, draw, error);

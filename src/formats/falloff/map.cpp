@@ -121,9 +121,9 @@ lensprof_status lensprof_map_read(const lensprof_map *map, uint32_t width, uint3
     }
     return at_boundary(error, [&] {
         const MapValues form{map->columns, map->rows, map->channels, map->sense == LENSPROF_MAP_GAIN, {0, 1, 2}};
-        auto found = std::make_unique<lensprof_profile>(*profile);
-        const double error_found = fit_values(form, map->values, width, height, *found);
-        *profile = *found;
+        double error_found = 0.0;
+        change_profile(profile,
+                       [&](lensprof_profile &own) { error_found = fit_values(form, map->values, width, height, own); });
         if (worst) *worst = error_found;
     });
 }

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <lensprof/formats.h>
 
 #include "formats/falloff/map_fit.hpp"
+#include "formats/text/text.hpp"
 
 namespace lensprof {
 
@@ -31,5 +33,21 @@ std::vector<double> attenuations_of(const lensprof_profile &profile, uint32_t wi
 // Throws SIZE for a side below 2 or over 65536, and what lensprof_profile_validate says.
 void check_frame(uint32_t width, uint32_t height);
 void check_profile(const lensprof_profile &profile);
+
+// Changes the caller's profile, of any version, by `change`; not at all where that throws.
+template <class Change>
+void change_profile(lensprof_profile *profile, Change change) {
+    const auto own = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(own.get());
+    lensprof_status status = lensprof_profile_copy(own.get(), profile);
+    if (status == LENSPROF_OK) {
+        change(*own);
+        status = lensprof_profile_copy(profile, own.get());
+    }
+    if (status != LENSPROF_OK)
+        throw FormatFailure{status,
+                            "the profile's struct_size is not set, or of a newer lensprof; call "
+                            "lensprof_profile_init first"};
+}
 
 }  // namespace lensprof

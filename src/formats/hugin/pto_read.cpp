@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/sized.h"
 #include "formats/hugin/pto.hpp"
 #include "formats/text/text.hpp"
 
@@ -13,6 +14,7 @@ constexpr size_t kMaxImages = 100000;
 constexpr double kMaxSide = 1 << 20;
 constexpr double kMaxPlace = 1 << 24;  // of crops and masks, px either way
 constexpr uint32_t kVignettingRadial = 1;
+constexpr size_t kFirstPtoImage = LP_END_OF(lensprof_pto_image, crop_circular);
 
 // ---- i lines -------------------------------------------------------------------------------------------------
 
@@ -141,6 +143,7 @@ PtoImage read_image(const LineReader &reader, const std::vector<PtoImage> &befor
     if (before.size() == kMaxImages)
         fail_at_line(reader.number, "more than 100000 images; split the project", LENSPROF_ERROR_UNSUPPORTED);
     PtoImage image = {};
+    lensprof_pto_image_init(&image.result);
     image.line = reader.number;
     image.begin = reader.begin;
     image.length = reader.line.size();
@@ -278,13 +281,18 @@ lensprof_status lensprof_pto_read(const char *text, size_t bytes, lensprof_pto *
 
 void lensprof_pto_destroy(lensprof_pto *pto) { delete pto; }
 
+void lensprof_pto_image_init_sized(lensprof_pto_image *image, size_t size) {
+    lp_sized_begin(image, size, kFirstPtoImage);
+}
+
 uint32_t lensprof_pto_image_count(const lensprof_pto *pto) {
     return pto ? static_cast<uint32_t>(pto->images.size()) : 0;
 }
 
 lensprof_status lensprof_pto_get_image(const lensprof_pto *pto, uint32_t index, lensprof_pto_image *image) {
     if (!pto || !image || index >= pto->images.size()) return LENSPROF_ERROR_ARGUMENT;
-    *image = pto->images[index].result;
+    if (lp_sized_wrong(image, kFirstPtoImage, sizeof *image)) return LENSPROF_ERROR_STRUCT_SIZE;
+    lp_sized_copy(image, &pto->images[index].result);
     return LENSPROF_OK;
 }
 

@@ -32,6 +32,16 @@ lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error) 
     return LENSPROF_ERROR_ARGUMENT;
 }
 
+lensprof_status lp_store_fail_size(const char *name, const char *wrong, lensprof_error *error) {
+    if (error) snprintf(error->text, sizeof error->text, "%s: %s", name, wrong);
+    return LENSPROF_ERROR_STRUCT_SIZE;
+}
+
+lensprof_status lp_store_check_size(const lensprof_profile *profile, lensprof_error *error) {
+    const char *wrong = lp_sized_wrong(profile, LP_FIRST_PROFILE, sizeof *profile);
+    return wrong ? lp_store_fail_size("lensprof_profile", wrong, error) : LENSPROF_OK;
+}
+
 /* What the system said; SQLite forgets it when it cleans up after a failed COMMIT, the file does not. 0 = nothing. */
 static int last_errno(sqlite3 *db) {
     int number = sqlite3_system_errno(db);

@@ -6,6 +6,8 @@
 #include <sqlite3.h>
 #include <stdbool.h>
 
+#include "core/profile.h"
+
 #define LP_STORE_APPLICATION_ID 0x4C505246 /* as in 0001_profiles.sql */
 #define LP_STORE_LAYOUT 3                  /* that of the newest schema */
 #define LP_STORE_BUSY_MS 5000
@@ -44,6 +46,10 @@ lensprof_status lp_store_fail(const char *path, lensprof_status status, const ch
 lensprof_status lp_store_fail_sql(const char *path, sqlite3 *db, int rc, lensprof_error *error);
 /* For a wrong argument; the text names it and not the file. */
 lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error);
+/* STRUCT_SIZE for a struct; `wrong` is what lp_sized_wrong says of it. */
+lensprof_status lp_store_fail_size(const char *name, const char *wrong, lensprof_error *error);
+/* Whether a profile's struct_size is one that this library knows; also of outputs. */
+lensprof_status lp_store_check_size(const lensprof_profile *profile, lensprof_error *error);
 /* CORRUPT and NOT_FOUND for the profile with an id. */
 lensprof_status lp_store_fail_profile(lensprof_store *store, int64_t id, const char *what, lensprof_error *error);
 lensprof_status lp_store_fail_missing(const lensprof_store *store, int64_t id, lensprof_error *error);

@@ -12,9 +12,15 @@
 #define SAME_FOCAL_MM 0.1
 #define MOST_DISTANCES 8 /* stored focus distances that are tried where it is not known */
 
-void lensprof_lookup_options_init(lensprof_lookup_options *options) {
-    memset(options, 0, sizeof *options);
-    options->struct_size = sizeof *options;
+#define FIRST_OPTIONS LP_END_OF(lensprof_lookup_options, any_processing)
+#define FIRST_LOOKUP LP_END_OF(lensprof_lookup, reason)
+
+void lensprof_lookup_options_init_sized(lensprof_lookup_options *options, size_t size) {
+    (void)lp_sized_begin(options, size, FIRST_OPTIONS); /* every default is 0 */
+}
+
+void lensprof_lookup_init_sized(lensprof_lookup *lookup, size_t size) {
+    (void)lp_sized_begin(lookup, size, FIRST_LOOKUP);
 }
 
 /* ---- which of them ---- */
@@ -444,28 +450,44 @@ static lensprof_status answer(lensprof_store *store, const lensprof_profile_key 
     return status == LENSPROF_OK ? predict(store, &whole, o, found, at, lookup, error) : status;
 }
 
-lensprof_status lensprof_store_lookup(lensprof_store *store, const lensprof_profile_key *key,
-                                      const lensprof_lookup_options *options, lensprof_profile *profile,
-                                      lensprof_lookup *lookup, lensprof_error *error) {
-    lensprof_lookup result;
-    lp_candidates found;
-    lp_store_clear(error);
-    if (!store || !key || !options || !profile || !lookup)
-        return lp_store_fail_argument("store, key, options, profile or lookup is NULL", error);
-    if (options->struct_size != sizeof *options) return LENSPROF_ERROR_STRUCT_SIZE;
-    if (options->distance_rule > LENSPROF_DISTANCE_FARTHEST || options->with_doubt > 1 || options->any_processing > 1)
+/* The caller's options as this library's, and whether the rest of the call can be answered. */
+static lensprof_status check_lookup(const lensprof_profile_key *key, const lensprof_lookup_options *given,
+                                    lensprof_lookup_options *own, const lensprof_profile *profile,
+                                    const lensprof_lookup *lookup, lensprof_error *error) {
+    lensprof_lookup_options_init(own);
+    const char *wrong = lp_sized_take(own, given, FIRST_OPTIONS);
+    if (wrong) return lp_store_fail_size("lensprof_lookup_options", wrong, error);
+    wrong = lp_sized_wrong(lookup, FIRST_LOOKUP, sizeof *lookup);
+    if (wrong) return lp_store_fail_size("lensprof_lookup", wrong, error);
+    const lensprof_status status = lp_store_check_size(profile, error);
+    if (status != LENSPROF_OK) return status;
+    if (own->distance_rule > LENSPROF_DISTANCE_FARTHEST || own->with_doubt > 1 || own->any_processing > 1)
         return lp_store_fail_argument("an option is unknown; see lensprof_lookup_options", error);
     if (lensprof_profile_key_validate(key) != LENSPROF_OK)
         return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
-    memset(&result, 0, sizeof result);
-    memset(&found, 0, sizeof found);
-    lensprof_status status = lp_store_begin(store, false, error);
+    return LENSPROF_OK;
+}
+
+lensprof_status lensprof_store_lookup(lensprof_store *store, const lensprof_profile_key *key,
+                                      const lensprof_lookup_options *given, lensprof_profile *profile,
+                                      lensprof_lookup *lookup, lensprof_error *error) {
+    lensprof_lookup_options options;
+    lensprof_lookup result;
+    lp_candidates found;
+    lp_store_clear(error);
+    if (!store || !key || !given || !profile || !lookup)
+        return lp_store_fail_argument("store, key, options, profile or lookup is NULL", error);
+    lensprof_status status = check_lookup(key, given, &options, profile, lookup, error);
     if (status != LENSPROF_OK) return status;
-    status = lp_find_candidates(store, key, options, &found, error);
-    if (status == LENSPROF_OK) status = answer(store, key, options, &found, &result, error);
+    lensprof_lookup_init(&result);
+    memset(&found, 0, sizeof found);
+    status = lp_store_begin(store, false, error);
+    if (status != LENSPROF_OK) return status;
+    status = lp_find_candidates(store, key, &options, &found, error);
+    if (status == LENSPROF_OK) status = answer(store, key, &options, &found, &result, error);
     lp_store_rollback(store);
     free(found.all);
-    if (status == LENSPROF_OK) *profile = store->scratch;
-    if (status == LENSPROF_OK || status == LENSPROF_ERROR_NOT_FOUND) *lookup = result;
+    if (status == LENSPROF_OK) lp_sized_copy(profile, &store->scratch);
+    if (status == LENSPROF_OK || status == LENSPROF_ERROR_NOT_FOUND) lp_sized_copy(lookup, &result);
     return status;
 }

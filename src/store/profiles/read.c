@@ -53,6 +53,7 @@ static void read_row(lp_store_reader *reader, lensprof_store_row *row) {
     key->focal_mm = lp_read_known(reader);
     key->aperture = lp_read_known(reader);
     key->distance_m = lp_read_known(reader);
+    key->color_temperature_k = LENSPROF_UNKNOWN; /* there is no column for it */
     key->processing = lp_read_name(reader, lp_store_processings, LP_STORE_PROCESSINGS);
     lp_read_text(reader, provenance->method, sizeof provenance->method);
     lp_read_text(reader, provenance->software, sizeof provenance->software);
@@ -166,9 +167,10 @@ lensprof_status lensprof_store_find(lensprof_store *store, const lensprof_profil
     if (!store || !key || !profile) return lp_store_fail_argument("store, key or profile is NULL", error);
     lensprof_status status = lensprof_profile_key_validate(key);
     if (status != LENSPROF_OK) return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
-    status = fetch_in_transaction(store, key, &found, error);
+    status = lp_store_check_size(profile, error);
+    if (status == LENSPROF_OK) status = fetch_in_transaction(store, key, &found, error);
     if (status != LENSPROF_OK) return status;
-    *profile = store->scratch;
+    lp_sized_copy(profile, &store->scratch);
     if (id) *id = found;
     return LENSPROF_OK;
 }
@@ -177,8 +179,9 @@ lensprof_status lensprof_store_get(lensprof_store *store, int64_t id, lensprof_p
                                    lensprof_error *error) {
     lp_store_clear(error);
     if (!store || !profile) return lp_store_fail_argument("store or profile is NULL", error);
-    lensprof_status status = fetch_in_transaction(store, NULL, &id, error);
-    if (status == LENSPROF_OK) *profile = store->scratch;
+    lensprof_status status = lp_store_check_size(profile, error);
+    if (status == LENSPROF_OK) status = fetch_in_transaction(store, NULL, &id, error);
+    if (status == LENSPROF_OK) lp_sized_copy(profile, &store->scratch);
     return status;
 }
 

@@ -71,7 +71,9 @@ lensprof_status lensprof_store_find_same(lensprof_store *store, const lensprof_p
     int64_t found = 0;
     lp_store_clear(error);
     if (!store || !profile || !id) return lp_store_fail_argument("store, profile or id is NULL", error);
-    lensprof_status status = lensprof_profile_validate(profile);
+    lensprof_status status = lp_store_check_size(profile, error);
+    if (status != LENSPROF_OK) return status;
+    status = lensprof_profile_validate(profile);
     if (status != LENSPROF_OK) {
         (void)lp_store_fail_argument("the profile is not valid; see lensprof_profile_validate", error);
         return status;

@@ -102,15 +102,23 @@ static lensprof_status read_all(lensprof_store *store, lensprof_store_stats *sta
     return LENSPROF_OK;
 }
 
+#define FIRST_STATS LP_END_OF(lensprof_store_stats, bytes)
+
+void lensprof_store_stats_init_sized(lensprof_store_stats *stats, size_t size) {
+    (void)lp_sized_begin(stats, size, FIRST_STATS);
+}
+
 lensprof_status lensprof_store_get_stats(lensprof_store *store, lensprof_store_stats *stats, lensprof_error *error) {
     lensprof_store_stats found;
     lp_store_clear(error);
     if (!store || !stats) return lp_store_fail_argument("store or stats is NULL", error);
-    memset(&found, 0, sizeof found);
+    const char *wrong = lp_sized_wrong(stats, FIRST_STATS, sizeof *stats);
+    if (wrong) return lp_store_fail_size("lensprof_store_stats", wrong, error);
+    lensprof_store_stats_init(&found);
     lensprof_status status = lp_store_begin(store, false, error);
     if (status != LENSPROF_OK) return status;
     status = read_all(store, &found, error);
     lp_store_rollback(store);
-    if (status == LENSPROF_OK) *stats = found;
+    if (status == LENSPROF_OK) lp_sized_copy(stats, &found);
     return status;
 }

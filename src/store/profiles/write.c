@@ -18,12 +18,19 @@ static bool is_consistent(const lensprof_response *response) {
 }
 
 static lensprof_status check_profile(lensprof_store *store, const lensprof_profile *profile, lensprof_error *error) {
-    lensprof_status status = lensprof_profile_validate(profile);
+    lensprof_status status = lp_store_check_size(profile, error);
+    if (status != LENSPROF_OK) return status;
+    status = lensprof_profile_validate(profile);
     if (status != LENSPROF_OK) {
         char what[80];
         snprintf(what, sizeof what, "the profile is not valid (%s)", lensprof_status_name(status));
         return lp_store_fail(store->path, status, what, "nothing was stored; correct the profile", error);
     }
+    if (profile->key.color_temperature_k != LENSPROF_UNKNOWN || profile->provenance.prior_id
+        || profile->provenance.forced)
+        return lp_store_fail(store->path, LENSPROF_ERROR_UNSUPPORTED,
+                             "has no place for colour temperature, prior_id and forced",
+                             "set them to LENSPROF_UNKNOWN, 0 and 0", error);
     for (uint32_t c = 0; c < profile->responses; c++)
         if (!is_consistent(&profile->response[c]))
             return lp_store_fail(store->path, LENSPROF_ERROR_RESPONSE,

@@ -1,0 +1,63 @@
+// Arrays of structs that grow, to and from the caller's version of them.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <vector>
+
+#include "core/sized.h"
+#include "fit/base/fail.hpp"
+
+namespace lensprof {
+
+// The caller's array as one of this library's structs, each of which init(struct, its index) has set to the defaults.
+// All elements have the struct_size of the first, which is the step from one to the next.
+template <class T, class Init>
+lensprof_status take_all(const T *given, uint32_t count, size_t first, const char *what, Init init, std::vector<T> &own,
+                         lensprof_error *error) {
+    const auto *bytes = reinterpret_cast<const char *>(given);
+    const size_t step = count ? lp_sized_bytes(given) : 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const char *element = bytes + i * step;
+        if (lp_sized_bytes(element) != step)
+            return fail(LENSPROF_ERROR_STRUCT_SIZE, error,
+                        "%s %u: struct_size is not that of %s 0; call the struct's _init function first", what, i,
+                        what);
+        T next;
+        init(next, i);
+        if (const char *wrong = lp_sized_take(&next, element, first))
+            return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "%s %u: %s", what, i, wrong);
+        own.push_back(next);
+    }
+    return LENSPROF_OK;
+}
+
+// The results of the images, as many bytes of each as the caller's struct has, into his array.
+template <class T>
+void give_all(const std::vector<T> &own, T *given, size_t step) {
+    for (size_t i = 0; i < own.size(); i++) std::memcpy(reinterpret_cast<char *>(given) + i * step, &own[i], step);
+}
+
+// Refuses the caller's result, or the size of its image_quality, if this library's structs cannot stand for them.
+template <class Result, class Quality>
+lensprof_status check_result(const Result &result, size_t first, size_t first_quality, const Quality *quality,
+                             const char *what, lensprof_error *error) {
+    if (const char *wrong = lp_sized_wrong(&result, first, sizeof result))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "%s: %s", what, wrong);
+    if (quality && (result.image_quality_size < first_quality || result.image_quality_size > sizeof *quality))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error,
+                    "%s: image_quality_size is not set, or that of a newer lensprof; call the result's _init function",
+                    what);
+    return LENSPROF_OK;
+}
+
+// A fit's result and its image_quality, found, to the caller's, whose size, array and step stay.
+template <class Result, class Quality>
+void give_result(Result &found, const std::vector<Quality> &quality, Result *given) {
+    found.image_quality = given->image_quality;
+    found.image_quality_size = given->image_quality_size;
+    if (given->image_quality) give_all(quality, given->image_quality, given->image_quality_size);
+    lp_sized_copy(given, &found);
+}
+
+}  // namespace lensprof
