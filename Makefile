@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply bench-store bench-lookup install abi format clean
+.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply bench-store bench-lookup install abi abi-baseline abi-headers format clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -62,6 +62,13 @@ bench-lookup: build ## measure lookups between stored settings on Lensfun's data
 
 install: build ## install under PREFIX (default /usr/local)
 	cmake --install build --prefix $(PREFIX)
+
+abi-baseline: ## make tests/install/abi-baseline.xml anew, when a change of the binary interface is compatible
+	python3 tests/install/abi_check.py write
+
+abi-headers: ## save the public headers as those of this release, whose programs all later libraries must serve
+	mkdir -p tests/install/headers-0.2/lensprof
+	cp include/lensprof/*.h tests/install/headers-0.2/lensprof/
 
 abi: ## generate _abi.py and abi_dump.c of the Python package from the public headers (package python3-pycparser)
 	python3 bindings/python/tools/make_abi.py

@@ -1,7 +1,18 @@
 # How every layer of lensprof is compiled.
 
 add_library(lensprof_settings INTERFACE)
-target_include_directories(lensprof_settings INTERFACE ${PROJECT_SOURCE_DIR}/include)
+set(lensprof_include ${PROJECT_SOURCE_DIR}/include)
+if(LENSPROF_SANITIZE)
+  # The sanitized build is a later version, too: its structs that grow are longer (tests/install/growth).
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+  set(lensprof_include ${PROJECT_BINARY_DIR}/longer)
+  set(longer_headers ${PROJECT_SOURCE_DIR}/tests/install/growth/longer_headers.py)
+  execute_process(COMMAND ${Python3_EXECUTABLE} -B ${longer_headers} ${PROJECT_SOURCE_DIR}/include ${lensprof_include}
+                  COMMAND_ERROR_IS_FATAL ANY)
+  file(GLOB public_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/lensprof/*.h)
+  set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${public_headers} ${longer_headers})
+endif()
+target_include_directories(lensprof_settings INTERFACE ${lensprof_include})
 # Contraction is off so that results do not depend on the instruction set.
 target_compile_options(lensprof_settings INTERFACE -Wall -Wextra -Wshadow -Wpointer-arith -ffp-contract=off)
 if(LENSPROF_SANITIZE)

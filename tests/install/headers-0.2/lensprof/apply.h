@@ -1,0 +1,147 @@
+/* lensprof/apply.h - undo (or simulate) what the camera did to the light, on pixels.
+ *
+ *   correct:  B' = f( g(B) / (M e w) * e' w' )                 Goldman & Chen 2005, equation 16
+ *   simulate: B' = f( g(B) * M e w / (e' w') )                 the inverse, up to clipping
+ *
+ * M: the falloff, times the gain grid where there is one. e, w: the picture's own exposure and white balance; e', w':
+ * the wanted ones.
+ * A plan is prepared once per picture in memory that the caller provides, then applied to any tile. Vector units are
+ * used where the processor has them (SSE4.1, AVX2, AVX-512, NEON); every one gives the same bytes. No heap, no I/O. On
+ * a microcontroller, where the kernel works on one sample at a time, lensprof_apply takes at most 2.5 KiB of stack and
+ * lensprof_plan_init 2 KiB (docs/firmware.md). Threads: a plan is immutable after init and may be used by several
+ * threads on different tiles. */
+#ifndef LENSPROF_APPLY_H
+#define LENSPROF_APPLY_H
+
+#include "model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum lensprof_sample {
+    LENSPROF_SAMPLE_U8 = 0,  /* 0..255 = 0..1 */
+    LENSPROF_SAMPLE_U16 = 1, /* 0..65535 = 0..1, native byte order, 2-byte aligned */
+    LENSPROF_SAMPLE_F32 = 2, /* 0..1, 4-byte aligned */
+    LENSPROF_SAMPLE_F16 = 3  /* IEEE binary16, 0..1, 2-byte aligned */
+} lensprof_sample;
+
+typedef enum lensprof_layout {
+    LENSPROF_LAYOUT_GREY = 0,
+    LENSPROF_LAYOUT_GREY_ALPHA = 1,
+    LENSPROF_LAYOUT_RGB = 2,
+    LENSPROF_LAYOUT_RGBA = 3,
+    LENSPROF_LAYOUT_BGR = 4,
+    LENSPROF_LAYOUT_BGRA = 5,
+    LENSPROF_LAYOUT_PLANAR = 6, /* red, green and blue each in an image of layout GREY: lensprof_apply_planar */
+    LENSPROF_LAYOUT_RGGB = 7,   /* mosaics, one sample a pixel, by the colours of the frame's pixels (0, 0), (1, 0), */
+    LENSPROF_LAYOUT_GRBG = 8,   /* (0, 1), (1, 1) */
+    LENSPROF_LAYOUT_GBRG = 9,
+    LENSPROF_LAYOUT_BGGR = 10
+} lensprof_layout;
+
+/* A view of interleaved pixels owned by the caller. Frozen value struct. */
+typedef struct lensprof_image {
+    void *data;          /* upper left sample of the view */
+    ptrdiff_t row_bytes; /* from one row to the next; negative for bottom-up images */
+    uint32_t width, height;
+    uint32_t sample; /* lensprof_sample */
+    uint32_t layout; /* lensprof_layout */
+} lensprof_image;
+
+/* Samples per pixel (1..4; of a plane or mosaic 1) and colour channels (1 or 3) of a layout; 0 for an unknown one. */
+LENSPROF_API uint32_t lensprof_layout_samples(uint32_t layout);
+LENSPROF_API uint32_t lensprof_layout_channels(uint32_t layout);
+
+/* Bytes of one sample (1, 2 or 4); 0 for an unknown one. */
+LENSPROF_API uint32_t lensprof_sample_bytes(uint32_t sample);
+
+/* LENSPROF_OK when data is aligned and not NULL, the sizes are in 1..2^20, and |row_bytes| holds a row and is
+ * at most 2^28. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_image_validate(const lensprof_image *image);
+
+typedef enum lensprof_direction {
+    LENSPROF_DIRECTION_CORRECT = 0,
+    LENSPROF_DIRECTION_SIMULATE = 1
+} lensprof_direction;
+
+typedef enum lensprof_encoding {
+    LENSPROF_ENCODING_RESPONSE = 0, /* grey values, encoded by the response */
+    LENSPROF_ENCODING_LINEAR = 1    /* irradiance, 1 = what the response maps to 1 */
+} lensprof_encoding;
+
+/* What happens to a pixel that is nearly saturated in some channel, whose true colour is not known. */
+typedef enum lensprof_saturated {
+    LENSPROF_SATURATED_NEUTRAL = 0, /* towards white all channels get the largest channel's gain: clouds keep no cast.
+                                       Only pixels with a channel above 0.9 and none below 0.6 are touched; mosaics,
+                                       whose samples stand alone, are not */
+    LENSPROF_SATURATED_AS_VALUE = 1 /* nothing special: every sample stands for its value */
+} lensprof_saturated;
+
+typedef struct lensprof_apply_options {
+    uint32_t struct_size;
+    uint32_t direction;                    /* lensprof_direction */
+    uint32_t input, output;                /* lensprof_encoding */
+    uint32_t frame_width, frame_height;    /* the full frame that tiles belong to, px */
+    uint32_t source_sample, source_layout; /* pixel format of the pictures to come */
+    uint32_t target_sample;                /* sample type written; the layout is the source's */
+    uint32_t saturated;                    /* lensprof_saturated; NEUTRAL acts where direction is CORRECT and both input
+                                              and output are encoded */
+    uint32_t responses, vignettings;       /* 1 for all channels, or 3: red, green, blue; grey is treated as green */
+    const lensprof_response *response;     /* read during plan init only; a linear one where nothing is encoded */
+    const lensprof_vignetting *vignetting; /* read during plan init only. Single precision holds M to some
+                                              1e-7 (1 + |k1| + |k2| + |k3|) */
+    lensprof_exposure source;              /* what the picture received */
+    lensprof_exposure target;              /* what it shall look like; equal to source = keep */
+    const lensprof_gain_grid *grid;        /* multiplied to the vignetting; NULL = none; read during plan init only */
+    double strength;                       /* 0..1: M counts as 1 + strength (M - 1); 0 leaves the falloff alone */
+    double gain_cap; /* M counts as no less than 1 / gain_cap, which is 1..1e6: corners get at most this; 0 = no cap */
+    uint32_t dither; /* 1: ordered 8 x 8 dither in place of rounding, where U8 is written; 0: none */
+    uint32_t reserved; /* 0 */
+    const void *blob;  /* instead of response, vignetting and grid, which are NULL then: a profile blob (profile.h), at
+                          any address, read during plan init only; its own counts stand for responses and vignettings */
+    size_t blob_bytes;
+} lensprof_apply_options;
+
+/* Correct, encoded in and out, u8 RGB in and out, exposures 0 EV, strength 1; the rest zero, to be set by the caller.
+ */
+LENSPROF_API void lensprof_apply_options_init_sized(lensprof_apply_options *options, size_t size);
+static inline void lensprof_apply_options_init(lensprof_apply_options *options) {
+    lensprof_apply_options_init_sized(options, sizeof *options);
+}
+
+typedef struct lensprof_plan lensprof_plan;
+
+/* Bytes of memory that lensprof_plan_init needs for these options; 0 when a field they depend on is invalid. */
+LENSPROF_API size_t lensprof_plan_bytes(const lensprof_apply_options *options);
+
+/* Prepares a plan in memory[bytes] (8-byte aligned, owned by the caller, must outlive the plan). Nothing is to
+ * be released. Errors: NULL or unknown values ARGUMENT, struct_size STRUCT_SIZE, zero frame SIZE, too little or
+ * unaligned memory CAPACITY, and what the model's validate functions say; three vignettings must have one centre;
+ * target over source must be within 1e-12..1e12 (EXPOSURE); of a blob CORRUPT and LAYOUT as lensprof_profile_unpack. A
+ * plan made from a blob and one made from the profile unpacked from it are the same. Takes well under a millisecond. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_plan_init(void *memory, size_t bytes,
+                                                                  const lensprof_apply_options *options,
+                                                                  const lensprof_plan **plan);
+
+/* Applies the plan to a tile whose upper left pixel is pixel (x0, y0) of the frame. `target` has the tile's size;
+ * it may be the same memory as `source` (same sample type and row_bytes), otherwise the byte ranges from the first to
+ * the last sample of the two must not overlap (so not two tiles side by side in one buffer). Alpha samples are copied
+ * (converted to the target type). Integer output is rounded to nearest and clipped; float output is not clipped when
+ * linear. NaN in float input comes out as NaN. A saturated sample stays saturated where light is added; where it is
+ * taken away it becomes grey (see lensprof_saturated). Errors: views that do not fit the plan or the frame SIZE or
+ * ARGUMENT; nothing is written then. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply(const lensprof_plan *plan, const lensprof_image *source,
+                                                              const lensprof_image *target, uint32_t x0, uint32_t y0);
+
+/* The same for three planes of layout GREY, red, green and blue, of one size; the plan's layout is PLANAR. Each target
+ * may be the same memory as its own source; no other two of the six may overlap. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply_planar(const lensprof_plan *plan,
+                                                                     const lensprof_image source[3],
+                                                                     const lensprof_image target[3], uint32_t x0,
+                                                                     uint32_t y0);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,92 @@
+/* lensprof/base.h - version, status codes, error text.
+ *
+ * Rules that hold for the whole API:
+ *  - Every function that can fail returns lensprof_status; on error its outputs are untouched.
+ *  - Heavy calls also take an optional caller-owned lensprof_error (may be NULL) for a sentence that names
+ *    the offending item and the next step. There is no global or thread-local error state.
+ *  - Structs that grow begin with `uint32_t struct_size`. Their `_init` function sets it to the size that the program
+ * was compiled with, and every other member to its default; call it before anything else, for outputs too. New members
+ *    come last. A library takes every size from that of the struct's first version up to its own: members that an older
+ *    program does not have count as their defaults, and outputs are filled up to the program's size, whose struct_size
+ *    stays. It refuses larger structs (the program is newer than the library) and smaller ones (_init was not called)
+ *    with STRUCT_SIZE. Elements of an array have one struct_size, which is the step from one to the next. Never copy
+ * such a struct between an address of the library and one of the program by assignment.
+ *  - lensprof_profile_key and lensprof_provenance, which lie within other structs, have fixed sizes and room for new
+ *    members, which is 0. Structs that the library owns and only shows (lensprof_import_entry, lensprof_store_fault)
+ *    get new members at their end. All other public structs are frozen values.
+ *  - Input and output live in the caller's buffers. Nothing is kept after a call returns unless said so.
+ *
+ * Threads: everything declared here may be called from any thread at any time.
+ */
+#ifndef LENSPROF_BASE_H
+#define LENSPROF_BASE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define LENSPROF_VERSION_MAJOR 0
+#define LENSPROF_VERSION_MINOR 2
+#define LENSPROF_VERSION_PATCH 0
+
+#if defined(__GNUC__)
+#define LENSPROF_API __attribute__((visibility("default")))
+#define LENSPROF_MUST_USE __attribute__((warn_unused_result))
+#else
+#define LENSPROF_API
+#define LENSPROF_MUST_USE
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Numbers are pinned for ever. Groups: 1-9 argument, 10-19 resource, 20-29 model or data, 30-39 fit,
+ * 40-49 store, 50-59 format, 90 internal. */
+typedef enum lensprof_status {
+    LENSPROF_OK = 0,
+    LENSPROF_ERROR_ARGUMENT = 1,     /* NULL, unknown enum value, index out of range */
+    LENSPROF_ERROR_STRUCT_SIZE = 2,  /* struct_size not set by an _init function, or by that of a newer version */
+    LENSPROF_ERROR_SIZE = 3,         /* zero or overflowing size, stride too small, tile outside the frame */
+    LENSPROF_ERROR_CAPACITY = 4,     /* the caller's buffer is too small; the needed size is reported */
+    LENSPROF_ERROR_NOT_FINITE = 5,   /* NaN or infinity where a finite number is needed */
+    LENSPROF_ERROR_MEMORY = 10,      /* out of memory */
+    LENSPROF_ERROR_CANCELLED = 11,   /* the progress callback asked to stop */
+    LENSPROF_ERROR_RESPONSE = 20,    /* not a response: decreasing, or ends not at 0 and 1 */
+    LENSPROF_ERROR_VIGNETTING = 21,  /* not a falloff: not positive on the whole frame */
+    LENSPROF_ERROR_EXPOSURE = 22,    /* exposure or white balance not positive and finite */
+    LENSPROF_ERROR_GEOMETRY = 23,    /* camera that cannot be evaluated */
+    LENSPROF_ERROR_NO_OVERLAP = 30,  /* no two images see the same point */
+    LENSPROF_ERROR_NO_SAMPLES = 31,  /* images overlap but every sample is saturated, black or masked */
+    LENSPROF_ERROR_NO_UNKNOWNS = 32, /* nothing was asked to be estimated */
+    LENSPROF_ERROR_STORE = 40,       /* the database could not be opened or used */
+    LENSPROF_ERROR_NOT_FOUND = 41,   /* no such profile */
+    LENSPROF_ERROR_CORRUPT = 42,     /* not a lensprof database or profile blob, or damaged */
+    LENSPROF_ERROR_LAYOUT = 43,      /* written by a newer lensprof */
+    LENSPROF_ERROR_READ_ONLY = 44,   /* the database cannot be written */
+    LENSPROF_ERROR_FULL = 45,        /* no space left for the database */
+    LENSPROF_ERROR_BUSY = 46,        /* another process holds the database */
+    LENSPROF_ERROR_SYNTAX = 50,      /* malformed file; the error text gives the line */
+    LENSPROF_ERROR_VARIABLE = 51,    /* unknown or unusable variable name on a `v` line */
+    LENSPROF_ERROR_UNSUPPORTED = 52, /* valid, but not supported by this version */
+    LENSPROF_ERROR_INTERNAL = 90     /* a defect of lensprof; please report */
+} lensprof_status;
+
+/* Text of the first thing that went wrong, always terminated; empty when nothing did. */
+typedef struct lensprof_error {
+    char text[256];
+} lensprof_error;
+
+/* Called now and then by the thread that made the call, with a fraction 0..1; a non-zero return cancels the call,
+ * which then returns CANCELLED. */
+typedef int (*lensprof_progress)(double done, void *user);
+
+/* Name of a status, e.g. "LENSPROF_ERROR_SIZE"; "unknown status" for other numbers. Static storage. */
+LENSPROF_API const char *lensprof_status_name(lensprof_status status);
+
+/* "0.2.0". Static storage. */
+LENSPROF_API const char *lensprof_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,236 @@
+/* lensprof/fit.h - recover response, vignetting, exposure and white balance from correspondences.
+ *
+ * Method `radiance` (Goldman & Chen 2005): minimise the error of every grey value,
+ *     B_xi - f( e_i w_i M(r_xi) L_x )                                             (equations 2, 3, 11, 12)
+ * over the same unknowns and the radiance L of every scene point x, which points of two and more images share.
+ *
+ * Method `transfer` (d'Angelo 2007): minimise the symmetric grey value transfer error
+ *     B1 - f( g(B2) s1/s2 )   and   B2 - f( g(B1) s2/s1 ),      s = M e w            (equations 5, 8, 10)
+ * over one response f (EMoR), one vignetting M and the exposure and white balance of every image.
+ *
+ * Method `transfer-function` (Kim & Pollefeys 2004): the most likely brightness transfer function of every image pair
+ * and channel, from its joint histogram; then linear least squares for ln f^-1 and the log exposures (equations 5 to
+ * 13), the vignetting by alternation. Here `modes` counts components of ln f^-1, and the result's response has all EMoR
+ * modes; SQUARED loss is the paper's variant, iterations are rounds, 20 at most. Pictures that differ by less than 0.15
+ * EV are not usable.
+ *
+ * Method `debevec` (Debevec & Malik 1997, equation 3), a reference: linear least squares for ln f^-1 at the grey levels
+ * 1..255, smooth by 10 prior_weight, from known exposures of all images (known_ev_sigma > 0), which are taken as exact;
+ * white balances and falloff are as given. The response, which alone is free, is a TABLE, made to rise at the end.
+ * modes, loss, vignettings, gamma_from, refine and max_iterations mean nothing; there is no covariance.
+ *
+ * Threads: calls are independent. One call uses as many threads as its options say, all gone when it returns; progress
+ * is told on the caller's. The result does not depend on their number: same input, same bytes.
+ */
+#ifndef LENSPROF_FIT_H
+#define LENSPROF_FIT_H
+
+#include "model.h"
+#include "profile.h"
+#include "sample.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What is unknown. Response to centre: lensprof_fit_options.free. EV, RED, BLUE: lensprof_fit_image.free. */
+#define LENSPROF_FREE_RESPONSE 0x01u
+#define LENSPROF_FREE_K1 0x02u
+#define LENSPROF_FREE_K2 0x04u
+#define LENSPROF_FREE_K3 0x08u
+#define LENSPROF_FREE_CENTER 0x10u
+#define LENSPROF_FREE_EV 0x20u
+#define LENSPROF_FREE_RED 0x40u
+#define LENSPROF_FREE_BLUE 0x80u
+
+/* How the unknowns are told from the correspondences. All give the same kind of result. */
+typedef enum lensprof_fit_method {
+    LENSPROF_METHOD_TRANSFER = 0, /* default: d'Angelo 2007, grey values transferred from one image to the other */
+    LENSPROF_METHOD_RADIANCE = 1, /* Goldman & Chen 2005: with one radiance a scene point */
+    LENSPROF_METHOD_TRANSFER_FUNCTION = 2, /* Kim & Pollefeys 2004: by the transfer functions of image pairs */
+    LENSPROF_METHOD_DEBEVEC = 3            /* Debevec & Malik 1997: from known exposures; lensprof_fit_overlap only */
+} lensprof_fit_method;
+
+typedef enum lensprof_loss {
+    LENSPROF_LOSS_ROBUST = 0, /* default: noise-weighted, redescending, a pair is trusted as a whole */
+    LENSPROF_LOSS_HUBER = 1,  /* the paper's, equation 11 */
+    LENSPROF_LOSS_SQUARED = 2
+} lensprof_loss;
+
+#define LENSPROF_MODES_AUTO 0xFFFFFFFFu /* number of EMoR modes chosen by held-out error */
+
+/* What settles the exponent gamma that pictures leave open: (f, M, e) and (f o x^(1/gamma), M^gamma, e^gamma) make the
+ * same pictures. */
+typedef enum lensprof_gamma_from {
+    LENSPROF_GAMMA_AUTO = 0,      /* default: known exposures and the prior, each by its standard error */
+    LENSPROF_GAMMA_PRIOR = 1,     /* the prior on the response alone */
+    LENSPROF_GAMMA_EXPOSURES = 2, /* known_ev of the images alone; without differences there, the prior */
+    LENSPROF_GAMMA_KNOWN = 3,     /* results only: parameters held fixed, be it response, falloff or exposures */
+    LENSPROF_GAMMA_NONE = 4,      /* results only: nothing, for want of a prior (the paper's method): it is arbitrary */
+    LENSPROF_GAMMA_PROFILE = 5    /* results only: the profile that the options give as the prior */
+} lensprof_gamma_from;
+
+/* The measured responses behind the prior (DoRF database). */
+typedef enum lensprof_camera_kind {
+    LENSPROF_CAMERA_ANY = 0,    /* all 201 curves */
+    LENSPROF_CAMERA_FILM = 1,   /* scanned film: 154 curves */
+    LENSPROF_CAMERA_DIGITAL = 2 /* digital and video cameras with a tone curve: 29 curves */
+} lensprof_camera_kind;
+
+/* One image of the fit. */
+typedef struct lensprof_fit_image {
+    uint32_t struct_size;
+    uint32_t width, height;     /* full frame, px */
+    uint32_t free;              /* LENSPROF_FREE_EV | _RED | _BLUE */
+    uint32_t ev_of;             /* index of the image whose ev this one shares (links); own index = its own */
+    uint32_t red_of, blue_of;   /* the same for the white balance factors */
+    uint32_t reserved;          /* 0 */
+    lensprof_exposure exposure; /* the value where fixed, else unused */
+    double known_ev;            /* exposure from elsewhere (EXIF), EV up to a common offset: a soft observation */
+    double known_ev_sigma;      /* its standard error, 0.001..100 EV; 0 = not known. Rounded EXIF: about 0.1; below
+                                   0.02 counts as 0.02. One alone says nothing: only differences do */
+} lensprof_fit_image;
+
+/* Image `index` of the array, of a frame of width x height px: exposure and white balance of its own, free, 0 EV and 1,
+ * 1, 1 where fixed, and not known from elsewhere. */
+LENSPROF_API void lensprof_fit_image_init_sized(lensprof_fit_image *image, size_t size, uint32_t index, uint32_t width,
+                                                uint32_t height);
+static inline void lensprof_fit_image_init(lensprof_fit_image *image, uint32_t index, uint32_t width, uint32_t height) {
+    lensprof_fit_image_init_sized(image, sizeof *image, index, width, height);
+}
+
+/* What became of lensprof_fit_options.profile. */
+typedef enum lensprof_profile_prior {
+    LENSPROF_PROFILE_PRIOR_NONE = 0,     /* none was given */
+    LENSPROF_PROFILE_PRIOR_USED = 1,     /* it is in the result, which takes its place */
+    LENSPROF_PROFILE_PRIOR_OVERRULED = 2 /* the pictures contradict it; the result is without it, `reason` says so */
+} lensprof_profile_prior;
+
+typedef struct lensprof_fit_options {
+    uint32_t struct_size;
+    uint32_t channels;   /* 1 or 3 */
+    uint32_t reference;  /* image whose exposure is the gauge: its ev and white balance stay as given */
+    uint32_t free;       /* LENSPROF_FREE_RESPONSE .. _CENTER */
+    uint32_t modes;      /* EMoR modes, 0..25, or LENSPROF_MODES_AUTO */
+    uint32_t loss;       /* lensprof_loss */
+    double huber_levels; /* HUBER: sigma in levels of 255 (paper: 5) */
+    double prior_weight; /* weight of the priors on response, vignetting and centre; 0 = none (paper), 1 = default */
+    uint32_t max_iterations;
+    uint32_t vignettings; /* falloff curves: 1 for all channels, 3, or 0 = chosen by held-out error */
+    uint32_t gamma_from;  /* lensprof_gamma_from */
+    uint32_t camera_kind; /* lensprof_camera_kind */
+    uint32_t threads;     /* at most so many, the caller's included; 0 = one a core. The result does not depend on it */
+    uint32_t method;      /* lensprof_fit_method */
+    uint32_t refine;      /* 1: the response is freed of the EMoR modes at every grey level, and becomes a TABLE, where
+                             held-out pairs are not clearly worse for it. Wants pairs of all greys; for TRANSFER with
+                             at most 256 images and 100 pairs or more, else without effect. 0 = EMoR alone */
+    uint32_t reserved;    /* 0 */
+    const lensprof_profile *profile; /* of the same camera, lens and setting, from other pictures: the prior in place of
+                                        that of all cameras, by its covariance, which it must have, where a response
+                                        of EMoR modes and a falloff have one; TRANSFER and RADIANCE, a prior_weight
+                                        above 0. Overruled where held-out pairs are clearly worse for it (three
+                                        standard errors), or its falloff is far from theirs (five). NULL = none. Read
+                                        during the call */
+    const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
+    lensprof_vignetting vignetting;    /* the value where fixed */
+    lensprof_progress progress;        /* or NULL */
+    void *progress_user;
+} lensprof_fit_options;
+
+/* 3 channels, reference 0, everything free, modes AUTO, loss ROBUST, Huber 5 levels, prior weight 1,
+ * 200 iterations, vignettings and gamma AUTO, any camera, threads on all cores. */
+LENSPROF_API void lensprof_fit_options_init_sized(lensprof_fit_options *options, size_t size);
+static inline void lensprof_fit_options_init(lensprof_fit_options *options) {
+    lensprof_fit_options_init_sized(options, sizeof *options);
+}
+
+/* How well one image is determined. It grows by lensprof_fit_result.image_quality_size. */
+typedef struct lensprof_fit_image_quality {
+    double ev_sigma;               /* standard error of ev, EV; 0 where fixed or not determined */
+    double white_balance_sigma[3]; /* of the factors */
+    double median_residual;        /* median absolute transfer residual of its pairs, levels of 255; 0 without pairs */
+    double known_ev_residual;      /* ev minus known_ev, less the common offset, EV; 0 where not known */
+    double radius;                 /* largest r of a pair, half diagonals */
+    double grey_low, grey_high;    /* 5 % and 95 % quantile of its grey values, 0..1 */
+    uint32_t pairs;
+    uint32_t inliers;   /* of these, those within 3 sigma of the noise */
+    uint32_t component; /* smallest index of an image it is tied to through pairs */
+    uint32_t reserved;  /* 0 */
+} lensprof_fit_image_quality;
+
+#define LENSPROF_COVERAGE_BINS 10
+
+typedef struct lensprof_fit_result {
+    uint32_t struct_size;
+    uint32_t usable;             /* 1, or 0 with the reason in words */
+    uint32_t image_quality_size; /* bytes of an element of image_quality, set by the _init function */
+    uint32_t reserved;           /* 0 */
+    char reason[256];            /* why not usable; when usable empty, or what to mind */
+    lensprof_response response;
+    lensprof_vignetting vignetting[3]; /* of the channels; all alike when `vignettings` is 1; they share one centre */
+    uint32_t vignettings;              /* 1 or 3 */
+    uint32_t pairs;                    /* pairs used */
+    uint32_t components;               /* connected groups of images; 1 when all are tied together */
+    uint32_t iterations;
+    uint32_t converged;
+    uint32_t gamma_from;   /* what settled gamma: PRIOR, EXPOSURES, KNOWN, NONE or PROFILE */
+    double gamma_sigma;    /* standard error of ln gamma; 0 when KNOWN, LENSPROF_UNKNOWN when NONE */
+    double before_rms;     /* |B1 - B2| of the held-out pairs, levels of 255 */
+    double heldout_rms;    /* transfer residual of pairs left out of the fit, levels of 255 */
+    double heldout_median; /* median absolute value of the same */
+    double noise_levels;   /* estimated noise of a sample, levels of 255 */
+    double inlier_share;   /* pairs within 3 sigma of the noise */
+    double frame_share;    /* share of the inliers' residual variance that follows one map over the frame: the
+                              falloff is not radial. 0 for noise */
+    double image_share;    /* share beyond that which follows a map of each image's own: no camera model explains it
+                              (local tone mapping, changing light). 0 for noise */
+    double seconds;        /* time taken by the solver */
+    uint32_t radius_ends[LENSPROF_COVERAGE_BINS]; /* pair ends in rings of r, each 1/10 half diagonal wide */
+    uint32_t grey_ends[LENSPROF_COVERAGE_BINS];   /* pair ends in tenths of the grey range, all channels */
+    uint32_t covariance_size; /* order as in profile.h; parameters held fixed have zero rows; 0 = not determined */
+    uint32_t profile_prior;   /* lensprof_profile_prior */
+    double covariance[LENSPROF_COVARIANCE_MAX
+                      * LENSPROF_COVARIANCE_MAX];    /* of the data, of gamma and of a profile together */
+    double gamma_direction[LENSPROF_COVARIANCE_MAX]; /* change of each parameter per unit of ln gamma */
+    lensprof_fit_image_quality *image_quality; /* the caller's array of image_count, set before the call; or NULL */
+} lensprof_fit_result;
+
+/* No result, a linear response. */
+LENSPROF_API void lensprof_fit_result_init_sized(lensprof_fit_result *result, size_t size, size_t image_quality_size);
+static inline void lensprof_fit_result_init(lensprof_fit_result *result) {
+    lensprof_fit_result_init_sized(result, sizeof *result, sizeof(lensprof_fit_image_quality));
+}
+
+/* Fits `pair_count` pairs over `image_count` images. exposures[image_count] receives what every image got,
+ * relative to the reference. A fit that ran returns OK even when the result is poor: see `usable`.
+ * Method DEBEVEC: an image whose exposure is not known, a falloff that is free or a response that is not ARGUMENT.
+ * Method RADIANCE: pairs that have an end in common (image, position and values) are joined to a track.
+ * Errors: indices, values outside 0..1, unusable options ARGUMENT; NaN NOT_FINITE; no pairs NO_SAMPLES;
+ * nothing free NO_UNKNOWNS; a method that this version lacks UNSUPPORTED; CANCELLED; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options,
+                                                                    const lensprof_fit_image *images,
+                                                                    uint32_t image_count, const lensprof_pair *pairs,
+                                                                    uint32_t pair_count, lensprof_exposure *exposures,
+                                                                    lensprof_fit_result *result, lensprof_error *error);
+
+/* Fits the tracks of `observation_count` observations, given in any order, by the method `radiance`; options, exposures
+ * and result as for lensprof_fit_overlap. Pairs in the result are neighbouring unsaturated observations of a track.
+ * Errors: as there; and a point with one observation, or with two of one image, ARGUMENT; no point with two
+ * observations that are neither black nor saturated NO_SAMPLES; another method UNSUPPORTED. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status
+lensprof_fit_radiance(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
+                      const lensprof_observation *observations, uint32_t observation_count,
+                      lensprof_exposure *exposures, lensprof_fit_result *result, lensprof_error *error);
+
+/* Root mean square of the symmetric transfer residual (levels of 255) and, when not NULL, its median absolute
+ * value, of pairs under a given model (vignetting of the three channels): the figure that
+ * lensprof_fit_result.heldout_rms states. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status
+lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting vignetting[3],
+                      const lensprof_fit_image *images, const lensprof_exposure *exposures, uint32_t image_count,
+                      const lensprof_pair *pairs, uint32_t pair_count, uint32_t channels, double *rms, double *median);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

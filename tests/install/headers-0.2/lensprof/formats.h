@@ -1,0 +1,427 @@
+/* lensprof/formats.h - other programs' files, from and to memory: Hugin projects and points, Lensfun databases, Adobe
+ * lens profiles, DNG opcodes, XMP of drones' cameras, radical's files, pcalib.txt, times.txt, tables of responses,
+ * falloffs as maps; and profiles as JSON.
+ *
+ * No function here opens a file. Threads: a handle belongs to one thread at a time. */
+#ifndef LENSPROF_FORMATS_H
+#define LENSPROF_FORMATS_H
+
+#include "apply.h"
+#include "fit.h"
+#include "geometry.h"
+#include "profile.h"
+#include "sample.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Hugin project (.pto) ------------------------------------------------------------------------------- */
+
+typedef struct lensprof_pto lensprof_pto;
+
+/* One `i` line with its links resolved, in lensprof's conventions. */
+typedef struct lensprof_pto_image {
+    uint32_t struct_size;
+    uint32_t response_type; /* Rt: 0 EMoR, 1 linear */
+    lensprof_camera camera;
+    lensprof_exposure exposure;     /* ev = -Eev (Hugin's larger Eev means less light); white balance Er, 1, Eb */
+    lensprof_vignetting vignetting; /* Vb/Va, Vc/Va, Vd/Va; Vx, Vy in half diagonals; none where Vm asks for none */
+    double emor[5];                 /* Ra..Re */
+    uint32_t free;        /* LENSPROF_FREE_* that the `v` lines ask for on this image or on the one it is linked to */
+    uint32_t response_of; /* index of the image at the end of the link, own index when not linked */
+    uint32_t vignetting_of, center_of, ev_of, red_of, blue_of;
+    int32_t crop[4];        /* left, top, right, bottom (right and bottom exclusive), the frame when none */
+    uint32_t crop_circular; /* 1 when only the circle about the crop's middle that touches its nearer sides counts */
+} lensprof_pto_image;
+
+/* All zero, to be filled by lensprof_pto_get_image. */
+LENSPROF_API void lensprof_pto_image_init_sized(lensprof_pto_image *image, size_t size);
+static inline void lensprof_pto_image_init(lensprof_pto_image *image) {
+    lensprof_pto_image_init_sized(image, sizeof *image);
+}
+
+/* Parses a project. *pto is created and must be destroyed by the caller.
+ * Errors (the text names the line): ARGUMENT; SIZE over 64 MiB; SYNTAX; VARIABLE for an unknown name or image number on
+ * a `v` line; UNSUPPORTED for a lens type that is not in geometry.h, a response type above 1, or over 100000 images;
+ * MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_read(const char *text, size_t bytes, lensprof_pto **pto,
+                                                                 lensprof_error *error);
+LENSPROF_API void lensprof_pto_destroy(lensprof_pto *pto); /* NULL is allowed */
+
+LENSPROF_API uint32_t lensprof_pto_image_count(const lensprof_pto *pto);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_image(const lensprof_pto *pto, uint32_t index,
+                                                                      lensprof_pto_image *image);
+
+/* The response of an image as Hugin evaluates it: linear, or Ra..Re made monotone by a running maximum (then a
+ * TABLE). */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_response(const lensprof_pto *pto, uint32_t index,
+                                                                         lensprof_response *response);
+
+/* File name of an image as written (relative to the project's folder). With capacity 0 or too small: CAPACITY.
+ * *needed (may be NULL) receives the bytes in every case, here with the terminator. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_name(const lensprof_pto *pto, uint32_t index,
+                                                                     char *name, size_t capacity, size_t *needed);
+
+/* Changes the file name of an image, for a project that is written to another folder. ARGUMENT for an empty name or one
+ * with quotes or control characters. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index,
+                                                                     const char *name);
+
+/* Draws where pairs may be taken from an image, at the size of a (possibly reduced) view of its frame: 1 inside the
+ * crop and outside all mask polygons, else 0. Mask types: 0 exclude, 1 include (which takes the place from all other
+ * images, so that no pair is left there), 2/3 the same for the stack (images with linked j), 4 exclude for the lens
+ * (linked v). */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_draw_mask(const lensprof_pto *pto, uint32_t index,
+                                                                      uint8_t *mask, uint32_t width, uint32_t height,
+                                                                      ptrdiff_t row_bytes);
+
+/* Puts a result into the project: exposures[count of images], one response, one vignetting. A response other than
+ * EMoR with at most 5 modes is written as its least squares projection on Hugin's 5 modes. Every image receives the
+ * response and vignetting of the fit; links are kept. exposures and white balance are taken relative to those of image
+ * `reference`, whose Eev, Er and Eb stay. Errors: ARGUMENT, what the model's validate functions say, MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_result(lensprof_pto *pto,
+                                                                       const lensprof_response *response,
+                                                                       const lensprof_vignetting *vignetting,
+                                                                       const lensprof_exposure *exposures,
+                                                                       uint32_t count, uint32_t reference);
+
+/* The project as text: everything that was read, unchanged but for what was set. Returns CAPACITY when the buffer is
+ * too small (capacity 0 asks for the size); *needed receives the bytes without terminator, which is added where there
+ * is room. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_write(const lensprof_pto *pto, char *text, size_t capacity,
+                                                                  size_t *needed);
+
+/* ---- Hugin point files (vig_optimize -i / -w) ------------------------------------------------------------- */
+
+/* 16 numbers a line: image1 image2 x1 y1 x2 y2 R1 G1 B1 R2 G2 B2 0 r1 r2 0. Grey values up to 0.25 beyond 0..1, which
+ * vig_optimize's interpolation leaves at edges, are cut to it. With capacity 0, *found receives the
+ * number of lines and nothing else is done; CAPACITY when there are more than capacity. SYNTAX names the line. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_read(const char *text, size_t bytes,
+                                                                    lensprof_pair *pairs, uint32_t capacity,
+                                                                    uint32_t *found, lensprof_error *error);
+
+/* Writes the same. cameras[count] give the frame sizes for the radius columns. Sizes as lensprof_pto_write. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_write(const lensprof_pair *pairs, uint32_t pair_count,
+                                                                     const lensprof_camera *cameras, uint32_t count,
+                                                                     char *text, size_t capacity, size_t *needed);
+
+/* ---- Falloffs of other programs' databases ---------------------------------------------------------------- */
+
+/* One falloff of a file. */
+typedef struct lensprof_import_entry {
+    const lensprof_profile *profile; /* until the visitor returns: key, provenance, vignetting; a linear response. To
+                                      * be kept by lensprof_profile_copy */
+    uint32_t usable;   /* 0: what the file has is no falloff (provenance.doubt says why), and lensprof_profile_validate
+                        * refuses it; 1: a valid profile, which provenance.doubt may still warn of */
+    uint32_t reserved; /* 0 */
+} lensprof_import_entry;
+
+/* Receives the entries in the order of the file. Anything but OK stops the reading and is what it returns, with the
+ * error text as the visitor left it. */
+typedef lensprof_status (*lensprof_import_visitor)(void *user, const lensprof_import_entry *entry);
+
+/* ---- Lensfun database (.xml) ------------------------------------------------------------------------------ */
+
+/* Every <vignetting> of a database of version 1 or 2, as a profile of raw pictures in lensprof's conventions
+ * (docs/formats.md):
+ *  - lens = "<maker> <model>", or the model alone where it begins with the maker; texts without a `lang` count before
+ *    English ones. For a lens with one mount whose first letter is small (a camera with a fixed lens), camera_maker and
+ *    camera_model too, where the file has exactly one <camera> with this mount.
+ *  - crop_factor of the lens or of its <calibration>; focal_mm, aperture and distance_m as written, but 1000 m, which
+ *    Lensfun's tools write for it, is INFINITY.
+ *  - model "pa": k as written. Model "acm", with radii in focal lengths: rescaled, by the <distortion>'s real-focal of
+ *    that focal length where there is one. <center> by the <aspect-ratio>, 3:2 where there is none.
+ *  - provenance: method "import", source = `source` (a file's name, say; may be NULL, cut where it is too long) and the
+ *    licence of Lensfun's database. doubt: M below 0.001 (usable = 0); coefficients -0.3, 0, 0, which a fit of
+ *    Lensfun's calibrate.py starts from; M, followed outwards, rises by more than 0.05.
+ * All of the text is checked before the first entry is visited. Document types are skipped and entities not expanded.
+ * Errors (the text names line and lens): ARGUMENT; SIZE over 64 MiB, or over 2 million elements or attributes; SYNTAX;
+ * UNSUPPORTED for another version or model; MEMORY; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_read(const char *text, size_t bytes, const char *source,
+                                                                     lensprof_import_visitor visit, void *user,
+                                                                     lensprof_error *error);
+
+/* The falloffs of profiles as a database of version 1, which every Lensfun reads: model "pa", one <lens> for each lens
+ * and crop factor. Sizes as lensprof_pto_write. Doubles are written so that they read back the same.
+ *  - <maker> is the first word of key.lens, <model> all of it; the mount is Lensfun's "Generic".
+ *  - Lensfun has one curve for all channels: of three, their mean is written. It has no responses, covariances, units
+ *    and provenance: these are left out.
+ *  - Infinite and unknown distances are 1000 m.
+ *  - A centre is converted for frames of 3:2; Lensfun has one a lens.
+ * Errors (the text names the profile, counted from 0): ARGUMENT for an unknown lens, crop factor, focal length or
+ * aperture, texts that are not UTF-8, two profiles of the same lens and setting, or centres of one lens that differ;
+ * UNSUPPORTED for a gain grid or pictures corrected in camera; what lensprof_profile_validate says; CAPACITY;
+ * MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_write(const lensprof_profile *const *profiles,
+                                                                      uint32_t count, char *text, size_t capacity,
+                                                                      size_t *needed, lensprof_error *error);
+
+/* ---- Profiles as JSON ------------------------------------------------------------------------------------- */
+
+/* Profiles as `lensprof profile show --json` prints them (docs/json.md): the object of one, or {"schema": 1,
+ * "profiles": [...]} of none and of several. Doubles, and the floats of gain grids, are written so that they read back
+ * the same; bytes of texts that are not UTF-8 become U+FFFD. Sizes as lensprof_pto_write. Errors (the text names the
+ * profile, counted from 0): ARGUMENT; what lensprof_profile_validate says; CAPACITY; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_json_write(const lensprof_profile *const *profiles,
+                                                                   uint32_t count, char *text, size_t capacity,
+                                                                   size_t *needed, lensprof_error *error);
+
+/* Reads them: what lensprof_json_write wrote gives the same profiles, in every bit. Each must have `key` with
+ * `processing`, and `vignetting` with `k`; without `gain_grid`, `covariance`, `provenance` and `response` it has none,
+ * the last being linear. Texts and numbers of a key that are missing or null are unknown. Other members are ignored.
+ * provenance.source is that of the file, or `source` where it has none (may be NULL, cut where it is too long).
+ * All profiles are checked before the first is visited; they are all usable.
+ * Errors (the text names the line, or the path, as "profiles[2].vignetting.k[0]"): ARGUMENT; SIZE over 64 MiB or 4
+ * million values; SYNTAX, also for more than 32 levels; UNSUPPORTED for another schema; what the model's validate
+ * functions say; MEMORY; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_json_read(const char *text, size_t bytes, const char *source,
+                                                                  lensprof_import_visitor visit, void *user,
+                                                                  lensprof_error *error);
+
+/* ---- Photometric calibration of visual odometry (pcalib.txt, times.txt) ------------------------------------- */
+
+/* Inverse response of TUM's tools, DSO and its kin: the irradiances of 256 evenly spaced grey values (or of up to
+ * 65536), strictly increasing, separated by blanks and line ends. They are rescaled by the first and last, as those
+ * tools do, to a TABLE. Errors (the text names the value, counted from 0): ARGUMENT; SYNTAX for fewer than 256 or what
+ * is not a finite number; SIZE for over 65536; RESPONSE for a value that is not above the one before; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pcalib_read(const char *text, size_t bytes,
+                                                                    lensprof_response *response, lensprof_error *error);
+
+/* Writes 256 of them, from 0 to 255, on one line. Two are never closer than 1e-4, so that they increase strictly in
+ * single precision too; where the response is so steep that they would be, it is less so by that much. Sizes as
+ * lensprof_pto_write. Errors: ARGUMENT, what lensprof_response_validate says, CAPACITY, MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pcalib_write(const lensprof_response *response, char *text,
+                                                                     size_t capacity, size_t *needed,
+                                                                     lensprof_error *error);
+
+/* A line of times.txt. lensprof_exposure.ev of a frame, where only its exposure time differs from that of another
+ * frame: log2(exposure_ms / exposure_ms of the other). Frozen value struct. */
+typedef struct lensprof_frame_time {
+    char id[64];        /* as written, with leading zeros */
+    double time_s;      /* time stamp */
+    double exposure_ms; /* > 0 or LENSPROF_UNKNOWN */
+} lensprof_frame_time;
+
+/* Lines of name, time and exposure, of which the last may be missing or 0 (unknown); empty lines and those that begin
+ * with # are skipped. *found receives the number of frames; with capacity 0 nothing else is done. Errors (the text
+ * names the line): ARGUMENT; SYNTAX; CAPACITY when there are more than capacity. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_times_read(const char *text, size_t bytes,
+                                                                   lensprof_frame_time *frames, uint32_t capacity,
+                                                                   uint32_t *found, lensprof_error *error);
+
+/* Writes the same; numbers read back the same. Sizes as lensprof_pto_write. Errors (the text names the frame): ARGUMENT
+ * for a name that is empty, has blanks or begins with #; NOT_FINITE; EXPOSURE; CAPACITY; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_times_write(const lensprof_frame_time *frames, uint32_t count,
+                                                                    char *text, size_t capacity, size_t *needed,
+                                                                    lensprof_error *error);
+
+/* ---- Response curves as tables of text (.csv, pfstools' .m) -------------------------------------------------- */
+
+/* What a table holds, on an even grid of what it is a function of. Nothing in such files says it. */
+typedef enum lensprof_curve {
+    LENSPROF_CURVE_INVERSE =
+        0,                     /* grey value -> irradiance, to any scale: OpenCV's Debevec and Robertson, AliceVision */
+    LENSPROF_CURVE_LOG = 1,    /* grey value -> natural logarithm of it: Debevec's g */
+    LENSPROF_CURVE_LOG10 = 2,  /* grey value -> decadic logarithm of it */
+    LENSPROF_CURVE_FORWARD = 3 /* irradiance -> grey value, rescaled by the first and last */
+} lensprof_curve;
+
+/* Reads 2 to 65536 rows of 1 or 3 numbers (red, green, blue; the other way round where names of columns say so), or of
+ * these after one that counts the rows or is evenly spaced from 0. Between them stand blanks, commas, semicolons or
+ * brackets; lines that begin with #, % or // and a first line of names are skipped. To one or three TABLEs, in which
+ * irradiance 1 is that of the last grey value and what is darker than the first gives 0. `# name:` lines make it a file
+ * of pfstools, with a matrix a channel, whatever `curve`. responses: 3 of them, of which *count are written. Errors
+ * (the text names the line): ARGUMENT; SIZE over 65536 rows or 64 MiB; SYNTAX; RESPONSE for a value below that of the
+ * row before, or an irradiance below 0; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_curves_read(const char *text, size_t bytes, uint32_t curve,
+                                                                    lensprof_response *responses, uint32_t *count,
+                                                                    lensprof_error *error);
+
+/* Writes `rows` (2 to 65536; 256 for pictures of 8 bit) rows of 1 or 3 responses as a lensprof_curve, after a line of
+ * names: the number of the row (FORWARD: irradiance), then the values, which read back the same; irradiances are 0
+ * to 1. Logarithms are of at least 1e-6 of them. Sizes as lensprof_pto_write. Errors: ARGUMENT, what
+ * lensprof_response_validate says, CAPACITY, MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_curves_write(const lensprof_response *responses, uint32_t count,
+                                                                     uint32_t curve, uint32_t rows, char *text,
+                                                                     size_t capacity, size_t *needed,
+                                                                     lensprof_error *error);
+
+/* ---- Falloffs as maps (vignette.png, gain images) ------------------------------------------------------------ */
+
+typedef enum lensprof_map_sense {
+    LENSPROF_MAP_ATTENUATION = 0, /* a picture is corrected by division: TUM's and DSO's vignette.png */
+    LENSPROF_MAP_GAIN = 1         /* by multiplication */
+} lensprof_map_sense;
+
+/* A map in the caller's memory, linear, to any scale; 0 = not known. Values are the means of equal cells of the frame,
+ * as the pixels of a reduced picture are: all of a picture's pixels make the map of its frame. Frozen value struct. */
+typedef struct lensprof_map {
+    uint32_t columns, rows; /* 2..65536 each */
+    uint32_t channels;      /* 1 or 3 (red, green, blue) */
+    uint32_t sense;         /* lensprof_map_sense */
+    const float *values;    /* [row][column][channel], without gaps */
+} lensprof_map;
+
+/* The falloff of a map, in a frame of width x height px: one polynomial a channel with a common centre, by least
+ * squares of the relative error, and a gain grid where they leave more than 0.2 %. Sets vignetting and grid of
+ * *profile, which must be an initialised one, removes its covariance and leaves the rest. *worst (may be NULL) receives
+ * the largest relative error left, of means over up to 64 values a side in maps of more than 1024. Errors: ARGUMENT,
+ * also for values below 0; SIZE; NOT_FINITE; VIGNETTING for a map of which too little is known or that no falloff comes
+ * near; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_map_read(const lensprof_map *map, uint32_t width,
+                                                                 uint32_t height, lensprof_profile *profile,
+                                                                 double *worst, lensprof_error *error);
+
+/* Falloff and gain grid of a profile as columns x rows values for a frame of width x height px, as in lensprof_map; of
+ * 1 channel it is the mean of the profile's. The largest attenuation of all channels is 1, so that gains are 1 and
+ * more. To write vignette.png, multiply by 65535 (or 255) and round, but to no less than 1. Errors: ARGUMENT; SIZE;
+ * what lensprof_profile_validate says; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_map_write(const lensprof_profile *profile, uint32_t width,
+                                                                  uint32_t height, uint32_t columns, uint32_t rows,
+                                                                  uint32_t channels, uint32_t sense, float *values,
+                                                                  lensprof_error *error);
+
+/* ---- radical (.crf, .vgn) ------------------------------------------------------------------------------------ */
+
+/* The response file of radical: irradiances of 256 greys in three channels, to any scale; to three TABLEs as
+ * lensprof_curves_read. Errors: ARGUMENT; SYNTAX; UNSUPPORTED for a matrix of another type; SIZE; RESPONSE for
+ * irradiances that decrease or are none; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_response_read(const void *data, size_t bytes,
+                                                                              lensprof_response *responses,
+                                                                              lensprof_error *error);
+
+/* Writes 1 (for all channels) or 3 responses; irradiances are 1e-6 to 1, as radical takes their logarithm. Sizes as
+ * lensprof_pto_write. Errors: ARGUMENT, what lensprof_response_validate says, CAPACITY, MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_response_write(const lensprof_response *responses,
+                                                                               uint32_t count, void *data,
+                                                                               size_t capacity, size_t *needed,
+                                                                               lensprof_error *error);
+
+/* The vignetting file of radical, polynomial of degree 3 or nonparametric. Polynomials whose channels share a centre
+ * are rescaled exactly; others, which have one each, and maps are refitted as by lensprof_map_read, in the frame that
+ * the file names. profile, *worst (0 where exact) and errors as there; SYNTAX; UNSUPPORTED for other models. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_vignetting_read(const void *data, size_t bytes,
+                                                                                lensprof_profile *profile,
+                                                                                double *worst, lensprof_error *error);
+
+/* Writes a profile for pictures of width x height px: a polynomial, or where it has a gain grid a map of 12 bytes a
+ * pixel. Sizes as lensprof_pto_write. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_vignetting_write(const lensprof_profile *profile,
+                                                                                 uint32_t width, uint32_t height,
+                                                                                 void *data, size_t capacity,
+                                                                                 size_t *needed, lensprof_error *error);
+/* ---- DNG opcode lists (tags OpcodeList2, OpcodeList3) ----------------------------------------------------- */
+
+typedef enum lensprof_dng_form {
+    LENSPROF_DNG_RADIAL = 0,  /* FixVignetteRadial */
+    LENSPROF_DNG_GAIN_MAP = 1 /* GainMap */
+} lensprof_dng_form;
+
+/* The falloff of a list of opcodes, the bytes of the tag, as one profile of raw pictures whose key is otherwise empty.
+ * width, height: of the frame that the opcodes work on, in square pixels (the picture's active area). layout: what they
+ * work on, a lensprof_layout: RGGB, GRBG, GBRG or BGGR for a mosaic (OpcodeList2), RGB for three planes (OpcodeList3),
+ * GREY for one.
+ *  - Gains are the inverse of attenuations; those of several opcodes are multiplied.
+ *  - FixVignetteRadial alone, about one centre: the radial falloff of least squares of the relative error. Else, the
+ *    frame is sampled: radial falloffs and, for what they leave beyond 0.2 %, a gain grid (docs/formats.md).
+ *  - GainMap: bilinear at pixels' centres, beyond the outermost points as at the nearest, the plane min(plane,
+ *    MapPlanes - 1); in a mosaic the maps of each colour's pixels, the mean of the two greens. Falloffs a channel where
+ *    channels differ; each is 1 in its centre, so that a gain for all of a channel is left out.
+ *  - doubt: a largest relative error above 1 %, and the opcodes of other kinds, which are left out.
+ * Visited once, or not at all. Errors (the text names the opcode, from 0): ARGUMENT; SYNTAX; SIZE over 64 gains or
+ * 1 Mi points of maps; NOT_FOUND where no opcode is a gain; UNSUPPORTED for an opcode that DNG 1.7 has not and that is
+ * not optional, for gains after TrimBounds, and for a map of every 2nd pixel where the layout is none of a mosaic, or
+ * of fewer; VIGNETTING for gains not above 0 and for what no falloff comes near; MEMORY; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_dng_opcodes_read(const void *bytes, size_t size, uint32_t width,
+                                                                         uint32_t height, uint32_t layout,
+                                                                         const char *source,
+                                                                         lensprof_import_visitor visit, void *user,
+                                                                         lensprof_error *error);
+
+/* The falloff of a profile as such a list, with one optional opcode, or four. `form`, a lensprof_dng_form:
+ *  - RADIAL: 5 coefficients by least squares of the gain's relative error.
+ *  - GAIN_MAP: 33 points along the longer side, at least 9 along the shorter. For a mosaic and falloffs a channel four
+ *    maps, one for the pixels of each site of its squares; for RGB one map of 1 or 3 planes.
+ * *worst (may be NULL) receives the largest |gain * attenuation - 1| within the frame. Sizes as lensprof_pto_write, in
+ * bytes and without a terminator; on CAPACITY *worst is set too. Errors: ARGUMENT; what lensprof_profile_validate says;
+ * UNSUPPORTED for pictures corrected in camera, for RADIAL with falloffs a channel, a gain grid or a centre outside the
+ * frame, and for falloffs a channel where layout is GREY; CAPACITY; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_dng_opcodes_write(const lensprof_profile *profile,
+                                                                          uint32_t width, uint32_t height,
+                                                                          uint32_t layout, uint32_t form, void *bytes,
+                                                                          size_t capacity, size_t *needed,
+                                                                          double *worst, lensprof_error *error);
+
+/* ---- Adobe lens profile (.lcp) ---------------------------------------------------------------------------- */
+
+/* Every entry with a VignetteModel, its properties as attributes or elements, as a profile (docs/formats.md):
+ *  - key: Make, Model, Lens (LensPrettyName where there is none), SensorFormatFactor, FocalLength, FocusDistance
+ * (INFINITY from 10 km on), and from the APEX ApertureValue Av the f-number 2^(Av / 2). RAW where CameraRawProfile is
+ * True, else JPEG. Texts, sensor and frame that an entry does not say are those of the first one.
+ *  - vignetting: VignetteModelParam1..3 with radii in FocalLengthX longer sides of the frame, rescaled; or, where there
+ * are VignetteModelPiecewiseParam, their refit. Frames without ImageWidth and ImageLength are taken as 3:2. Where
+ *    FocalLengthY differs, a map of the frame is fitted, with a gain grid for what is not radial.
+ *  - provenance and what is checked first: as lensprof_lensfun_read. doubt, also: a refit that is off by more than 1 %.
+ * Of entries that are not usable, k may be NaN. Errors (the text names the line): ARGUMENT; SIZE over 64 MiB, 2 million
+ * elements or attributes, 20000 entries or 1000 knots; SYNTAX; MEMORY; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lcp_read(const char *text, size_t bytes, const char *source,
+                                                                 lensprof_import_visitor visit, void *user,
+                                                                 lensprof_error *error);
+
+/* The falloffs of profiles of one camera, lens, crop factor and processing as a lens profile, with
+ * VignetteModelParam1..3 and centre. width, height: of the frames; both 0 = not known, of 3:2. Sizes as
+ * lensprof_pto_write. Numbers read back within 1e-9 of themselves. Of falloffs a channel the mean is written; distances
+ * that are not known are left out. Errors (the text names the profile, counted from 0): as lensprof_lensfun_write;
+ * ARGUMENT also for profiles of several cameras or lenses; SIZE for a side of over a million pixels. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lcp_write(const lensprof_profile *const *profiles,
+                                                                  uint32_t count, uint32_t width, uint32_t height,
+                                                                  char *text, size_t capacity, size_t *needed,
+                                                                  lensprof_error *error);
+
+/* ---- Falloffs in the XMP packets of drones' cameras -------------------------------------------------------- */
+
+/* The polynomial that a MicaSense, Parrot Sequoia or DJI camera writes about itself into its pictures, from the
+ * picture's XMP packet, as one profile of raw pictures (docs/formats.md). width, height: of the picture, in px.
+ *  - Camera:VignettingPolynomial, about Camera:VignettingCenter: 1 + c0 r + c1 r^2 + ..., r in px. An attenuation; of
+ * DJI a gain.
+ *  - drone-dji:VignettingData, about CalibratedOpticalCenterX and Y: such a gain. It counts before the other one.
+ *  - Camera:VignettingPolynomial2D with the powers in ...2DName: an attenuation, sum of c x^i y^j with x, y in 0..1 of
+ * the frame; fitted as a map, with a gain grid. Radial ones are refitted; where even powers come no nearer than 1 %, a
+ * gain grid holds the rest. Without a centre that of the frame. key: tiff:Make and tiff:Model. doubt: a refit that is
+ * off by more than 1 %; a picture that DJI's VignettingFlag says is corrected already. Visited once, or not at all.
+ * Errors: ARGUMENT; SIZE as lensprof_lensfun_read, or over 16 (2D: 64) coefficients; SYNTAX; NOT_FOUND where the packet
+ * has none of them; VIGNETTING for a polynomial that is not above 0 in the frame or that no falloff comes near;
+ * NOT_FINITE; MEMORY; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_drone_xmp_read(const char *text, size_t bytes, uint32_t width,
+                                                                       uint32_t height, const char *source,
+                                                                       lensprof_import_visitor visit, void *user,
+                                                                       lensprof_error *error);
+
+/* ---- Lens shading tables of the Raspberry Pi (libcamera's rpi.alsc) -------------------------------------------- */
+
+/* The falloff of a tuning file of libcamera, of its {"rpi.alsc": ...} or of that object itself, for a sensor of width x
+ * height px: gains luminance_lut, times calibrations_Cr for red and calibrations_Cb for blue, at colour temperature
+ * `ct` (K; LENSPROF_UNKNOWN: the file's default_ct, else 4500), between the two nearest tables linearly as libcamera
+ * does. luminance_strength is not applied: the tables are what was measured. Without both calibrations one curve, else
+ * three. columns, rows: of the tables; 0 and 0 for those of 16 x 12 and 32 x 32. profile, *worst and errors as
+ * lensprof_map_read; SYNTAX names line or path; UNSUPPORTED for a file with corner_strength, which replaces the table.
+ */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_read(const char *text, size_t bytes, double ct,
+                                                                  uint32_t columns, uint32_t rows, uint32_t width,
+                                                                  uint32_t height, lensprof_profile *profile,
+                                                                  double *worst, lensprof_error *error);
+
+/* Writes falloff and gain grid of a profile as {"rpi.alsc": ...}, to be put into a tuning file's `algorithms` in place
+ * of its own: tables of columns x rows (16 x 12, or 32 x 32 for a Pi 5; 2 to 256 each) for a sensor of width x height
+ * px, to 3 decimals as the tuning tool does, of one colour temperature (K; LENSPROF_UNKNOWN: 4500). Sizes as
+ * lensprof_pto_write. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_write(const lensprof_profile *profile, double ct,
+                                                                   uint32_t columns, uint32_t rows, uint32_t width,
+                                                                   uint32_t height, char *text, size_t capacity,
+                                                                   size_t *needed, lensprof_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

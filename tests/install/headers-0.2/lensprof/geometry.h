@@ -1,0 +1,59 @@
+/* lensprof/geometry.h - camera projections: direction <-> image pixel.
+ *
+ * The PanoTools camera model as Hugin and nona use it; agrees with libpano13 (`pano_trafo`) to 1e-4 px.
+ * Directions are longitude and latitude in radians, latitude positive DOWN; (0,0) is the panorama's centre.
+ * Pixel centres are integers; pixel (0,0) is the centre of the upper left pixel. No heap, no I/O.
+ * Threads: all functions are pure. */
+#ifndef LENSPROF_GEOMETRY_H
+#define LENSPROF_GEOMETRY_H
+
+#include "base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Lens projections, numbered as the `f` parameter of a PTO `i` line. */
+typedef enum lensprof_projection {
+    LENSPROF_PROJECTION_RECTILINEAR = 0,
+    LENSPROF_PROJECTION_CYLINDRICAL = 1,
+    LENSPROF_PROJECTION_CIRCULAR_FISHEYE = 2,  /* equidistant */
+    LENSPROF_PROJECTION_FULLFRAME_FISHEYE = 3, /* equidistant */
+    LENSPROF_PROJECTION_EQUIRECTANGULAR = 4,
+    LENSPROF_PROJECTION_ORTHOGRAPHIC = 8,
+    LENSPROF_PROJECTION_STEREOGRAPHIC = 10,
+    LENSPROF_PROJECTION_THOBY = 20,
+    LENSPROF_PROJECTION_EQUISOLID = 21
+} lensprof_projection;
+
+/* One picture's camera. Frozen value struct; all angles in degrees. */
+typedef struct lensprof_camera {
+    uint32_t projection;    /* lensprof_projection */
+    uint32_t width, height; /* full frame, px */
+    double hfov_deg;        /* horizontal field of view of `width` */
+    double yaw_deg, pitch_deg, roll_deg;
+    double radial[3];      /* a, b, c of R (a R^3 + b R^2 + c R + 1-a-b-c), R = 1 at half the smaller side */
+    double shift_px[2];    /* d, e: centre shift */
+    double shear_px[2];    /* g, t */
+    double translation[3]; /* TrX, TrY, TrZ */
+    double plane_deg[2];   /* Tpy, Tpp: yaw and pitch of the remapping plane, used with a translation */
+} lensprof_camera;
+
+/* LENSPROF_OK when the camera can be evaluated: known projection, sizes > 0, finite numbers, field of view
+ * possible for the projection. Else LENSPROF_ERROR_GEOMETRY (NULL: ARGUMENT). */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_camera_validate(const lensprof_camera *camera);
+
+/* Direction -> pixel. Returns 1 and sets xy, or returns 0 when the camera does not see that direction (behind
+ * it, or beyond the radius where the radial polynomial turns back). The pixel may lie outside the frame.
+ * The camera must be valid. */
+LENSPROF_API int lensprof_camera_project(const lensprof_camera *camera, double longitude, double latitude,
+                                         double xy[2]);
+
+/* Pixel -> direction {longitude, latitude}. Returns 1, or 0 when no direction maps to that pixel. Inverse of
+ * lensprof_camera_project to 1e-9 px. */
+LENSPROF_API int lensprof_camera_unproject(const lensprof_camera *camera, double x, double y, double direction[2]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

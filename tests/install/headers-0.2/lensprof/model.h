@@ -1,0 +1,134 @@
+/* lensprof/model.h - the camera model: response, vignetting, exposure.
+ *
+ *     B = f( L * M(r) * e * w )                                    d'Angelo 2007, equations 1 and 3
+ *
+ *   B  grey value 0..1            f  response, [0,1] -> [0,1], non-decreasing, f(0) = 0, f(1) = 1
+ *   L  scene radiance             M  vignetting (attenuation), M = 1 at the centre
+ *   e  exposure factor 2^ev       w  white balance factor of the channel, green = 1
+ *
+ * The maths of the model lives in the core and nowhere else. No heap, no I/O.
+ * Threads: all functions are pure; any thread may call them on any data. */
+#ifndef LENSPROF_MODEL_H
+#define LENSPROF_MODEL_H
+
+#include "base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define LENSPROF_RESPONSE_SAMPLES 1024 /* samples of a response on the uniform irradiance grid 0..1 */
+#define LENSPROF_EMOR_MODES 25         /* modes of the empirical model of response (Grossberg & Nayar 2004) */
+#define LENSPROF_GRID_SIDE 32          /* most columns and rows of a gain grid */
+
+typedef enum lensprof_response_kind {
+    LENSPROF_RESPONSE_LINEAR = 0, /* f(x) = x */
+    LENSPROF_RESPONSE_GAMMA = 1,  /* f(x) = x^(1/gamma) */
+    LENSPROF_RESPONSE_EMOR = 2,   /* f = f0 + sum_l emor[l] h_l, piecewise linear on the grid */
+    LENSPROF_RESPONSE_TABLE = 3   /* piecewise linear through table[] */
+} lensprof_response_kind;
+
+/* A response curve. Fill it with one of the _set_ functions, which leave it valid. Frozen value struct.
+ * table[] holds f on the grid x = j/1023 for every kind, so that a reader may ignore the rest. */
+typedef struct lensprof_response {
+    uint32_t kind;                           /* lensprof_response_kind */
+    uint32_t modes;                          /* EMOR: modes in use, 0..25; else 0 */
+    double gamma;                            /* GAMMA: exponent > 0; else 1 */
+    double emor[LENSPROF_EMOR_MODES];        /* EMOR: coefficients, 0 beyond `modes` */
+    double table[LENSPROF_RESPONSE_SAMPLES]; /* f(j/1023) */
+} lensprof_response;
+
+/* f(x) = x. */
+LENSPROF_API void lensprof_response_set_linear(lensprof_response *response);
+
+/* f(x) = x^(1/gamma), gamma in [0.1, 10]; else LENSPROF_ERROR_RESPONSE. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_gamma(lensprof_response *response, double gamma);
+
+/* f = f0 + sum coefficients[l] h_l for `modes` (0..25) coefficients of the EMoR model (linear domain).
+ * LENSPROF_ERROR_RESPONSE when the curve decreases anywhere on its grid. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_emor(lensprof_response *response,
+                                                                          const double *coefficients, uint32_t modes);
+
+/* Piecewise linear curve through `count` >= 2 values on a uniform grid of irradiance, resampled to the 1024
+ * grid. values[0] must be 0 and values[count-1] must be 1, each within 1e-6; they become exact. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_table(lensprof_response *response,
+                                                                           const double *values, uint32_t count);
+
+/* LENSPROF_OK when kind and its numbers are in range and the table is finite, non-decreasing on all 1024 samples, with
+ * ends 0 and 1. Whether the table is the curve of its kind is not checked. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_validate(const lensprof_response *response);
+
+/* f(x) and, when not NULL, its slope df/dx. x outside [0,1] is clamped (slope 0 there): a sensor saturates. */
+LENSPROF_API double lensprof_response_eval(const lensprof_response *response, double x, double *slope);
+
+/* g(b) = f^-1(b): the smallest x with f(x) >= b. b outside [0,1] is clamped. When not NULL, *slope is
+ * dg/db = 1/f'(g(b)), taken in the grid interval that holds b (0 outside [0,1] and where f is flat). */
+LENSPROF_API double lensprof_response_invert(const lensprof_response *response, double b, double *slope);
+
+/* The EMoR tables: mean curve f0 for mode 0, h_l for mode l = 1..25; NULL beyond. 1024 samples, static. */
+LENSPROF_API const double *lensprof_emor_table(uint32_t mode);
+
+/* Radial falloff M = 1 + k1 r^2 + k2 r^4 + k3 r^6 (d'Angelo eq. 7; correct = divide). Frozen value struct.
+ * r = |p - c| / rho; rho = half the diagonal of the full frame, sqrt(width^2 + height^2) / 2; pixel centres are
+ * integers; the frame centre is ((width-1)/2, (height-1)/2); c = frame centre + rho * center, so that a
+ * profile does not depend on the resolution. */
+typedef struct lensprof_vignetting {
+    double k[3];      /* k1, k2, k3 */
+    double center[2]; /* x (right) and y (down), in half diagonals */
+} lensprof_vignetting;
+
+/* M as a function of r^2, and its derivative dM/d(r^2) when not NULL. dM/dk_n = r^(2n). */
+LENSPROF_API double lensprof_vignetting_eval(const lensprof_vignetting *vignetting, double r2, double *slope);
+
+/* r^2 of pixel (x, y) in a frame of width x height pixels. When not NULL, gradient[2] receives
+ * d(r^2)/d(center x, center y). */
+LENSPROF_API double lensprof_vignetting_r2(const lensprof_vignetting *vignetting, uint32_t width, uint32_t height,
+                                           double x, double y, double *gradient);
+
+/* LENSPROF_OK when finite, |k| <= 1e6, |center| <= 1 in each coordinate, and M >= 0.001 for every r from the centre to
+ * the corner farthest from it (in any frame shape: r <= 1 + |center|). */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_vignetting_validate(const lensprof_vignetting *vignetting);
+
+/* Attenuation on a grid over the frame, multiplied to M: what a radial polynomial leaves (a tilted sensor, a hood, a
+ * fisheye's rim). Bilinear between nodes; node (0, 0) lies at the frame's first pixel, node (columns-1, rows-1) at its
+ * last, so that a grid does not depend on the resolution. Frozen value struct (12 kB). */
+typedef struct lensprof_gain_grid {
+    uint32_t columns, rows; /* 2..32 each; both 0 = no grid */
+    uint32_t channels;      /* 1 for all channels, or 3; 0 where there is no grid */
+    uint32_t reserved;      /* 0 */
+    /* [channel][row][column], without gaps: node (i, j) of channel c is attenuation[(c * rows + j) * columns + i];
+     * 0 beyond the last one */
+    float attenuation[3 * LENSPROF_GRID_SIDE * LENSPROF_GRID_SIDE];
+} lensprof_gain_grid;
+
+/* No grid: all zero. */
+LENSPROF_API void lensprof_gain_grid_init(lensprof_gain_grid *grid);
+
+/* LENSPROF_OK when there is no grid, or its attenuations are finite and within 0.001..1000. SIZE for sides, ARGUMENT
+ * for another number of channels or anything but 0 beyond the last node, NOT_FINITE, VIGNETTING for attenuations. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_gain_grid_validate(const lensprof_gain_grid *grid);
+
+/* Attenuation of a valid grid at pixel (x, y), not necessarily a whole one, of a frame of width x height pixels, in
+ * channel 0, 1 or 2; beyond the first and last pixels' centres as at the nearest of them. 1 where there is no grid. */
+LENSPROF_API double lensprof_gain_grid_eval(const lensprof_gain_grid *grid, uint32_t width, uint32_t height, double x,
+                                            double y, uint32_t channel);
+
+/* What one picture received. Frozen value struct. */
+typedef struct lensprof_exposure {
+    double ev;               /* log2 of the exposure factor; larger = more light recorded */
+    double white_balance[3]; /* factors of red, green, blue; green = 1; all 1 for grey pictures */
+} lensprof_exposure;
+
+/* ev = 0, white balance 1, 1, 1. */
+LENSPROF_API void lensprof_exposure_init(lensprof_exposure *exposure);
+
+/* e * w of a channel (0, 1, 2): 2^ev * white_balance[channel]; 0 for another channel. */
+LENSPROF_API double lensprof_exposure_factor(const lensprof_exposure *exposure, uint32_t channel);
+
+/* LENSPROF_OK when |ev| <= 64 and the factors are in [1e-6, 1e6]. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_exposure_validate(const lensprof_exposure *exposure);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,120 @@
+/* lensprof/profile.h - what is known about one camera, lens and setting.
+ *
+ * A profile is a value: it can be copied, stored (store.h), applied (apply.h) and packed into a blob for firmware.
+ * No heap, no I/O.
+ * Threads: all functions are pure. */
+#ifndef LENSPROF_PROFILE_H
+#define LENSPROF_PROFILE_H
+
+#include "model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A number that is not known; a value of its own in keys: unknown equals unknown and nothing else. */
+#define LENSPROF_UNKNOWN (-1.0)
+
+typedef enum lensprof_processing {
+    LENSPROF_PROCESSING_RAW = 0,      /* linear sensor data */
+    LENSPROF_PROCESSING_JPEG = 1,     /* the camera's own rendering */
+    LENSPROF_PROCESSING_CORRECTED = 2 /* rendered, with the falloff corrected in camera */
+} lensprof_processing;
+
+/* What a profile is for. Texts are UTF-8, terminated; empty = unknown. 512 bytes for ever: new members take the
+ * reserved ones. */
+typedef struct lensprof_profile_key {
+    char camera_maker[64];
+    char camera_model[64];
+    char lens[128];
+    char unit[64];              /* serial numbers, of one camera and lens; empty = any of the model */
+    double crop_factor;         /* 43.27 mm over the diagonal of the sensor, > 0 or LENSPROF_UNKNOWN */
+    double focal_mm;            /* focal length, > 0 or LENSPROF_UNKNOWN */
+    double aperture;            /* f-number, > 0 or LENSPROF_UNKNOWN */
+    double distance_m;          /* focus distance, > 0 (INFINITY allowed) or LENSPROF_UNKNOWN */
+    double color_temperature_k; /* of the light, where the falloff depends on it, > 0 or LENSPROF_UNKNOWN */
+    uint32_t processing;        /* lensprof_processing */
+    uint32_t reserved[37];      /* 0 */
+} lensprof_profile_key;
+
+/* Empty texts, unknown numbers, processing JPEG. */
+LENSPROF_API void lensprof_profile_key_init(lensprof_profile_key *key);
+
+/* LENSPROF_OK when the texts are terminated and free of control characters and the numbers in range. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key);
+
+/* Estimated parameters, in the order of the covariance: EMoR coefficients (`response.modes` of them), then
+ * k1, k2, k3 of each vignetting curve, then centre x and y. */
+#define LENSPROF_COVARIANCE_MAX 36
+
+/* Where a profile comes from. 768 bytes for ever: new members take the reserved ones. */
+typedef struct lensprof_provenance {
+    char method[32];        /* "transfer", "import", ... */
+    char software[32];      /* "lensprof 0.2.0" */
+    char source[256];       /* file or database it was made from */
+    int64_t created_unix_s; /* seconds since 1970-01-01 UTC; 0 = unknown */
+    uint32_t images;        /* pictures used */
+    uint32_t pairs;         /* correspondences used */
+    double heldout_rms;     /* transfer residual on held-out pairs, levels of 255; LENSPROF_UNKNOWN */
+    double inlier_share;    /* 0..1; LENSPROF_UNKNOWN */
+    char doubt[64];         /* why it may be wrong, as found when it was imported; empty = no doubt */
+    int64_t prior_id;       /* profile of the same database that was the prior of its fit; 0 = none */
+    uint32_t forced;        /* 1: stored although the fit was not usable; else 0 */
+    uint32_t reserved[85];  /* 0 */
+} lensprof_provenance;
+
+/* About 50 kB: keep it off small stacks. It grows: lensprof_profile_copy, and not an assignment, copies a profile that
+ * the library shows, whose struct_size is the library's. */
+typedef struct lensprof_profile {
+    uint32_t struct_size;
+    uint32_t responses;       /* 1 for all channels, or 3 */
+    uint32_t vignettings;     /* 1 for all channels, or 3 */
+    uint32_t covariance_size; /* n, 0 = not known */
+    lensprof_profile_key key;
+    lensprof_provenance provenance;
+    lensprof_response response[3];
+    lensprof_vignetting vignetting[3];
+    lensprof_gain_grid grid; /* multiplied to the vignetting; 0 x 0 where there is none */
+    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* n x n, row major, in its first n*n */
+} lensprof_profile;
+
+/* Empty key, linear response, no falloff, no gain grid, no covariance, provenance unknown. */
+LENSPROF_API void lensprof_profile_init_sized(lensprof_profile *profile, size_t size);
+static inline void lensprof_profile_init(lensprof_profile *profile) {
+    lensprof_profile_init_sized(profile, sizeof *profile);
+}
+
+/* *to = *from, of any two versions: members that `from` does not have get their defaults. Both are initialised. Errors:
+ * ARGUMENT, STRUCT_SIZE. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_copy(lensprof_profile *to,
+                                                                     const lensprof_profile *from);
+
+/* LENSPROF_OK when struct_size, key, provenance, responses, vignettings (which share one centre), gain grid and
+ * covariance (finite, symmetric, non-negative diagonal) are valid. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
+
+typedef enum lensprof_pack {
+    LENSPROF_PACK_COVARIANCE = 1 /* the covariance as well, which a camera has no use for: up to 5 kB */
+} lensprof_pack;
+
+/* The profile as a blob (docs/blob.md): little-endian, with a version and a CRC-32, for lensprof_plan_init (apply.h) to
+ * read in place. It holds the key but its unit, crop factor and colour temperature, the responses (samples in single
+ * precision), vignettings, gain grid, and of the provenance all but source, doubt, prior and forced: 132 bytes and the
+ * texts for a linear response, 4 kB more for each curve of samples. The same profile gives the same bytes on every
+ * machine. `flags`: lensprof_pack, 0 = none. *bytes receives the size of a valid profile's blob, whatever the capacity;
+ * CAPACITY when the buffer is smaller (capacity 0 asks for the size, blob may be NULL then), and nothing is written to
+ * it. Errors: what lensprof_profile_validate says; ARGUMENT for unknown flags. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags,
+                                                                     void *blob, size_t capacity, size_t *bytes);
+
+/* The profile of blob[bytes], at any address, to an initialised *profile; packed again, with its covariance, it gives
+ * the same blob. Nothing is trusted: CORRUPT when it is no blob, is damaged in any bit, cut or too long, or holds what
+ * is not a profile; LAYOUT when a newer lensprof wrote it; STRUCT_SIZE. The profile is written only once the whole blob
+ * was found to be good. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_unpack(const void *blob, size_t bytes,
+                                                                       lensprof_profile *profile);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

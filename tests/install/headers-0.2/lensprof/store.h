@@ -1,0 +1,221 @@
+/* lensprof/store.h - the profile database (SQLite).
+ *
+ * Every call is one transaction, or part of the caller's: it happens whole or not at all, also when the process is
+ * killed or the power fails. The file is in write-ahead mode: readers and a writer do not hinder each other, and calls
+ * wait up to 5 s for another writer (then BUSY). While it is open a -wal and a -shm lie beside it; the last to close
+ * removes them. A file of an older layout is read as it is; the first call that writes brings it up to date, which
+ * older versions then refuse. Threads: a handle belongs to one thread at a time; several processes may open the same
+ * file. */
+#ifndef LENSPROF_STORE_H
+#define LENSPROF_STORE_H
+
+#include "profile.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct lensprof_store lensprof_store;
+
+typedef enum lensprof_store_mode {
+    LENSPROF_STORE_READ = 0,  /* the file must exist; nothing is written (but what a killed writer left is completed or
+                               * undone); works on  read-only media, where the file was closed */
+    LENSPROF_STORE_WRITE = 1, /* the file must exist */
+    LENSPROF_STORE_CREATE = 2 /* write, and make the file when there is none */
+} lensprof_store_mode;
+
+/* Opens a database. *store is created and must be closed.
+ * Errors (the text names the file): NOT_FOUND (also a missing folder), READ_ONLY, CORRUPT (not a lensprof database;
+ * also an empty file unless it may be made), LAYOUT (made by a newer version), BUSY, FULL, STORE, MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_open(const char *path, uint32_t mode,
+                                                                   lensprof_store **store, lensprof_error *error);
+LENSPROF_API void lensprof_store_close(lensprof_store *store); /* NULL is allowed */
+
+/* Adds a profile and sets *id (may be NULL). A profile with the same key stays: `find` returns the newest. Errors: what
+ * lensprof_profile_validate says, RESPONSE for a table that is not the curve of its kind and numbers, and the
+ * store's. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_put(lensprof_store *store,
+                                                                  const lensprof_profile *profile, int64_t *id,
+                                                                  lensprof_error *error);
+
+/* The newest profile whose key is equal, to an initialised *profile, and its *id (may be NULL) (texts ignoring ASCII
+ * case and outer blanks; focal length, aperture and distance to 1e-6 relative; unknown equals unknown only; the same
+ * processing). NOT_FOUND when there is none. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find(lensprof_store *store,
+                                                                   const lensprof_profile_key *key,
+                                                                   lensprof_profile *profile, int64_t *id,
+                                                                   lensprof_error *error);
+
+/* What stands for a focus distance that is not known. */
+typedef enum lensprof_distance_rule {
+    LENSPROF_DISTANCE_WEAKEST = 0, /* of the falloffs at all stored distances the weakest, radius by radius: what is
+                                      taken out was there, whatever the distance */
+    LENSPROF_DISTANCE_FARTHEST = 1 /* that at the farthest one */
+} lensprof_distance_rule;
+
+typedef struct lensprof_lookup_options {
+    uint32_t struct_size;
+    uint32_t distance_rule;  /* lensprof_distance_rule */
+    uint32_t with_doubt;     /* 1: profiles with a doubt (provenance) count as others do; 0: not at all */
+    uint32_t any_processing; /* 1: the key's processing does not matter; 0: it must be the same */
+} lensprof_lookup_options;
+
+/* WEAKEST, without doubt, the same processing. */
+LENSPROF_API void lensprof_lookup_options_init_sized(lensprof_lookup_options *options, size_t size);
+static inline void lensprof_lookup_options_init(lensprof_lookup_options *options) {
+    lensprof_lookup_options_init_sized(options, sizeof *options);
+}
+
+#define LENSPROF_LOOKUP_ROWS 24
+
+/* How a lookup came to its answer. */
+typedef struct lensprof_lookup {
+    uint32_t struct_size;
+    uint32_t exact;                      /* 1: a stored profile, as it is */
+    uint32_t rows;                       /* profiles that were used, 1..LENSPROF_LOOKUP_ROWS */
+    uint32_t reserved;                   /* 0 */
+    int64_t id[LENSPROF_LOOKUP_ROWS];    /* of them, nearest first */
+    double weight[LENSPROF_LOOKUP_ROWS]; /* of each; they add up to about 1, and may be below 0 */
+    double distance;   /* from the setting to the nearest one; 0 = the same, refused beyond 0.5: two stops from wide
+                          open, a factor 2 in focal length, 0.4 m focus against infinity */
+    double sigma;      /* standard error of M in the corner, a 68 % band; LENSPROF_UNKNOWN for an exact one without
+                          covariance */
+    double name_score; /* of the lens's name (of the camera's, where no lens was asked for): 1 the same but for case and
+                          outer blanks, 0.9 but for signs and blanks, 0.8 but for a maker in front or its spelling, or
+                          a camera's name in another country; 0.6 the same words in another order or form, all
+                          numbers and generations the same, where nothing better is stored */
+    char reason[256];  /* what to mind; where nothing is found, why */
+} lensprof_lookup;
+
+/* All zero. */
+LENSPROF_API void lensprof_lookup_init_sized(lensprof_lookup *lookup, size_t size);
+static inline void lensprof_lookup_init(lensprof_lookup *lookup) { lensprof_lookup_init_sized(lookup, sizeof *lookup); }
+
+/* The profile for a setting: a stored one, or the falloff predicted from those of the same lens at other settings
+ * (docs/database.md says how). The lens's name decides, then the camera, unit and sensor - without a lens the camera,
+ * whose profiles without a lens, or of its only lens, count (their focal lengths to 2 % or 0.1 mm, for such cameras
+ * round them); profiles of the key's unit before those of any, of the key's camera before those of a lens alone; of
+ * these, those of the smallest sensor that is not smaller than the key's, their radii rescaled, and of the smallest of
+ * all where the key's is not known. A predicted profile has key `key`, the response of the nearest profile, no gain
+ * grid, and provenance method "lookup". Nothing is written. NOT_FOUND, with *lookup filled as far as it goes, where
+ * there is no such lens, or nothing near enough; profile is then untouched. Both are initialised ones. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup(lensprof_store *store,
+                                                                     const lensprof_profile_key *key,
+                                                                     const lensprof_lookup_options *options,
+                                                                     lensprof_profile *profile, lensprof_lookup *lookup,
+                                                                     lensprof_error *error);
+
+/* From here to commit or rollback all calls on this handle are one transaction, which makes thousands of them fast.
+ * Closing the store rolls back. Errors: READ_ONLY, BUSY, ... ; ARGUMENT for a second begin, or an end without one. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_begin(lensprof_store *store, lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_commit(lensprof_store *store, lensprof_error *error);
+LENSPROF_API void lensprof_store_rollback(lensprof_store *store);
+
+/* The profile with an id, to an initialised *profile. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_get(lensprof_store *store, int64_t id,
+                                                                  lensprof_profile *profile, lensprof_error *error);
+
+/* A row of a listing. Frozen value struct. */
+typedef struct lensprof_store_row {
+    int64_t id;
+    lensprof_profile_key key;
+    lensprof_provenance provenance;
+} lensprof_store_row;
+
+/* Lists profiles in the order camera maker, model, lens, focal, aperture, distance, id. Where filter (may be NULL) has
+ * a text or a known number, only equal ones; its processing does not matter. rows[capacity]; *found receives how many
+ * there are, which may be more than capacity (which is no error; capacity 0 = count only). */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list(lensprof_store *store,
+                                                                   const lensprof_profile_key *filter,
+                                                                   lensprof_store_row *rows, uint32_t capacity,
+                                                                   uint32_t *found, lensprof_error *error);
+
+/* Whether a profile is stored already: *id receives that of one with the same key, content and provenance, whatever its
+ * method and software, or 0. Numbers must be equal; of responses those that their kind has. For those who import,
+ * before a put: the store must be open for writing. Errors: what lensprof_profile_validate says; the store's. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find_same(lensprof_store *store,
+                                                                        const lensprof_profile *profile, int64_t *id,
+                                                                        lensprof_error *error);
+
+/* The profile of the same database that one holds, the prior of its fit, whose pictures are in it: the number at the
+ * end of the method, as in "transfer+12" and "transfer+12 (forced)"; 0 = none. Ids are a database's own: who copies a
+ * profile to another one sets what it is there, or 0, as lensprof_store_merge does. ARGUMENT for an id below 0;
+ * CAPACITY, and nothing is changed, where the method leaves no room. */
+LENSPROF_API int64_t lensprof_provenance_prior(const lensprof_provenance *provenance);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_provenance_set_prior(lensprof_provenance *provenance,
+                                                                             int64_t id);
+
+/* Adds every profile of `other`, another open database, that lensprof_store_find_same does not find, with its
+ * provenance as it is, but that what it holds is named by its id here; the oldest first. A known one keeps its method,
+ * unless only the other database knows what it holds. All or none, and never twice: merged again, nothing is added.
+ * *added and *known (may be NULL) receive how many were and how many were there. `other` is only read, whatever its
+ * layout. Errors: ARGUMENT for the database itself; what lensprof_store_put and, of `other`, lensprof_store_get say:
+ * the text names the file and the damaged profile. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *other,
+                                                                    uint32_t *added, uint32_t *known,
+                                                                    lensprof_error *error);
+
+/* Something that is wrong in a database. */
+typedef struct lensprof_store_fault {
+    int64_t id;       /* of the profile; 0 = of the file as a whole */
+    char reason[256]; /* in words, or as SQLite says it */
+} lensprof_store_fault;
+
+/* Receives the faults: those of the file, rows without their profile, then damaged profiles by id. It makes no call on
+ * the store. Anything but OK ends the check and is what it returns. */
+typedef lensprof_status (*lensprof_fault_visitor)(void *user, const lensprof_store_fault *fault);
+
+/* Reads everything and checks it: SQLite's integrity_check, foreign keys, and every profile as lensprof_store_get does
+ * (types, ranges, finite numbers, monotone responses, positive falloffs, symmetric covariance), so that a row may be
+ * named more than once. *profiles and *faults (may be NULL) receive how many there are; faults are no error. One
+ * transaction, which writes nothing. visit may be NULL. Errors: the store's, but not for damage that it could get
+ * past; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_check(lensprof_store *store, lensprof_fault_visitor visit,
+                                                                    void *user, uint32_t *profiles, uint32_t *faults,
+                                                                    lensprof_error *error);
+
+#define LENSPROF_STATS_GROUPS 8
+
+/* Profiles with the same text; of methods that name a profile ("transfer+12") without its number ("transfer+"). */
+typedef struct lensprof_store_group {
+    char name[256];
+    uint32_t profiles; /* 0 beyond the last group */
+    uint32_t reserved; /* 0 */
+} lensprof_store_group;
+
+/* What is in a database. Names that differ in ASCII case or outer blanks are one. */
+typedef struct lensprof_store_stats {
+    uint32_t struct_size;
+    uint32_t layout; /* number of profiles/schema */
+    uint32_t profiles;
+    uint32_t cameras, lenses, units;                 /* different ones that are known */
+    uint32_t processing[3];                          /* profiles, by lensprof_processing */
+    uint32_t with_covariance, with_grid, with_doubt; /* profiles */
+    uint32_t methods, sources;                       /* different ones */
+    double focal_mm[2]; /* smallest and largest that is known; LENSPROF_UNKNOWN where none is */
+    double aperture[2];
+    double distance_m[2];
+    lensprof_store_group method[LENSPROF_STATS_GROUPS]; /* those with the most profiles, largest first */
+    lensprof_store_group source[LENSPROF_STATS_GROUPS];
+    int64_t bytes; /* of the file, what a log beside it holds included */
+} lensprof_store_stats;
+
+/* All zero. */
+LENSPROF_API void lensprof_store_stats_init_sized(lensprof_store_stats *stats, size_t size);
+static inline void lensprof_store_stats_init(lensprof_store_stats *stats) {
+    lensprof_store_stats_init_sized(stats, sizeof *stats);
+}
+
+/* To an initialised *stats. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_get_stats(lensprof_store *store,
+                                                                        lensprof_store_stats *stats,
+                                                                        lensprof_error *error);
+
+/* Removes the profile with an id; NOT_FOUND when there is none. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_remove(lensprof_store *store, int64_t id,
+                                                                     lensprof_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
