@@ -391,7 +391,8 @@ static void test_arguments(void **state) {
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_ARGUMENT);
     lensprof_lookup_options_init(&options);
     options.struct_size = 1;
-    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_STRUCT_SIZE);
+    lensprof_error error;
+    assert_int_equal(lensprof_store_lookup(store, &key, &options, &answered, &how, &error), LENSPROF_ERROR_STRUCT_SIZE);
     assert_non_null(strstr(error.text, "lensprof_lookup_options: struct_size"));
     lensprof_lookup_options_init(&options);
     key.focal_mm = NAN;
