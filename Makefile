@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build profiles demo check test sanitize bench bench-apply bench-store bench-lookup install abi abi-baseline abi-headers format clean
+.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup install abi abi-baseline abi-headers format clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -28,20 +28,30 @@ profiles: build ## a database of the installed Lensfun data (liblensfun-data-v1)
 	mv build/lensfun.db.part build/lensfun.db
 	@echo 'try: build/lensprof query --db build/lensfun.db --lens "Canon EF 24-70mm f/2.8L USM" --focal 40 --aperture 3.2'
 
-demo: deps build ## calibrate and correct a rendered sequence, or yours: make demo PHOTOS=dir/pano.pto
+program: deps ## build the program alone: build/lensprof
+	cmake --preset release -DLENSPROF_TESTS=OFF >/dev/null
+	cmake --build --preset release -j $(JOBS) --target lensprof_program
+
+demo: program ## calibrate and correct a rendered sequence, or yours: make demo PHOTOS=dir/pano.pto
 	examples/demo.sh "$(PHOTOS)"
 
 check: test-deps build ## the quick tests, under a minute
 	ctest --preset check -j $(JOBS)
 
-test: test-deps build ## every test, and the same under sanitizers
+test: test-deps build ## all tests but the campaigns of `make soak`, and the same under sanitizers
 	ctest --preset all -j $(JOBS)
 	$(MAKE) sanitize
 
 sanitize: ## build and run the C and C++ tests under address and undefined behaviour sanitizers
 	cmake --preset sanitize
 	cmake --build --preset sanitize -j $(JOBS)
-	ctest --test-dir build/sanitize --output-on-failure -j $(JOBS) -LE release-only
+	ctest --preset sanitize -j $(JOBS)
+
+soak: test-deps build ## the campaigns in full, and under sanitizers: nightly, an hour or more
+	ctest --preset soak -j $(JOBS)
+	cmake --preset sanitize
+	cmake --build --preset sanitize -j $(JOBS)
+	ctest --preset soak-sanitize -j $(JOBS)
 
 bench: test-deps build ## measure accuracy and speed beside the peers
 	tests/bench/run.sh

@@ -15,12 +15,29 @@ endif()
 target_include_directories(lensprof_settings INTERFACE ${lensprof_include})
 # Contraction is off so that results do not depend on the instruction set.
 target_compile_options(lensprof_settings INTERFACE -Wall -Wextra -Wshadow -Wpointer-arith -ffp-contract=off)
+if(LENSPROF_WERROR)
+  target_compile_options(lensprof_settings INTERFACE -Werror)
+endif()
 if(LENSPROF_SANITIZE)
-  # -O1: with -O2 the compiler takes three times as long, longer than all tests. -g1: lines, which is what reports show.
-  target_compile_options(lensprof_settings INTERFACE -O1 -g1 -DNDEBUG -fsanitize=address,undefined
-    -fno-sanitize-recover=undefined)
+  # C reads bytes in place and keeps all checks. In C++ these four are at every access through a pointer or reference and take
+  # as much compile time as all the rest; the address sanitizer stops at a null pointer, too.
+  target_compile_options(lensprof_settings INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
+    $<$<COMPILE_LANGUAGE:CXX>:-fno-sanitize=null,alignment,object-size,vptr>)
   target_link_options(lensprof_settings INTERFACE -fsanitize=address,undefined)
 endif()
+# The build type of the preset `sanitize`. -O1: with -O2 the compiler takes three times as long, longer than all tests.
+# -g1: lines, which is what reports show.
+set(CMAKE_C_FLAGS_SANITIZE "-O1 -g1 -DNDEBUG")
+set(CMAKE_CXX_FLAGS_SANITIZE "-O1 -g1 -DNDEBUG")
+
+# The compiler's cache, if there is one. `CCACHE_DISABLE=1 make` or -DCMAKE_CXX_COMPILER_LAUNCHER= does without.
+find_program(LENSPROF_CCACHE ccache)
+mark_as_advanced(LENSPROF_CCACHE)
+foreach(language C CXX)
+  if(LENSPROF_CCACHE AND NOT DEFINED CMAKE_${language}_COMPILER_LAUNCHER)
+    set(CMAKE_${language}_COMPILER_LAUNCHER ${LENSPROF_CCACHE})
+  endif()
+endforeach()
 
 # lensprof_layer(name [ONLY] SOURCES... LINK...): an object library lensprof_<name> with hidden symbols, of all sources in its
 # folder (with ONLY of none but those named) and the generated SOURCES. Includes name private headers from src on.

@@ -8,13 +8,14 @@
 
 #include <unistd.h>
 
+#include "campaign.h"
 #include "malformed.hpp"
 
 using namespace malformed;
 
 namespace {
 
-constexpr uint32_t kCases = 10000;
+const uint32_t kCases = static_cast<uint32_t>(campaign_runs(10000));
 constexpr double kSlowest = 20.0;  // seconds of one call, under sanitizers and beside other load; 0.5 is usual
 constexpr unsigned kHang = 540;    // seconds of the whole test
 

@@ -1,4 +1,5 @@
 // The refinement of a response that EMoR modes cannot follow: its linear equations, and what comes of it.
+#include "campaign.h"
 #include "simulated.hpp"
 
 #include "core/response.h"
@@ -157,7 +158,7 @@ void test_prediction_by_corrections_and_exposures(void **) {
 
 // Stated standard errors of exposures against the scatter of many runs, gamma apart and with it.
 void test_stated_errors(void **) {
-    constexpr int kRuns = 60;
+    const int kRuns = campaign_runs(60);
     double square = 0.0, count = 0.0;
     for (int run = 0; run < kRuns; run++) {
         Simulation s = still(kinked_response(), 3000, 1.0, 500 + static_cast<uint64_t>(run));

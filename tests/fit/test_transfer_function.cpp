@@ -1,4 +1,5 @@
 // The method `transfer-function` against simulated truth.
+#include "campaign.h"
 #include "simulated.hpp"
 
 namespace {
@@ -211,7 +212,7 @@ void test_result_does_not_depend_on_threads(void **) {
 // the data's. 60 runs of 5 exposures: the mean square of error / sigma is 1 within a third.
 void test_stated_errors_are_the_scatter(void **) {
     double square = 0.0, corner_square = 0.0, count = 0.0;
-    constexpr int kRuns = 60;
+    const int kRuns = campaign_runs(60);
     for (int i = 0; i < kRuns; i++) {
         Simulation s;
         s.response = srgb_response();

@@ -1,0 +1,16 @@
+/* Campaigns: tests of hundreds of runs. `make soak` runs them whole, `make test` a slice of them
+ * (tests/CMakeLists.txt). */
+#ifndef LENSPROF_TESTS_CAMPAIGN_H
+#define LENSPROF_TESTS_CAMPAIGN_H
+
+#include <stdlib.h>
+
+/* All runs, or as many of a hundred as the environment's LENSPROF_PERCENT says; at least one. */
+static inline int campaign_runs(int all) {
+    const char *percent = getenv("LENSPROF_PERCENT");
+    const long share = percent ? strtol(percent, NULL, 10) : 100;
+    const int runs = (int)(all * (share > 0 && share < 100 ? share : 100L) / 100);
+    return runs > 0 ? runs : 1;
+}
+
+#endif
