@@ -403,9 +403,10 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_drone_xmp_read(const cha
 /* The falloff of a tuning file of libcamera, of its {"rpi.alsc": ...} or of that object itself, for a sensor of width x
  * height px: gains luminance_lut, times calibrations_Cr for red and calibrations_Cb for blue, at colour temperature
  * `ct` (K; LENSPROF_UNKNOWN: the file's default_ct, else 4500), between the two nearest tables linearly as libcamera
- * does. luminance_strength is not applied: the tables are what was measured. Without both calibrations one curve, else
- * three. columns, rows: of the tables; 0 and 0 for those of 16 x 12 and 32 x 32. profile, *worst and errors as
- * lensprof_map_read; SYNTAX names line or path; UNSUPPORTED for a file with corner_strength, which replaces the table.
+ * does; not grey ones set the key's color_temperature_k to it. luminance_strength is not applied: the tables are what
+ * was measured. Without both calibrations one curve, else three. columns, rows: of the tables; 0 and 0 for those of 16
+ * x 12 and 32 x 32. profile, *worst and errors as lensprof_map_read; SYNTAX names line or path; UNSUPPORTED for a file
+ * with corner_strength, which replaces the table.
  */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_read(const char *text, size_t bytes, double ct,
                                                                   uint32_t columns, uint32_t rows, uint32_t width,
@@ -414,8 +415,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_read(const char *te
 
 /* Writes falloff and gain grid of a profile as {"rpi.alsc": ...}, to be put into a tuning file's `algorithms` in place
  * of its own: tables of columns x rows (16 x 12, or 32 x 32 for a Pi 5; 2 to 256 each) for a sensor of width x height
- * px, to 3 decimals as the tuning tool does, of one colour temperature (K; LENSPROF_UNKNOWN: 4500). Sizes as
- * lensprof_pto_write. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
+ * px, to 3 decimals as the tuning tool does, of one colour temperature (K; LENSPROF_UNKNOWN: the key's, else 4500).
+ * Sizes as lensprof_pto_write. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_write(const lensprof_profile *profile, double ct,
                                                                    uint32_t columns, uint32_t rows, uint32_t width,
                                                                    uint32_t height, char *text, size_t capacity,

@@ -31,16 +31,18 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_open(const char *p
                                                                    lensprof_store **store, lensprof_error *error);
 LENSPROF_API void lensprof_store_close(lensprof_store *store); /* NULL is allowed */
 
-/* Adds a profile and sets *id (may be NULL). A profile with the same key stays: `find` returns the newest. Errors: what
- * lensprof_profile_validate says, RESPONSE for a table that is not the curve of its kind and numbers, and the
- * store's. */
+/* Adds a profile and sets *id (may be NULL). A profile with the same key stays: `find` returns the newest.
+ * provenance.prior_id is an id of this database: who copies a profile from another one sets it to that of the copied
+ * prior, or 0, as lensprof_store_merge does. Errors: what lensprof_profile_validate says; ARGUMENT for a profile of a
+ * fit that was not usable (provenance.not_usable) unless provenance.forced is 1; RESPONSE for a table that is not the
+ * curve of its kind and numbers; FULL also where ids are used up; and the store's. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_put(lensprof_store *store,
                                                                   const lensprof_profile *profile, int64_t *id,
                                                                   lensprof_error *error);
 
 /* The newest profile whose key is equal, to an initialised *profile, and its *id (may be NULL) (texts ignoring ASCII
- * case and outer blanks; focal length, aperture and distance to 1e-6 relative; unknown equals unknown only; the same
- * processing). NOT_FOUND when there is none. */
+ * case and outer blanks; focal length, aperture, distance and colour temperature to 1e-6 relative; unknown equals
+ * unknown only; the same processing). NOT_FOUND when there is none. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find(lensprof_store *store,
                                                                    const lensprof_profile_key *key,
                                                                    lensprof_profile *profile, int64_t *id,
@@ -118,39 +120,36 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_get(lensprof_store
 /* A row of a listing. Frozen value struct. */
 typedef struct lensprof_store_row {
     int64_t id;
+    uint32_t damaged;     /* 1: the row has impossible values; its key and provenance are then unknown */
+    uint32_t reserved[3]; /* 0 */
     lensprof_profile_key key;
     lensprof_provenance provenance;
 } lensprof_store_row;
 
 /* Lists profiles in the order camera maker, model, lens, focal, aperture, distance, id. Where filter (may be NULL) has
  * a text or a known number, only equal ones; its processing does not matter. rows[capacity]; *found receives how many
- * there are, which may be more than capacity (which is no error; capacity 0 = count only). */
+ * there are, which may be more than capacity (which is no error; capacity 0 = count only). A row whose key or
+ * provenance cannot be read does not end the list: it is a row with `damaged` 1 and its id. lensprof_store_get reports
+ * what is wrong with it; lensprof_store_check finds damage in the rest of a profile, too. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list(lensprof_store *store,
                                                                    const lensprof_profile_key *filter,
                                                                    lensprof_store_row *rows, uint32_t capacity,
                                                                    uint32_t *found, lensprof_error *error);
 
 /* Whether a profile is stored already: *id receives that of one with the same key, content and provenance, whatever its
- * method and software, or 0. Numbers must be equal; of responses those that their kind has. For those who import,
- * before a put: the store must be open for writing. Errors: what lensprof_profile_validate says; the store's. */
+ * method, software, prior and forced, or 0. Numbers must be equal; of responses those that their kind has. For those
+ * who import, before a put: the store must be open for writing. Errors: what lensprof_profile_validate says; the
+ * store's. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find_same(lensprof_store *store,
                                                                         const lensprof_profile *profile, int64_t *id,
                                                                         lensprof_error *error);
 
-/* The profile of the same database that one holds, the prior of its fit, whose pictures are in it: the number at the
- * end of the method, as in "transfer+12" and "transfer+12 (forced)"; 0 = none. Ids are a database's own: who copies a
- * profile to another one sets what it is there, or 0, as lensprof_store_merge does. ARGUMENT for an id below 0;
- * CAPACITY, and nothing is changed, where the method leaves no room. */
-LENSPROF_API int64_t lensprof_provenance_prior(const lensprof_provenance *provenance);
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_provenance_set_prior(lensprof_provenance *provenance,
-                                                                             int64_t id);
-
-/* Adds every profile of `other`, another open database, that lensprof_store_find_same does not find, with its
- * provenance as it is, but that what it holds is named by its id here; the oldest first. A known one keeps its method,
- * unless only the other database knows what it holds. All or none, and never twice: merged again, nothing is added.
- * *added and *known (may be NULL) receive how many were and how many were there. `other` is only read, whatever its
- * layout. Errors: ARGUMENT for the database itself; what lensprof_store_put and, of `other`, lensprof_store_get say:
- * the text names the file and the damaged profile. */
+/* Adds every profile of `other`, another open database, that lensprof_store_find_same does not find, the oldest first,
+ * with its provenance as it is; but prior_id becomes the id that the prior has here, 0 where it is not here. A known
+ * profile keeps its provenance, but gets a prior_id from the other database where it has none. All or none, and never
+ * twice: merged again, nothing is added. *added and *known (may be NULL) receive how many were and how many were there.
+ * `other` is only read, whatever its layout. Errors: ARGUMENT for the database itself; what lensprof_store_put and, of
+ * `other`, lensprof_store_get say: the text names the file and the damaged profile. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *other,
                                                                     uint32_t *added, uint32_t *known,
                                                                     lensprof_error *error);
@@ -176,7 +175,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_check(lensprof_sto
 
 #define LENSPROF_STATS_GROUPS 8
 
-/* Profiles with the same text; of methods that name a profile ("transfer+12") without its number ("transfer+"). */
+/* Profiles with the same text. */
 typedef struct lensprof_store_group {
     char name[256];
     uint32_t profiles; /* 0 beyond the last group */

@@ -68,8 +68,10 @@ lensprof_status lensprof_profile_copy(lensprof_profile *to, const lensprof_profi
 
 lensprof_status lp_provenance_validate(const lensprof_provenance *p) {
     if (!is_text(p->method, sizeof p->method) || !is_text(p->software, sizeof p->software)
-        || !is_text(p->source, sizeof p->source) || !is_text(p->doubt, sizeof p->doubt) || p->prior_id < 0
-        || p->forced > 1 || !is_empty(p->reserved, sizeof p->reserved / sizeof *p->reserved))
+        || !is_text(p->source, sizeof p->source) || !is_text(p->doubt, sizeof p->doubt))
+        return LENSPROF_ERROR_ARGUMENT;
+    if (!is_empty(p->reserved, sizeof p->reserved / sizeof *p->reserved) || p->prior_id < 0 || p->forced > 1
+        || p->not_usable > 1)
         return LENSPROF_ERROR_ARGUMENT;
     if (!(p->heldout_rms == LENSPROF_UNKNOWN || (p->heldout_rms >= 0.0 && p->heldout_rms <= 255.0)))
         return LENSPROF_ERROR_ARGUMENT;

@@ -96,6 +96,7 @@ double read_alsc(std::string_view text, double ct, Shape shape, lensprof_profile
     const std::vector<double> red = ratios_at(alsc["calibrations_Cr"], ct, count),
                               blue = ratios_at(alsc["calibrations_Cb"], ct, count);
     const bool grey = !alsc["calibrations_Cr"] && !alsc["calibrations_Cb"];
+    profile.key.color_temperature_k = grey ? LENSPROF_UNKNOWN : ct;
     std::vector<float> gains;
     for (size_t i = 0; i < count; i++) {
         if (!grey) gains.push_back(static_cast<float>(luminance[i] * red[i]));
@@ -114,8 +115,10 @@ using namespace lensprof;
 lensprof_status lensprof_alsc_read(const char *text, size_t bytes, double ct, uint32_t columns, uint32_t rows,
                                    uint32_t width, uint32_t height, lensprof_profile *profile, double *worst,
                                    lensprof_error *error) {
-    if ((!text && bytes) || !profile || !(ct == LENSPROF_UNKNOWN || (ct > 0.0 && std::isfinite(ct)))) {
-        set_error(error, "lensprof_alsc_read: give a buffer, a profile and a colour temperature above 0 or unknown");
+    if ((!text && bytes) || !profile || !(ct == LENSPROF_UNKNOWN || (ct > 0.0 && ct <= 1e6))) {
+        set_error(
+            error,
+            "lensprof_alsc_read: give a buffer, a profile and a colour temperature of up to 1000000 K or unknown");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {

@@ -100,7 +100,9 @@ lensprof_status lensprof_alsc_write(const lensprof_profile *profile, double ct, 
             "lensprof_alsc_write: give a profile, a colour temperature of 1 to 1000000 K or unknown, and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
+    if (ct == LENSPROF_UNKNOWN) ct = profile->key.color_temperature_k;
+    if (ct == LENSPROF_UNKNOWN) ct = kAlscTemperatureK;
     return write_at_boundary(text, capacity, needed, error, [&] {
-        return alsc_text(*profile, ct == LENSPROF_UNKNOWN ? kAlscTemperatureK : ct, {columns, rows, width, height});
+        return alsc_text(*profile, std::max(ct, 1.0), {columns, rows, width, height});
     });
 }

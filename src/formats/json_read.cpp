@@ -1,5 +1,6 @@
 // Profiles from JSON.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -163,6 +164,25 @@ void read_covariance(const JsonValue &rows, lensprof_profile &profile) {
     profile.covariance_size = static_cast<uint32_t>(n);
 }
 
+// Before there were "prior_id" and "forced", the method ended in them: "transfer+12 (forced)".
+void split_method(lensprof_provenance &provenance) {
+    constexpr std::string_view kForced = " (forced)", kDigits = "0123456789";
+    std::string_view method = provenance.method;
+    if (method.size() >= kForced.size() && method.substr(method.size() - kForced.size()) == kForced) {
+        provenance.forced = 1;
+        method.remove_suffix(kForced.size());
+    }
+    const size_t plus = method.find_last_not_of(kDigits);
+    if (plus != method.npos && plus + 1 < method.size() && method[plus] == '+') {
+        const std::string_view digits = method.substr(plus + 1);
+        const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), provenance.prior_id);
+        if (failure != std::errc()) provenance.prior_id = 0;  // no number that an id could be
+        method = method.substr(0, plus);
+    }
+    const std::string base(method);
+    put_text(provenance.method, sizeof provenance.method, base);
+}
+
 void read_provenance(const JsonValue &object, const char *source, lensprof_provenance &provenance) {
     read_text(object, "method", provenance.method);
     read_text(object, "software", provenance.software);
@@ -178,6 +198,9 @@ void read_provenance(const JsonValue &object, const char *source, lensprof_prove
     if (const JsonValue pairs = object["pairs"]) provenance.pairs = static_cast<uint32_t>(pairs.whole(0, UINT32_MAX));
     if (const JsonValue rms = object["heldout_rms"]) provenance.heldout_rms = rms.number_within(0.0, 255.0);
     if (const JsonValue share = object["inlier_share"]) provenance.inlier_share = share.number_within(0.0, 1.0);
+    if (!object.has("prior_id") && !object.has("forced")) return split_method(provenance);
+    if (const JsonValue prior = object["prior_id"]) provenance.prior_id = prior.whole(1, INT64_MAX);
+    if (const JsonValue forced = object["forced"]) provenance.forced = forced.boolean();
 }
 
 void check_schema(const JsonValue &object) {

@@ -35,7 +35,7 @@ void write_key(JsonWriter &json, const lensprof_profile_key &key) {
         write_text(json, "distance_m", "infinity");
     else
         write_known(json, "distance_m", key.distance_m);
-    if (key.color_temperature_k != LENSPROF_UNKNOWN) write_known(json, "color_temperature_k", key.color_temperature_k);
+    write_known(json, "color_temperature_k", key.color_temperature_k);
     write_text(json, "processing", kJsonProcessings[key.processing]);
     json.close('}');
 }
@@ -133,6 +133,13 @@ void write_provenance(JsonWriter &json, const lensprof_provenance &provenance) {
     write_known(json, "heldout_rms", provenance.heldout_rms);
     write_known(json, "inlier_share", provenance.inlier_share);
     write_text(json, "doubt", provenance.doubt);
+    json.name("prior_id");
+    if (provenance.prior_id)
+        json.whole(provenance.prior_id);
+    else
+        json.word("null");
+    json.name("forced");
+    json.word(provenance.forced ? "true" : "false");
     json.close('}');
 }
 

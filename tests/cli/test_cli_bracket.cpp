@@ -91,13 +91,14 @@ void test_names_that_look_like_numbers(void **) {
     assert_refused(not_usable, bracket(odd, no_store), {odd[0]});
 }
 
-// A forced result says so, whatever the method's name takes of its field.
+// A forced result is known as that, however long the method's name is.
 void test_forced(void **) {
     const Words files = shots(five);
     must_exit(not_usable, bracket(files, {"--db", work("p.db"), "--camera", "X", "--pairs", "4000", "--method",
                                           "debevec", "--force", "--ev", "-3,-1.5,0,1.5,3"}));
     const Json shown = json_of({"profile", "show", "1", "--db", work("p.db"), "--json"});
-    assert_string_equal(shown["provenance"]["method"].get<std::string>().c_str(), "bracket debevec (forced)");
+    assert_string_equal(shown["provenance"]["method"].get<std::string>().c_str(), "bracket debevec");
+    assert_true(shown["provenance"]["forced"].get<bool>());
 }
 
 void test_profile_of_the_camera_alone(void **) {

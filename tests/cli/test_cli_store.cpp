@@ -88,10 +88,27 @@ void test_check(void **) {
     assert_refused(usage, {"profile", "check", "--db", a, "1"}, {"1"});
 }
 
+// One bad row does not end a list: the others are listed, the row is named.
+void test_list_with_a_damaged_row(void **) {
+    const std::string a = make_db("a.db", "50mm", {{50, 2, -0.4}, {50, 4, -0.2}, {50, 8, -0.1}});
+    run_sql(a, "PRAGMA ignore_check_constraints = ON; UPDATE profiles SET aperture = -2.0 WHERE id = 2");
+    const Words list = {"profile", "list", "--db", a};
+    const Outcome outcome = run_words(list);
+    assert_int_equal(outcome.code, store_failed);
+    assert_true(contains(outcome.err, a + ": profile 2 is damaged (aperture)"));
+    for (const char *id : {"\n     1 ", "\n     3 "}) assert_true(contains(outcome.out, id));
+    assert_false(contains(outcome.out, "\n     2 "));
+    const Json json = json_of(list + Words{"--json"}, store_failed);
+    assert_int_equal(json["profiles"].size(), 2);
+    assert_true(json["damaged"] == Json::array({2}));
+    must_exit(done, {"profile", "remove", "--db", a, "2"});
+    assert_int_equal(json_of(list + Words{"--json"})["damaged"].size(), 0);
+}
+
 void test_stats(void **) {
     const std::string a = make_db("a.db", "50mm", {{50, 2, -0.4, 0.0, 0.45}, {50, 4, -0.2}, {24, 4, -0.6}});
     const std::string said = must_exit(done, {"profile", "stats", "--db", a});
-    for (const char *line : {"layout 3", "3 of 0 cameras, 1 lenses, 0 single units", "3 raw, 0 jpeg", "24 mm to 50 mm",
+    for (const char *line : {"layout 4", "3 of 0 cameras, 1 lenses, 0 single units", "3 raw, 0 jpeg", "24 mm to 50 mm",
                              "f/2 to f/4", "0.45 m to inf m", "import", "a.db.xml"})
         if (!contains(said, line)) fail_msg("no %s in %s", line, said.c_str());
     const Json json = json_of({"profile", "stats", "--db", a, "--json"});
@@ -106,6 +123,6 @@ void test_stats(void **) {
 
 int main() {
     const CMUnitTest tests[] = {CLI_TEST(test_merge), CLI_TEST(test_merge_refuses), CLI_TEST(test_check),
-                                CLI_TEST(test_stats)};
+                                CLI_TEST(test_list_with_a_damaged_row), CLI_TEST(test_stats)};
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -120,6 +120,14 @@ void test_temperature(void **) {
     assert_true(corner(3500) > middle && corner(3500) < low);
     const Found grey = read("{\"luminance_lut\":" + table(1, 1) + "}");
     assert_int_equal(grey.profile->vignettings, 1);
+    // The key has it, where the tables depend on it, and the writer takes it from there.
+    assert_true(grey.profile->key.color_temperature_k == LENSPROF_UNKNOWN);
+    const Found own = read(with_two(1.2, 1.6));
+    assert_true(own.profile->key.color_temperature_k == 4000.0);
+    assert_true(read(with_two(1.2, 1.6), 3500).profile->key.color_temperature_k == 3500.0);
+    assert_true(write(*own.profile, LENSPROF_UNKNOWN).find("\"ct\":4000") != std::string::npos);
+    assert_true(write(*own.profile, 2800).find("\"ct\":2800") != std::string::npos);
+    assert_true(write(*grey.profile, LENSPROF_UNKNOWN).find("\"ct\":4500") != std::string::npos);
 }
 
 void test_refused(void **) {

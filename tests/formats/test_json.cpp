@@ -71,6 +71,40 @@ void test_defaults(void **) {
     assert_string_equal(unnamed.profiles[0]->provenance.source, "a?b");
 }
 
+// Before there were "prior_id" and "forced", the method ended in them.
+void test_old_methods(void **) {
+    const struct {
+        const char *before, *method;
+        int64_t prior;
+        uint32_t forced;
+    } cases[] = {{"transfer", "transfer", 0, 0},
+                 {"transfer+12", "transfer", 12, 0},
+                 {"transfer+12 (forced)", "transfer", 12, 1},
+                 {"flat (forced)", "flat", 0, 1},
+                 {"a+b", "a+b", 0, 0},
+                 {"+5", "", 5, 0},
+                 {"x+1+2", "x+1", 2, 0},
+                 {"x+9223372036854775807", "x", INT64_MAX, 0},
+                 {"x+9223372036854775808", "x", 0, 0},
+                 {"12", "12", 0, 0},
+                 {"", "", 0, 0}};
+    for (const auto &c : cases) {
+        const std::string old =
+            with(kShort, "\"more\":{", std::string("\"provenance\":{\"method\":\"") + c.before + "\"},\"m\":{");
+        const Read read = read_json(old);
+        assert_string_equal(read.error.c_str(), "");
+        const lensprof_provenance &p = read.profiles[0]->provenance;
+        assert_string_equal(p.method, c.method);
+        assert_int_equal(p.prior_id, c.prior);
+        assert_int_equal(p.forced, c.forced);
+    }
+    // A file that has one of them has said it there.
+    const Read read = read_json(
+        with(kShort, "\"more\":{", "\"provenance\":{\"method\":\"transfer+12 (forced)\",\"prior_id\":null},\"m\":{"));
+    assert_string_equal(read.profiles[0]->provenance.method, "transfer+12 (forced)");
+    assert_int_equal(read.profiles[0]->provenance.prior_id, 0);
+}
+
 void test_refused(void **) {
     const Profile full = full_profile();
     const std::string list = write_json({full.get(), full.get()}), one = write_json({full.get()});
@@ -109,6 +143,12 @@ void test_refused(void **) {
         {with(one, "\"covariance\":[[", "\"covariance\":[[-"), LENSPROF_ERROR_ARGUMENT, "is no valid profile"},
         {with(one, "\"images\":4000000000", "\"images\":5000000000"), LENSPROF_ERROR_SYNTAX,
          "provenance.images is 5000000000"},
+        {with(one, "\"forced\":true", "\"forced\":1"), LENSPROF_ERROR_SYNTAX, "provenance.forced is not true or false"},
+        {with(one, "\"prior_id\":12", "\"prior_id\":0"), LENSPROF_ERROR_SYNTAX, "provenance.prior_id is 0"},
+        {with(one, "\"prior_id\":12", "\"prior_id\":\"12\""), LENSPROF_ERROR_SYNTAX,
+         "provenance.prior_id is no whole number"},
+        {with(one, "\"color_temperature_k\":4321.5", "\"color_temperature_k\":-1"), LENSPROF_ERROR_SYNTAX,
+         "key.color_temperature_k is not above 0"},
         {with(one, "\"values\":[[0.0,", "\"values\":[[0.5,"), LENSPROF_ERROR_SYNTAX,
          "response.values[0] is another curve"},
         {with(list, "\"profiles\":[", "\"profiles\":[null,"), LENSPROF_ERROR_SYNTAX, "profiles holds null"},
@@ -158,8 +198,8 @@ void test_calls(void **) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_kinds), cmocka_unit_test(test_defaults),
-        cmocka_unit_test(test_refused),    cmocka_unit_test(test_calls),
+        cmocka_unit_test(test_round_trip),  cmocka_unit_test(test_kinds),   cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_old_methods), cmocka_unit_test(test_refused), cmocka_unit_test(test_calls),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -85,6 +85,7 @@ static void print_structs(void) {
     FIELD(lensprof_provenance, doubt);
     FIELD(lensprof_provenance, prior_id);
     FIELD(lensprof_provenance, forced);
+    FIELD(lensprof_provenance, not_usable);
     FIELD(lensprof_provenance, reserved);
     STRUCT(lensprof_profile);
     FIELD(lensprof_profile, struct_size);
@@ -342,6 +343,8 @@ static void print_structs(void) {
     FIELD(lensprof_lookup, reason);
     STRUCT(lensprof_store_row);
     FIELD(lensprof_store_row, id);
+    FIELD(lensprof_store_row, damaged);
+    FIELD(lensprof_store_row, reserved);
     FIELD(lensprof_store_row, key);
     FIELD(lensprof_store_row, provenance);
     STRUCT(lensprof_store_fault);

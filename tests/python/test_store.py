@@ -119,16 +119,29 @@ class Stores(unittest.TestCase):
         with lp.Store(self.path, lp.StoreMode.CREATE) as store:
             self.assertEqual(store.find_same(profile), 0)
             first = store.put(profile)
-            profile.provenance.method = "transfer"
-            profile.provenance.prior = first
-            self.assertEqual((profile.provenance.prior, profile.provenance.method), (first, f"transfer+{first}"))
+            profile.provenance.prior_id, profile.provenance.forced = first, 1
             self.assertEqual(store.find_same(profile), first)
-            profile.provenance.prior = 0
-            self.assertEqual(profile.provenance.method, "transfer")
+            stored = store.get(store.put(profile)).provenance
+            self.assertEqual((stored.prior_id, stored.forced, stored.not_usable), (first, 1, 0))
+            profile.provenance.forced, profile.provenance.not_usable = 0, 1
             with refused(self, lp.Status.ERROR_ARGUMENT):
-                profile.provenance.prior = -1
-            with self.assertRaises(TypeError):
-                profile.provenance.prior = "1"
+                store.put(profile)
+            profile.provenance.prior_id, profile.provenance.not_usable = -1, 0
+            with refused(self, lp.Status.ERROR_ARGUMENT):
+                store.put(profile)
+
+    def test_damaged_row_is_listed(self):
+        first, second = self.make(sample_profile("a"), sample_profile("b"))
+        with sqlite3.connect(self.path) as db:
+            db.execute("PRAGMA ignore_check_constraints = ON")
+            db.execute("UPDATE profiles SET aperture = -2.0 WHERE id = ?", (second,))
+        db.close()
+        with lp.Store(self.path) as store:
+            rows = {row.id: row for row in store.list()}
+            self.assertEqual((rows[first].damaged, rows[first].key.camera_model), (0, sample_profile("a").key.camera_model))
+            self.assertEqual((rows[second].damaged, rows[second].key.aperture), (1, lp.UNKNOWN))
+            with refused(self, lp.Status.ERROR_CORRUPT):
+                store.get(second)
 
     def test_check_and_stats(self):
         numbers = self.make(sample_profile("a"), sample_profile("A "), sample_profile("b", unit="1"))
@@ -137,7 +150,7 @@ class Stores(unittest.TestCase):
             stats = store.stats()
             self.assertEqual((stats.profiles, stats.cameras, stats.lenses, stats.units), (3, 1, 2, 1))
             self.assertEqual(list(stats.processing), [3, 0, 0])
-            self.assertEqual((stats.with_covariance, stats.with_grid, stats.with_doubt, stats.layout), (3, 3, 0, 3))
+            self.assertEqual((stats.with_covariance, stats.with_grid, stats.with_doubt, stats.layout), (3, 3, 0, 4))
             self.assertEqual((list(stats.focal_mm), list(stats.distance_m)), ([28, 28], [math.inf, math.inf]))
             self.assertEqual((stats.method, stats.source), ({"transfer": 3}, {"/tmp/a.pto": 3}))
             self.assertEqual(stats.bytes, self.path.stat().st_size)

@@ -77,6 +77,25 @@ static inline lensprof_store *store_at(const char *path, uint32_t mode) {
     return store;
 }
 
+/* Another database of the same place. */
+static inline lensprof_store *store_in(const place *here, const char *name, uint32_t mode) {
+    char path[300];
+    snprintf(path, sizeof path, "%s/%s", here->directory, name);
+    return store_at(path, mode);
+}
+
+/* The database, made where there is none, and another one of the place. */
+static inline void open_pair(const place *here, const char *other_name, uint32_t other_mode, lensprof_store **store,
+                             lensprof_store **other) {
+    *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    *other = store_in(here, other_name, other_mode);
+}
+
+static inline void close_pair(lensprof_store *store, lensprof_store *other) {
+    lensprof_store_close(other);
+    lensprof_store_close(store);
+}
+
 static inline int64_t put_at(lensprof_store *store, const lensprof_profile *profile) {
     int64_t id = 0;
     lensprof_error error;
@@ -135,24 +154,27 @@ static inline void assert_file(const char *path, const void *expected, size_t si
     free(bytes);
 }
 
-/* A file as lensprof made it before there were gain grids: layout 1, with these profiles, whose grids are left out. */
-static inline void make_layout_1(const char *path, const lensprof_profile *profiles, size_t count) {
+/* A file of an older layout, as the lensprof of its time made it, with these profiles but what it cannot hold: up to
+ * layout 3 prior_id and forced stand at the end of the method. */
+static inline void make_layout(const char *path, int layout, const lensprof_profile *profiles, size_t count) {
+    static const char *const schemas[] = {lp_schema_0001, lp_schema_0002, lp_schema_0003},
+                             *const added[] = {"", ", gain_grids", ", gain_grids, unit, crop_factor, doubt, lens_name"};
     char newer[400], sql[2000];
-    const char *columns =
-        "id, camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing, method,"
-        " software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
-        " response_curves, vignetting_curves, covariance_size, covariance";
     snprintf(newer, sizeof newer, "%s.newer", path);
     lensprof_store *store = store_at(newer, LENSPROF_STORE_CREATE);
     for (size_t i = 0; i < count; i++) put_at(store, &profiles[i]);
     lensprof_store_close(store);
-    run_sql(path, lp_schema_0001);
-    snprintf(sql, sizeof sql,
-             "ATTACH '%s' AS newer; BEGIN; INSERT INTO main.profiles SELECT %s FROM newer.profiles;"
-             " INSERT INTO main.responses SELECT * FROM newer.responses;"
-             " INSERT INTO main.emor_coefficients SELECT * FROM newer.emor_coefficients;"
-             " INSERT INTO main.vignettings SELECT * FROM newer.vignettings; COMMIT",
-             newer, columns);
+    for (int i = 0; i < layout; i++) run_sql(path, schemas[i]);
+    snprintf(
+        sql, sizeof sql,
+        "ATTACH '%s' AS newer; BEGIN; INSERT INTO main.profiles SELECT id, camera_maker, camera_model, lens, focal_mm,"
+        " aperture, distance_m, processing, method || ifnull('+' || prior_id, '') || iif(forced, ' (forced)', ''),"
+        " software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, response_curves,"
+        " vignetting_curves, covariance_size, covariance%s FROM newer.profiles;"
+        " INSERT INTO main.responses SELECT * FROM newer.responses;"
+        " INSERT INTO main.emor_coefficients SELECT * FROM newer.emor_coefficients;"
+        " INSERT INTO main.vignettings SELECT * FROM newer.vignettings; %s; COMMIT",
+        newer, added[layout - 1], layout < 2 ? "" : "INSERT INTO main.gain_grids SELECT * FROM newer.gain_grids");
     run_sql(path, sql);
     unlink(newer);
 }
@@ -194,6 +216,7 @@ static inline void fill_profile(lensprof_profile *profile) {
     profile->key.focal_mm = 24.1;
     profile->key.aperture = 2.8;
     profile->key.distance_m = 3.3;
+    profile->key.color_temperature_k = 4321.5;
     strcpy(profile->provenance.method, "transfer");
     strcpy(profile->provenance.software, "lensprof 0.1.0");
     strcpy(profile->provenance.source, "/data/pano \xe2\x82\xac/IMG_1.JPG");
@@ -202,6 +225,7 @@ static inline void fill_profile(lensprof_profile *profile) {
     profile->provenance.pairs = UINT32_MAX;
     profile->provenance.heldout_rms = 2.1;
     profile->provenance.inlier_share = 0.93;
+    profile->provenance.forced = 1;
     assert_ok(lensprof_response_set_emor(&profile->response[0], coefficients, 5));
     profile->vignetting[0] = (lensprof_vignetting){{-0.3, 0.1, -0.1 / 3.0}, {0.01, -0.02}};
     fill_grid(&profile->grid, 5, 4, 1);

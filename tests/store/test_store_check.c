@@ -65,18 +65,20 @@ static void test_sound(void **state) {
     free(all);
 }
 
-static void test_older_layout(void **state) {
+static void test_older_layouts(void **state) {
     const place *here = *state;
     faults *all = malloc(sizeof *all);
     lensprof_profile *profile = new_profile();
     fill_profile(profile);
-    lensprof_gain_grid_init(&profile->grid);
-    make_layout_1(here->path, profile, 1);
-    check_at(here->path, 1, all);
-    assert_int_equal(all->count, 0);
-    run_sql(here->path, "UPDATE vignettings SET k1 = -5");
-    check_at(here->path, 1, all);
-    assert_true(has_fault(all, 1, "VIGNETTING"));
+    for (int layout = 1; layout < LP_STORE_LAYOUT; layout++) {
+        unlink(here->path);
+        make_layout(here->path, layout, profile, 1);
+        check_at(here->path, 1, all);
+        assert_int_equal(all->count, 0);
+        run_sql(here->path, "UPDATE vignettings SET k1 = -5");
+        check_at(here->path, 1, all);
+        assert_true(has_fault(all, 1, "VIGNETTING"));
+    }
     free(profile);
     free(all);
 }
@@ -210,6 +212,7 @@ static void test_stats(void **state) {
     const place *here = *state;
     lensprof_store_stats *s = malloc(sizeof *s);
     struct stat file;
+    lensprof_store_stats_init(s);
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     assert_ok(lensprof_store_get_stats(store, s, NULL));
     assert_int_equal(s->profiles, 0);
@@ -252,7 +255,7 @@ static void test_stats(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_sound),
-        store_test(test_older_layout),
+        store_test(test_older_layouts),
         store_test(test_each_kind_of_damage),
         store_test(test_everything_is_listed),
         store_test(test_broken_pages),

@@ -164,7 +164,7 @@ static int fail_each(const place *here, int first, start start_at, lensprof_stat
     unsigned char *layout_1 = NULL;
     size_t size = 0;
     if (start_at == LAYOUT_1) {
-        make_layout_1(here->path, NULL, 0);
+        make_layout(here->path, 1, NULL, 0);
         layout_1 = read_file(here->path, &size);
     }
     for (n = first; n < 100000; n += STEP) {

@@ -84,6 +84,37 @@ static void test_exact(void **state) {
     lensprof_store_close(store);
 }
 
+/* Of the rows with a colour temperature those of the nearest count, in mired, where the key has one. */
+static void test_nearest_light(void **state) {
+    static const double kelvins[] = {2800, 4000, 6500};
+    lensprof_lookup_options options;
+    lensprof_profile *p = zoom_profile(zoom, 35, 2.8, INFINITY);
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    for (int i = 0; i < 3; i++) {
+        p->key.color_temperature_k = kelvins[i];
+        put_at(store, p);
+    }
+    lensprof_lookup_options_init(&options);
+    const struct {
+        double asked;
+        int64_t id;
+        bool noted;
+    } cases[] = {{LENSPROF_UNKNOWN, 3, false}, {4000, 2, false}, {2800, 1, false}, {4900, 2, true}, {5200, 3, true}};
+    for (int i = 0; i < 5; i++) { /* 5000 K lie in the middle of 4000 and 6500: 200 mired between 250 and 154 */
+        p->key.color_temperature_k = cases[i].asked;
+        assert_ok(ask_with(store, &p->key, &options));
+        assert_int_equal(how.id[0], cases[i].id);
+        assert_int_equal(how.exact, 1);
+        assert_int_equal(strstr(how.reason, "colour temperature") != NULL, cases[i].noted);
+    }
+    p->key.color_temperature_k = LENSPROF_UNKNOWN; /* one of no temperature is for all */
+    assert_int_equal(put_at(store, p), 4);
+    p->key.color_temperature_k = 2800;
+    assert_ok(ask_with(store, &p->key, &options));
+    assert_int_equal(how.id[0], 4);
+    lensprof_store_close(store);
+}
+
 static void test_between_settings(void **state) {
     static const double asked[][2] = {{28, 2.4}, {42, 3.5}, {60, 6.3}, {24, 1.9}, {70, 7.1}, {30, 4.0}};
     lensprof_store *store = zoom_store(*state);
@@ -403,6 +434,7 @@ static void test_arguments(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_exact),
+        store_test(test_nearest_light),
         store_test(test_between_settings),
         store_test(test_same_answer_and_nothing_written),
         store_test(test_refusals),

@@ -23,15 +23,9 @@ static void fill_samples(void) {
     assert_ok(lensprof_response_set_gamma(&sample[2].response[0], 2.2));
 }
 
-static lensprof_store *other_store(const place *here, const char *name, uint32_t mode) {
-    char path[300];
-    snprintf(path, sizeof path, "%s/%s", here->directory, name);
-    return store_at(path, mode);
-}
-
 /* A database of the samples from `first` on, closed. */
 static void make_other(const place *here, const char *name, int first, int count) {
-    lensprof_store *store = other_store(here, name, LENSPROF_STORE_CREATE);
+    lensprof_store *store = store_in(here, name, LENSPROF_STORE_CREATE);
     for (int i = 0; i < count; i++) put_at(store, &sample[first + i]);
     lensprof_store_close(store);
 }
@@ -48,8 +42,8 @@ static void test_everything_arrives_as_it_was(void **state) {
     const place *here = *state;
     fill_samples();
     make_other(here, "other.db", 0, 3);
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_READ);
+    lensprof_store *store, *other;
+    open_pair(here, "other.db", LENSPROF_STORE_READ, &store, &other);
     put_at(store, &sample[2]);
     assert_merged(store, other, 2, 1);
     for (int i = 0; i < 2; i++) {
@@ -59,8 +53,7 @@ static void test_everything_arrives_as_it_was(void **state) {
     assert_merged(store, other, 0, 3); /* not twice */
     assert_int_equal(count_at(store), 3);
     assert_int_equal(count_at(other), 3);
-    lensprof_store_close(other);
-    lensprof_store_close(store);
+    close_pair(store, other);
     assert_integrity(here->path);
 }
 
@@ -68,13 +61,13 @@ static void test_everything_arrives_as_it_was(void **state) {
 static void test_what_differs_is_added(void **state) {
     const place *here = *state;
     enum {
-        CHANGES = 13
+        CHANGES = 14
     };
     lensprof_profile *p = new_profile();
     fill_samples();
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_store *store, *other;
+    open_pair(here, "other.db", LENSPROF_STORE_CREATE, &store, &other);
     put_at(store, &sample[0]);
-    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_CREATE);
     for (int i = 0; i < CHANGES; i++) {
         static const double coefficients[] = {-0.625, 0.1, -0.05, 0.02, 0.03};
         *p = sample[0];
@@ -91,12 +84,12 @@ static void test_what_differs_is_added(void **state) {
         if (i == 10) p->vignetting[0].k[2] = nextafter(p->vignetting[0].k[2], 1.0);
         if (i == 11) p->grid.attenuation[3] = nextafterf(p->grid.attenuation[3], 2.0f);
         if (i == 12) lensprof_gain_grid_init(&p->grid);
+        if (i == 13) p->key.color_temperature_k = LENSPROF_UNKNOWN;
         put_at(other, p);
     }
     assert_merged(store, other, CHANGES, 0);
     assert_merged(store, other, 0, CHANGES);
-    lensprof_store_close(other);
-    lensprof_store_close(store);
+    close_pair(store, other);
     free(p);
 }
 
@@ -105,144 +98,98 @@ static void test_order_and_repetitions(void **state) {
     const place *here = *state;
     int64_t id;
     fill_samples();
-    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_CREATE);
+    lensprof_store *store, *other;
+    open_pair(here, "other.db", LENSPROF_STORE_CREATE, &store, &other);
     put_at(other, &sample[0]);
     sample[0].vignetting[0].k[0] = -0.25;
     put_at(other, &sample[0]);
     put_at(other, &sample[0]);
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
     assert_merged(store, other, 2, 1);
     assert_ok(lensprof_store_find(store, &sample[0].key, &found, &id, NULL));
     assert_int_equal(id, 2);
     assert_close(found.vignetting[0].k[0], -0.25, 0.0);
-    lensprof_store_close(store);
-    lensprof_store_close(other);
+    close_pair(store, other);
 }
 
-static void test_older_layout_is_read_as_it_is(void **state) {
+static void test_older_layouts_are_read_as_they_are(void **state) {
     const place *here = *state;
     char path[300];
-    size_t size;
+    lensprof_store *store, *other;
     fill_samples();
-    lensprof_gain_grid_init(&sample[0].grid);
+    sample[0].key.color_temperature_k = LENSPROF_UNKNOWN;
     snprintf(path, sizeof path, "%s/old.db", here->directory);
-    make_layout_1(path, sample, 1);
-    unsigned char *bytes = read_file(path, &size);
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    lensprof_store *other = other_store(here, "old.db", LENSPROF_STORE_READ);
-    assert_merged(store, other, 1, 0);
-    assert_ok(lensprof_store_get(store, 1, &found, NULL));
-    assert_same_profile(&found, &sample[0]);
-    lensprof_store_close(other);
-    lensprof_store_close(store);
-    assert_file(path, bytes, size);
-    free(bytes);
-}
-
-static void set_method(lensprof_profile *profile, const char *method) {
-    memset(profile->provenance.method, 0, sizeof profile->provenance.method);
-    strcpy(profile->provenance.method, method);
-}
-
-/* The number behind a method, and the method with another one. */
-static void test_prior_of_a_method(void **state) {
-    static const struct {
-        const char *method;
-        int64_t prior, next;
-        const char *then;
-    } rows[] = {{"transfer", 0, 7, "transfer+7"},
-                {"transfer+12", 12, 7, "transfer+7"},
-                {"transfer+12", 12, 0, "transfer"},
-                {"transfer+12 (forced)", 12, 9000, "transfer+9000 (forced)"},
-                {"transfer (forced)", 0, 3, "transfer+3 (forced)"},
-                {"a+b", 0, 5, "a+b+5"},
-                {"a+1b", 0, 5, "a+1b+5"},
-                {"", 0, 0, ""},
-                {"x+99999999999999999999", 0, 1, "x+1"}, /* no number that an id could be */
-                {"x+9223372036854775807", INT64_MAX, 0, "x"},
-                {"x+9223372036854775808", 0, 0, "x"},
-                {"x+1+2", 2, 0, "x"},
-                {"x+1 +2", 2, 0, "x+1 "},
-                {"+5", 5, 6, "+6"},
-                {"transfer+0012", 12, 1, "transfer+1"},
-                {"transfer+-3", 0, 4, "transfer+-3+4"},
-                {"a+b (forced)", 0, 7, "a+b+7 (forced)"},
-                {"c++", 0, 0, "c++"},
-                {"radiance (EMoR+falloff)", 0, 0, "radiance (EMoR+falloff)"},
-                {"radiance:EMoR+falloff,3 curves!", 0, 0, "radiance:EMoR+falloff,3 curves!"},
-                {"radiance:EMoR+falloff,3 curves!", 0, 1, NULL},
-                {"transfer-function", 0, INT64_MAX - 1, NULL},
-                {"transfer+12 (forced)", 12, INT64_MAX - 1, NULL}};
-    lensprof_provenance provenance;
-    (void)state;
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        memset(&provenance, '7', sizeof provenance); /* what is behind the end does not count */
-        strcpy(provenance.method, rows[i].method);
-        assert_int_equal(lensprof_provenance_prior(&provenance), rows[i].prior);
-        const lensprof_status status = lensprof_provenance_set_prior(&provenance, rows[i].next);
-        assert_int_equal(status, rows[i].then ? LENSPROF_OK : LENSPROF_ERROR_CAPACITY);
-        assert_string_equal(provenance.method, rows[i].then ? rows[i].then : rows[i].method);
-        assert_int_equal(provenance.software[0], '7');
-        assert_int_equal(lensprof_provenance_prior(&provenance), rows[i].then ? rows[i].next : rows[i].prior);
+    for (int layout = 1; layout < LP_STORE_LAYOUT; layout++) {
+        size_t size;
+        unlink(path);
+        unlink(here->path);
+        if (layout == 1) lensprof_gain_grid_init(&sample[0].grid);
+        make_layout(path, layout, sample, 1);
+        unsigned char *bytes = read_file(path, &size);
+        open_pair(here, "old.db", LENSPROF_STORE_READ, &store, &other);
+        assert_merged(store, other, 1, 0);
+        assert_ok(lensprof_store_get(store, 1, &found, NULL));
+        assert_same_profile(&found, &sample[0]);
+        close_pair(store, other);
+        assert_file(path, bytes, size);
+        free(bytes);
+        fill_grid(&sample[0].grid, 5, 4, 1);
     }
-    assert_int_equal(lensprof_provenance_set_prior(&provenance, -1), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_provenance_set_prior(NULL, 1), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_provenance_prior(NULL), 0);
 }
 
-/* What is in a profile has another number here, also where it was here before. */
+/* A prior has another id here, also where it was here before; 0 where it is not here. */
 static void test_priors_are_renumbered(void **state) {
     const place *here = *state;
-    static const char *const methods[] = {"transfer", "transfer+1", "transfer+2 (forced)", "transfer+99", "transfer+5"};
-    static const char *const here_as[] = {"transfer+3", "transfer+4 (forced)", "transfer", "transfer"};
+    static const int64_t priors[] = {0, 1, 2, 99, 5, INT64_MAX}, here_as[] = {3, 4, 0, 0, 0};
+    lensprof_store *store, *other;
     fill_samples();
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_CREATE);
+    open_pair(here, "other.db", LENSPROF_STORE_CREATE, &store, &other);
     put_at(store, &sample[1]);
     put_at(store, &sample[2]);
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 6; i++) {
         sample[0].provenance.images = (uint32_t)(10 + i);
-        set_method(&sample[0], methods[i]);
+        sample[0].provenance.prior_id = priors[i];
+        sample[0].provenance.forced = i == 2;
         put_at(other, &sample[0]);
         if (i == 0) put_at(store, &sample[0]); /* 3 */
     }
-    assert_merged(store, other, 4, 1);
-    for (int i = 0; i < 4; i++) {
+    assert_merged(store, other, 5, 1);
+    for (int i = 0; i < 5; i++) {
         assert_ok(lensprof_store_get(store, 4 + i, &found, NULL));
-        assert_string_equal(found.provenance.method, here_as[i]);
+        assert_int_equal(found.provenance.prior_id, here_as[i]);
+        assert_int_equal(found.provenance.forced, i == 1);
+        assert_string_equal(found.provenance.method, "transfer");
         assert_int_equal(found.provenance.images, 11 + i);
     }
-    assert_merged(store, other, 0, 5);
-    lensprof_store_close(other);
-    lensprof_store_close(store);
+    assert_merged(store, other, 0, 6);
+    close_pair(store, other);
 }
 
-/* A known profile learns what is in it; what it says itself stays. */
-static void test_known_profiles_learn_their_priors(void **state) {
+/* A known profile gets its prior from the other database; one that it has stays, and so does `forced`. */
+static void test_known_profiles_get_their_priors(void **state) {
     const place *here = *state;
-    static const char *const own[] = {"transfer", "transfer", "transfer+1"}, *const theirs[] = {"transfer",
-                                                                                                "transfer+1",
-                                                                                                "transfer+2"};
+    static const int64_t own[] = {0, 0, 1}, theirs[] = {0, 1, 2};
+    lensprof_store *store, *other;
     fill_samples();
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_CREATE);
+    open_pair(here, "other.db", LENSPROF_STORE_CREATE, &store, &other);
     put_at(store, &sample[1]);
     for (int i = 0; i < 3; i++) {
         sample[0].provenance.images = (uint32_t)(10 + i);
-        set_method(&sample[0], own[i]);
+        sample[0].provenance.prior_id = own[i];
+        sample[0].provenance.forced = 0;
         put_at(store, &sample[0]);
-        set_method(&sample[0], theirs[i]);
+        sample[0].provenance.prior_id = theirs[i];
+        sample[0].provenance.forced = 1;
         put_at(other, &sample[0]);
     }
     for (int again = 0; again < 2; again++) {
         assert_merged(store, other, 0, 3);
         assert_ok(lensprof_store_get(store, 3, &found, NULL));
-        assert_string_equal(found.provenance.method, "transfer+2");
+        assert_int_equal(found.provenance.prior_id, 2);
+        assert_int_equal(found.provenance.forced, 0);
         assert_ok(lensprof_store_get(store, 4, &found, NULL));
-        assert_string_equal(found.provenance.method, "transfer+1");
+        assert_int_equal(found.provenance.prior_id, 1);
     }
-    lensprof_store_close(other);
-    lensprof_store_close(store);
+    close_pair(store, other);
 }
 
 /* The same rule for importers: not the newest alone, and whatever made it. */
@@ -260,7 +207,9 @@ static void test_find_same(void **state) {
     assert_ok(lensprof_store_find_same(store, &sample[1], &id, NULL));
     assert_int_equal(id, 0);
     strcpy(sample[0].provenance.software, "lensprof 99");
-    set_method(&sample[0], "transfer+1");
+    memset(sample[0].provenance.method, 0, sizeof sample[0].provenance.method);
+    sample[0].provenance.prior_id = 1;
+    sample[0].provenance.forced = 0;
     assert_ok(lensprof_store_find_same(store, &sample[0], &id, NULL));
     assert_int_equal(id, 1);
     assert_ok(lensprof_response_set_gamma(&sample[2].response[0], 1.8)); /* the number says it, and not the table */
@@ -292,8 +241,8 @@ static void test_damaged_row_takes_everything_back(void **state) {
     make_other(here, "other.db", 0, 3);
     snprintf(path, sizeof path, "%s/other.db", here->directory);
     run_sql(path, "UPDATE vignettings SET k1 = -5 WHERE profile_id = 3");
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    lensprof_store *other = store_at(path, LENSPROF_STORE_READ);
+    lensprof_store *store, *other;
+    open_pair(here, "other.db", LENSPROF_STORE_READ, &store, &other);
     assert_int_equal(lensprof_store_merge(store, other, &added, NULL, &error), LENSPROF_ERROR_CORRUPT);
     assert_non_null(strstr(error.text, "other.db: profile 3 is damaged ("));
     assert_int_equal(added, 77);
@@ -303,8 +252,7 @@ static void test_damaged_row_takes_everything_back(void **state) {
     assert_int_equal(lensprof_store_merge(store, other, &added, NULL, &error), LENSPROF_ERROR_CORRUPT);
     assert_ok(lensprof_store_commit(store, NULL));
     assert_int_equal(count_at(store), 1);
-    lensprof_store_close(other);
-    lensprof_store_close(store);
+    close_pair(store, other);
     assert_integrity(here->path);
 }
 
@@ -314,7 +262,7 @@ static void test_one_transaction_for_several(void **state) {
     make_other(here, "a.db", 0, 2);
     make_other(here, "b.db", 1, 2);
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    lensprof_store *a = other_store(here, "a.db", 0), *b = other_store(here, "b.db", 0);
+    lensprof_store *a = store_in(here, "a.db", 0), *b = store_in(here, "b.db", 0);
     for (int again = 0; again < 2; again++) {
         assert_ok(lensprof_store_begin(store, NULL));
         assert_merged(store, a, 2, 0);
@@ -337,7 +285,7 @@ static void test_refusals(void **state) {
     fill_samples();
     make_other(here, "other.db", 0, 1);
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE), *same = store_at(here->path, 0);
-    lensprof_store *other = other_store(here, "other.db", LENSPROF_STORE_READ);
+    lensprof_store *other = store_in(here, "other.db", LENSPROF_STORE_READ);
     snprintf(link, sizeof link, "%s/link.db", here->directory);
     assert_int_equal(symlink(here->path, link), 0);
     lensprof_store *linked = store_at(link, LENSPROF_STORE_READ);
@@ -360,10 +308,9 @@ int main(void) {
         store_test(test_everything_arrives_as_it_was),
         store_test(test_what_differs_is_added),
         store_test(test_order_and_repetitions),
-        store_test(test_older_layout_is_read_as_it_is),
-        cmocka_unit_test(test_prior_of_a_method),
+        store_test(test_older_layouts_are_read_as_they_are),
         store_test(test_priors_are_renumbered),
-        store_test(test_known_profiles_learn_their_priors),
+        store_test(test_known_profiles_get_their_priors),
         store_test(test_find_same),
         store_test(test_damaged_row_takes_everything_back),
         store_test(test_one_transaction_for_several),

@@ -1,19 +1,29 @@
-/* Databases of layout 1, made before there were gain grids: read as they are, brought up to date by the first write. */
+/* Databases of older layouts: read as they are, brought up to date by the first write. Each test runs from each of
+ * them. */
 #include "store_fixture.h"
 
 #include <sys/wait.h>
 
-/* Two profiles as layout 1 can hold them, made once. */
+/* Two profiles as layout `from` can hold them, made once. */
 static lensprof_profile old[2], found = {.struct_size = sizeof found};
+static int from;
 
 static void make_old(const char *path) {
     for (int i = 0; i < 2; i++) {
         fill_profile(&old[i]);
-        lensprof_gain_grid_init(&old[i].grid);
+        if (from < 2) lensprof_gain_grid_init(&old[i].grid);
+        if (from >= 3) {
+            strcpy(old[i].key.unit, "12345");
+            old[i].key.crop_factor = 1.53;
+            strcpy(old[i].provenance.doubt, "a doubt");
+        }
+        old[i].key.color_temperature_k = LENSPROF_UNKNOWN;
+        old[i].provenance.prior_id = i;
+        old[i].provenance.forced = (uint32_t)i;
     }
     assert_ok(lensprof_response_set_gamma(&old[1].response[0], 2.2));
     old[1].key.aperture = 8.0;
-    make_layout_1(path, old, 2);
+    make_layout(path, from, old, 2);
 }
 
 static int64_t layout_of(const char *path) {
@@ -27,7 +37,7 @@ static int64_t layout_of(const char *path) {
 
 /* Both profiles are there as they were. */
 static void assert_old_profiles(lensprof_store *store) {
-    lensprof_store_row rows[4];
+    lensprof_store_row rows[20];
     uint32_t count;
     int64_t id;
     for (int i = 0; i < 2; i++) {
@@ -38,8 +48,13 @@ static void assert_old_profiles(lensprof_store *store) {
     assert_ok(lensprof_store_find(store, &old[1].key, &found, &id, NULL));
     assert_int_equal(id, 2);
     assert_same_profile(&found, &old[1]);
-    assert_ok(lensprof_store_list(store, NULL, rows, 4, &count, NULL));
-    assert_true(count >= 2);
+    assert_ok(lensprof_store_list(store, NULL, rows, 20, &count, NULL));
+    assert_in_range(count, 2, 20);
+    for (uint32_t i = 0; i < count; i++)
+        if (rows[i].id == 2) {
+            assert_memory_equal(&rows[i].key, &old[1].key, sizeof old[1].key);
+            assert_memory_equal(&rows[i].provenance, &old[1].provenance, sizeof old[1].provenance);
+        }
 }
 
 static void test_reading_changes_nothing(void **state) {
@@ -47,7 +62,7 @@ static void test_reading_changes_nothing(void **state) {
     lensprof_error error;
     size_t size;
     make_old(here->path);
-    assert_int_equal(layout_of(here->path), 1);
+    assert_int_equal(layout_of(here->path), from);
     unsigned char *bytes = read_file(here->path, &size);
     for (uint32_t mode = 0; mode < 3; mode++) { /* also in those that could write */
         lensprof_store *store = store_at(here->path, mode);
@@ -110,7 +125,9 @@ static void test_failed_write_leaves_the_layout(void **state) {
     assert_int_equal(lp_store_number(store->db, "PRAGMA page_count", &pages), SQLITE_OK);
     snprintf(sql, sizeof sql, "PRAGMA max_page_count = %d", (int)pages);
     assert_int_equal(sqlite3_exec(store->db, sql, NULL, NULL, NULL), SQLITE_OK);
-    assert_int_equal(lensprof_store_put(store, &old[0], NULL, &error), LENSPROF_ERROR_FULL);
+    fill_profile(&found); /* of more than what is left of the pages */
+    assert_ok(lensprof_response_set_table(&found.response[0], (double[]){0.0, 0.7, 1.0}, 3));
+    assert_int_equal(lensprof_store_put(store, &found, NULL, &error), LENSPROF_ERROR_FULL);
     assert_old_profiles(store);
     assert_file(here->path, bytes, size);
     assert_int_equal(sqlite3_exec(store->db, "PRAGMA max_page_count = 1000", NULL, NULL, NULL), SQLITE_OK);
@@ -179,13 +196,72 @@ static void test_several_processes(void **state) {
     assert_integrity(here->path);
 }
 
+/* What was at the end of the method is read from there, before the file is brought up to date and by the same rule
+ * then. */
+static void test_methods(void **state) {
+    const place *here = *state;
+    static const struct {
+        const char *before, *method;
+        int64_t prior;
+        uint32_t forced;
+    } rows[] = {{"transfer", "transfer", 0, 0},
+                {"transfer+12", "transfer", 12, 0},
+                {"transfer+12 (forced)", "transfer", 12, 1},
+                {"transfer (forced)", "transfer", 0, 1},
+                {"transfer+12(forced)", "transfer+12(forced)", 0, 0},
+                {"a+b", "a+b", 0, 0},
+                {"a+1b", "a+1b", 0, 0},
+                {"", "", 0, 0},
+                {" (forced)", "", 0, 1},
+                {"12", "12", 0, 0},
+                {"+5", "", 5, 0},
+                {"x+0", "x", 0, 0},
+                {"x+1+2", "x+1", 2, 0},
+                {"transfer+0012", "transfer", 12, 0},
+                {"transfer+-3", "transfer+-3", 0, 0},
+                {"x+9223372036854775807", "x", INT64_MAX, 0},
+                {"c++", "c++", 0, 0},
+                {"radiance (EMoR+falloff)", "radiance (EMoR+falloff)", 0, 0}};
+    enum {
+        COUNT = sizeof rows / sizeof *rows
+    };
+    lensprof_profile *all = calloc(COUNT, sizeof *all);
+    lensprof_store_stats stats[2] = {{.struct_size = sizeof *stats}, {.struct_size = sizeof *stats}};
+    for (int i = 0; i < COUNT; i++) {
+        fill_profile(&all[i]);
+        all[i].provenance.forced = 0;
+        memset(all[i].provenance.method, 0, sizeof all[i].provenance.method);
+        strcpy(all[i].provenance.method, rows[i].before);
+    }
+    make_layout(here->path, from, all, COUNT);
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_WRITE);
+    for (int again = 0; again < 2; again++) {
+        for (int i = 0; i < COUNT; i++) {
+            assert_ok(lensprof_store_get(store, i + 1, &found, NULL));
+            assert_string_equal(found.provenance.method, rows[i].method);
+            assert_int_equal(found.provenance.prior_id, rows[i].prior);
+            assert_int_equal(found.provenance.forced, rows[i].forced);
+        }
+        assert_ok(lensprof_store_get_stats(store, &stats[again], NULL));
+        assert_int_equal(stats[again].layout, again ? LP_STORE_LAYOUT : from);
+        if (!again) assert_ok(lensprof_store_remove(store, put_at(store, &all[0]), NULL));
+    }
+    assert_string_equal(stats[0].method[0].name, "transfer");
+    assert_int_equal(stats[0].method[0].profiles, 5);
+    assert_memory_equal(stats[0].method, stats[1].method, sizeof stats[0].method);
+    lensprof_store_close(store);
+    assert_integrity(here->path);
+    free(all);
+}
+
 /* Somebody's own table of that name, or a column: the write fails, reading goes on. */
 static void test_names_that_are_taken(void **state) {
     const place *here = *state;
-    static const char *const taken[] = {"CREATE TABLE gain_grids (a)",
-                                        "ALTER TABLE profiles ADD COLUMN gain_grids INTEGER"};
+    static const char *const taken[] = {
+        "ALTER TABLE profiles ADD COLUMN forced INTEGER", "ALTER TABLE profiles ADD COLUMN prior_id INTEGER",
+        "CREATE TABLE gain_grids (a)", "ALTER TABLE profiles ADD COLUMN gain_grids INTEGER"};
     lensprof_error error;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < (from < 2 ? 4 : 2); i++) {
         size_t size;
         unlink(here->path);
         make_old(here->path);
@@ -201,15 +277,24 @@ static void test_names_that_are_taken(void **state) {
     }
 }
 
+static int setup_1(void **state) { return from = 1, place_setup(state); }
+static int setup_2(void **state) { return from = 2, place_setup(state); }
+static int setup_3(void **state) { return from = 3, place_setup(state); }
+
+#define FROM(layout, function) \
+    { #function " from layout " #layout, function, setup_##layout, place_teardown, NULL }
+#define FROM_EACH(function) FROM(1, function), FROM(2, function), FROM(3, function)
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        store_test(test_reading_changes_nothing),
-        store_test(test_first_put_brings_up_to_date),
-        store_test(test_first_remove_brings_up_to_date),
-        store_test(test_failed_write_leaves_the_layout),
-        store_test(test_old_and_new_files_become_the_same),
-        store_test(test_several_processes),
-        store_test(test_names_that_are_taken),
+        FROM_EACH(test_reading_changes_nothing),
+        FROM_EACH(test_first_put_brings_up_to_date),
+        FROM_EACH(test_first_remove_brings_up_to_date),
+        FROM_EACH(test_failed_write_leaves_the_layout),
+        FROM_EACH(test_old_and_new_files_become_the_same),
+        FROM_EACH(test_several_processes),
+        FROM_EACH(test_methods),
+        FROM_EACH(test_names_that_are_taken),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

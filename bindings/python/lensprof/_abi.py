@@ -350,7 +350,8 @@ class Provenance(Structure):
         ("doubt", c_char * 64),
         ("prior_id", c_int64),
         ("forced", c_uint32),
-        ("reserved", c_uint32 * 85),
+        ("not_usable", c_uint32),
+        ("reserved", c_uint32 * 84),
     ]
 
 
@@ -710,6 +711,8 @@ class Lookup(Structure):
 class StoreRow(Structure):
     _fields_ = [
         ("id", c_int64),
+        ("damaged", c_uint32),
+        ("reserved", c_uint32 * 3),
         ("key", ProfileKey),
         ("provenance", Provenance),
     ]
@@ -1003,8 +1006,6 @@ FUNCTIONS = {
     "lensprof_store_list": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(StoreRow), c_uint32, POINTER(c_uint32),
                                     POINTER(ErrorText)]),
     "lensprof_store_find_same": (c_int, [POINTER(Store), POINTER(Profile), POINTER(c_int64), POINTER(ErrorText)]),
-    "lensprof_provenance_prior": (c_int64, [POINTER(Provenance)]),
-    "lensprof_provenance_set_prior": (c_int, [POINTER(Provenance), c_int64]),
     "lensprof_store_merge": (c_int, [POINTER(Store), POINTER(Store), POINTER(c_uint32), POINTER(c_uint32),
                                      POINTER(ErrorText)]),
     "lensprof_store_check": (c_int, [POINTER(Store), FaultVisitor, c_void_p, POINTER(c_uint32), POINTER(c_uint32),

@@ -1,7 +1,7 @@
 """What is known about one camera, lens and setting; see lensprof/profile.h."""
 from __future__ import annotations
 
-from ctypes import byref, c_int64, c_size_t, create_string_buffer
+from ctypes import byref, c_size_t, create_string_buffer
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from . import _abi
 from ._abi import Pack, Processing
 from ._library import check, lib
-from ._struct import Curves, Enumerated, Nested, Text, Value, integer
+from ._struct import Curves, Enumerated, Nested, Text, Value
 from .model import GainGrid, Response, Vignetting
 
 
@@ -43,7 +43,9 @@ class Provenance(Value, _abi.Provenance):
 
     created_unix_s: seconds since 1970-01-01 UTC, 0 = unknown. images, pairs: how many were used. heldout_rms: levels
     of 255, or UNKNOWN. inlier_share: 0..1, or UNKNOWN. doubt: why it may be wrong, as found when it was imported.
-    prior: the profile of the same database that is in this one, the number behind the method ("transfer+12"); 0 = none.
+    prior_id: the profile of the same database that was the prior of its fit, 0 = none. forced: 1 = stored although the
+    fit was not usable. not_usable: 1 = of a fit that was not usable, which Store.put refuses unless it is forced; it is
+    not stored.
     """
 
     method = Text()
@@ -57,15 +59,7 @@ class Provenance(Value, _abi.Provenance):
     doubt = Text()
     prior_id: int
     forced: int
-
-    @property
-    def prior(self) -> int:
-        return lib.lensprof_provenance_prior(byref(self))
-
-    @prior.setter
-    def prior(self, id: int) -> None:
-        check(lib.lensprof_provenance_set_prior(byref(self), integer(id, "prior", c_int64)),
-              f"{id} is below 0, or the method {self.method!r} leaves no room for it")
+    not_usable: int
 
     def _set_defaults(self) -> None:
         self.heldout_rms = self.inlier_share = _abi.UNKNOWN

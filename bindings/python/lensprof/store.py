@@ -15,9 +15,11 @@ from .profile import Profile, ProfileKey, Provenance
 
 
 class StoreRow(Value, _abi.StoreRow):
-    """A row of a listing: id, key and provenance of a profile."""
+    """A row of a listing: id, key and provenance of a profile. damaged: 1 = the row has impossible values, its key and
+    provenance are unknown, and Store.get says what is wrong."""
 
     id: int
+    damaged: int
     key = Nested(ProfileKey)
     provenance = Nested(Provenance)
 

@@ -97,8 +97,9 @@ std::string source_of(const std::string &file) {
 
 int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin) {
     auto &p = profile.provenance;
-    set_text(p.method, sizeof p.method, origin.method + (origin.usable ? "" : " (forced)"));
-    check(lensprof_provenance_set_prior(&p, origin.held), store_path(o.db));
+    set_text(p.method, sizeof p.method, origin.method);
+    p.prior_id = origin.held;
+    p.forced = !origin.usable;
     set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
     set_text(p.source, sizeof p.source, source_of(origin.source));
     p.created_unix_s = static_cast<int64_t>(std::time(nullptr));

@@ -11,7 +11,7 @@ bool holds(lensprof_store *store, const lensprof_profile &profile, const std::st
     auto next = std::make_unique<lensprof_profile>(profile);
     std::set<int64_t> seen;
     for (;;) {
-        const int64_t id = lensprof_provenance_prior(&next->provenance);
+        const int64_t id = next->provenance.prior_id;
         if (id <= 0 || !seen.insert(id).second || lensprof_store_get(store, id, next.get(), nullptr) != LENSPROF_OK)
             return false;
         if (source == next->provenance.source) return true;
@@ -41,12 +41,11 @@ EarlierProfile find_stored_prior(const StoreOptions &o, const lensprof_profile_k
     if (status != LENSPROF_OK || !how.exact) return {0, nullptr, "no profile is stored for this lens and setting"};
     const std::string named = "profile " + std::to_string(how.id[0]);
     if (!is_uncertain(*profile)) return {0, nullptr, named + " has no covariance"};
-    if (std::string(profile->provenance.method).find("(forced)") != std::string::npos)
-        return {0, nullptr, named + " was stored by --force, of a fit that was not usable"};
+    if (profile->provenance.forced) return {0, nullptr, named + " was stored by --force, of a fit that was not usable"};
     const std::string own = source_of(source);
     int64_t id = how.id[0];
     if (own == profile->provenance.source) {  // fitted again: what it was given then is the prior again
-        id = lensprof_provenance_prior(&profile->provenance);
+        id = profile->provenance.prior_id;
         if (id <= 0 || lensprof_store_get(store.get(), id, profile.get(), nullptr) != LENSPROF_OK
             || !is_uncertain(*profile))
             return {0, nullptr, named + " is of these pictures alone, which are fitted again"};

@@ -15,7 +15,7 @@ struct EarlierProfile {
 };
 
 // The profile that is stored for the key, unless it has no covariance or is of a fit that was not usable. No pictures
-// count twice: where it was made from `source`, the one that is in it (lensprof_provenance_prior) is the prior again;
+// count twice: where it was made from `source`, the one that is in it (provenance.prior_id) is the prior again;
 // Failure (usage) where `source` is deeper in it.
 EarlierProfile find_stored_prior(const StoreOptions &o, const lensprof_profile_key &key, const std::string &source);
 

@@ -57,9 +57,10 @@ std::vector<lensprof_store_row> KeyFilter::rows(lensprof_store *store, const std
     rows.resize(std::min<size_t>(rows.size(), found));
     if (processing_.empty()) return rows;
     const uint32_t processing = processing_of_name(processing_);
-    rows.erase(std::remove_if(rows.begin(), rows.end(),
-                              [=](const lensprof_store_row &row) { return row.key.processing != processing; }),
-               rows.end());
+    rows.erase(
+        std::remove_if(rows.begin(), rows.end(),
+                       [=](const lensprof_store_row &row) { return !row.damaged && row.key.processing != processing; }),
+        rows.end());
     return rows;
 }
 

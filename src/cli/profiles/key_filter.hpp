@@ -29,7 +29,8 @@ public:
     lensprof_profile_key key(uint32_t processing) const;
     bool has_processing() const { return !processing_.empty(); }
 
-    // Rows of the profiles that match, in the order of lensprof_store_list; `db` as given, for texts.
+    // Rows of the profiles that match, in the order of lensprof_store_list, and all damaged rows; `db` as given, for
+    // texts.
     std::vector<lensprof_store_row> rows(lensprof_store *store, const std::string &db) const;
 
     // The profiles with these ids, or where there are none all that match; Failure (not_found).

@@ -22,20 +22,39 @@ std::string number_or(double value, const char *pattern) {
     return value == LENSPROF_UNKNOWN ? std::string("-") : format(pattern, value);
 }
 
+// One line for each row that cannot be listed, and the exit code for them.
+int report_damaged(lensprof_store *store, const std::vector<lensprof_store_row> &rows, Streams &streams) {
+    ExitCode code = ExitCode::done;
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    for (const auto &row : rows) {
+        lensprof_error error{};
+        if (!row.damaged || lensprof_store_get(store, row.id, profile.get(), &error) == LENSPROF_OK) continue;
+        streams.err << "lensprof: warning: " << error.text << "\n";
+        code = ExitCode::store;
+    }
+    return static_cast<int>(code);
+}
+
 int list(const std::string &db, const KeyFilter &filter, bool json, Streams &streams) {
     Store store = open_store(db, LENSPROF_STORE_READ);
     const std::vector<lensprof_store_row> rows = filter.rows(store.get(), db);
     if (json) {
         Json profiles = Json::array();
+        Json damaged = Json::array();
         for (const auto &row : rows)
-            profiles.push_back(
-                {{"id", row.id}, {"key", key_json(row.key)}, {"provenance", provenance_json(row.provenance)}});
-        print_json(Json{{"schema", 1}, {"profiles", profiles}}, streams.out);
-        return 0;
+            if (row.damaged)
+                damaged.push_back(row.id);
+            else
+                profiles.push_back(
+                    {{"id", row.id}, {"key", key_json(row.key)}, {"provenance", provenance_json(row.provenance)}});
+        print_json(Json{{"schema", 1}, {"profiles", profiles}, {"damaged", damaged}}, streams.out);
+        return report_damaged(store.get(), rows, streams);
     }
     streams.out << format("%6s  %-28s %-32s %5s %7s %6s %9s  %s\n", "id", "camera", "lens", "crop", "mm", "f/",
                           "focus m", "state");
     for (const auto &row : rows) {
+        if (row.damaged) continue;
         const auto &k = row.key;
         streams.out << format("%6lld  %-28s %-32s %5s %7s %6s %9s  %s%s%s\n", static_cast<long long>(row.id),
                               k.camera_model, k.lens, number_or(k.crop_factor, "%.3g").c_str(),
@@ -43,7 +62,7 @@ int list(const std::string &db, const KeyFilter &filter, bool json, Streams &str
                               number_or(k.distance_m, "%g").c_str(), processing_name(k.processing),
                               *k.unit ? ", unit " : "", k.unit);
     }
-    return 0;
+    return report_damaged(store.get(), rows, streams);
 }
 
 // What a verb is asked for.

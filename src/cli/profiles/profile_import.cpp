@@ -60,7 +60,8 @@ lensprof_status remake_curve(lensprof_response &response) {
 
 // The profile as it is stored here: what it holds is of another database.
 lensprof_status make_own(lensprof_profile &profile) {
-    lensprof_status status = lensprof_provenance_set_prior(&profile.provenance, 0);
+    lensprof_status status = LENSPROF_OK;
+    profile.provenance.prior_id = 0;
     for (uint32_t c = 0; c < profile.responses && status == LENSPROF_OK; c++)
         status = remake_curve(profile.response[c]);
     return status;

@@ -292,6 +292,7 @@ Json key_json(const lensprof_profile_key &key) {
             {"focal_mm", number_or_null(key.focal_mm)},
             {"aperture", number_or_null(key.aperture)},
             {"distance_m", distance_json(key.distance_m)},
+            {"color_temperature_k", number_or_null(key.color_temperature_k)},
             {"processing", processing_name(key.processing)}};
 }
 
@@ -304,7 +305,9 @@ Json provenance_json(const lensprof_provenance &p) {
             {"pairs", p.pairs},
             {"heldout_rms", number_or_null(p.heldout_rms)},
             {"inlier_share", number_or_null(p.inlier_share)},
-            {"doubt", p.doubt}};
+            {"doubt", p.doubt},
+            {"prior_id", p.prior_id ? Json(p.prior_id) : Json()},
+            {"forced", p.forced != 0}};
 }
 
 Json profile_json(int64_t id, const lensprof_profile &profile) {
@@ -351,11 +354,15 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
     const auto &p = profile.provenance;
     out << "profile   " << (id ? std::to_string(id) + ": " : std::string()) << describe_key(profile.key) << "\n";
     if (*profile.key.unit) out << "unit      " << profile.key.unit << ", and no other\n";
+    if (profile.key.color_temperature_k != LENSPROF_UNKNOWN)
+        out << format("light     %g K\n", profile.key.color_temperature_k);
     print_vignettings(profile.vignetting, profile.vignettings, certainty_of(profile), out);
     print_gain_grid(profile.grid, out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
-    out << "source    " << (*p.method ? p.method : "unknown method") << ", " << p.images << " images, " << p.pairs
-        << " pairs";
+    out << "source    " << (*p.method ? p.method : "unknown method");
+    if (p.prior_id) out << ", with profile " << p.prior_id << " as its prior";
+    if (p.forced) out << ", forced though not usable";
+    out << ", " << p.images << " images, " << p.pairs << " pairs";
     if (p.heldout_rms != LENSPROF_UNKNOWN) out << format(", residual %.2f levels", p.heldout_rms);
     out << (*p.source ? std::string(", ") + p.source : std::string()) << "\n";
     if (*p.doubt) out << "doubt     " << p.doubt << "\n";

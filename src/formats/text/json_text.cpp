@@ -146,6 +146,8 @@ size_t JsonValue::size() const {
     return count;
 }
 
+bool JsonValue::has(std::string_view name) const { return (*this)[name].index_ != kMissing; }
+
 JsonValue JsonValue::operator[](std::string_view name) const {
     if (!is_object()) fail("is no object; correct it");
     JsonValue found{owner_, kMissing};
@@ -181,6 +183,11 @@ int64_t JsonValue::whole(int64_t low, int64_t high) const {
         fail("is " + std::to_string(value) + ", not within " + std::to_string(low) + " to " + std::to_string(high)
              + "; correct it");
     return value;
+}
+
+bool JsonValue::boolean() const {
+    if (!*this || owner_->nodes_[index_].kind != JsonText::kBoolean) fail("is not true or false; correct it");
+    return owner_->nodes_[index_].whole != 0;
 }
 
 std::string_view JsonValue::text() const {

@@ -25,6 +25,8 @@ public:
 
     // Number of items of an array or members of an object; throws for what is neither.
     size_t size() const;
+    // Whether an object has a member of this name, be it null.
+    bool has(std::string_view name) const;
     // The member of an object, the last one of this name; throws for what is no object.
     JsonValue operator[](std::string_view name) const;
     // The same; throws SYNTAX, with the path, where it is missing or null.
@@ -38,6 +40,7 @@ public:
     double number() const;
     double number_within(double low, double high) const;
     int64_t whole(int64_t low, int64_t high) const;
+    bool boolean() const;
     std::string_view text() const;
     std::vector<double> numbers(size_t low, size_t high) const;  // an array of so many numbers
 

@@ -34,12 +34,12 @@ static lensprof_status check_tables(lensprof_store *store, lensprof_error *error
     sqlite3_stmt *statement;
     lensprof_status status = lp_store_begin(store, false, error);
     if (status != LENSPROF_OK) return status;
-    const char *sql =
-        store->layout < 2 ? "SELECT 1 FROM profiles, responses, emor_coefficients, vignettings"
-        : store->layout < 3
-            ? "SELECT gain_grids.channels FROM profiles, responses, emor_coefficients, vignettings, gain_grids"
-            : "SELECT unit, gain_grids.channels FROM profiles, responses, emor_coefficients, vignettings, gain_grids";
-    const int rc = sqlite3_prepare_v2(store->db, sql, -1, &statement, NULL);
+    static const char *const columns[LP_STORE_LAYOUT] = {
+        "SELECT mode, k1 FROM profiles, responses, emor_coefficients, vignettings",
+        "SELECT mode, k1, channels FROM profiles, responses, emor_coefficients, vignettings, gain_grids",
+        "SELECT mode, k1, channels, unit FROM profiles, responses, emor_coefficients, vignettings, gain_grids",
+        "SELECT mode, k1, channels, prior_id FROM profiles, responses, emor_coefficients, vignettings, gain_grids"};
+    const int rc = sqlite3_prepare_v2(store->db, lp_store_of_layout(store, columns), -1, &statement, NULL);
     if (rc) status = lp_store_fail_sql(store->path, store->db, rc, error);
     sqlite3_finalize(statement);
     lp_store_rollback(store);

@@ -9,7 +9,7 @@
 #include "core/profile.h"
 
 #define LP_STORE_APPLICATION_ID 0x4C505246 /* as in 0001_profiles.sql */
-#define LP_STORE_LAYOUT 3                  /* that of the newest schema */
+#define LP_STORE_LAYOUT 4                  /* that of the newest schema */
 #define LP_STORE_BUSY_MS 5000
 
 #define LP_STORE_STATEMENTS 48 /* more than there are in the sources; what is beyond is prepared each time */
@@ -33,7 +33,7 @@ struct lensprof_store {
 };
 
 /* profiles/schema: number n makes layout n of layout n - 1. */
-extern const char lp_schema_0001[], lp_schema_0002[], lp_schema_0003[];
+extern const char lp_schema_0001[], lp_schema_0002[], lp_schema_0003[], lp_schema_0004[];
 
 /* place.c: what lies around the file with the full path `full`. */
 bool lp_store_has_log(const char *full); /* a log that is not empty lies beside the file */
@@ -86,6 +86,8 @@ int lp_store_migrate(sqlite3 *db, int layout); /* result code; from tables of `l
 /* Starts a transaction and checks that the file is (still) a database. One of an older layout is read as it is, and
  * brought up to date by the first transaction that writes, as a part of it. */
 lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error *error);
+/* Within a transaction: the statement for the layout of the file, of those for layouts 1 to LP_STORE_LAYOUT. */
+const char *lp_store_of_layout(const lensprof_store *store, const char *const *statements);
 lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error); /* rolls back when it fails */
 void lp_store_rollback(lensprof_store *store);
 

@@ -14,7 +14,8 @@ int lp_store_number(sqlite3 *db, const char *sql, int64_t *value) {
 }
 
 int lp_store_migrate(sqlite3 *db, int layout) {
-    static const char *const schemas[LP_STORE_LAYOUT] = {lp_schema_0001, lp_schema_0002, lp_schema_0003};
+    static const char *const schemas[LP_STORE_LAYOUT] = {lp_schema_0001, lp_schema_0002, lp_schema_0003,
+                                                         lp_schema_0004};
     int rc = SQLITE_OK;
     for (int next = layout; next < LP_STORE_LAYOUT && rc == SQLITE_OK; next++)
         rc = sqlite3_exec(db, schemas[next], NULL, NULL, NULL);
@@ -89,6 +90,10 @@ lensprof_status lp_store_begin(lensprof_store *store, bool write, lensprof_error
     if (status == LENSPROF_OK && write) status = bring_up_to_date(store, error);
     if (status != LENSPROF_OK) lp_store_rollback(store);
     return status;
+}
+
+const char *lp_store_of_layout(const lensprof_store *store, const char *const *statements) {
+    return statements[store->layout - 1]; /* 1 or more: check_layout */
 }
 
 lensprof_status lp_store_commit(lensprof_store *store, lensprof_error *error) {

@@ -69,6 +69,28 @@ static void keep_one_processing(lp_candidates *found) {
     found->count = kept;
 }
 
+static double mired_of(double color_temperature_k) { return 1e6 / color_temperature_k; }
+
+/* Shading depends on the light: of the rows that have a colour temperature only those of the nearest one count (in
+ * mired, 1e6/K), where the key has one. Returns whether that is the key's. */
+static bool keep_nearest_light(lp_candidates *found, const lensprof_profile_key *key) {
+    uint32_t kept = 0;
+    double nearest = INFINITY;
+    if (key->color_temperature_k == LENSPROF_UNKNOWN) return true;
+    const double asked = mired_of(key->color_temperature_k);
+    for (uint32_t i = 0; i < found->count; i++)
+        if (found->all[i].color_temperature_k != LENSPROF_UNKNOWN)
+            nearest = fmin(nearest, fabs(mired_of(found->all[i].color_temperature_k) - asked));
+    for (uint32_t i = 0; i < found->count; i++) {
+        const lp_candidate *c = &found->all[i];
+        if (c->color_temperature_k == LENSPROF_UNKNOWN
+            || fabs(mired_of(c->color_temperature_k) - asked) <= nearest * (1.0 + 1e-9))
+            found->all[kept++] = *c;
+    }
+    found->count = kept;
+    return nearest == INFINITY || nearest <= 1e-6 * asked;
+}
+
 /* k in half diagonals of the key's sensor: r there is r times the ratio here. */
 static void rescale(lp_candidate *c, const lensprof_profile_key *key) {
     if (c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN) return;
@@ -262,7 +284,8 @@ static lensprof_status make_profile(lensprof_store *store, const lensprof_profil
     profile->covariance_size = 0;
     memset(profile->covariance, 0, sizeof profile->covariance);
     snprintf(profile->provenance.method, sizeof profile->provenance.method, "lookup");
-    profile->provenance.images = profile->provenance.pairs = 0;
+    profile->provenance.images = profile->provenance.pairs = profile->provenance.forced = 0;
+    profile->provenance.prior_id = 0;
     profile->provenance.heldout_rms = profile->provenance.inlier_share = LENSPROF_UNKNOWN;
     for (uint32_t c = profile->vignettings; c < 3; c++)
         memset(&profile->vignetting[c], 0, sizeof profile->vignetting[c]);
@@ -415,6 +438,8 @@ static const char *choose(lp_candidates *found, const lensprof_profile_key *key,
     const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
     if (!keep_best(found, key)) return "this lens was measured on smaller sensors only";
     keep_one_processing(found);
+    if (!keep_nearest_light(found, key))
+        mind(lookup, "the profiles are of light of other colour temperatures: those of the nearest are taken");
     if (several) mind(lookup, "the sensor's size is not known: of those measured the smallest is taken");
     snprintf(text, sizeof text,
              found->by_words ? "the lens was found by the words and numbers of its name: %s"

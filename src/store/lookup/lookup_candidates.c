@@ -7,20 +7,15 @@
 #include <string.h>
 
 #include "store/names/names.h"
+#include "store/profiles/layouts.h"
 
 #define BUILT_IN_SCORE 0.6 /* of a lens that was found by its camera */
 #define SHORTEST_CAMERA 3  /* characters of a name that says something within another one */
 
-#define ROWS_OF_LENS(name, unit, crop, doubt)                                                                       \
-    "SELECT id, camera_model, lens, " unit ", " crop                                                                \
-    ", focal_mm, aperture, distance_m, curve, k1, k2, k3,"                                                          \
-    " vignetting_curves, covariance_size, processing FROM profiles JOIN vignettings ON profile_id = id WHERE " name \
-    " = ?1 AND (?2 OR " doubt " = '') AND (?3 OR processing = ?4) ORDER BY id, curve"
-
-static const char *const rows_sql[2] = {ROWS_OF_LENS("lower(replace(replace(replace(replace(replace(replace(lens,"
-                                                     " ' ', ''), '-', ''), '/', ''), '.', ''), '(', ''), ')', ''))",
-                                                     "''", "NULL", "''"),
-                                        ROWS_OF_LENS("lens_name", "unit", "crop_factor", "doubt")};
+static const char *const rows_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(
+    "SELECT id, camera_model, lens, unit, crop_factor, focal_mm, aperture, distance_m, color_temperature_k, curve, k1, k2, k3,"
+    " vignetting_curves, covariance_size, processing FROM profiles JOIN vignettings ON profile_id = id"
+    " WHERE lens_name = ?1 AND (?2 OR doubt = '') AND (?3 OR processing = ?4) ORDER BY id, curve");
 
 static lp_candidate *add(lp_candidates *found) {
     if (found->count == found->room) {
@@ -57,6 +52,7 @@ static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r) {
     r->key.focal_mm = lp_read_known(reader);
     r->key.aperture = lp_read_known(reader);
     r->key.distance_m = lp_read_known(reader);
+    r->key.color_temperature_k = lp_read_known(reader);
     r->curve = lp_read_integer(reader, 0, 2);
     for (int n = 0; n < 3; n++) r->k[n] = lp_read_real(reader);
     r->curves = lp_read_integer(reader, 1, 3);
@@ -105,6 +101,7 @@ static bool take_row(const row *r, const lensprof_profile_key *key, lp_candidate
         one->node.focal_mm = r->key.focal_mm;
         one->node.aperture = r->key.aperture;
         one->node.distance_m = r->key.distance_m;
+        one->color_temperature_k = r->key.color_temperature_k;
         for (int c = 0; c < 3; c++) memcpy(one->node.k[c], r->k, sizeof r->k); /* of all, unless others follow */
     } else
         memcpy(one->node.k[r->curve], r->k, sizeof r->k);
@@ -114,7 +111,7 @@ static bool take_row(const row *r, const lensprof_profile_key *key, lp_candidate
 static lensprof_status read_rows(lensprof_store *store, const char *name, const lensprof_profile_key *key,
                                  const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error) {
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
-    lensprof_status status = lp_store_prepare(store, rows_sql[store->layout >= 3], &binder.statement, error);
+    lensprof_status status = lp_store_prepare(store, lp_store_of_layout(store, rows_sql), &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     lp_bind_text(&binder, name);
     lp_bind_integer(&binder, o->with_doubt);

@@ -12,6 +12,7 @@ typedef struct lp_candidate {
     int is_fixed; /* of a camera whose lens has no name of its own: it cannot be changed */
     uint32_t processing;
     double crop;
+    double color_temperature_k; /* LENSPROF_UNKNOWN = any */
 } lp_candidate;
 
 typedef struct lp_candidates {

@@ -41,36 +41,28 @@ static int64_t arrived(const merging *m, int64_t from) {
     return low < m->count && m->all[low].from == from ? m->all[low].to : 0;
 }
 
-/* What is in the profile has another number here, and is older: it has arrived. */
+/* The prior has another id here, and is older: it has arrived. 0 where it is not there. */
 static int64_t prior_here(const merging *m, const lensprof_provenance *provenance) {
-    const int64_t prior = lensprof_provenance_prior(provenance);
-    return prior ? arrived(m, prior) : 0;
+    return provenance->prior_id ? arrived(m, provenance->prior_id) : 0;
 }
 
 /* A new profile. */
 static lensprof_status add(merging *m, lensprof_profile *profile, int64_t *here, lensprof_error *error) {
-    lensprof_provenance *provenance = &profile->provenance;
-    lensprof_status status = LENSPROF_OK;
     m->added++;
-    if (lensprof_provenance_prior(provenance))
-        status = lensprof_provenance_set_prior(provenance, prior_here(m, provenance));
-    if (status != LENSPROF_OK) /* no room for the number; there is for none */
-        status = lensprof_provenance_set_prior(provenance, 0);
-    return status == LENSPROF_OK ? lp_store_insert(m->store, profile, here, error) : status;
+    profile->provenance.prior_id = prior_here(m, &profile->provenance);
+    return lp_store_insert(m->store, profile, here, error);
 }
 
-/* A known profile, now in the store's scratch, learns what is in it where only the other database says so. */
+/* A known profile, now in the store's scratch, gets its prior where only the other database has it. */
 static lensprof_status complete(merging *m, const lensprof_profile *profile, int64_t here, lensprof_error *error) {
-    lensprof_provenance *known = &m->store->scratch.provenance;
     const int64_t prior = prior_here(m, &profile->provenance);
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
     m->known++;
-    if (!prior || lensprof_provenance_prior(known) || lensprof_provenance_set_prior(known, prior) != LENSPROF_OK)
-        return LENSPROF_OK;
+    if (!prior || m->store->scratch.provenance.prior_id) return LENSPROF_OK;
     lensprof_status status =
-        lp_store_prepare(m->store, "UPDATE profiles SET method = ?1 WHERE id = ?2", &binder.statement, error);
+        lp_store_prepare(m->store, "UPDATE profiles SET prior_id = ?1 WHERE id = ?2", &binder.statement, error);
     if (status != LENSPROF_OK) return status;
-    lp_bind_text(&binder, known->method);
+    lp_bind_integer(&binder, prior);
     lp_bind_integer(&binder, here);
     return lp_store_run(m->store, &binder, error);
 }

@@ -4,20 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "store/profiles/layouts.h"
+
 const char *const lp_store_processings[LP_STORE_PROCESSINGS] = {"raw", "jpeg", "corrected"};
 
-/* What layout 3 added, and what stands for it in older ones. */
-#define UNIT_3 "unit"
-#define CROP_3 "crop_factor"
-#define DOUBT_3 "doubt"
-#define UNIT_1 "''"
-#define CROP_1 "NULL"
-#define DOUBT_1 "''"
-
 /* clang-format off */
-#define ROW_COLUMNS(unit, crop, doubt) \
-    "id, camera_maker, camera_model, lens, " unit " AS unit, " crop " AS crop_factor, focal_mm, aperture," \
-    " distance_m, processing, method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, " doubt " AS doubt"
+#define ROW_COLUMNS \
+    "id, camera_maker, camera_model, lens, unit, crop_factor, focal_mm, aperture, distance_m, color_temperature_k," \
+    " processing, method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, doubt, prior_id," \
+    " forced"
 /* clang-format on */
 
 /* Texts are equal without ASCII case and outer blanks. */
@@ -37,6 +32,7 @@ static void bind_key(lp_store_binder *binder, const lensprof_profile_key *key) {
     lp_bind_known(binder, key->focal_mm);
     lp_bind_known(binder, key->aperture);
     lp_bind_known(binder, key->distance_m);
+    lp_bind_known(binder, key->color_temperature_k);
 }
 
 /* Columns ROW_COLUMNS. Texts are zero-filled. The caller validates key and provenance. */
@@ -44,6 +40,7 @@ static void read_row(lp_store_reader *reader, lensprof_store_row *row) {
     lensprof_profile_key *key = &row->key;
     lensprof_provenance *provenance = &row->provenance;
     memset(row, 0, sizeof *row);
+    lensprof_profile_key_init(key);
     row->id = lp_read_integer(reader, 1, INT64_MAX);
     lp_read_text(reader, key->camera_maker, sizeof key->camera_maker);
     lp_read_text(reader, key->camera_model, sizeof key->camera_model);
@@ -53,7 +50,7 @@ static void read_row(lp_store_reader *reader, lensprof_store_row *row) {
     key->focal_mm = lp_read_known(reader);
     key->aperture = lp_read_known(reader);
     key->distance_m = lp_read_known(reader);
-    key->color_temperature_k = LENSPROF_UNKNOWN; /* there is no column for it */
+    key->color_temperature_k = lp_read_known(reader);
     key->processing = lp_read_name(reader, lp_store_processings, LP_STORE_PROCESSINGS);
     lp_read_text(reader, provenance->method, sizeof provenance->method);
     lp_read_text(reader, provenance->software, sizeof provenance->software);
@@ -64,6 +61,8 @@ static void read_row(lp_store_reader *reader, lensprof_store_row *row) {
     provenance->heldout_rms = lp_read_known(reader);
     provenance->inlier_share = lp_read_known(reader);
     lp_read_text(reader, provenance->doubt, sizeof provenance->doubt);
+    if (!lp_read_null(reader)) provenance->prior_id = lp_read_integer(reader, 1, INT64_MAX);
+    provenance->forced = (uint32_t)lp_read_integer(reader, 0, 1);
 }
 
 /* From the row at which `statement` stands, and its curves, into store->scratch. */
@@ -93,40 +92,34 @@ static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *stateme
 }
 
 /* clang-format off */
-#define SELECT_PROFILE(unit, crop, doubt, grids) \
-    "SELECT " ROW_COLUMNS(unit, crop, doubt) ", response_curves, vignetting_curves, covariance_size, covariance, " \
-    grids " FROM profiles WHERE "
-#define WITH_KEY(unit, crop) \
+#define SELECT_PROFILE \
+    "SELECT " ROW_COLUMNS ", response_curves, vignetting_curves, covariance_size, covariance, gain_grids FROM profiles" \
+    " WHERE "
+#define WITH_KEY \
     SAME_TEXT("camera_maker", "?1") " AND " SAME_TEXT("camera_model", "?2") " AND " SAME_TEXT("lens", "?3") " AND " \
-    SAME_TEXT(unit, "?4") " AND " SAME_NUMBER(crop, "?5") " AND " SAME_NUMBER("focal_mm", "?6") " AND " \
-    SAME_NUMBER("aperture", "?7") " AND " SAME_NUMBER("distance_m", "?8") " AND processing = ?9 ORDER BY id DESC LIMIT 1"
-#define WITH_ID "id = ?1"
-#define LIST(unit, crop, doubt) /* one order for all: that of the index profiles_by_key */ \
-    "SELECT " ROW_COLUMNS(unit, crop, doubt) " FROM profiles WHERE " \
+    SAME_TEXT("unit", "?4") " AND " SAME_NUMBER("crop_factor", "?5") " AND " SAME_NUMBER("focal_mm", "?6") " AND " \
+    SAME_NUMBER("aperture", "?7") " AND " SAME_NUMBER("distance_m", "?8") " AND " \
+    SAME_NUMBER("color_temperature_k", "?9") " AND processing = ?10 ORDER BY id DESC LIMIT 1"
+#define LIST /* one order for all: that of the index profiles_by_key */ \
+    "SELECT " ROW_COLUMNS " FROM profiles WHERE " \
     ANY_TEXT("camera_maker", "?1") " AND " ANY_TEXT("camera_model", "?2") " AND " ANY_TEXT("lens", "?3") " AND " \
-    ANY_TEXT(unit, "?4") " AND " ANY_NUMBER(crop, "?5") " AND " ANY_NUMBER("focal_mm", "?6") " AND " \
-    ANY_NUMBER("aperture", "?7") " AND " ANY_NUMBER("distance_m", "?8") \
+    ANY_TEXT("unit", "?4") " AND " ANY_NUMBER("crop_factor", "?5") " AND " ANY_NUMBER("focal_mm", "?6") " AND " \
+    ANY_NUMBER("aperture", "?7") " AND " ANY_NUMBER("distance_m", "?8") " AND " \
+    ANY_NUMBER("color_temperature_k", "?9") \
     " ORDER BY trim(camera_maker) COLLATE NOCASE, trim(camera_model) COLLATE NOCASE, trim(lens) COLLATE NOCASE," \
     " focal_mm, aperture, distance_m, id"
 /* clang-format on */
 
-/* By layout. */
-static const struct statements {
-    const char *find, *get, *list;
-} statements[LP_STORE_LAYOUT] = {
-    {SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "0 AS gain_grids") WITH_KEY(UNIT_1, CROP_1),
-     SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "0 AS gain_grids") WITH_ID, LIST(UNIT_1, CROP_1, DOUBT_1)},
-    {SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "gain_grids") WITH_KEY(UNIT_1, CROP_1),
-     SELECT_PROFILE(UNIT_1, CROP_1, DOUBT_1, "gain_grids") WITH_ID, LIST(UNIT_1, CROP_1, DOUBT_1)},
-    {SELECT_PROFILE(UNIT_3, CROP_3, DOUBT_3, "gain_grids") WITH_KEY(UNIT_3, CROP_3),
-     SELECT_PROFILE(UNIT_3, CROP_3, DOUBT_3, "gain_grids") WITH_ID, LIST(UNIT_3, CROP_3, DOUBT_3)}};
+static const char *const find_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(SELECT_PROFILE WITH_KEY);
+static const char *const get_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(SELECT_PROFILE "id = ?1");
+static const char *const list_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(LIST);
 
 /* Reads the profile with `key`, or with `*id` when key is NULL, into store->scratch. */
 static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *key, int64_t *id,
                              lensprof_error *error) {
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
-    const struct statements *of_layout = &statements[store->layout - 1];
-    lensprof_status status = lp_store_prepare(store, key ? of_layout->find : of_layout->get, &binder.statement, error);
+    const char *sql = lp_store_of_layout(store, key ? find_sql : get_sql);
+    lensprof_status status = lp_store_prepare(store, sql, &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     if (key) {
         bind_key(&binder, key);
@@ -207,22 +200,32 @@ static bool keep(listing *list, const lensprof_store_row *row) {
     return true;
 }
 
+/* A row with impossible values is listed by its id alone. */
+static void make_damaged(lensprof_store_row *row, int64_t id) {
+    memset(row, 0, sizeof *row);
+    row->id = id;
+    row->damaged = 1;
+    lensprof_profile_key_init(&row->key);
+    row->provenance.heldout_rms = row->provenance.inlier_share = LENSPROF_UNKNOWN;
+}
+
 static lensprof_status list_row(lensprof_store *store, sqlite3_stmt *statement, listing *list, lensprof_error *error) {
     lensprof_store_row row;
     lp_store_reader reader = {statement, 0, NULL};
     read_row(&reader, &row);
-    if (reader.bad) return lp_store_fail_profile(store, sqlite3_column_int64(statement, 0), reader.bad, error);
+    if (reader.bad && sqlite3_errcode(store->db) == SQLITE_NOMEM) /* a column could not be fetched */
+        return lp_store_fail_sql(store->path, store->db, SQLITE_NOMEM, error);
     store->scratch.key = row.key; /* the rest of it is valid */
     store->scratch.provenance = row.provenance;
-    if (lensprof_profile_validate(&store->scratch) != LENSPROF_OK)
-        return lp_store_fail_profile(store, row.id, "key or provenance", error);
+    if (reader.bad || lensprof_profile_validate(&store->scratch) != LENSPROF_OK)
+        make_damaged(&row, sqlite3_column_int64(statement, 0));
     return keep(list, &row) ? LENSPROF_OK : lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
 }
 
 static lensprof_status list_rows(lensprof_store *store, const lensprof_profile_key *filter, listing *list,
                                  lensprof_error *error) {
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
-    lensprof_status status = lp_store_prepare(store, statements[store->layout - 1].list, &binder.statement, error);
+    lensprof_status status = lp_store_prepare(store, lp_store_of_layout(store, list_sql), &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     bind_key(&binder, filter);
     lensprof_profile_init(&store->scratch);

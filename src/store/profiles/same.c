@@ -5,9 +5,9 @@
 
 #include "store/names/names.h"
 
-/* Rows of `profiles` with the columns as lp_store_bind_profile binds them, but method and software: which profile is in
- * one, and which version of a program made it, make no other. The first three lines are the way through the index
- * profiles_by_key, the others are to the letter and bit. */
+/* Rows of `profiles` with the columns as lp_store_bind_profile binds them, but method, software, prior_id and forced:
+ * which profile is in one, and which version of a program made it, make no other. The first three lines are the way
+ * through the index profiles_by_key, the others are to the letter and bit. */
 static const char equal_rows[] =
     "SELECT id FROM profiles WHERE trim(camera_maker) COLLATE NOCASE = trim(?1)"
     " AND trim(camera_model) COLLATE NOCASE = trim(?2) AND trim(lens) COLLATE NOCASE = trim(?3)"
@@ -16,7 +16,8 @@ static const char equal_rows[] =
     " AND source = ?10 AND created_unix_s IS ?11 AND images = ?12 AND pairs = ?13 AND heldout_rms IS ?14"
     " AND inlier_share IS ?15 AND response_curves = ?16 AND vignetting_curves = ?17 AND covariance_size = ?18"
     " AND covariance IS ?19 AND gain_grids = ?20 AND unit = ?21 AND crop_factor IS ?22 AND doubt = ?23 AND lens_name = ?24"
-    " AND EXISTS (SELECT 1 FROM vignettings WHERE profile_id = id AND curve = 0 AND k1 = ?25 AND k2 = ?26 AND k3 = ?27)";
+    " AND color_temperature_k IS ?25"
+    " AND EXISTS (SELECT 1 FROM vignettings WHERE profile_id = id AND curve = 0 AND k1 = ?28 AND k2 = ?29 AND k3 = ?30)";
 
 /* Values, not bits: a database has no -0. */
 static bool are_equal(const double *a, const double *b, uint32_t count) {

@@ -3,28 +3,19 @@
 
 #include <string.h>
 
-/* Those that hold another profile ("transfer+12") are one group, "transfer+"; forced ones are not many. */
-#define DIGITS "'0123456789'"
-#define METHOD                                                                \
-    "CASE WHEN rtrim(method, " DIGITS ") <> method AND rtrim(method, " DIGITS \
-    ") LIKE '%+'"                                                             \
-    " THEN rtrim(method, " DIGITS ") ELSE method END"
+#include "store/profiles/layouts.h"
 
-/* One row: columns in the order of read_counts. Layouts 1 and 2 lack some. */
-#define COUNTS(grids, units, doubts)                                                                               \
-    "SELECT count(*), (SELECT count(*) FROM (SELECT DISTINCT lower(trim(camera_maker)), lower(trim(camera_model))" \
-    " FROM profiles WHERE trim(camera_model) <> '')),"                                                             \
-    " (SELECT count(DISTINCT lower(trim(lens))) FROM profiles WHERE trim(lens) <> ''), " units                     \
-    ","                                                                                                            \
-    " total(processing = 'raw'), total(processing = 'jpeg'), total(processing = 'corrected'),"                     \
-    " total(covariance_size > 0), " grids ", " doubts ", count(DISTINCT " METHOD                                   \
-    "), count(DISTINCT source),"                                                                                   \
-    " min(focal_mm), max(focal_mm), min(aperture), max(aperture), min(distance_m), max(distance_m) FROM profiles"
-
-static const char *const counts_sql[LP_STORE_LAYOUT] = {
-    COUNTS("0", "0", "0"), COUNTS("total(gain_grids > 0)", "0", "0"),
-    COUNTS("total(gain_grids > 0)", "(SELECT count(DISTINCT lower(trim(unit))) FROM profiles WHERE trim(unit) <> '')",
-           "total(doubt <> '')")};
+/* One row: columns in the order of read_counts. */
+static const char *const counts_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(
+    "SELECT count(*), (SELECT count(*) FROM (SELECT DISTINCT lower(trim(camera_maker)), lower(trim(camera_model))"
+    " FROM profiles WHERE trim(camera_model) <> '')),"
+    " (SELECT count(DISTINCT lower(trim(lens))) FROM profiles WHERE trim(lens) <> ''),"
+    " (SELECT count(DISTINCT lower(trim(unit))) FROM profiles WHERE trim(unit) <> ''),"
+    " total(processing = 'raw'), total(processing = 'jpeg'), total(processing = 'corrected'),"
+    " total(covariance_size > 0), total(gain_grids > 0), total(doubt <> ''), count(DISTINCT method), count(DISTINCT source),"
+    " min(focal_mm), max(focal_mm), min(aperture), max(aperture), min(distance_m), max(distance_m) FROM profiles");
+static const char *const methods_sql[LP_STORE_LAYOUT] =
+    LP_BY_LAYOUT("SELECT method, count(*) AS n FROM profiles GROUP BY method ORDER BY n DESC, method");
 
 /* total() makes a REAL of a count. */
 static uint32_t read_count(sqlite3_stmt *statement, int column) {
@@ -42,7 +33,7 @@ static lensprof_status read_counts(lensprof_store *store, lensprof_store_stats *
                                 &stats->processing[2], &stats->with_covariance, &stats->with_grid,
                                 &stats->with_doubt,    &stats->methods,         &stats->sources};
     sqlite3_stmt *statement;
-    lensprof_status status = lp_store_prepare(store, counts_sql[store->layout - 1], &statement, error);
+    lensprof_status status = lp_store_prepare(store, lp_store_of_layout(store, counts_sql), &statement, error);
     if (status != LENSPROF_OK) return status;
     const int rc = sqlite3_step(statement);
     if (rc == SQLITE_ROW) {
@@ -53,7 +44,7 @@ static lensprof_status read_counts(lensprof_store *store, lensprof_store_stats *
         read_range(&reader, stats->distance_m);
         if (reader.bad)
             status = lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "has a profile with an impossible number",
-                                   "`lensprof profile check` names it", error);
+                                   "lensprof_store_check names it", error);
     } else
         status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, statement);
@@ -72,7 +63,7 @@ static lensprof_status read_groups(lensprof_store *store, const char *sql, lensp
         groups[i].profiles = read_count(statement, 1);
         if (reader.bad)
             status = lp_store_fail(store->path, LENSPROF_ERROR_CORRUPT, "has a profile with an impossible text",
-                                   "`lensprof profile check` names it", error);
+                                   "lensprof_store_check names it", error);
         else
             rc = sqlite3_step(statement);
     }
@@ -86,9 +77,7 @@ static lensprof_status read_all(lensprof_store *store, lensprof_store_stats *sta
     int64_t pages = 0, page = 0;
     lensprof_status status = read_counts(store, stats, error);
     if (status == LENSPROF_OK)
-        status = read_groups(
-            store, "SELECT " METHOD " AS kind, count(*) AS n FROM profiles GROUP BY kind ORDER BY n DESC, kind",
-            stats->method, error);
+        status = read_groups(store, lp_store_of_layout(store, methods_sql), stats->method, error);
     if (status == LENSPROF_OK)
         status =
             read_groups(store, "SELECT source, count(*) AS n FROM profiles GROUP BY source ORDER BY n DESC, source",

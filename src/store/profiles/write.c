@@ -26,11 +26,9 @@ static lensprof_status check_profile(lensprof_store *store, const lensprof_profi
         snprintf(what, sizeof what, "the profile is not valid (%s)", lensprof_status_name(status));
         return lp_store_fail(store->path, status, what, "nothing was stored; correct the profile", error);
     }
-    if (profile->key.color_temperature_k != LENSPROF_UNKNOWN || profile->provenance.prior_id
-        || profile->provenance.forced)
-        return lp_store_fail(store->path, LENSPROF_ERROR_UNSUPPORTED,
-                             "has no place for colour temperature, prior_id and forced",
-                             "set them to LENSPROF_UNKNOWN, 0 and 0", error);
+    if (profile->provenance.not_usable && !profile->provenance.forced)
+        return lp_store_fail(store->path, LENSPROF_ERROR_ARGUMENT, "the fit of this profile was not usable",
+                             "nothing was stored; set provenance.forced to store it all the same", error);
     for (uint32_t c = 0; c < profile->responses; c++)
         if (!is_consistent(&profile->response[c]))
             return lp_store_fail(store->path, LENSPROF_ERROR_RESPONSE,
@@ -72,6 +70,26 @@ void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *prof
     lp_bind_known(binder, key->crop_factor);
     lp_bind_text(binder, provenance->doubt);
     lp_bind_text(binder, lens_name);
+    lp_bind_known(binder, key->color_temperature_k);
+    if (provenance->prior_id)
+        lp_bind_integer(binder, provenance->prior_id);
+    else
+        lp_bind_null(binder);
+    lp_bind_integer(binder, provenance->forced);
+}
+
+/* With AUTOINCREMENT no id is used twice: where a row has or had the last one, no row can follow, and an INSERT would
+ * report a full disk and take the caller's transaction back. */
+static lensprof_status check_ids(lensprof_store *store, lensprof_error *error) {
+    int64_t last = 0;
+    const int rc = lp_store_integer(store,
+                                    "SELECT max(ifnull((SELECT max(id) FROM profiles), 0),"
+                                    " ifnull((SELECT max(seq) FROM sqlite_sequence WHERE name = 'profiles'), 0))",
+                                    &last);
+    if (rc) return lp_store_fail_sql(store->path, store->db, rc, error);
+    if (last < INT64_MAX) return LENSPROF_OK;
+    return lp_store_fail(store->path, LENSPROF_ERROR_FULL, "its ids are used up: a profile has or had the last one",
+                         "merge it into a new database, where ids begin at 1", error);
 }
 
 static lensprof_status put_profile(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
@@ -81,8 +99,9 @@ static lensprof_status put_profile(lensprof_store *store, const lensprof_profile
         store,
         "INSERT INTO profiles (camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing,"
         " method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
-        " response_curves, vignetting_curves, covariance_size, covariance, gain_grids, unit, crop_factor, doubt, lens_name)"
-        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        " response_curves, vignetting_curves, covariance_size, covariance, gain_grids, unit, crop_factor, doubt, lens_name,"
+        " color_temperature_k, prior_id, forced)"
+        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
         &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     char lens_name[LP_NAME_BYTES]; /* bound as it is: until the statement has run */
@@ -95,7 +114,8 @@ static lensprof_status put_profile(lensprof_store *store, const lensprof_profile
 
 lensprof_status lp_store_insert(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
                                 lensprof_error *error) {
-    lensprof_status status = put_profile(store, profile, id, error);
+    lensprof_status status = check_ids(store, error);
+    if (status == LENSPROF_OK) status = put_profile(store, profile, id, error);
     return status == LENSPROF_OK ? lp_store_put_curves(store, *id, profile, error) : status;
 }
 

@@ -60,7 +60,9 @@ typedef struct lensprof_provenance {
     char doubt[64];         /* why it may be wrong, as found when it was imported; empty = no doubt */
     int64_t prior_id;       /* profile of the same database that was the prior of its fit; 0 = none */
     uint32_t forced;        /* 1: stored although the fit was not usable; else 0 */
-    uint32_t reserved[85];  /* 0 */
+    uint32_t not_usable;    /* 1: of a fit whose result is not usable; lensprof_store_put wants `forced` then, and does
+                               not store this member */
+    uint32_t reserved[84];  /* 0 */
 } lensprof_provenance;
 
 /* About 50 kB: keep it off small stacks. It grows: lensprof_profile_copy, and not an assignment, copies a profile that

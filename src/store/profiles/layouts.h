@@ -1,0 +1,37 @@
+/* Files of older layouts, which are read as they are: for each of them a table `profiles` with all the columns of the
+ * newest layout, in front of a SELECT. */
+#ifndef LENSPROF_STORE_LAYOUTS_H
+#define LENSPROF_STORE_LAYOUTS_H
+
+#include "store/file/private.h"
+
+/* clang-format off */
+
+/* Up to layout 3 the method ended in what the profile holds and whether it was forced: "transfer+12 (forced)".
+ * profiles/schema/0004_prior.sql moves it to columns by the same rule. */
+#define LP_WITHOUT_DIGITS(text) "rtrim(" text ", '0123456789')"
+#define LP_FORCED_3 "(substr(method, -9) = ' (forced)')"
+#define LP_NAMED_3 "substr(method, 1, length(method) - 9 * " LP_FORCED_3 ")" /* "transfer+12" */
+#define LP_PLUS_3 LP_WITHOUT_DIGITS(LP_NAMED_3)                              /* "transfer+" */
+#define LP_HAS_PRIOR_3 LP_PLUS_3 " LIKE '%+' AND " LP_PLUS_3 " <> " LP_NAMED_3
+
+#define LP_PROFILES_3(columns) \
+    "WITH profiles AS NOT MATERIALIZED (SELECT id, camera_maker, camera_model, lens, focal_mm, aperture, distance_m," \
+    " processing, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, response_curves," \
+    " vignetting_curves, covariance_size, covariance, NULL AS color_temperature_k," \
+    " CASE WHEN " LP_HAS_PRIOR_3 " THEN substr(" LP_PLUS_3 ", 1, length(" LP_PLUS_3 ") - 1)" \
+    " ELSE " LP_NAMED_3 " END AS method," \
+    " CASE WHEN " LP_HAS_PRIOR_3 " THEN nullif(CAST(substr(" LP_NAMED_3 ", length(" LP_PLUS_3 ") + 1) AS INTEGER), 0)" \
+    " END AS prior_id, " LP_FORCED_3 " AS forced, " columns " FROM main.profiles) "
+#define LP_UNITS_2 /* as 0003_units.sql makes lens_name */ \
+    "'' AS unit, NULL AS crop_factor, '' AS doubt, lower(replace(replace(replace(replace(replace(replace(lens," \
+    " ' ', ''), '-', ''), '/', ''), '.', ''), '(', ''), ')', '')) AS lens_name"
+
+/* The statement for each layout: `sql` is a literal that begins with SELECT and names no column that is not in the
+ * newest `profiles`. */
+#define LP_BY_LAYOUT(sql) \
+    {LP_PROFILES_3("0 AS gain_grids, " LP_UNITS_2) sql, LP_PROFILES_3("gain_grids, " LP_UNITS_2) sql, \
+     LP_PROFILES_3("gain_grids, unit, crop_factor, doubt, lens_name") sql, sql}
+
+/* clang-format on */
+#endif
