@@ -94,8 +94,8 @@ static lensprof_status validate_structs(const lensprof_apply_options *o) {
 }
 
 double lp_center(const lensprof_apply_options *o, const lp_model *m, int axis) {
-    const double w = o->frame_width, h = o->frame_height, rho = 0.5 * sqrt(w * w + h * h);
-    return 0.5 * ((axis ? h : w) - 1.0) + rho * m->vignetting[0].center[axis];
+    const double side = axis ? o->frame_height : o->frame_width;
+    return 0.5 * (side - 1.0) + lensprof_half_diagonal(o->frame_width, o->frame_height) * m->vignetting[0].center[axis];
 }
 
 double lp_exposure_ratio(const lensprof_apply_options *o, uint32_t channel) {

@@ -6,6 +6,11 @@
 #define SMALLEST_M 0.001
 #define LARGEST_K 1e6 /* far beyond any lens; keeps the arithmetic below exact enough */
 
+double lensprof_half_diagonal(uint32_t width, uint32_t height) {
+    const double w = width, h = height;
+    return 0.5 * sqrt(w * w + h * h); /* not hypot, which need not be exactly rounded */
+}
+
 double lensprof_vignetting_eval(const lensprof_vignetting *vignetting, double r2, double *slope) {
     const double *k = vignetting->k;
     if (slope) *slope = k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[2]);
@@ -15,7 +20,7 @@ double lensprof_vignetting_eval(const lensprof_vignetting *vignetting, double r2
 double lensprof_vignetting_r2(const lensprof_vignetting *vignetting, uint32_t width, uint32_t height, double x,
                               double y, double *gradient) {
     double w = width, h = height;
-    double rho = 0.5 * sqrt(w * w + h * h);
+    double rho = lensprof_half_diagonal(width, height);
     double dx = (x - 0.5 * (w - 1.0)) / rho - vignetting->center[0];
     double dy = (y - 0.5 * (h - 1.0)) / rho - vignetting->center[1];
     if (gradient) {

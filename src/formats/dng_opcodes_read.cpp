@@ -81,10 +81,11 @@ bool one_center(const std::vector<RadialGain> &radial) {
 
 // Gains about one centre. Returns the largest relative error.
 double fit_radial(const std::vector<RadialGain> &radial, PixelFrame frame, lensprof_profile &profile) {
-    const double sides[2] = {double(frame.width), double(frame.height)}, rho = std::hypot(sides[0], sides[1]) / 2.0;
+    const double sides[2] = {double(frame.width), double(frame.height)};
+    const double rho = lensprof_half_diagonal(frame.width, frame.height);
     lensprof_vignetting &v = profile.vignetting[0];
     for (int axis = 0; axis < 2; axis++) v.center[axis] = (radial[0].center[axis] - 0.5) * sides[axis] / rho;
-    const double reach = farthest_corner(v.center, sides[0], sides[1]);
+    const double reach = farthest_corner(v.center, frame.width, frame.height);
     const auto attenuation = [&](double r2) {
         double product = 1.0;
         for (const RadialGain &gain : radial) {

@@ -70,14 +70,15 @@ double write_radial(const lensprof_profile &profile, PixelFrame frame, OpcodeByt
     demand(profile.grid.columns == 0, "a gain grid, and FixVignetteRadial is radial; write GainMap",
            LENSPROF_ERROR_UNSUPPORTED);
     const lensprof_vignetting &v = profile.vignetting[0];
-    const double sides[2] = {double(frame.width), double(frame.height)}, rho = std::hypot(sides[0], sides[1]) / 2.0;
+    const double sides[2] = {double(frame.width), double(frame.height)};
+    const double rho = lensprof_half_diagonal(frame.width, frame.height);
     double center[2];
     for (int axis = 0; axis < 2; axis++) {
         center[axis] = 0.5 + v.center[axis] * rho / sides[axis];
         demand(center[axis] >= 0.0 && center[axis] <= 1.0, "a centre outside the frame; write GainMap",
                LENSPROF_ERROR_UNSUPPORTED);
     }
-    const double reach = farthest_corner(v.center, sides[0], sides[1]);
+    const double reach = farthest_corner(v.center, frame.width, frame.height);
     const EvenRefit refit =
         refit_even([&](double t) { return 1.0 / lensprof_vignetting_eval(&v, t * reach * reach, nullptr); }, 5);
     bytes.u32(1);

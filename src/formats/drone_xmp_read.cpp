@@ -139,11 +139,12 @@ double fit_frame(const std::function<double(double x, double y)> &attenuation, P
 // Odd powers of r have a tip in the centre, which even ones have not: where these come no nearer than 1 %, there is a
 // gain grid as well.
 double fit_radial(const RadialPolynomial &polynomial, PixelSize frame, lensprof_profile &profile) {
-    const double sides[2] = {double(frame.width), double(frame.height)}, rho = std::hypot(sides[0], sides[1]) / 2.0;
+    const double sides[2] = {double(frame.width), double(frame.height)};
+    const double rho = lensprof_half_diagonal(frame.width, frame.height);
     lensprof_vignetting &v = profile.vignetting[0];
     for (int axis = 0; axis < 2; axis++) v.center[axis] = (polynomial.center[axis] - (sides[axis] - 1.0) / 2.0) / rho;
     const RadialRefit refit = refit_radial([&](double r2) { return polynomial.attenuation(std::sqrt(r2) * rho); },
-                                           farthest_corner(v.center, sides[0], sides[1]));
+                                           farthest_corner(v.center, frame.width, frame.height));
     std::copy(refit.k.begin(), refit.k.end(), v.k);
     if (!(refit.worst > kGridFrom)) return refit.worst;
     return fit_frame(

@@ -226,14 +226,14 @@ double set_falloff(const LcpFalloff &falloff, lensprof_profile &profile) {
     lensprof_gain_grid_init(&profile.grid);
     if (falloff.focal[0] != falloff.focal[1]) return fit_ellipses(falloff, profile);
     const double sides[2] = {double(falloff.width), double(falloff.height)};
-    const double rho = std::hypot(sides[0], sides[1]) / 2.0;
+    const double rho = lensprof_half_diagonal(falloff.width, falloff.height);
     const double unit = falloff.focal[0] * std::max(sides[0], sides[1]) / rho;  // half diagonals
     lensprof_vignetting &v = profile.vignetting[0];
     for (int axis = 0; axis < 2; axis++) v.center[axis] = (falloff.center[axis] - 0.5) * sides[axis] / rho;
     RadialRefit refit{in_half_diagonals(falloff.alpha, unit), 0.0};
     if (!falloff.knots.empty())
         refit = refit_radial([&](double r2) { return falloff.attenuation(std::sqrt(r2) / unit); },
-                             farthest_corner(v.center, sides[0], sides[1]));
+                             farthest_corner(v.center, falloff.width, falloff.height));
     std::copy(refit.k.begin(), refit.k.end(), v.k);
     return refit.worst;
 }

@@ -114,8 +114,8 @@ void LcpWriter::append(const lensprof_profile &profile, uint32_t index) {
     pugi::xml_node entry = append_resource(list_, "rdf:li");
     append_key(entry, key);
     // A focal length in longer sides of the frame, and the radius in it.
-    const double sides[2] = {double(frame_.width), double(frame_.height)};
-    const double rho = std::hypot(sides[0], sides[1]) / 2.0, longer = std::max(sides[0], sides[1]);
+    const double sides[2] = {double(frame_.width), double(frame_.height)}, longer = std::max(sides[0], sides[1]);
+    const double rho = lensprof_half_diagonal(frame_.width, frame_.height);
     const double unit = key.focal_mm / half_diagonal_mm(key.crop_factor), focal = unit * rho / longer;
     pugi::xml_node model = append_resource(entry, "stCamera:PerspectiveModel");
     append_text(model, "stCamera:Version", "2");

@@ -135,11 +135,9 @@ std::string responses_data(const lensprof_response *responses, uint32_t count) {
 // Centre in px and coefficients in px of red, green and blue.
 using Polynomials = std::array<std::array<double, kTerms>, 3>;
 
-double half_diagonal(uint32_t width, uint32_t height) { return std::hypot(double(width), double(height)) / 2.0; }
-
 // One centre: the same polynomial, rescaled.
 void set_falloffs(const Polynomials &terms, uint32_t width, uint32_t height, lensprof_profile &profile) {
-    const double rho = half_diagonal(width, height);
+    const double rho = lensprof_half_diagonal(width, height);
     profile.vignettings = 3;
     for (size_t c = 0; c < 3; c++) {
         lensprof_vignetting &v = profile.vignetting[c];
@@ -225,7 +223,7 @@ std::string vignetting_data(const lensprof_profile &profile, uint32_t width, uin
         put_matrix(data, kFloat3, height, width, values);
         return data;
     }
-    const double rho = half_diagonal(width, height);
+    const double rho = lensprof_half_diagonal(width, height);
     std::vector<double> values(3 * kTerms);
     for (size_t c = 0; c < 3; c++) {
         const lensprof_vignetting &v = profile.vignetting[profile.vignettings == 3 ? c : 0];

@@ -18,9 +18,10 @@ struct Setting {
     double focal_mm, aperture;
     uint32_t vignettings;
     bool has_covariance;
+    uint32_t modes = 0;  // above 0: of each of three responses
 };
 
-// Variances of k1..k3, covariance of k1 and k2, behind one of a response of no modes.
+// Variances of k1..k3, covariance of k1 and k2, after the coefficients of the responses.
 constexpr double variance[3] = {4e-4, 9e-4, 4e-4}, covariance12 = -3e-4;
 
 double light(const double *k, double r) {
@@ -46,10 +47,15 @@ void put(lensprof_store *store, const Setting &setting) {
     for (uint32_t c = 0; c < 3; c++)
         for (int n = 0; n < 3 && c < setting.vignettings; n++) p->vignetting[c].k[n] = steep[n] * (1 - 0.3 * c);
     if (setting.has_covariance) {
-        p->covariance_size = 5;
-        for (int n = 0; n < 3; n++) p->covariance[6 * n] = variance[n];
-        p->covariance[1] = p->covariance[5] = covariance12;
+        const uint32_t first = 3 * setting.modes, size = p->covariance_size = first + 5;
+        for (uint32_t n = 0; n < first; n++) p->covariance[(size + 1) * n] = 0.1;
+        for (uint32_t n = 0; n < 3; n++) p->covariance[(size + 1) * (first + n)] = variance[n];
+        p->covariance[first * size + first + 1] = p->covariance[(first + 1) * size + first] = covariance12;
     }
+    const std::vector<double> coefficients(setting.modes);
+    if (setting.modes) p->responses = 3;
+    for (uint32_t c = 0; c < 3 && setting.modes; c++)
+        assert_ok(lensprof_response_set_emor(&p->response[c], coefficients.data(), setting.modes));
     lensprof_error error{};
     if (lensprof_store_put(store, p.get(), nullptr, &error) != LENSPROF_OK) fail_msg("%s", error.text);
 }
@@ -70,8 +76,8 @@ std::string line_with(const std::string &text, const std::string &part) {
     return {};
 }
 
-void test_terminal(void **) {
-    const std::string db = make_db({{"Camera", 28, 2.8, 1, true}, {"Camera", 28, 8, 1, false}});
+void check_terminal(uint32_t modes) {
+    const std::string db = make_db({{"Camera", 28, 2.8, 1, true, modes}, {"Camera", 28, 8, 1, false}});
     const std::string text = must_exit(done, {"profile", "show", "1", "2", "--chart", "--db", db});
     assert_true(contains(text, "\nCamera, Lens, 28 mm, jpeg\n"));
     char expected[64];
@@ -79,6 +85,10 @@ void test_terminal(void **) {
         std::snprintf(expected, sizeof expected, "%.3f +- %.3f", light(steep, r), error_of_light(r));
         assert_true(contains(line_with(text, "a  f/2.8"), expected));
     }
+    const std::string table = must_exit(done, {"profile", "show", "1", "--db", db});
+    std::snprintf(expected, sizeof expected, "r = 0.5: %.1f +- %.1f %%, in the corner: %.1f +- %.1f %%",
+                  100 * light(steep, 0.5), 100 * error_of_light(0.5), 100 * light(steep, 1), 100 * error_of_light(1));
+    assert_true(contains(table, expected));
     assert_true(contains(line_with(text, "b  f/8"), "  0.600"));
     assert_false(contains(line_with(text, "b  f/8"), "+-"));
     assert_true(contains(text.substr(text.find("a  f/2.8")), "-0.74\n"));  // log2 0.6
@@ -88,6 +98,10 @@ void test_terminal(void **) {
     for (char c : text) assert_true(c == '\n' || (c >= ' ' && c <= '~'));
     assert_false(contains(text, " \n"));
 }
+
+void test_terminal(void **) { check_terminal(0); }
+
+void test_three_responses(void **) { check_terminal(2); }
 
 void test_json(void **) {
     const std::string db = make_db({{"Camera", 28, 2.8, 1, true}, {"Camera", 28, 4, 3, false}});
@@ -326,6 +340,7 @@ void test_too_many(void **) {
 int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_terminal),
+        CLI_TEST(test_three_responses),
         CLI_TEST(test_json),
         CLI_TEST(test_labels_and_channels),
         CLI_TEST(test_several_without_chart),

@@ -34,6 +34,24 @@ class Keys(unittest.TestCase):
             key.camera_model = "a\0b"
         self.assertEqual(key.camera_model, "x" * 63)
 
+    def test_falloff(self):
+        self.assertEqual(lp.half_diagonal(400, 300), 250)
+        profile = lp.Profile(vignetting=lp.Vignetting(k=(-0.3, 0.1, 0), center=(0.1, 0)),
+                             covariance=np.diag([1e-4, 4e-4, 0, 1e-6, 1e-6]))
+        value, sigma = profile.corner_falloff()
+        self.assertAlmostEqual(value, 0.8, delta=1e-15)
+        self.assertAlmostEqual(sigma, np.sqrt(5e-4), delta=1e-15)
+        self.assertAlmostEqual(profile.radial_falloff(0.5)[0], 1 - 0.3 / 4 + 0.1 / 16, delta=1e-15)
+        profile.grid = lp.GainGrid(np.full((2, 2), 0.5, np.float32))
+        value, sigma = profile.falloff(400, 300, 199.5 + 25 + 125, 149.5, channel=2)
+        self.assertAlmostEqual(value, 0.5 * (1 - 0.3 / 4 + 0.1 / 16), delta=1e-12)
+        by_center = 2 * 0.5 * (-0.3 + 2 * 0.1 / 4)
+        self.assertAlmostEqual(sigma, 0.5 * np.sqrt(1e-4 / 16 + 4e-4 / 256 + by_center ** 2 * 1e-6), delta=1e-12)
+        self.assertIsNone(lp.Profile().corner_falloff()[1])
+        for wrong in (3, -1):
+            with self.assertRaises(ValueError):
+                profile.corner_falloff(wrong)
+
     def test_refused(self):
         for key in (lp.ProfileKey(lens="a\nb"), lp.ProfileKey(focal_mm=0), lp.ProfileKey(aperture=math.nan)):
             with refused(self, lp.Status.ERROR_ARGUMENT):

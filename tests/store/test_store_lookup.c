@@ -379,6 +379,39 @@ static void test_covariance_counts(void **state) {
     assert_true(unequal.k[0][0] < equal.k[0][0] - 0.03);
 }
 
+/* The same covariance of six coefficients and a falloff, after one response of six modes, or three of two. */
+static void put_uncertain(lensprof_store *store, uint32_t responses, double aperture, double sigma) {
+    static const double none[6] = {0.0};
+    lensprof_profile *p = zoom_profile(zoom, 50, aperture, INFINITY);
+    true_falloff(50, aperture, p->vignetting[0].k);
+    p->responses = responses;
+    for (uint32_t c = 0; c < responses; c++)
+        assert_ok(lensprof_response_set_emor(&p->response[c], none, 6 / responses));
+    p->covariance_size = 11;
+    for (uint32_t i = 0; i < 11; i++) p->covariance[12 * i] = i < 6 ? 0.1 : sigma * sigma / 3.0;
+    put_at(store, p);
+}
+
+static void test_covariance_of_three_responses(void **state) {
+    const place *here = *state;
+    double k[2][3];
+    for (uint32_t i = 0; i < 2; i++) {
+        lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+        put_uncertain(store, i ? 3 : 1, 2.0, 0.05);
+        put_uncertain(store, i ? 3 : 1, 2.8, 0.0017);
+        assert_ok(ask(store, zoom, 50, 2.8, INFINITY));
+        double sigma;
+        assert_close(how.sigma, 0.0017, 1e-12);
+        lensprof_profile_corner_falloff(&answered, 0, &sigma);
+        assert_close(sigma, how.sigma, 0.0);
+        assert_ok(ask(store, zoom, 50, 2.4, INFINITY)); /* the first one counts less */
+        memcpy(k[i], answered.vignetting[0].k, sizeof k[i]);
+        lensprof_store_close(store);
+        unlink(here->path);
+    }
+    assert_memory_equal(k[0], k[1], sizeof k[0]);
+}
+
 static void test_transactions(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -447,6 +480,7 @@ int main(void) {
         store_test(test_doubt_and_processing),
         store_test(test_damaged_rows),
         store_test(test_covariance_counts),
+        store_test(test_covariance_of_three_responses),
         store_test(test_transactions),
         store_test(test_arguments),
     };

@@ -90,8 +90,16 @@ static void test_exposure(void **state) {
     assert_int_equal(lensprof_exposure_validate(&e), LENSPROF_ERROR_EXPOSURE);
 }
 
+static void test_half_diagonal(void **state) {
+    (void)state;
+    assert_close(lensprof_half_diagonal(400, 300), 250.0, 0.0);
+    assert_close(lensprof_half_diagonal(1, 1), 0.70710678118654752440, 0.0);
+    assert_close(lensprof_half_diagonal(UINT32_MAX, UINT32_MAX), UINT32_MAX * 0.70710678118654752440, 1e-5);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_half_diagonal),
         cmocka_unit_test(test_value_and_radius),
         cmocka_unit_test(test_derivatives_against_central_differences),
         cmocka_unit_test(test_validate_finds_every_minimum),

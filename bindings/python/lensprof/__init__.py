@@ -21,7 +21,7 @@ from .formats import (FrameTime, Pto, PtoImage, alsc_read, alsc_write, curves_re
                       radical_response_read, radical_response_write, radical_vignetting_read,
                       radical_vignetting_write, times_read, times_write)
 from .geometry import Camera
-from .model import Exposure, GainGrid, Response, Vignetting, emor_table
+from .model import Exposure, GainGrid, Response, Vignetting, emor_table, half_diagonal
 from .profile import Profile, ProfileKey, Provenance
 from .sample import SampleImage, SampleOptions, sample_overlap, sample_tracks
 from .store import Lookup, LookupOptions, Store, StoreFault, StoreRow, StoreStats
@@ -37,8 +37,8 @@ __all__ = [
     "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault",
     "StoreMode", "StoreRow", "StoreStats", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct",
     "curves_read", "curves_write", "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table",
-    "fit_flat", "fit_overlap", "fit_radiance", "json_read", "json_write", "layout_channels", "layout_samples",
-    "lcp_read", "lcp_write", "lensfun_read", "lensfun_write", "map_read", "map_write", "pcalib_read", "pcalib_write",
+    "fit_flat", "fit_overlap", "fit_radiance", "half_diagonal", "json_read", "json_write", "layout_channels",
+    "layout_samples", "lcp_read", "lcp_write", "lensfun_read", "lensfun_write", "map_read", "map_write", "pcalib_read", "pcalib_write",
     "points_read", "points_write", "radical_response_read", "radical_response_write", "radical_vignetting_read",
     "radical_vignetting_write", "sample_bytes", "sample_overlap", "sample_tracks", "simulate", "status_name",
     "times_read", "times_write", "transfer_rms", "version",

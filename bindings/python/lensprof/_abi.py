@@ -871,6 +871,7 @@ FUNCTIONS = {
     "lensprof_response_eval": (c_double, [POINTER(Response), c_double, POINTER(c_double)]),
     "lensprof_response_invert": (c_double, [POINTER(Response), c_double, POINTER(c_double)]),
     "lensprof_emor_table": (POINTER(c_double), [c_uint32]),
+    "lensprof_half_diagonal": (c_double, [c_uint32, c_uint32]),
     "lensprof_vignetting_eval": (c_double, [POINTER(Vignetting), c_double, POINTER(c_double)]),
     "lensprof_vignetting_r2": (c_double, [POINTER(Vignetting), c_uint32, c_uint32, c_double, c_double,
                                           POINTER(c_double)]),
@@ -897,6 +898,10 @@ FUNCTIONS = {
     "lensprof_profile_init_sized": (None, [POINTER(Profile), c_size_t]),
     "lensprof_profile_copy": (c_int, [POINTER(Profile), POINTER(Profile)]),
     "lensprof_profile_validate": (c_int, [POINTER(Profile)]),
+    "lensprof_profile_falloff": (c_double, [POINTER(Profile), c_uint32, c_uint32, c_uint32, c_double, c_double,
+                                            POINTER(c_double)]),
+    "lensprof_profile_radial_falloff": (c_double, [POINTER(Profile), c_uint32, c_double, POINTER(c_double)]),
+    "lensprof_profile_corner_falloff": (c_double, [POINTER(Profile), c_uint32, POINTER(c_double)]),
     "lensprof_profile_pack": (c_int, [POINTER(Profile), c_uint32, c_void_p, c_size_t, POINTER(c_size_t)]),
     "lensprof_profile_unpack": (c_int, [c_void_p, c_size_t, POINTER(Profile)]),
     # geometry.h

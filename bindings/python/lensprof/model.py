@@ -132,6 +132,11 @@ def emor_table(mode: int) -> np.ndarray:
     return table
 
 
+def half_diagonal(width: int, height: int) -> float:
+    """Half the diagonal of a frame of width x height px, in px: the unit of r and of centres."""
+    return lib.lensprof_half_diagonal(integer(width, "width"), integer(height, "height"))
+
+
 class Vignetting(Value, _abi.Vignetting):
     """Radial falloff M = 1 + k1 r^2 + k2 r^4 + k3 r^6; none by default.
 

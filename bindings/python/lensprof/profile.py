@@ -1,7 +1,7 @@
 """What is known about one camera, lens and setting; see lensprof/profile.h."""
 from __future__ import annotations
 
-from ctypes import byref, c_size_t, create_string_buffer
+from ctypes import byref, c_double, c_size_t, create_string_buffer
 from typing import Any
 
 import numpy as np
@@ -65,6 +65,12 @@ class Provenance(Value, _abi.Provenance):
         self.heldout_rms = self.inlier_share = _abi.UNKNOWN
 
 
+def channel_number(channel: int) -> int:
+    if integer(channel, "channel") > 2:
+        raise ValueError(f"channel {channel} is not 0, 1 or 2")
+    return channel
+
+
 class Covariance:
     """An n x n matrix in the first n*n numbers of the field; reading gives a view, assigning a matrix sets n."""
 
@@ -92,8 +98,8 @@ class Profile(Value, _abi.Profile):
     """Response and vignetting of one camera, lens and setting: linear and without falloff by default.
 
     response, vignetting: tuples of 1 (all channels) or 3; assign one or three. grid: multiplied to the
-    vignetting. covariance: n x n, n = 0 when not known; in the order EMoR coefficients, k1, k2, k3 of each vignetting,
-    centre x and y.
+    vignetting. covariance: n x n, n = 0 when not known; in the order EMoR coefficients of each response, k1, k2, k3 of
+    each vignetting, centre x and y.
     """
 
     key = Nested(ProfileKey)
@@ -118,6 +124,28 @@ class Profile(Value, _abi.Profile):
         check(lib.lensprof_profile_validate(byref(self)),
               f"{self.key}: not a valid profile; see validate() of its key, response, vignetting and grid, the "
               "covariance must be finite and symmetric")
+
+    def falloff(self, width: int, height: int, x: float, y: float, channel: int = 0) -> tuple[float, float | None]:
+        """Relative illuminance of a channel at pixel (x, y) of a frame, gain grid included, and its standard error by the
+        covariance of the falloff; None when that is not known."""
+        return self._with_sigma(lambda this, sigma: lib.lensprof_profile_falloff(
+            this, channel_number(channel), integer(width, "width"), integer(height, "height"), x, y, sigma))
+
+    def radial_falloff(self, r: float, channel: int = 0) -> tuple[float, float | None]:
+        """The same of the falloff alone, without gain grid, at r half diagonals from its centre."""
+        return self._with_sigma(lambda this, sigma: lib.lensprof_profile_radial_falloff(
+            this, channel_number(channel), r, sigma))
+
+    def corner_falloff(self, channel: int = 0) -> tuple[float, float | None]:
+        """The same in the corner: r = 1."""
+        return self._with_sigma(lambda this, sigma: lib.lensprof_profile_corner_falloff(
+            this, channel_number(channel), sigma))
+
+    def _with_sigma(self, call: Any) -> tuple[float, float | None]:
+        self.validate()
+        sigma = c_double()
+        value = call(byref(self), byref(sigma))
+        return value, None if sigma.value == _abi.UNKNOWN else sigma.value
 
     def pack(self, covariance: bool = False) -> bytes:
         """A blob for firmware, which lensprof_plan_init reads in place (docs/blob.md): response samples in single

@@ -12,6 +12,7 @@
 #include "cli/program/interrupt.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
+#include "cli/report/falloff.hpp"
 
 namespace lensprof {
 namespace {
@@ -114,16 +115,10 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
 }
 
 int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &report) {
-    auto profile = new_profile();
     const auto &fit = report.fit;
+    auto profile = profile_of_curves(fit, input.response.data(), static_cast<uint32_t>(input.response.size()));
     profile->key = input.key;
-    profile->responses = static_cast<uint32_t>(input.response.size());
-    std::copy(input.response.begin(), input.response.end(), profile->response);
-    profile->vignettings = fit.vignettings;
-    std::copy(fit.vignetting, fit.vignetting + 3, profile->vignetting);
     profile->grid = fit.gain_grid;
-    profile->covariance_size = fit.covariance_size;
-    std::copy(fit.covariance, fit.covariance + fit.covariance_size * fit.covariance_size, profile->covariance);
     profile->provenance.images = static_cast<uint32_t>(input.images.size());
     profile->provenance.pairs = fit.cells;
     profile->provenance.inlier_share = fit.inlier_share;

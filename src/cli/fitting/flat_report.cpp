@@ -5,6 +5,7 @@
 
 #include "cli/fitting/flat.hpp"
 #include "cli/program/format.hpp"
+#include "cli/report/falloff.hpp"
 
 namespace lensprof {
 namespace {
@@ -120,8 +121,8 @@ Json flat_json(const FlatReport &report) {
 void print_flat(const FlatReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_images(report, out);
-    print_vignettings(fit.vignetting, fit.vignettings,
-                      {fit.covariance, fit.covariance_size, report.response.front().modes}, out);
+    print_vignettings(*profile_of_curves(fit, report.response.data(), static_cast<uint32_t>(report.response.size())),
+                      out);
     for (const auto &response : report.response) print_response(response, out);
     out << format("light     %s; its gradient %s\n", light_name(fit.light),
                   fit.light == LENSPROF_FLAT_LIGHT_EVEN ? "taken as none"

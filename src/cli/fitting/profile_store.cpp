@@ -8,6 +8,7 @@
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/run.hpp"
+#include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
 
 namespace lensprof {
@@ -79,12 +80,7 @@ void remove_empty_store(const std::string &file) {
 }
 
 std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit) {
-    auto profile = new_profile();
-    profile->response[0] = fit.response;
-    profile->vignettings = fit.vignettings;
-    std::copy(fit.vignetting, fit.vignetting + 3, profile->vignetting);
-    profile->covariance_size = fit.covariance_size;
-    std::copy(fit.covariance, fit.covariance + fit.covariance_size * fit.covariance_size, profile->covariance);
+    auto profile = profile_of_curves(fit, &fit.response, 1);
     profile->provenance.pairs = fit.pairs;
     profile->provenance.heldout_rms = fit.heldout_rms;
     profile->provenance.inlier_share = fit.inlier_share;

@@ -21,15 +21,16 @@ constexpr size_t table_samples[] = {0, 25, 50, 75, 100};
 
 ChartCurve sample_curve(const StoredProfile &stored, uint32_t index) {
     const lensprof_profile &p = *stored.profile;
-    const Certainty certainty = certainty_of(p);
     ChartCurve curve{};
     curve.id = stored.id;
     curve.channel = p.vignettings == 3 ? int(index) : -1;
-    curve.has_sigma = certainty.knows(index);
+    double sigma;
+    lensprof_profile_corner_falloff(&p, index, &sigma);
+    curve.has_sigma = sigma > 0.0;
     for (size_t i = 0; i < chart_samples; i++) {
         const double r = double(i) / (chart_samples - 1);
-        curve.m[i] = lensprof_vignetting_eval(&p.vignetting[index], r * r, nullptr);
-        curve.sigma[i] = certainty.falloff_sigma(index, r * r);
+        curve.m[i] = lensprof_profile_radial_falloff(&p, index, r, &sigma);
+        curve.sigma[i] = std::max(sigma, 0.0);
     }
     return curve;
 }

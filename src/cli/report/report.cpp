@@ -59,29 +59,29 @@ void print_gain_grid(const lensprof_gain_grid &grid, std::ostream &out) {
 
 double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
-// " +- ", the standard error of 100 M at r^2, or nothing where it is not known.
-std::string falloff_error(const Certainty &certainty, uint32_t curve, double r2) {
-    const double sigma = certainty.falloff_sigma(curve, r2);
-    return sigma > 0.0 ? format(" +- %.1f", 100.0 * sigma) : std::string();
+// 100 M at r, " +- " and its standard error where that is known.
+std::string light_at(const lensprof_profile &profile, uint32_t curve, double r) {
+    double sigma;
+    const double m = lensprof_profile_radial_falloff(&profile, curve, r, &sigma);
+    return format("%.1f", 100.0 * m) + (sigma > 0.0 ? format(" +- %.1f", 100.0 * sigma) : std::string());
 }
 
 }  // namespace
 
-void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, const Certainty &certainty,
-                       std::ostream &out) {
+void print_vignettings(const lensprof_profile &profile, std::ostream &out) {
     static const char *const channels[3] = {" of red", " of green", " of blue"};
-    for (uint32_t c = 0; c < count; c++) {
-        const lensprof_vignetting &v = vignettings[c];
+    for (uint32_t c = 0; c < profile.vignettings; c++) {
+        const lensprof_vignetting &v = profile.vignetting[c];
+        const char *channel = profile.vignettings == 3 ? channels[c] : "";
         if (!has_falloff(v)) {
-            out << "falloff" << (count == 3 ? channels[c] : "") << "   none: not measured, or held at none\n";
+            out << "falloff" << channel << "   none: not measured, or held at none\n";
             continue;
         }
-        out << "falloff" << (count == 3 ? channels[c] : "")
+        out << "falloff" << channel
             << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
                       v.center[0], v.center[1]);
-        out << format("          light at r = 0.5: %.1f%s %%, in the corner: %.1f%s %% (%.2f stops)\n",
-                      100.0 * lensprof_vignetting_eval(&v, 0.25, nullptr), falloff_error(certainty, c, 0.25).c_str(),
-                      100.0 * corner(v), falloff_error(certainty, c, 1.0).c_str(), -std::log2(corner(v)));
+        out << format("          light at r = 0.5: %s %%, in the corner: %s %% (%.2f stops)\n",
+                      light_at(profile, c, 0.5).c_str(), light_at(profile, c, 1.0).c_str(), -std::log2(corner(v)));
     }
 }
 
@@ -265,9 +265,7 @@ void print_prior(const BuildReport &report, std::ostream &out) {
 void print_build(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_exposures(report, out);
-    if (report.has_falloff)
-        print_vignettings(fit.vignetting, fit.vignettings, {fit.covariance, fit.covariance_size, fit.response.modes},
-                          out);
+    if (report.has_falloff) print_vignettings(*profile_of_curves(fit, &fit.response, 1), out);
     print_response(fit.response, out);
     print_gamma(report, out);
     print_prior(report, out);
@@ -356,7 +354,7 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
     if (*profile.key.unit) out << "unit      " << profile.key.unit << ", and no other\n";
     if (profile.key.color_temperature_k != LENSPROF_UNKNOWN)
         out << format("light     %g K\n", profile.key.color_temperature_k);
-    print_vignettings(profile.vignetting, profile.vignettings, certainty_of(profile), out);
+    print_vignettings(profile, out);
     print_gain_grid(profile.grid, out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);
     out << "source    " << (*p.method ? p.method : "unknown method");

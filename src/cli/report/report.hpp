@@ -60,8 +60,7 @@ Json covariance_json(const double *values, uint32_t n);
 Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count);
 Json response_json(const lensprof_response *responses, uint32_t count);
 
-void print_vignettings(const lensprof_vignetting *vignettings, uint32_t count, const Certainty &certainty,
-                       std::ostream &out);
+void print_vignettings(const lensprof_profile &profile, std::ostream &out);
 void print_response(const lensprof_response &r, std::ostream &out);
 
 Json key_json(const lensprof_profile_key &key);

@@ -53,7 +53,8 @@ bool object_radiance(const Truth &truth, const Scene &scene, uint32_t index, dou
     const auto &blocks = truth.objects[index];
     auto found = std::find_if(blocks.rbegin(), blocks.rend(), [&](const Block &b) { return b.holds(x, y); });
     if (found == blocks.rend()) return false;
-    const double scale = 2.0 / std::hypot(camera.width, camera.height), p[3] = {x * scale, y * scale, found->depth};
+    const double scale = 1.0 / lensprof_half_diagonal(camera.width, camera.height),
+                 p[3] = {x * scale, y * scale, found->depth};
     double factor = found->texture > 0.0 ? std::exp(found->texture * scene.fractal(p, 25.0, 3)) : 1.0;
     for (int c = 0; c < 3; c++) rgb[c] = found->rgb[c] * factor;
     return true;

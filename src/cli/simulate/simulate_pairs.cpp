@@ -60,7 +60,8 @@ std::vector<Edge> possible_overlaps(const std::vector<lensprof_camera> &cameras)
     for (const auto &c : cameras) {
         double yaw = c.yaw_deg * degree, pitch = c.pitch_deg * degree;
         axes.push_back({std::cos(pitch) * std::sin(yaw), std::sin(pitch), std::cos(pitch) * std::cos(yaw)});
-        reach.push_back(std::atan(std::tan(c.hfov_deg / 2.0 * degree) * std::hypot(c.width, c.height) / c.width));
+        const double half_diagonal = lensprof_half_diagonal(c.width, c.height);
+        reach.push_back(std::atan(std::tan(c.hfov_deg / 2.0 * degree) * 2.0 * half_diagonal / c.width));
     }
     std::vector<Edge> edges;
     for (uint32_t i = 0; i < cameras.size(); i++)

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/covariance.h"
 #include "fit/base/parallel.hpp"
 
 namespace lensprof {
@@ -101,8 +102,9 @@ void fill_lens(const FlatFit &fit, lensprof_flat_result &r) {
     r.separated = is_separated(fit);
     r.iterations = fit.estimate.iterations;
     r.converged = fit.estimate.converged;
-    uint32_t modes = fit.options.response ? fit.options.response[0].modes : 0;  // held: zero rows
-    auto lens = static_cast<uint32_t>(model.levels()), n = modes + lens;
+    // Of the responses, which are held: zero rows.
+    const uint32_t modes = fit.options.response ? lp_covariance_modes(fit.options.response, fit.options.responses) : 0;
+    const auto lens = static_cast<uint32_t>(model.levels()), n = modes + lens;
     r.covariance_size = fit.covariance.size() && n <= LENSPROF_COVARIANCE_MAX ? n : 0;
     std::fill_n(r.covariance, LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX, 0.0);
     for (uint32_t i = 0; i < lens && r.covariance_size; i++)

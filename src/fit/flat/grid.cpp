@@ -104,7 +104,7 @@ bool fit_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain) {
 
 void normalise_gain_grid(const FlatFit &fit, lensprof_gain_grid &gain) {
     lensprof_vignetting v = falloff_of(fit.problem.model, fit.estimate.u, 0);
-    double half = 0.5 * std::hypot(fit.grid.width, fit.grid.height);
+    double half = lensprof_half_diagonal(fit.grid.width, fit.grid.height);
     double x = 0.5 * (fit.grid.width - 1.0) + half * v.center[0];
     double y = 0.5 * (fit.grid.height - 1.0) + half * v.center[1];
     for (uint32_t c = 0; c < gain.channels; c++) {

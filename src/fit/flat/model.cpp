@@ -25,7 +25,7 @@ Prediction predict(const FlatModel &model, const Eigen::VectorXd &u, int shot, i
     Prediction p;
     p.falloff = lensprof_vignetting_eval(&v, r2, &slope);
     double log_light = u[level] + (model.several ? u[model.exposure_error(shot)] : 0.0);
-    double half = 0.5 * std::hypot(grid.width, grid.height), cosine = model.turn[static_cast<size_t>(shot)][0];
+    double half = lensprof_half_diagonal(grid.width, grid.height), cosine = model.turn[static_cast<size_t>(shot)][0];
     double dx = (x - 0.5 * (grid.width - 1.0)) / half, dy = (y - 0.5 * (grid.height - 1.0)) / half;
     double sine = model.turn[static_cast<size_t>(shot)][1], qx = cosine * dx - sine * dy, qy = sine * dx + cosine * dy;
     const double basis[kMostLightTerms] = {qx, qy, qx * qx - qy * qy, 2.0 * qx * qy};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/covariance.h"
 #include "fit/base/quantile.hpp"
 #include "fit/flat/fit.hpp"
 #include "fit/problem/loss.hpp"
@@ -76,14 +77,12 @@ Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, dou
             root_of_rest(frame.value(), noise * depth / kSmoothed), root_of_rest(own.value(), noise / kSmoothed)};
 }
 
-double corner_sigma(const lensprof_flat_result &r, uint32_t modes) {
+double corner_sigma(const FlatFit &fit) {
     double worst = 0.0;
-    const uint32_t n = r.covariance_size;
-    for (uint32_t curve = 0; curve < r.vignettings && n; curve++) {
-        double sum = 0.0;
-        for (uint32_t i = 0; i < 3; i++)
-            for (uint32_t j = 0; j < 3; j++) sum += r.covariance[(modes + 3 * curve + i) * n + modes + 3 * curve + j];
-        worst = std::max(worst, sum);
+    const auto n = static_cast<uint32_t>(fit.covariance.rows());
+    for (int curve = 0; curve < fit.problem.model.curves; curve++) {
+        const auto first = static_cast<uint32_t>(fit.problem.model.k(curve));
+        worst = std::max(worst, lp_falloff_variance(fit.covariance.data(), n, first, 1.0));
     }
     return std::sqrt(worst);
 }
@@ -177,7 +176,7 @@ void describe_flat(const FlatFit &fit, lensprof_flat_result &r) {
     r.residual = std::sqrt(square.value());
     r.noise = std::sqrt(noise.value());
     r.inlier_share = inlier.value();
-    r.corner_sigma = corner_sigma(r, fit.options.response ? fit.options.response[0].modes : 0);
+    r.corner_sigma = corner_sigma(fit);
     Patterns rest = split_residuals(fit, nullptr, noise.value());
     r.texture = rest.texture;
     r.frame_residual = rest.frame;

@@ -166,7 +166,7 @@ void mark_card(const CellGrid &grid, bool find, int channels, Shot &shot) {
     }
     shot.card = seen;
     if (!find) return;
-    double half_diagonal = 0.5 * std::hypot(grid.width, grid.height);
+    double half_diagonal = lensprof_half_diagonal(grid.width, grid.height);
     double edge = std::max(kCardEdge, kSteepest * std::max(grid.cell_width(), grid.cell_height()) / half_diagonal);
     auto joins = [&](int a, int b) {
         return std::abs(bright[static_cast<size_t>(a)] - bright[static_cast<size_t>(b)]) < edge;

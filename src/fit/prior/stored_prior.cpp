@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "core/covariance.h"
 #include "core/response.h"
 #include "fit/prior/gauge.hpp"
 #include "fit/problem/monotone.hpp"
@@ -16,13 +17,6 @@ namespace {
 // Two sequences of one lens differ by more than noise (focus, stray light, registration): share of the scatter over all
 // cameras and lenses that is added to what a profile says of itself, so that no number of sequences makes it certain.
 constexpr double kDrift = 0.01;
-
-int modes_before_falloff(const lensprof_profile &profile) {
-    int modes = 0;
-    for (uint32_t c = 0; c < profile.responses; c++)
-        if (profile.response[c].kind == LENSPROF_RESPONSE_EMOR) modes += static_cast<int>(profile.response[c].modes);
-    return modes;
-}
 
 }  // namespace
 
@@ -49,7 +43,10 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
     : vignettings_(static_cast<int>(profile.vignettings)) {
     const bool is_emor = profile.responses == 1 && profile.response[0].kind == LENSPROF_RESPONSE_EMOR;
     if (is_emor) modes_ = std::min(static_cast<int>(profile.response[0].modes), most_modes);
-    const int stored = static_cast<int>(profile.covariance_size), before = modes_before_falloff(profile);
+    const int stored = static_cast<int>(profile.covariance_size);
+    const uint32_t before = lp_covariance_modes(profile.response, profile.responses);
+    const int falloff = static_cast<int>(lp_covariance_index(before, 0)),
+              center = static_cast<int>(lp_covariance_index(before, profile.vignettings));
     const auto is_known = [&](int row, int count) {  // parameters that were held say nothing, nor what goes with them
         bool all = row + count <= stored;
         for (int i = row; i < row + count && all; i++) all = profile.covariance[i * stored + i] > 0.0;
@@ -59,10 +56,9 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
     if (modes_ > 0 && !is_known(0, modes_)) modes_ = 0;
     std::vector<int> from, to;  // row of the profile's covariance, column of the full shared vector
     for (int l = 0; l < modes_; l++) from.push_back(l), to.push_back(l);
-    for (int i = 0; i < 3 * vignettings_ && is_known(before, 3 * vignettings_); i++)
-        from.push_back(before + i), to.push_back(kFalloff + i);
-    for (int d = 0; d < 2 && is_known(before + 3 * vignettings_, 2); d++)
-        from.push_back(before + 3 * vignettings_ + d), to.push_back(kCenter + d);
+    for (int i = 0; i < 3 * vignettings_ && is_known(falloff, 3 * vignettings_); i++)
+        from.push_back(falloff + i), to.push_back(kFalloff + i);
+    for (int d = 0; d < 2 && is_known(center, 2); d++) from.push_back(center + d), to.push_back(kCenter + d);
     for (size_t i = 0; i < from.size(); i++)
         for (size_t j = 0; j < from.size(); j++)
             covariance_(to[i], to[j]) =
@@ -127,7 +123,7 @@ Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from) const {
 
 double StoredPrior::falloff_distance(const lensprof_fit_result &alone) const {
     const int own = green_falloff(vignettings_), size = static_cast<int>(alone.covariance_size);
-    const int theirs = static_cast<int>(alone.response.modes) + (alone.vignettings == 3 ? 3 : 0);
+    const int theirs = static_cast<int>(lp_covariance_index(alone.response.modes, alone.vignettings == 3 ? 1 : 0));
     if (covariance_(own, own) <= 0.0 || size < theirs + 3) return 0.0;
     double farthest = 0.0;
     for (double r2 : {0.1, 0.25, 0.5, 1.0}) {

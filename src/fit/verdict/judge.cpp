@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "core/covariance.h"
 #include "fit/base/constants.hpp"
 #include "fit/prior/known_exposures.hpp"
 #include "fit/verdict/quality.hpp"
@@ -89,16 +90,17 @@ double covered_radius(const lensprof_fit_result &r) {
 
 // Standard error of M in the corner, gamma held.
 double corner_sigma(const Problem &problem, const lensprof_fit_result &r) {
-    auto n = r.covariance_size;
+    const uint32_t n = r.covariance_size;
     double worst = 0.0;
-    for (int curve = 0; curve < problem.vignettings; curve++) {
-        double sum = 0.0;
-        uint32_t first = r.response.modes + 3 * static_cast<uint32_t>(curve);
-        for (uint32_t i = first; i < first + 3 && n; i++)
-            for (uint32_t j = first; j < first + 3; j++)
-                sum += r.covariance[i * n + j]
-                       - r.gamma_sigma * r.gamma_sigma * r.gamma_direction[i] * r.gamma_direction[j];
-        worst = std::max(worst, sum);
+    for (int curve = 0; curve < problem.vignettings && n; curve++) {
+        const uint32_t first = lp_covariance_index(r.response.modes, static_cast<uint32_t>(curve));
+        double held[9];
+        for (uint32_t i = 0; i < 9; i++) {
+            const uint32_t row = first + i / 3, column = first + i % 3;
+            held[i] = r.covariance[row * n + column]
+                      - r.gamma_sigma * r.gamma_sigma * r.gamma_direction[row] * r.gamma_direction[column];
+        }
+        worst = std::max(worst, lp_falloff_variance(held, 3, 0, 1.0));
     }
     return std::sqrt(worst);
 }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include <lensprof/model.h>
+
 namespace lensprof {
 
 // Half the diagonal, in mm, of a sensor with this crop factor: that of 36 mm x 24 mm over the crop factor.
@@ -22,8 +24,8 @@ inline std::array<double, 3> in_half_diagonals(const std::array<double, 3> &term
 inline double half_short_side(double aspect_ratio) { return 1.0 / std::hypot(aspect_ratio, 1.0); }
 
 // From the centre of a falloff, in half diagonals from that of the frame, to the frame's farthest corner.
-inline double farthest_corner(const double center[2], double width, double height) {
-    const double rho = std::hypot(width, height) / 2.0;
+inline double farthest_corner(const double center[2], uint32_t width, uint32_t height) {
+    const double rho = lensprof_half_diagonal(width, height);
     return std::hypot(width / 2.0 / rho + std::fabs(center[0]), height / 2.0 / rho + std::fabs(center[1]));
 }
 

@@ -125,7 +125,7 @@ void fill_photometry(PtoImage &image, uint32_t self) {
     result.exposure.white_balance[2] = value[kBlue];
     for (size_t i = 0; i < 5; i++) result.emor[i] = value[kResponseA + i];
     if (image.vignetting_mode & kVignettingRadial) {
-        double rho = 0.5 * std::hypot(result.camera.width, result.camera.height);
+        double rho = lensprof_half_diagonal(result.camera.width, result.camera.height);
         if (!(value[kVignettingA] > 0))
             fail_at_line(image.line, "Va is not positive; write Va1 and divide Vb, Vc and Vd by the old value");
         for (size_t i = 0; i < 3; i++) result.vignetting.k[i] = value[kVignettingB + i] / value[kVignettingA];

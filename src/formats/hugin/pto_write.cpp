@@ -74,7 +74,7 @@ std::vector<Edit> model_edits(const std::array<double, kHuginModes> &modes, cons
     for (size_t i = 0; i < kHuginModes; i++)
         edits.push_back({kPtoParameterInfo[kResponseA + i].name, number_text(modes[i])});
     const lensprof_camera &camera = image.result.camera;
-    double rho = 0.5 * std::hypot(camera.width, camera.height);
+    double rho = lensprof_half_diagonal(camera.width, camera.height);
     edits.push_back({"Va", "1"});
     for (size_t i = 0; i < 3; i++)
         edits.push_back({kPtoParameterInfo[kVignettingB + i].name, number_text(vignetting.k[i])});

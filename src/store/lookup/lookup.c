@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/covariance.h"
+
 #define SAME_SENSOR 0.02    /* crop factors that differ by so much are of one sensor: EXIF rounds */
 #define CROP_TOLERANCE 0.96 /* a sensor may be larger by so much than the one that was measured */
 #define SAME_FOCAL 0.02     /* of a lens that cannot be changed */
@@ -224,24 +226,8 @@ static lensprof_status refuse(lensprof_store *store, lensprof_lookup *lookup, co
     return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile for this setting", reason, error);
 }
 
-/* Variance of M in the corner by a covariance whose first k stands at `first`; 0 = not known. */
-static double corner_variance(const double *covariance, uint32_t size, uint32_t first) {
-    double sum = 0.0;
-    if (size < first + 3) return 0.0;
-    for (uint32_t i = first; i < first + 3; i++)
-        for (uint32_t j = first; j < first + 3; j++) sum += covariance[i * size + j];
-    return sum > 0.0 && isfinite(sum) ? sum : 0.0;
-}
-
-/* Of a stored profile. */
-static double variance_of(const lensprof_profile *p) {
-    uint32_t first = 0;
-    for (uint32_t c = 0; c < p->responses; c++)
-        if (p->response[c].kind == LENSPROF_RESPONSE_EMOR) first += p->response[c].modes;
-    return corner_variance(p->covariance, p->covariance_size, first);
-}
-
-/* The same without the rest of the profile, which takes longer to read. */
+/* Variance of M of the first curve in the corner, 0 = not known, without the rest of the profile, which takes longer to
+ * read. */
 static lensprof_status read_variance(lensprof_store *store, int64_t id, double *variance, lensprof_error *error) {
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
@@ -257,11 +243,11 @@ static lensprof_status read_variance(lensprof_store *store, int64_t id, double *
         lp_store_reader reader = {binder.statement, 0, NULL};
         const uint32_t size = (uint32_t)lp_read_integer(&reader, 1, LENSPROF_COVARIANCE_MAX);
         lp_read_doubles(&reader, covariance, size * size);
-        const uint32_t first = (uint32_t)lp_read_integer(&reader, 0, 3 * LENSPROF_EMOR_MODES);
+        const uint32_t modes = (uint32_t)lp_read_integer(&reader, 0, 3 * LENSPROF_EMOR_MODES);
         if (reader.bad)
             status = lp_store_fail_profile(store, id, reader.bad, error);
         else
-            *variance = corner_variance(covariance, size, first);
+            *variance = fmax(lp_falloff_variance(covariance, size, lp_covariance_index(modes, 0), 1.0), 0.0);
     } else
         status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, binder.statement);
@@ -402,8 +388,7 @@ static lensprof_status answer_exact(lensprof_store *store, int64_t id, lensprof_
     lookup->exact = lookup->rows = 1;
     lookup->id[0] = id, lookup->weight[0] = 1.0;
     const lensprof_status status = lp_store_fetch(store, id, error);
-    const double variance = status == LENSPROF_OK ? variance_of(&store->scratch) : 0.0;
-    lookup->sigma = variance > 0.0 ? sqrt(variance) : LENSPROF_UNKNOWN;
+    if (status == LENSPROF_OK) lensprof_profile_corner_falloff(&store->scratch, 0, &lookup->sigma);
     return status;
 }
 

@@ -1,0 +1,24 @@
+/* Places in a covariance, whose order include/lensprof/profile.h states, and the variance of a falloff by it. */
+#ifndef LENSPROF_CORE_COVARIANCE_H
+#define LENSPROF_CORE_COVARIANCE_H
+
+#include <lensprof/profile.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Number of EMoR coefficients of these responses: all parameters before the first falloff. */
+uint32_t lp_covariance_modes(const lensprof_response *response, uint32_t responses);
+
+/* Index of k1 of a curve after `modes` coefficients; curve = number of curves: index of the centre's x. */
+static inline uint32_t lp_covariance_index(uint32_t modes, uint32_t curve) { return modes + 3 * curve; }
+
+/* Variance of M at r^2 by the n x n covariance whose k1 stands at `first`. LENSPROF_UNKNOWN where the covariance does
+ * not reach to k3, knows nothing of the three, or gives no variance (below 0, not finite). */
+double lp_falloff_variance(const double *covariance, uint32_t n, uint32_t first, double r2);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
