@@ -2,7 +2,7 @@
 #include "simulated.hpp"
 
 #include "fit/prior/gauge.hpp"
-#include "fit/problem/monotone.hpp"
+#include "fit/problem/curve_shape.hpp"
 #include "fit/problem/residual.hpp"
 
 using namespace lensprof;

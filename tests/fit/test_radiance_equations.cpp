@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include "fit/problem/monotone.hpp"
+#include "fit/problem/curve_shape.hpp"
 #include "fit/solver/objective.hpp"
 #include "fit/solver/radiance_equations.hpp"
 

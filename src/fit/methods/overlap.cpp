@@ -10,7 +10,7 @@
 #include "fit/base/constants.hpp"
 #include "fit/methods/method.hpp"
 #include "fit/methods/refine.hpp"
-#include "fit/problem/monotone.hpp"
+#include "fit/problem/curve_shape.hpp"
 #include "fit/solver/objective.hpp"
 #include "fit/solver/start.hpp"
 #include "fit/verdict/finish.hpp"

@@ -7,7 +7,7 @@
 
 #include "core/response.h"
 #include "fit/base/constants.hpp"
-#include "fit/problem/monotone.hpp"
+#include "fit/problem/curve_shape.hpp"
 
 namespace lensprof {
 namespace {

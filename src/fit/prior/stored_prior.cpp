@@ -9,7 +9,7 @@
 #include "core/covariance.h"
 #include "core/response.h"
 #include "fit/prior/gauge.hpp"
-#include "fit/problem/monotone.hpp"
+#include "fit/problem/curve_shape.hpp"
 
 namespace lensprof {
 namespace {

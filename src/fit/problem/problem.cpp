@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "core/response.h"
-#include "fit/problem/monotone.hpp"
+#include "fit/problem/curve_shape.hpp"
 #include "fit/problem/tracks.hpp"
 
 namespace lensprof {

@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "fit/problem/monotone.hpp"
+#include "fit/solver/constrained_step.hpp"
 #include "fit/solver/objective.hpp"
 
 namespace lensprof {

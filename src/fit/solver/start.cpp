@@ -6,7 +6,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "fit/base/constants.hpp"
-#include "fit/problem/monotone.hpp"
+#include "fit/problem/curve_shape.hpp"
 #include "fit/problem/residual.hpp"
 
 namespace lensprof {

@@ -8,7 +8,7 @@
 #include "fit/methods/method.hpp"
 #include "fit/methods/transfer_function/jackknife.hpp"
 #include "fit/methods/transfer_function/log_equations.hpp"
-#include "fit/problem/monotone.hpp"
+#include "fit/problem/curve_shape.hpp"
 #include "fit/solver/start.hpp"
 #include "fit/verdict/finish.hpp"
 #include "fit/verdict/quality.hpp"

@@ -4,17 +4,12 @@
 #include <Eigen/Dense>
 
 #include "core/response.h"
-#include "fit/problem/monotone.hpp"
+#include "fit/problem/curve_shape.hpp"
+#include "fit/solver/constrained_step.hpp"
 
 using namespace lensprof;
 
 namespace {
-
-bool is_rising(const double *emor, int modes) {
-    Estimate estimate;
-    set_response(estimate, emor, modes);
-    return is_feasible(estimate, 1);
-}
 
 double rms_distance(const std::vector<double> &emor, const std::vector<double> &curve) {
     double table[1024], sum = 0;
