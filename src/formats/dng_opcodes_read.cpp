@@ -5,11 +5,11 @@
 
 #include <lensprof/formats.h>
 
+#include "falloff/map_fit.hpp"
+#include "falloff/refit.hpp"
 #include "formats/dng_opcodes.hpp"
 #include "formats/falloff/import.hpp"
-#include "formats/falloff/map_fit.hpp"
 #include "formats/falloff/radius.hpp"
-#include "formats/falloff/refit.hpp"
 #include "formats/text/text.hpp"
 
 namespace lensprof {

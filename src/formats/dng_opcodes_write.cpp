@@ -5,10 +5,10 @@
 
 #include <lensprof/formats.h>
 
+#include "falloff/map_fit.hpp"
+#include "falloff/refit.hpp"
 #include "formats/dng_opcodes.hpp"
-#include "formats/falloff/map_fit.hpp"
 #include "formats/falloff/radius.hpp"
-#include "formats/falloff/refit.hpp"
 #include "formats/text/text.hpp"
 
 namespace lensprof {
@@ -116,7 +116,8 @@ void fill_gains(const lensprof_profile &profile, PixelFrame frame, uint32_t firs
         for (uint32_t j = 0; j < map.rows; j++)
             for (uint32_t i = 0; i < map.columns; i++) {
                 const double x = i * map.spacing[1] * frame.width - 0.5, y = j * map.spacing[0] * frame.height - 0.5;
-                at(j, i) = 1.0 / profile_attenuation(profile, frame.width, frame.height, x, y, first + plane);
+                at(j, i) =
+                    1.0 / lensprof_profile_falloff(&profile, first + plane, frame.width, frame.height, x, y, nullptr);
             }
         for (uint32_t j = 0; j < map.rows; j++)
             for (uint32_t i = 0; i < map.columns; i++) {
@@ -136,7 +137,8 @@ double worst_error(const lensprof_profile &profile, PixelFrame frame, uint32_t f
             for (uint32_t i = 0; i < kChecked; i++) {
                 const double x = i * (frame.width - 1.0) / (kChecked - 1),
                              y = j * (frame.height - 1.0) / (kChecked - 1);
-                const double m = profile_attenuation(profile, frame.width, frame.height, x, y, first + plane);
+                const double m =
+                    lensprof_profile_falloff(&profile, first + plane, frame.width, frame.height, x, y, nullptr);
                 worst = std::max(worst, std::fabs(map_gain(map, frame, x, y, plane) * m - 1.0));
             }
     return worst;

@@ -9,11 +9,11 @@
 
 #include <lensprof/formats.h>
 
+#include "falloff/map_fit.hpp"
+#include "falloff/refit.hpp"
 #include "formats/falloff/falloff_doubt.hpp"
 #include "formats/falloff/import.hpp"
-#include "formats/falloff/map_fit.hpp"
 #include "formats/falloff/radius.hpp"
-#include "formats/falloff/refit.hpp"
 #include "formats/text/rdf.hpp"
 #include "formats/text/text.hpp"
 #include "formats/text/xml.hpp"

@@ -8,6 +8,7 @@
 
 #include <lensprof/formats.h>
 
+#include "falloff/refit.hpp"
 #include "formats/falloff/export.hpp"
 #include "formats/falloff/radius.hpp"
 #include "formats/lcp.hpp"

@@ -9,6 +9,7 @@
 
 #include <lensprof/formats.h>
 
+#include "falloff/refit.hpp"
 #include "formats/falloff/import.hpp"
 #include "formats/falloff/radius.hpp"
 #include "formats/lensfun.hpp"

@@ -4,8 +4,8 @@
 
 #include <lensprof/formats.h>
 
-#include "formats/falloff/map_fit.hpp"
-#include "formats/falloff/refit.hpp"
+#include "falloff/map_fit.hpp"
+#include "falloff/refit.hpp"
 #include "formats/text/text.hpp"
 
 extern "C" {
@@ -48,9 +48,10 @@ FalloffMap map_of(const lensprof_profile &profile, uint32_t columns, uint32_t ro
     for (uint32_t c = 0; c < channels; c++)
         for (uint32_t j = 0; j < rows; j++)
             for (uint32_t i = 0; i < columns; i++)
-                map.attenuation.push_back(
-                    scale * (c + 1)
-                    * profile_attenuation(profile, map.width, map.height, map.x0 + i * map.dx, map.y0 + j * map.dy, c));
+                map.attenuation.push_back(scale * (c + 1)
+                                          * lensprof_profile_falloff(&profile, c, map.width, map.height,
+                                                                     map.x0 + i * map.dx, map.y0 + j * map.dy,
+                                                                     nullptr));
     return map;
 }
 

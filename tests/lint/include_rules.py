@@ -71,12 +71,13 @@ class Layer:
 LAYERS = {
     "src/core": Layer(CORE_API, FREESTANDING | {"math.h", "string.h"}),
     "src/core/kernels": Layer(CORE_API, FREESTANDING | {"string.h"} | INTRINSICS, private=["core"]),
-    "src/fit": Layer(FIT_API, C_ARITHMETIC | CPP_LIBRARY | {"Eigen/*", "nlopt.h", "nlopt.hpp"}, ["core"],
+    "src/falloff": Layer(CORE_API, C_ARITHMETIC | CPP_LIBRARY | {"Eigen/*"}, ["core"], CPP_OUTSIDE),
+    "src/fit": Layer(FIT_API, C_ARITHMETIC | CPP_LIBRARY | {"Eigen/*", "nlopt.h", "nlopt.hpp"}, ["core", "falloff"],
                      CPP_OUTSIDE - {"thread"}),
     "src/formats": Layer(
-        FORMATS_API, C_ARITHMETIC | CPP_LIBRARY | {"Eigen/*", "pugixml.hpp", "nlohmann/*"}, ["core"], CPP_OUTSIDE
+        FORMATS_API, C_ARITHMETIC | CPP_LIBRARY | {"pugixml.hpp", "nlohmann/*"}, ["core", "falloff"], CPP_OUTSIDE
     ),
-    "src/store": Layer(STORE_API, C_ARITHMETIC | {"sqlite3.h"}, ["core"]),
+    "src/store": Layer(STORE_API, C_ARITHMETIC | {"sqlite3.h"}, ["core", "falloff"]),
     "src/cli": Layer(
         WHOLE_API,
         C_LIBRARY
@@ -253,7 +254,8 @@ GOOD = {
     "src/core/own.h": "#include <math.h>\n",
     "src/fit/api/fit.cpp": '#include <vector>\n#include <Eigen/Core>\n#include "core/own.h"\n#include "fit/base/low.hpp"\n',
     "src/fit/base/low.hpp": "#include <vector>\n",
-    "src/formats/pto.cpp": "#include <string>\n#include <lensprof/fit.h>\n",
+    "src/falloff/low.hpp": "#include <Eigen/Core>\n#include <lensprof/profile.h>\n",
+    "src/formats/pto.cpp": '#include <string>\n#include <lensprof/fit.h>\n#include "falloff/low.hpp"\n',
     "src/store/file/store.c": "#include <sqlite3.h>\n#include <lensprof/store.h>\n// #include <fine.h>\n",
     "src/cli/program/run.cpp": '#include <CLI/CLI.hpp>\n#include <sys/stat.h>\n#include "cli/program/run.hpp"\n',
     "src/cli/program/run.hpp": "#include <lensprof/lensprof.h>\n",
@@ -280,7 +282,11 @@ BAD = [
     ("src/fit/api/fit.cpp", "#include <png.h>"),
     ("src/fit/api/fit.cpp", "#include <lensprof/lensprof.h>"),
     ("src/formats/pto.cpp", "#include <nlopt.h>"),
-    ("src/formats/pto.cpp", "#include <nlopt.h>"),
+    ("src/formats/pto.cpp", "#include <Eigen/Core>"),
+    ("src/falloff/low.hpp", "#include <lensprof/fit.h>"),
+    ("src/falloff/low.hpp", '#include "formats/pto.cpp"'),
+    ("src/falloff/low.hpp", "#include <sqlite3.h>"),
+    ("src/core/base.c", '#include "falloff/low.hpp"'),
     ("src/formats/pto.cpp", '#include "fit/api/fit.cpp"'),
     ("src/formats/pto.cpp", "#include <fstream>"),
     ("src/formats/pto.cpp", "#include <lensprof/store.h>"),

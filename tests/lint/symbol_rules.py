@@ -5,7 +5,9 @@ usage: symbol_rules.py [--nm NM] [--cc CC] CHECK
 
   core ARCHIVE                         the core needs nothing but the listed functions, and has no writable data
   apply OBJECTS_FOLDER                 what applies a profile needs even less, its pixels least: for a camera's processor too
-  layer NAME ARCHIVE OBJECTS_FOLDER    fit, formats or store refer to themselves, the core and their library only
+  layer NAME ARCHIVE OBJECTS_FOLDER [BELOW]
+                                       falloff, fit, formats or store refer to themselves, the core, the layer with its
+                                       objects in BELOW and their library only
   exports LIBRARY HEADERS              exported symbols = exported_symbols.txt = LENSPROF_API of the headers
   self-check                           every check must find a planted violation
 
@@ -128,18 +130,18 @@ def check_apply(nm, folder):
     return violations
 
 
-LIBRARY_OF = {"fit": re.compile(r"^nlopt_"), "formats": re.compile(r"^_ZNK?4pugi"), "store": re.compile(r"^sqlite3_")}
+LIBRARY_OF = {"falloff": re.compile(r"(?!)"), "fit": re.compile(r"^nlopt_"), "formats": re.compile(r"^_ZNK?4pugi"), "store": re.compile(r"^sqlite3_")}
 OF_LIBRARIES = re.compile(r"^(nlopt_|sqlite3_|lensprof_|lp_|_ZNK?8lensprof|_ZNK?4pugi|png_|TIFF|jpeg_|_ZN5Exiv2)")
 
 
-def check_layer(nm, name, archive, folder):
+def check_layer(nm, name, archive, folder, below=None):
     objects = sorted(pathlib.Path(folder).rglob("*.o"))
     if not objects:
         return [f"{folder}: holds no object files"]
     needed, _ = nm.needed_and_made(objects)
-    _, core = nm.needed_and_made([archive])
+    _, known = nm.needed_and_made([archive, *(pathlib.Path(below).rglob("*.o") if below else [])])
     violations = []
-    for symbol in sorted(needed - core):
+    for symbol in sorted(needed - known):
         if OUTSIDE.search(symbol) or (THREADS.search(symbol) and name not in MAY_START_THREADS):
             violations.append(
                 f"{name}: refers to {symbol}; files, output, environment, clock and threads belong to the program"

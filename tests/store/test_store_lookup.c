@@ -1,7 +1,7 @@
 /* Profiles for settings that are not stored: names, cameras, units, sensors, the falloff between settings, refusals. */
 #include "store_fixture.h"
 
-#include "store/lookup/falloff_prediction.h"
+#include "falloff/prediction.h"
 #include "store/names/names.h"
 
 static lensprof_profile shared; /* 50 kB */

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "falloff/levenberg_marquardt.hpp"
 #include "fit/base/constants.hpp"
 #include "fit/base/quantile.hpp"
 #include "fit/prior/prior.hpp"
@@ -16,9 +17,7 @@ namespace {
 constexpr double kCutoff = 4.0;    // of the robust loss, sigmas of a cell's typical size
 constexpr int kRounds = 12;        // of noise and fit in turn
 constexpr double kSettled = 1e-3;  // change of what measures the noise
-constexpr int kMostSteps = 60;
-constexpr double kSmallestGain = 1e-8;  // of the objective, at which a fit has settled
-constexpr double kLargestDamping = 1e12;
+constexpr DescentLimits kLimits{60, 1e-6, 1e12, 1e-8};
 constexpr double kSmallestScale = 0.2;
 constexpr double kMedianChi2 = 0.4549, kMedianChi2Of3 = 2.366;   // of chi-squared, 1 and 3 degrees of freedom
 constexpr double kInlierSquare = 0.973, kInlierSquare3 = 0.988;  // mean square of what inlier_limit lets through
@@ -31,13 +30,6 @@ double cutoff(const FlatProblem &problem) { return kCutoff * kCutoff * problem.m
 double sigma_of(const FlatEstimate &estimate, double variance, double predicted) {
     return std::sqrt(variance + std::pow(estimate.unevenness * predicted, 2));
 }
-
-// Normal equations over the free unknowns at an estimate, and the objective there.
-struct Normal {
-    Eigen::MatrixXd hessian;
-    Eigen::VectorXd gradient;  // of -objective
-    double objective = 0.0;
-};
 
 double prior_objective(const FlatProblem &problem, const Eigen::VectorXd &u) {
     Eigen::VectorXd d = u - problem.prior.mean;
@@ -75,11 +67,13 @@ double objective(const FlatProblem &problem, const Eigen::VectorXd &u, const Sig
     return sum / inflation + prior_objective(problem, u);
 }
 
-Normal normal_equations(const FlatProblem &problem, const Eigen::VectorXd &u, const Sigmas &sigmas, double inflation) {
+// Over the free unknowns.
+QuadraticModel normal_equations(const FlatProblem &problem, const Eigen::VectorXd &u, const Sigmas &sigmas,
+                                double inflation) {
     const int n = problem.model.unknowns();
     Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-    Normal normal;
+    QuadraticModel normal;
     for (size_t i = 0; i < sigmas.size(); i++) {
         const FlatCell &cell = problem.cells[i];
         std::array<Prediction, 3> p;
@@ -119,28 +113,21 @@ bool is_falloff(const FlatModel &model, const Eigen::VectorXd &u) {
 
 // Steps until the objective settles, sigmas held.
 void descend(const FlatProblem &problem, FlatEstimate &estimate) {
-    Sigmas sigmas = all_sigmas(problem, estimate);
-    double damping = 1e-6;
-    estimate.converged = false;
-    for (int step = 0; step < kMostSteps && !estimate.converged && damping < kLargestDamping; step++) {
-        Normal normal = normal_equations(problem, estimate.u, sigmas, estimate.inflation);
-        bool better = false;
-        for (; !better && damping < kLargestDamping; damping *= better ? 0.1 : 10.0) {
-            Eigen::MatrixXd damped = normal.hessian;
-            damped.diagonal() *= 1.0 + damping;
-            damped.diagonal().array() += 1e-12;
-            Eigen::VectorXd change = damped.ldlt().solve(normal.gradient), next = estimate.u;
-            next(problem.free) += change;
-            if (!is_falloff(problem.model, next)) continue;
-            double gain = normal.objective - objective(problem, next, sigmas, estimate.inflation);
-            better = gain >= 0.0;
-            if (!better && std::abs(gain) > kSmallestGain * normal.objective) continue;
-            if (better) estimate.u = next;
-            estimate.converged = gain <= kSmallestGain * normal.objective;
-            if (estimate.converged) break;
-        }
-        estimate.iterations++;
-    }
+    const Sigmas sigmas = all_sigmas(problem, estimate);
+    const auto moved = [&](const Eigen::VectorXd &change) {
+        Eigen::VectorXd next = estimate.u;
+        next(problem.free) += change;
+        return next;
+    };
+    const auto objective_after = [&](const Eigen::VectorXd &change) {
+        const Eigen::VectorXd next = moved(change);
+        return is_falloff(problem.model, next) ? objective(problem, next, sigmas, estimate.inflation) : INFINITY;
+    };
+    const Descent descent = levenberg_marquardt(
+        kLimits, [&] { return normal_equations(problem, estimate.u, sigmas, estimate.inflation); }, objective_after,
+        [&](const Eigen::VectorXd &change) { estimate.u = moved(change); });
+    estimate.converged = descent.converged;
+    estimate.iterations += static_cast<uint32_t>(descent.steps);
 }
 
 // Residuals of all cells, (E - P) / sigma / scale, and their chi-squared.

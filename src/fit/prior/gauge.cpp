@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "core/response.h"
+#include "falloff/power_fit.hpp"
 #include "fit/base/constants.hpp"
 #include "fit/problem/curve_shape.hpp"
 
@@ -45,21 +44,18 @@ bool nothing_fixes_gamma(const lensprof_fit_options &options, const Problem &pro
 
 // Least squares k1..k3 (those that are free) of M^gamma over the frame.
 void raise_falloff(const Problem &problem, double gamma, lensprof_vignetting &v) {
-    std::vector<int> columns;
+    constexpr int kRadii = 40;
+    std::vector<int> powers;  // of r^2
     for (int n = 0; n < 3; n++)
-        if (problem.free & (LENSPROF_FREE_K1 << n)) columns.push_back(n);
-    if (columns.empty()) return;
-    auto count = static_cast<Eigen::Index>(columns.size());
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(count), row(count);
-    for (int i = 1; i <= 40; i++) {
-        double r2 = i * i / 1600.0, m = std::max(lensprof_vignetting_eval(&v, r2, nullptr), 1e-3);
-        for (Eigen::Index u = 0; u < count; u++) row[u] = std::pow(r2, columns[static_cast<size_t>(u)] + 1);
-        normal += row * row.transpose();
-        right += row * (std::pow(m, gamma) - 1.0);
-    }
-    Eigen::VectorXd k = normal.ldlt().solve(right);
-    for (Eigen::Index u = 0; u < count; u++) v.k[columns[static_cast<size_t>(u)]] = k[u];
+        if (problem.free & (LENSPROF_FREE_K1 << n)) powers.push_back(n + 1);
+    if (powers.empty()) return;
+    const lensprof_vignetting given = v;
+    const Eigen::VectorXd k = fit_powers(powers.data(), static_cast<int>(powers.size()), kRadii, 0, [&](int i) {
+        const double r2 = (i + 1) * (i + 1) / double(kRadii * kRadii);
+        const double m = std::max(lensprof_vignetting_eval(&given, r2, nullptr), 1e-3);
+        return PowerSample{r2, std::pow(m, gamma) - 1.0, 1.0};
+    });
+    for (size_t u = 0; u < powers.size(); u++) v.k[powers[u] - 1] = k[static_cast<Eigen::Index>(u)];
 }
 
 // Standard deviation by the median of what two parameters leave, less what may be chance; 1 where there is no more.

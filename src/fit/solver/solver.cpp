@@ -16,7 +16,9 @@ constexpr double kLargestLogBalance = 12.0;  // white balance factors stay valid
 constexpr double kHeldFirmly = 1e4;  // times as firmly as in the fit: gamma's own error is stated apart from the data's
 
 // One accepted Levenberg-Marquardt step; false when no damping finds an improvement. The model of the accepted point is
-// kept for the next step.
+// kept for the next step. Not falloff/levenberg_marquardt.hpp, which is for few unknowns without constraints: here the
+// images are eliminated from each model (which may fail), the step keeps inequalities, and a place costs so much that
+// after a failure its value alone is computed first.
 struct Stepper {
     const Problem &problem;
     const Objective &objective;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "falloff/refit.hpp"
+
 namespace lensprof {
 namespace {
 

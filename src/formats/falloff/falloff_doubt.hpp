@@ -7,8 +7,6 @@
 
 namespace lensprof {
 
-constexpr double kLowestFalloff = 0.001;  // of M that lensprof_vignetting_validate accepts
-
 struct FalloffDoubt {
     bool usable;       // lensprof_vignetting_validate accepts it
     std::string text;  // below 64 bytes, empty when there is no doubt

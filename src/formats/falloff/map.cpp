@@ -99,7 +99,8 @@ std::vector<double> attenuations_of(const lensprof_profile &profile, uint32_t wi
             for (uint32_t i = 0; i < columns; i++) {
                 double sum = 0.0;
                 for (uint32_t from = channels == 3 ? c : 0; from <= (channels == 3 ? c : 2); from++)
-                    sum += profile_attenuation(profile, width, height, map.x0 + i * map.dx, map.y0 + j * map.dy, from);
+                    sum += lensprof_profile_falloff(&profile, from, width, height, map.x0 + i * map.dx,
+                                                    map.y0 + j * map.dy, nullptr);
                 all.push_back(channels == 3 ? sum : sum / 3.0);
             }
     const double largest = *std::max_element(all.begin(), all.end());

@@ -8,7 +8,7 @@
 
 #include <lensprof/formats.h>
 
-#include "formats/falloff/map_fit.hpp"
+#include "falloff/map_fit.hpp"
 #include "formats/text/text.hpp"
 
 namespace lensprof {

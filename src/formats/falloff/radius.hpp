@@ -2,7 +2,6 @@
 // frame; a polynomial in another unit of radius is rescaled exactly.
 #pragma once
 
-#include <array>
 #include <cmath>
 
 #include <lensprof/model.h>
@@ -11,14 +10,6 @@ namespace lensprof {
 
 // Half the diagonal, in mm, of a sensor with this crop factor: that of 36 mm x 24 mm over the crop factor.
 inline double half_diagonal_mm(double crop_factor) { return std::hypot(36.0, 24.0) / 2.0 / crop_factor; }
-
-// Coefficients of r^2, r^4, r^6 for r in half diagonals, from those for r in `unit` half diagonals:
-// (rho / unit)^2n a_n = rho^2n a_n unit^-2n. Units: Hugin and Lensfun's pa 1; Lensfun's and Adobe's acm
-// focal_mm / half_diagonal_mm(crop_factor).
-inline std::array<double, 3> in_half_diagonals(const std::array<double, 3> &terms, double unit) {
-    const double s = 1.0 / (unit * unit);
-    return {terms[0] * s, terms[1] * s * s, terms[2] * s * s * s};
-}
 
 // Half the shorter side in half diagonals, for a frame of this ratio of its sides: the unit of Lensfun's centres.
 inline double half_short_side(double aspect_ratio) { return 1.0 / std::hypot(aspect_ratio, 1.0); }

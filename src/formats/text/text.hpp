@@ -8,13 +8,13 @@
 
 #include <lensprof/base.h>
 
+#include "falloff/failure.hpp"
+
 namespace lensprof {
 
-// The exception of this layer. The text is complete: "line 12: what is wrong; next step".
-struct FormatFailure {
-    lensprof_status status;
-    std::string text;
-};
+// The exception of this layer, which what fits falloffs throws as well. The text is complete: "line 12: what is wrong;
+// next step".
+using FormatFailure = FalloffFailure;
 
 [[noreturn]] void fail_at_line(size_t line, const std::string &text, lensprof_status status = LENSPROF_ERROR_SYNTAX);
 

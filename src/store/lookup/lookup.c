@@ -25,6 +25,8 @@ void lensprof_lookup_init_sized(lensprof_lookup *lookup, size_t size) {
     (void)lp_sized_begin(lookup, size, FIRST_LOOKUP);
 }
 
+_Static_assert(LP_NEIGHBOURS == LENSPROF_LOOKUP_ROWS, "a lookup names all that a prediction uses");
+
 /* ---- which of them ---- */
 
 static int is_sensor_covered(const lp_candidate *c, const lensprof_profile_key *key) {

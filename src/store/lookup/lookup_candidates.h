@@ -2,7 +2,7 @@
 #ifndef LENSPROF_STORE_LOOKUP_CANDIDATES_H
 #define LENSPROF_STORE_LOOKUP_CANDIDATES_H
 
-#include "store/lookup/falloff_prediction.h"
+#include "falloff/prediction.h"
 #include "store/profiles/profiles.h"
 
 /* A row of the lens: how well it fits the camera, and its node. */

@@ -1,15 +1,16 @@
-#include "formats/falloff/map_fit.hpp"
+#include "falloff/map_fit.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include "core/gain_grid.h"
-#include "formats/falloff/falloff_doubt.hpp"
-#include "formats/text/text.hpp"
+#include "falloff/failure.hpp"
+#include "falloff/levenberg_marquardt.hpp"
+#include "falloff/power_fit.hpp"
+#include "falloff/refit.hpp"
 
 namespace lensprof {
 namespace {
@@ -21,7 +22,7 @@ constexpr size_t kFewValues = 4;         // of a map, a node
 constexpr int kRefinements = 20;         // of such a grid: the error of a table of 16 x 12 falls from 3.5 to 0.3 %
 constexpr double kFarthestCenter = 0.5;  // half diagonals; beyond it is not the centre of a falloff
 
-[[noreturn]] void fail(const char *text) { throw FormatFailure{LENSPROF_ERROR_VIGNETTING, text}; }
+[[noreturn]] void fail(const char *text) { throw FalloffFailure{LENSPROF_ERROR_VIGNETTING, text}; }
 
 // A known value of a map.
 struct Sample {
@@ -61,17 +62,14 @@ public:
 
     void run() {
         solve_linear();
-        double cost = cost_of(terms_), damping = 1e-3;
-        for (int round = 0; round < 50 && damping < 1e9; round++) {
-            const Eigen::VectorXd next = step(damping);
+        constexpr DescentLimits kLimits{50, 1e-3, 1e9, 1e-12};
+        const auto cost_after = [&](const Eigen::VectorXd &change) {
+            const Eigen::VectorXd next = terms_ + change;
             const bool inside = std::hypot(next[center()], next[center() + 1]) <= kFarthestCenter;
-            const double reached = inside ? cost_of(next) : INFINITY;
-            damping = reached < cost ? damping / 10.0 : damping * 10.0;
-            if (!(reached < cost)) continue;
-            const bool done = reached > cost * (1.0 - 1e-12);
-            terms_ = next, cost = reached;
-            if (done) break;
-        }
+            return inside ? cost_of(next) : INFINITY;
+        };
+        levenberg_marquardt(
+            kLimits, [&] { return model(); }, cost_after, [&](const Eigen::VectorXd &change) { terms_ += change; });
     }
 
     std::array<double, 3> k(uint32_t channel) const {
@@ -105,15 +103,17 @@ private:
         return m / s.value - 1.0;
     }
 
+    // With the centre held where it is.
     void solve_linear() {
+        constexpr int kPowers[4] = {0, 1, 2, 3};
         for (uint32_t c = 0; c < map_.channels; c++) {
-            Eigen::MatrixXd rows(channels_[c].samples.size(), 4);
-            Eigen::VectorXd slope;
-            for (size_t i = 0; i < channels_[c].samples.size(); i++) {
-                residual(terms_, c, channels_[c].samples[i], &slope);
-                rows.row(static_cast<Eigen::Index>(i)) = slope.segment(4 * c, 4);
-            }
-            terms_.segment(4 * c, 4) = rows.colPivHouseholderQr().solve(Eigen::VectorXd::Ones(rows.rows()));
+            const lensprof_vignetting v = shape(terms_, c);
+            const std::vector<Sample> &samples = channels_[c].samples;
+            terms_.segment(4 * c, 4) = fit_powers<4>(kPowers, 4, static_cast<int>(samples.size()), 1, [&](int i) {
+                const Sample &s = samples[static_cast<size_t>(i)];
+                const double r2 = lensprof_vignetting_r2(&v, map_.width, map_.height, s.x, s.y, nullptr);
+                return PowerSample{r2, s.value, 1.0 / (s.value * s.value)};
+            });
         }
     }
 
@@ -124,18 +124,19 @@ private:
         return cost;
     }
 
-    Eigen::VectorXd step(double damping) const {
+    QuadraticModel model() const {
         const Eigen::Index n = terms_.size();
-        Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
-        Eigen::VectorXd right = Eigen::VectorXd::Zero(n), slope;
+        QuadraticModel model{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+        Eigen::VectorXd slope;
         for (uint32_t c = 0; c < map_.channels; c++)
             for (const Sample &s : channels_[c].samples) {
                 const double left = residual(terms_, c, s, &slope);
-                right -= left * slope;
-                normal.selfadjointView<Eigen::Lower>().rankUpdate(slope);
+                model.objective += left * left;
+                model.gradient -= left * slope;
+                model.hessian.selfadjointView<Eigen::Lower>().rankUpdate(slope);
             }
-        for (Eigen::Index i = 0; i < n; i++) normal(i, i) += damping * normal(i, i) + 1e-12;
-        return terms_ + normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+        model.hessian = Eigen::MatrixXd(model.hessian.selfadjointView<Eigen::Lower>());
+        return model;
     }
 
     const FalloffMap &map_;
@@ -219,7 +220,8 @@ void refine_grid(const FalloffMap &map, const MapFit &fit, lensprof_profile &pro
         for (int round = 0; round < kRefinements; round++) {
             std::vector<double> sum(nodes), weight(nodes);
             for (const Sample &s : fit.channel(c).samples) {
-                const double model = fit.one(c) * profile_attenuation(profile, map.width, map.height, s.x, s.y, c);
+                const double model =
+                    fit.one(c) * lensprof_profile_falloff(&profile, c, map.width, map.height, s.x, s.y, nullptr);
                 const lp_grid_cell x = lp_grid_cell_at(s.x, map.width, grid.columns),
                                    y = lp_grid_cell_at(s.y, map.height, grid.rows);
                 for (uint32_t k = 0; k < 4; k++) {
@@ -244,7 +246,8 @@ double worst_error(const FalloffMap &map, const MapFit &fit, const lensprof_prof
     double worst = 0.0;
     for (uint32_t c = 0; c < map.channels; c++) {
         for (const Sample &s : fit.channel(c).samples) {
-            const double model = fit.one(c) * profile_attenuation(profile, map.width, map.height, s.x, s.y, c);
+            const double model =
+                fit.one(c) * lensprof_profile_falloff(&profile, c, map.width, map.height, s.x, s.y, nullptr);
             worst = std::max(worst, std::fabs(model / s.value - 1.0));
         }
     }
@@ -273,17 +276,10 @@ FalloffMap sampled_map(uint32_t width, uint32_t height, uint32_t channels, const
     return map;
 }
 
-double profile_attenuation(const lensprof_profile &profile, uint32_t width, uint32_t height, double x, double y,
-                           uint32_t channel) {
-    const lensprof_vignetting &v = profile.vignetting[profile.vignettings == 3 ? channel : 0];
-    return lensprof_vignetting_eval(&v, lensprof_vignetting_r2(&v, width, height, x, y, nullptr), nullptr)
-           * lensprof_gain_grid_eval(&profile.grid, width, height, x, y, channel);
-}
-
 double fit_map(const FalloffMap &map, lensprof_profile &profile) {
     for (double value : map.attenuation)
         if (!std::isfinite(value))
-            throw FormatFailure{LENSPROF_ERROR_NOT_FINITE, "a map that is not finite; correct it"};
+            throw FalloffFailure{LENSPROF_ERROR_NOT_FINITE, "a map that is not finite; correct it"};
     MapFit fit(map);
     fit.run();
     profile.vignettings = map.channels;

@@ -1,14 +1,18 @@
-/* A lens's falloff between the settings at which it is known. */
-#ifndef LENSPROF_STORE_FALLOFF_PREDICTION_H
-#define LENSPROF_STORE_FALLOFF_PREDICTION_H
+/* A lens's falloff between the settings at which it is known: kriging. C, for the store; nothing is thrown. */
+#ifndef LENSPROF_FALLOFF_PREDICTION_H
+#define LENSPROF_FALLOFF_PREDICTION_H
 
-#include <lensprof/store.h>
+#include <stdint.h>
 
-#define LP_NEIGHBOURS LENSPROF_LOOKUP_ROWS /* a lookup names them all */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define LP_NEIGHBOURS 24 /* nodes that a prediction uses */
 
 /* What is known at one setting. distance_m may be infinite. */
 typedef struct lp_falloff_node {
-    int64_t id;
+    int64_t id; /* the caller's */
     double focal_mm, aperture, distance_m;
     double k[3][3];  /* curve by curve; all three also where they are the same */
     double variance; /* of M in the corner; 0 = not known */
@@ -33,14 +37,14 @@ typedef struct lp_falloff_prediction {
 uint32_t lp_drop_repeated(lp_falloff_node *nodes, uint32_t count);
 
 /* The falloff at a setting; `count` > 0 nodes, none repeated. 0 where the nearest node is beyond LP_FALLOFF_REACH; then
- * only `nearest` is set.
+ * only `nearest` is set. Returns -1 without memory.
  *
  * Kriging of curves: with x = log2(f)/2, t = N0/N, z = 0.2 m/D and the distance d between settings in these, the
  * covariance of M is (1 + d) e^-d + const; N0 is the smallest f-number known at this focal length or a longer one, so
  * that t = 1 is wide open. From curves a mean trend -0.4 t^2 r^2 is taken first. Axes, kernel and constants are those
  * of the smallest leave-one-out error over half of the lenses of Lensfun's database, checked on the other half
  * (docs/database.md). A prediction leaves the range of its neighbours' curves by no more than half of that range and
- * 0.02, and stays above half of the lowest. Returns -1 without memory. */
+ * 0.02, and stays above half of the lowest. */
 int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
                        lp_falloff_prediction *prediction);
 
@@ -50,4 +54,7 @@ int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_fa
 void lp_fit_falloff(const double *values, double k[3]);
 void lp_sample_falloff(const double k[3], double *values);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

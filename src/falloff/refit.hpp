@@ -10,6 +10,8 @@
 
 namespace lensprof {
 
+constexpr double kLowestFalloff = 0.001;  // of M that lensprof_vignetting_validate accepts
+
 // 1 + terms[0] t + terms[1] t^2 + ... for a target sampled evenly in t over 0..1, target(0) taken as 1. Throws
 // NOT_FINITE or VIGNETTING for what is not finite, or not above 0, there.
 struct EvenRefit {
@@ -25,5 +27,13 @@ struct RadialRefit {
     double worst;  // largest |M / attenuation - 1|
 };
 RadialRefit refit_radial(const std::function<double(double r2)> &attenuation, double reach = 1.0);
+
+// Coefficients of r^2, r^4, r^6 for r in half diagonals, from those for r in `unit` half diagonals:
+// (rho / unit)^2n a_n = rho^2n a_n unit^-2n. Units: Hugin and Lensfun's pa 1; Lensfun's and Adobe's acm
+// focal_mm / half_diagonal_mm(crop_factor).
+inline std::array<double, 3> in_half_diagonals(const std::array<double, 3> &terms, double unit) {
+    const double s = 1.0 / (unit * unit);
+    return {terms[0] * s, terms[1] * s * s, terms[2] * s * s * s};
+}
 
 }  // namespace lensprof

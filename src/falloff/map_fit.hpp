@@ -33,8 +33,4 @@ void place_as_cells(FalloffMap &map);
 // vignettings and grid; returns the largest |model / attenuation - 1|. Throws VIGNETTING where too little is known.
 double fit_map(const FalloffMap &map, lensprof_profile &profile);
 
-// Attenuation of a profile at a place of a frame: falloff times gain grid.
-double profile_attenuation(const lensprof_profile &profile, uint32_t width, uint32_t height, double x, double y,
-                           uint32_t channel);
-
 }  // namespace lensprof
