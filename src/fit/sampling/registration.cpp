@@ -1,3 +1,22 @@
+// What is estimated is a rotation w (axis times angle, radians) of the second camera, which a project that is off by
+// turns needs. The similarity of two blocks a and b of grey levels is their normalised cross-correlation
+//
+//     sum (a - mean a)(b - mean b) / sqrt(sum (a - mean a)^2 sum (b - mean b)^2),      -1 .. 1,
+//
+// which a gain and an offset of either (exposure, falloff within a block) leave as it is. For block m of the first
+// image the best place near the expected one is off by o_m (px of the full frame). To first order a change d of w moves
+// the expected place by J_m d, J_m = d place / d w (2 x 3, px a radian, by finite differences), so that d minimises
+//
+//     sum_m c_m |o_m - J_m d|^2 + (p / T)^2 |d|^2,     (sum_m c_m J_m'J_m + (p / T)^2 I) d = sum_m c_m J_m'o_m.
+//
+// p is a pixel of the level, which is what a place is known to, and T = kTrust the radians that a project is off
+// beforehand: turns that no block shows (about the axis of view, with all blocks at one place) stay 0. The trust
+//
+//     c_m = correlation / (1 + |o_m - J_m d|^2 / s^2),      s = 4 p at first, then p,
+//
+// is that of a Cauchy loss, iterated: blocks on things that moved do not draw the rest along. From the coarse level,
+// whose first guess is the shift under which all blocks match best together, to the fine one; accepted only where the
+// correlations of most blocks are clearly better than by the project.
 #include "fit/sampling/registration.hpp"
 
 #include <algorithm>

@@ -1,3 +1,21 @@
+// The objective about an estimate, for a step d of the shared unknowns and e of the images' unknowns q, is taken as
+//
+//     F(d, e) = F - g'd - h'e + 1/2 d'A d + e'C d + 1/2 e'B e
+//
+// with A = shared_, B = images_, C = cross_q_ (images x shared), g = gradient_ and h = gradient_q_, which are those of
+// -F. F has no unit: squares of residuals over the variance of the noise, priors included, so that the inverse Hessian
+// is a covariance. q are natural logarithms. A is small and dense, B large and sparse: where images overlap.
+//
+// For a given d, F is least at  e = B^-1 (h - C d)  = image_only_ - eliminated_ d.  Put in, that leaves
+//
+//     S d = b,     S = A - C'B^-1 C   (the Schur complement of B),     b = g - C'B^-1 h,
+//
+// which is as small as A: one sparse factorisation and as many solutions as there are shared unknowns. S and b are
+// those of F minimised over the images, so that inequalities on d (constrained_step) need not know of the images. What
+// a step gains is  1/2 h'B^-1 h + b'd - 1/2 d'S d.  Levenberg-Marquardt's lambda raises the diagonals of A and B alike.
+//
+// With V = S^-1, the covariance of the shared unknowns, the images' is  B^-1 + B^-1 C V C'B^-1:  what their own pairs
+// leave open, and what the shared unknowns add. Only its diagonal is wanted (inverse_diagonal).
 #include "fit/solver/normal_equations.hpp"
 
 #include <algorithm>
@@ -137,8 +155,12 @@ Eigen::VectorXd NormalEquations::image_variance(const Eigen::MatrixXd &shared) c
 }
 
 Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> &factor) {
-    // Z = D^-1 L^-1 + (I - L') Z  for the permuted matrix L D L', from the last column to the first; Z_ij is needed
-    // where L_ij is not zero, and there only from such entries.
+    // For Z, the inverse of the permuted matrix L D L', L'Z = D^-1 L^-1, whose right side is lower triangular and has
+    // 1 / d_j on its diagonal. Row j of it, from column j on, is
+    //     Z_ij = -sum over k > j of L_kj Z_ki   (i > j),        Z_jj = 1 / d_j - sum over k > j of L_kj Z_kj.
+    // Only k with L_kj != 0 count. To know Z_ij where L_ij != 0 takes Z_ki for i and k both in the pattern of column j,
+    // and there L_ik (i > k) is in the pattern, too: eliminating j has filled it. So from the last column to the first
+    // no entry outside the pattern is ever asked for.
     Eigen::SparseMatrix<double> l = factor.matrixL();
     l.makeCompressed();
     Eigen::VectorXd d = factor.vectorD(), diagonal(l.cols());

@@ -1,3 +1,19 @@
+// With e_a the vector that has 1 at cell a, the pair p between cells a and b has the residual
+//
+//     z_p = h_a - h_b + noise = (e_a - e_b)'h + noise,
+//
+// levels or any other unit, which h shares. Each half of the pairs gives the maps that minimise
+//
+//     sum_p (z_p - (e_a - e_b)'h)^2 + R |h|^2,     so that     (R I + L) h = sum_p z_p (e_a - e_b),
+//
+// where L = sum_p (e_a - e_b)(e_a - e_b)'
+// is the Laplacian of the graph whose nodes are the cells and whose edges the pairs: positive semi-definite, singular
+// for a constant added to maps that pairs join, which the ridge R settles; a cell with few pairs stays near 0.
+// Conjugate gradients need products with L alone, a sum over pairs: L, of as many rows as 48 cells times images, is
+// never formed. They end after 40 steps, or at a millionth of the first gradient, which is exact enough for a share.
+//
+// The share is  1 - sum (z_p - (h_a - h_b))^2 / sum z_p^2  over the other half's pairs, both ways round. Maps fitted to
+// noise make it negative there, so that above 0 it is no chance; how many cells there are need not be corrected for.
 #include "fit/verdict/pattern.hpp"
 
 #include <algorithm>

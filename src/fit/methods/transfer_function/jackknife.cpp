@@ -1,3 +1,17 @@
+// With u the estimate of all unknowns from all pairs, u_g that without group g of n, and m the mean of the u_g,
+//
+//     C = (n - 1) / n  sum_g (u_g - m)(u_g - m)'.
+//
+// Why the factor: to first order u is a mean of what the groups say, u = (1 / n) sum_g x_g, of which
+// u_g - m = -(x_g - mean x) / (n - 1). The variance of that mean is sum_g (x_g - mean x)^2 / (n (n - 1)), which is the
+// above. That holds for any estimator that is smooth in its data, also for one of several stages as here (joint
+// histograms, most likely transfer curves, least squares, falloff in turn), whose Hessians do not add up.
+//
+// A pair's group is drawn from its number by a hash, so that neighbouring pairs, whose errors are alike, are spread
+// over all groups; what they share is then not in C. Each of the variances has n - 1 degrees of freedom, and a standard
+// error the relative error 1 / sqrt(2 (n - 1)): a sixth for 20 groups. C has at most rank n - 1, so that it serves for
+// standard errors of few combinations, not for an inverse of all. Units: coefficients, k and centre (half diagonals)
+// have those of the shared vector, images' unknowns are natural logarithms.
 #include "fit/methods/transfer_function/jackknife.hpp"
 
 #include "fit/base/parallel.hpp"
