@@ -7,11 +7,15 @@
 // Their condition is the square of that of the rows, which costs up to 1e-10 of c for five powers. Each refinement
 // solves them once more, for the rest v_i - a_i c that the rows themselves leave (corrected semi-normal equations,
 // Bjorck 1987): one makes c as exact as an orthogonal factorisation of the rows would, without holding them.
+// Samples at fewer radii than there are powers leave A singular: then a solution with as many terms as A has rank is
+// taken, where a Cholesky factor would divide by rounding errors.
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 
 namespace lensprof {
 
@@ -32,6 +36,8 @@ PowerTerms<Most> fit_powers(const int *power, int count, int samples, int refine
     Matrix normal = Matrix::Zero(count, count);
     Vector terms = Vector::Zero(count), right(count), row(count);
     Eigen::LDLT<Matrix> factor;
+    Eigen::ColPivHouseholderQR<Matrix> of_rank;
+    bool is_singular = false;
     for (int round = 0; round <= refinements; round++) {
         right.setZero();
         for (int i = 0; i < samples; i++) {
@@ -40,8 +46,17 @@ PowerTerms<Most> fit_powers(const int *power, int count, int samples, int refine
             if (round == 0) normal += s.weight * row * row.transpose();
             right += s.weight * row * (round == 0 ? s.value : s.value - row.dot(terms));
         }
-        if (round == 0) factor.compute(normal);
-        terms += factor.solve(right);
+        if (round == 0) {
+            factor.compute(normal);
+            const double smallest = factor.vectorD().cwiseAbs().minCoeff(),
+                         largest = factor.vectorD().cwiseAbs().maxCoeff();
+            is_singular = !(smallest > count * std::numeric_limits<double>::epsilon() * largest);
+            if (is_singular) of_rank.compute(normal);
+        }
+        if (is_singular)
+            terms += of_rank.solve(right);
+        else
+            terms += factor.solve(right);
     }
     return terms;
 }

@@ -337,7 +337,7 @@ void test_key_from_the_command_line(void **) {
         key
         == Json::parse(
             R"({"camera_maker":"Maker","camera_model":"Cämera","lens":"Lens","unit":"","crop_factor":null,"focal_mm":24.0,"aperture":1.4,)"
-            R"("distance_m":2.5,"processing":"raw"})"));
+            R"("distance_m":2.5,"color_temperature_k":null,"processing":"raw"})"));
 }
 
 void test_own_database(void **) {

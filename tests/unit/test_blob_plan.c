@@ -81,6 +81,7 @@ static void test_same_bytes_as_from_the_profile(void **state) {
     uint64_t random = 5;
     lensprof_profile *p = malloc(sizeof *p), *unpacked = malloc(sizeof *unpacked);
     pictures *a = malloc(sizeof *a), *b = malloc(sizeof *b);
+    lensprof_profile_init(unpacked);
     for (int n = 0; n < 1500; n++) {
         void *memory[2];
         size_t bytes;

@@ -140,13 +140,15 @@ static void test_image_quality(void **state) {
 static void test_reserved_room_is_empty(void **state) {
     (void)state;
     prepare();
+    uint32_t *last_of_key = (uint32_t *)(&here.profile.key + 1) - 1;
+    uint32_t *last_of_provenance = (uint32_t *)(&here.profile.provenance + 1) - 1;
     assert_int_equal(lensprof_profile_validate(&here.profile), LENSPROF_OK);
-    here.profile.key.reserved[36] = 1;
+    *last_of_key = 1;
     assert_int_equal(lensprof_profile_validate(&here.profile), LENSPROF_ERROR_ARGUMENT);
-    here.profile.key.reserved[36] = 0;
-    here.profile.provenance.reserved[84] = 1;
+    *last_of_key = 0;
+    *last_of_provenance = 1;
     assert_int_equal(lensprof_profile_validate(&here.profile), LENSPROF_ERROR_ARGUMENT);
-    here.profile.provenance.reserved[84] = 0;
+    *last_of_provenance = 0;
     here.profile.provenance.forced = 2;
     assert_int_equal(lensprof_profile_validate(&here.profile), LENSPROF_ERROR_ARGUMENT);
     here.profile.provenance.forced = 1;

@@ -9,7 +9,7 @@ import numpy as np
 from . import _abi
 from ._abi import Pack, Processing
 from ._library import check, lib
-from ._struct import Curves, Enumerated, Nested, Text, Value
+from ._struct import Curves, Enumerated, Nested, Text, Value, integer
 from .model import GainGrid, Response, Vignetting
 
 

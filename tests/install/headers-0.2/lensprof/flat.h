@@ -118,8 +118,9 @@ typedef struct lensprof_flat_result {
     uint32_t struct_size;
     uint32_t usable;                   /* 1, or 0 with the reason in words */
     uint32_t image_quality_size;       /* bytes of an element of image_quality, set by the _init function */
-    uint32_t covariance_size;          /* order as in profile.h; parameters held fixed have zero rows; 0 = not
-                                          determined */
+    uint32_t covariance_size;          /* order as in profile.h, with the coefficients of the responses that were given;
+                                          parameters held fixed have zero rows; 0 = not determined, or more than
+                                          LENSPROF_COVARIANCE_MAX */
     char reason[256];                  /* why not usable; when usable empty, or what to mind */
     lensprof_vignetting vignetting[3]; /* of the channels; all alike when `vignettings` is 1; they share one centre */
     uint32_t vignettings;              /* 1 or 3 */

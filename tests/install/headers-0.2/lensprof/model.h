@@ -77,6 +77,9 @@ typedef struct lensprof_vignetting {
     double center[2]; /* x (right) and y (down), in half diagonals */
 } lensprof_vignetting;
 
+/* rho: half the diagonal of a frame of width x height pixels, px. Exactly rounded for sides below 2^26. */
+LENSPROF_API double lensprof_half_diagonal(uint32_t width, uint32_t height);
+
 /* M as a function of r^2, and its derivative dM/d(r^2) when not NULL. dM/dk_n = r^(2n). */
 LENSPROF_API double lensprof_vignetting_eval(const lensprof_vignetting *vignetting, double r2, double *slope);
 

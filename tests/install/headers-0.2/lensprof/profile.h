@@ -43,8 +43,13 @@ LENSPROF_API void lensprof_profile_key_init(lensprof_profile_key *key);
 /* LENSPROF_OK when the texts are terminated and free of control characters and the numbers in range. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key);
 
-/* Estimated parameters, in the order of the covariance: EMoR coefficients (`response.modes` of them), then
- * k1, k2, k3 of each vignetting curve, then centre x and y. */
+/* Order of the estimated parameters, which are the rows and columns of a covariance:
+ *  1. the EMoR coefficients of response 0 (`modes` of them), then, where there are three responses, those of response 1
+ *     and of response 2, each by its own `modes`; responses of other kinds have no parameters;
+ *  2. k1, k2, k3 of each of the `vignettings` curves;
+ *  3. centre x and y.
+ * A parameter held fixed has a row and column of zeros. A covariance may end early: parameters beyond its size are not
+ * known. The largest one is that of 25 modes, three vignetting curves and the centre. */
 #define LENSPROF_COVARIANCE_MAX 36
 
 /* Where a profile comes from. 768 bytes for ever: new members take the reserved ones. */
@@ -94,6 +99,22 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_copy(lensprof_pr
 /* LENSPROF_OK when struct_size, key, provenance, responses, vignettings (which share one centre), gain grid and
  * covariance (finite, symmetric, non-negative diagonal) are valid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
+
+/* Relative illuminance at pixel (x, y), not necessarily a whole one, of a frame of width x height pixels, in channel 0,
+ * 1 or 2 of a valid profile, as applying it divides by: M times gain grid, > 0; the centre of the falloff has 1 where
+ * there is no grid. 0 for another channel. When not NULL, *sigma receives its standard error by the covariance of
+ * k1..k3 and the centre, the grid taken as exact; LENSPROF_UNKNOWN where the covariance does not reach to the curve, or
+ * the falloff was held fixed. */
+LENSPROF_API double lensprof_profile_falloff(const lensprof_profile *profile, uint32_t channel, uint32_t width,
+                                             uint32_t height, double x, double y, double *sigma);
+
+/* The same for the falloff alone, without gain grid: M at r half diagonals from its centre, r >= 0. The standard error
+ * is that of k1..k3 at this r; where the centre lies makes no difference. */
+LENSPROF_API double lensprof_profile_radial_falloff(const lensprof_profile *profile, uint32_t channel, double r,
+                                                    double *sigma);
+
+/* The same in the corner: r = 1. */
+LENSPROF_API double lensprof_profile_corner_falloff(const lensprof_profile *profile, uint32_t channel, double *sigma);
 
 typedef enum lensprof_pack {
     LENSPROF_PACK_COVARIANCE = 1 /* the covariance as well, which a camera has no use for: up to 5 kB */
