@@ -168,15 +168,22 @@ static int open_texts(lp_blob *blob, reader *r) {
     return blob->text != NULL;
 }
 
-/* A function of its own: it is the one that needs room on the stack, a few hundred bytes. */
-static int is_key(const lp_blob *blob) {
-    lensprof_profile_key key;
-    return lp_blob_key(blob, &key) && lensprof_profile_key_validate(&key) == LENSPROF_OK;
-}
-
-static int is_provenance(const lp_blob *blob) {
-    lensprof_provenance provenance;
-    return lp_blob_provenance(blob, &provenance) && lp_provenance_validate(&provenance) == LENSPROF_OK;
+/* Key and provenance, where they lie: copies of either, with their room for members to come, are more than small stacks
+ * spare. Texts: no control characters, as lensprof_profile_validate has it. */
+static int is_key_and_provenance(const lp_blob *blob) {
+    static const uint8_t capacity[5] = {
+        sizeof((lensprof_profile_key *)0)->camera_maker, sizeof((lensprof_profile_key *)0)->camera_model,
+        sizeof((lensprof_profile_key *)0)->lens, sizeof((lensprof_provenance *)0)->method,
+        sizeof((lensprof_provenance *)0)->software};
+    const uint8_t *b = blob->bytes, *lengths = b + LP_BLOB_TEXTS, *text = blob->text;
+    for (uint32_t i = 0; i < 5; text += lengths[i], i++) {
+        if (lengths[i] >= capacity[i]) return 0;
+        for (uint32_t n = 0; n < lengths[i]; n++)
+            if (text[n] < 0x20 || text[n] == 0x7f) return 0;
+    }
+    return b[LP_BLOB_PROCESSING] <= LENSPROF_PROCESSING_CORRECTED
+           && lp_is_setting(lp_f64_at(b + LP_BLOB_KEY), lp_f64_at(b + LP_BLOB_KEY + 8), lp_f64_at(b + LP_BLOB_KEY + 16))
+           && lp_is_quality(lp_f64_at(b + LP_BLOB_QUALITY), lp_f64_at(b + LP_BLOB_QUALITY + 8));
 }
 
 /* ---- the whole ---- */
@@ -207,7 +214,7 @@ lensprof_status lp_blob_open(const void *bytes, size_t count, lp_blob *blob) {
     reader r = {b + LP_BLOB_FIXED, count - LP_BLOB_FIXED - CRC_BYTES};
     const int is_blob = is_zero(b + LP_BLOB_COVARIANCE + 1, 1) && is_zero(b + LP_BLOB_TEXTS + 5, 3)
                         && open_falloff(blob, &r) && open_responses(blob, &r) && open_grid(blob, &r)
-                        && open_covariance(blob, &r) && open_texts(blob, &r) && r.left == 0 && is_key(blob)
-                        && is_provenance(blob);
+                        && open_covariance(blob, &r) && open_texts(blob, &r) && r.left == 0
+                        && is_key_and_provenance(blob);
     return is_blob ? LENSPROF_OK : LENSPROF_ERROR_CORRUPT;
 }

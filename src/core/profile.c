@@ -26,6 +26,11 @@ static int is_known_or_unknown(double value, double largest) {
     return value == LENSPROF_UNKNOWN || (value > 0.0 && value <= largest);
 }
 
+int lp_is_setting(double focal_mm, double aperture, double distance_m) {
+    return is_known_or_unknown(focal_mm, 1e5) && is_known_or_unknown(aperture, 1e4)
+           && is_known_or_unknown(distance_m, INFINITY);
+}
+
 /* Room for members to come: another value is of a newer lensprof. */
 static int is_empty(const uint32_t *reserved, size_t count) {
     for (size_t i = 0; i < count; i++)
@@ -40,8 +45,7 @@ lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key) {
     if (!is_text(key->camera_maker, sizeof key->camera_maker) || !is_text(key->camera_model, sizeof key->camera_model)
         || !is_text(key->lens, sizeof key->lens) || !is_text(key->unit, sizeof key->unit))
         return LENSPROF_ERROR_ARGUMENT;
-    if (!is_known_or_unknown(key->crop_factor, 1e4) || !is_known_or_unknown(key->focal_mm, 1e5)
-        || !is_known_or_unknown(key->aperture, 1e4) || !is_known_or_unknown(key->distance_m, INFINITY)
+    if (!is_known_or_unknown(key->crop_factor, 1e4) || !lp_is_setting(key->focal_mm, key->aperture, key->distance_m)
         || !is_known_or_unknown(key->color_temperature_k, 1e6))
         return LENSPROF_ERROR_ARGUMENT;
     return LENSPROF_OK;
@@ -66,18 +70,19 @@ lensprof_status lensprof_profile_copy(lensprof_profile *to, const lensprof_profi
     return LENSPROF_OK;
 }
 
-lensprof_status lp_provenance_validate(const lensprof_provenance *p) {
+int lp_is_quality(double heldout_rms, double inlier_share) {
+    return (heldout_rms == LENSPROF_UNKNOWN || (heldout_rms >= 0.0 && heldout_rms <= 255.0))
+           && (inlier_share == LENSPROF_UNKNOWN || (inlier_share >= 0.0 && inlier_share <= 1.0));
+}
+
+static lensprof_status validate_provenance(const lensprof_provenance *p) {
     if (!is_text(p->method, sizeof p->method) || !is_text(p->software, sizeof p->software)
         || !is_text(p->source, sizeof p->source) || !is_text(p->doubt, sizeof p->doubt))
         return LENSPROF_ERROR_ARGUMENT;
     if (!is_empty(p->reserved, sizeof p->reserved / sizeof *p->reserved) || p->prior_id < 0 || p->forced > 1
         || p->not_usable > 1)
         return LENSPROF_ERROR_ARGUMENT;
-    if (!(p->heldout_rms == LENSPROF_UNKNOWN || (p->heldout_rms >= 0.0 && p->heldout_rms <= 255.0)))
-        return LENSPROF_ERROR_ARGUMENT;
-    if (!(p->inlier_share == LENSPROF_UNKNOWN || (p->inlier_share >= 0.0 && p->inlier_share <= 1.0)))
-        return LENSPROF_ERROR_ARGUMENT;
-    return LENSPROF_OK;
+    return lp_is_quality(p->heldout_rms, p->inlier_share) ? LENSPROF_OK : LENSPROF_ERROR_ARGUMENT;
 }
 
 static lensprof_status validate_covariance(const double *covariance, uint32_t n) {
@@ -107,7 +112,7 @@ lensprof_status lensprof_profile_validate(const lensprof_profile *profile) {
         || (profile->vignettings != 1 && profile->vignettings != 3))
         return LENSPROF_ERROR_ARGUMENT;
     lensprof_status status = lensprof_profile_key_validate(&profile->key);
-    if (status == LENSPROF_OK) status = lp_provenance_validate(&profile->provenance);
+    if (status == LENSPROF_OK) status = validate_provenance(&profile->provenance);
     for (uint32_t c = 0; c < profile->responses && status == LENSPROF_OK; c++)
         status = lensprof_response_validate(&profile->response[c]);
     for (uint32_t c = 0; c < profile->vignettings && status == LENSPROF_OK; c++)

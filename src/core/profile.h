@@ -10,6 +10,10 @@
  * always there; read them through a function here, which knows their default. */
 #define LP_FIRST_PROFILE LP_END_OF(lensprof_profile, covariance)
 
-lensprof_status lp_provenance_validate(const lensprof_provenance *provenance);
+/* A key's focal length, aperture and distance: each in its range, or LENSPROF_UNKNOWN. */
+int lp_is_setting(double focal_mm, double aperture, double distance_m);
+
+/* A provenance's figures: each in its range, or LENSPROF_UNKNOWN. */
+int lp_is_quality(double heldout_rms, double inlier_share);
 
 #endif
