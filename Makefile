@@ -35,7 +35,7 @@ program: deps ## build the program alone: build/lensprof
 demo: program ## calibrate and correct a rendered sequence, or yours: make demo PHOTOS=dir/pano.pto
 	examples/demo.sh "$(PHOTOS)"
 
-check: test-deps build ## the quick tests, under a minute
+check: test-deps build ## the quick tests, a few minutes
 	ctest --preset check -j $(JOBS)
 
 test: test-deps build ## all tests but the campaigns of `make soak`, and the same under sanitizers
