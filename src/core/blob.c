@@ -168,8 +168,8 @@ static int open_texts(lp_blob *blob, reader *r) {
     return blob->text != NULL;
 }
 
-/* Key and provenance, where they lie: copies of either, with their room for members to come, are more than small stacks
- * spare. Texts: no control characters, as lensprof_profile_validate has it. */
+/* Checks key and provenance in place. A copy of either, with its room for future members, is too large for the stack of
+ * a small processor. */
 static int is_key_and_provenance(const lp_blob *blob) {
     static const uint8_t capacity[5] = {
         sizeof((lensprof_profile_key *)0)->camera_maker, sizeof((lensprof_profile_key *)0)->camera_model,
@@ -179,7 +179,7 @@ static int is_key_and_provenance(const lp_blob *blob) {
     for (uint32_t i = 0; i < 5; text += lengths[i], i++) {
         if (lengths[i] >= capacity[i]) return 0;
         for (uint32_t n = 0; n < lengths[i]; n++)
-            if (text[n] < 0x20 || text[n] == 0x7f) return 0;
+            if (lp_is_control(text[n])) return 0;
     }
     return b[LP_BLOB_PROCESSING] <= LENSPROF_PROCESSING_CORRECTED
            && lp_is_setting(lp_f64_at(b + LP_BLOB_KEY), lp_f64_at(b + LP_BLOB_KEY + 8), lp_f64_at(b + LP_BLOB_KEY + 16))

@@ -12,12 +12,12 @@ void lensprof_profile_key_init(lensprof_profile_key *key) {
     key->processing = LENSPROF_PROCESSING_JPEG;
 }
 
-/* Terminated, and without control characters, which would break listings. */
+/* Terminated, and without control characters. */
 static int is_text(const char *text, size_t capacity) {
     for (size_t i = 0; i < capacity; i++) {
         unsigned char c = (unsigned char)text[i];
         if (c == 0) return 1;
-        if (c < 0x20 || c == 0x7f) return 0;
+        if (lp_is_control(c)) return 0;
     }
     return 0;
 }

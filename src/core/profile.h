@@ -10,6 +10,9 @@
  * always there; read them through a function here, which knows their default. */
 #define LP_FIRST_PROFILE LP_END_OF(lensprof_profile, covariance)
 
+/* No text of a profile holds a control character, which would break listings. */
+static inline int lp_is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
+
 /* A key's focal length, aperture and distance: each in its range, or LENSPROF_UNKNOWN. */
 int lp_is_setting(double focal_mm, double aperture, double distance_m);
 

@@ -6,6 +6,8 @@
 
 #include <lensprof/profile.h>
 
+#include "cli/program/library.hpp"
+
 namespace lensprof {
 
 // False where all is light as the centre is: a falloff held at none, or not measured, as by `bracket`.
@@ -15,8 +17,7 @@ inline bool has_falloff(const lensprof_vignetting &v) { return v.k[0] != 0.0 || 
 template <class Fit>
 std::unique_ptr<lensprof_profile> profile_of_curves(const Fit &fit, const lensprof_response *response,
                                                     uint32_t responses) {
-    auto profile = std::make_unique<lensprof_profile>();
-    lensprof_profile_init(profile.get());
+    auto profile = new_profile();
     profile->responses = responses;
     std::copy_n(response, responses, profile->response);
     profile->vignettings = fit.vignettings;
