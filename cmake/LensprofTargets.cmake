@@ -39,6 +39,15 @@ foreach(language C CXX)
   endif()
 endforeach()
 
+# lensprof_precompile(target header...): these C++ headers are parsed once for all sources of the target. ccache with its default
+# settings does not cache sources that use a precompiled header, so a build with a compiler cache has none.
+function(lensprof_precompile target)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    list(TRANSFORM ARGN REPLACE "(.+)" "<\\1>")
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
 # lensprof_layer(name [ONLY] SOURCES... LINK...): an object library lensprof_<name> with hidden symbols, of all sources in its
 # folder (with ONLY of none but those named) and the generated SOURCES. Includes name private headers from src on.
 function(lensprof_layer name)

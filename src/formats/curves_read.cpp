@@ -71,7 +71,7 @@ private:
             double value;
             if (!read_number(word, value)) {
                 if (tables_.empty() && row.values.empty()) return read_header(words, number);
-                fail_at_line(number, quoted(word) + " is not a finite number; correct it");
+                fail_at_line(number, in_quotes(word) + " is not a finite number; correct it");
             }
             row.values.push_back(value);
         }
@@ -87,7 +87,7 @@ private:
 
     // Names of columns, once, before the first row.
     void read_header(const std::vector<std::string_view> &words, size_t number) {
-        if (header_) fail_at_line(number, quoted(words[0]) + " is not a finite number; correct it");
+        if (header_) fail_at_line(number, in_quotes(words[0]) + " is not a finite number; correct it");
         header_ = true;
         const auto is = [](std::string_view word, char small) {
             while (!word.empty() && word[0] == '"') word.remove_prefix(1);

@@ -97,7 +97,7 @@ std::vector<double> Packet::numbers(const char *space, std::string_view name, si
             const std::string word = one_line(rest.substr(0, comma));
             double value = 0.0;
             if (!read_number(word, value) || std::fabs(value) > 1e100)
-                fail(first(), std::string(name) + " has " + quoted(word) + ", not a number; correct it");
+                fail(first(), std::string(name) + " has " + in_quotes(word) + ", not a number; correct it");
             if (values.size() == most)
                 fail(first(),
                      std::string(name) + " has over " + std::to_string(most) + " numbers; give what a camera wrote",

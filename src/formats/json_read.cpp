@@ -48,7 +48,7 @@ uint32_t read_word(const JsonValue &value, const char *const (&words)[count]) {
     const std::string_view text = value.text();
     for (uint32_t i = 0; i < count; i++)
         if (text == words[i]) return i;
-    value.fail("is " + quoted(text) + ", which is none of " + words[0] + " to " + words[count - 1] + "; correct it");
+    value.fail("is " + in_quotes(text) + ", which is none of " + words[0] + " to " + words[count - 1] + "; correct it");
 }
 
 void read_key(const JsonValue &object, lensprof_profile_key &key) {

@@ -105,8 +105,8 @@ double LcpReader::read(const RdfResource &from, const char *name, const std::str
     if (text.empty()) return otherwise;
     double value = 0.0;
     if (!read_number(text, value) || value < low || value > high)
-        fail(from.node(), std::string(name) + " is " + quoted(text) + ", not a number of " + number_text(low) + " to "
-                              + number_text(high) + "; correct it");
+        fail(from.node(), std::string(name) + " is " + in_quotes(text) + ", not a number of " + number_text(low)
+                              + " to " + number_text(high) + "; correct it");
     return value;
 }
 
@@ -164,10 +164,10 @@ std::vector<Knot> LcpReader::read_knots(const RdfResource &model) const {
         double r = 0.0, value = 0.0;
         if (!read_number(one_line(item.substr(0, comma)), r)
             || !read_number(one_line(item.substr(std::min(comma + 1, item.size()))), value))
-            fail(model.node(), "VignetteModelPiecewiseParam has " + quoted(item) + ", not two numbers; correct it");
+            fail(model.node(), "VignetteModelPiecewiseParam has " + in_quotes(item) + ", not two numbers; correct it");
         if (r < 0.0 || (!knots.empty() && !(r > knots.back().first)))
-            fail(model.node(),
-                 "VignetteModelPiecewiseParam: the radius of " + quoted(item) + " is not above that before; sort them");
+            fail(model.node(), "VignetteModelPiecewiseParam: the radius of " + in_quotes(item)
+                                   + " is not above that before; sort them");
         if (knots.size() == kMostKnots)
             fail(model.node(), "VignetteModelPiecewiseParam: over 1000 knots; leave some out", LENSPROF_ERROR_SIZE);
         knots.emplace_back(r, value);

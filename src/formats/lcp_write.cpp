@@ -70,7 +70,7 @@ void LcpWriter::check_key(const lensprof_profile &profile, uint32_t index) {
     const lensprof_profile_key &key = profile.key;
     for (const char *text : {key.camera_maker, key.camera_model})
         demand_of_profile(find_not_utf8(text) == std::strlen(text), index,
-                          "its camera " + quoted(text) + " is not UTF-8; correct the key");
+                          "its camera " + in_quotes(text) + " is not UTF-8; correct the key");
     if (list_.first_child()) {
         const bool same = !std::strcmp(key.camera_maker, first_.camera_maker)
                           && !std::strcmp(key.camera_model, first_.camera_model) && !std::strcmp(key.lens, first_.lens)

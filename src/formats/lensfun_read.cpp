@@ -88,9 +88,9 @@ void LensfunReader::check_version() const {
     if (!version) return;  // the oldest databases have none
     double value = 0.0;
     if (!read_whole(version.value(), 0, 1e9, value))
-        fail(xml_.root(), "the version is " + quoted(version.value()) + ", not a number; correct the file");
+        fail(xml_.root(), "the version is " + in_quotes(version.value()) + ", not a number; correct the file");
     if (value > 2)
-        fail(xml_.root(), "a database of version " + quoted(version.value()) + "; lensprof reads versions up to 2",
+        fail(xml_.root(), "a database of version " + in_quotes(version.value()) + "; lensprof reads versions up to 2",
              LENSPROF_ERROR_UNSUPPORTED);
 }
 
@@ -111,9 +111,9 @@ double LensfunReader::number(const pugi::xml_node &node, std::string_view text, 
     const std::string word = one_line(text);
     double value = 0.0;
     if (!read_number(word, value))
-        fail(node, std::string(what) + " is " + quoted(word) + ", not a finite number; correct it");
+        fail(node, std::string(what) + " is " + in_quotes(word) + ", not a finite number; correct it");
     if (!(value > low || (low < 0.0 && value == low)) || value > high)
-        fail(node, std::string(what) + " is " + quoted(word) + (low < 0.0 ? ", beyond " : ", not above 0 and up to ")
+        fail(node, std::string(what) + " is " + in_quotes(word) + (low < 0.0 ? ", beyond " : ", not above 0 and up to ")
                        + number_text(high) + "; correct it");
     return value;
 }
@@ -142,7 +142,7 @@ void LensfunReader::begin_lens(const pugi::xml_node &lens) {
     key.processing = LENSPROF_PROCESSING_RAW;
     check_text(lens, name, sizeof key.lens);
     put_text(key.lens, sizeof key.lens, name);
-    label_ = "lens " + quoted(name) + ": ";
+    label_ = "lens " + in_quotes(name) + ": ";
 
     const auto mounts = lens.children("mount");
     if (std::distance(mounts.begin(), mounts.end()) != 1) return;
@@ -196,7 +196,7 @@ void LensfunReader::read_entry(const pugi::xml_node &entry) {
     if (key.distance_m == kLensfunInfinityM) key.distance_m = INFINITY;
     const std::string model = entry.attribute("model").value();
     if (model != "pa" && model != "acm")
-        fail(entry, "a falloff of model " + quoted(model) + "; lensprof reads \"pa\" and \"acm\"",
+        fail(entry, "a falloff of model " + in_quotes(model) + "; lensprof reads \"pa\" and \"acm\"",
              LENSPROF_ERROR_UNSUPPORTED);
     static constexpr const char *kNames[2][3] = {{"k1", "k2", "k3"}, {"alpha1", "alpha2", "alpha3"}};
     const bool acm = model == "acm";

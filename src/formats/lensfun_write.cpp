@@ -48,12 +48,12 @@ void append_entry(WrittenLens &lens, const lensprof_profile &profile, uint32_t i
     const lensprof_profile_key &key = profile.key;
     const double *center = profile.vignetting[0].center;
     demand_of_profile(lens.center[0] == center[0] && lens.center[1] == center[1], index,
-                      "another centre than an earlier profile of " + quoted(key.lens)
+                      "another centre than an earlier profile of " + in_quotes(key.lens)
                           + ", and Lensfun has one a lens; fit it without");
     const bool far = key.distance_m == LENSPROF_UNKNOWN || std::isinf(key.distance_m);
     const Setting setting{key.focal_mm, key.aperture, far ? kLensfunInfinityM : key.distance_m};
     demand_of_profile(lens.settings.insert(setting).second, index,
-                      "lens " + quoted(key.lens) + " and setting of an earlier profile; leave one out");
+                      "lens " + in_quotes(key.lens) + " and setting of an earlier profile; leave one out");
     pugi::xml_node entry = append_element(lens.calibration, "vignetting");
     append_attribute(entry, "model", "pa");
     append_number(entry, "focal", key.focal_mm);

@@ -20,7 +20,7 @@ lensprof_response read_pcalib(std::string_view text) {
         for (std::string_view rest = lines.line, word = next_word(rest); !word.empty(); word = next_word(rest)) {
             double value;
             if (!read_number(word, value))
-                fail_at_line(lines.number, "value " + std::to_string(values.size()) + " is " + quoted(word)
+                fail_at_line(lines.number, "value " + std::to_string(values.size()) + " is " + in_quotes(word)
                                                + ", not a finite number; interpolate grey values that were not seen");
             if (values.size() == kMostCurveRows)
                 throw FormatFailure{LENSPROF_ERROR_SIZE, "over 65536 values; give one for each grey value"};

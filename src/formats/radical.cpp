@@ -202,7 +202,7 @@ double read_vignetting(std::string_view data, lensprof_profile &profile) {
         worst = fit_values({matrix.columns, matrix.rows, 3, false, {2, 1, 0}}, values.data(), matrix.columns,
                            matrix.rows, profile);
     } else {
-        fail("line 1: " + quoted(name) + " is no vignetting model of radical; give another file",
+        fail("line 1: " + in_quotes(name) + " is no vignetting model of radical; give another file",
              LENSPROF_ERROR_UNSUPPORTED);
     }
     profile.covariance_size = 0;

@@ -12,7 +12,7 @@ namespace {
 double read_field(std::string_view word, const char *what, size_t line) {
     double value;
     if (!read_number(word, value))
-        fail_at_line(line, std::string(what) + " is " + quoted(word) + ", not a finite number; correct it");
+        fail_at_line(line, std::string(what) + " is " + in_quotes(word) + ", not a finite number; correct it");
     return value;
 }
 
@@ -22,7 +22,7 @@ lensprof_frame_time read_frame(std::string_view line, size_t number) {
     if (time.empty()) fail_at_line(number, "a frame without a time; give name, time and exposure of each");
     if (!next_word(line).empty()) fail_at_line(number, "more than name, time and exposure; give another file");
     if (id.size() >= sizeof frame.id)
-        fail_at_line(number, "the name " + quoted(id) + " is longer than 63 bytes; shorten it");
+        fail_at_line(number, "the name " + in_quotes(id) + " is longer than 63 bytes; shorten it");
     for (char c : id)
         if ((c >= 0 && c < ' ') || c == 127) fail_at_line(number, "a name with control characters; take them out");
     std::memcpy(frame.id, id.data(), id.size());

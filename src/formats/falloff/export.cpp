@@ -16,7 +16,7 @@ void check_exported(const lensprof_profile &profile, uint32_t index, const std::
     const lensprof_profile_key &key = profile.key;
     const std::string lens = key.lens;
     demand(!lens.empty(), "its lens is unknown; set key.lens");
-    demand(find_not_utf8(lens) == lens.size(), "its lens " + quoted(lens) + " is not UTF-8; correct key.lens");
+    demand(find_not_utf8(lens) == lens.size(), "its lens " + in_quotes(lens) + " is not UTF-8; correct key.lens");
     demand(key.crop_factor != LENSPROF_UNKNOWN, "its crop factor is unknown; set key.crop_factor");
     demand(key.focal_mm != LENSPROF_UNKNOWN, "its focal length is unknown; set key.focal_mm");
     demand(key.aperture != LENSPROF_UNKNOWN, "its aperture is unknown; set key.aperture");

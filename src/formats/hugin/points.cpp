@@ -27,11 +27,11 @@ lensprof_pair read_pair(std::string_view line, size_t number) {
         std::string_view word = next_word(rest);
         if (word.empty()) fail_at_column(number, i, "is missing; a line of a point file has 16 numbers");
         if (!read_number(word, column[i]))
-            fail_at_column(number, i, "is " + quoted(word) + ", not a finite number; correct or delete the line");
+            fail_at_column(number, i, "is " + in_quotes(word) + ", not a finite number; correct or delete the line");
         if (i < 2 && !read_whole(word, 0, kMaxImage, column[i]))
-            fail_at_column(number, i, "is " + quoted(word) + ", not an image number; count images from 0");
+            fail_at_column(number, i, "is " + in_quotes(word) + ", not an image number; count images from 0");
         if (i >= 6 && i < 12 && !(column[i] >= -kOvershoot && column[i] <= 1 + kOvershoot))
-            fail_at_column(number, i, "is " + quoted(word) + ", not within 0..1; scale grey values to 1");
+            fail_at_column(number, i, "is " + in_quotes(word) + ", not within 0..1; scale grey values to 1");
     }
     if (!next_word(rest).empty()) fail_at_line(number, "more than 16 numbers; a line of a point file has 16 numbers");
     if (column[0] == column[1])

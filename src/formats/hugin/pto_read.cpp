@@ -25,7 +25,7 @@ uint32_t whole_item(const std::vector<PtoToken> &tokens, std::string_view name, 
     double value = fallback;
     bool good = token ? read_whole(token->value, low, high, value) : value >= low;
     if (!good)
-        fail_at_line(line, std::string(name) + (token ? " is " + quoted(token->value) : " is missing")
+        fail_at_line(line, std::string(name) + (token ? " is " + in_quotes(token->value) : " is missing")
                                + "; write a whole number from " + std::to_string(std::lround(low)) + " to "
                                + std::to_string(std::lround(high)));
     return static_cast<uint32_t>(value);
@@ -34,7 +34,7 @@ uint32_t whole_item(const std::vector<PtoToken> &tokens, std::string_view name, 
 void read_parameter(const PtoToken &token, size_t parameter, const std::vector<PtoImage> &before, PtoImage &image) {
     if (token.value.empty() || token.value[0] != '=') {
         if (!read_number(token.value, image.value[parameter]))
-            fail_at_line(image.line, std::string(token.name) + " is " + quoted(token.value)
+            fail_at_line(image.line, std::string(token.name) + " is " + in_quotes(token.value)
                                          + ", not a finite number; write " + std::string(token.name) + " and a number");
         return;
     }
@@ -63,7 +63,7 @@ void read_crop(const std::vector<PtoToken> &tokens, size_t line, lensprof_pto_im
         size_t comma = i < 3 ? rest.find(',') : rest.size();
         if (comma == std::string_view::npos || !read_number(rest.substr(0, comma), side[i])
             || std::abs(side[i]) > kMaxPlace)
-            fail_at_line(line, "crop " + std::string(token->name) + " is " + quoted(token->value)
+            fail_at_line(line, "crop " + std::string(token->name) + " is " + in_quotes(token->value)
                                    + "; write left,right,top,bottom in pixels");
         rest.remove_prefix(i < 3 ? comma + 1 : comma);
     }
@@ -188,7 +188,7 @@ std::string image_range(const lensprof_pto &pto) { return "images 0 to " + std::
 void read_variables(const Line &line, lensprof_pto &pto) {
     for (const PtoToken &token : split_pto_line(line.text, line.number)) {
         size_t parameter = find_pto_parameter(token.name);
-        std::string word = quoted(std::string(token.name) + std::string(token.value));
+        std::string word = in_quotes(std::string(token.name) + std::string(token.value));
         if (parameter == kPtoParameters || parameter == kStack) {
             std::string names;
             for (size_t i = 0; i < kStack; i++) names += " " + std::string(kPtoParameterInfo[i].name);
@@ -228,7 +228,7 @@ PtoMask read_mask(const Line &line, const lensprof_pto &pto) {
         if (!read_number(x, corner[0]) || !read_number(y, corner[1]) || std::abs(corner[0]) > kMaxPlace
             || std::abs(corner[1]) > kMaxPlace)
             fail_at_line(line.number, "mask corner " + std::to_string(mask.corners.size()) + " is "
-                                          + quoted(std::string(x) + " " + std::string(y))
+                                          + in_quotes(std::string(x) + " " + std::string(y))
                                           + "; write p\"x y x y ...\" in pixels");
         mask.corners.push_back(corner);
     }

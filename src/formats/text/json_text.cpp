@@ -46,8 +46,8 @@ public:
     bool parse_error(size_t position, const std::string &token, const nlohmann::json::exception &error) override {
         const std::string_view before = text_.substr(0, std::min(position, text_.size()));
         const size_t line = 1 + static_cast<size_t>(std::count(before.begin(), before.end(), '\n'));
-        if (error.id == 406) fail_at_line(line, lensprof::quoted(token) + " is beyond all numbers; correct it");
-        fail_at_line(line, "not JSON at " + lensprof::quoted(token.substr(token.size() > 20 ? token.size() - 20 : 0))
+        if (error.id == 406) fail_at_line(line, lensprof::in_quotes(token) + " is beyond all numbers; correct it");
+        fail_at_line(line, "not JSON at " + lensprof::in_quotes(token.substr(token.size() > 20 ? token.size() - 20 : 0))
                                + "; correct the file");
     }
 
@@ -213,7 +213,7 @@ std::string JsonValue::path() const {
         const JsonText::Node &node = owner_->nodes_[at], &parent = owner_->nodes_[node.parent];
         std::string step;
         if (parent.kind == JsonText::kObject) {
-            const std::string name = quoted(owner_->text_at(node.name));
+            const std::string name = in_quotes(owner_->text_at(node.name));
             step = (node.parent ? "." : "") + name.substr(1, name.size() - 2);
         } else {
             size_t number = 0;

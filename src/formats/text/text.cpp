@@ -11,7 +11,7 @@ void fail_at_line(size_t line, const std::string &text, lensprof_status status) 
     throw FormatFailure{status, "line " + std::to_string(line) + ": " + text};
 }
 
-std::string quoted(std::string_view word) {
+std::string in_quotes(std::string_view word) {
     std::string text = "\"";
     for (char c : word.substr(0, 40)) text += c >= ' ' && c != 127 ? c : '?';
     return text + (word.size() > 40 ? "...\"" : "\"");

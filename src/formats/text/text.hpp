@@ -19,7 +19,7 @@ using FormatFailure = FalloffFailure;
 [[noreturn]] void fail_at_line(size_t line, const std::string &text, lensprof_status status = LENSPROF_ERROR_SYNTAX);
 
 // Word of a file for an error text: in quotes, shortened, control characters as '?'.
-std::string quoted(std::string_view word);
+std::string in_quotes(std::string_view word);
 
 // error may be NULL; the text is cut to fit.
 void set_error(lensprof_error *error, const char *text) noexcept;

@@ -43,7 +43,7 @@ XmlText::XmlText(std::string_view text, const std::vector<std::string_view> &doc
     for (pugi::xml_node node : document_.children()) {
         if (root_ || !std::count(document_elements.begin(), document_elements.end(), node.name()))
             fail_at_line(line_of(node), "<" + std::string(document_elements[0]) + "> must be the only outermost element, "
-                                            "not " + quoted(node.name()) + "; give another file");
+                                            "not " + in_quotes(node.name()) + "; give another file");
         root_ = node;
     }
 }
@@ -60,7 +60,7 @@ size_t XmlText::line_at(size_t offset) const {
 
 void XmlText::check_key_text(const pugi::xml_node &node, const std::string &label, const std::string &text,
                              size_t capacity) const {
-    const auto fail = [&](const std::string &why) { fail_at_line(line_of(node), label + quoted(text) + why); };
+    const auto fail = [&](const std::string &why) { fail_at_line(line_of(node), label + in_quotes(text) + why); };
     if (text.size() >= capacity) fail(" is longer than " + std::to_string(capacity - 1) + " bytes; shorten it");
     if (find_not_utf8(text) < text.size())  // by a character reference
         fail(" has characters that there are not; take them out");
