@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
+#include <new>
 
 #include <sys/stat.h>
 
@@ -17,7 +19,7 @@ uint64_t pixel_bytes(const Picture &picture) {
 }
 
 void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, const ReadRequest &request) {
-    const std::string size = std::to_string(frame_width) + " x " + std::to_string(frame_height) + " pixels";
+    const std::string size = size_text(frame_width, frame_height);
     if (frame_width == 0 || frame_height == 0) fail_damaged(request.path, size);
     if (frame_width > picture_max_side || frame_height > picture_max_side
         || pixel_bytes(picture) * frame_width * frame_height > picture_max_bytes)
@@ -33,6 +35,23 @@ void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, co
     picture.width = frame_width / picture.reduction;
     picture.height = frame_height / picture.reduction;
     picture.row_bytes = static_cast<size_t>(pixel_bytes(picture) * picture.width);
+}
+
+std::string size_text(uint64_t width, uint64_t height) {
+    return std::to_string(width) + " x " + std::to_string(height) + " pixels";
+}
+
+void check_stored(const std::string &path, const std::string &declared, uint64_t needed, uint64_t stored,
+                  uint64_t expansion) {
+    if (expansion > 0 && stored < (needed + expansion - 1) / expansion)
+        fail_damaged(
+            path, "it declares " + declared + ", which its " + std::to_string(stored) + " bytes of data cannot hold");
+}
+
+LazyBytes make_lazy_bytes(size_t count) {
+    LazyBytes bytes(static_cast<uint8_t *>(std::calloc(std::max<size_t>(count, 1), 1)), std::free);
+    if (!bytes) throw std::bad_alloc();
+    return bytes;
 }
 
 double convert_resolution(double value, PictureTraits::Unit from, PictureTraits::Unit to) {
@@ -61,6 +80,11 @@ File open_for_writing(const std::string &path) {
     File file(std::fopen(path.c_str(), "wb"), std::fclose);
     if (!file) fail_to_write(path, system_text(errno), errno);
     return file;
+}
+
+uint64_t file_bytes(const File &file) {
+    struct stat status = {};
+    return fstat(fileno(file.get()), &status) == 0 ? static_cast<uint64_t>(status.st_size) : 0;
 }
 
 void close_written(File &file, const std::string &path) {

@@ -70,6 +70,7 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE *)>;
 
 File open_for_reading(const std::string &path);
 File open_for_writing(const std::string &path);
+uint64_t file_bytes(const File &file);
 void close_written(File &file, const std::string &path);
 
 [[noreturn]] void fail_damaged(const std::string &path, const std::string &detail);
@@ -82,6 +83,21 @@ void close_written(File &file, const std::string &path);
 void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, const ReadRequest &request);
 
 uint64_t pixel_bytes(const Picture &picture);
+
+// Most bytes that Deflate makes of one: 258 of a length and a distance code of one bit each.
+constexpr uint64_t deflate_expansion = 1032;
+
+// "W x H pixels"
+std::string size_text(uint64_t width, uint64_t height);
+
+// Fails when `needed` bytes of samples cannot come from `stored` bytes of a file, one of which becomes `expansion` at
+// most (0 = any number). `declared` names what needs them, as the header gives its size.
+void check_stored(const std::string &path, const std::string &declared, uint64_t needed, uint64_t stored,
+                  uint64_t expansion);
+
+// Zeros, whose pages the system provides when they are first written: a damaged header may declare much.
+using LazyBytes = std::unique_ptr<uint8_t[], void (*)(void *)>;
+LazyBytes make_lazy_bytes(size_t count);
 
 // Resolution in another unit; `none` stays as it is.
 double convert_resolution(double value, PictureTraits::Unit from, PictureTraits::Unit to);

@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -103,6 +104,14 @@ void read_traits(PngReader &reader, Picture &picture) {
         picture.icc.assign(profile, profile + bytes);
 }
 
+// Bytes of the samples as the file packs them.
+uint64_t packed_bytes(const PngReader &reader) {
+    const uint64_t bits =
+        uint64_t(png_get_channels(reader.png, reader.info)) * png_get_bit_depth(reader.png, reader.info);
+    return uint64_t(png_get_image_width(reader.png, reader.info)) * png_get_image_height(reader.png, reader.info) * bits
+           / 8;
+}
+
 // Everything before the pixels; sets libpng to deliver 8 or 16 bit samples in one of our layouts.
 void read_start(PngReader &reader, Picture &picture, const ReadRequest &request) {
     png_structp png = reader.png;
@@ -112,6 +121,7 @@ void read_start(PngReader &reader, Picture &picture, const ReadRequest &request)
     png_init_io(png, reader.file.get());
     png_read_info(png, reader.info);
     read_traits(reader, picture);
+    const uint64_t packed = packed_bytes(reader);
     png_set_expand(png);
     if (little_endian()) png_set_swap(png);
     reader.passes = png_set_interlace_handling(png);
@@ -119,6 +129,8 @@ void read_start(PngReader &reader, Picture &picture, const ReadRequest &request)
     picture.sample = png_get_bit_depth(png, reader.info) == 16 ? LENSPROF_SAMPLE_U16 : LENSPROF_SAMPLE_U8;
     picture.layout = png_get_channels(png, reader.info) - 1u;  // the layouts are in that order
     set_frame(picture, png_get_image_width(png, reader.info), png_get_image_height(png, reader.info), request);
+    check_stored(request.path, size_text(picture.frame_width, picture.frame_height), packed, file_bytes(reader.file),
+                 deflate_expansion);
 }
 
 class PngSource final : public RowSource {
@@ -129,11 +141,12 @@ public:
 
 private:
     void read_interlaced();
+    size_t frame_row_bytes() const { return static_cast<size_t>(pixel_bytes(header_) * header_.frame_width); }
     void check(bool good) const;
 
     std::string path_;
     PngReader reader_;
-    std::vector<uint8_t> frame_;  // of an interlaced file
+    LazyBytes frame_{nullptr, std::free};  // of an interlaced file
     uint32_t next_ = 0;
 };
 
@@ -152,19 +165,18 @@ void PngSource::read(uint8_t *row) {
         return;
     }
     if (next_ == 0) read_interlaced();
-    const size_t row_bytes = frame_.size() / header_.frame_height;
-    std::memcpy(row, frame_.data() + next_++ * row_bytes, row_bytes);
+    std::memcpy(row, frame_.get() + next_++ * frame_row_bytes(), frame_row_bytes());
 }
 
 // An interlaced file has the whole frame seven times over, ever finer: it cannot be read row by row.
 void PngSource::read_interlaced() {
-    const size_t row_bytes = static_cast<size_t>(pixel_bytes(header_) * header_.frame_width);
-    frame_.resize(row_bytes * header_.frame_height);
+    const size_t row_bytes = frame_row_bytes();
+    frame_ = make_lazy_bytes(row_bytes * header_.frame_height);
     for (int pass = 0; pass < reader_.passes; ++pass) {
         stop_if_interrupted();
         check(guarded(reader_.state.jump, [&] {
             for (uint32_t y = 0; y < header_.frame_height; ++y)
-                png_read_row(reader_.png, frame_.data() + y * row_bytes, nullptr);
+                png_read_row(reader_.png, frame_.get() + y * row_bytes, nullptr);
         }));
     }
 }

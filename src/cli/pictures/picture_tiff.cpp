@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -77,9 +78,39 @@ public:
         return TIFFGetFieldDefaulted(handle, tag, &value) ? value : default_value;
     }
 
+    // Bytes that the file has of a strip or tile.
+    uint64_t stored(uint32_t block) const { return std::min(TIFFGetStrileByteCount(handle, block), file_bytes()); }
+    uint64_t file_bytes() const { return TIFFGetSizeProc(handle)(TIFFClientdata(handle)); }
+
     Message message;
     TIFF *handle = nullptr;
 };
+
+// Most bytes that a compression makes of one; 0 = no limit is known.
+uint64_t expansion_of(uint16_t compression) {
+    switch (compression) {
+    case COMPRESSION_NONE: return 1;
+    case COMPRESSION_PACKBITS: return 64;  // 128 of two
+    case COMPRESSION_LZW: return 2731;     // a string is no longer than the table of 4096, its code then has 12 bits
+    case COMPRESSION_ADOBE_DEFLATE:
+    case COMPRESSION_DEFLATE: return deflate_expansion;
+    case COMPRESSION_JPEG: return 1366;   // a bit for 8 x 8 samples, 18 such blocks for 32 x 32 pixels of three
+    case COMPRESSION_LZMA: return 8192;   // 273 of 14 binary decisions of 0.022 bits each
+    case COMPRESSION_ZSTD: return 32768;  // a block of 128 KiB of 4
+    default: return 0;
+    }
+}
+
+// A picture that its strips or tiles cannot hold is refused. Their own sizes count, not the file's: they may share
+// data.
+void check_stored_frame(const Tiff &tiff, const std::string &path, const Picture &picture) {
+    const uint64_t needed = pixel_bytes(picture) * picture.frame_width * picture.frame_height;
+    const uint64_t expansion = expansion_of(picture.traits.compression);
+    const uint32_t blocks = TIFFIsTiled(tiff.handle) ? TIFFNumberOfTiles(tiff.handle) : TIFFNumberOfStrips(tiff.handle);
+    uint64_t stored = 0;
+    for (uint32_t i = 0; i < blocks && stored < needed; ++i) stored += tiff.stored(i);
+    check_stored(path, size_text(picture.frame_width, picture.frame_height), needed, stored, expansion);
+}
 
 [[noreturn]] void fail_kind(const ReadRequest &request, const std::string &kind) {
     fail_unsupported(request.path, kind + "; convert it to 8 or 16 bit or float, grey or RGB, first");
@@ -180,7 +211,7 @@ private:
     const uint16_t planes_;
     const size_t block_pixel_bytes_;
     uint32_t block_width_ = 0, block_height_ = 0, next_ = 0;
-    std::vector<uint8_t> band_;
+    LazyBytes band_{nullptr, std::free};
     std::unique_ptr<uint8_t[]> block_;  // not cleared: a damaged header may ask for much
     size_t block_bytes_ = 0;
 };
@@ -212,7 +243,7 @@ BandReader::BandReader(const Tiff &tiff, const std::string &path, const Picture 
         fail();
     block_bytes_ = static_cast<size_t>(bytes);
     block_.reset(new uint8_t[block_bytes_]);
-    band_.reserve(row_bytes_ * std::min(block_height_, picture.frame_height));
+    band_ = make_lazy_bytes(row_bytes_ * std::min(block_height_, picture.frame_height));
 }
 
 void BandReader::fail() const {
@@ -225,13 +256,12 @@ void BandReader::read(uint8_t *row) {
         if (TIFFReadScanline(tiff_.handle, row, y, 0) != 1 || tiff_.failed()) fail();
     } else {
         if (y % block_height_ == 0) read_band(y, std::min(block_height_, picture_.frame_height - y));
-        std::memcpy(row, band_.data() + y % block_height_ * row_bytes_, row_bytes_);
+        std::memcpy(row, band_.get() + y % block_height_ * row_bytes_, row_bytes_);
     }
     if (inverted_) invert_row(picture_, row);
 }
 
 void BandReader::read_band(uint32_t y, uint32_t rows) {
-    band_.resize(row_bytes_ * rows);
     for (uint16_t plane = 0; plane < planes_; ++plane) {
         for (uint64_t x = 0; x < picture_.frame_width; x += block_width_)
             read_block(static_cast<uint32_t>(x), y, rows, plane);
@@ -242,14 +272,17 @@ void BandReader::read_block(uint32_t x, uint32_t y, uint32_t rows, uint16_t plan
     TIFF *handle = tiff_.handle;
     const size_t block_row_bytes = block_width_ * block_pixel_bytes_;
     const tmsize_t wanted = static_cast<tmsize_t>(tiled_ ? block_bytes_ : rows * block_row_bytes);
-    const tmsize_t count =
-        tiled_ ? TIFFReadEncodedTile(handle, TIFFComputeTile(handle, x, y, 0, plane), block_.get(), wanted)
-               : TIFFReadEncodedStrip(handle, TIFFComputeStrip(handle, y, plane), block_.get(), wanted);
+    const uint32_t number = tiled_ ? TIFFComputeTile(handle, x, y, 0, plane) : TIFFComputeStrip(handle, y, plane);
+    check_stored(path_,
+                 (tiled_ ? "a tile of " : "a strip of ") + size_text(block_width_, tiled_ ? block_height_ : rows),
+                 static_cast<uint64_t>(wanted), tiff_.stored(number), expansion_of(picture_.traits.compression));
+    const tmsize_t count = tiled_ ? TIFFReadEncodedTile(handle, number, block_.get(), wanted)
+                                  : TIFFReadEncodedStrip(handle, number, block_.get(), wanted);
     if (count != wanted || tiff_.failed()) fail();
     const size_t columns = std::min(block_width_, picture_.frame_width - x);
     for (size_t i = 0; i < rows; ++i) {
         const uint8_t *from = block_.get() + i * block_row_bytes;
-        uint8_t *to = band_.data() + i * row_bytes_ + x * pixel_bytes_ + plane * block_pixel_bytes_;
+        uint8_t *to = band_.get() + i * row_bytes_ + x * pixel_bytes_ + plane * block_pixel_bytes_;
         if (planes_ == 1) {
             std::memcpy(to, from, columns * pixel_bytes_);
             continue;
@@ -287,6 +320,7 @@ TiffSource::TiffSource(const ReadRequest &request) : path_(request.path), tiff_(
                                     + " is not supported; convert it first");
     set_frame(header_, tiff_.field<uint32_t>(TIFFTAG_IMAGEWIDTH, 0), tiff_.field<uint32_t>(TIFFTAG_IMAGELENGTH, 0),
               request);
+    check_stored_frame(tiff_, path_, header_);
 }
 
 // Lossless compressions are kept; recompressing with a lossy one would damage the pixels a second time.
