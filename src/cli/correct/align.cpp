@@ -14,6 +14,7 @@
 #include "cli/pictures/clipping.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -156,6 +157,7 @@ int align(const Options &o, Streams &streams) {
     Project project = sequence(o);
     std::vector<uint32_t> frames = frames_of(o, project);
     std::vector<Correction> jobs = make_jobs(o, project, frames);
+    check_pictures(project, o.max_side);
     check_folder(o.output, o.output, ExitCode::failed);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     std::vector<double> white_shares;  // of the project's pictures

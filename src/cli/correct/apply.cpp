@@ -14,6 +14,7 @@
 #include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 
 namespace lensprof {

@@ -10,8 +10,10 @@
 
 #include "cli/pictures/picture.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/paths.hpp"
 
 namespace lensprof {
+
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures) {
     lensprof_exposure mean{};
     double logs[3] = {0, 0, 0}, share = 1.0 / static_cast<double>(exposures.size());
@@ -22,17 +24,6 @@ lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures)
     for (int c = 0; c < 3; c++) mean.white_balance[c] = std::exp(logs[c]);
     return mean;
 }
-
-namespace {
-
-// One name for every way to write a path, whether or not there is a file.
-std::string one_name(const std::string &path) {
-    std::error_code error;
-    auto name = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
-    return (error ? std::filesystem::absolute(path).lexically_normal() : name).string();
-}
-
-}  // namespace
 
 void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet) {
     std::set<std::string> read, written;
@@ -61,14 +52,15 @@ std::vector<std::string> expand_folders(const std::vector<std::string> &names) {
     std::vector<std::string> files;
     std::error_code error;
     for (const std::string &name : names) {
-        if (!fs::is_directory(name, error)) {
+        if (name.empty()) throw Failure(ExitCode::usage, "FILES: a name is empty; name a picture or a folder");
+        if (!is_folder(name)) {
             files.push_back(name);
             continue;
         }
         std::vector<std::string> found;
         for (fs::directory_iterator entry(name, error), end; !error && entry != end; entry.increment(error)) {
             const std::string file = entry->path().filename().string();
-            if (file[0] != '.' && is_picture_name(file) && !entry->is_directory())
+            if (file[0] != '.' && is_picture_name(file) && !is_folder(entry->path().string()))
                 found.push_back(entry->path().string());
         }
         if (error) throw Failure(ExitCode::unreadable, name + ": cannot be listed: " + error.message());
@@ -78,12 +70,6 @@ std::vector<std::string> expand_folders(const std::vector<std::string> &names) {
         files.insert(files.end(), found.begin(), found.end());
     }
     return files;
-}
-
-void make_folder(const std::string &folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw Failure(ExitCode::failed, folder + ": cannot be made: " + error.message());
 }
 
 void add_speed(const Corrected &corrected, Json &json) {

@@ -65,9 +65,6 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
 // in the order of the alphabet, without hidden ones. Failure (usage) for a folder without.
 std::vector<std::string> expand_folders(const std::vector<std::string> &names);
 
-// The folder, made where there is none.
-void make_folder(const std::string &folder);
-
 // Corrects and writes all pictures; `sheet` (NULL = none) receives them before and after. Several pictures are worked
 // on at once, one a thread, each in strips of rows; where there are at least twice as many threads as pictures, a
 // picture is encoded on a thread of its own. Whatever the number of threads, what is written and said is as if it had

@@ -238,6 +238,7 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
 int bracket_and_store(const Options &o, Streams &streams) {
     std::vector<double> ev = given_exposures(o);
     Project project = static_project(o.files, o.balance == "free");
+    check_pictures(project, o.max_side);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
     lensprof_profile_key key = camera_key(o, metadata[0], project.files[0]);

@@ -12,6 +12,7 @@
 #include "cli/program/interrupt.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
+#include "cli/program/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -114,7 +115,7 @@ std::vector<PictureMetadata> picture_metadata(const Options &o, const Project &p
     std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
     for (uint32_t i = 0; i < metadata.size(); i++) {
         bool needed = o.points.empty() || (i == project.reference && !o.store.no_store);
-        if (needed && std::filesystem::exists(project.files[i])) metadata[i] = read_metadata(project.files[i]);
+        if (needed && path_exists(project.files[i])) metadata[i] = read_metadata(project.files[i]);
     }
     return metadata;
 }
@@ -127,7 +128,7 @@ lensprof_profile_key profile_key(const Options &o, const Project &project, const
     for (size_t i = 0; i < project.files.size() && o.store.aperture == LENSPROF_UNKNOWN && o.points.empty(); i++) {
         const lensprof_profile_key &other = metadata[i].key;
         auto differ = [](double a, double b) { return a != b && a != LENSPROF_UNKNOWN && b != LENSPROF_UNKNOWN; };
-        if (std::filesystem::exists(project.files[i])
+        if (path_exists(project.files[i])
             && (differ(other.aperture, key.aperture) || differ(other.focal_mm, key.focal_mm)))
             streams.err << "lensprof: warning: " << project.files[i] << ": aperture or focal length differ from "
                         << file << "; one falloff is estimated for both\n";
@@ -171,12 +172,10 @@ std::string project_text(const Options &o, Project &project, const Fitted &fitte
                                   fitted.exposures.data(), static_cast<uint32_t>(fitted.exposures.size()), reference),
           o.pto);
     // Names are relative to the project's folder, which may be another one now.
-    auto folder = std::filesystem::absolute(o.pto_out).parent_path();
-    if (folder.lexically_normal() != std::filesystem::absolute(o.pto).parent_path().lexically_normal())
+    const auto folder = std::filesystem::path(absolute_path(o.pto_out)).parent_path();
+    if (folder != std::filesystem::path(absolute_path(o.pto)).parent_path())
         for (uint32_t i = 0; i < project.files.size(); i++) {
-            auto file = std::filesystem::absolute(project.files[i])
-                            .lexically_normal()
-                            .lexically_proximate(folder.lexically_normal());
+            const auto file = std::filesystem::path(absolute_path(project.files[i])).lexically_proximate(folder);
             check(lensprof_pto_set_name(project.pto.get(), i, file.string().c_str()), project.files[i]);
         }
     return pto_text(*project.pto);
@@ -262,6 +261,7 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     check_outputs(o, project);
     if (!o.free.empty())
         for (auto &image : project.images) image.free = free_of(o.free);
+    if (o.points.empty()) check_pictures(project, o.max_side);
     auto metadata = picture_metadata(o, project);
     lensprof_profile_key key = profile_key(o, project, metadata, streams);
     TrueValues truth;

@@ -8,6 +8,7 @@
 #include "cli/program/format.hpp"
 #include "cli/program/numbers.hpp"
 #include "cli/program/parallel.hpp"
+#include "cli/program/paths.hpp"
 
 namespace lensprof {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
+#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
@@ -55,14 +56,14 @@ lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &
 
 void check_store(const StoreOptions &o) {
     if (o.no_store) return;
-    std::filesystem::path file = store_path(o.db), folder = std::filesystem::absolute(file).parent_path();
-    if (std::filesystem::exists(file)
-        && !(std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) == 0))
+    const std::string file = store_path(o.db);
+    const bool is_empty = is_regular_file(file) && file_bytes(file) == 0;
+    if (path_exists(file) && !is_empty) {
         open_store(o.db, LENSPROF_STORE_WRITE);
-    else {
-        demand_folder(o.db);
-        check_folder(folder.string(), file.string(), ExitCode::store);
+        return;
     }
+    demand_folder(o.db);
+    check_folder(std::filesystem::path(absolute_path(file)).parent_path().string(), file, ExitCode::store);
 }
 
 void remove_empty_store(const std::string &file) {
@@ -70,7 +71,7 @@ void remove_empty_store(const std::string &file) {
     uint32_t profiles = 0;
     std::error_code ignored;
     if (lensprof_store_open(file.c_str(), LENSPROF_STORE_WRITE, &store, nullptr) != LENSPROF_OK) {
-        if (std::filesystem::file_size(file, ignored) == 0) std::filesystem::remove(file, ignored);
+        if (is_regular_file(file) && file_bytes(file) == 0) std::filesystem::remove(file, ignored);
         return;  // else somebody else's
     }
     Store closing(store);  // nobody writes to it while it is counted and removed
@@ -87,9 +88,7 @@ std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit) {
     return profile;
 }
 
-std::string source_of(const std::string &file) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(file)).string();
-}
+std::string source_of(const std::string &file) { return one_name(file); }
 
 int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin) {
     auto &p = profile.provenance;
@@ -99,7 +98,7 @@ int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Or
     set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
     set_text(p.source, sizeof p.source, source_of(origin.source));
     p.created_unix_s = static_cast<int64_t>(std::time(nullptr));
-    bool is_new = !std::filesystem::exists(store_path(o.db));
+    bool is_new = !path_exists(store_path(o.db));
     try {
         Store store = open_store(o.db, LENSPROF_STORE_CREATE);
         int64_t id = 0;

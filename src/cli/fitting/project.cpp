@@ -5,8 +5,14 @@
 #include <cstring>
 #include <filesystem>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "cli/program/format.hpp"
+#include "cli/program/input_file.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/parallel.hpp"
+#include "cli/program/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -29,19 +35,43 @@ void check_one_lens(const Project &project) {
     }
 }
 
-SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
+// Failure where the frame of a picture is not the one of the project.
+void check_size(const Project &project, uint32_t i, const Picture &header) {
     const auto &camera = project.images[i].camera;
+    if (header.frame_width == camera.width && header.frame_height == camera.height) return;
+    throw Failure(
+        ExitCode::unreadable,
+        project.files[i] + format(": is %u x %u pixels, but ", header.frame_width, header.frame_height) + project.path
+            + format(" says %u x %u; use the pictures that the project was made with", camera.width, camera.height));
+}
+
+// No file has such a name: the project is damaged.
+void check_name(const Project &project, uint32_t i) {
+    if (is_too_long(project.files[i]))
+        throw Failure(ExitCode::unreadable, project.path + ": image " + std::to_string(i) + ": its name "
+                                                + short_name(project.names[i])
+                                                + " is longer than names of files can be; correct the project");
+}
+
+// What may be used: project_max_bytes, or less where the machine or its limit of a process (ulimit -v) has less.
+uint64_t memory_bound() {
+    uint64_t bound = project_max_bytes;
+    const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
+    if (pages > 0 && page_bytes > 0) bound = std::min(bound, uint64_t(pages) * uint64_t(page_bytes));
+    rlimit limit = {};
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        bound = std::min(bound, uint64_t(limit.rlim_cur));
+    return bound;
+}
+
+SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
     const std::string &file = project.files[i];
     SamplePicture result;
     ReadOptions options;
     options.max_side = max_side;
     result.picture = read_picture(file, options);
     const Picture &p = result.picture;
-    if (p.frame_width != camera.width || p.frame_height != camera.height)
-        throw Failure(ExitCode::unreadable,
-                      file + ": is " + std::to_string(p.frame_width) + " x " + std::to_string(p.frame_height)
-                          + " pixels, but " + project.path + " says " + std::to_string(camera.width) + " x "
-                          + std::to_string(camera.height) + "; use the pictures that the project was made with");
+    check_size(project, i, p);
     check_finite(result.picture.view(), 0, p.reduction, file);
     if (!project.pto) return result;
     std::vector<uint8_t> mask(static_cast<size_t>(p.width) * p.height);
@@ -84,6 +114,7 @@ Project read_project(const std::string &path, bool one_lens) {
         project.images.push_back(image);
         project.names.push_back(pto_name(*project.pto, i));
         project.files.push_back((folder / project.names[i]).string());
+        check_name(project, i);
     }
     if (!one_lens) check_one_lens(project);
     project.reference = find_reference(project);
@@ -94,6 +125,26 @@ uint32_t image_of_word(const Project &project, const std::string &word) {
     for (uint32_t i = 0; i < project.names.size(); i++)
         if (word == project.names[i] || word == std::to_string(i)) return i;
     throw Failure(ExitCode::usage, word + ": no such image in " + project.path + "; give its number or name");
+}
+
+void check_pictures(const Project &project, uint32_t max_side) {
+    ReadOptions options;
+    options.max_side = max_side;
+    uint64_t needed = 0;
+    for (uint32_t i = 0; i < project.files.size(); i++) {
+        stop_if_interrupted();
+        const Picture header = read_header(project.files[i], options);
+        check_size(project, i, header);
+        needed += header.row_bytes * header.height;
+        if (project.pto) needed += uint64_t(header.width) * header.height;  // its mask
+    }
+    const uint64_t bound = memory_bound();
+    if (needed > bound)
+        throw Failure(ExitCode::unreadable,
+                      project.path
+                          + format(": its %zu pictures need %.1f GiB of memory, and %.1f are the most; give a smaller "
+                                   "--max-side or fewer pictures",
+                                   project.files.size(), double(needed) / (1 << 30), double(bound) / (1 << 30)));
 }
 
 std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress) {
@@ -194,7 +245,9 @@ void check_point(const std::string &path, const Project &project, const lensprof
 }  // namespace
 
 std::vector<lensprof_pair> read_points(const std::string &path, const Project &project) {
-    std::string text = read_text(path);
+    // As many pairs as --pairs allows, with 17 digits.
+    constexpr uint64_t largest_points = uint64_t(1 << 24) * 256;
+    std::string text = read_text(path, largest_points);
     lensprof_error error{};
     uint32_t found = 0;
     check(lensprof_points_read(text.data(), text.size(), nullptr, 0, &found, &error), path, &error);

@@ -33,6 +33,14 @@ struct SamplePicture {
     std::vector<uint8_t> mask;
 };
 
+// Most bytes of memory for the pictures of a project, reduced for sampling, with their masks.
+constexpr uint64_t project_max_bytes = uint64_t(8) << 30;
+
+// Failure (unreadable) where a picture of the project is missing, cannot be read, is of another size than the project
+// says, or where all of them, reduced to `max_side`, need more memory than project_max_bytes or than this machine has:
+// by their headers, before the first is loaded.
+void check_pictures(const Project &project, uint32_t max_side);
+
 // Reads all pictures, several at once, each reduced to a longer side of at least `max_side` pixels. Sizes that
 // contradict the project, unreadable files and float samples that are not finite are a Failure that names the file.
 std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cli/program/paths.hpp"
+
 namespace lensprof {
 namespace {
 

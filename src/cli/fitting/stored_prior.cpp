@@ -1,7 +1,8 @@
 #include "cli/fitting/stored_prior.hpp"
 
-#include <filesystem>
 #include <set>
+
+#include "cli/program/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -28,7 +29,7 @@ bool is_uncertain(const lensprof_profile &profile) {
 
 EarlierProfile find_stored_prior(const StoreOptions &o, const lensprof_profile_key &key, const std::string &source) {
     const std::string file = store_path(o.db);
-    if (!std::filesystem::exists(file)) return {0, nullptr, "there is no database yet"};
+    if (!path_exists(file)) return {0, nullptr, "there is no database yet"};
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     auto profile = new_profile();
     lensprof_error error{};

@@ -16,6 +16,7 @@
 #include "cli/pictures/codec.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
 #include "cli/program/error.hpp"
+#include "cli/program/utf8.hpp"
 
 namespace lensprof {
 
@@ -71,27 +72,6 @@ ExivImage open_image(const std::string &path) {
 
 // Reading.
 
-// The longest start of `text` that is shorter than `size` bytes and does not cut a UTF-8 character.
-size_t fitting_length(const std::string &text, size_t size) {
-    size_t length = std::min(text.size(), size - 1);
-    while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) --length;
-    return length;
-}
-
-// Bytes of the UTF-8 character at `at`, 0 when there is none. Overlong forms and surrogates do not matter here.
-size_t utf8_length(const std::string &text, size_t at) {
-    const unsigned char lead = static_cast<unsigned char>(text[at]);
-    const size_t length = lead < 0x80                   ? 1
-                          : lead >= 0xc2 && lead < 0xe0 ? 2
-                          : lead >= 0xe0 && lead < 0xf0 ? 3
-                          : lead >= 0xf0 && lead < 0xf5 ? 4
-                                                        : 0;
-    for (size_t i = 1; i < length; ++i) {
-        if (at + i >= text.size() || (static_cast<unsigned char>(text[at + i]) & 0xc0) != 0x80) return 0;
-    }
-    return length;
-}
-
 // EXIF text is ASCII by the standard; what is neither that nor UTF-8 is taken for Latin-1. Ends at the first NUL,
 // control characters become blanks, runs at both ends are cut.
 std::string clean_text(const std::string &raw) {
@@ -115,7 +95,7 @@ std::string clean_text(const std::string &raw) {
 
 template <size_t size>
 void store_text(const std::string &text, char (&field)[size]) {
-    const size_t length = fitting_length(text, size);
+    const size_t length = utf8_cut(text, size - 1);
     std::memcpy(field, text.data(), length);
     std::memset(field + length, 0, size - length);
 }

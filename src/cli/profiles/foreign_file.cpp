@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 #include <fstream>
 
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/opcode_tag.hpp"
+#include "cli/program/input_file.hpp"
 #include "cli/program/library.hpp"
 
 namespace lensprof {
@@ -129,10 +129,7 @@ std::string about_foreign(bool written_only) {
 }
 
 const ForeignRule &format_to_read(const std::string &path, const std::string &wanted) {
-    if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)
-        && !std::filesystem::is_directory(path))
-        throw Failure(ExitCode::unreadable,
-                      path + ": is no ordinary file, and is read more than once; copy it to one first");
+    demand_ordinary(path);
     if (!wanted.empty()) return rule_of_word(wanted);
     const std::string head = head_of(path);
     if (const ForeignRule *rule = rule_of_content(path, head)) return *rule;

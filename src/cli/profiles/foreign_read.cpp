@@ -10,13 +10,12 @@
 #include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/profile_blob.hpp"
 #include "cli/program/format.hpp"
+#include "cli/program/input_file.hpp"
 #include "cli/program/library.hpp"
 #include "cli/report/report.hpp"
 
 namespace lensprof {
 namespace {
-
-constexpr uint64_t most_bytes = uint64_t(64) << 20;
 
 std::string name_of(const std::string &path) {
     const size_t slash = path.rfind('/');
@@ -133,7 +132,7 @@ void read_opcodes(const std::string &path, lensprof_profile &profile) {
 void read_xmp(const std::string &path, const ForeignOptions &o, lensprof_profile &profile) {
     const bool is_packet = path.size() > 4 && path.compare(path.size() - 4, 4, ".xmp") == 0;
     if (is_packet) demand_frame(path, o);
-    const std::string packet = is_packet ? read_text(path, most_bytes) : read_xmp_packet(path);
+    const std::string packet = is_packet ? read_text(path, largest_text) : read_xmp_packet(path);
     if (packet.empty())
         throw Failure(ExitCode::unreadable, path + ": has no XMP, in which drones' cameras describe their falloff");
     const PictureSize size = is_packet || o.width ? PictureSize{o.width, o.height} : read_size(path);
@@ -170,7 +169,7 @@ void read_profiles(const ForeignRule &rule, const std::string &path, lensprof_im
         check(visit(user, &entry), path, &error);
         return;
     }
-    const std::string text = read_text(path, most_bytes), name = name_of(path);
+    const std::string text = read_text(path, largest_text), name = name_of(path);
     const auto read = rule.format == ForeignFormat::lensfun ? lensprof_lensfun_read
                       : rule.format == ForeignFormat::lcp   ? lensprof_lcp_read
                                                             : lensprof_json_read;
@@ -185,7 +184,7 @@ void read_any_part(const ForeignRule &rule, const std::string &path, const Forei
     if (rule.format == ForeignFormat::opcodes) return read_opcodes(path, profile);
     if (rule.format == ForeignFormat::xmp) return read_xmp(path, o, profile);
     if (rule.format == ForeignFormat::alsc) demand_frame(path, o);
-    const std::string text = read_text(path, most_bytes);
+    const std::string text = read_text(path, largest_text);
     const auto responses = std::make_unique<lensprof_response[]>(3);
     uint32_t count = 1;
     double worst = 0.0;

@@ -10,6 +10,7 @@
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/chart.hpp"
 #include "cli/report/falloff.hpp"
@@ -25,8 +26,7 @@ std::string number_or(double value, const char *pattern) {
 // One line for each row that cannot be listed, and the exit code for them.
 int report_damaged(lensprof_store *store, const std::vector<lensprof_store_row> &rows, Streams &streams) {
     ExitCode code = ExitCode::done;
-    auto profile = std::make_unique<lensprof_profile>();
-    lensprof_profile_init(profile.get());
+    auto profile = new_profile();
     for (const auto &row : rows) {
         lensprof_error error{};
         if (!row.damaged || lensprof_store_get(store, row.id, profile.get(), &error) == LENSPROF_OK) continue;

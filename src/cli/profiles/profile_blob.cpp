@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cli/program/format.hpp"
+#include "cli/program/input_file.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/report/report.hpp"

@@ -13,6 +13,7 @@
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 

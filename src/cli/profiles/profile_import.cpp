@@ -15,6 +15,7 @@
 #include "cli/program/interrupt.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 
@@ -188,8 +189,7 @@ int run_profile_import(const std::vector<std::string> &arguments, Streams &strea
     std::vector<Input> inputs;
     std::set<std::string> seen;
     for (const std::string &file : o.files)
-        if (seen.insert(std::filesystem::weakly_canonical(file).string()).second)
-            inputs.push_back({file, &format_to_read(file, o.format)});
+        if (seen.insert(one_name(file)).second) inputs.push_back({file, &format_to_read(file, o.format)});
     const std::unique_ptr<lensprof_profile> of_parts = read_parts(o, inputs);
     if (!of_parts && !o.key.is_empty())
         throw Failure(ExitCode::usage,
@@ -198,7 +198,7 @@ int run_profile_import(const std::vector<std::string> &arguments, Streams &strea
     Import import;
     import.db = o.db;
     visit_all(import, inputs, of_parts.get(), ignore);  // before a database is made
-    const bool is_new = !std::filesystem::exists(store_path(o.db));
+    const bool is_new = !path_exists(store_path(o.db));
     try {
         store_all(import, inputs, of_parts.get());
     } catch (const Failure &) {

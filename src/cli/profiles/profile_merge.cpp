@@ -1,6 +1,4 @@
 // `lensprof profile merge`: profiles of other databases.
-#include <filesystem>
-
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +8,7 @@
 #include "cli/program/interrupt.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 
@@ -61,7 +60,7 @@ int run_profile_merge(const std::vector<std::string> &arguments, Streams &stream
     app.add_flag("--json", json, "print one JSON object");
     if (!parse(app, arguments, streams)) return 0;
     std::vector<Other> others = open_others(db, files);
-    const bool is_new = !std::filesystem::exists(store_path(db));
+    const bool is_new = !path_exists(store_path(db));
     try {
         merge_all(db, others);
     } catch (const Failure &) {

@@ -1,11 +1,12 @@
 #include "cli/program/library.hpp"
 
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <vector>
+
+#include "cli/program/input_file.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/program/utf8.hpp"
 
 namespace lensprof {
 namespace {
@@ -36,21 +37,6 @@ ExitCode exit_code(lensprof_status status) {
     }
 }
 
-bool is_utf8(const std::string &text) {
-    for (size_t i = 0; i < text.size();) {
-        auto c = static_cast<unsigned char>(text[i++]);
-        int more = c < 0x80                ? 0
-                   : c >= 0xC2 && c < 0xE0 ? 1
-                   : c >= 0xE0 && c < 0xF0 ? 2
-                   : c >= 0xF0 && c < 0xF5 ? 3
-                                           : -1;
-        if (more < 0) return false;
-        for (; more > 0; more--, i++)
-            if (i >= text.size() || (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return false;
-    }
-    return true;
-}
-
 }  // namespace
 
 void check(lensprof_status status, const std::string &item, const lensprof_error *error) {
@@ -69,11 +55,9 @@ std::string store_path(const std::string &path) {
 }
 
 void demand_folder(const std::string &path) {
-    const std::filesystem::path folder = std::filesystem::absolute(store_path(path)).parent_path();
-    std::error_code ignored;
-    if (!path.empty() && !std::filesystem::is_directory(folder, ignored))
-        throw Failure(ExitCode::store,
-                      path + ": there is no folder " + folder.string() + " for the database; make it first");
+    const std::string folder = std::filesystem::path(absolute_path(store_path(path))).parent_path().string();
+    if (!path.empty() && !is_folder(folder))
+        throw Failure(ExitCode::store, path + ": there is no folder " + folder + " for the database; make it first");
 }
 
 std::unique_ptr<lensprof_profile> new_profile() {
@@ -95,30 +79,8 @@ Store open_store(const std::string &path, lensprof_store_mode mode) {
     return Store(store);
 }
 
-bool is_same_file(const std::string &a, const std::string &b) {
-    if (a.empty() || b.empty()) return false;
-    std::error_code ignored;
-    auto plain = [](const std::string &path) { return std::filesystem::absolute(path).lexically_normal(); };
-    return plain(a) == plain(b) || std::filesystem::equivalent(a, b, ignored);
-}
-
-std::string read_text(const std::string &path, uint64_t most_bytes) {
-    if (std::filesystem::is_directory(path)) throw Failure(ExitCode::unreadable, path + ": is a folder; name a file");
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-        throw Failure(ExitCode::unreadable, path + ": cannot be opened: " + std::strerror(errno) + "; check the name");
-    std::string text;
-    std::vector<char> room(1 << 16);
-    while (text.size() <= most_bytes && (file.read(room.data(), std::streamsize(room.size())), file.gcount() > 0))
-        text.append(room.data(), static_cast<size_t>(file.gcount()));
-    if (file.bad()) throw Failure(ExitCode::unreadable, path + ": cannot be read to its end; copy it again");
-    if (text.size() > most_bytes)
-        throw Failure(ExitCode::unreadable, path + ": is larger than such a file can be; check the name");
-    return text;
-}
-
 Pto read_pto(const std::string &path) {
-    std::string text = read_text(path);
+    std::string text = read_text(path, largest_text);
     lensprof_pto *pto = nullptr;
     lensprof_error error{};
     check(lensprof_pto_read(text.data(), text.size(), &pto, &error), path, &error);
@@ -145,8 +107,7 @@ std::string pto_text(const lensprof_pto &pto) {
 
 void set_text(char *field, size_t size, const std::string &text) {
     const bool readable = is_utf8(text);
-    size_t length = std::min(size - 1, text.size());
-    while (length > 0 && length < text.size() && (text[length] & 0xC0) == 0x80) length--;
+    const size_t length = utf8_cut(text, size - 1);
     std::memset(field, 0, size);
     for (size_t i = 0; i < length; i++) {
         auto c = static_cast<unsigned char>(text[i]);

@@ -44,12 +44,6 @@ Pto read_pto(const std::string &path);
 std::string pto_name(const lensprof_pto &pto, uint32_t index);
 std::string pto_text(const lensprof_pto &pto);
 
-// True when two paths name one file, which may not exist yet.
-bool is_same_file(const std::string &a, const std::string &b);
-
-// The whole file; Failure (unreadable) names it.
-std::string read_text(const std::string &path, uint64_t most_bytes = UINT64_MAX);
-
 // Copies a text into a fixed field of a key or provenance, cut at its size between UTF-8 characters; control
 // characters become blanks, and in a text that is not UTF-8 all bytes beyond ASCII question marks.
 void set_text(char *field, size_t size, const std::string &text);

@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cli/program/paths.hpp"
+
 namespace lensprof {
 
 namespace {
@@ -80,10 +82,9 @@ int open_nameless(const std::string &beside) {
 }
 
 void check_folder(const std::string &folder, const std::string &item, ExitCode code) {
-    std::error_code ignored;
-    std::filesystem::path place = std::filesystem::absolute(folder);
-    while (!std::filesystem::exists(place, ignored) && place.has_relative_path()) place = place.parent_path();
-    if (!std::filesystem::is_directory(place, ignored))
+    std::filesystem::path place = absolute_path(folder);
+    while (!path_exists(place.string()) && place.has_relative_path()) place = place.parent_path();
+    if (!is_folder(place.string()))
         throw Failure(code, item + ": " + place.string() + " is not a folder; give another name");
     if (access(place.c_str(), W_OK | X_OK) != 0)
         throw Failure(code, item + ": cannot write in " + place.string() + ": " + system_text(errno)

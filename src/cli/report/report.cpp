@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program/format.hpp"
+#include "cli/program/input_file.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/utf8.hpp"
 #include "cli/report/falloff.hpp"
 
 namespace lensprof {
@@ -123,8 +125,57 @@ uint32_t processing_of_name(const std::string &name) {
     throw Failure(ExitCode::usage, name + ": not a processing state; use raw, jpeg or corrected");
 }
 
+namespace {
+
+std::string hex_of(const std::string &text) {
+    std::string hex;
+    for (const char c : text) hex += format("%02x", static_cast<unsigned char>(c));
+    return hex;
+}
+
+// The bytes of a text that is not UTF-8, or of a list that holds such; null where there is nothing to keep.
+Json bytes_of(const Json &value) {
+    if (value.is_string()) return is_utf8(value.get<std::string>()) ? Json() : Json(hex_of(value.get<std::string>()));
+    if (!value.is_array()) return Json();
+    Json list = Json::array();
+    bool any = false;
+    for (const Json &item : value) {
+        list.push_back(item.is_string() ? bytes_of(item) : Json());
+        any = any || !list.back().is_null();
+    }
+    return any ? list : Json();
+}
+
+// Beside every member that holds text that is not UTF-8 one with its bytes.
+void keep_bytes(Json &json) {
+    if (json.is_object()) {
+        Json kept = Json::object();
+        for (const auto &member : json.items()) {
+            kept[member.key()] = member.value();
+            const Json bytes = bytes_of(member.value());
+            if (!bytes.is_null()) kept[member.key() + "_bytes"] = bytes;
+        }
+        json = std::move(kept);
+    }
+    for (Json &item : json)
+        if (item.is_structured()) keep_bytes(item);
+}
+
+bool has_only_utf8(const Json &json) {
+    if (json.is_string()) return is_utf8(json.get_ref<const std::string &>());
+    return !json.is_structured() || std::all_of(json.begin(), json.end(), has_only_utf8);
+}
+
+}  // namespace
+
 void print_json(const Json &json, std::ostream &out) {
-    out << json.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+    if (!has_only_utf8(json)) {
+        Json kept = json;
+        keep_bytes(kept);
+        out << kept.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+        return;
+    }
+    out << json.dump() << "\n";
 }
 
 namespace {
@@ -369,7 +420,7 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
 TrueValues read_truth(const std::string &path, size_t images) {
     TrueValues truth;
     try {
-        Json json = Json::parse(read_text(path));
+        Json json = Json::parse(read_text(path, largest_text));
         for (const Json &image : json.at("images")) truth.ev.push_back(image.at("ev").get<double>());
         const Json &curves = json.at("vignetting").at("k"), &center = json.at("vignetting").at("center");
         for (size_t n = 0; n < 3; n++) truth.vignetting.k[n] = curves.at(curves.size() / 2).at(n).get<double>();

@@ -32,7 +32,8 @@ struct BuildReport {
     std::string no_prior;                        // why none was, where one was asked for
 };
 
-// One line. Names of files need not be UTF-8, JSON must: bytes that are not become U+FFFD.
+// One line. Names of files need not be UTF-8, JSON must: bytes that are not become U+FFFD, and a member `x` that holds
+// such a text is followed by `x_bytes`, its bytes in hexadecimal digits.
 void print_json(const Json &json, std::ostream &out);
 
 // The object that `build --json` prints; docs/json.md describes the schema.

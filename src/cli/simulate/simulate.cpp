@@ -17,6 +17,7 @@
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/parallel.hpp"
+#include "cli/program/paths.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
@@ -405,9 +406,7 @@ int run_simulate(const std::vector<std::string> &arguments, Streams &streams) {
     Truth truth = make_truth(o);
     Scene scene(o.seed);
     add_disturbances(o, scene, truth);
-    std::error_code error;
-    std::filesystem::create_directories(o.output, error);
-    if (error) throw Failure(ExitCode::failed, o.output + ": cannot be made: " + error.message());
+    make_folder(o.output);
     std::filesystem::path folder(o.output);
 
     Progress progress(streams.err, ShowProgress::when_terminal);

@@ -1,0 +1,71 @@
+#include "cli/program/paths.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/program/error.hpp"
+#include "cli/program/utf8.hpp"
+
+namespace lensprof {
+
+namespace fs = std::filesystem;
+
+bool path_exists(const std::string &path) {
+    std::error_code none;
+    return fs::exists(path, none);
+}
+
+bool is_folder(const std::string &path) {
+    std::error_code none;
+    return fs::is_directory(path, none);
+}
+
+bool is_regular_file(const std::string &path) {
+    std::error_code none;
+    return fs::is_regular_file(path, none);
+}
+
+uint64_t file_bytes(const std::string &path) {
+    std::error_code error;
+    const uint64_t bytes = fs::file_size(path, error);
+    return error ? 0 : bytes;
+}
+
+std::string absolute_path(const std::string &path) {
+    std::error_code error;
+    const fs::path absolute = fs::absolute(path, error);
+    return (error ? fs::path(path) : absolute).lexically_normal().string();
+}
+
+std::string one_name(const std::string &path) {
+    std::error_code error;
+    const fs::path name = fs::weakly_canonical(absolute_path(path), error);
+    return error ? absolute_path(path) : name.string();
+}
+
+bool is_same_file(const std::string &a, const std::string &b) {
+    if (a.empty() || b.empty()) return false;
+    std::error_code none;
+    return absolute_path(a) == absolute_path(b) || fs::equivalent(a, b, none);
+}
+
+void make_folder(const std::string &folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw Failure(ExitCode::failed, short_name(folder) + ": cannot be made: " + error.message());
+}
+
+std::string short_name(const std::string &name) {
+    constexpr size_t shown = 100, line = 1000;
+    if (name.size() <= line) return name;
+    return name.substr(0, utf8_cut(name, shown)) + "... (" + std::to_string(name.size()) + " bytes)";
+}
+
+bool is_too_long(const std::string &path) {
+    constexpr size_t longest_path = 4095, longest_name = 255;  // PATH_MAX and NAME_MAX of Linux
+    size_t longest = 0;
+    for (const fs::path &part : fs::path(path)) longest = std::max(longest, part.native().size());
+    return path.size() > longest_path || longest > longest_name;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,159 @@
+// Inputs that are no ordinary files, too long, too many, or whose names are not UTF-8.
+#include "cli_runs.hpp"
+
+#include <fcntl.h>
+#include <sys/time.h>
+
+using namespace cli_runs;
+
+namespace {
+
+// In a child with 1 GB of memory and 20 s: a file without an end must not be read to it.
+void assert_refused_in_bounds(const Words &words, const std::string &named) {
+    const Outcome outcome = run_child(words, [] {
+        alarm(20);
+#if !defined(__SANITIZE_ADDRESS__)
+        const rlimit bytes = {1u << 30, 1u << 30};
+        setrlimit(RLIMIT_AS, &bytes);
+#endif
+    });
+    if (outcome.code != unreadable || !contains(outcome.err, named))
+        fail_msg("%s: exit code %d: %s", joined(words).c_str(), outcome.code, outcome.err.c_str());
+}
+
+Words build(const std::string &pto, const Words &more = {}) { return Words{"build", pto, "--no-store"} + quick + more; }
+
+void test_apply_to_nothing(void **) {
+    assert_refused(usage, {"apply", "--profile", "1", "-o", work("out"), ""}, {"FILES"});
+}
+
+void test_folder_with_a_link_to_itself(void **) {
+    const std::string copy = copy_of("scene"), db = work("p.db");
+    must_exit(done, Words{"build", copy + "/pano.pto", "--db", db} + quick);
+    fs::create_symlink("loop.png", copy + "/loop.png");
+    const Words words = {"apply", "--profile", "1", "--db", db, "-o", work("out"), copy};
+    const Outcome outcome = run_words(words);
+    assert_int_equal(outcome.code, unreadable);
+    assert_true(contains(outcome.err, copy + "/loop.png: cannot read"));
+    assert_false(contains(outcome.err, "filesystem error"));
+    assert_false(fs::exists(work("out")));
+}
+
+void test_long_names(void **) {
+    const std::string pto = copy_of("scene") + "/pano.pto";
+    for (const size_t length : {300, 5000, 100000}) {
+        save_text(pto, text_of(scene("pano.pto")));
+        edit(pto, "img001.png", std::string(length, 'x'));
+        for (const Words &words :
+             {build(pto), build(pto, {"--points", work("points.txt")}), Words{"apply", "--pto", pto, "-o", work("out")},
+              Words{"align", "--project", pto, "-o", work("out")}}) {
+            assert_refused(unreadable, words, {pto, "image 1"});
+            assert_true(run_words(words).err.size() < 1000);
+        }
+    }
+    const std::string name = work(std::string(5000, 'x'));
+    for (const Words &words :
+         {build(name), Words{"apply", "--pto", name, "-o", work("out")},
+          Words{"apply", "--profile", "1", "-o", work("out"), name}, Words{"profile", "list", "--db", name},
+          Words{"profile", "import", name}, build(scene("pano.pto"), {"--points-out", name}),
+          Words{"bracket", name, name + "y", "--no-store"}, Words{"flat", name, "--linear", "--no-store"},
+          Words{"simulate", "-o", name}, Words{"profile", "show", "1", "--blob", name}}) {
+        const Outcome outcome = run_words(words);
+        assert_true(outcome.code != done && outcome.code != stopped);
+        if (contains(outcome.err, "filesystem error")) fail_msg("%s: %s", words[0].c_str(), outcome.err.c_str());
+    }
+}
+
+void test_what_is_no_file(void **) {
+    assert_int_equal(mkfifo(work("fifo").c_str(), 0600), 0);
+    fs::create_directory(work("folder"));
+    for (const std::string &name : {std::string("/dev/zero"), work("fifo"), work("folder")}) {
+        assert_refused_in_bounds(build(name), name);
+        assert_refused_in_bounds(build(scene("pano.pto"), {"--points", name}), name);
+        assert_refused_in_bounds(build(scene("pano.pto"), {"--compare", name}), name);
+        assert_refused_in_bounds({"apply", "--pto", name, "-o", work("out")}, name);
+        assert_refused_in_bounds({"align", "--project", name, "-o", work("out")}, name);
+        assert_refused_in_bounds({"profile", "import", name}, name);
+        assert_refused_in_bounds({"profile", "show", "--blob", name}, name);
+    }
+}
+
+// A file of that size without its bytes on the disk.
+std::string sparse(const std::string &name, uint64_t bytes) {
+    save_text(name, "p f2\n");
+    fs::resize_file(name, bytes);
+    return name;
+}
+
+void test_files_that_are_too_large(void **) {
+    const std::string pto = sparse(work("65.pto"), uint64_t(65) << 20),
+                      points = sparse(work("points.txt"), uint64_t(5) << 30);
+    for (const Words &words : {build(pto), build(scene("pano.pto"), {"--points", points}),
+                               build(scene("pano.pto"), {"--compare", pto}), Words{"profile", "import", pto}}) {
+        const Outcome outcome = run_child(words);
+        assert_int_equal(outcome.code, unreadable);
+        assert_true(contains(outcome.err, "is larger than such a file can be"));
+    }
+    fs::remove(points);
+}
+
+// A project of many pictures, all of them one file.
+std::string many_pictures(const std::string &folder, const char *last, uint32_t count, const char *size) {
+    std::string text = "p f2 w3000 h1500 v360\n";
+    for (uint32_t i = 0; i < count; i++)
+        text += "i " + std::string(size) + " f0 v" + (i ? "=0" : "50") + " Eev0 r0 p0 y" + std::to_string(i % 360)
+                + " n\"" + (i + 1 < count ? "one.png" : last) + "\"\n";
+    save_text(folder + "/many.pto", text + "v Eev1\n");
+    return folder + "/many.pto";
+}
+
+double seconds_now() {
+    timeval now = {};
+    gettimeofday(&now, nullptr);
+    return double(now.tv_sec) + 1e-6 * double(now.tv_usec);
+}
+
+// All are looked at before the first is loaded: an error of the last one comes at once.
+void test_pictures_are_checked_first(void **) {
+    write_picture(work("one.png"), make_smooth(1500, 1500, LENSPROF_LAYOUT_RGB));
+    write_picture(work("small.png"), make_smooth(150, 100, LENSPROF_LAYOUT_RGB));
+    const double start = seconds_now();
+    for (const char *last : {"missing.png", "small.png", "many.pto"})
+        assert_refused(unreadable, build(many_pictures(work(""), last, 1000, "w1500 h1500"), {"--one-lens"}), {last});
+    assert_true(seconds_now() - start < 20.0);  // to load them takes minutes
+    const std::string pto = many_pictures(work(""), "one.png", 2000, "w1500 h1500");
+    assert_refused(unreadable, build(pto, {"--one-lens", "--max-side", "0"}),
+                   {pto, "2000 pictures need 16.8 GiB of memory", "--max-side"});
+}
+
+// What people and scripts get of a name that is not UTF-8.
+void test_names_that_are_not_utf8(void **) {
+    const std::string copy = copy_of("scene"), name = "b\xe9\xed\xa0\x80.png", db = work("p.db");
+    fs::rename(copy + "/img001.png", copy + "/" + name);
+    edit(copy + "/pano.pto", "img001.png", name);
+    const Json build = json_of(Words{"build", copy + "/pano.pto", "--db", db, "--json"} + quick);
+    assert_string_equal(build["images"][1]["file_bytes"].get<std::string>().c_str(), "62e9eda0802e706e67");
+    assert_false(build["images"][0].contains("file_bytes"));
+    assert_true(contains(build["images"][1]["file"].get<std::string>(), "\xef\xbf\xbd"));
+    const Json apply = json_of({"apply", "--profile", "1", "--db", db, "-o", work("out"), "--json", copy + "/" + name});
+    const std::string hex = apply["pictures"][0]["output_bytes"].get<std::string>();
+    std::string bytes;
+    for (size_t i = 0; i + 1 < hex.size(); i += 2) bytes += char(std::stoi(hex.substr(i, 2), nullptr, 16));
+    assert_string_equal(bytes.c_str(), work("out/" + name).c_str());
+    assert_true(fs::exists(bytes));
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_apply_to_nothing),
+        CLI_TEST(test_folder_with_a_link_to_itself),
+        CLI_TEST(test_long_names),
+        CLI_TEST(test_what_is_no_file),
+        CLI_TEST(test_files_that_are_too_large),
+        CLI_TEST(test_pictures_are_checked_first),
+        CLI_TEST(test_names_that_are_not_utf8),
+    };
+    return cmocka_run_group_tests(tests, make_scene, remove_folder);
+}

@@ -1,0 +1,53 @@
+"""The command's own words for files: std::filesystem only through src/cli/program/paths.cpp, whose calls do not throw.
+
+path_rules.py SOURCE_DIR     lists every call elsewhere in src/cli that looks at the disk and can throw
+path_rules.py --self-check   plants violations; exit 1 when one is not found
+"""
+
+import pathlib
+import re
+import sys
+
+# A call of std::filesystem that looks at the disk, or a method of a directory's entry.
+CALL = re.compile(
+    r"(?:filesystem::|fs::)(absolute|canonical|copy\w*|create_\w+|current_path|equivalent|exists|file_size|"
+    r"hard_link_count|is_\w+|last_write_time|permissions|proximate|read_symlink|relative|remove\w*|rename|resize_file|"
+    r"space|status|symlink_status|temp_directory_path|weakly_canonical|(?:recursive_)?directory_iterator\s+\w+)"
+    r"\s*\(([^;]*)|entry->(is_\w+|exists|file_size|refresh)\(\)"
+)
+CODE = re.compile(r"\b(error|ignored|none)\b")  # an error code among the arguments: the overload that does not throw
+
+
+def violations_in(text):
+    return [
+        (number, match.group(0).split("(")[0])
+        for number, line in enumerate(text.splitlines(), 1)
+        for match in CALL.finditer(line)
+        if not CODE.search(match.group(2) or "")
+    ]
+
+
+def self_check():
+    good = ["std::filesystem::remove(file, ignored);", "fs::path(a).filename();", "fs::directory_iterator entry(name, error), end;"]
+    bad = ["std::filesystem::exists(file)", "fs::absolute(path).string();", "if (entry->is_directory())", "fs::directory_iterator e(name);"]
+    wrong = [line for line in good if violations_in(line)] + [line for line in bad if not violations_in(line)]
+    print("\n".join(wrong) or f"path_rules: {len(bad)} planted violations found")
+    return 1 if wrong else 0
+
+
+def main():
+    if sys.argv[1:] == ["--self-check"]:
+        return self_check()
+    root = pathlib.Path(sys.argv[1])
+    found = [
+        f"{path.relative_to(root)}:{number}: {call} throws in words of its own; use cli/program/paths.hpp"
+        for path in sorted((root / "src/cli").rglob("*.?pp"))
+        if path.name != "paths.cpp"
+        for number, call in violations_in(path.read_text(encoding="utf-8"))
+    ]
+    print("\n".join(found) or "path_rules: no violation")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
