@@ -23,6 +23,13 @@ static inline void lp_assert_close(double a, double b, double tolerance, const c
     }
 }
 
+/* The reason of a fit or flat field: its code, and words of its sentence. */
+#define assert_reason(result, code, words)                              \
+    do {                                                                \
+        assert_non_null(strstr((result).reason, (words)));              \
+        assert_int_equal((result).reason_code, LENSPROF_REASON_##code); \
+    } while (0)
+
 #define assert_ok(call) assert_int_equal((call), LENSPROF_OK)
 
 /* A small generator with a fixed sequence: uniform in [0,1). */

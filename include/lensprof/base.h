@@ -1,4 +1,4 @@
-/* lensprof/base.h - version, status codes, error text.
+/* lensprof/base.h - version, status codes, errors.
  *
  * Rules that hold for the whole API:
  *  - Every function that can fail returns lensprof_status; on error its outputs are untouched.
@@ -71,9 +71,30 @@ typedef enum lensprof_status {
     LENSPROF_ERROR_INTERNAL = 90     /* a defect of lensprof; please report */
 } lensprof_status;
 
-/* Text of the first thing that went wrong, always terminated; empty when nothing did. */
+typedef enum lensprof_item_kind {
+    LENSPROF_ITEM_NONE = 0,
+    LENSPROF_ITEM_IMAGE = 1,       /* index into the images of the call */
+    LENSPROF_ITEM_PAIR = 2,        /* index into the pairs */
+    LENSPROF_ITEM_OBSERVATION = 3, /* index into the observations */
+    LENSPROF_ITEM_POINT = 4,       /* lensprof_observation.point */
+    LENSPROF_ITEM_SHOT = 5,        /* lensprof_flat_image.shot */
+    LENSPROF_ITEM_PROFILE = 6,     /* index into the profiles */
+    LENSPROF_ITEM_FRAME = 7        /* index into the frames */
+} lensprof_item_kind;
+
+/* What a text names by its number, "image 3": programs that have a better name put it in its place. Frozen value
+ * struct; all zero where the text names nothing. */
+typedef struct lensprof_item {
+    uint32_t kind;       /* lensprof_item_kind */
+    uint32_t index;      /* from 0 */
+    uint32_t text_begin; /* byte of the text where the item is named, */
+    uint32_t text_bytes; /* and how many bytes name it; 0 where the text was cut before its end */
+} lensprof_item;
+
+/* The first thing that went wrong. Frozen value struct. */
 typedef struct lensprof_error {
-    char text[256];
+    char text[256];     /* always terminated; empty when nothing went wrong */
+    lensprof_item item; /* what the text names */
 } lensprof_error;
 
 /* Called now and then by the thread that made the call, with a fraction 0..1; a non-zero return cancels the call,

@@ -27,6 +27,7 @@
 
 #include "model.h"
 #include "profile.h"
+#include "reason.h"
 #include "sample.h"
 
 #ifdef __cplusplus
@@ -193,6 +194,10 @@ typedef struct lensprof_fit_result {
                       * LENSPROF_COVARIANCE_MAX];    /* of the data, of gamma and of a profile together */
     double gamma_direction[LENSPROF_COVARIANCE_MAX]; /* change of each parameter per unit of ln gamma */
     lensprof_fit_image_quality *image_quality; /* the caller's array of image_count, set before the call; or NULL */
+    uint32_t reason_code;                      /* lensprof_reason: what `reason` states, */
+    uint32_t reason_values;                    /* how many numbers, 0..2, */
+    lensprof_item reason_item;                 /* which image, */
+    double reason_value[2];                    /* and the numbers, in the units of reason.h */
 } lensprof_fit_result;
 
 /* No result, a linear response. */

@@ -19,6 +19,7 @@
 #include "apply.h"
 #include "fit.h"
 #include "profile.h"
+#include "reason.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -147,6 +148,10 @@ typedef struct lensprof_flat_result {
     lensprof_gain_grid gain_grid; /* what the polynomial leaves: the attenuation is M times it, and it is 1 at the
                                      centre of M. 0 x 0 where it is not asked for, or nothing shows it */
     lensprof_flat_image_quality *image_quality; /* the caller's array of `count`, set before the call; or NULL */
+    uint32_t reason_code;                       /* lensprof_reason: what `reason` states, */
+    uint32_t reason_values;                     /* how many numbers, 0..2, */
+    lensprof_item reason_item;                  /* which image or shot, */
+    double reason_value[2];                     /* and the numbers, in the units of reason.h */
 } lensprof_flat_result;
 
 /* No result. */

@@ -11,6 +11,7 @@ namespace lensprof {
 struct FalloffFailure {
     lensprof_status status;
     std::string text;
+    lensprof_item item{};  // that the text begins with
 };
 
 }  // namespace lensprof

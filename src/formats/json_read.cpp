@@ -229,7 +229,7 @@ void read_profile(const JsonValue &object, const char *source, lensprof_profile 
 template <typename Use>
 lensprof_status walk(const JsonText &text, const char *source, lensprof_profile &profile, Use use) {
     const JsonValue root = text.root();
-    if (!root.is_object()) root.fail("is no object; give what `lensprof profile show --json` prints");
+    if (!root.is_object()) root.fail("is no object; give that of a profile, or one with a list of profiles");
     const JsonValue list = root["profiles"];
     if (!list) {
         read_profile(root, source, profile);

@@ -159,8 +159,10 @@ std::string profiles_text(const lensprof_profile *const *profiles, uint32_t coun
     for (uint32_t i = 0; i < count; i++) {
         const lensprof_status status = profiles[i] ? lensprof_profile_validate(profiles[i]) : LENSPROF_ERROR_ARGUMENT;
         if (status != LENSPROF_OK)
-            throw FormatFailure{status, "profile " + std::to_string(i) + ": is not valid ("
-                                            + lensprof_status_name(status) + "); see lensprof_profile_validate"};
+            throw failure_at(
+                LENSPROF_ITEM_PROFILE, i,
+                std::string("is not valid (") + lensprof_status_name(status) + "); see lensprof_profile_validate",
+                status);
         if (count != 1) json.line();
         write_profile(json, *profiles[i]);
     }

@@ -51,7 +51,7 @@ uint32_t walk(std::string_view text, Use use) {
 
 void check_frame(const lensprof_frame_time &frame, uint32_t index) {
     const auto demand = [&](bool holds, const char *what, lensprof_status status) {
-        if (!holds) throw FormatFailure{status, "frame " + std::to_string(index) + ": " + what};
+        if (!holds) throw failure_at(LENSPROF_ITEM_FRAME, index, what, status);
     };
     const size_t length = strnlen(frame.id, sizeof frame.id);
     demand(length > 0 && length < sizeof frame.id, "its name is empty or not terminated; set id",

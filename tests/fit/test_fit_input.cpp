@@ -41,6 +41,46 @@ struct Call {
         assert_int_equal(call.run(), status); \
     } while (0)
 
+// A wrong option is named with its range, and none beside it.
+void test_a_wrong_option_is_named(void **) {
+    const struct {
+        void (*spoil)(lensprof_fit_options &);
+        const char *text;
+    } cases[] = {
+        {[](lensprof_fit_options &o) { o.channels = 2; }, "fit options: channels must be 1 or 3"},
+        {[](lensprof_fit_options &o) { o.modes = 26; }, "fit options: modes must be 0..25 or LENSPROF_MODES_AUTO"},
+        {[](lensprof_fit_options &o) { o.max_iterations = 0; }, "fit options: max_iterations must be 1..1000000"},
+        {[](lensprof_fit_options &o) { o.vignettings = 2; }, "fit options: vignettings must be 0, 1 or 3"},
+        {[](lensprof_fit_options &o) { o.refine = 2; }, "fit options: refine must be 0 or 1"},
+    };
+    for (const auto &one : cases) {
+        Call call;
+        one.spoil(call.options);
+        assert_int_equal(call.run(), LENSPROF_ERROR_ARGUMENT);
+        assert_string_equal(call.error.text, one.text);
+        assert_int_equal(call.error.item.kind, LENSPROF_ITEM_NONE);
+    }
+}
+
+// What is wrong with an image or a pair is told by its number, beside the text.
+void test_a_wrong_item_is_named(void **) {
+    Call call;
+    call.s.pairs[7].value[1][2] = 1.01;
+    assert_int_equal(call.run(), LENSPROF_ERROR_ARGUMENT);
+    assert_string_equal(call.error.text, "pair 7: grey values must be 0..1");
+    assert_int_equal(call.error.item.kind, LENSPROF_ITEM_PAIR);
+    assert_int_equal(call.error.item.index, 7);
+    assert_int_equal(call.error.item.text_bytes, strlen("pair 7"));
+    Call other;
+    other.s.fit_images[1].ev_of = 6;
+    assert_int_equal(other.run(), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(other.error.item.kind, LENSPROF_ITEM_IMAGE);
+    assert_int_equal(other.error.item.index, 1);
+    other.s.fit_images[1].ev_of = 1;
+    assert_ok(other.run());
+    assert_int_equal(other.error.item.kind, LENSPROF_ITEM_NONE);
+}
+
 void test_refuses(void **) {
     REFUSED(call.options.struct_size = 1, LENSPROF_ERROR_STRUCT_SIZE);
     REFUSED(call.result.struct_size = 1, LENSPROF_ERROR_STRUCT_SIZE);
@@ -156,6 +196,8 @@ void test_degenerate_problems_stay_finite(void **) {
 int main() {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_a_wrong_option_is_named),
+        cmocka_unit_test(test_a_wrong_item_is_named),
         cmocka_unit_test(test_data_without_information_are_not_usable),
         cmocka_unit_test(test_progress_cancels),
         cmocka_unit_test(test_degenerate_problems_stay_finite),

@@ -48,7 +48,7 @@ static void a_plain_card_gives_the_falloff(void **) {
         assert_int_equal(r->gain_grid.columns, 0);
         assert_close(error_of(*r, p), 0.0, 0.002);
         assert_true(r->corner_sigma > 5e-5 && r->corner_sigma < 5e-4);
-        assert_non_null(strstr(r->reason, "prior"));  // one shot cannot tell light from centre, and says so
+        assert_reason(*r, FLAT_CENTER_BY_PRIOR, "prior");  // one shot cannot tell light from centre, and says so
         assert_int_equal(r->separated, 0);
     }
 }
@@ -121,7 +121,9 @@ static void wrong_exposures_are_noticed(void **) {
     lensprof_flat_image_quality quality[2];
     auto r = p.fit(p.options(), quality);
     assert_false(r->usable);
-    assert_non_null(strstr(r->reason, "0.50 EV"));
+    assert_reason(*r, FLAT_EXPOSURE_WRONG, "0.50 EV");
+    assert_int_equal(r->reason_item.kind, LENSPROF_ITEM_IMAGE);
+    assert_close(r->reason_value[0], 0.5, 0.02);
     assert_close(quality[0].ev_residual - quality[1].ev_residual, 1.0, 0.02);  // each against the other
 }
 
@@ -135,12 +137,12 @@ static void a_card_that_does_not_reach_the_corners_is_said(void **) {
     auto r = p.fit(p.options());
     assert_true(r->usable);
     assert_close(r->radius, 0.75, 0.02);
-    assert_non_null(strstr(r->reason, "extrapolated"));
+    assert_reason(*r, FLAT_EXTRAPOLATED, "extrapolated");
     for (uint32_t y = 0; y < 450; y++)
         for (uint32_t x = 0; x < 600; x++) mask[y * 600 + x] = x > 200 && x < 400 && y > 100 && y < 350;
     r = p.fit(p.options());
     assert_false(r->usable);
-    assert_non_null(strstr(r->reason, "corners"));
+    assert_reason(*r, FLAT_SMALL_RADIUS, "corners");
 }
 
 static void channels_get_curves_where_they_differ(void **) {
@@ -173,24 +175,27 @@ static void dust_is_counted_placed_and_left_out(void **) {
     assert_int_equal(r->spot[0].shots, 2);
     assert_true(r->cells < without->cells);
     assert_close(error_of(*r, p), error_of(*without, clean), 2e-4);
-    assert_non_null(strstr(r->reason, "2 spots"));
+    assert_reason(*r, FLAT_DUST, "2 spots");
+    assert_close(r->reason_value[0], 2.0, 0.0);
 }
 
 struct Bad {
     const char *word;
+    lensprof_reason code;
     void (*spoil)(FlatPictures &);
 };
 
 static void what_is_wrong_is_said(void **) {
     const Bad cases[] = {
-        {"white", [](FlatPictures &p) { p.level = 1.3; }},
-        {"black", [](FlatPictures &p) { p.level = 0.024; }},
-        {"texture",
+        {"white", LENSPROF_REASON_FLAT_WHITE, [](FlatPictures &p) { p.level = 1.3; }},
+        {"black", LENSPROF_REASON_FLAT_BLACK, [](FlatPictures &p) { p.level = 0.024; }},
+        {"texture", LENSPROF_REASON_FLAT_TEXTURE,
          [](FlatPictures &p) {
              p.defect = [](double x, double y, uint32_t) { return 1 + 0.04 * std::sin(0.3 * x) * std::sin(0.27 * y); };
          }},
-        {"turned", [](FlatPictures &p) { p.gradient[0] = 0.3; }},
-        {"noisy", [](FlatPictures &p) { p.noise = 0.1, p.width = 150, p.height = 100; }},
+        {"turned", LENSPROF_REASON_FLAT_STEEP_ALONE, [](FlatPictures &p) { p.gradient[0] = 0.3; }},
+        {"noisy", LENSPROF_REASON_FLAT_CORNER_UNCERTAIN,
+         [](FlatPictures &p) { p.noise = 0.1, p.width = 150, p.height = 100; }},
     };
     for (const Bad &bad : cases) {
         FlatPictures p;
@@ -200,6 +205,7 @@ static void what_is_wrong_is_said(void **) {
         if (r->usable || !strstr(r->reason, bad.word)) print_error("%s: %s\n", bad.word, r->reason);
         assert_false(r->usable);
         assert_non_null(strstr(r->reason, bad.word));
+        assert_int_equal(r->reason_code, bad.code);
     }
     FlatPictures none;
     none.defect = [](double x, double y, uint32_t) {  // no even region anywhere
@@ -233,7 +239,9 @@ static void a_response_without_gradation_is_refused(void **) {
     const struct {
         lensprof_response response;
         const char *word;
-    } cases[] = {{bent(0.49, 0.02, 0.51, 0.98), "step"}, {bent(0.02, 0.49, 0.98, 0.51), "flat"}};
+        lensprof_reason code;
+    } cases[] = {{bent(0.49, 0.02, 0.51, 0.98), "step", LENSPROF_REASON_FLAT_RESPONSE_STEP},
+                 {bent(0.02, 0.49, 0.98, 0.51), "flat", LENSPROF_REASON_FLAT_RESPONSE_LEVEL}};
     for (const auto &one : cases) {
         FlatPictures p;
         for (auto &v : p.vignetting) v = {{0.0, 0.0, 0.0}, {0.0, 0.0}};
@@ -243,6 +251,8 @@ static void a_response_without_gradation_is_refused(void **) {
         if (r->usable || !strstr(r->reason, one.word)) print_error("%s: %s\n", one.word, r->reason);
         assert_false(r->usable);
         assert_non_null(strstr(r->reason, one.word));
+        assert_int_equal(r->reason_code, one.code);
+        assert_int_equal(r->reason_item.kind, LENSPROF_ITEM_IMAGE);
     }
 }
 
@@ -253,7 +263,7 @@ static void light_that_changes_between_shots_is_noticed(void **) {
     p.shoot(1);
     auto r = p.fit(p.options());
     assert_false(r->usable);
-    assert_non_null(strstr(r->reason, "shadow"));
+    assert_reason(*r, FLAT_SHOTS_DIFFER, "shadow");
 }
 
 static void a_grid_of_a_radial_lens_is_flat(void **) {

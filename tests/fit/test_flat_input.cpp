@@ -139,7 +139,9 @@ static void a_pixel_that_is_not_a_number_is_named(void **) {
     data[3 * (120 * 7 + 11) + 1] = NAN;
     in.pictures.images = {floats.images[0]};
     in.refused(LENSPROF_ERROR_NOT_FINITE);
-    assert_non_null(strstr(in.error.text, "pixel 11, 7"));
+    assert_string_equal(in.error.text, "image 0: pixel 11, 7 is not a finite number");
+    assert_int_equal(in.error.item.kind, LENSPROF_ITEM_IMAGE);
+    assert_int_equal(in.error.item.text_bytes, strlen("image 0"));
 }
 
 static void tiny_and_odd_pictures_are_survived(void **) {

@@ -66,6 +66,8 @@ void test_recovers_an_srgb_camera(void **) {
     Run run = fit(s, default_options());
     assert_int_equal(run.result.usable, 1);
     assert_string_equal(run.result.reason, "");
+    assert_int_equal(run.result.reason_code, LENSPROF_REASON_NONE);
+    assert_int_equal(run.result.reason_values, 0);
     // Unknown exposures and response: the exponent rests on the prior, whose own spread over measured curves is 0.15.
     assert_close(std::log(run.gamma), 0.0, 0.35);
     assert_true(s.exposure_error(run.exposures, run.gamma) < 0.01);
@@ -233,7 +235,8 @@ void test_unconnected_images_are_not_usable(void **) {
     Run run = fit(s, default_options());
     assert_int_equal(run.result.usable, 0);
     assert_int_equal(run.result.components, 2);
-    assert_non_null(strstr(run.result.reason, "2 groups: no usable overlap joins image 3 "));
+    assert_reason(run.result, IMAGE_GROUPS, "2 groups: no usable overlap joins image 3 ");
+    assert_int_equal(run.result.reason_item.index, 3);
 }
 
 void test_too_few_pairs_are_not_usable(void **) {

@@ -2,6 +2,7 @@
 #include "simulated.hpp"
 
 #include <numeric>
+#include <string>
 
 namespace {
 
@@ -19,10 +20,17 @@ void drop(Simulation &s, Condition &&condition) {
     s.pairs.erase(std::remove_if(s.pairs.begin(), s.pairs.end(), condition), s.pairs.end());
 }
 
-bool says(const FitRun &run, const char *words) {
-    bool found = strstr(run.result.reason, words) != nullptr;
-    if (!found) print_error("no \"%s\" in \"%s\"\n", words, run.result.reason);
+bool says(const FitRun &run, lensprof_reason code, const char *words) {
+    bool found = strstr(run.result.reason, words) != nullptr && run.result.reason_code == code;
+    if (!found) print_error("no \"%s\" (%u) in \"%s\" (%u)\n", words, code, run.result.reason, run.result.reason_code);
     return found;
+}
+
+// Whether the reason is about this image, and says where its text names it.
+bool names(const FitRun &run, uint32_t image) {
+    const lensprof_item &item = run.result.reason_item;
+    const std::string words = std::string(run.result.reason).substr(item.text_begin, item.text_bytes);
+    return item.kind == LENSPROF_ITEM_IMAGE && item.index == image && words == "image " + std::to_string(image);
 }
 
 void test_groups_are_told(void **) {
@@ -31,7 +39,8 @@ void test_groups_are_told(void **) {
     FitRun run = run_fit(s);
     assert_int_equal(run.result.usable, 0);
     assert_int_equal(run.result.components, 3);
-    assert_true(says(run, "3 groups") && says(run, "image 2 "));
+    assert_close(run.result.reason_value[0], 3.0, 0.0);
+    assert_true(says(run, LENSPROF_REASON_IMAGE_GROUPS, "3 groups") && names(run, 2));
     const uint32_t component[6] = {0, 0, 2, 2, 4, 4};
     for (uint32_t i = 0; i < 6; i++) assert_int_equal(run.quality[i].component, component[i]);
 }
@@ -50,14 +59,18 @@ void test_the_corners_must_be_covered(void **) {
     assert_true(s.pairs.size() > 1000);
     FitRun run = run_fit(s);
     assert_int_equal(run.result.usable, 0);
-    assert_true(says(run, "falloff in the corners"));  // its radius or, where the centre is a little off, its error
+    // its radius or, where the centre is a little off, its error
+    assert_true(says(run,
+                     run.result.reason_code == LENSPROF_REASON_SMALL_RADIUS ? LENSPROF_REASON_SMALL_RADIUS
+                                                                            : LENSPROF_REASON_CORNER_UNCERTAIN,
+                     "falloff in the corners"));
     // With the centre known the radius is that of the truth.
     lensprof_fit_options options = default_fit();
     options.free &= ~LENSPROF_FREE_CENTER;
     std::copy(s.vignetting.center, s.vignetting.center + 2, options.vignetting.center);
     run = run_fit(s, options);
     assert_int_equal(run.result.usable, 0);
-    assert_true(says(run, "reach to 0.5 of the half diagonal only"));
+    assert_true(says(run, LENSPROF_REASON_SMALL_RADIUS, "reach to 0.5 of the half diagonal only"));
     for (const auto &q : run.quality) assert_true(q.radius > 0.45 && q.radius <= 0.5);
     for (int bin = 5; bin < LENSPROF_COVERAGE_BINS; bin++) assert_int_equal(run.result.radius_ends[bin], 0);
     // Without an unknown falloff that is no lack.
@@ -81,7 +94,7 @@ void test_the_greys_must_be_covered(void **) {
     options.channels = 1;
     FitRun run = run_fit(s, options);
     assert_int_equal(run.result.usable, 0);
-    assert_true(says(run, "1 tenths of the grey values only"));
+    assert_true(says(run, LENSPROF_REASON_FEW_GREYS, "1 tenths of the grey values only"));
     for (const auto &q : run.quality)
         assert_true(0.50 <= q.grey_low && q.grey_low < q.grey_high && q.grey_high <= 0.545);
 }
@@ -127,7 +140,10 @@ void test_a_misplaced_image_is_named(void **) {
     std::copy(first, first + 3, values.back());
     FitRun run = run_fit(s);
     assert_int_equal(run.result.usable, 0);
-    assert_true(says(run, "image 4 "));
+    assert_true(says(run, LENSPROF_REASON_IMAGE_DISAGREES, "image 4 ") && names(run, 4));
+    assert_int_equal(run.result.reason_values, 2);
+    assert_close(run.result.reason_value[0], run.quality[4].inliers, 0.0);
+    assert_close(run.result.reason_value[1], run.quality[4].pairs, 0.0);
     for (uint32_t i = 0; i < s.images; i++)
         if (i == 4)
             assert_true(run.quality[i].median_residual > 10.0);
@@ -155,11 +171,11 @@ void test_an_exposure_must_rest_on_pairs(void **) {
     assert_int_equal(run.quality[last].pairs, 7);
     assert_true(run.quality[last].inliers < 3);
     assert_int_equal(run.result.usable, 0);
-    assert_true(says(run, "exposure of image 7 rests on"));
+    assert_true(says(run, LENSPROF_REASON_FEW_BEHIND_EXPOSURE, "exposure of image 7 rests on") && names(run, 7));
     // An exposure that is given need not show.
     s.fit_images[last].free = 0;
     s.fit_images[last].exposure = s.exposures[last];
-    assert_false(says(run_fit(s), "exposure of image 7 rests on"));
+    assert_false(says(run_fit(s), LENSPROF_REASON_FEW_BEHIND_EXPOSURE, "exposure of image 7 rests on"));
 }
 
 // Exposures far apart hang on gamma; that is no reason to call them uncertain, in grey pictures neither.
@@ -183,9 +199,9 @@ void test_linked_images_share_their_pairs(void **) {
     Simulation s = simulate(2000, 1.0, 0.0, 42, 3);
     const uint32_t last = s.images - 1;
     keep_of_last(s, 2);
-    assert_true(says(run_fit(s), "exposure of image 7 rests on"));
+    assert_true(says(run_fit(s), LENSPROF_REASON_FEW_BEHIND_EXPOSURE, "exposure of image 7 rests on"));
     s.fit_images[last].ev_of = s.fit_images[last].red_of = s.fit_images[last].blue_of = last - 1;
-    assert_false(says(run_fit(s), "exposure of image 7 rests on"));
+    assert_false(says(run_fit(s), LENSPROF_REASON_FEW_BEHIND_EXPOSURE, "exposure of image 7 rests on"));
 }
 
 // Overlaps as of a panorama: neighbours in one frame are so in the other.
@@ -208,7 +224,7 @@ void test_local_processing_is_refused(void **) {
         assert_true(run.result.image_share > last);
         last = run.result.image_share;
         assert_int_equal(run.result.usable, local_ev < 0.03);
-        if (!run.result.usable) assert_true(says(run, "patterns of each image's own"));
+        if (!run.result.usable) assert_true(says(run, LENSPROF_REASON_PATTERNS, "patterns of each image's own"));
     }
     assert_true(last <= 1.0);
 }
@@ -220,7 +236,7 @@ void test_a_falloff_that_is_not_radial_is_told(void **) {
     assert_true(run.result.frame_share > 0.3);
     assert_true(run.result.image_share < 0.1);
     assert_int_equal(run.result.usable, 1);
-    assert_true(says(run, "not radial"));
+    assert_true(says(run, LENSPROF_REASON_NOT_RADIAL, "not radial"));
 }
 
 void test_noise_and_outliers_are_no_pattern(void **) {

@@ -96,7 +96,7 @@ void test_names_what_is_wrong(void **) {
     for (auto &o : twice.tracks) o.point += 40;
     twice.tracks[0].image = twice.tracks[1].image = 2;
     twice.run();
-    assert_string_equal(twice.error.text, "point 40 is observed twice in image 2");
+    assert_string_equal(twice.error.text, "point 40: two observations in image 2; leave one out");
 }
 
 void test_null(void **) {

@@ -127,7 +127,8 @@ void test_wrong_profile_is_overruled(void **) {
         assert_ok(fit(s, nullptr, own));
         assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_OVERRULED);
         assert_int_equal(found.result->usable, 1);
-        assert_non_null(strstr(found.result->reason, "contradicts the pictures"));
+        assert_reason(*found.result, PRIOR_OVERRULED, "contradicts the pictures");
+        assert_int_equal(found.result->reason_values, 2);
         assert_memory_equal(found.result->vignetting, own.result->vignetting, sizeof own.result->vignetting);
         assert_memory_equal(&found.result->response, &own.result->response, sizeof own.result->response);
         assert_memory_equal(found.exposures.data(), own.exposures.data(), 2 * sizeof own.exposures[0]);

@@ -52,7 +52,7 @@ CPP_OUTSIDE = {
     "thread",
 }
 
-CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "profile.h"}
+CORE_API = {"base.h", "model.h", "geometry.h", "apply.h", "fixed.h", "profile.h", "reason.h"}
 FIT_API = CORE_API | {"sample.h", "fit.h", "flat.h"}
 FORMATS_API = FIT_API | {"formats.h"}
 STORE_API = CORE_API | {"store.h"}
@@ -107,6 +107,7 @@ PUBLIC = {
     "apply.h": CORE_API,
     "fixed.h": CORE_API,
     "profile.h": CORE_API,
+    "reason.h": CORE_API,
     "sample.h": FIT_API,
     "fit.h": FIT_API,
     "flat.h": FIT_API,

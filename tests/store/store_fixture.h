@@ -247,4 +247,12 @@ static inline void assert_same_profile(const lensprof_profile *a, const lensprof
     assert_memory_equal(a->covariance, b->covariance, a->covariance_size * a->covariance_size * sizeof(double));
 }
 
+/* Whether a lookup has a reason among its own, and words of it in the text. */
+static inline int has_reason(const lensprof_lookup *how, lensprof_reason code, const char *words) {
+    int found = 0;
+    for (int i = 0; i < LENSPROF_LOOKUP_REASONS; i++) found |= how->reason_code[i] == (uint32_t)code;
+    if (!found || !strstr(how->reason, words)) print_error("no \"%s\" (%d) in \"%s\"\n", words, code, how->reason);
+    return found && strstr(how->reason, words) != NULL;
+}
+
 #endif

@@ -89,9 +89,9 @@ static void test_lens_of_cameras(void **state) {
     assert_int_equal(how.rows, 2);
     assert_ok(ask(store, "EOS 5D", "A 50mm", 50, 2.8, 0));
     assert_int_equal(ask(store, "EOS 6D", "A 50mm", 50, 2.8, 0), LENSPROF_ERROR_NOT_FOUND);
-    assert_non_null(strstr(how.reason, "of other cameras"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_CAMERA, "of other cameras"));
     assert_int_equal(ask(store, "", "B 50mm", 50, 2.0, 0), LENSPROF_ERROR_NOT_FOUND);
-    assert_non_null(strstr(how.reason, "single units"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_CAMERA, "single units"));
     lensprof_store_close(store);
 }
 
@@ -109,9 +109,9 @@ static void test_built_in_lens(void **state) {
         assert_int_equal(how.rows, 2);
     }
     assert_close(how.name_score, 0.6, 0.0);
-    assert_non_null(strstr(how.reason, "built in: Canon PowerShot S110 & compatibles"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_BUILT_IN, "built in: Canon PowerShot S110 & compatibles"));
     assert_int_equal(ask(store, "EOS 5D", "Canon 85mm f/2", 50, 2.0, 0), LENSPROF_ERROR_NOT_FOUND); /* another lens */
-    assert_non_null(strstr(how.reason, "no profile of a lens of this name"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "no profile of a lens of this name"));
     lensprof_store_close(store);
 }
 
@@ -122,9 +122,11 @@ static void test_outside_is_said(void **state) {
                                     {"", "A 50mm", "", 4.0, 1, -0.3, RAW}};
     lensprof_store *store = store_of(*state, entries, 3);
     assert_ok(ask(store, "", "A 50mm", 50, 5.0, 0));
-    assert_non_null(strstr(how.reason, "the aperture is outside those that are stored"));
+    assert_true(
+        has_reason(&how, LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE, "the aperture is outside those that are stored"));
     assert_ok(ask(store, "", "A 50mm", 50, 3.2, 0));
     assert_string_equal(how.reason, "");
+    assert_int_equal(how.reason_code[0], LENSPROF_REASON_NONE);
     lensprof_store_close(store);
 }
 

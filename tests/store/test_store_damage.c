@@ -43,7 +43,7 @@ static lensprof_store *crafted(const place *here, const char *sql) {
 static void assert_damaged(const place *here, const char *sql, const char *named, bool in_list) {
     lensprof_profile *profile = new_profile(), *before = new_profile();
     lensprof_store_row rows[3];
-    lensprof_error error = {""};
+    lensprof_error error = {"", {0, 0, 0, 0}};
     uint32_t found = 77;
     lensprof_store *store = crafted(here, sql);
     scribble(profile);
@@ -314,7 +314,7 @@ static void test_crafted_schemas(void **state) {
         (void)sqlite3_exec(db, text, NULL, NULL, NULL); /* what STRICT tables or this SQLite refuse is not there */
         sqlite3_close(db);
         for (uint32_t mode = 0; mode < 2; mode++) {
-            lensprof_error error = {""};
+            lensprof_error error = {"", {0, 0, 0, 0}};
             const lensprof_status status = lensprof_store_open(here->path, mode, &store, &error);
             if (status == LENSPROF_OK)
                 use_everything(store);
@@ -360,7 +360,7 @@ static lensprof_status use(const char *path, uint32_t mode, int round) {
     static lensprof_profile profile = {.struct_size = sizeof profile}, asked = {.struct_size = sizeof asked};
     lensprof_store *store = NULL;
     lensprof_store_row rows[4];
-    lensprof_error error = {""};
+    lensprof_error error = {"", {0, 0, 0, 0}};
     int64_t id = 0;
     uint32_t found = 0;
     lensprof_status status = lensprof_store_open(path, mode, &store, &error);

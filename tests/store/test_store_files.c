@@ -8,7 +8,7 @@
 /* Opening fails with `status`, a text that names the file, and no handle. */
 static void assert_refused(const char *path, uint32_t mode, lensprof_status status) {
     lensprof_store *store = NULL;
-    lensprof_error error = {""};
+    lensprof_error error = {"", {0, 0, 0, 0}};
     lensprof_status found = lp_store_open_waiting(path, mode, 20, &store, &error);
     if (found != status) fail_msg("mode %u: %s: %s", mode, lensprof_status_name(found), error.text);
     assert_null(store);

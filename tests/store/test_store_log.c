@@ -145,7 +145,7 @@ static void test_log_that_was_left(void **state) {
 
 static void assert_read_there(const char *path, lensprof_status expected, const char *text) {
     lensprof_store *store = NULL;
-    lensprof_error error = {""};
+    lensprof_error error = {"", {0, 0, 0, 0}};
     const lensprof_status status = lensprof_store_open(path, LENSPROF_STORE_READ, &store, &error);
     if (status != expected) fail_msg("%s: %s", lensprof_status_name(status), error.text);
     if (status == LENSPROF_OK) {

@@ -106,6 +106,7 @@ static void test_nearest_light(void **state) {
         assert_int_equal(how.id[0], cases[i].id);
         assert_int_equal(how.exact, 1);
         assert_int_equal(strstr(how.reason, "colour temperature") != NULL, cases[i].noted);
+        assert_int_equal(how.reason_code[0] == LENSPROF_REASON_LOOKUP_OTHER_LIGHT, cases[i].noted);
     }
     p->key.color_temperature_k = LENSPROF_UNKNOWN; /* one of no temperature is for all */
     assert_int_equal(put_at(store, p), 4);
@@ -159,22 +160,25 @@ static void test_refusals(void **state) {
     static const struct {
         double focal, aperture;
         const char *why;
-    } cases[] = {{24, 1.2, "aperture is beyond"},
-                 {24, 16, "aperture is beyond"},
-                 {14, 2.8, "focal length is beyond"},
-                 {200, 2.8, "focal length is beyond"},
-                 {LENSPROF_UNKNOWN, 2.8, "focal length is not known"},
-                 {35, LENSPROF_UNKNOWN, "aperture is not known"}};
+        lensprof_reason code;
+    } cases[] = {{24, 1.2, "aperture is beyond", LENSPROF_REASON_LOOKUP_APERTURE_BEYOND},
+                 {24, 16, "aperture is beyond", LENSPROF_REASON_LOOKUP_APERTURE_BEYOND},
+                 {14, 2.8, "focal length is beyond", LENSPROF_REASON_LOOKUP_FOCAL_BEYOND},
+                 {200, 2.8, "focal length is beyond", LENSPROF_REASON_LOOKUP_FOCAL_BEYOND},
+                 {LENSPROF_UNKNOWN, 2.8, "focal length is not known", LENSPROF_REASON_LOOKUP_FOCAL_MISSING},
+                 {35, LENSPROF_UNKNOWN, "aperture is not known", LENSPROF_REASON_LOOKUP_APERTURE_MISSING}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         scribble(&answered);
         assert_int_equal(ask(store, zoom, cases[i].focal, cases[i].aperture, INFINITY), LENSPROF_ERROR_NOT_FOUND);
         assert_non_null(strstr(how.reason, cases[i].why));
+        assert_int_equal(how.reason_code[0], cases[i].code);
+        assert_int_equal(how.reason_code[1], LENSPROF_REASON_NONE);
         assert_int_equal(((unsigned char *)&answered)[7], 0x5A);
     }
     assert_int_equal(ask(store, "Another lens", 35, 2.8, INFINITY), LENSPROF_ERROR_NOT_FOUND);
-    assert_non_null(strstr(how.reason, "no profile of a lens of this name"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "no profile of a lens of this name"));
     assert_int_equal(ask(store, zoom, 35, 2.8, 0.1), LENSPROF_ERROR_NOT_FOUND);
-    assert_non_null(strstr(how.reason, "too far"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_TOO_FAR, "too far"));
     lensprof_store_close(store);
 }
 
@@ -235,7 +239,7 @@ static void test_which_rows(void **state) {
     assert_close(answered.vignetting[0].k[0], k[0] / (1.2 * 1.2), 1e-3);
     key.crop_factor = 0.7;
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
-    assert_non_null(strstr(how.reason, "smaller sensors"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_SMALLER_SENSOR, "smaller sensors"));
     lensprof_store_close(store);
 }
 
@@ -276,7 +280,7 @@ static void test_unknown_sensor(void **state) {
     assert_int_equal(how.rows, 4);
     assert_true(answered.vignetting[0].k[0] > -0.2);
     assert_true(how.sigma < 0.1);
-    assert_non_null(strstr(how.reason, "the sensor's size is not known"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR, "the sensor's size is not known"));
     key.crop_factor = 1.51;
     key.aperture = 2.0;
     assert_ok(ask_with(store, &key, &options));
@@ -297,11 +301,11 @@ static void test_left_out_is_said(void **state) {
     lensprof_profile_key key = zoom_profile("Lens 50mm", 50, 2.0, INFINITY)->key;
     key.processing = LENSPROF_PROCESSING_JPEG;
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
-    assert_non_null(strstr(how.reason, "processed otherwise"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_PROCESSING, "processed otherwise"));
     assert_int_equal(ask(store, "Lens 35mm", 35, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
-    assert_non_null(strstr(how.reason, "doubtful"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_DOUBTFUL, "doubtful"));
     assert_int_equal(ask(store, "Lens 85mm", 85, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
-    assert_non_null(strstr(how.reason, "of this name"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "of this name"));
     lensprof_store_close(store);
 }
 
@@ -320,11 +324,11 @@ static void test_unknown_distance(void **state) {
     lensprof_profile_key key = zoom_profile("Lens", 50, 2.0, LENSPROF_UNKNOWN)->key;
     assert_ok(ask_with(store, &key, &options));
     assert_true(answered.vignetting[0].k[0] > -0.32 && answered.vignetting[0].k[0] < -0.28);
-    assert_non_null(strstr(how.reason, "weakest"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE, "weakest"));
     options.distance_rule = LENSPROF_DISTANCE_FARTHEST;
     assert_ok(ask_with(store, &key, &options));
     assert_close(answered.vignetting[0].k[0], -0.4, 0.02);
-    assert_non_null(strstr(how.reason, "farthest"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_FARTHEST_DISTANCE, "farthest"));
     lensprof_store_close(store);
 }
 

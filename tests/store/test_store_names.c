@@ -124,6 +124,7 @@ static void test_lenses_found_by_other_names(void **state) {
         assert_int_equal(how.id[0], cases[i].id);
         assert_close(how.name_score, cases[i].score, 0.0);
         assert_int_equal(strstr(how.reason, "words") != NULL, cases[i].score < 0.7);
+        assert_int_equal(how.reason_code[0] == LENSPROF_REASON_LOOKUP_BY_WORDS, cases[i].score < 0.7);
     }
     assert_int_equal(ask(store, "Canon", "", "EF USM II L 24-105mm f/2.8", 24, 2.8), LENSPROF_ERROR_NOT_FOUND);
     assert_int_equal(ask(store, "Canon", "", "EF USM II L 24-70mm f/4", 24, 2.8), LENSPROF_ERROR_NOT_FOUND);
@@ -141,20 +142,21 @@ static void test_fixed_lenses(void **state) {
     assert_int_equal(how.id[0], phone);
     assert_int_equal(how.exact, 1);
     assert_close(how.name_score, 1.0, 0.0);
-    assert_non_null(strstr(how.reason, "rounded"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_FOCAL_ROUNDED, "rounded"));
     assert_ok(ask(store, "", "Apple iPhone 7", " ", 4.3, 1.8));
     assert_close(how.name_score, 0.8, 0.0);
     assert_ok(ask(store, "", "iPhone 7", "", 4.2, 1.8));
     assert_string_equal(how.reason, "");
+    assert_int_equal(how.reason_code[0], LENSPROF_REASON_NONE);
     assert_ok(ask(store, "", "iPhone 7", "", 4.25, 2.0)); /* predicted, from the rounded one */
     assert_int_equal(how.exact, 0);
     assert_int_equal(ask(store, "", "iPhone 7", "", 6.0, 1.8), LENSPROF_ERROR_NOT_FOUND);
     assert_int_equal(ask(store, "", "iPhone 7 Plus", "", 4.2, 1.8), LENSPROF_ERROR_NOT_FOUND);
-    assert_non_null(strstr(how.reason, "no profile of this camera"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_CAMERA, "no profile of this camera"));
     assert_ok(ask(store, "Canon", "PowerShot G7", "", 7.5, 2.8)); /* its only lens */
     assert_int_equal(how.exact, 1);
     assert_int_equal(ask(store, "Canon", "EOS 5D", "", 50, 2), LENSPROF_ERROR_NOT_FOUND);
-    assert_non_null(strstr(how.reason, "several lenses; give the lens"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_SEVERAL_LENSES, "several lenses; give the lens"));
     assert_ok(ask(store, "Canon", "EOS 5D", "Canon EF 50mm", 51, 2)); /* a lens of its own name: 51 mm are 51 mm */
     assert_int_equal(how.exact, 0);
     assert_int_equal(ask(store, "Canon", "", "", 50, 2), LENSPROF_ERROR_NOT_FOUND);

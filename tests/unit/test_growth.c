@@ -58,7 +58,7 @@ static void test_sizes_of_older_programs(void **state) {
     (void)state;
     for (size_t i = 0; i < STRUCTS; i++)
         for (size_t size = structs[i].first; size <= structs[i].size; size += 8) {
-            lensprof_error error = {""};
+            lensprof_error error = {"", {0, 0, 0, 0}};
             prepare();
             wrong_results = 0;
             char *given = new_structs(&structs[i], size);
@@ -73,7 +73,7 @@ static void test_sizes_of_older_programs(void **state) {
 }
 
 static void refuse(const growing *g, size_t size, const char *why) {
-    lensprof_error error = {""};
+    lensprof_error error = {"", {0, 0, 0, 0}};
     prepare();
     wrong_results = 0;
     /* A call may fill in its members before the library looks at the size. */

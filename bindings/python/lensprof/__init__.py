@@ -6,8 +6,8 @@ ValueError.
 """
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
                    RESPONSE_SAMPLES, UNKNOWN, CameraKind, CurveKind, Direction, DistanceRule, DngForm, Encoding,
-                   FlatGrid, FlatLight, Free, GammaFrom, Layout, Loss, MapSense, Method, Pack, Processing,
-                   ProfilePrior, Projection, ResponseKind, SampleType, Sampling, Saturated, Status, StoreMode)
+                   FlatGrid, FlatLight, Free, GammaFrom, ItemKind, Layout, Loss, MapSense, Method, Pack, Processing,
+                   ProfilePrior, Projection, Reason, ResponseKind, SampleType, Sampling, Saturated, Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE,
                       PAIR_DTYPE)
@@ -23,6 +23,7 @@ from .formats import (FrameTime, Pto, PtoImage, alsc_read, alsc_write, curves_re
 from .geometry import Camera
 from .model import Exposure, GainGrid, Response, Vignetting, emor_table, half_diagonal
 from .profile import Profile, ProfileKey, Provenance
+from .reason import Item, reason_name, reason_text
 from .sample import SampleImage, SampleOptions, sample_overlap, sample_tracks
 from .store import Lookup, LookupOptions, Store, StoreFault, StoreRow, StoreStats
 
@@ -31,15 +32,15 @@ __all__ = [
     "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES",
     "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResult", "FixedPlan",
     "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "FrameTime", "Free", "GRID_SIDE", "GainGrid",
-    "GammaFrom", "IMAGE_QUALITY_DTYPE", "Layout", "Lookup", "LookupOptions", "Loss", "MODES_AUTO", "MapSense",
+    "GammaFrom", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "Layout", "Lookup", "LookupOptions", "Loss", "MODES_AUTO", "MapSense",
     "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey",
-    "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Response", "ResponseKind",
+    "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Reason", "Response", "ResponseKind",
     "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault",
     "StoreMode", "StoreRow", "StoreStats", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct",
     "curves_read", "curves_write", "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table",
     "fit_flat", "fit_overlap", "fit_radiance", "half_diagonal", "json_read", "json_write", "layout_channels",
     "layout_samples", "lcp_read", "lcp_write", "lensfun_read", "lensfun_write", "map_read", "map_write", "pcalib_read", "pcalib_write",
     "points_read", "points_write", "radical_response_read", "radical_response_write", "radical_vignetting_read",
-    "radical_vignetting_write", "sample_bytes", "sample_overlap", "sample_tracks", "simulate", "status_name",
+    "radical_vignetting_write", "reason_name", "reason_text", "sample_bytes", "sample_overlap", "sample_tracks", "simulate", "status_name",
     "times_read", "times_write", "transfer_rms", "version",
 ]

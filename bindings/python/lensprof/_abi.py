@@ -22,6 +22,7 @@ COVERAGE_BINS = 10
 FLAT_IMAGES = 128
 FLAT_SPOTS = 32
 LOOKUP_ROWS = 24
+LOOKUP_REASONS = 8
 STATS_GROUPS = 8
 
 
@@ -53,6 +54,18 @@ class Status(IntEnum):
     ERROR_VARIABLE = 51
     ERROR_UNSUPPORTED = 52
     ERROR_INTERNAL = 90
+
+
+class ItemKind(IntEnum):
+    """lensprof_item_kind; see lensprof/base.h."""
+    NONE = 0
+    IMAGE = 1
+    PAIR = 2
+    OBSERVATION = 3
+    POINT = 4
+    SHOT = 5
+    PROFILE = 6
+    FRAME = 7
 
 
 class ResponseKind(IntEnum):
@@ -114,6 +127,97 @@ class Processing(IntEnum):
 class Pack(IntFlag):
     """lensprof_pack; see lensprof/profile.h."""
     COVARIANCE = 0x01
+
+
+class Reason(IntEnum):
+    """lensprof_reason; see lensprof/reason.h."""
+    NONE = 0
+    IMAGE_GROUPS = 101
+    FEW_PAIRS = 102
+    FEW_AGREE = 103
+    STILL_FEW_AGREE = 104
+    SCATTER = 105
+    NOT_SETTLED = 106
+    UNDETERMINED = 107
+    FEW_BEHIND_EXPOSURE = 108
+    STILL_FEW_BEHIND_EXPOSURE = 109
+    IMAGE_DISAGREES = 110
+    STILL_IMAGE_DISAGREES = 111
+    PATTERNS = 112
+    PATTERNS_HELD = 113
+    STILL_PATTERNS = 114
+    IMAGE_ODD = 151
+    STILL_IMAGE_ODD = 152
+    WEAK_PATTERNS = 153
+    EXPOSURE_UNCERTAIN = 201
+    KNOWN_ALIKE = 202
+    KNOWN_REVERSED = 203
+    EXPOSURES_ALIKE = 204
+    KNOWN_ORDER = 251
+    KNOWN_WRONG = 252
+    KNOWN_MORE_FROM = 253
+    KNOWN_LESS_FROM = 254
+    KNOWN_CONTRADICT = 255
+    GAMMA_UNFOLLOWED = 256
+    FEW_GREYS = 301
+    MISSING_GREYS = 351
+    SMALL_RADIUS = 401
+    CORNER_UNCERTAIN = 402
+    NOT_RADIAL = 451
+    FAR_CENTER = 452
+    FLAT_WHITE = 501
+    FLAT_BLACK = 502
+    FLAT_NO_CARD = 503
+    FLAT_FEW_CELLS = 504
+    FLAT_SMALL_RADIUS = 505
+    FLAT_RESPONSE_STEP = 506
+    FLAT_RESPONSE_LEVEL = 507
+    FLAT_EXPOSURE_WRONG = 508
+    FLAT_TEXTURE = 509
+    FLAT_SHOTS_DIFFER = 510
+    FLAT_FEW_AGREE = 511
+    FLAT_STEEP = 512
+    FLAT_STEEP_ALONE = 513
+    FLAT_UNDETERMINED = 514
+    FLAT_CORNER_NOT_RADIAL = 515
+    FLAT_CORNER_UNCERTAIN = 516
+    FLAT_EXTRAPOLATED = 551
+    FLAT_SOME_WHITE = 552
+    FLAT_SOME_BLACK = 553
+    FLAT_EXPOSURE_DOUBTFUL = 554
+    FLAT_SHOTS_DIFFER_SOME = 555
+    FLAT_SOME_TEXTURE = 556
+    FLAT_SLANTED_LIGHT = 557
+    FLAT_NOT_RADIAL_GRID = 558
+    FLAT_NOT_RADIAL = 559
+    FLAT_FAR_CENTER = 560
+    FLAT_CENTER_BY_PRIOR = 561
+    FLAT_DUST = 562
+    LOOKUP_NO_LENS = 601
+    LOOKUP_NO_CAMERA = 602
+    LOOKUP_OTHER_PROCESSING = 603
+    LOOKUP_DOUBTFUL = 604
+    LOOKUP_OTHER_CAMERA = 605
+    LOOKUP_SEVERAL_LENSES = 606
+    LOOKUP_SMALLER_SENSOR = 607
+    LOOKUP_FOCAL_MISSING = 608
+    LOOKUP_APERTURE_MISSING = 609
+    LOOKUP_NO_FOCAL = 610
+    LOOKUP_NO_APERTURE = 611
+    LOOKUP_FOCAL_BEYOND = 612
+    LOOKUP_APERTURE_BEYOND = 613
+    LOOKUP_TOO_FAR = 614
+    LOOKUP_CONTRADICTION = 615
+    LOOKUP_FOCAL_ROUNDED = 651
+    LOOKUP_FOCAL_OUTSIDE = 652
+    LOOKUP_APERTURE_OUTSIDE = 653
+    LOOKUP_OTHER_LIGHT = 654
+    LOOKUP_SMALLEST_SENSOR = 655
+    LOOKUP_BY_WORDS = 656
+    LOOKUP_BUILT_IN = 657
+    LOOKUP_WEAKEST_DISTANCE = 658
+    LOOKUP_FARTHEST_DISTANCE = 659
+    PRIOR_OVERRULED = 751
 
 
 class Projection(IntEnum):
@@ -235,9 +339,19 @@ class Free(IntFlag):
     BLUE = 0x80
 
 
+class Item(Structure):
+    _fields_ = [
+        ("kind", c_uint32),
+        ("index", c_uint32),
+        ("text_begin", c_uint32),
+        ("text_bytes", c_uint32),
+    ]
+
+
 class ErrorText(Structure):
     _fields_ = [
         ("text", c_char * 256),
+        ("item", Item),
     ]
 
 
@@ -521,6 +635,10 @@ class FitResult(Structure):
         ("covariance", c_double * 1296),
         ("gamma_direction", c_double * 36),
         ("image_quality", POINTER(FitImageQuality)),
+        ("reason_code", c_uint32),
+        ("reason_values", c_uint32),
+        ("reason_item", Item),
+        ("reason_value", c_double * 2),
     ]
 
 
@@ -624,6 +742,10 @@ class FlatResult(Structure):
         ("covariance", c_double * 1296),
         ("gain_grid", GainGrid),
         ("image_quality", POINTER(FlatImageQuality)),
+        ("reason_code", c_uint32),
+        ("reason_values", c_uint32),
+        ("reason_item", Item),
+        ("reason_value", c_double * 2),
     ]
 
 
@@ -705,6 +827,7 @@ class Lookup(Structure):
         ("sigma", c_double),
         ("name_score", c_double),
         ("reason", c_char * 256),
+        ("reason_code", c_uint32 * 8),
     ]
 
 
@@ -762,6 +885,7 @@ class StoreStats(Structure):
 # Prefix in C of the members of each enumeration.
 ENUMS = {
     "LENSPROF_": Status,
+    "LENSPROF_ITEM_": ItemKind,
     "LENSPROF_RESPONSE_": ResponseKind,
     "LENSPROF_SAMPLE_": SampleType,
     "LENSPROF_LAYOUT_": Layout,
@@ -770,6 +894,7 @@ ENUMS = {
     "LENSPROF_SATURATED_": Saturated,
     "LENSPROF_PROCESSING_": Processing,
     "LENSPROF_PACK_": Pack,
+    "LENSPROF_REASON_": Reason,
     "LENSPROF_PROJECTION_": Projection,
     "LENSPROF_SAMPLING_": Sampling,
     "LENSPROF_METHOD_": Method,
@@ -788,6 +913,7 @@ ENUMS = {
 }
 
 STRUCTS = {
+    "lensprof_item": Item,
     "lensprof_error": ErrorText,
     "lensprof_response": Response,
     "lensprof_vignetting": Vignetting,
@@ -904,6 +1030,9 @@ FUNCTIONS = {
     "lensprof_profile_corner_falloff": (c_double, [POINTER(Profile), c_uint32, POINTER(c_double)]),
     "lensprof_profile_pack": (c_int, [POINTER(Profile), c_uint32, c_void_p, c_size_t, POINTER(c_size_t)]),
     "lensprof_profile_unpack": (c_int, [c_void_p, c_size_t, POINTER(Profile)]),
+    # reason.h
+    "lensprof_reason_name": (c_char_p, [c_uint32]),
+    "lensprof_reason_text": (c_char_p, [c_uint32]),
     # geometry.h
     "lensprof_camera_validate": (c_int, [POINTER(Camera)]),
     "lensprof_camera_project": (c_int, [POINTER(Camera), c_double, c_double, POINTER(c_double)]),

@@ -16,7 +16,7 @@ import weakref
 from typing import Any, Callable, Iterator, Optional, Type, TypeVar
 
 from . import _abi
-from ._abi import Status
+from ._abi import ItemKind, Status
 
 S = TypeVar("S", bound=ctypes.Structure)
 
@@ -100,13 +100,16 @@ def status_name(status: int) -> str:
 class Error(Exception):
     """The library refused or could not do something.
 
-    status: why, a lensprof.Status. text: a sentence that names the offending item and the next step.
+    status: why, a lensprof.Status. text: a sentence that names the offending item and the next step. item_kind and
+    item_index: that item where it has a number, ItemKind.NONE and 0 else.
     """
 
-    def __init__(self, status: Status, text: str):
+    def __init__(self, status: Status, text: str, item_kind: ItemKind = ItemKind.NONE, item_index: int = 0):
         super().__init__(status, text)
         self.status = status
         self.text = text
+        self.item_kind = item_kind
+        self.item_index = item_index
 
     def __str__(self) -> str:
         return f"{self.text} ({status_name(self.status)})"
@@ -115,8 +118,10 @@ class Error(Exception):
 def check(status: int, text: str, error: Optional[_abi.ErrorText] = None) -> None:
     """Raises lensprof.Error unless status is OK; `text` stands where the library gives none."""
     if status != Status.OK:
-        given = error.text.decode("utf-8", "replace") if error is not None else ""
-        raise Error(Status(status), given or text)
+        if error is None or not error.text:
+            raise Error(Status(status), text)
+        item = error.item
+        raise Error(Status(status), error.text.decode("utf-8", "replace"), ItemKind(item.kind), item.index)
 
 
 class Handle:

@@ -199,6 +199,18 @@ class Curves(_Field, Generic[T]):
         setattr(instance, self.count, len(copies))
 
 
+class Numbers(_Field):
+    """An array of numbers of which as many count as another field says: a tuple of floats."""
+
+    def __init__(self, count: str):
+        self.count = count
+
+    def __get__(self, instance: Any, owner: type) -> tuple[float, ...]:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        return tuple(self.raw.__get__(instance)[:getattr(instance, self.count)])
+
+
 class Count(_Field):
     """How many structures or bytes a pointer leads to: set together with it, as the library reads so many."""
 

@@ -7,13 +7,14 @@ from typing import Any, Iterable, Optional, Sequence, Union
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import CameraKind, Free, GammaFrom, Loss, Method, ProfilePrior
+from ._abi import CameraKind, Free, GammaFrom, Loss, Method, ProfilePrior, Reason
 from ._library import check, lib, version
 from ._progress import WithProgress, calling
-from ._struct import (Curves, Enumerated, Flag, Nested, OptionalReference, Struct, Text, Value, Vector, integer,
+from ._struct import (Curves, Enumerated, Flag, Nested, Numbers, OptionalReference, Struct, Text, Value, Vector, integer,
                       one_or_three)
 from .model import Exposure, Response, Vignetting
 from .profile import Covariance, Profile, ProfileKey
+from .reason import Item
 
 
 class FitImage(Value, _abi.FitImage):
@@ -80,7 +81,8 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
 class FitResult(Struct, _abi.FitResult):
     """What a fit found. Arrays are views on this object.
 
-    usable: False with the `reason` in words; a usable result may have a reason to mind. response: of all images.
+    usable: False with the `reason` in words; a usable result may have a reason to mind. reason_code: what it states, a
+    Reason; reason_item: the image that it names; reason_value: its numbers. response: of all images.
     vignetting: tuple of 1 (all channels) or 3. exposures: what every image got relative to the reference,
     EXPOSURE_DTYPE; image_quality: how well each is determined, IMAGE_QUALITY_DTYPE. pairs: used. components: connected
     groups of images. gamma_from: what settled the exponent gamma; gamma_sigma: standard error of ln gamma;
@@ -114,6 +116,10 @@ class FitResult(Struct, _abi.FitResult):
     profile_prior = Enumerated(ProfilePrior)
     covariance = Covariance()
     gamma_direction = Vector(writable=False)
+    reason_code = Enumerated(Reason)
+    reason_values: int
+    reason_item = Nested(Item)
+    reason_value = Numbers("reason_values")
 
     def __init__(self, image_count: int, method: Method = Method.TRANSFER):
         super().__init__()

@@ -8,12 +8,13 @@ from typing import Optional, Sequence
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import FlatGrid, FlatLight, Free, Layout
+from ._abi import FlatGrid, FlatLight, Free, Layout, Reason
 from ._library import check, initialised, lib, version
 from ._progress import WithProgress, calling
-from ._struct import Count, Curves, Enumerated, Flag, Nested, Referenced, Struct, Text, integer
+from ._struct import Count, Curves, Enumerated, Flag, Nested, Numbers, Referenced, Struct, Text, integer
 from .model import GainGrid, Response, Vignetting
 from .profile import Covariance, Profile, ProfileKey
+from .reason import Item
 
 
 @dataclass
@@ -79,8 +80,9 @@ class FlatOptions(WithProgress, Struct, _abi.FlatOptions):
 class FlatResult(Struct, _abi.FlatResult):
     """What a flat field fit found; shares are of the light.
 
-    usable: False with the `reason` in words; a usable result may have a reason to mind. vignetting: tuple of 1 (all
-    channels) or 3. separated: the pictures tell the light's gradient from the centre. spot: dust, FLAT_SPOT_DTYPE.
+    usable: False with the `reason` in words; a usable result may have a reason to mind. reason_code: what it states, a
+    Reason; reason_item: the image or shot that it names; reason_value: its numbers. vignetting: tuple of 1 (all channels)
+    or 3. separated: the pictures tell the light's gradient from the centre. spot: dust, FLAT_SPOT_DTYPE.
     radius: largest r of a cell used. noise, residual, texture, frame_residual, shot_residual, grid_residual: of a cell.
     corner_sigma: standard error of M at r = 1. gain_grid: what the polynomial leaves. covariance: n x n as in Profile.
     image_quality: what every picture gave, FLAT_QUALITY_DTYPE.
@@ -109,6 +111,10 @@ class FlatResult(Struct, _abi.FlatResult):
     covariance_size: int
     covariance = Covariance()
     gain_grid = Nested(GainGrid)
+    reason_code = Enumerated(Reason)
+    reason_values: int
+    reason_item = Nested(Item)
+    reason_value = Numbers("reason_values")
 
     def __init__(self, image_count: int):
         super().__init__()

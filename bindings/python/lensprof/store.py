@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any, Iterator, List, Optional, Union
 
 from . import _abi
-from ._abi import DistanceRule, Status, StoreMode
+from ._abi import DistanceRule, Reason, Status, StoreMode
 from ._library import Error, Handle, check, lib
 from ._struct import Enumerated, Flag, Nested, Struct, Text, Value, Vector, integer
 from .profile import Profile, ProfileKey, Provenance
@@ -35,7 +35,8 @@ class LookupOptions(Struct, _abi.LookupOptions):
 
 class Lookup(Value, _abi.Lookup):
     """How Store.lookup came to its answer: id[:rows] and weight[:rows] of the profiles used, nearest first; exact when it
-    is one of them as it is; distance to the nearest; sigma of M in the corner; name_score; reason: what to mind."""
+    is one of them as it is; distance to the nearest; sigma of M in the corner; name_score; reason: what to mind, whose
+    sentences are `reasons`."""
 
     exact: int
     rows: int
@@ -43,6 +44,12 @@ class Lookup(Value, _abi.Lookup):
     sigma: float
     name_score: float
     reason = Text()
+    reason_code = Vector(writable=False)
+
+    @property
+    def reasons(self) -> tuple[Reason, ...]:
+        """What each sentence of `reason` states."""
+        return tuple(Reason(code) for code in self.reason_code.tolist() if code != Reason.NONE)
 
 
 class StoreFault(Value, _abi.StoreFault):
@@ -115,9 +122,15 @@ class Store(Handle):
 
     def lookup(self, key: ProfileKey, options: Optional[LookupOptions] = None) -> tuple[Profile, Lookup]:
         """The profile for a setting, stored or predicted from those of the same lens at other settings, and how it was
-        found; lensprof.Error NOT_FOUND, with the reason, where there is none near enough."""
+        found; lensprof.Error NOT_FOUND, with the reason and, as `lookup`, its Lookup, where there is none near
+        enough."""
         profile, how = Profile(), Lookup()
-        self._call(lib.lensprof_store_lookup, byref(key), byref(options or LookupOptions()), byref(profile), byref(how))
+        try:
+            self._call(lib.lensprof_store_lookup, byref(key), byref(options or LookupOptions()), byref(profile),
+                       byref(how))
+        except Error as error:
+            error.lookup = how  # type: ignore[attr-defined]
+            raise
         return profile, how
 
     @contextmanager

@@ -47,17 +47,32 @@ lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *err
                         "fit options: the profile has no covariance, and says nothing of how sure it is; leave it out");
 }
 
+// The first option that is out of its range, with that range; NULL when none is.
+const char *broken_option(const lensprof_fit_options &o, uint32_t image_count) {
+    const Rule rules[] = {
+        {o.channels == 1 || o.channels == 3, "channels must be 1 or 3"},
+        {o.reference < image_count, "reference must be less than the number of images"},
+        {!(o.free & ~kSharedFlags), "free takes LENSPROF_FREE_RESPONSE, _K1, _K2, _K3 and _CENTER only"},
+        {o.modes <= LENSPROF_EMOR_MODES || o.modes == LENSPROF_MODES_AUTO,
+         "modes must be 0..25 or LENSPROF_MODES_AUTO"},
+        {o.loss <= LENSPROF_LOSS_SQUARED, "loss must be one of lensprof_loss, 0..2"},
+        {o.huber_levels > 0.0 && o.huber_levels <= 255.0, "huber_levels must be above 0 and at most 255"},
+        {o.prior_weight >= 0.0 && o.prior_weight <= 1e6, "prior_weight must be 0..1000000"},
+        {o.max_iterations >= 1 && o.max_iterations <= 1000000, "max_iterations must be 1..1000000"},
+        {o.vignettings <= 1 || o.vignettings == 3, "vignettings must be 0, 1 or 3"},
+        {o.gamma_from <= LENSPROF_GAMMA_EXPOSURES,
+         "gamma_from must be LENSPROF_GAMMA_AUTO, _PRIOR or _EXPOSURES; the others are of results"},
+        {o.camera_kind <= LENSPROF_CAMERA_DIGITAL, "camera_kind must be one of lensprof_camera_kind, 0..2"},
+        {o.method <= LENSPROF_METHOD_DEBEVEC, "method must be one of lensprof_fit_method, 0..3"},
+        {o.refine <= 1, "refine must be 0 or 1"},
+        {!o.reserved, "reserved must be 0"},
+    };
+    return first_broken(rules);
+}
+
 lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_count, lensprof_error *error) {
-    if ((o.channels != 1 && o.channels != 3) || o.reference >= image_count || o.loss > LENSPROF_LOSS_SQUARED
-        || (o.modes > LENSPROF_EMOR_MODES && o.modes != LENSPROF_MODES_AUTO)
-        || !(o.huber_levels > 0.0 && o.huber_levels <= 255.0) || !(o.prior_weight >= 0.0 && o.prior_weight <= 1e6)
-        || o.max_iterations == 0 || o.max_iterations > 1000000 || (o.free & ~kSharedFlags)
-        || (o.vignettings > 1 && o.vignettings != 3) || o.gamma_from > LENSPROF_GAMMA_EXPOSURES
-        || o.camera_kind > LENSPROF_CAMERA_DIGITAL || o.method > LENSPROF_METHOD_DEBEVEC || o.refine > 1 || o.reserved)
-        return fail(LENSPROF_ERROR_ARGUMENT, error,
-                    "fit options: channels 1 or 3, reference < images, modes 0..25 or automatic, Huber 0..255 levels, "
-                    "prior weight >= 0, iterations 1..1000000, flags of the shared unknowns only, vignettings 0, 1 or "
-                    "3, gamma automatic or from prior or exposures, a known kind of camera and method, refine 0 or 1");
+    if (const char *wrong = broken_option(o, image_count))
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "fit options: %s", wrong);
     lensprof_status status = lensprof_vignetting_validate(&o.vignetting);
     if (status != LENSPROF_OK)
         return fail(status, error, "fit options: the given vignetting is not positive and finite");
@@ -71,40 +86,43 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
     for (uint32_t i = 0; i < count; i++) {
         const auto &image = images[i];
         if (!image.width || !image.height || image.width > (1u << 20) || image.height > (1u << 20))
-            return fail(LENSPROF_ERROR_SIZE, error, "image %u: sizes must be 1..1048576", i);
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_SIZE, error, "sizes must be 1..1048576");
         if (lensprof_exposure_validate(&image.exposure) != LENSPROF_OK)
-            return fail(LENSPROF_ERROR_EXPOSURE, error, "image %u: exposure or white balance out of range", i);
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error,
+                           "exposure or white balance out of range");
         if (image.known_ev_sigma != 0.0
             && !(image.known_ev_sigma >= 1e-3 && image.known_ev_sigma <= 100.0 && std::abs(image.known_ev) <= 64.0))
-            return fail(LENSPROF_ERROR_EXPOSURE, error,
-                        "image %u: known exposure beyond 64 EV, or its sigma neither 0 nor 0.001..100", i);
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error,
+                           "known exposure beyond 64 EV, or its sigma neither 0 nor 0.001..100");
         if ((image.free & ~kImageFlags) || image.reserved)
-            return fail(LENSPROF_ERROR_ARGUMENT, error,
-                        "image %u: only EV, RED and BLUE can be free in an image, and reserved is 0", i);
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                           "only EV, RED and BLUE can be free in an image, and reserved is 0");
         for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})
             if (of >= count)
-                return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to image %u of %u", i, of, count);
+                return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "linked to image %u of %u", of,
+                               count);
         if (images[image.ev_of].ev_of != image.ev_of || images[image.red_of].red_of != image.red_of
             || images[image.blue_of].blue_of != image.blue_of)
-            return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: linked to an image that is linked itself", i);
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                           "linked to an image that is linked itself");
     }
     return LENSPROF_OK;
 }
 
-// A position and grey values in an image; `what` and its number name them in the error.
+// A position and grey values in an image; they are those of item `what` and its number.
 lensprof_status check_end(const double xy[2], const double value[3], const lensprof_fit_image &frame, uint32_t image,
-                          int channels, const char *what, uint32_t number, lensprof_error *error) {
+                          int channels, lensprof_item_kind what, uint32_t number, lensprof_error *error) {
     double x = xy[0], y = xy[1];
     if (!std::isfinite(x) || !std::isfinite(y))
-        return fail(LENSPROF_ERROR_NOT_FINITE, error, "%s %u: a position is not a number", what, number);
+        return fail_at(what, number, LENSPROF_ERROR_NOT_FINITE, error, "a position is not a number");
     if (x < -1.0 || y < -1.0 || x > frame.width || y > frame.height)
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "%s %u: position %g, %g is outside image %u", what, number, x, y,
-                    image);
+        return fail_at(what, number, LENSPROF_ERROR_ARGUMENT, error, "position %g, %g is outside image %u", x, y,
+                       image);
     for (int c = 0; c < channels; c++) {
         if (!std::isfinite(value[c]))
-            return fail(LENSPROF_ERROR_NOT_FINITE, error, "%s %u: a grey value is not a number", what, number);
+            return fail_at(what, number, LENSPROF_ERROR_NOT_FINITE, error, "a grey value is not a number");
         if (value[c] < 0.0 || value[c] > 1.0)
-            return fail(LENSPROF_ERROR_ARGUMENT, error, "%s %u: grey values must be 0..1", what, number);
+            return fail_at(what, number, LENSPROF_ERROR_ARGUMENT, error, "grey values must be 0..1");
     }
     return LENSPROF_OK;
 }
@@ -114,12 +132,12 @@ lensprof_status check_pairs(const lensprof_pair *pairs, uint32_t count, const le
     for (uint32_t p = 0; p < count; p++) {
         const auto &pair = pairs[p];
         if (pair.image[0] >= image_count || pair.image[1] >= image_count || pair.image[0] == pair.image[1])
-            return fail(LENSPROF_ERROR_ARGUMENT, error, "pair %u: images %u and %u of %u", p, pair.image[0],
-                        pair.image[1], image_count);
+            return fail_at(LENSPROF_ITEM_PAIR, p, LENSPROF_ERROR_ARGUMENT, error, "images %u and %u of %u",
+                           pair.image[0], pair.image[1], image_count);
         for (int side = 0; side < 2; side++) {
             uint32_t image = pair.image[side];
-            lensprof_status status =
-                check_end(pair.xy[side], pair.value[side], images[image], image, channels, "pair", p, error);
+            lensprof_status status = check_end(pair.xy[side], pair.value[side], images[image], image, channels,
+                                               LENSPROF_ITEM_PAIR, p, error);
             if (status != LENSPROF_OK) return status;
         }
     }
@@ -132,8 +150,10 @@ lensprof_status check_observations(const lensprof_observation *observations, uin
     for (uint32_t n = 0; n < count; n++) {
         const auto &o = observations[n];
         if (o.image >= image_count)
-            return fail(LENSPROF_ERROR_ARGUMENT, error, "observation %u: image %u of %u", n, o.image, image_count);
-        lensprof_status status = check_end(o.xy, o.value, images[o.image], o.image, channels, "observation", n, error);
+            return fail_at(LENSPROF_ITEM_OBSERVATION, n, LENSPROF_ERROR_ARGUMENT, error, "image %u of %u", o.image,
+                           image_count);
+        lensprof_status status =
+            check_end(o.xy, o.value, images[o.image], o.image, channels, LENSPROF_ITEM_OBSERVATION, n, error);
         if (status != LENSPROF_OK) return status;
     }
     return LENSPROF_OK;
@@ -143,13 +163,12 @@ lensprof_status check_tracks(const Tracks &tracks, lensprof_error *error) {
     for (const Range &track : tracks.tracks) {
         const auto &first = tracks.observations[track.first];
         if (track.last - track.first < 2)
-            return fail(LENSPROF_ERROR_ARGUMENT, error,
-                        "point %u is observed in one image only; leave out points without a second observation",
-                        first.point);
+            return fail_at(LENSPROF_ITEM_POINT, first.point, LENSPROF_ERROR_ARGUMENT, error,
+                           "one observation only; leave out points without a second one");
         for (size_t i = track.first + 1; i < track.last; i++)
             if (tracks.observations[i].image == tracks.observations[i - 1].image)
-                return fail(LENSPROF_ERROR_ARGUMENT, error, "point %u is observed twice in image %u", first.point,
-                            tracks.observations[i].image);
+                return fail_at(LENSPROF_ITEM_POINT, first.point, LENSPROF_ERROR_ARGUMENT, error,
+                               "two observations in image %u; leave one out", tracks.observations[i].image);
     }
     return LENSPROF_OK;
 }
@@ -162,14 +181,13 @@ lensprof_status check_debevec(const lensprof_fit_options &o, const lensprof_fit_
                     "fit options: the method debevec finds the response alone; free it, and hold falloff and centre");
     for (uint32_t i = 0; i < image_count; i++)
         if (!(images[i].known_ev_sigma > 0.0))
-            return fail(LENSPROF_ERROR_ARGUMENT, error,
-                        "image %u: the method debevec wants the known exposures of all images (known_ev, and a "
-                        "known_ev_sigma above 0); give it, or use the method transfer",
-                        i);
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                           "the method debevec wants the known exposures of all images (known_ev, and a "
+                           "known_ev_sigma above 0); give it, or use the method transfer");
     for (uint32_t i = 0; i < image_count; i++)
         if (!(std::abs(known_exposure(images, o.reference, i)) <= 64.0))
-            return fail(LENSPROF_ERROR_EXPOSURE, error,
-                        "image %u: known exposure beyond 64 EV relative to the reference", i);
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error,
+                           "known exposure beyond 64 EV relative to the reference");
     return LENSPROF_OK;
 }
 
@@ -193,7 +211,7 @@ struct Call {
 lensprof_status take_images(const lensprof_fit_image *given, uint32_t count, std::vector<lensprof_fit_image> &own,
                             lensprof_error *error) {
     auto init = [](lensprof_fit_image &image, uint32_t i) { lensprof_fit_image_init(&image, i, 0, 0); };
-    lensprof_status status = take_all(given, count, kFirstImage, "image", init, own, error);
+    lensprof_status status = take_all(given, count, kFirstImage, LENSPROF_ITEM_IMAGE, init, own, error);
     return status == LENSPROF_OK ? check_images(own.data(), count, error) : status;
 }
 
@@ -201,7 +219,7 @@ lensprof_status take_images(const lensprof_fit_image *given, uint32_t count, std
 lensprof_status take_call(const lensprof_fit_options *options, const lensprof_fit_image *images, uint32_t image_count,
                           bool has_data, const lensprof_exposure *exposures, const lensprof_fit_result *result,
                           Call &call, lensprof_error *error) {
-    if (error) error->text[0] = 0;
+    clear(error);
     if (!options || !images || !exposures || !result || !has_data)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: a pointer is NULL");
     if (image_count < 2) return fail(LENSPROF_ERROR_ARGUMENT, error, "fit: at least two images are needed");

@@ -18,18 +18,30 @@ constexpr size_t kFirstImage = LP_END_OF(lensprof_flat_image, turn_deg);
 constexpr size_t kFirstResult = LP_END_OF(lensprof_flat_result, image_quality);
 constexpr size_t kFirstQuality = LP_END_OF(lensprof_flat_image_quality, reserved);
 
+// The first option that is out of its range, with that range; NULL when none is.
+const char *broken_option(const lensprof_flat_options &o) {
+    const Rule rules[] = {
+        {o.channels == 1 || o.channels == 3, "channels must be 1 or 3"},
+        {!(o.free & ~kLensFlags), "free takes LENSPROF_FREE_K1, _K2, _K3 and _CENTER only"},
+        {o.vignettings <= 1 || o.vignettings == 3, "vignettings must be 0, 1 or 3"},
+        {o.vignettings != 3 || o.channels == 3, "vignettings must be 0 or 1 where channels is 1"},
+        {o.light <= LENSPROF_FLAT_LIGHT_QUADRATIC, "light must be one of lensprof_flat_light, 0..3"},
+        {o.own_light <= 1, "own_light must be 0 or 1"},
+        {o.several <= 1, "several must be 0 or 1"},
+        {o.find_card <= 1, "find_card must be 0 or 1"},
+        {o.grid <= LENSPROF_FLAT_GRID_ALWAYS, "grid must be one of lensprof_flat_grid, 0..2"},
+        {o.responses == 1 || o.responses == 3, "responses must be 1 or 3"},
+        {o.ev_sigma >= 1e-3 && o.ev_sigma <= 1.0, "ev_sigma must be 0.001..1 EV"},
+        {o.prior_weight >= 0.0 && o.prior_weight <= 1e6, "prior_weight must be 0..1000000"},
+        {!o.reserved, "reserved must be 0"},
+    };
+    return first_broken(rules);
+}
+
 lensprof_status check_options(const lensprof_flat_options &o, uint32_t count, lensprof_error *error) {
     if (count == 0 || count > LENSPROF_FLAT_IMAGES)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "flat: %u pictures; give 1 to %d", count, LENSPROF_FLAT_IMAGES);
-    if ((o.channels != 1 && o.channels != 3) || (o.free & ~kLensFlags) || (o.vignettings > 1 && o.vignettings != 3)
-        || o.light > LENSPROF_FLAT_LIGHT_QUADRATIC || o.own_light > 1 || o.several > 1 || o.find_card > 1
-        || o.grid > LENSPROF_FLAT_GRID_ALWAYS || (o.responses != 1 && o.responses != 3) || o.reserved
-        || (o.vignettings == 3 && o.channels == 1) || !(o.ev_sigma >= 1e-3 && o.ev_sigma <= 1.0)
-        || !(o.prior_weight >= 0.0 && o.prior_weight <= 1e6))
-        return fail(
-            LENSPROF_ERROR_ARGUMENT, error,
-            "flat options: channels and responses 1 or 3, flags of falloff and centre only, vignettings 0, 1 "
-            "or (of three channels) 3, a known light and grid, switches 0 or 1, 0.001..1 EV, prior weight >= 0");
+    if (const char *wrong = broken_option(o)) return fail(LENSPROF_ERROR_ARGUMENT, error, "flat options: %s", wrong);
     if (o.several && o.light > LENSPROF_FLAT_LIGHT_EVEN)
         return fail(LENSPROF_ERROR_ARGUMENT, error,
                     "flat options: a card at several places has one brightness; its light must be even");
@@ -46,21 +58,23 @@ lensprof_status check_options(const lensprof_flat_options &o, uint32_t count, le
 lensprof_status check_image(const lensprof_flat_options &o, const lensprof_flat_image *images, uint32_t i,
                             lensprof_error *error) {
     const auto &image = images[i];
-    if (image.reserved) return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: reserved is not 0", i);
+    if (image.reserved) return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "reserved is not 0");
     lensprof_status status = check_view(sample_image_of(image), i, error);
     if (status != LENSPROF_OK) return status;
     if (image.width != images[0].width || image.height != images[0].height)
-        return fail(LENSPROF_ERROR_SIZE, error, "image %u: a frame of %u x %u, not %u x %u as the first", i,
-                    image.width, image.height, images[0].width, images[0].height);
+        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_SIZE, error,
+                       "a frame of %u x %u, not %u x %u as the first", image.width, image.height, images[0].width,
+                       images[0].height);
     if (o.channels == 3 && lensprof_layout_channels(image.view.layout) != 3)
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: a grey picture; set channels to 1", i);
+        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "a grey picture; set channels to 1");
     if (!(std::abs(image.ev) <= 64.0))
-        return fail(LENSPROF_ERROR_EXPOSURE, error, "image %u: exposure beyond 64 EV", i);
+        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error, "exposure beyond 64 EV");
     if (!(std::abs(image.turn_deg) <= kLargestTurn))
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: turned by more than 360 degrees", i);
+        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "turned by more than 360 degrees");
     for (uint32_t j = 0; j < i; j++)
         if (images[j].shot == image.shot && images[j].turn_deg != image.turn_deg)
-            return fail(LENSPROF_ERROR_ARGUMENT, error, "images %u and %u: one shot, turned differently", j, i);
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                           "of one shot with image %u, but turned differently", j);
     return LENSPROF_OK;
 }
 
@@ -82,7 +96,8 @@ lensprof_status take_call(const lensprof_flat_options *options, const lensprof_f
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "flat options: %s", wrong);
     status = check_options(call.options, count, error);
     auto init = [](lensprof_flat_image &image, uint32_t) { lensprof_flat_image_init(&image); };
-    if (status == LENSPROF_OK) status = take_all(images, count, kFirstImage, "image", init, call.images, error);
+    if (status == LENSPROF_OK)
+        status = take_all(images, count, kFirstImage, LENSPROF_ITEM_IMAGE, init, call.images, error);
     for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++)
         status = check_image(call.options, call.images.data(), i, error);
     lensprof_flat_result_init(&call.result);
@@ -131,7 +146,7 @@ void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size, 
 
 lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const lensprof_flat_image *images,
                                   uint32_t count, lensprof_flat_result *result, lensprof_error *error) {
-    if (error) error->text[0] = 0;
+    clear(error);
     if (!options || !images || !result) return fail(LENSPROF_ERROR_ARGUMENT, error, "flat: a pointer is NULL");
     try {
         const auto call = std::make_unique<Call>();

@@ -15,18 +15,23 @@ constexpr size_t kFirstOptions = LP_END_OF(lensprof_sample_options, progress_use
 constexpr size_t kFirstImage = LP_END_OF(lensprof_sample_image, white);
 
 lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, lensprof_error *error) {
-    if (image.reserved) return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: reserved is not 0", i);
+    if (image.reserved) return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "reserved is not 0");
     lensprof_status status = lensprof_camera_validate(&image.camera);
-    if (status != LENSPROF_OK) return fail(status, error, "image %u: not a valid camera", i);
+    if (status != LENSPROF_OK) return fail_at(LENSPROF_ITEM_IMAGE, i, status, error, "not a valid camera");
     return check_view(image, i, error);
 }
 
 lensprof_status check_options(const lensprof_sample_options &options, uint32_t count, lensprof_error *error) {
     if (count < 2) return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: at least two images are needed");
-    if (options.sampling > LENSPROF_SAMPLING_BRACKET || options.pairs > kLargestCount || count > kLargestCount / 300
-        || options.reserved)
-        return fail(LENSPROF_ERROR_ARGUMENT, error,
-                    "sample: unknown sampling, reserved not 0, or too many images or pairs");
+    const Rule rules[] = {
+        {options.sampling <= LENSPROF_SAMPLING_BRACKET, "sampling must be one of lensprof_sampling, 0..2"},
+        {options.pairs <= kLargestCount, "pairs must be 0..16777216"},
+        {!options.reserved, "reserved must be 0"},
+    };
+    if (const char *wrong = first_broken(rules))
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "sample options: %s", wrong);
+    if (count > kLargestCount / 300)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: %u images; give at most %u", count, kLargestCount / 300);
     return LENSPROF_OK;
 }
 
@@ -46,7 +51,7 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
     try {
         std::vector<lensprof_sample_image> images;
         auto init = [](lensprof_sample_image &image, uint32_t) { lensprof_sample_image_init(&image); };
-        lensprof_status status = take_all(given, count, kFirstImage, "image", init, images, error);
+        lensprof_status status = take_all(given, count, kFirstImage, LENSPROF_ITEM_IMAGE, init, images, error);
         for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = check_image(images[i], i, error);
         if (status != LENSPROF_OK) return status;
         auto stop = [&] { return options.progress && options.progress(0.0, options.progress_user) != 0; };
@@ -60,11 +65,11 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
                         "no two images show the same place between black and white: they may be of different scenes, "
                         "too far apart in exposure, masked, or one may be all black or white");
         if (!sampler.overlaps())
-            return fail(LENSPROF_ERROR_NO_OVERLAP, error, "no two images overlap; check the alignment of the project");
+            return fail(LENSPROF_ERROR_NO_OVERLAP, error, "no two images overlap; check their alignment");
         if (items.empty())
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
                         "the images overlap, but every sample there is masked, black or saturated, or does not show "
-                        "the same in both; check the alignment of the project");
+                        "the same in both; check their alignment");
         return LENSPROF_OK;
     } catch (const Cancelled &) {
         return fail(LENSPROF_ERROR_CANCELLED, error, "sample: cancelled");
@@ -112,7 +117,7 @@ void lensprof_sample_image_init_sized(lensprof_sample_image *image, size_t size)
 lensprof_status lensprof_sample_overlap(const lensprof_sample_options *given, const lensprof_sample_image *images,
                                         uint32_t count, lensprof_pair *pairs, uint32_t capacity, uint32_t *found,
                                         lensprof_error *error) {
-    if (error) error->text[0] = 0;
+    clear(error);
     if (!given || !images || !found || (capacity && !pairs))
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: a pointer is NULL");
     lensprof_sample_options options;
@@ -128,7 +133,7 @@ lensprof_status lensprof_sample_overlap(const lensprof_sample_options *given, co
 lensprof_status lensprof_sample_tracks(const lensprof_sample_options *given, const lensprof_sample_image *images,
                                        uint32_t count, lensprof_observation *observations, uint32_t capacity,
                                        uint32_t *found, lensprof_error *error) {
-    if (error) error->text[0] = 0;
+    clear(error);
     if (!given || !images || !found || (capacity && !observations))
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: a pointer is NULL");
     lensprof_sample_options options;

@@ -13,20 +13,19 @@ namespace lensprof {
 // The caller's array as one of this library's structs, each of which init(struct, its index) has set to the defaults.
 // All elements have the struct_size of the first, which is the step from one to the next.
 template <class T, class Init>
-lensprof_status take_all(const T *given, uint32_t count, size_t first, const char *what, Init init, std::vector<T> &own,
-                         lensprof_error *error) {
+lensprof_status take_all(const T *given, uint32_t count, size_t first, lensprof_item_kind kind, Init init,
+                         std::vector<T> &own, lensprof_error *error) {
     const auto *bytes = reinterpret_cast<const char *>(given);
     const size_t step = count ? lp_sized_bytes(given) : 0;
     for (uint32_t i = 0; i < count; i++) {
         const char *element = bytes + i * step;
         if (lp_sized_bytes(element) != step)
-            return fail(LENSPROF_ERROR_STRUCT_SIZE, error,
-                        "%s %u: struct_size is not that of %s 0; call the struct's _init function first", what, i,
-                        what);
+            return fail_at(kind, i, LENSPROF_ERROR_STRUCT_SIZE, error,
+                           "struct_size is not that of %s 0; call the struct's _init function first", item_word(kind));
         T next;
         init(next, i);
         if (const char *wrong = lp_sized_take(&next, element, first))
-            return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "%s %u: %s", what, i, wrong);
+            return fail_at(kind, i, LENSPROF_ERROR_STRUCT_SIZE, error, "%s", wrong);
         own.push_back(next);
     }
     return LENSPROF_OK;

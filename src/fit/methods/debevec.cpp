@@ -1,7 +1,6 @@
 #include "fit/methods/debevec.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Cholesky>
 
@@ -12,6 +11,7 @@
 #include "fit/solver/start.hpp"
 #include "fit/verdict/finish.hpp"
 #include "fit/verdict/quality.hpp"
+#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 namespace {
@@ -133,16 +133,10 @@ private:
 void Fit::judge_exposures(const Estimate &estimate, bool is_rising, lensprof_fit_result &r) const {
     const double usual = exposure_spread(all_, estimate);
     if (usual >= kSmallestSpread && is_rising) return;
-    r.usable = 0;
     if (usual < kSmallestSpread)
-        std::snprintf(r.reason, sizeof r.reason,
-                      "the known exposures of pictures that overlap differ by %.2f EV, which shows no response; take "
-                      "pictures of other exposures, or use the method transfer",
-                      usual);
+        refuse(r, {LENSPROF_REASON_KNOWN_ALIKE, {usual}});
     else
-        std::snprintf(r.reason, sizeof r.reason,
-                      "the response falls: pictures that are brighter have the smaller known exposures; check these, "
-                      "and their order");
+        refuse(r, {LENSPROF_REASON_KNOWN_REVERSED, {}});
 }
 
 void Fit::run(lensprof_exposure *exposures, lensprof_fit_result &result) const {

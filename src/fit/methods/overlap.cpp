@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <memory>
 #include <numeric>
@@ -14,6 +13,7 @@
 #include "fit/solver/objective.hpp"
 #include "fit/solver/start.hpp"
 #include "fit/verdict/finish.hpp"
+#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 namespace {
@@ -345,11 +345,7 @@ void run_fits(const lensprof_fit_options &options, uint32_t image_count, const F
         if (!overruled)
             informed.describe(found.data(), r);
         else if (r.usable)
-            std::snprintf(
-                r.reason, sizeof r.reason,
-                "the profile given as the prior contradicts the pictures (its falloff is %.1f, held-out pairs "
-                "%.1f standard errors off) and was left out: is it of this lens and setting?",
-                apart, worse);
+            warn(r, {LENSPROF_REASON_PRIOR_OVERRULED, {apart, worse}});
     }
     r.image_quality = result.image_quality;
     if (r.image_quality) std::copy(quality.begin(), quality.end(), r.image_quality);

@@ -186,26 +186,25 @@ Slope slope_of(const Lanes *values) {
 
 lensprof_status check_view(const lensprof_sample_image &image, uint32_t i, lensprof_error *error) {
     lensprof_status status = lensprof_image_validate(&image.view);
-    if (status != LENSPROF_OK) return fail(status, error, "image %u: not a valid view of pixels", i);
+    if (status != LENSPROF_OK) return fail_at(LENSPROF_ITEM_IMAGE, i, status, error, "not a valid view of pixels");
     const auto &view = image.view;
     if (view.layout > LENSPROF_LAYOUT_BGRA || view.sample > LENSPROF_SAMPLE_F32)
-        return fail(
-            LENSPROF_ERROR_ARGUMENT, error,
-            "image %u: mosaics, planes and half floats are not sampled; give interleaved pixels of U8, U16 or F32", i);
+        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                       "mosaics, planes and half floats are not sampled; give interleaved pixels of U8, U16 or F32");
     if (!image.reduction || image.every_pixel > 1
         || static_cast<uint64_t>(view.width) * image.reduction > image.camera.width
         || static_cast<uint64_t>(view.height) * image.reduction > image.camera.height)
-        return fail(LENSPROF_ERROR_SIZE, error,
-                    "image %u: a view of %u x %u reduced %u times does not fit a frame of %u x %u", i, view.width,
-                    view.height, image.reduction, image.camera.width, image.camera.height);
+        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_SIZE, error,
+                       "a view of %u x %u reduced %u times does not fit a frame of %u x %u", view.width, view.height,
+                       image.reduction, image.camera.width, image.camera.height);
     ptrdiff_t width = static_cast<ptrdiff_t>(view.width), row = image.mask_row_bytes;
     constexpr ptrdiff_t kLongestRow = ptrdiff_t{1} << 28;
     if (image.mask && ((row < width && row > -width) || row > kLongestRow || row < -kLongestRow))
-        return fail(LENSPROF_ERROR_SIZE, error,
-                    "image %u: mask rows are %td bytes apart, less than the view's %td pixels", i, row, width);
+        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_SIZE, error,
+                       "mask rows are %td bytes apart, less than the view's %td pixels", row, width);
     if (!(image.black >= 0.0 && image.white <= 1.0 && image.black < image.white))
-        return fail(LENSPROF_ERROR_ARGUMENT, error, "image %u: black and white must satisfy 0 <= black < white <= 1",
-                    i);
+        return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                       "black and white must satisfy 0 <= black < white <= 1");
     return LENSPROF_OK;
 }
 
@@ -223,8 +222,8 @@ lensprof_status check_finite(const std::function<lensprof_sample_image(uint32_t)
     if (!for_each_parallel(count, threads, work, stop)) throw Cancelled();
     for (uint32_t i = 0; i < count; i++)
         if (places[i].found)
-            return fail(LENSPROF_ERROR_NOT_FINITE, error, "image %u: pixel %u, %u is not a finite number", i,
-                        places[i].x, places[i].y);
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_NOT_FINITE, error,
+                           "pixel %u, %u is not a finite number", places[i].x, places[i].y);
     return LENSPROF_OK;
 }
 

@@ -1,14 +1,14 @@
-// The verdict: why a result is not usable, or what to mind about it, in plain words.
+// The verdict: why a result is not usable, or what to mind about it.
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "core/covariance.h"
 #include "fit/base/constants.hpp"
 #include "fit/prior/known_exposures.hpp"
 #include "fit/verdict/quality.hpp"
+#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 namespace {
@@ -131,18 +131,6 @@ int uncertain_image(const Problem &problem, const Estimate &estimate, const lens
     return worst;
 }
 
-template <class... Values>
-void say(lensprof_fit_result &r, const char *reason, Values... values) {
-    std::snprintf(r.reason, sizeof r.reason, reason, values...);
-}
-
-template <class... Values>
-bool refuse(lensprof_fit_result &r, const char *reason, Values... values) {
-    r.usable = 0;
-    say(r, reason, values...);
-    return true;
-}
-
 // The first image that is not in the reference's group.
 uint32_t apart_image(const Problem &problem) {
     const auto &group = problem.component;
@@ -155,25 +143,14 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
     size_t unknowns = free_columns(problem, estimate.modes).size() + static_cast<size_t>(problem.image_unknowns);
     size_t informative = count_informative(problem);
     if (r.components > 1 && problem.image_unknowns > 0)
-        return refuse(r,
-                      "the images fall into %u groups: no usable overlap joins image %u to the reference, not even "
-                      "through others; add pictures or pairs that join them, or check its place in the project",
-                      r.components, apart_image(problem));
+        return refuse(r, of_image(LENSPROF_REASON_IMAGE_GROUPS, apart_image(problem), {double(r.components)}));
     if (informative * static_cast<size_t>(problem.channels) < 2 * unknowns)
-        return refuse(r, "%zu different pairs between black and white are too few for %zu unknowns; sample more",
-                      informative, unknowns);
+        return refuse(r, {LENSPROF_REASON_FEW_PAIRS, {double(informative), double(unknowns)}});
     if (fits_response(estimate) && covered_greys(problem, r) < kFewestGreys)
-        return refuse(
-            r,
-            "the pairs cover %u tenths of the grey values only, which does not show a response; take pictures "
-            "of other exposures, or hold a response that is known",
-            covered_greys(problem, r));
+        return refuse(r, {LENSPROF_REASON_FEW_GREYS, {double(covered_greys(problem, r))}});
     bool falloff = problem.free & (LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3);
     if (falloff && covered_radius(r) < kSmallestRadius)
-        return refuse(r,
-                      "the pairs reach to %.1f of the half diagonal only, which does not show the falloff in the "
-                      "corners; overlap the pictures more, or fix the falloff",
-                      covered_radius(r));
+        return refuse(r, {LENSPROF_REASON_SMALL_RADIUS, {covered_radius(r)}});
     return false;
 }
 
@@ -185,23 +162,6 @@ bool is_static(const Problem &problem) {
     });
 }
 
-// What to look at where pairs of an image disagree with all others.
-const char *next_step(const Problem &problem) {
-    return is_static(problem) ? "something moved, its light changed, or its black is raised (bracket --black)"
-                              : "check its place in the project";
-}
-
-const char *pattern_reason(bool is_static, bool is_free) {
-    if (is_static)
-        return "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no response explains: "
-               "the camera moved, the light changed between the pictures, or local tone mapping (HDR)";
-    return is_free ? "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which no "
-                     "response and falloff explain: local tone mapping (HDR), or light that changed between "
-                     "the pictures"
-                   : "%.0f %% of the residual follows patterns of each image's own (%.1f levels), which the "
-                     "response or falloff that are held do not explain; free them";
-}
-
 bool contradicts_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
     // else it is what was held that does not fit
@@ -209,21 +169,15 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
     bool still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
     bool is_far = r.heldout_median == LENSPROF_UNKNOWN || r.heldout_median > kStillMedian;
     if (still && r.inlier_share < kSmallestStillShare && is_far)
-        return refuse(r,
-                      "only %.0f %% of the pairs agree with one response; are the pictures of one scene, by a camera "
-                      "that did not move, and is their black 0 (bracket --black)?",
-                      100.0 * r.inlier_share);
-    if (r.inlier_share < 0.3)
-        return refuse(r, "only %.0f %% of the pairs agree with one camera model; check the alignment of the pictures",
-                      100.0 * r.inlier_share);
+        return refuse(r, {LENSPROF_REASON_STILL_FEW_AGREE, {r.inlier_share}});
+    if (r.inlier_share < 0.3) return refuse(r, {LENSPROF_REASON_FEW_AGREE, {r.inlier_share}});
     double pattern = r.noise_levels * std::sqrt(r.image_share);
     if (r.image_share > kLargestImageShare && pattern > (still ? kHarmfulPattern : kSmallestPattern))
-        return refuse(r, pattern_reason(still, is_free), 100.0 * r.image_share, pattern);
-    if (r.noise_levels > kLargestNoise)
-        return refuse(r,
-                      "the pairs scatter by %.1f levels about the best camera model; free more parameters, or check "
-                      "the alignment",
-                      r.noise_levels);
+        return refuse(r, {still     ? LENSPROF_REASON_STILL_PATTERNS
+                          : is_free ? LENSPROF_REASON_PATTERNS
+                                    : LENSPROF_REASON_PATTERNS_HELD,
+                          {r.image_share, pattern}});
+    if (r.noise_levels > kLargestNoise) return refuse(r, {LENSPROF_REASON_SCATTER, {r.noise_levels}});
     return false;
 }
 
@@ -250,29 +204,26 @@ bool disagrees(const Problem &problem, const lensprof_fit_result &r, uint32_t &i
 }
 
 bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
-    if (!r.converged) return refuse(r, "the fit did not settle in %u iterations", r.iterations);
+    if (!r.converged) return refuse(r, {LENSPROF_REASON_NOT_SETTLED, {double(r.iterations)}});
     if (r.covariance_size == 0 && !free_columns(problem, estimate.modes).empty())
-        return refuse(r, "the pairs do not determine all parameters; fix some, or take pictures of more exposures");
+        return refuse(r, {LENSPROF_REASON_UNDETERMINED, {}});
     double corner = corner_sigma(problem, r);
-    if (corner > kLargestCornerSigma)
-        return refuse(r,
-                      "the pairs leave the falloff in the corners uncertain by %.0f %%; sample more, or overlap more",
-                      100.0 * corner);
+    if (corner > kLargestCornerSigma) return refuse(r, {LENSPROF_REASON_CORNER_UNCERTAIN, {corner}});
+    const bool still = is_static(problem);
     uint32_t image, behind;
     if (has_few_inliers(problem, r, image, behind))
         return refuse(
-            r,
-            "the exposure of image %u rests on %u pairs that agree with the camera model; overlap it more, or "
-            "%s",
-            image, behind, next_step(problem));
+            r, of_image(still ? LENSPROF_REASON_STILL_FEW_BEHIND_EXPOSURE : LENSPROF_REASON_FEW_BEHIND_EXPOSURE, image,
+                        {double(behind)}));
     if (disagrees(problem, r, image))
-        return refuse(r, "only %u of the %u pairs of image %u agree with the camera model; %s",
-                      r.image_quality[image].inliers, r.image_quality[image].pairs, image, next_step(problem));
+        return refuse(r,
+                      of_image(still ? LENSPROF_REASON_STILL_IMAGE_DISAGREES : LENSPROF_REASON_IMAGE_DISAGREES, image,
+                               {double(r.image_quality[image].inliers), double(r.image_quality[image].pairs)}));
     double uncertain_by;
     int uncertain = uncertain_image(problem, estimate, r, uncertain_by);
     if (uncertain >= 0)
-        return refuse(r, "the pairs leave the exposure of image %d uncertain by %.1f EV; overlap it more", uncertain,
-                      uncertain_by);
+        return refuse(r,
+                      of_image(LENSPROF_REASON_EXPOSURE_UNCERTAIN, static_cast<uint32_t>(uncertain), {uncertain_by}));
     return false;
 }
 
@@ -295,35 +246,48 @@ bool minds_known_exposures(const Problem &problem, const Estimate &estimate, len
     bool open = r.gamma_from == LENSPROF_GAMMA_EXPOSURES || r.gamma_from == LENSPROF_GAMMA_PRIOR;
     KnownExposures known = compare_known(problem, estimate, open);
     if (known.count > kMany) return false;
-    const int image = static_cast<int>(known.image);
-    double away = std::abs(std::log(std::max(known.slope, 1e-3)));
-    if (known.explanation == Explanation::order)
-        say(r,
-            "the known exposures do not follow the pictures, which differ by %.1f EV: are they in another order, or of "
-            "other pictures?",
-            known.off_ev);
-    else if (known.explanation == Explanation::one)
-        say(r,
-            "the exposure of image %d is %.1f EV away from its known one: one of the two is wrong, or its light changed",
-            image, std::abs(known.off_ev));
-    else if (known.explanation == Explanation::step)
-        say(r,
-            "from image %d on the known exposures are %.1f EV %s than the pictures: ISO, aperture or the light changed "
-            "there unnoticed",
-            image, std::abs(known.off_ev), known.off_ev > 0.0 ? "more" : "less");
-    else if (known.explanation == Explanation::any)
-        say(r,
-            "the known exposures contradict each other: one is wrong by more than %.1f EV, and they do not tell which; "
-            "gamma is as uncertain. Check them, or take more pictures",
-            known.off_ev);
-    else if (r.gamma_from == LENSPROF_GAMMA_EXPOSURES && away > std::max(kUnfollowed, 3.0 * r.gamma_sigma))
-        say(r,
-            "the known exposures want all exposures %.2f times as large: the modes of the response cannot follow there; "
-            "exposures, falloff and response have another exponent than what is known",
-            1.0 / known.slope);
-    else
-        return false;
-    return true;
+    const double away = std::abs(std::log(std::max(known.slope, 1e-3))), off = std::abs(known.off_ev);
+    switch (known.explanation) {
+    case Explanation::order: return warn(r, {LENSPROF_REASON_KNOWN_ORDER, {known.off_ev}});
+    case Explanation::one: return warn(r, of_image(LENSPROF_REASON_KNOWN_WRONG, known.image, {off}));
+    case Explanation::step:
+        return warn(r, of_image(known.off_ev > 0.0 ? LENSPROF_REASON_KNOWN_MORE_FROM : LENSPROF_REASON_KNOWN_LESS_FROM,
+                                known.image, {off}));
+    case Explanation::any: return warn(r, {LENSPROF_REASON_KNOWN_CONTRADICT, {known.off_ev}});
+    default: break;
+    }
+    const bool is_unfollowed =
+        r.gamma_from == LENSPROF_GAMMA_EXPOSURES && away > std::max(kUnfollowed, 3.0 * r.gamma_sigma);
+    return is_unfollowed && warn(r, {LENSPROF_REASON_GAMMA_UNFOLLOWED, {1.0 / known.slope}});
+}
+
+// What to mind about a usable result, the weightiest alone.
+bool warns_of_images(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    const int odd = odd_image(problem, r), contradicting = contradicting_image(problem, r);
+    if (odd >= 0) {
+        const auto image = static_cast<uint32_t>(odd);
+        return warn(r, of_image(is_static(problem) ? LENSPROF_REASON_STILL_IMAGE_ODD : LENSPROF_REASON_IMAGE_ODD, image,
+                                {r.image_quality[image].median_residual}));
+    }
+    if (minds_known_exposures(problem, estimate, r)) return true;
+    if (contradicting < 0) return false;
+    const auto image = static_cast<uint32_t>(contradicting);
+    return warn(r, of_image(LENSPROF_REASON_KNOWN_WRONG, image, {std::abs(r.image_quality[image].known_ev_residual)}));
+}
+
+bool warns_of_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    const bool is_still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
+    const double own = r.noise_levels * std::sqrt(r.image_share), of_frame = r.noise_levels * std::sqrt(r.frame_share);
+    const double off_centre = std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]);
+    if (r.image_share > kSuspiciousImageShare && own > (is_still ? kStillPattern : kSmallestPattern))
+        return warn(r, {LENSPROF_REASON_WEAK_PATTERNS, {r.image_share, own}});
+    if (r.frame_share > kNotRadial && of_frame > kSmallestPattern)
+        return warn(r, {LENSPROF_REASON_NOT_RADIAL, {r.frame_share, of_frame}});
+    if (off_centre > kFarCentre && (problem.free & LENSPROF_FREE_CENTER))
+        return warn(r, {LENSPROF_REASON_FAR_CENTER, {off_centre}});
+    if (!fits_response(estimate) || covered_greys(problem, r) >= kEnoughGreys) return false;
+    const auto [first, last] = missing_greys(problem, r);
+    return warn(r, {LENSPROF_REASON_MISSING_GREYS, {0.1 * first, 0.1 * last}});
 }
 
 }  // namespace
@@ -332,43 +296,8 @@ void judge(const Problem &problem, const Estimate &estimate, lensprof_fit_result
     if (lacks_data(problem, estimate, r) || contradicts_model(problem, estimate, r)
         || is_undetermined(problem, estimate, r))
         return;
-    r.usable = 1;
-    r.reason[0] = 0;
-    int odd = odd_image(problem, r), contradicting = contradicting_image(problem, r);
-    bool is_still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
-    double off_centre = std::hypot(r.vignetting[0].center[0], r.vignetting[0].center[1]);
-    if (odd >= 0)
-        say(r,
-            "most pairs of image %d disagree with the camera model (median residual %.1f levels): %s, or what moved "
-            "there",
-            odd, r.image_quality[odd].median_residual, next_step(problem));
-    else if (minds_known_exposures(problem, estimate, r))
-        return;
-    else if (contradicting >= 0)
-        say(r,
-            "the exposure of image %d is %.1f EV away from its known one: one of the two is wrong, or its light changed",
-            contradicting, std::abs(r.image_quality[contradicting].known_ev_residual));
-    else if (r.image_share > kSuspiciousImageShare
-             && r.noise_levels * std::sqrt(r.image_share) > (is_still ? kStillPattern : kSmallestPattern))
-        say(r,
-            "%.0f %% of the residual follows patterns of each image's own (%.1f levels), as weak local tone mapping "
-            "(HDR) makes them: exposures may be farther off than stated",
-            100.0 * r.image_share, r.noise_levels * std::sqrt(r.image_share));
-    else if (r.frame_share > kNotRadial && r.noise_levels * std::sqrt(r.frame_share) > kSmallestPattern)
-        say(r, "%.0f %% of the residual follows one pattern over the frame (%.1f levels): the falloff is not radial",
-            100.0 * r.frame_share, r.noise_levels * std::sqrt(r.frame_share));
-    else if (off_centre > kFarCentre && (problem.free & LENSPROF_FREE_CENTER))
-        say(r,
-            "the centre of the falloff lies %.2f half diagonals from the middle of the frame: are the pictures cropped, "
-            "or in the wrong place of the project?",
-            off_centre);
-    else if (fits_response(estimate) && covered_greys(problem, r) < kEnoughGreys) {
-        auto [first, last] = missing_greys(problem, r);
-        say(r,
-            "hardly a pair has grey values from %.1f to %.1f (of 1): what is said of the response there, and of gamma, "
-            "rests on the prior",
-            0.1 * first, 0.1 * last);
-    }
+    accept(r);
+    if (!warns_of_images(problem, estimate, r)) warns_of_model(problem, estimate, r);
 }
 
 }  // namespace lensprof

@@ -3,7 +3,7 @@
 namespace lensprof {
 
 void demand_of_profile(bool holds, uint32_t index, const std::string &text, lensprof_status status) {
-    if (!holds) throw FormatFailure{status, "profile " + std::to_string(index) + ": " + text};
+    if (!holds) throw failure_at(LENSPROF_ITEM_PROFILE, index, text, status);
 }
 
 void check_exported(const lensprof_profile &profile, uint32_t index, const std::string &format) {

@@ -17,8 +17,15 @@ std::string in_quotes(std::string_view word) {
     return text + (word.size() > 40 ? "...\"" : "\"");
 }
 
-void set_error(lensprof_error *error, const char *text) noexcept {
+FormatFailure failure_at(lensprof_item_kind kind, uint32_t index, const std::string &text, lensprof_status status) {
+    const std::string named = (kind == LENSPROF_ITEM_PROFILE ? "profile " : "frame ") + std::to_string(index);
+    const lensprof_item item{static_cast<uint32_t>(kind), index, 0, static_cast<uint32_t>(named.size())};
+    return {status, named + ": " + text, item};
+}
+
+void set_error(lensprof_error *error, const char *text, const lensprof_item &item) noexcept {
     if (!error) return;
+    error->item = item;
     size_t length = strnlen(text, sizeof error->text - 1);
     std::memcpy(error->text, text, length);
     error->text[length] = '\0';

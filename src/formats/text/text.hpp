@@ -21,8 +21,11 @@ using FormatFailure = FalloffFailure;
 // Word of a file for an error text: in quotes, shortened, control characters as '?'.
 std::string in_quotes(std::string_view word);
 
-// error may be NULL; the text is cut to fit.
-void set_error(lensprof_error *error, const char *text) noexcept;
+// The failure "profile 3: text" (or of another item), which is complete.
+FormatFailure failure_at(lensprof_item_kind kind, uint32_t index, const std::string &text, lensprof_status status);
+
+// error may be NULL; the text is cut to fit. `item` is what it begins with.
+void set_error(lensprof_error *error, const char *text, const lensprof_item &item = {}) noexcept;
 
 // Runs `body` and turns what it throws into a status and an error text.
 template <typename Body>
@@ -32,7 +35,7 @@ lensprof_status at_boundary(lensprof_error *error, Body body) noexcept {
         body();
         return LENSPROF_OK;
     } catch (const FormatFailure &failure) {
-        set_error(error, failure.text.c_str());
+        set_error(error, failure.text.c_str(), failure.item);
         return failure.status;
     } catch (const std::bad_alloc &) {
         set_error(error, "out of memory; close other programs or use fewer images");

@@ -8,7 +8,7 @@
 #define PATH_SHOWN 100 /* bytes of a path in a text, which holds 255 */
 
 void lp_store_clear(lensprof_error *error) {
-    if (error) error->text[0] = 0;
+    if (error) memset(error, 0, sizeof *error);
 }
 
 /* The end of a long path, from the start of a UTF-8 character. */

@@ -134,12 +134,11 @@ static uint32_t keep_newest(lp_falloff_node *nodes, uint32_t count) {
 }
 
 /* Rows that lack a number which the key has are of no use; one that the key lacks must be the same in all rows. Returns
- * NULL, or what is wrong. */
-static const char *settle(lp_candidates *found, lp_falloff_node *at, int which) {
-    static const char *const missing[] = {"the focal length is not known, and the lens has several; give it",
-                                          "the aperture is not known, and the lens has several; give it"};
-    static const char *const useless[] = {"no profile of this lens has a focal length",
-                                          "no profile of this lens has an aperture"};
+ * NONE, or what is wrong. */
+static lensprof_reason settle(lp_candidates *found, lp_falloff_node *at, int which) {
+    static const lensprof_reason missing[] = {LENSPROF_REASON_LOOKUP_FOCAL_MISSING,
+                                              LENSPROF_REASON_LOOKUP_APERTURE_MISSING};
+    static const lensprof_reason useless[] = {LENSPROF_REASON_LOOKUP_NO_FOCAL, LENSPROF_REASON_LOOKUP_NO_APERTURE};
     uint32_t kept = 0;
     if (setting(at, which) == LENSPROF_UNKNOWN) {
         const double only = setting(&found->all[0].node, which);
@@ -147,12 +146,12 @@ static const char *settle(lp_candidates *found, lp_falloff_node *at, int which) 
             if (!is_same(setting(&found->all[i].node, which), only)) return missing[which];
         set(at, which, only != LENSPROF_UNKNOWN ? only : 1.0); /* where nobody knows it makes no difference */
         for (uint32_t i = 0; i < found->count && only == LENSPROF_UNKNOWN; i++) set(&found->all[i].node, which, 1.0);
-        return NULL;
+        return LENSPROF_REASON_NONE;
     }
     for (uint32_t i = 0; i < found->count; i++)
         if (setting(&found->all[i].node, which) != LENSPROF_UNKNOWN) found->all[kept++] = found->all[i];
     found->count = kept;
-    return kept ? NULL : useless[which];
+    return kept ? LENSPROF_REASON_NONE : useless[which];
 }
 
 /* 0 within the stored settings, 1 outside, 2 too far. Nothing is predicted more than one node beyond the last: the
@@ -222,10 +221,14 @@ static int predict_any_distance(const lp_falloff_node *nodes, uint32_t count, lp
     return found > 0;
 }
 
-static lensprof_status refuse(lensprof_store *store, lensprof_lookup *lookup, const char *reason,
+/* Nothing is found: that alone is the reason. */
+static lensprof_status refuse(lensprof_store *store, lensprof_lookup *lookup, lensprof_reason reason,
                               lensprof_error *error) {
-    snprintf(lookup->reason, sizeof lookup->reason, "%s", reason);
-    return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile for this setting", reason, error);
+    const char *text = lensprof_reason_text(reason);
+    memset(lookup->reason_code, 0, sizeof lookup->reason_code);
+    lookup->reason_code[0] = reason;
+    snprintf(lookup->reason, sizeof lookup->reason, "%s", text);
+    return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile for this setting", text, error);
 }
 
 /* Variance of M of the first curve in the corner, 0 = not known, without the rest of the profile, which takes longer to
@@ -278,8 +281,7 @@ static lensprof_status make_profile(lensprof_store *store, const lensprof_profil
     for (uint32_t c = profile->vignettings; c < 3; c++)
         memset(&profile->vignetting[c], 0, sizeof profile->vignetting[c]);
     if (lensprof_profile_validate(profile) != LENSPROF_OK)
-        return refuse(store, lookup, "the profiles near it contradict each other: the falloff between them is none",
-                      error);
+        return refuse(store, lookup, LENSPROF_REASON_LOOKUP_CONTRADICTION, error);
     return LENSPROF_OK;
 }
 
@@ -318,14 +320,18 @@ static lensprof_status predict(lensprof_store *store, const lensprof_profile_key
     free(nodes);
     if (done < 0) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
     lookup->distance = p.nearest;
-    if (!done) return refuse(store, lookup, "the nearest profile of this lens is too far from this setting", error);
+    if (!done) return refuse(store, lookup, LENSPROF_REASON_LOOKUP_TOO_FAR, error);
     return make_profile(store, key, &p, lookup, error);
 }
 
-/* Adds to what the caller has to mind. */
-static void mind(lensprof_lookup *lookup, const char *what) {
+/* Adds to what the caller has to mind; `name` (or NULL) follows the sentence. */
+static void mind(lensprof_lookup *lookup, lensprof_reason reason, const char *name) {
     const size_t used = strlen(lookup->reason);
-    snprintf(lookup->reason + used, sizeof lookup->reason - used, "%s%s", used ? "; " : "", what);
+    uint32_t which = 0;
+    while (which + 1 < LENSPROF_LOOKUP_REASONS && lookup->reason_code[which]) which++;
+    lookup->reason_code[which] = reason;
+    snprintf(lookup->reason + used, sizeof lookup->reason - used, "%s%s%s%s", used ? "; " : "",
+             lensprof_reason_text(reason), name ? ": " : "", name ? name : "");
 }
 
 /* Cameras with a fixed lens round its focal length as they like (4.25, 4.2, 4.3 mm): one that differs by no more than
@@ -340,7 +346,7 @@ static void round_focal(const lp_candidates *found, lp_falloff_node *at, lenspro
     }
     if (nearest < 0.0 || is_same(nearest, at->focal_mm)) return;
     at->focal_mm = nearest;
-    mind(lookup, "the focal length is rounded otherwise than in the profiles of this camera");
+    mind(lookup, LENSPROF_REASON_LOOKUP_FOCAL_ROUNDED, NULL);
 }
 
 /* The newest row that is at the setting, or -1. */
@@ -361,12 +367,8 @@ static int64_t find_exact(const lp_candidates *found, const lp_falloff_node *at,
 static lensprof_status refuse_unknown(lensprof_store *store, const lensprof_profile_key *key,
                                       const lensprof_lookup_options *o, lensprof_lookup *lookup,
                                       lensprof_error *error) {
-    static const char *const reasons[] = {
-        "the profiles of this lens are of pictures processed otherwise (raw, jpeg, corrected), and so are their curves",
-        "the profiles of this lens are doubtful ones; ask for these, too, to have them",
-        "the profiles of this lens are of other cameras, or of single units of it; ask for these",
-        "no profile of a lens of this name; list the profiles to see which there are",
-        "no profile of this camera; list the profiles to see which there are"};
+    static const lensprof_reason reasons[] = {LENSPROF_REASON_LOOKUP_OTHER_PROCESSING, LENSPROF_REASON_LOOKUP_DOUBTFUL,
+                                              LENSPROF_REASON_LOOKUP_OTHER_CAMERA};
     const bool has_lens = lp_is_known(key->lens);
     lensprof_lookup_options wider = *o;
     lensprof_profile_key any = *key;
@@ -383,7 +385,8 @@ static lensprof_status refuse_unknown(lensprof_store *store, const lensprof_prof
         if (status != LENSPROF_OK) return status;
         if (count) return refuse(store, lookup, reasons[which], error);
     }
-    return refuse(store, lookup, reasons[has_lens || !*key->camera_model ? 3 : 4], error);
+    const bool of_lens = has_lens || !*key->camera_model;
+    return refuse(store, lookup, of_lens ? LENSPROF_REASON_LOOKUP_NO_LENS : LENSPROF_REASON_LOOKUP_NO_CAMERA, error);
 }
 
 static lensprof_status answer_exact(lensprof_store *store, int64_t id, lensprof_lookup *lookup, lensprof_error *error) {
@@ -394,20 +397,20 @@ static lensprof_status answer_exact(lensprof_store *store, int64_t id, lensprof_
     return status;
 }
 
-/* Focal length and aperture, where they are not given and the same everywhere. Returns NULL, or why not. */
-static const char *settle_all(lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup) {
-    static const char *const beyond[] = {"the focal length is beyond those at which this lens is known",
-                                         "the aperture is beyond those at which this lens is known"};
-    static const char *const outside[] = {"the focal length is outside those that are stored",
-                                          "the aperture is outside those that are stored"};
+/* Focal length and aperture, where they are not given and the same everywhere. Returns NONE, or why not. */
+static lensprof_reason settle_all(lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup) {
+    static const lensprof_reason beyond[] = {LENSPROF_REASON_LOOKUP_FOCAL_BEYOND,
+                                             LENSPROF_REASON_LOOKUP_APERTURE_BEYOND};
+    static const lensprof_reason outside[] = {LENSPROF_REASON_LOOKUP_FOCAL_OUTSIDE,
+                                              LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE};
     for (int which = 0; which < 2; which++) {
-        const char *wrong = settle(found, at, which);
+        const lensprof_reason wrong = settle(found, at, which);
         if (wrong) return wrong;
         const int side = place_of(found, at, which);
         if (side > 1) return beyond[which];
-        if (side > 0) mind(lookup, outside[which]);
+        if (side > 0) mind(lookup, outside[which], NULL);
     }
-    return NULL;
+    return LENSPROF_REASON_NONE;
 }
 
 /* What those that are used have in common, where the key leaves it open. */
@@ -419,31 +422,29 @@ static lensprof_profile_key complete_key(const lensprof_profile_key *key, const 
     return whole;
 }
 
-/* The candidates that count. Returns NULL, or why there are none. */
-static const char *choose(lp_candidates *found, const lensprof_profile_key *key, lensprof_lookup *lookup) {
-    char text[200];
+/* The candidates that count. Returns NONE, or why there are none. */
+static lensprof_reason choose(lp_candidates *found, const lensprof_profile_key *key, lensprof_lookup *lookup) {
     const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
-    if (!keep_best(found, key)) return "this lens was measured on smaller sensors only";
+    if (!keep_best(found, key)) return LENSPROF_REASON_LOOKUP_SMALLER_SENSOR;
     keep_one_processing(found);
-    if (!keep_nearest_light(found, key))
-        mind(lookup, "the profiles are of light of other colour temperatures: those of the nearest are taken");
-    if (several) mind(lookup, "the sensor's size is not known: of those measured the smallest is taken");
-    snprintf(text, sizeof text,
-             found->by_words ? "the lens was found by the words and numbers of its name: %s"
-                             : "no lens of this name; that of the camera is built in: %s",
-             found->last.lens);
-    if (found->by_words || found->by_camera) mind(lookup, text);
-    return NULL;
+    if (!keep_nearest_light(found, key)) mind(lookup, LENSPROF_REASON_LOOKUP_OTHER_LIGHT, NULL);
+    if (several) mind(lookup, LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR, NULL);
+    char lens[150]; /* leaves room for the other sentences */
+    snprintf(lens, sizeof lens, "%s", found->last.lens);
+    if (found->by_words)
+        mind(lookup, LENSPROF_REASON_LOOKUP_BY_WORDS, lens);
+    else if (found->by_camera)
+        mind(lookup, LENSPROF_REASON_LOOKUP_BUILT_IN, lens);
+    return LENSPROF_REASON_NONE;
 }
 
 static lensprof_status answer(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
                               lp_candidates *found, lensprof_lookup *lookup, lensprof_error *error) {
     lp_falloff_node at = {0, key->focal_mm, key->aperture, key->distance_m, {{0}}, 0.0};
     lookup->name_score = found->name_score;
-    if (found->has_lenses)
-        return refuse(store, lookup, "this camera has profiles of several lenses; give the lens", error);
+    if (found->has_lenses) return refuse(store, lookup, LENSPROF_REASON_LOOKUP_SEVERAL_LENSES, error);
     if (!found->count) return refuse_unknown(store, key, o, lookup, error);
-    const char *wrong = choose(found, key, lookup);
+    lensprof_reason wrong = choose(found, key, lookup);
     if (wrong) return refuse(store, lookup, wrong, error);
     round_focal(found, &at, lookup);
     int64_t same = find_exact(found, &at, key);
@@ -454,9 +455,10 @@ static lensprof_status answer(lensprof_store *store, const lensprof_profile_key 
     }
     if (same > 0) return answer_exact(store, same, lookup, error);
     if (at.distance_m == LENSPROF_UNKNOWN)
-        mind(lookup, o->distance_rule == LENSPROF_DISTANCE_WEAKEST
-                         ? "the focus distance is not known: the weakest falloff of those stored is taken"
-                         : "the focus distance is not known: the falloff at the farthest one stored is taken");
+        mind(lookup,
+             o->distance_rule == LENSPROF_DISTANCE_WEAKEST ? LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE
+                                                           : LENSPROF_REASON_LOOKUP_FARTHEST_DISTANCE,
+             NULL);
     const lensprof_profile_key whole = complete_key(key, found);
     lensprof_status status = weigh(store, found, error);
     return status == LENSPROF_OK ? predict(store, &whole, o, found, at, lookup, error) : status;

@@ -8,7 +8,7 @@
 #include "calls.h"
 
 static int is_right(const growing *g, int refused) {
-    lensprof_error error = {""};
+    lensprof_error error = {"", {0, 0, 0, 0}};
     char *given = new_structs(g, g->size), *before = malloc(g->size * g->count);
     if (!before) exit(1);
     memcpy(before, given, g->size * g->count);

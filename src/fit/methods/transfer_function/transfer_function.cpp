@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "fit/base/constants.hpp"
 #include "fit/methods/method.hpp"
@@ -12,6 +11,7 @@
 #include "fit/solver/start.hpp"
 #include "fit/verdict/finish.hpp"
 #include "fit/verdict/quality.hpp"
+#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 namespace {
@@ -232,12 +232,7 @@ Estimate Fit::in_emor(const State &state) const {
 void Fit::judge_exposures(const State &state, lensprof_fit_result &r) const {
     if ((!r.usable && r.converged) || !is_free_) return;  // alike, they do not settle either
     double usual = exposure_spread(all_, state.estimate);
-    if (usual >= kSmallestSpread) return;
-    r.usable = 0;
-    std::snprintf(r.reason, sizeof r.reason,
-                  "the pictures that overlap differ by %.2f EV, which shows transfer functions no response; take "
-                  "pictures of other exposures, hold a response that is known, or use the method transfer",
-                  usual);
+    if (usual < kSmallestSpread) refuse(r, {LENSPROF_REASON_EXPOSURES_ALIKE, {usual}});
 }
 
 // ln of the exponent that takes the exposures of an estimate to those of another, as near as one exponent can; 0 where

@@ -11,6 +11,7 @@
 #include "geometry.h"
 #include "model.h"
 #include "profile.h"
+#include "reason.h"
 #include "sample.h"
 #include "store.h"
 

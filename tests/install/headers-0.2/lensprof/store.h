@@ -10,6 +10,7 @@
 #define LENSPROF_STORE_H
 
 #include "profile.h"
+#include "reason.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -69,6 +70,7 @@ static inline void lensprof_lookup_options_init(lensprof_lookup_options *options
 }
 
 #define LENSPROF_LOOKUP_ROWS 24
+#define LENSPROF_LOOKUP_REASONS 8
 
 /* How a lookup came to its answer. */
 typedef struct lensprof_lookup {
@@ -87,6 +89,8 @@ typedef struct lensprof_lookup {
                           a camera's name in another country; 0.6 the same words in another order or form, all
                           numbers and generations the same, where nothing better is stored */
     char reason[256];  /* what to mind; where nothing is found, why */
+    uint32_t reason_code[LENSPROF_LOOKUP_REASONS]; /* lensprof_reason of each of its sentences, in their order; NONE
+                                                      after the last. The numbers are the other members */
 } lensprof_lookup;
 
 /* All zero. */

@@ -1,0 +1,62 @@
+// The verdict as data, and the sentence that is made of it.
+#pragma once
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <lensprof/reason.h>
+
+namespace lensprof {
+
+// What a verdict states.
+struct Reason {
+    lensprof_reason code;
+    std::vector<double> values;  // those that reason.h lists for the code
+    lensprof_item_kind kind = LENSPROF_ITEM_NONE;
+    uint32_t index = 0;
+};
+
+// About an image or a shot.
+Reason of_image(lensprof_reason code, uint32_t index, std::vector<double> values = {});
+Reason of_shot(lensprof_reason code, uint32_t number, std::vector<double> values = {});
+
+// In words, and where these name the image or shot.
+struct Sentence {
+    std::string text;
+    lensprof_item item;
+};
+Sentence sentence_of(const Reason &reason);
+
+// Puts a reason into a result, of an overlap fit or a flat field. Returns true.
+template <class Result>
+bool give_reason(Result &r, const Reason &reason, bool usable) {
+    const Sentence sentence = sentence_of(reason);
+    r.usable = usable;
+    std::snprintf(r.reason, sizeof r.reason, "%s", sentence.text.c_str());
+    r.reason_code = reason.code;
+    r.reason_item = sentence.item;
+    r.reason_values = static_cast<uint32_t>(reason.values.size());
+    std::fill(r.reason_value, r.reason_value + 2, 0.0);
+    std::copy(reason.values.begin(), reason.values.end(), r.reason_value);
+    return true;
+}
+
+template <class Result>
+bool refuse(Result &r, const Reason &reason) {
+    return give_reason(r, reason, false);
+}
+
+template <class Result>
+bool warn(Result &r, const Reason &reason) {
+    return give_reason(r, reason, true);
+}
+
+// Usable, and nothing to add.
+template <class Result>
+void accept(Result &r) {
+    give_reason(r, {LENSPROF_REASON_NONE, {}}, true);
+}
+
+}  // namespace lensprof
