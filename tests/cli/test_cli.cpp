@@ -62,6 +62,8 @@ void test_build_keeps_its_contract(void **) {
     const Json json = json_of(build_scene({}));
     assert_true(json.at("usable").is_boolean() && json["usable"].get<bool>());
     assert_string_equal(json.at("reason").get<std::string>().c_str(), "");
+    assert_string_equal(json.at("reason_code").get<std::string>().c_str(), "none");
+    assert_true(json.at("reason_item").is_null() && json.at("reason_values").empty());
     assert_int_equal(json.at("images").size(), 4);
     for (size_t i = 0; i < 4; ++i) {
         const Json &image = json["images"][i];
@@ -355,6 +357,12 @@ void test_forced(void **) {
     const Json json = json_of(words, not_usable);
     assert_false(json["usable"].get<bool>());
     assert_true(contains(json["reason"].get<std::string>(), "3 groups"));
+    assert_string_equal(json["reason_code"].get<std::string>().c_str(), "image_groups");
+    assert_string_equal(json["reason_item"]["kind"].get<std::string>().c_str(), "image");
+    const auto index = json["reason_item"]["index"].get<size_t>();
+    assert_true(json["reason_item"]["file"] == json["images"][index]["file"]);
+    assert_true(contains(json["reason"].get<std::string>(), json["images"][index]["file"].get<std::string>()));
+    assert_true(json["reason_values"] == Json({3.0}));
     assert_true(json["profile"].is_null());
     assert_false(fs::exists(db));
     assert_int_equal(json_of(words + Words{"--force"}, not_usable)["profile"].get<int>(), 1);

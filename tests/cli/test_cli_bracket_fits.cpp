@@ -73,6 +73,8 @@ void test_wrong_metadata_is_said(void **) {
             const std::string reason = json["reason"].get<std::string>();
             if (!contains(reason, files[which]) || !contains(reason, std::to_string(std::fabs(wrong)).substr(0, 3)))
                 fail_msg("%zu pictures, %.1f EV: %s", count, wrong, reason.c_str());
+            assert_string_equal(json["reason_code"].get<std::string>().c_str(), "known_wrong");
+            assert_true(json["reason_item"]["file"] == files[which] && json["reason_item"]["index"] == which);
             assert_close(assert_recovered(json, truth, 1.5), 1.0, 0.05);
         }
 }

@@ -108,7 +108,11 @@ void test_exposures_come_from_exif_or_the_command_line(void **) {
     assert_close(corner_error(given), 0.0, 0.004);
     const Json wrong = json_of(words + Words{"--ev", "-2,-1.6,0.5"}, not_usable);
     assert_true(contains(wrong["reason"].get<std::string>(), "EV away"));
-    assert_true(contains(wrong["reason"].get<std::string>(), ".tif"));
+    assert_string_equal(wrong["reason_code"].get<std::string>().c_str(), "flat_exposure_wrong");
+    const std::string file = wrong["images"][1]["file"];  // the one with the wrong exposure
+    assert_true(contains(wrong["reason"].get<std::string>(), file));
+    assert_true(wrong["reason_item"] == Json({{"kind", "image"}, {"index", 1}, {"file", file}}));
+    assert_true(wrong["reason_values"].size() == 1 && wrong["reason_values"][0].get<double>() > 0.3);
 }
 
 void test_a_card_at_several_places(void **) {

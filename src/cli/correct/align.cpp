@@ -127,8 +127,8 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
     return jobs;
 }
 
-Json report(const Options &o, const Fitted &fitted, const std::vector<lensprof_exposure> &exposures,
-            const Corrected &corrected) {
+Json report(const Options &o, const Fitted &fitted, const Verdict &verdict,
+            const std::vector<lensprof_exposure> &exposures, const Corrected &corrected) {
     const lensprof_fit_result &r = fitted.result;
     Json written = corrected.pictures;
     for (size_t i = 0; i < written.size(); i++) {
@@ -137,18 +137,16 @@ Json report(const Options &o, const Fitted &fitted, const std::vector<lensprof_e
         written[i]["white_balance"] = {w[0], w[1], w[2]};
     }
     auto known = [](double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(value); };
-    Json json = {{"schema", 1},
-                 {"usable", r.usable != 0},
-                 {"reason", r.reason},
-                 {"to", o.to},
-                 {"frames", written},
-                 {"residual",
-                  {{"before_rms", known(r.before_rms)},
-                   {"heldout_rms", known(r.heldout_rms)},
-                   {"heldout_median", known(r.heldout_median)},
-                   {"noise", r.noise_levels},
-                   {"inlier_share", r.inlier_share}}},
-                 {"pairs", r.pairs}};
+    Json json = {{"schema", 1}, {"usable", r.usable != 0}};
+    add_verdict(verdict, json);
+    json["to"] = o.to;
+    json["frames"] = written;
+    json["residual"] = {{"before_rms", known(r.before_rms)},
+                        {"heldout_rms", known(r.heldout_rms)},
+                        {"heldout_median", known(r.heldout_median)},
+                        {"noise", r.noise_levels},
+                        {"inlier_share", r.inlier_share}};
+    json["pairs"] = r.pairs;
     add_speed(corrected, json);
     return json;
 }
@@ -162,8 +160,8 @@ int align(const Options &o, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     std::vector<double> white_shares;  // of the project's pictures
     Fitted fitted = fit_sequence(o, project, white_shares, progress, streams);
-    std::string reason = with_names(fitted.result.reason, project.names);
-    set_text(fitted.result.reason, sizeof fitted.result.reason, reason);
+    Verdict verdict = verdict_of(fitted.result);
+    name_image(project.names, verdict);
     std::vector<lensprof_exposure> exposures;
     for (uint32_t i : frames) exposures.push_back(fitted.exposures[i]);
     Corrected written;
@@ -182,11 +180,11 @@ int align(const Options &o, Streams &streams) {
     }
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;
-    if (!fitted.result.usable && o.pto.empty()) reason += "; frames of a camera that moved need --project";
-    if (!reason.empty())
+    if (!fitted.result.usable && o.pto.empty()) verdict.text += "; frames of a camera that moved need --project";
+    if (!verdict.text.empty())
         streams.err << "lensprof: " << (fitted.result.usable ? "warning: " + item + ": " : item + ": not usable: ")
-                    << reason << (fitted.result.usable ? "" : "; nothing was written") << "\n";
-    if (o.json) print_json(report(o, fitted, exposures, written), streams.out);
+                    << verdict.text << (fitted.result.usable ? "" : "; nothing was written") << "\n";
+    if (o.json) print_json(report(o, fitted, verdict, exposures, written), streams.out);
     for (const auto &entry : written.pictures)
         if (!o.json) streams.out << entry["output"].get<std::string>() << "\n";
     return static_cast<int>(fitted.result.usable ? ExitCode::done : ExitCode::not_usable);

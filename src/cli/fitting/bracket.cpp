@@ -161,6 +161,22 @@ void report_members(const std::vector<uint32_t> &members, const std::vector<lens
     report.quality = quality;
 }
 
+// Of the members' fit, about the pictures, with what the command has against it.
+Verdict bracket_verdict(const lensprof_fit_result &result, const std::vector<uint32_t> &members,
+                        const std::vector<std::string> &names) {
+    Verdict verdict = verdict_of(result);
+    if (verdict.item.kind == LENSPROF_ITEM_IMAGE) verdict.item.index = members[verdict.item.index];
+    name_image(names, verdict);
+    switch (verdict.code) {
+    case LENSPROF_REASON_STILL_FEW_AGREE:
+    case LENSPROF_REASON_STILL_FEW_BEHIND_EXPOSURE:
+    case LENSPROF_REASON_STILL_IMAGE_DISAGREES:
+    case LENSPROF_REASON_STILL_IMAGE_ODD: verdict.text += "; --black leaves grey values of a raised black out"; break;
+    default: break;
+    }
+    return verdict;
+}
+
 bool is_debevec(const Options &o) { return o.fit.method == "debevec"; }
 
 // Failure (usage) for what has no meaning to the method debevec.
@@ -228,9 +244,7 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     Fitted best = fit(input, input.options.reference, project.path, progress, &report.quality);
     progress.clear();
     report.fit = best.result;
-    std::vector<std::string> names;
-    for (uint32_t i : members) names.push_back(project.names[i]);
-    set_text(report.fit.reason, sizeof report.fit.reason, with_names(best.result.reason, names));
+    report.verdict = bracket_verdict(best.result, members, project.names);
     report_members(members, images, best, report, streams);
     return report;
 }

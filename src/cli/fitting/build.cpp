@@ -237,7 +237,8 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     const std::string &item = o.points.empty() ? o.pto : o.points;
     Fitted best = fit(input, report.reference, item, progress, &report.quality);
     report.fit = best.result;
-    set_text(report.fit.reason, sizeof report.fit.reason, with_names(best.result.reason, project.names));
+    report.verdict = verdict_of(best.result);
+    name_image(project.names, report.verdict);
     report.exposures = best.exposures;
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(input.pairs, project));
     if (!o.pto_out.empty() && (report.fit.usable || o.store.force)) {

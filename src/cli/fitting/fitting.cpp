@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -171,14 +170,6 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
     return fitted;
 }
 
-std::string with_names(const std::string &reason, const std::vector<std::string> &names) {
-    static const std::regex number("image ([0-9]{1,9})");
-    std::smatch match;
-    if (!std::regex_search(reason, match, number)) return reason;
-    size_t i = std::stoul(match[1].str());
-    return i < names.size() ? match.prefix().str() + names[i] + match.suffix().str() : reason;
-}
-
 BuildReport no_fit(const std::vector<std::string> &names, const std::string &reason) {
     BuildReport report;
     report.names = names;
@@ -190,7 +181,7 @@ BuildReport no_fit(const std::vector<std::string> &names, const std::string &rea
     report.fit.gamma_sigma = LENSPROF_UNKNOWN;
     report.fit.vignettings = 1;
     report.quality.resize(names.size());
-    set_text(report.fit.reason, sizeof report.fit.reason, reason);
+    report.verdict.text = reason;
     return report;
 }
 
@@ -220,10 +211,10 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
     if (report.profile_id && !finish.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(store.db) << ": "
                     << describe_key(key) << "\n";
-    if (report.fit.usable && *report.fit.reason)
-        streams.err << "lensprof: warning: " << finish.source << ": " << report.fit.reason << "\n";
+    if (report.fit.usable && !report.verdict.text.empty())
+        streams.err << "lensprof: warning: " << finish.source << ": " << report.verdict.text << "\n";
     if (!report.fit.usable)
-        streams.err << "lensprof: " << finish.source << ": not usable: " << report.fit.reason
+        streams.err << "lensprof: " << finish.source << ": not usable: " << report.verdict.text
                     << (good || store.no_store ? "" : "; nothing was stored (--force stores it all the same)") << "\n";
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }

@@ -67,9 +67,6 @@ struct Fitted {
 Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,
            std::vector<lensprof_fit_image_quality> *quality);
 
-// The fit counts images; people know them by their files.
-std::string with_names(const std::string &reason, const std::vector<std::string> &names);
-
 // What is reported where no fit could be made: the same object, neutral, with the reason.
 BuildReport no_fit(const std::vector<std::string> &names, const std::string &reason);
 

@@ -2,7 +2,6 @@
 #include "cli/fitting/flat.hpp"
 
 #include <chrono>
-#include <regex>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -57,18 +56,6 @@ int on_progress(double done, void *progress) {
     return interrupted();
 }
 
-// The library counts images and shots; people know them by their files.
-std::string with_files(const std::string &reason, const FlatReport &report) {
-    static const std::regex number("shot ([0-9]{1,9})");
-    std::smatch match;
-    if (!std::regex_search(reason, match, number)) return with_names(reason, report.names);
-    const auto shot = std::stoul(match[1].str());
-    for (size_t i = 0; i < report.shots.size(); i++)
-        if (report.shots[i] == shot)
-            return match.prefix().str() + "the shot of " + report.names[i] + match.suffix().str();
-    return reason;
-}
-
 // JPEG rounds colours over blocks of 16 pixels, which no mean over pixels evens out: channels do not get curves of
 // their own from that.
 void mind_jpeg(const FlatCommand &o, FlatInput &input, Streams &streams) {
@@ -107,10 +94,12 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
     lensprof_status status = lensprof_fit_flat(&input.options, input.images.data(),
                                                static_cast<uint32_t>(input.images.size()), &report.fit, &error);
     progress.clear();
-    if (*error.text) set_text(error.text, sizeof error.text, with_names(error.text, input.names));
-    check(status, input.names.size() == 1 ? input.names[0] : input.names[0] + " and the others", &error);
+    check_named(status, input.names.size() == 1 ? input.names[0] : input.names[0] + " and the others", error,
+                LENSPROF_ITEM_IMAGE, input.names);
     report.solve_s = lap(clock);
-    set_text(report.fit.reason, sizeof report.fit.reason, with_files(report.fit.reason, report));
+    report.verdict = verdict_of(report.fit);
+    name_image(report.names, report.verdict);
+    name_shot(report.names, report.shots, report.verdict);
     return report;
 }
 
@@ -150,10 +139,10 @@ int run_flat(const std::vector<std::string> &arguments, Streams &streams) {
     if (report.profile_id && !o.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(input.key) << "\n";
-    if (report.fit.usable && *report.fit.reason)
-        streams.err << "lensprof: warning: " << o.files.front() << ": " << report.fit.reason << "\n";
+    if (report.fit.usable && !report.verdict.text.empty())
+        streams.err << "lensprof: warning: " << o.files.front() << ": " << report.verdict.text << "\n";
     if (!report.fit.usable)
-        streams.err << "lensprof: " << o.files.front() << ": not usable: " << report.fit.reason
+        streams.err << "lensprof: " << o.files.front() << ": not usable: " << report.verdict.text
                     << (good || o.store.no_store ? "" : "; nothing was stored (--force stores it all the same)")
                     << "\n";
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);

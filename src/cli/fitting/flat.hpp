@@ -53,6 +53,7 @@ struct FlatReport {
     std::vector<lensprof_flat_image_quality> quality;
     std::vector<lensprof_response> response;
     lensprof_flat_result fit{};
+    Verdict verdict;  // of it
     double load_s = 0, solve_s = 0;
     int64_t profile_id = 0;  // 0 = not stored
 };

@@ -91,7 +91,7 @@ Json flat_json(const FlatReport &report) {
     json["schema"] = 1;
     json["method"] = "flat";
     json["usable"] = fit.usable != 0;
-    json["reason"] = fit.reason;
+    add_verdict(report.verdict, json);
     json["images"] = images_json(report);
     json["vignetting"] = vignetting_json(fit.vignetting, fit.vignettings);
     json["response"] = response_json(report.response.data(), static_cast<uint32_t>(report.response.size()));
@@ -139,9 +139,9 @@ void print_flat(const FlatReport &report, std::ostream &out) {
     print_spots(fit, out);
     out << format("time      load %.2f s, solve %.2f s\n", report.load_s, report.solve_s);
     if (!fit.usable)
-        out << "NOT USABLE: " << fit.reason << "\n";
-    else if (*fit.reason)
-        out << "mind      " << fit.reason << "\n";
+        out << "NOT USABLE: " << report.verdict.text << "\n";
+    else if (!report.verdict.text.empty())
+        out << "mind      " << report.verdict.text << "\n";
 }
 
 }  // namespace lensprof

@@ -183,13 +183,14 @@ std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pic
     lensprof_error error{};
     uint32_t found = 0;
     auto count = static_cast<uint32_t>(images.size());
-    check(function(&options, images.data(), count, nullptr, 0, &found, &error), project.path, &error);
+    check_named(function(&options, images.data(), count, nullptr, 0, &found, &error), project.path, error,
+                LENSPROF_ITEM_IMAGE, project.names);
     std::vector<Item> items(found);
     options.progress = on_sampling;
     options.progress_user = &progress;
     lensprof_status status = function(&options, images.data(), count, items.data(), found, &found, &error);
     stop_if_interrupted();
-    check(status, project.path, &error);
+    check_named(status, project.path, error, LENSPROF_ITEM_IMAGE, project.names);
     items.resize(found);
     return items;
 }

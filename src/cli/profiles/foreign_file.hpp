@@ -70,8 +70,8 @@ void read_part(const ForeignRule &rule, const std::string &path, const ForeignOp
                lensprof_profile &profile);
 
 // Writes the profiles, one where the format holds one. Complete or not at all; opcodes go into the TIFF or DNG that is
-// there. Failure names the file, and says what the format cannot hold.
+// there. Failure names the file and, by its name in `names`, the profile, and says what the format cannot hold.
 void write_foreign(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,
-                   const std::vector<const lensprof_profile *> &profiles);
+                   const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names);
 
 }  // namespace lensprof

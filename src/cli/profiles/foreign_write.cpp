@@ -16,14 +16,16 @@ constexpr uint64_t most_map_values = 100000000;
 constexpr size_t most_bytes = size_t(64) << 20;  // of a file of profiles, as read_profiles
 
 // What a writer of the library makes, by asking for the size first: write(buffer, capacity, &needed, &error).
+// `names` are those of the profiles.
 template <typename Write>
-std::string bytes_of(const std::string &path, const Write &write) {
+std::string bytes_of(const std::string &path, const std::vector<std::string> &names, const Write &write) {
     size_t needed = 0;
     lensprof_error error{};
     lensprof_status status = write(static_cast<char *>(nullptr), size_t(0), &needed, &error);
-    if (status != LENSPROF_ERROR_CAPACITY) check(status, path, &error);
+    if (status != LENSPROF_ERROR_CAPACITY) check_named(status, path, error, LENSPROF_ITEM_PROFILE, names);
     std::string bytes(needed, 0);
-    check(write(bytes.data(), bytes.size(), &needed, &error), path, &error);
+    status = write(bytes.data(), bytes.size(), &needed, &error);
+    check_named(status, path, error, LENSPROF_ITEM_PROFILE, names);
     return bytes;
 }
 
@@ -103,7 +105,7 @@ void write_opcodes(const std::string &path, const ForeignOptions &o, const lensp
     // after demosaicing there are three channels; linear raw images and plain TIFF have them from the start
     const uint32_t layout = lists.layout == LENSPROF_LAYOUT_GREY ? LENSPROF_LAYOUT_GREY : LENSPROF_LAYOUT_RGB;
     const auto written = [&](uint32_t form, double &worst) {
-        return bytes_of(path, [&](char *bytes, size_t capacity, size_t *needed, lensprof_error *error) {
+        return bytes_of(path, {}, [&](char *bytes, size_t capacity, size_t *needed, lensprof_error *error) {
             return lensprof_dng_opcodes_write(&profile, lists.width, lists.height, layout, form, bytes, capacity,
                                               needed, &worst, error);
         });
@@ -118,10 +120,10 @@ void write_opcodes(const std::string &path, const ForeignOptions &o, const lensp
 }
 
 std::string text_of(const ForeignRule &rule, const std::string &path, const ForeignOptions &o,
-                    const std::vector<const lensprof_profile *> &profiles) {
+                    const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names) {
     const lensprof_profile &first = *profiles[0];
     const auto count = static_cast<uint32_t>(profiles.size());
-    return bytes_of(path, [&](char *bytes, size_t capacity, size_t *needed, lensprof_error *error) {
+    return bytes_of(path, names, [&](char *bytes, size_t capacity, size_t *needed, lensprof_error *error) {
         switch (rule.format) {
         case ForeignFormat::lensfun:
             return lensprof_lensfun_write(profiles.data(), count, bytes, capacity, needed, error);
@@ -147,7 +149,7 @@ std::string text_of(const ForeignRule &rule, const std::string &path, const Fore
 }  // namespace
 
 void write_foreign(const ForeignRule &rule, const std::string &path, const ForeignOptions &o,
-                   const std::vector<const lensprof_profile *> &profiles) {
+                   const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names) {
     const bool holds_many = rule.format == ForeignFormat::lensfun || rule.format == ForeignFormat::lcp
                             || rule.format == ForeignFormat::json;
     if (!holds_many && profiles.size() != 1)
@@ -158,7 +160,7 @@ void write_foreign(const ForeignRule &rule, const std::string &path, const Forei
         demand_frame(path, rule, o);
     if (format == ForeignFormat::map) return write_map(path, o, *profiles[0]);
     if (format == ForeignFormat::opcodes) return write_opcodes(path, o, *profiles[0]);
-    const std::string text = text_of(rule, path, o, profiles);
+    const std::string text = text_of(rule, path, o, profiles, names);
     if (holds_many && text.size() > most_bytes)
         throw Failure(ExitCode::usage, path + ": would be larger than the 64 MiB that are read; export fewer profiles, or use "
                                               "`lensprof profile merge`");

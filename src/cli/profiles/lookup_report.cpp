@@ -8,9 +8,13 @@ namespace lensprof {
 Json lookup_json(const lensprof_lookup &how) {
     Json rows = Json::array();
     for (uint32_t i = 0; i < how.rows; i++) rows.push_back({{"id", how.id[i]}, {"weight", how.weight[i]}});
+    Json codes = Json::array();
+    for (uint32_t code : how.reason_code)
+        if (code != LENSPROF_REASON_NONE) codes.push_back(lensprof_reason_name(code));
     return {{"exact", how.exact != 0},      {"rows", rows},
             {"distance", how.distance},     {"sigma", how.sigma == LENSPROF_UNKNOWN ? Json() : Json(how.sigma)},
-            {"name_score", how.name_score}, {"reason", how.reason}};
+            {"name_score", how.name_score}, {"reason", how.reason},
+            {"reason_codes", codes}};
 }
 
 std::string describe_prediction(const lensprof_lookup &how) {

@@ -80,18 +80,6 @@ void export_blob(const Options &o, const StoredProfile &stored, Streams &streams
     if (o.covariance && !profile.covariance_size) streams.out << "its covariance is not known: there is none in it\n";
 }
 
-// Writers count the profiles that they are given from 0; here they have numbers.
-Failure with_ids(const Failure &failure, const std::vector<StoredProfile> &chosen) {
-    std::string text = failure.what();
-    const std::string word = "profile ";
-    const size_t at = text.find(": " + word), from = at + 2 + word.size();
-    if (at == std::string::npos) return failure;
-    const size_t to = text.find_first_not_of("0123456789", from),
-                 index = std::strtoul(text.c_str() + from, nullptr, 10);
-    if (to == from || to == std::string::npos || text[to] != ':' || index >= chosen.size()) return failure;
-    return Failure(failure.code, text.replace(from, to - from, std::to_string(chosen[index].id)));
-}
-
 // What a format cannot hold and is not refused.
 void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<StoredProfile> &chosen,
                    Streams &streams) {
@@ -107,6 +95,7 @@ void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<
 void export_foreign(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
                     Streams &streams) {
     std::vector<const lensprof_profile *> profiles;
+    std::vector<std::string> names;
     Json ids = Json::array();
     const bool needs_crop = rule.format == ForeignFormat::lensfun || rule.format == ForeignFormat::lcp;
     for (const StoredProfile &one : chosen) {
@@ -116,12 +105,9 @@ void export_foreign(const Options &o, const ForeignRule &rule, const std::vector
             throw Failure(ExitCode::usage, o.output + ": the crop factor of profile " + std::to_string(one.id)
                                                + " is not known; give --crop-factor");
         profiles.push_back(one.profile.get()), ids.push_back(one.id);
+        names.push_back("profile " + std::to_string(one.id));
     }
-    try {
-        write_foreign(rule, o.output, o.foreign, profiles);
-    } catch (const Failure &failure) {
-        throw with_ids(failure, chosen);
-    }
+    write_foreign(rule, o.output, o.foreign, profiles, names);
     warn_of_means(rule, o, chosen, streams);
     if (o.json)
         print_json(Json{{"schema", 1}, {"profiles", ids}, {"format", rule.name}, {"file", o.output}}, streams.out);

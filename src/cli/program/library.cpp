@@ -40,9 +40,22 @@ ExitCode exit_code(lensprof_status status) {
 }  // namespace
 
 void check(lensprof_status status, const std::string &item, const lensprof_error *error) {
+    check_named(status, item, error ? *error : lensprof_error{}, LENSPROF_ITEM_NONE, {});
+}
+
+std::string with_name(const std::string &text, const lensprof_item &item, const std::string &name) {
+    const size_t end = size_t(item.text_begin) + item.text_bytes;
+    if (!item.text_bytes || end > text.size()) return text;
+    return text.substr(0, item.text_begin) + name + text.substr(end);
+}
+
+void check_named(lensprof_status status, const std::string &item, const lensprof_error &error, lensprof_item_kind kind,
+                 const std::vector<std::string> &names) {
     if (status == LENSPROF_OK) return;
-    std::string text = error && error->text[0] ? error->text : lensprof_status_name(status);
-    bool is_named = item.empty() || text.rfind(item, 0) == 0;
+    std::string text = error.text[0] ? error.text : lensprof_status_name(status);
+    if (error.item.kind == static_cast<uint32_t>(kind) && error.item.index < names.size())
+        text = with_name(text, error.item, names[error.item.index]);
+    const bool is_named = item.empty() || text.rfind(item, 0) == 0;
     throw Failure(exit_code(status), is_named ? text : item + ": " + text);
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <lensprof/lensprof.h>
 
@@ -14,6 +15,13 @@ namespace lensprof {
 // Throws Failure with the exit code that belongs to the status, unless it is OK. The text is `item`: error text (or the
 // status's name where there is none).
 void check(lensprof_status status, const std::string &item, const lensprof_error *error = nullptr);
+
+// A text of the library with `name` in place of the words that name its item.
+std::string with_name(const std::string &text, const lensprof_item &item, const std::string &name);
+
+// As check; the item of `kind` that the error names, if it does, has a name in `names`.
+void check_named(lensprof_status status, const std::string &item, const lensprof_error &error, lensprof_item_kind kind,
+                 const std::vector<std::string> &names);
 
 struct StoreClose {
     void operator()(lensprof_store *store) const { lensprof_store_close(store); }

@@ -229,10 +229,10 @@ Json gamma_json(const BuildReport &report) {
 // The stored profile that the fit was given; null where none was asked for.
 Json prior_json(const BuildReport &report) {
     if (!report.prior_id && report.no_prior.empty()) return Json();
-    return {
-        {"profile", report.prior_id ? Json(report.prior_id) : Json()},
-        {"used", report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED},
-        {"reason", report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_OVERRULED ? report.fit.reason : report.no_prior}};
+    return {{"profile", report.prior_id ? Json(report.prior_id) : Json()},
+            {"used", report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED},
+            {"reason",
+             report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_OVERRULED ? report.verdict.text : report.no_prior}};
 }
 
 }  // namespace
@@ -242,7 +242,7 @@ Json build_json(const BuildReport &report) {
     Json json;
     json["schema"] = 1;
     json["usable"] = fit.usable != 0;
-    json["reason"] = fit.reason;
+    add_verdict(report.verdict, json);
     json["reference"] = report.reference;
     json["images"] = images_json(report);
     if (report.has_falloff) json["vignetting"] = vignetting_json(fit.vignetting, fit.vignettings);
@@ -327,9 +327,9 @@ void print_build(const BuildReport &report, std::ostream &out) {
                   heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
     if (!fit.usable)
-        out << "NOT USABLE: " << fit.reason << "\n";
-    else if (*fit.reason)
-        out << "mind      " << fit.reason << "\n";
+        out << "NOT USABLE: " << report.verdict.text << "\n";
+    else if (!report.verdict.text.empty())
+        out << "mind      " << report.verdict.text << "\n";
 }
 
 Json key_json(const lensprof_profile_key &key) {

@@ -11,6 +11,7 @@
 #include <lensprof/lensprof.h>
 
 #include "cli/report/falloff.hpp"
+#include "cli/report/verdict.hpp"
 
 namespace lensprof {
 
@@ -22,6 +23,7 @@ struct BuildReport {
     std::vector<lensprof_exposure> exposures;  // relative to the reference
     std::vector<lensprof_fit_image_quality> quality;
     lensprof_fit_result fit{};
+    Verdict verdict;  // of it
     uint32_t reference = 0;
     bool has_falloff = true;       // else it cancels in these pictures
     bool exposures_given = false;  // on the command line, and not by EXIF
