@@ -47,6 +47,9 @@ void test_query_between(void **) {
     assert_true(json["lookup"]["rows"].size() >= 6);
     assert_true(json["lookup"]["sigma"].get<double>() > 0.0);
     assert_true(json["id"].is_null());
+    assert_true(json["lookup"]["reason_codes"].empty());
+    const Json near = json_of(query + Words{"--focal", "35", "--aperture", "3.4", "--json"});
+    assert_true(near["lookup"]["reason_codes"] == Json::array({"lookup_weakest_distance"}));
     const std::string said = must_exit(done, query + Words{"--focal", "35", "--aperture", "3.4"});
     assert_true(contains(said, "predicted from") && contains(said, "the weakest falloff of those stored is taken"));
     assert_true(contains(said, "Lensfun database, CC BY-SA 3.0"));
