@@ -11,7 +11,9 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "falloff/dense.hpp"
 
 namespace lensprof {
 
@@ -47,7 +49,7 @@ Descent levenberg_marquardt(const DescentLimits &limits, Model model, ObjectiveA
             Eigen::MatrixXd damped = here.hessian;
             damped.diagonal() *= 1.0 + damping;
             damped.diagonal().array() += 1e-12;  // an unknown that nothing depends on stays
-            const Eigen::VectorXd change = damped.ldlt().solve(here.gradient);
+            const Eigen::VectorXd change = solve_symmetric(damped, here.gradient);
             const double gain = here.objective - objective_after(change);
             better = gain >= 0.0;
             if (!better && std::abs(gain) > limits.gain * here.objective) continue;

@@ -109,7 +109,7 @@ private:
         for (uint32_t c = 0; c < map_.channels; c++) {
             const lensprof_vignetting v = shape(terms_, c);
             const std::vector<Sample> &samples = channels_[c].samples;
-            terms_.segment(4 * c, 4) = fit_powers<4>(kPowers, 4, static_cast<int>(samples.size()), 1, [&](int i) {
+            terms_.segment(4 * c, 4) = fit_powers(kPowers, 4, static_cast<int>(samples.size()), 1, [&](int i) {
                 const Sample &s = samples[static_cast<size_t>(i)];
                 const double r2 = lensprof_vignetting_r2(&v, map_.width, map_.height, s.x, s.y, nullptr);
                 return PowerSample{r2, s.value, 1.0 / (s.value * s.value)};

@@ -11,11 +11,7 @@
 // taken, where a Cholesky factor would divide by rounding errors.
 #pragma once
 
-#include <cmath>
-#include <limits>
-
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 namespace lensprof {
 
@@ -24,41 +20,21 @@ struct PowerSample {
     double r2, value, weight;
 };
 
-// Most: bound of the number of powers, which keeps everything off the heap; Dynamic: none.
-template <int Most = Eigen::Dynamic>
-using PowerTerms = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Most, 1>;
+constexpr int kMostPowers = 6;
 
-// c for the powers p[count], count >= 1, of the samples sample_at(0), ..., sample_at(samples - 1).
-template <int Most = Eigen::Dynamic, class SampleAt>
-PowerTerms<Most> fit_powers(const int *power, int count, int samples, int refinements, SampleAt sample_at) {
-    using Vector = PowerTerms<Most>;
-    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, Most, Most>;
-    Matrix normal = Matrix::Zero(count, count);
-    Vector terms = Vector::Zero(count), right(count), row(count);
-    Eigen::LDLT<Matrix> factor;
-    Eigen::ColPivHouseholderQR<Matrix> of_rank;
-    bool is_singular = false;
-    for (int round = 0; round <= refinements; round++) {
-        right.setZero();
-        for (int i = 0; i < samples; i++) {
-            const PowerSample s = sample_at(i);
-            for (int n = 0; n < count; n++) row[n] = std::pow(s.r2, power[n]);
-            if (round == 0) normal += s.weight * row * row.transpose();
-            right += s.weight * row * (round == 0 ? s.value : s.value - row.dot(terms));
-        }
-        if (round == 0) {
-            factor.compute(normal);
-            const double smallest = factor.vectorD().cwiseAbs().minCoeff(),
-                         largest = factor.vectorD().cwiseAbs().maxCoeff();
-            is_singular = !(smallest > count * std::numeric_limits<double>::epsilon() * largest);
-            if (is_singular) of_rank.compute(normal);
-        }
-        if (is_singular)
-            terms += of_rank.solve(right);
-        else
-            terms += factor.solve(right);
-    }
-    return terms;
+// Bounded, which keeps it off the heap.
+using PowerTerms = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostPowers, 1>;
+
+// c for the powers p[count], 1 <= count <= kMostPowers, of the samples sample_at(of, 0), ..., sample_at(of, samples -
+// 1).
+PowerTerms fit_powers(const int *power, int count, int samples, int refinements,
+                      PowerSample (*sample_at)(const void *of, int i), const void *of);
+
+// The same, of samples sample_at(i).
+template <class SampleAt>
+PowerTerms fit_powers(const int *power, int count, int samples, int refinements, const SampleAt &sample_at) {
+    const auto call = [](const void *of, int i) { return (*static_cast<const SampleAt *>(of))(i); };
+    return fit_powers(power, count, samples, refinements, call, &sample_at);
 }
 
 }  // namespace lensprof

@@ -199,7 +199,7 @@ void lp_sample_falloff(const double k[3], double *values) {
 
 void lp_fit_falloff(const double *values, double k[3]) {
     constexpr int kPowers[3] = {1, 2, 3};
-    const auto terms = lensprof::fit_powers<3>(kPowers, 3, LP_FALLOFF_RADII, 0, [&](int i) {
+    const auto terms = lensprof::fit_powers(kPowers, 3, LP_FALLOFF_RADII, 0, [&](int i) {
         const double r = double(i) / (LP_FALLOFF_RADII - 1);
         return lensprof::PowerSample{r * r, values[i] - 1.0, r};
     });

@@ -1,8 +1,9 @@
 // Every derivative of the fit against central differences, and the elimination of the images against a full solve.
 #include "simulated.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "falloff/dense.hpp"
 #include "fit/prior/prior.hpp"
 #include "fit/problem/residual.hpp"
 #include "fit/solver/transfer_equations.hpp"
@@ -185,7 +186,7 @@ void test_objective_gradient(void **) {
             assert_true(model.reduce(0.0));
             // A step along the solution of the reduced system decreases the objective at the rate -b'S^-1 b - (images'
             // part).
-            Eigen::VectorXd d = model.reduced_hessian().ldlt().solve(model.reduced_gradient());
+            Eigen::VectorXd d = solve_symmetric(model.reduced_hessian(), model.reduced_gradient());
             auto images = model.image_step(d);
             auto at = [&](double t) {
                 Estimate e = s.estimate;
@@ -216,7 +217,7 @@ void test_elimination_equals_full_solve(void **) {
     NoiseWeights weights = noise_weights(s.problem, s.estimate, loss);
     TransferEquations model(s.problem, prior, loss, weights, s.estimate, ModeTable(6));
     assert_true(model.reduce(0.0));
-    Eigen::VectorXd shared_step = model.reduced_hessian().ldlt().solve(model.reduced_gradient());
+    Eigen::VectorXd shared_step = solve_symmetric(model.reduced_hessian(), model.reduced_gradient());
     auto image_step = model.image_step(shared_step);
 
     int shared = static_cast<int>(model.columns().size()), unknowns = shared + s.problem.image_unknowns;
@@ -263,7 +264,7 @@ void test_elimination_equals_full_solve(void **) {
     hessian(known, known) += prior.known[1].precision;
     gradient[known] -= prior.known[1].precision * (s.estimate.log_exposure[1][1] - prior.known[1].log_exposure);
     for (int q = shared; q < unknowns; q++) hessian(q, q) += 2e-3;
-    Eigen::VectorXd step = hessian.ldlt().solve(gradient);
+    Eigen::VectorXd step = solve_symmetric(hessian, gradient);
     for (int u = 0; u < shared; u++) assert_close(shared_step[u], step[u], 1e-3 * (0.01 + std::abs(step[u])));
     assert_close(image_step[1][1], step[shared + s.problem.ev_unknown[1]], 1e-4);
     assert_close(image_step[3][1], image_step[2][1], 0.0);  // linked
@@ -271,7 +272,8 @@ void test_elimination_equals_full_solve(void **) {
     assert_close(image_step[0][0], 0.0, 0.0);               // the reference stays
 
     // Variances: the diagonal of the full inverse.
-    Eigen::MatrixXd inverse = hessian.inverse(), shared_inverse = model.reduced_hessian().inverse();
+    Eigen::MatrixXd inverse = inverse_of_symmetric(hessian),
+                    shared_inverse = inverse_of_symmetric(model.reduced_hessian());
     Eigen::VectorXd variance = model.image_variance(shared_inverse);
     for (int u = 0; u < shared; u++) assert_close(shared_inverse(u, u), inverse(u, u), 1e-3 * inverse(u, u));
     for (int q = 0; q < s.problem.image_unknowns; q++)

@@ -1,8 +1,9 @@
 // The radiance method's model: radiances found exactly, derivatives, elimination, whom it trusts.
 #include "simulated_tracks.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "falloff/dense.hpp"
 #include "fit/problem/curve_shape.hpp"
 #include "fit/solver/objective.hpp"
 #include "fit/solver/radiance_equations.hpp"
@@ -147,7 +148,7 @@ void test_descent_along_a_joint_step(void **) {
         Trust trust = trust_all(s.problem);
         RadianceEquations model(s.problem, prior, s.loss, trust, s.estimate, ModeTable(6));
         assert_true(model.reduce(0.0));
-        Eigen::VectorXd d = model.reduced_hessian().ldlt().solve(model.reduced_gradient());
+        Eigen::VectorXd d = solve_symmetric(model.reduced_hessian(), model.reduced_gradient());
         auto images = model.image_step(d);
         auto at = [&](double t) {
             Estimate e = s.estimate;
@@ -244,7 +245,7 @@ void test_elimination_equals_full_solve(void **) {
     Trust trust = trust_all(s.problem);
     RadianceEquations model(s.problem, prior, s.loss, trust, s.estimate, ModeTable(6));
     assert_true(model.reduce(0.0));
-    Eigen::VectorXd shared_step = model.reduced_hessian().ldlt().solve(model.reduced_gradient());
+    Eigen::VectorXd shared_step = solve_symmetric(model.reduced_hessian(), model.reduced_gradient());
     auto image_step = model.image_step(shared_step);
 
     Eigen::Index shared = shared_step.size(), outer = shared + s.problem.image_unknowns;
@@ -255,15 +256,15 @@ void test_elimination_equals_full_solve(void **) {
     Eigen::VectorXd gradient = -scale * jacobian.transpose() * held.residuals(s.estimate, 0.0);
     add_prior(s, prior, model.columns(), hessian, gradient);
     for (Eigen::Index u = outer; u < hessian.rows(); u++) hessian(u, u) += 1e-9;  // radiances that nothing measures
-    Eigen::VectorXd step = hessian.ldlt().solve(gradient);
+    Eigen::VectorXd step = solve_symmetric(hessian, gradient);
     for (Eigen::Index u = 0; u < shared; u++) assert_close(shared_step[u], step[u], 2e-3 * (0.01 + std::abs(step[u])));
     assert_close(image_step[1][1], step[shared + s.problem.ev_unknown[1]], 2e-4);
     assert_close(image_step[3][1], image_step[2][1], 0.0);  // linked
     assert_close(image_step[2][0], image_step[2][1], 0.0);  // red of image 2 is fixed
     assert_close(image_step[0][0], 0.0, 0.0);               // the reference stays
 
-    Eigen::MatrixXd inverse = hessian.ldlt().solve(Eigen::MatrixXd::Identity(hessian.rows(), hessian.rows()));
-    Eigen::MatrixXd shared_inverse = model.reduced_hessian().inverse();
+    Eigen::MatrixXd inverse = inverse_of_symmetric(hessian);
+    Eigen::MatrixXd shared_inverse = inverse_of_symmetric(model.reduced_hessian());
     Eigen::VectorXd variance = model.image_variance(shared_inverse);
     for (Eigen::Index u = 0; u < shared; u++) assert_close(shared_inverse(u, u), inverse(u, u), 2e-3 * inverse(u, u));
     for (Eigen::Index q = 0; q < s.problem.image_unknowns; q++)
@@ -307,14 +308,14 @@ void test_prior_covariance(void **) {
     Estimate estimate;
     for (int modes : {1, 5, 25}) {
         Eigen::MatrixXd precision = prior_of(prior, modes).precision.topLeftCorner(modes, modes);
-        Eigen::MatrixXd covariance = precision.inverse();
+        Eigen::MatrixXd covariance = inverse_of_symmetric(precision);
         for (int l = 0; l < modes; l++) {
             assert_close(covariance(l, l), kEmorSigma[l] * kEmorSigma[l], 1e-9 * covariance(l, l));
             for (int m = 0; m < l; m++)
                 assert_close(covariance(l, m), kEmorSigma[l] * kEmorSigma[m] * kEmorCorrelation[l * (l - 1) / 2 + m],
                              1e-9 * kEmorSigma[l] * kEmorSigma[m]);
         }
-        assert_true(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(precision).eigenvalues().minCoeff() > 0.0);
+        assert_true(is_positive_definite(precision));
     }
     assert_true(prior_of(make_prior(1.0, 1), 5).precision == make_prior(1.0, 1).precision);  // transfer's stays
 }

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "core/covariance.h"
+#include "falloff/dense.hpp"
 #include "fit/base/parallel.hpp"
 
 namespace lensprof {
@@ -76,7 +75,7 @@ bool curves_differ(const FlatFit &fit) {
     if (n == 0 || std::max(std::abs(corner[0]), std::abs(corner[1])) < kSmallestDifference) return false;
     Eigen::VectorXd difference = map * fit.estimate.u;
     Eigen::MatrixXd spread = map * fit.covariance * map.transpose();
-    return difference.dot(spread.ldlt().solve(difference)) > kDiffers;
+    return difference.dot(solve_symmetric(spread, difference)) > kDiffers;
 }
 
 // Whether the pictures tell the light's gradient from the falloff's centre.

@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
+#include "falloff/dense.hpp"
 #include "fit/base/levels.hpp"
 #include "fit/base/parallel.hpp"
 #include "fit/problem/residual.hpp"
@@ -76,7 +75,7 @@ LogInverse log_inverse_of(const Problem &problem, const Estimate &given, double 
     auto count = static_cast<double>(add_pairs(problem, given, rows));
     add_smoothness(kLambda * std::max(prior_weight, kSmallestPrior) * std::max(count, 1.0) / kTheirRows, rows);
     rows.normal.diagonal().array() += kRidge * std::max(count, 1.0);
-    const Eigen::VectorXd found = rows.normal.ldlt().solve(rows.right);
+    const Eigen::VectorXd found = solve_symmetric(rows.normal, rows.right);
     LogInverse g{};
     for (int k = 0; k < kLevels; k++)
         if (column_of(k) >= 0) g[static_cast<size_t>(k)] = found[column_of(k)];

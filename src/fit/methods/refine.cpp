@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
+#include "falloff/dense.hpp"
 #include "fit/base/levels.hpp"
 #include "fit/problem/residual.hpp"
 
@@ -66,7 +65,7 @@ public:
     void add_pairs(const Loss &loss, const Correction &d, const Estimate &now);
     void add_smoothness();
     void hold_gamma();
-    Eigen::VectorXd solve() const { return rows_.normal.ldlt().solve(rows_.right); }
+    Eigen::VectorXd solve() const { return solve_symmetric(rows_.normal, rows_.right); }
 
 private:
     void add_transfer(const lensprof_pair &pair, int c, int side, const Transfer &t, const Correction &d,

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
-
+#include "falloff/dense.hpp"
 #include "fit/base/constants.hpp"
 #include "fit/prior/gauge.hpp"
 
@@ -59,7 +58,7 @@ public:
             normal += row * row.transpose();
             right += row * (target(m) / sigma_[m]);
         }
-        Eigen::VectorXd u = normal.ldlt().solve(right);
+        Eigen::VectorXd u = solve_symmetric(normal, right);
         Line line{0.0, open_ ? u[1] : 1.0, first < last ? u[n - 1] : 0.0, 0.0};
         for (size_t m = 0; m < count(); m++) {
             double off = target(m) - row_of(m, first, last).dot(u);

@@ -1,7 +1,8 @@
 #include "fit/prior/prior.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
+
+#include "falloff/dense.hpp"
 
 namespace lensprof {
 
@@ -71,8 +72,7 @@ Prior prior_of(const Prior &prior, int modes) {
         for (int m = 0; m <= l; m++)
             covariance(l, m) = covariance(m, l) =
                 kEmorSigma[l] * kEmorSigma[m] * (l == m ? 1.0 : kEmorCorrelation[l * (l - 1) / 2 + m]);
-    result.precision.topLeftCorner(modes, modes) =
-        prior.covariance_weight * covariance.llt().solve(Eigen::MatrixXd::Identity(modes, modes));
+    result.precision.topLeftCorner(modes, modes) = prior.covariance_weight * inverse_of_positive(covariance);
     return result;
 }
 

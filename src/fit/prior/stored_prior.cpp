@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
 #include "core/covariance.h"
 #include "core/response.h"
+#include "falloff/dense.hpp"
 #include "fit/prior/gauge.hpp"
 #include "fit/problem/curve_shape.hpp"
 
@@ -35,8 +33,8 @@ bool is_covariance(const lensprof_profile &profile) {
         }
     if (!correlation.allFinite()) return false;
     constexpr double kRounding = 1e-6;
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation, Eigen::EigenvaluesOnly).eigenvalues().minCoeff()
-           > -kRounding;
+    correlation.diagonal().array() += kRounding;
+    return is_positive_definite(correlation);
 }
 
 StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem, int most_modes)
@@ -114,7 +112,7 @@ Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from) const {
         for (Eigen::Index j = 0; j < count; j++)
             covariance(i, j) = covariance_(from[static_cast<size_t>(i)], from[static_cast<size_t>(j)]);
     }
-    Eigen::MatrixXd precision = covariance.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+    Eigen::MatrixXd precision = inverse_of_symmetric(covariance);
     const Eigen::VectorXd along = precision * direction;
     const double length = direction.dot(along);
     if (length > 0.0) precision -= along * along.transpose() / length;
