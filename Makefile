@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup install abi abi-baseline abi-headers format clean
+.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup install abi abi-baseline abi-headers lint format clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -82,6 +82,10 @@ abi-headers: ## save the public headers as those of this release, whose programs
 
 abi: ## generate _abi.py and abi_dump.c of the Python package from the public headers (package python3-pycparser)
 	python3 bindings/python/tools/make_abi.py
+
+lint: test-deps build ## format, cppcheck, clang's warnings and clang-tidy over all sources: some ten minutes
+	@cmake/install-packages.sh packages-lint.txt
+	tests/lint/lint.sh build
 
 format: ## format C and C++ as .clang-format says (package clang-format)
 	git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' | grep -vE '$(TABLES)' | xargs clang-format -i

@@ -8,6 +8,7 @@
 #include <functional>
 #include <initializer_list>
 #include <iterator>
+#include <memory>
 #include <mutex>
 #include <vector>
 
@@ -22,7 +23,7 @@ namespace lensprof {
 
 namespace {
 
-using ExivImage = decltype(Exiv2::ImageFactory::open(std::string()));
+using ExivImage = std::unique_ptr<Exiv2::Image>;  // 0.27 of Exiv2 has std::auto_ptr
 
 // Exiv2 logs to stderr, and its XMP parser shares state between threads unless it is given a lock.
 void prepare_exiv2() {
@@ -62,7 +63,7 @@ ExivImage open_image(const std::string &path) {
     prepare_exiv2();
     codec::open_for_reading(path);  // for its errors, which say more than Exiv2's
     try {
-        ExivImage image = Exiv2::ImageFactory::open(path);
+        ExivImage image(Exiv2::ImageFactory::open(path).release());
         image->readMetadata();
         return image;
     } catch (const std::exception &error) {
@@ -232,7 +233,8 @@ bool edit_excerpt(const std::string &path, const codec::PictureExcerpt &excerpt,
                   const std::function<void(Exiv2::Image &)> &change) {
     ExivImage image;
     try {
-        image = Exiv2::ImageFactory::open(excerpt.bytes().data(), static_cast<long>(excerpt.bytes().size()));
+        image.reset(
+            Exiv2::ImageFactory::open(excerpt.bytes().data(), static_cast<long>(excerpt.bytes().size())).release());
         image->readMetadata();
     } catch (const std::exception &error) {
         fail_reading(path, error);

@@ -55,7 +55,8 @@ void declare_foreign(CLI::App &app, ForeignOptions &o, bool written) {
     app.add_option("--sense", o.sense,
                    "maps: attenuation (divide; default for PNG) or gain (multiply; default for float TIFF)")
         ->check(CLI::IsMember({"attenuation", "gain"}));
-    app.add_option("--color-temperature", o.color_temperature_k, "alsc: K; default that of the file or profile, or 4500")
+    app.add_option("--color-temperature", o.color_temperature_k,
+                   "alsc: K; default that of the file or profile, or 4500")
         ->check(in_range(500.0, 50000.0));
     if (!written) return;
     app.add_option("--depth", o.depth, "maps as PNG: bits, 8 or 16 (default)")->check(CLI::IsMember({8, 16}));

@@ -70,7 +70,7 @@ std::vector<int> borders(int cells, uint32_t frame, uint32_t view, uint32_t redu
 
 class RowOfCells {
 public:
-    RowOfCells(const View &view, const CellGrid &grid, int row) : view_(view), image_(view.image()) {
+    RowOfCells(const View &view, const CellGrid &grid, int row) : image_(view.image()) {
         across_ = borders(grid.columns, grid.width, image_.view.width, image_.reduction);
         std::vector<int> down = borders(grid.rows, grid.height, image_.view.height, image_.reduction);
         top_ = down[static_cast<size_t>(row)], bottom_ = down[static_cast<size_t>(row) + 1];
@@ -128,7 +128,6 @@ private:
         cell.y = (cell.y / count + top_ + 0.5) * image_.reduction - 0.5;
     }
 
-    const View &view_;
     const lensprof_sample_image &image_;
     std::vector<int> across_;
     int top_ = 0, bottom_ = 0;
