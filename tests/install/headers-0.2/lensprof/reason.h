@@ -13,8 +13,9 @@ extern "C" {
 #endif
 
 /* Numbers are pinned for ever. Of each hundred those below 50 are of results that are not usable and of lookups that
- * found nothing, those from 50 on warnings. STILL_: of pictures by a camera that did not move. The comment has the item that a reason names and the numbers that it
- * states, in their order. Shares are 0..1, radii and distances from the middle in half diagonals of the frame. */
+ * found nothing, those from 50 on warnings. STILL_: of pictures by a camera that did not move. The comment has the item
+ * that a reason names and the numbers that it states, in their order. Shares are 0..1, radii and distances from the
+ * middle in half diagonals of the frame. */
 typedef enum lensprof_reason {
     LENSPROF_REASON_NONE = 0,
 
