@@ -8,11 +8,14 @@ using namespace batch_runs;
 
 namespace {
 
-// Peak memory of the program beyond that of its start, bytes; sanitizers need more.
+// Peak memory of the program beyond that of its start, bytes. Sanitizers need more, and use memory of their own for
+// what is only claimed.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr long most_memory = 200l << 20;
+constexpr bool claims_cost_memory = true;
 #else
 constexpr long most_memory = 40l << 20;
+constexpr bool claims_cost_memory = false;
 #endif
 
 void put_big_endian(Bytes &bytes, uint32_t value) {
@@ -149,6 +152,7 @@ void test_png_bombs(void **) {
 
 // Enough bytes for the frame, but not pixels.
 void test_padded_bombs(void **) {
+    if (claims_cost_memory) skip();
     assert_harmless("a.png", make_png_bomb(37000, 16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_ADAM7, 9 << 20), "");
     for (const TiffBomb &bomb : {TiffBomb{30000, 30000, 8, 3, PLANARCONFIG_SEPARATE, 0, 0, 3 << 20},
                                  TiffBomb{32752, 32768, 8, 1, PLANARCONFIG_CONTIG, 32752, 32768, 3 << 20}}) {

@@ -216,6 +216,11 @@ void test_unsupported_kinds(void **) {
     write_jpeg_file(in_folder("a"), four, {90, 1, 1, false, true});
     assert_failure(ExitCode::unreadable, "a: cannot read: CMYK", read);
 
+    const Bytes lossless = {0xff, 0xd8, 0xff, 0xf7, 0, 11, 8, 0, 10, 0, 20,   1,    1,    0x11, 0,  // JPEG-LS
+                            0xff, 0xda, 0,    8,    1, 1,  0, 0, 0,  0, 0x55, 0x55, 0xff, 0xd9};
+    save(in_folder("a"), lossless);
+    assert_failure(ExitCode::unreadable, "a: cannot read: unsupported kind of JPEG (JPEG-LS); convert it first", read);
+
     const Picture grey = make_noise(20, 10, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_GREY);
     TiffKind kind;
     kind.format = SAMPLEFORMAT_INT;

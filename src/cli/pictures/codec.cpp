@@ -82,9 +82,9 @@ File open_for_writing(const std::string &path) {
     return file;
 }
 
-uint64_t file_bytes(const File &file) {
+uint64_t file_bytes(std::FILE *file) {
     struct stat status = {};
-    return fstat(fileno(file.get()), &status) == 0 ? static_cast<uint64_t>(status.st_size) : 0;
+    return fstat(fileno(file), &status) == 0 ? static_cast<uint64_t>(status.st_size) : 0;
 }
 
 void close_written(File &file, const std::string &path) {

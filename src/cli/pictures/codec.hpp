@@ -70,7 +70,7 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE *)>;
 
 File open_for_reading(const std::string &path);
 File open_for_writing(const std::string &path);
-uint64_t file_bytes(const File &file);
+uint64_t file_bytes(std::FILE *file);
 void close_written(File &file, const std::string &path);
 
 [[noreturn]] void fail_damaged(const std::string &path, const std::string &detail);

@@ -16,6 +16,7 @@
 
 #include "cli/pictures/codec.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
+#include "cli/pictures/png_exif.hpp"
 #include "cli/program/error.hpp"
 #include "cli/program/utf8.hpp"
 
@@ -240,16 +241,21 @@ bool edit_excerpt(const std::string &path, const codec::PictureExcerpt &excerpt,
         fail_reading(path, error);
     }
     Exiv2::BasicIo &io = image->io();
+    const bool png = image->mimeType() == "image/png";
     const Exiv2::byte *data = nullptr;
+    std::vector<uint8_t> exif;
     try {
         change(*image);
+        if (png) exif = codec::take_exif(*image);
         image->writeMetadata();
         io.open();
         data = io.mmap();
     } catch (const std::exception &error) {
         fail_writing(path, error);
     }
-    return excerpt.replace(data, static_cast<size_t>(io.size()));
+    if (exif.empty()) return excerpt.replace(data, static_cast<size_t>(io.size()));
+    const std::vector<uint8_t> edited = codec::with_exif(data, static_cast<size_t>(io.size()), exif);
+    return excerpt.replace(edited.data(), edited.size());
 }
 
 // Without the pixels where that can be, so that memory does not grow with them.

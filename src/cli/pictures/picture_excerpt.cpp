@@ -4,8 +4,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include <sys/stat.h>
-
 #include "cli/program/interrupt.hpp"
 
 namespace lensprof {
@@ -109,11 +107,6 @@ public:
 bool read_at(std::FILE *file, uint64_t start, size_t count, std::vector<uint8_t> &bytes) {
     bytes.resize(count);
     return fseeko(file, static_cast<off_t>(start), SEEK_SET) == 0 && std::fread(bytes.data(), 1, count, file) == count;
-}
-
-uint64_t file_bytes(std::FILE *file) {
-    struct stat status = {};
-    return fstat(fileno(file), &status) == 0 ? static_cast<uint64_t>(status.st_size) : 0;
 }
 
 Replacement::Replacement(const std::string &path, std::FILE *from)

@@ -63,7 +63,6 @@ std::unique_ptr<PictureExcerpt> excerpt_of_tiff(const std::string &path);
 
 // `count` bytes from `start` on; false when there are fewer.
 bool read_at(std::FILE *file, uint64_t start, size_t count, std::vector<uint8_t> &bytes);
-uint64_t file_bytes(std::FILE *file);
 
 }  // namespace codec
 

@@ -98,6 +98,9 @@ struct JpegWriter {
                                       JERR_ARITH_NOTIMPL,       JERR_CONVERSION_NOTIMPL, JERR_CCIR601_NOTIMPL,
                                       JERR_FRACT_SAMPLE_NOTIMPL};
     if (state.manager.msg_code == JERR_OUT_OF_MEMORY) throw std::bad_alloc();
+    constexpr int lossless_frame = 0xf7;  // SOF55 of ITU-T T.87
+    if (state.manager.msg_code == JERR_UNKNOWN_MARKER && state.manager.msg_parm.i[0] == lossless_frame)
+        fail_unsupported(path, "unsupported kind of JPEG (JPEG-LS); convert it first");
     const int *end = std::end(unsupported);
     if (std::find(std::begin(unsupported), end, state.manager.msg_code) != end)
         fail_unsupported(path, std::string("unsupported kind of JPEG (") + state.text + "); convert it first");

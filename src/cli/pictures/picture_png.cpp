@@ -129,8 +129,8 @@ void read_start(PngReader &reader, Picture &picture, const ReadRequest &request)
     picture.sample = png_get_bit_depth(png, reader.info) == 16 ? LENSPROF_SAMPLE_U16 : LENSPROF_SAMPLE_U8;
     picture.layout = png_get_channels(png, reader.info) - 1u;  // the layouts are in that order
     set_frame(picture, png_get_image_width(png, reader.info), png_get_image_height(png, reader.info), request);
-    check_stored(request.path, size_text(picture.frame_width, picture.frame_height), packed, file_bytes(reader.file),
-                 deflate_expansion);
+    check_stored(request.path, size_text(picture.frame_width, picture.frame_height), packed,
+                 file_bytes(reader.file.get()), deflate_expansion);
 }
 
 class PngSource final : public RowSource {
