@@ -283,7 +283,7 @@ void test_usage(void **) {
     for (const char *name : {"chart.jpg", "chart", ".png", "svg"})
         assert_refused(usage, show + Words{"1", "--chart-out", work(name)}, {name, ".svg or .png"});
     assert_refused(usage, {"profile", "list", "--chart", "--db", db}, {"--chart"});
-    assert_refused(usage, {"profile", "list", "1", "--db", db}, {"profile show"});
+    assert_refused(usage, {"profile", "list", "1", "--db", db}, {"1: is more", "profile list --help"});
     assert_refused(usage, {"profile", "remove", "1", "--camera", "A", "--db", db}, {"--camera"});
     assert_refused(usage, {"profile", "remove", "--db", db}, {"profile list"});
     assert_refused(usage, {"profile", "remove", "1", "2", "--db", db}, {"one"});

@@ -26,9 +26,9 @@ OF_COMMAND = re.compile(r"\boptions? of the (?:command|program)\b")
 
 
 def commands_of(root):
-    """Names of the commands: those of the functions run_NAME of src/cli."""
+    """Names of the commands: those of the functions declare_NAME of src/cli."""
     text = "".join(path.read_text(encoding="utf-8") for path in sorted((root / "src" / "cli").rglob("*.hpp")))
-    return sorted(set(re.findall(r"\bint run_([a-z]+)\(", text)))
+    return sorted(set(re.findall(r"\bvoid declare_([a-z]+)\(Command &program\)", text)))
 
 
 def literals_of(text):
@@ -43,7 +43,7 @@ def literals_of(text):
 def check(root):
     commands = commands_of(root)
     if not commands:
-        return [f"{root}/src/cli: no function run_NAME of a command"]
+        return [f"{root}/src/cli: no function declare_NAME of a command"]
     of_program = re.compile(rf"\blensprof (?:{'|'.join(commands)})\b")
     violations = []
     for layer in LAYERS:
@@ -64,7 +64,7 @@ def self_check():
     def expect(what, text, wanted, folder="fit/verdict"):
         with tempfile.TemporaryDirectory() as place:
             root = pathlib.Path(place)
-            for name, content in (("cli/program/commands.hpp", "int run_build(int);\nint run_flat(int);\n"),
+            for name, content in (("cli/program/commands.hpp", "void declare_build(Command &program);\nvoid declare_flat(Command &program);\n"),
                                   (f"{folder}/planted.cpp", text)):
                 path = root / "src" / name
                 path.parent.mkdir(parents=True, exist_ok=True)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/correct/correction.hpp"
@@ -19,33 +18,43 @@
 namespace lensprof {
 namespace {
 
+// Whose exposure and white balance all frames get.
+enum class Target {
+    first,
+    last,
+    brightest,
+    mean
+};
+
+const Choices<Target> targets = {
+    {"first", Target::first}, {"last", Target::last}, {"brightest", Target::brightest}, {"mean", Target::mean}};
+
 struct Options {
     FitOptions fit;
-    std::string to = "mean", output = "aligned", pto;
+    Target to = Target::mean;
+    std::string output = "aligned", pto;
     uint32_t seed = 1, pairs = 0, max_side = 800, threads = 0;
     bool json = false, progress = false;
     std::vector<std::string> files;
 };
 
-void declare(CLI::App &app, Options &o) {
-    app.add_option("FRAMES", o.files, "pictures of one camera, in order; with --project default all of it");
-    app.add_option("--to", o.to,
-                   "whose exposure and white balance all frames get: first, last, brightest, or mean (geometric)")
-        ->check(CLI::IsMember({"first", "last", "brightest", "mean"}));
-    app.add_option("-o,--output", o.output, "folder for the frames (aligned)");
-    app.add_option("--project", o.pto,
-                   "Hugin project that says where the camera looked; the falloff is then found and evened out, too. "
-                   "Without it the camera stood still");
-    declare_fit(app, o.fit, {false, false});
-    app.add_option("--pairs", o.pairs,
-                   "number of pairs; 0 = 300 a frame, at least 2000; without --project 10000 a frame")
-        ->check(in_range(0, 1 << 24));
-    app.add_option("--seed", o.seed, "of the sampling");
-    app.add_option("--max-side", o.max_side,
-                   "sample frames reduced to no less than this many pixels (800); 0 = full size");
-    declare_threads(app, o.threads);
-    app.add_flag("--json", o.json, "print one JSON object");
-    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
+void declare(Command &command, Options &o) {
+    command.files("FRAMES", o.files, "pictures of one camera, in order; with --project default all of it");
+    command.choice("--to", o.to, targets,
+                   "whose exposure and white balance all frames get: first, last, brightest, or mean (geometric)");
+    command.file("-o,--output", o.output, "folder for the frames (aligned)");
+    command.file("--project", o.pto,
+                 "Hugin project that says where the camera looked; the falloff is then found and evened out, too. "
+                 "Without it the camera stood still");
+    declare_fit(command, o.fit, {false, false});
+    command.count("--pairs", o.pairs, 0, 1 << 24,
+                  "number of pairs; 0 = 300 a frame, at least 2000; without --project 10000 a frame");
+    command.count("--seed", o.seed, 0, UINT32_MAX, "of the sampling");
+    command.count("--max-side", o.max_side, 0, UINT32_MAX,
+                  "sample frames reduced to no less than this many pixels (800); 0 = full size");
+    declare_threads(command, o.threads);
+    declare_json(command, o.json);
+    declare_progress(command, o.progress);
 }
 
 constexpr uint32_t image_flags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
@@ -99,7 +108,7 @@ Fitted fit_sequence(const Options &o, const Project &project, std::vector<double
     sampling.seed = o.seed;
     input.pairs = project.pto ? sample_pairs(project, pictures, sampling, {}, progress)
                               : sample_still(project, pictures, sampling, 0.0, progress);
-    input.options.refine = !project.pto && o.fit.modes == "auto";
+    input.options.refine = !project.pto && o.fit.modes == LENSPROF_MODES_AUTO;
     input.images = fit_images(project);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
@@ -110,9 +119,9 @@ Fitted fit_sequence(const Options &o, const Project &project, std::vector<double
 
 lensprof_exposure wanted_exposure(const Options &o, const std::vector<lensprof_exposure> &exposures) {
     auto darker = [](const lensprof_exposure &a, const lensprof_exposure &b) { return a.ev < b.ev; };
-    if (o.to == "first") return exposures.front();
-    if (o.to == "last") return exposures.back();
-    if (o.to == "brightest") return *std::max_element(exposures.begin(), exposures.end(), darker);
+    if (o.to == Target::first) return exposures.front();
+    if (o.to == Target::last) return exposures.back();
+    if (o.to == Target::brightest) return *std::max_element(exposures.begin(), exposures.end(), darker);
     return mean_exposure(exposures);
 }
 
@@ -139,7 +148,7 @@ Json report(const Options &o, const Fitted &fitted, const Verdict &verdict,
     auto known = [](double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(value); };
     Json json = {{"schema", 1}, {"usable", r.usable != 0}};
     add_verdict(verdict, json);
-    json["to"] = o.to;
+    json["to"] = targets[static_cast<size_t>(o.to)].first;
     json["frames"] = written;
     json["residual"] = {{"before_rms", known(r.before_rms)},
                         {"heldout_rms", known(r.heldout_rms)},
@@ -190,20 +199,22 @@ int align(const Options &o, Streams &streams) {
     return static_cast<int>(fitted.result.usable ? ExitCode::done : ExitCode::not_usable);
 }
 
-}  // namespace
-
-int run_align(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app("Makes the frames of a sequence look as if all had been taken with one exposure and white balance.",
-                 "lensprof align");
-    declare(app, o);
-    if (!parse(app, arguments, streams)) return 0;
+int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
-    if (o.max_side != 0 && o.max_side < 64)
-        throw Failure(ExitCode::usage,
-                      "--max-side: frames of less than 64 pixels hold too few samples; give more, or 0 for full size");
+    check_max_side(o.max_side);
     if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no frames to align; name them");
     return align(o, streams);
+}
+
+}  // namespace
+
+void declare_align(Command &program) {
+    Command command = program.add(
+        "align", "frames of a sequence -> all with one exposure and white balance",
+        "Makes the frames of a sequence look as if all had been taken with one exposure and white balance.");
+    auto o = std::make_shared<Options>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
 }  // namespace lensprof

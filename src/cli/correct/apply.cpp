@@ -5,7 +5,6 @@
 #include <memory>
 #include <set>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/correct/correction.hpp"
@@ -20,41 +19,57 @@
 namespace lensprof {
 namespace {
 
+// What pictures look like afterwards.
+enum class Exposure {
+    by_default,  // mean with a project, else keep
+    mean,
+    reference,
+    keep
+};
+
 struct Options {
-    std::string db, pto, output, exposure, sheet;
+    std::string db, pto, output, sheet;
+    Exposure exposure = Exposure::by_default;
     int64_t profile = 0;
     CorrectionKind kind;
     bool from_db = false, json = false, progress = false;
     std::vector<std::string> files;
 };
 
-void declare(CLI::App &app, Options &o) {
-    app.add_option("--profile", o.profile, "id of the profile to use")->check(is_profile_id);
-    app.add_flag("--from-db", o.from_db,
+void declare_model(Command &command, Options &o) {
+    command.profile_id("--profile", o.profile, "id of the profile to use");
+    command.flag("--from-db", o.from_db,
                  "look each picture's profile up by its EXIF; between the settings that are stored its falloff is "
                  "predicted, as by `lensprof query`");
-    app.add_option("--pto", o.pto,
-                   "take exposures (and, without --profile or --from-db, the curves) from this project");
-    declare_db(app, o.db);
-    app.add_option("--output-exposure", o.exposure,
+    command.file("--pto", o.pto, "take exposures (and, without --profile or --from-db, the curves) from this project");
+    declare_db(command, o.db);
+    command.choice("--output-exposure", o.exposure,
+                   {{"mean", Exposure::mean}, {"reference", Exposure::reference}, {"keep", Exposure::keep}},
                    "mean: all like the geometric mean of the project (default with --pto); reference: like its 0 EV; "
-                   "keep: each its own (default without --pto)")
-        ->check(CLI::IsMember({"mean", "reference", "keep"}));
-    app.add_flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
-    app.add_flag("--simulate", o.kind.simulate, "put the falloff in instead of taking it out");
-    app.add_option("--strength", o.kind.strength, "share of the falloff to take out, 0 to 1; default 1")
-        ->check(in_range(0.0, 1.0));
-    app.add_option("--gain-cap", o.kind.gain_cap,
-                   "corners get at most so many times their light, 1 or more, so that noise stays low; default no cap")
-        ->check(in_range(1.0, 1e6));
-    app.add_flag("--dither", o.kind.dither,
+                   "keep: each its own (default without --pto)");
+}
+
+void declare(Command &command, Options &o) {
+    declare_model(command, o);
+    command.flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
+    command.flag("--simulate", o.kind.simulate, "put the falloff in instead of taking it out");
+    command.number("--strength", o.kind.strength, {0.0, 1.0}, "share of the falloff to take out, 0 to 1; default 1");
+    command.number("--gain-cap", o.kind.gain_cap, {1.0, 1e6},
+                   "corners get at most so many times their light, 1 or more, so that noise stays low; default no cap");
+    command.flag("--dither", o.kind.dither,
                  "ordered 8 x 8 dither in place of rounding, in pictures of 8 bit: no bands in skies");
-    app.add_option("-o,--output", o.output, "folder for the pictures")->required();
-    app.add_option("--contact-sheet", o.sheet, "write an overview, before above after (PNG)");
-    declare_threads(app, o.kind.threads);
-    app.add_flag("--json", o.json, "print one JSON object");
-    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
-    app.add_option("FILES", o.files, "pictures, or folders of them; with --pto default all of the project");
+    command.file("-o,--output", o.output, "folder for the pictures");
+    command.require("--output");
+    command.file("--contact-sheet", o.sheet, "write an overview, before above after (PNG)");
+    declare_threads(command, o.kind.threads);
+    declare_json(command, o.json);
+    declare_progress(command, o.progress);
+    command.files("FILES", o.files, "pictures, or folders of them; with --pto default all of the project");
+    command.footer(
+        "Pictures keep format, depth, metadata and colour profile. Several are corrected at once, in strips of rows;\n"
+        "interlaced PNG and progressive JPEG alone are held in memory as a whole. All are opened first: when one\n"
+        "cannot be, nothing is written. When one turns out to be damaged later, those before it are written, it and\n"
+        "those behind it are not. A picture that was corrected already is not known as such: it is corrected again.");
 }
 
 std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
@@ -156,9 +171,10 @@ std::vector<Correction> make_jobs(const Options &o, lensprof_exposure &mean) {
         exposures = project_exposures(*project);
         if (!from_store) model = model_of_project(*project);
         mean = mean_exposure(exposures);
-    } else if (!o.exposure.empty() && o.exposure != "keep") {
-        throw Failure(ExitCode::usage,
-                      "--output-exposure " + o.exposure + " needs the exposures of a project; give it with --pto");
+    } else if (o.exposure == Exposure::mean || o.exposure == Exposure::reference) {
+        throw Failure(ExitCode::usage, std::string("--output-exposure ")
+                                           + (o.exposure == Exposure::mean ? "mean" : "reference")
+                                           + " needs the exposures of a project; give it with --pto");
     }
     std::vector<std::string> files = o.files.empty() && project ? project->files : expand_folders(o.files);
     if (files.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
@@ -196,28 +212,20 @@ void say_predicted(const std::vector<Correction> &jobs, Streams &streams) {
     }
 }
 
-}  // namespace
-
-int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app("Corrects pictures: undoes falloff, exposure and white balance, and encodes again.", "lensprof apply");
-    declare(app, o);
-    app.footer(
-        "Pictures keep format, depth, metadata and colour profile. Several are corrected at once, in strips of rows;\n"
-        "interlaced PNG and progressive JPEG alone are held in memory as a whole. All are opened first: when one\n"
-        "cannot be, nothing is written. When one turns out to be damaged later, those before it are written, it and\n"
-        "those behind it are not. A picture that was corrected already is not known as such: it is corrected again.");
-    if (!parse(app, arguments, streams)) return 0;
+int run(const Options &o, Streams &streams) {
     lensprof_exposure mean, reference;
     lensprof_exposure_init(&mean);
     lensprof_exposure_init(&reference);
     std::vector<Correction> jobs = make_jobs(o, mean);
-    if (o.exposure.empty()) o.exposure = o.pto.empty() ? "keep" : "mean";
+    const Exposure chosen = o.exposure != Exposure::by_default ? o.exposure
+                            : o.pto.empty()                    ? Exposure::keep
+                                                               : Exposure::mean;
     make_folder(o.output);
 
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;
-    for (Correction &job : jobs) job.wanted = o.exposure == "keep" ? job.own : o.exposure == "mean" ? mean : reference;
+    for (Correction &job : jobs)
+        job.wanted = chosen == Exposure::keep ? job.own : chosen == Exposure::mean ? mean : reference;
     say_predicted(jobs, streams);
     Corrected written = write_corrected(jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);
     progress.clear();
@@ -231,6 +239,16 @@ int run_apply(const std::vector<std::string> &arguments, Streams &streams) {
         if (!o.sheet.empty()) streams.out << o.sheet << "\n";
     }
     return 0;
+}
+
+}  // namespace
+
+void declare_apply(Command &program) {
+    Command command = program.add("apply", "correct pictures with a profile or a project",
+                                  "Corrects pictures: undoes falloff, exposure and white balance, and encodes again.");
+    auto o = std::make_shared<Options>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
 }  // namespace lensprof

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <set>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/pictures/picture.hpp"
@@ -78,9 +77,8 @@ void add_speed(const Corrected &corrected, Json &json) {
         corrected.megapixels > 0.0 ? Json(corrected.megapixels / std::max(corrected.seconds, 1e-6)) : Json();
 }
 
-void declare_threads(CLI::App &app, uint32_t &threads) {
-    app.add_option("--threads", threads, "threads that correct pictures; 0 = all cores (default)")
-        ->check(in_range(0, 1024));
+void declare_threads(Command &command, uint32_t &threads) {
+    command.count("--threads", threads, 0, 1024, "threads that correct pictures; 0 = all cores (default)");
 }
 
 }  // namespace lensprof

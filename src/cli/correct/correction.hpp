@@ -9,13 +9,10 @@
 
 #include "cli/pictures/contact_sheet.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace lensprof {
 
@@ -51,7 +48,7 @@ struct Corrected {
 void add_speed(const Corrected &corrected, Json &json);
 
 // The option --threads.
-void declare_threads(CLI::App &app, uint32_t &threads);
+void declare_threads(Command &command, uint32_t &threads);
 
 // Geometric mean of exposures and white balances: Goldman & Chen 2005, equation 15.
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures);

@@ -2,9 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
@@ -22,49 +20,44 @@ struct Options {
     FitOptions fit;
     StoreOptions store;
     std::vector<std::string> files;
-    std::optional<std::string> ev, times;
-    std::string balance = "free", reference;
+    std::vector<double> ev, times_s;
+    std::string reference;
     double ev_sigma = 0.05, black = 0.0;
-    bool modes_only = false, json = false, progress = false;
+    bool free_balance = true, modes_only = false, json = false, progress = false;
     uint32_t seed = 1, pairs = 0, max_side = 1600;
 };
 
-void declare(CLI::App &app, Options &o) {
-    app.add_option("FILES", o.files, "pictures of one scene by a camera that does not move")->required();
-    app.add_option("--ev", o.ev, "their exposures, EV, larger = brighter, with commas; default EXIF's, else unknown");
-    app.add_option("--times", o.times, "their exposure times instead, seconds, e.g. 1/8,1,8");
-    app.add_option("--ev-sigma", o.ev_sigma, "standard error of these, EV")->check(in_range(0.001, 10.0));
-    app.add_option("--white-balance", o.balance, "free or fixed from picture to picture")
-        ->check(CLI::IsMember({"free", "fixed"}));
-    declare_fit(app, o.fit, {true, false});
-    app.add_flag("--modes-only", o.modes_only, "keep the response to EMoR modes, also where it is better without");
-    app.add_option("--reference", o.reference, "picture (number or name) whose exposure is 0 EV");
-    app.add_option("--black", o.black,
-                   "grey values up to this, levels of 255, are not used: black that is not 0, as in scanned film")
-        ->check(in_range(0.0, 200.0));
-    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 10000 a picture")->check(in_range(0, 1 << 24));
-    app.add_option("--seed", o.seed, "of the sampling");
-    app.add_option("--max-side", o.max_side,
-                   "sample pictures reduced to no less than this many pixels (1600); 0 = full size");
-    declare_store(app, o.store);
-    app.add_flag("--json", o.json, "print one JSON object");
-    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
+void declare(Command &command, Options &o) {
+    command.files("FILES", o.files, "pictures of one scene by a camera that does not move");
+    command.require("FILES");
+    command.numbers("--ev", o.ev, {-64.0, 64.0},
+                    "their exposures, EV, larger = brighter, with commas; default EXIF's, else unknown");
+    command.numbers("--times", o.times_s, {1e-9, 1e9, Unit::time_s},
+                    "their exposure times instead, seconds, e.g. 1/8,1,8 or 1/8s,1s,8s");
+    command.number("--ev-sigma", o.ev_sigma, {0.001, 10.0}, "standard error of these, EV");
+    command.choice("--white-balance", o.free_balance, {{"free", true}, {"fixed", false}},
+                   "free or fixed from picture to picture");
+    declare_fit(command, o.fit, {true, false});
+    command.flag("--modes-only", o.modes_only, "keep the response to EMoR modes, also where it is better without");
+    command.text("--reference", o.reference, "picture (number or name) whose exposure is 0 EV");
+    command.number("--black", o.black, {0.0, 200.0},
+                   "grey values up to this, levels of 255, are not used: black that is not 0, as in scanned film");
+    command.count("--pairs", o.pairs, 0, 1 << 24, "number of pairs; 0 = 10000 a picture");
+    command.count("--seed", o.seed, 0, UINT32_MAX, "of the sampling");
+    command.count("--max-side", o.max_side, 0, UINT32_MAX,
+                  "sample pictures reduced to no less than this many pixels (1600); 0 = full size");
+    declare_store(command, o.store);
+    declare_json(command, o.json);
+    declare_progress(command, o.progress);
 }
 
 // The exposures of the command line, EV; empty when it says nothing.
 std::vector<double> given_exposures(const Options &o) {
-    if (o.ev) {
-        auto ev = numbers_of(*o.ev, "--ev", o.files.size(), "pictures");
-        for (double value : ev)
-            if (std::fabs(value) > 64.0) throw Failure(ExitCode::usage, "--ev: exposures lie within 64 EV");
-        return ev;
-    }
+    if (!o.ev.empty()) demand_count(o.ev, "--ev", o.files.size(), "pictures");
+    if (!o.ev.empty() || o.times_s.empty()) return o.ev;
+    demand_count(o.times_s, "--times", o.files.size(), "pictures");
     std::vector<double> ev;
-    if (!o.times) return ev;
-    for (double time : numbers_of(*o.times, "--times", o.files.size(), "pictures")) {
-        if (!(time > 1e-9 && time < 1e9)) throw Failure(ExitCode::usage, "--times: a time lies within 1e-9..1e9 s");
-        ev.push_back(std::log2(time));
-    }
+    for (const double time_s : o.times_s) ev.push_back(std::log2(time_s));
     return ev;
 }
 
@@ -177,14 +170,14 @@ Verdict bracket_verdict(const lensprof_fit_result &result, const std::vector<uin
     return verdict;
 }
 
-bool is_debevec(const Options &o) { return o.fit.method == "debevec"; }
+bool is_debevec(const Options &o) { return o.fit.method == LENSPROF_METHOD_DEBEVEC; }
 
 // Failure (usage) for what has no meaning to the method debevec.
 void check_debevec_options(const Options &o) {
-    const std::pair<bool, const char *> without[] = {{o.fit.modes != "auto", "--modes"},
+    const std::pair<bool, const char *> without[] = {{o.fit.modes != LENSPROF_MODES_AUTO, "--modes"},
                                                      {o.modes_only, "--modes-only"},
-                                                     {o.fit.loss != "robust", "--loss"},
-                                                     {o.fit.gamma_from == "prior", "--gamma-from prior"}};
+                                                     {o.fit.loss != LENSPROF_LOSS_ROBUST, "--loss"},
+                                                     {o.fit.gamma_from == LENSPROF_GAMMA_PRIOR, "--gamma-from prior"}};
     for (const auto &[is_given, option] : without)
         if (is_given && is_debevec(o))
             throw Failure(ExitCode::usage, std::string("--method debevec and ") + option
@@ -207,7 +200,7 @@ FitInput fit_input(const Options &o, const Project &project, const std::vector<P
     input.options = fit_options(o.fit);
     input.options.free &= LENSPROF_FREE_RESPONSE;
     input.options.vignettings = 1;
-    input.options.refine = !o.modes_only && o.fit.modes == "auto";
+    input.options.refine = !o.modes_only && o.fit.modes == LENSPROF_MODES_AUTO;
     input.images = fit_images(project);
     if (ev.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
     for (size_t i = 0; i < ev.size(); i++) {
@@ -251,30 +244,27 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
 
 int bracket_and_store(const Options &o, Streams &streams) {
     std::vector<double> ev = given_exposures(o);
-    Project project = static_project(o.files, o.balance == "free");
+    Project project = static_project(o.files, o.free_balance);
     check_pictures(project, o.max_side);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
     lensprof_profile_key key = camera_key(o, metadata[0], project.files[0]);
     check_store(o.store);
     BuildReport report = fit_bracket(o, project, metadata, ev, streams);
-    return finish_fit(report, key, o.store,
-                      {o.fit.method == "transfer" ? "bracket" : "bracket " + o.fit.method, project.path, o.json},
-                      streams);
+    return finish_fit(
+        report, key, o.store,
+        {o.fit.method == LENSPROF_METHOD_TRANSFER ? "bracket" : std::string("bracket ") + method_name(o.fit.method),
+         project.path, o.json},
+        streams);
 }
 
-}  // namespace
-
-int run_bracket(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app("Recovers the response of a camera, and exposures, from pictures of one scene.", "lensprof bracket");
-    declare(app, o);
-    if (!parse(app, arguments, streams)) return 0;
+int run(const Options &o, Streams &streams) {
     check_max_side(o.max_side);
     check_fit_options(o.fit);
     check_debevec_options(o);
     check_store_options(o.store);
-    if (o.ev && o.times) throw Failure(ExitCode::usage, "--ev and --times say the same; give one of the two");
+    if (!o.ev.empty() && !o.times_s.empty())
+        throw Failure(ExitCode::usage, "--ev and --times say the same; give one of the two");
     try {
         return bracket_and_store(o, streams);
     } catch (const Failure &failure) {
@@ -285,6 +275,16 @@ int run_bracket(const std::vector<std::string> &arguments, Streams &streams) {
         }
         throw;
     }
+}
+
+}  // namespace
+
+void declare_bracket(Command &program) {
+    Command command = program.add("bracket", "pictures of one scene at several exposures -> the camera's response",
+                                  "Recovers the response of a camera, and exposures, from pictures of one scene.");
+    auto o = std::make_shared<Options>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
 }  // namespace lensprof

@@ -1,8 +1,9 @@
 // `lensprof build`: pictures of a project -> response, falloff, exposures -> a profile in the database.
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <numeric>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
@@ -20,69 +21,56 @@ namespace {
 struct Options {
     FitOptions fit;
     StoreOptions store;
-    std::string pto, points, points_out, pto_out, sampling = "balanced", falloff = "auto", reference, free, compare;
+    std::string pto, points, points_out, pto_out, reference, compare;
+    std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
+    uint32_t sampling = LENSPROF_SAMPLING_BALANCED, falloff_curves = 0;  // 0: held-out error decides
     bool json = false, one_lens = false, progress = false;
     uint32_t seed = 1, pairs = 0, max_side = 800;
 };
-
-void declare(CLI::App &app, Options &o) {
-    app.add_option("PROJECT", o.pto, "Hugin project; its v lines choose what is estimated")->required();
-    app.add_option("--points", o.points,
-                   "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
-    app.add_option("--points-out", o.points_out,
-                   "write the pairs used (Hugin's 16 columns), also those of a fit that is not usable");
-    app.add_option("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
-    FitChoices choices;
-    choices.stored_prior = true;
-    declare_fit(app, o.fit, choices);
-    app.add_option("--falloff-curves", o.falloff, "1, 3 (one a channel) or auto (held-out error decides)")
-        ->check(CLI::IsMember({"auto", "1", "3"}));
-    app.add_option("--free", o.free, "what is estimated instead of the v lines: response,falloff,center,ev,wb or all");
-    app.add_option("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
-    app.add_flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
-    app.add_option("--sampling", o.sampling, "balanced or paper (d'Angelo 5.1)")
-        ->check(CLI::IsMember({"balanced", "paper"}));
-    app.add_option("--pairs", o.pairs, "number of pairs; 0 = 300 an image, at least 2000 (radiance: points, 150)")
-        ->check(in_range(0, 1 << 24));
-    app.add_option("--seed", o.seed, "of the sampling");
-    app.add_option("--max-side", o.max_side,
-                   "sample pictures reduced to no less than this many pixels (800); 0 = full size");
-    declare_store(app, o.store);
-    app.add_option("--compare", o.compare, "truth.json of `simulate`: print recovered beside true values");
-    app.add_flag("--json", o.json, "print one JSON object");
-    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
-}
 
 constexpr uint32_t falloff_flags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
 constexpr uint32_t lens_flags = LENSPROF_FREE_RESPONSE | falloff_flags | LENSPROF_FREE_CENTER;
 constexpr uint32_t balance_flags = LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
 
-// --free: the same unknowns for every image.
-uint32_t free_of(const std::string &list) {
-    uint32_t flags = 0;
-    std::string word;
-    for (char c : list + ",") {
-        if (c != ',') {
-            word += c;
-            continue;
-        }
-        if (word == "response")
-            flags |= LENSPROF_FREE_RESPONSE;
-        else if (word == "falloff")
-            flags |= falloff_flags;
-        else if (word == "center")
-            flags |= LENSPROF_FREE_CENTER;
-        else if (word == "ev")
-            flags |= LENSPROF_FREE_EV;
-        else if (word == "wb")
-            flags |= balance_flags;
-        else if (word == "all")
-            flags |= lens_flags | LENSPROF_FREE_EV | balance_flags;
-        else
-            throw Failure(ExitCode::usage, "--free " + word + ": use response, falloff, center, ev, wb, all");
-        word.clear();
-    }
-    return flags;
+void declare_points(Command &command, Options &o) {
+    command.file("PROJECT", o.pto, "Hugin project; its v lines choose what is estimated");
+    command.require("PROJECT");
+    command.file("--points", o.points,
+                 "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
+    command.file("--points-out", o.points_out,
+                 "write the pairs used (Hugin's 16 columns), also those of a fit that is not usable");
+    command.file("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
+}
+
+void declare(Command &command, Options &o) {
+    declare_points(command, o);
+    FitChoices choices;
+    choices.stored_prior = true;
+    declare_fit(command, o.fit, choices);
+    command.choice("--falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
+                   "1, 3 (one a channel) or auto (held-out error decides)");
+    command.list("--free", o.free,
+                 {{"response", LENSPROF_FREE_RESPONSE},
+                  {"falloff", falloff_flags},
+                  {"center", LENSPROF_FREE_CENTER},
+                  {"ev", LENSPROF_FREE_EV},
+                  {"wb", balance_flags},
+                  {"all", lens_flags | LENSPROF_FREE_EV | balance_flags}},
+                 "what is estimated instead of the v lines, the same of every image");
+    command.text("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
+    command.flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
+    command.choice("--sampling", o.sampling,
+                   {{"balanced", LENSPROF_SAMPLING_BALANCED}, {"paper", LENSPROF_SAMPLING_PAPER}},
+                   "balanced or paper (d'Angelo 5.1)");
+    command.count("--pairs", o.pairs, 0, 1 << 24,
+                  "number of pairs; 0 = 300 an image, at least 2000 (radiance: points, 150)");
+    command.count("--seed", o.seed, 0, UINT32_MAX, "of the sampling");
+    command.count("--max-side", o.max_side, 0, UINT32_MAX,
+                  "sample pictures reduced to no less than this many pixels (800); 0 = full size");
+    declare_store(command, o.store);
+    command.file("--compare", o.compare, "truth.json of `simulate`: print recovered beside true values");
+    declare_json(command, o.json);
+    declare_progress(command, o.progress);
 }
 
 lensprof_fit_options project_options(const Options &o, const Project &project, lensprof_response &fixed) {
@@ -92,7 +80,7 @@ lensprof_fit_options project_options(const Options &o, const Project &project, l
     for (const auto &image : project.images) asked |= image.free & lens_flags;
     options.free &= asked;
     options.reference = project.reference;
-    options.vignettings = o.falloff == "auto" ? 0 : o.falloff == "3" ? 3 : 1;
+    options.vignettings = o.falloff_curves;
     options.vignetting = lens.vignetting;
     check(lensprof_pto_get_response(project.pto.get(), project.reference, &fixed), project.path);
     options.response = &fixed;
@@ -196,10 +184,10 @@ void get_points(const Options &o, const Project &project, Progress &progress, Bu
     report.load_s = lap(clock);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
-    options.sampling = o.sampling == "paper" ? LENSPROF_SAMPLING_PAPER : LENSPROF_SAMPLING_BALANCED;
+    options.sampling = o.sampling;
     options.pairs = o.pairs;
     options.seed = o.seed;
-    if (o.fit.method == "radiance") {
+    if (o.fit.method == LENSPROF_METHOD_RADIANCE) {
         input.observations = sample_tracks(project, pictures, options, progress);
         input.pairs = pairs_of_tracks(input.observations);
     } else {
@@ -246,7 +234,7 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
         outputs.add(o.pto_out, project_text(o, project, written, report.reference));
     }
     progress.clear();
-    if (o.fit.gamma_from == "exif" && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
+    if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         streams.err << "lensprof: warning: " << o.pto
                     << (o.points.empty() ? ": no EXIF exposures that differ" : ": EXIF is not read beside --points")
                     << ": gamma rests on the prior\n";
@@ -260,8 +248,8 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (project.images.size() < 2)
         throw Failure(ExitCode::not_usable, o.pto + ": has one image; at least two overlapping ones are needed");
     check_outputs(o, project);
-    if (!o.free.empty())
-        for (auto &image : project.images) image.free = free_of(o.free);
+    const uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>());
+    for (auto &image : project.images) image.free = free ? free : image.free;
     if (o.points.empty()) check_pictures(project, o.max_side);
     auto metadata = picture_metadata(o, project);
     lensprof_profile_key key = profile_key(o, project, metadata, streams);
@@ -270,27 +258,21 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     check_store(o.store);
     OutputFiles outputs;
     EarlierProfile prior;
-    if (o.fit.wants_stored_prior()) prior = find_stored_prior(o.store, key, o.pto);
+    if (o.fit.stored_prior) prior = find_stored_prior(o.store, key, o.pto);
     BuildReport report = build(o, project, metadata, prior, outputs, streams);
-    int code = finish_fit(report, key, o.store, {o.fit.method, o.pto, o.json, &outputs, &prior}, streams);
+    int code = finish_fit(report, key, o.store, {method_name(o.fit.method), o.pto, o.json, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     if (!report.fit.usable && !o.pto_out.empty() && !o.store.force)
         streams.err << "lensprof: " << o.pto_out << ": not written (--force writes it all the same)\n";
     return code;
 }
 
-}  // namespace
-
-int run_build(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app("Recovers response, falloff, exposure and white balance from overlapping pictures.", "lensprof build");
-    declare(app, o);
-    if (!parse(app, arguments, streams)) return 0;
+int run(const Options &o, Streams &streams) {
     check_max_side(o.max_side);
     check_fit_options(o.fit);
     if (o.json && !o.compare.empty())
         throw Failure(ExitCode::usage, "--compare prints a table, which --json leaves out; give one of the two");
-    if (!o.fit.wants_stored_prior()) check_store_options(o.store);
+    if (!o.fit.stored_prior) check_store_options(o.store);
 
     std::vector<std::string> names;
     try {
@@ -300,6 +282,16 @@ int run_build(const std::vector<std::string> &arguments, Streams &streams) {
             print_json(build_json(no_fit(names, failure.what())), streams.out);
         throw;
     }
+}
+
+}  // namespace
+
+void declare_build(Command &program) {
+    Command command = program.add("build", "pictures of a Hugin project -> a lens profile in the database",
+                                  "Recovers response, falloff, exposure and white balance from overlapping pictures.");
+    auto o = std::make_shared<Options>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
 }  // namespace lensprof

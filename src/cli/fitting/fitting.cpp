@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/project.hpp"
@@ -12,46 +12,6 @@
 
 namespace lensprof {
 namespace {
-
-uint32_t modes_of(const std::string &text) {
-    if (text == "auto") return LENSPROF_MODES_AUTO;
-    size_t used = 0;
-    int value = -1;
-    try {
-        value = std::stoi(text, &used);
-    } catch (const std::exception &) {
-    }
-    if (used != text.size() || value < 0 || value > LENSPROF_EMOR_MODES)
-        throw Failure(ExitCode::usage, "--modes " + text + ": give 0..25 or auto");
-    return static_cast<uint32_t>(value);
-}
-
-uint32_t method_of_name(const std::string &name) {
-    return name == "radiance"            ? LENSPROF_METHOD_RADIANCE
-           : name == "transfer-function" ? LENSPROF_METHOD_TRANSFER_FUNCTION
-           : name == "debevec"           ? LENSPROF_METHOD_DEBEVEC
-                                         : LENSPROF_METHOD_TRANSFER;
-}
-
-// --prior as a weight; -1 for what is none.
-double prior_weight_of(const std::string &text) {
-    size_t used = 0;
-    double value = -1.0;
-    try {
-        value = std::stod(text, &used);
-    } catch (const std::exception &) {
-    }
-    return used == text.size() && value >= 0.0 && value <= 1e6 ? value : -1.0;
-}
-
-// What --prior may be.
-CLI::Validator is_prior(bool may_be_stored) {
-    return {[may_be_stored](std::string &text) {
-                if (prior_weight_of(text) >= 0.0 || (may_be_stored && text == "auto")) return std::string();
-                return text + ": give a weight, 0 to 1000000" + (may_be_stored ? ", or auto" : "");
-            },
-            may_be_stored ? "WEIGHT|auto" : "WEIGHT"};
-}
 
 int on_progress(double done, void *progress) {
     static_cast<Progress *>(progress)->update("fitting", done);
@@ -63,46 +23,85 @@ uint32_t sum_of(uint32_t a, uint32_t b) { return a + std::min(b, UINT32_MAX - a)
 
 }  // namespace
 
-void declare_fit(CLI::App &app, FitOptions &o, FitChoices choices) {
-    std::vector<std::string> methods = {"transfer", "radiance", "transfer-function"};
-    std::vector<std::string> gamma = {"auto", "exif", "prior"};
+const char *method_name(uint32_t method) {
+    static const char *const names[] = {"transfer", "radiance", "transfer-function", "debevec"};
+    return method <= LENSPROF_METHOD_DEBEVEC ? names[method] : "unknown";
+}
+
+namespace {
+
+void declare_method(Command &command, FitOptions &o, const FitChoices &choices) {
+    Choices<uint32_t> methods = {{"transfer", LENSPROF_METHOD_TRANSFER},
+                                 {"radiance", LENSPROF_METHOD_RADIANCE},
+                                 {"transfer-function", LENSPROF_METHOD_TRANSFER_FUNCTION}};
     std::string about =
         "transfer (d'Angelo 2007), radiance (Goldman & Chen 2005: one radiance a scene point, which any "
         "number of pictures may see, saturated ones among them) or transfer-function (Kim & Pollefeys "
         "2004)";
     if (choices.debevec) {
-        methods.push_back("debevec");
+        methods.emplace_back("debevec", LENSPROF_METHOD_DEBEVEC);
         about += "; debevec (Debevec & Malik 1997), a reference: known exposures taken as exact, white balances fixed";
     }
-    std::string settles =
-        "what settles the common exponent of exposure, falloff and response: auto (EXIF exposures that "
-        "differ, and the prior, each by its standard error), exif, prior";
-    if (choices.known_response) {
-        gamma.push_back("known");
-        settles += ", known (the project's response)";
-    }
-    app.add_option("--method", o.method, about)->check(CLI::IsMember(methods));
-    app.add_option("--modes", o.modes, "EMoR modes of the response: 0..25 or auto (held-out error decides)");
-    app.add_option("--loss", o.loss, "robust, huber (the paper's) or squared")
-        ->check(CLI::IsMember({"robust", "huber", "squared"}));
-    app.add_option("--huber", o.huber, "sigma of the Huber loss, levels of 255")->check(in_range(0.01, 255.0));
-    std::string weighs = "weight of the priors; 0 = none, as in the paper";
-    if (choices.stored_prior)
-        weighs +=
+    command.choice("--method", o.method, methods, about);
+}
+
+void declare_prior(Command &command, FitOptions &o, bool may_be_stored) {
+    const auto read = [&o, may_be_stored](const std::string &word) {
+        o.stored_prior = may_be_stored && word == "auto";
+        try {
+            o.prior_weight = o.stored_prior ? 1.0 : number_of(word, {0.0, 1e6});
+        } catch (const std::invalid_argument &wrong) {
+            throw std::invalid_argument(wrong.what() + std::string(may_be_stored ? ", nor auto" : ""));
+        }
+    };
+    std::string about = "weight of the priors; 0 = none, as in the paper";
+    if (may_be_stored)
+        about +=
             "; auto: the profile that is stored for this lens and setting is the prior, and what is stored holds "
             "both";
-    app.add_option("--prior", o.prior, weighs)->check(is_prior(choices.stored_prior));
-    app.add_option("--gamma-from", o.gamma_from, settles)->check(CLI::IsMember(gamma));
-    app.add_option("--exif-sigma", o.exif_sigma, "standard error of an EXIF exposure, EV; 0 = do not use them")
-        ->check(in_range(0.0, 10.0));
-    app.add_option("--camera-kind", o.camera_kind, "whose responses the prior is of: any, film or digital")
-        ->check(CLI::IsMember({"any", "film", "digital"}));
+    command.word("--prior", may_be_stored ? "WEIGHT|auto" : "WEIGHT", read, about);
+}
+
+void declare_gamma(Command &command, FitOptions &o, bool known_response) {
+    Choices<uint32_t> gamma = {
+        {"auto", LENSPROF_GAMMA_AUTO}, {"exif", LENSPROF_GAMMA_EXPOSURES}, {"prior", LENSPROF_GAMMA_PRIOR}};
+    std::string about =
+        "what settles the common exponent of exposure, falloff and response: auto (EXIF exposures that "
+        "differ, and the prior, each by its standard error), exif, prior";
+    if (known_response) {
+        gamma.emplace_back("known", LENSPROF_GAMMA_KNOWN);
+        about += ", known (the project's response)";
+    }
+    command.choice("--gamma-from", o.gamma_from, gamma, about);
+}
+
+}  // namespace
+
+void declare_fit(Command &command, FitOptions &o, FitChoices choices) {
+    declare_method(command, o, choices);
+    const auto read_modes = [&o](const std::string &word) {
+        o.modes = word == "auto" ? LENSPROF_MODES_AUTO : count_of(word, 0, LENSPROF_EMOR_MODES);
+    };
+    command.word("--modes", "COUNT|auto", read_modes,
+                 "EMoR modes of the response: 0..25 or auto (held-out error decides)");
+    command.choice(
+        "--loss", o.loss,
+        {{"robust", LENSPROF_LOSS_ROBUST}, {"huber", LENSPROF_LOSS_HUBER}, {"squared", LENSPROF_LOSS_SQUARED}},
+        "robust, huber (the paper's) or squared");
+    command.number("--huber", o.huber, {0.01, 255.0}, "sigma of the Huber loss, levels of 255");
+    declare_prior(command, o, choices.stored_prior);
+    declare_gamma(command, o, choices.known_response);
+    command.number("--exif-sigma", o.exif_sigma, {0.0, 10.0},
+                   "standard error of an EXIF exposure, EV; 0 = do not use them");
+    command.choice("--camera-kind", o.camera_kind,
+                   {{"any", LENSPROF_CAMERA_ANY}, {"film", LENSPROF_CAMERA_FILM}, {"digital", LENSPROF_CAMERA_DIGITAL}},
+                   "whose responses the prior is of: any, film or digital");
 }
 
 void check_fit_options(const FitOptions &o) {
-    if (o.wants_stored_prior() && o.method != "transfer" && o.method != "radiance")
+    if (o.stored_prior && o.method != LENSPROF_METHOD_TRANSFER && o.method != LENSPROF_METHOD_RADIANCE)
         throw Failure(ExitCode::usage, "--prior auto: is for the methods transfer and radiance; give a weight");
-    if (o.gamma_from == "exif" && o.exif_sigma == 0.0)
+    if (o.gamma_from == LENSPROF_GAMMA_EXPOSURES && o.exif_sigma == 0.0)
         throw Failure(ExitCode::usage,
                       "--gamma-from exif and --exif-sigma 0, which leaves EXIF out, contradict each other");
 }
@@ -110,18 +109,16 @@ void check_fit_options(const FitOptions &o) {
 lensprof_fit_options fit_options(const FitOptions &o) {
     lensprof_fit_options options;
     lensprof_fit_options_init(&options);
-    options.method = method_of_name(o.method);
-    options.modes = modes_of(o.modes);
-    options.loss = o.loss == "huber"     ? LENSPROF_LOSS_HUBER
-                   : o.loss == "squared" ? LENSPROF_LOSS_SQUARED
-                                         : LENSPROF_LOSS_ROBUST;
-    options.gamma_from = o.gamma_from == "exif"    ? LENSPROF_GAMMA_EXPOSURES
-                         : o.gamma_from == "prior" ? LENSPROF_GAMMA_PRIOR
-                                                   : LENSPROF_GAMMA_AUTO;
-    if (o.gamma_from == "known") options.free &= ~LENSPROF_FREE_RESPONSE;
-    options.camera_kind = camera_kind_of_name(o.camera_kind);
+    options.method = o.method;
+    options.modes = o.modes;
+    options.loss = o.loss;
+    options.camera_kind = o.camera_kind;
     options.huber_levels = o.huber;
-    options.prior_weight = o.wants_stored_prior() ? 1.0 : prior_weight_of(o.prior);
+    options.prior_weight = o.prior_weight;
+    if (o.gamma_from == LENSPROF_GAMMA_KNOWN)
+        options.free &= ~LENSPROF_FREE_RESPONSE;
+    else
+        options.gamma_from = o.gamma_from;
     return options;
 }
 

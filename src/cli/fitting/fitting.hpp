@@ -9,24 +9,21 @@
 #include "cli/fitting/stored_prior.hpp"
 #include "cli/pictures/metadata.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/progress.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace lensprof {
 
 // How to fit.
 struct FitOptions {
-    std::string method = "transfer", modes = "auto", loss = "robust", gamma_from = "auto", camera_kind = "any";
-    std::string prior = "1";  // a weight, or auto
-    double huber = 5.0, exif_sigma = 0.1;
-
-    bool wants_stored_prior() const { return prior == "auto"; }
+    uint32_t method = LENSPROF_METHOD_TRANSFER, modes = LENSPROF_MODES_AUTO, loss = LENSPROF_LOSS_ROBUST;
+    uint32_t gamma_from = LENSPROF_GAMMA_AUTO;  // KNOWN: the project's response is held
+    uint32_t camera_kind = LENSPROF_CAMERA_ANY;
+    double prior_weight = 1.0, huber = 5.0, exif_sigma = 0.1;
+    bool stored_prior = false;  // the profile that is stored for the lens and setting is the prior
 };
 
 // What not every command has to offer.
@@ -35,7 +32,10 @@ struct FitChoices {
     bool known_response = true;  // a project says a response that may be held
     bool stored_prior = false;   // a stored profile may be the prior
 };
-void declare_fit(CLI::App &app, FitOptions &o, FitChoices choices = {});
+void declare_fit(Command &command, FitOptions &o, FitChoices choices = {});
+
+// Of --method, as provenances name it.
+const char *method_name(uint32_t method);
 
 // Failure (usage) for options that contradict each other.
 void check_fit_options(const FitOptions &o);

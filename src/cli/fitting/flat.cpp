@@ -2,8 +2,8 @@
 #include "cli/fitting/flat.hpp"
 
 #include <chrono>
+#include <stdexcept>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
@@ -16,39 +16,59 @@
 namespace lensprof {
 namespace {
 
-void declare(CLI::App &app, FlatCommand &o) {
-    app.add_option("FILES", o.files, "pictures of the card, all of one camera, lens and setting")->required();
-    app.add_flag("--linear", o.linear, "the pictures are linear (developed from RAW without a tone curve)");
-    app.add_option("--gamma", o.gamma, "the pictures' response is x^(1/gamma)")->check(in_range(0.1, 10.0));
-    app.add_option("--profile", o.profile, "the response is that of this profile of the database")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--shots", o.shots,
+std::array<double, 4> card_of(const std::string &word) {
+    const std::vector<std::string> sides = split(word);
+    if (sides.size() != 4) throw std::invalid_argument(word + ": not a rectangle X,Y,WIDTH,HEIGHT");
+    std::array<double, 4> card;
+    for (size_t i = 0; i < 4; i++) card[i] = number_of(sides[i], {0.0, 1e6});
+    return card;
+}
+
+void declare_card(Command &command, FlatCommand &o) {
+    command.flag("--several", o.several, "one card at several places of the frame, its brightness the same in all");
+    command.number("--ev-sigma", o.ev_sigma, {0.001, 1.0}, "with --several: standard error of an exposure, EV");
+    command.flag("--find-card", o.find_card, "the card covers a part of the frame: look for it");
+    command.words(
+        "--card", "X,Y,WIDTH,HEIGHT", [&o](const std::string &word) { o.cards.push_back(card_of(word)); },
+        "the card is there (px of the frame): once, or once a picture");
+    command.choice("--light", o.light,
+                   {{"auto", LENSPROF_FLAT_LIGHT_AUTO},
+                    {"even", LENSPROF_FLAT_LIGHT_EVEN},
+                    {"plane", LENSPROF_FLAT_LIGHT_PLANE},
+                    {"quadratic", LENSPROF_FLAT_LIGHT_QUADRATIC}},
+                   "even, plane, quadratic, or auto: plane, with --several even");
+    command.flag("--own-light", o.own_light, "every shot has a light of its own");
+}
+
+void declare(Command &command, FlatCommand &o) {
+    command.files("FILES", o.files, "pictures of the card, all of one camera, lens and setting");
+    command.require("FILES");
+    command.flag("--linear", o.linear, "the pictures are linear (developed from RAW without a tone curve)");
+    command.number("--gamma", o.gamma, {0.1, 10.0}, "the pictures' response is x^(1/gamma)");
+    command.profile_id("--profile", o.profile, "the response is that of this profile of the database");
+    command.counts("--shots", o.shots, 0, 1000000,
                    "number of every picture's shot, as 1,1,1,2,2,2: exposures of one shot are merged; without it every "
                    "picture is a shot of its own");
-    app.add_option("--ev", o.ev, "exposure of every picture, EV, instead of EXIF's");
-    app.add_option("--turned", o.turned,
-                   "by how many degrees the camera was turned about its axis, clockwise seen from behind it, in every "
-                   "shot: tells the light from the lens");
-    app.add_flag("--several", o.several, "one card at several places of the frame, its brightness the same in all");
-    app.add_option("--ev-sigma", o.ev_sigma, "with --several: standard error of an exposure, EV")
-        ->check(in_range(0.001, 1.0));
-    app.add_flag("--find-card", o.find_card, "the card covers a part of the frame: look for it");
-    app.add_option("--card", o.cards, "the card is at X,Y,WIDTH,HEIGHT (px of the frame): once, or once a picture");
-    app.add_option("--light", o.light, "even, plane, quadratic, or auto: plane, with --several even")
-        ->check(CLI::IsMember({"auto", "even", "plane", "quadratic"}));
-    app.add_flag("--own-light", o.own_light, "every shot has a light of its own");
-    app.add_option("--falloff-curves", o.falloff, "1, 3 (one a channel) or auto (3 where they clearly differ)")
-        ->check(CLI::IsMember({"auto", "1", "3"}));
-    app.add_option("--center", o.center, "free, or fixed in the middle of the frame")
-        ->check(CLI::IsMember({"free", "fixed"}));
-    app.add_option("--grid", o.grid, "gain grid for what is not radial: auto (where 0.3 % are left), none, always")
-        ->check(CLI::IsMember({"auto", "none", "always"}));
-    app.add_option("--black", o.black, "grey value (0..1) below which nothing is used")->check(in_range(0.0, 1.0));
-    app.add_option("--white", o.white, "grey value (0..1) above which nothing is used")->check(in_range(0.0, 1.0));
-    app.add_option("--max-side", o.max_side, "read pictures reduced to no less than this many pixels (1600); 0 = full");
-    declare_store(app, o.store);
-    app.add_flag("--json", o.json, "print one JSON object");
-    app.add_flag("--progress", o.progress, "show progress also when standard error is not a terminal");
+    command.numbers("--ev", o.ev, any_number, "exposure of every picture, EV, instead of EXIF's");
+    command.numbers("--turned", o.turned_deg, {-360.0, 360.0},
+                    "by how many degrees the camera was turned about its axis, clockwise seen from behind it, in every "
+                    "shot: separates the light from the lens");
+    declare_card(command, o);
+    command.choice("--falloff-curves", o.falloff_curves, {{"auto", 0}, {"1", 1}, {"3", 3}},
+                   "1, 3 (one a channel) or auto (3 where they clearly differ)");
+    command.choice("--center", o.free_center, {{"free", true}, {"fixed", false}},
+                   "free, or fixed in the middle of the frame");
+    command.choice(
+        "--grid", o.grid,
+        {{"auto", LENSPROF_FLAT_GRID_AUTO}, {"none", LENSPROF_FLAT_GRID_NONE}, {"always", LENSPROF_FLAT_GRID_ALWAYS}},
+        "gain grid for what is not radial: auto (where 0.3 % are left), none, always");
+    command.number("--black", o.black, {0.0, 1.0}, "grey value (0..1) below which nothing is used");
+    command.number("--white", o.white, {0.0, 1.0}, "grey value (0..1) above which nothing is used");
+    command.count("--max-side", o.max_side, 0, UINT32_MAX,
+                  "read pictures reduced to no less than this many pixels (1600); 0 = full");
+    declare_store(command, o.store);
+    declare_json(command, o.json);
+    declare_progress(command, o.progress);
 }
 
 int on_progress(double done, void *progress) {
@@ -61,7 +81,7 @@ int on_progress(double done, void *progress) {
 void mind_jpeg(const FlatCommand &o, FlatInput &input, Streams &streams) {
     for (size_t i = 0; i < input.pictures.size(); i++) {
         if (input.pictures[i].traits.format != FileFormat::jpeg) continue;
-        if (o.falloff == "auto") input.options.vignettings = 1;
+        if (o.falloff_curves == 0) input.options.vignettings = 1;
         streams.err
             << "lensprof: warning: " << o.files[i]
             << ": JPEG rounds grey values and colours over blocks of pixels, so that the falloff may be farther off "
@@ -114,16 +134,7 @@ int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &re
     return store_profile(o.store, *profile, {"flat", o.files.front(), fit.usable != 0});
 }
 
-}  // namespace
-
-int run_flat(const std::vector<std::string> &arguments, Streams &streams) {
-    FlatCommand o;
-    CLI::App app(
-        "Measures the falloff on pictures of a white card or another even light; docs/flat.md tells how to take "
-        "them.",
-        "lensprof flat");
-    declare(app, o);
-    if (!parse(app, arguments, streams)) return 0;
+int run(const FlatCommand &o, Streams &streams) {
     check_flat_options(o);
     FlatInput input = prepare_flat(o);
     check_store(o.store);
@@ -146,6 +157,17 @@ int run_flat(const std::vector<std::string> &arguments, Streams &streams) {
                     << (good || o.store.no_store ? "" : "; nothing was stored (--force stores it all the same)")
                     << "\n";
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
+}
+
+}  // namespace
+
+void declare_flat(Command &program) {
+    Command command = program.add(
+        "flat", "pictures of a white card or another even light -> a lens profile in the database",
+        "Measures the falloff on pictures of a white card or another even light; docs/flat.md tells how to take them.");
+    auto o = std::make_shared<FlatCommand>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
 }  // namespace lensprof

@@ -1,6 +1,7 @@
 // The parts of `lensprof flat`: what is asked for, the pictures, what is said about the result.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,9 +17,13 @@ namespace lensprof {
 
 struct FlatCommand {
     StoreOptions store;
-    std::vector<std::string> files, cards;
-    std::string shots, ev, turned, falloff = "auto", light = "auto", grid = "auto", center = "free";
-    bool linear = false, several = false, find_card = false, own_light = false, json = false, progress = false;
+    std::vector<std::string> files;
+    std::vector<std::array<double, 4>> cards;  // x, y, width and height, px of the frame
+    std::vector<uint32_t> shots;
+    std::vector<double> ev, turned_deg;
+    uint32_t falloff_curves = 0, light = LENSPROF_FLAT_LIGHT_AUTO, grid = LENSPROF_FLAT_GRID_AUTO;
+    bool free_center = true, linear = false, several = false, find_card = false, own_light = false, json = false,
+         progress = false;
     int64_t profile = 0;
     std::optional<double> gamma;
     double ev_sigma = 0.02, black = 2.0 / 255.0, white = 250.0 / 255.0;

@@ -22,12 +22,11 @@ std::vector<uint32_t> shots_of(const FlatCommand &o) {
         for (uint32_t i = 0; i < o.files.size(); i++) shots.push_back(i + 1);
         return shots;
     }
-    for (double number : numbers_of(o.shots, "--shots", o.files.size(), "pictures")) {
-        if (number != std::floor(number) || number < 0.0 || number > 1e6)
-            throw Failure(ExitCode::usage, "--shots " + o.shots + ": give whole numbers");
-        shots.push_back(static_cast<uint32_t>(number));
-    }
-    return shots;
+    if (o.shots.size() != o.files.size())
+        throw Failure(ExitCode::usage, "--shots: " + std::to_string(o.shots.size()) + " values for "
+                                           + std::to_string(o.files.size())
+                                           + " pictures; give one for each, in their order");
+    return o.shots;
 }
 
 // Turn of every picture from the turns of the shots, in the order in which these begin.
@@ -36,13 +35,10 @@ std::vector<double> turns_of(const FlatCommand &o, const std::vector<uint32_t> &
     for (uint32_t shot : shots)
         if (std::find(order.begin(), order.end(), shot) == order.end()) order.push_back(shot);
     std::vector<double> turns(shots.size(), 0.0);
-    if (o.turned.empty()) return turns;
-    std::vector<double> given = numbers_of(o.turned, "--turned", order.size(), "shots");
+    if (o.turned_deg.empty()) return turns;
+    demand_count(o.turned_deg, "--turned", order.size(), "shots");
     for (size_t i = 0; i < shots.size(); i++)
-        turns[i] = given[static_cast<size_t>(std::find(order.begin(), order.end(), shots[i]) - order.begin())];
-    for (double turn : given)
-        if (std::fabs(turn) > 360.0)
-            throw Failure(ExitCode::usage, "--turned " + o.turned + ": give degrees from -360 to 360");
+        turns[i] = o.turned_deg[static_cast<size_t>(std::find(order.begin(), order.end(), shots[i]) - order.begin())];
     return turns;
 }
 
@@ -54,7 +50,8 @@ bool needs_ev(const FlatCommand &o, const std::vector<uint32_t> &shots, size_t i
 std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_t> &shots,
                                  const std::vector<PictureMetadata> &metadata) {
     std::vector<double> ev(shots.size(), 0.0);
-    if (!o.ev.empty()) ev = numbers_of(o.ev, "--ev", o.files.size(), "pictures");
+    if (!o.ev.empty()) demand_count(o.ev, "--ev", o.files.size(), "pictures");
+    if (!o.ev.empty()) ev = o.ev;
     for (size_t i = 0; i < ev.size(); i++) {
         if (o.ev.empty() && needs_ev(o, shots, i)) {
             if (!metadata[i].exif_ev)
@@ -85,11 +82,10 @@ std::vector<lensprof_response> response_of(const FlatCommand &o) {
 }
 
 // The card's rectangle as a mask of the held pixels.
-std::vector<uint8_t> mask_of(const std::string &card, const Picture &picture, const std::string &file) {
-    std::vector<double> r = numbers_of(card, "--card");
-    if (r.size() != 4 || !(r[0] >= 0 && r[1] >= 0 && r[2] > 0 && r[3] > 0) || r[0] + r[2] > picture.frame_width
-        || r[1] + r[3] > picture.frame_height)
-        throw Failure(ExitCode::usage, "--card " + card + ": not a rectangle X,Y,WIDTH,HEIGHT in the "
+std::vector<uint8_t> mask_of(const std::array<double, 4> &r, const Picture &picture, const std::string &file) {
+    if (!(r[2] > 0 && r[3] > 0) || r[0] + r[2] > picture.frame_width || r[1] + r[3] > picture.frame_height)
+        throw Failure(ExitCode::usage, format("--card %g,%g,%g,%g", r[0], r[1], r[2], r[3])
+                                           + ": not a rectangle X,Y,WIDTH,HEIGHT in the "
                                            + std::to_string(picture.frame_width) + " x "
                                            + std::to_string(picture.frame_height) + " px of " + file);
     std::vector<uint8_t> mask(static_cast<size_t>(picture.width) * picture.height);
@@ -138,7 +134,7 @@ void check_flat_options(const FlatCommand &o) {
     if (o.max_side != 0 && o.max_side < smallest_side)
         throw Failure(ExitCode::usage,
                       "--max-side: less than 64 pixels are too few cells; give more, or 0 for full size");
-    if (o.several && (o.light == "plane" || o.light == "quadratic"))
+    if (o.several && (o.light == LENSPROF_FLAT_LIGHT_PLANE || o.light == LENSPROF_FLAT_LIGHT_QUADRATIC))
         throw Failure(ExitCode::usage, "--several: a card of one brightness has even light; leave out --light");
     if (o.find_card && !o.cards.empty()) throw Failure(ExitCode::usage, "--card and --find-card contradict each other");
     if (o.cards.size() > 1 && o.cards.size() != o.files.size())
@@ -168,15 +164,10 @@ FlatInput prepare_flat(const FlatCommand &o) {
     if (o.linear) metadata.front().key.processing = LENSPROF_PROCESSING_RAW;
     input.key = override_key(metadata.front().key, o.store, o.files.front());
     auto &options = input.options;
-    options.vignettings = o.falloff == "auto" ? 0 : o.falloff == "3" ? 3 : 1;
-    options.light = o.light == "even"        ? LENSPROF_FLAT_LIGHT_EVEN
-                    : o.light == "plane"     ? LENSPROF_FLAT_LIGHT_PLANE
-                    : o.light == "quadratic" ? LENSPROF_FLAT_LIGHT_QUADRATIC
-                                             : LENSPROF_FLAT_LIGHT_AUTO;
-    options.grid = o.grid == "none"     ? LENSPROF_FLAT_GRID_NONE
-                   : o.grid == "always" ? LENSPROF_FLAT_GRID_ALWAYS
-                                        : LENSPROF_FLAT_GRID_AUTO;
-    if (o.center == "fixed") options.free &= ~LENSPROF_FREE_CENTER;
+    options.vignettings = o.falloff_curves;
+    options.light = o.light;
+    options.grid = o.grid;
+    if (!o.free_center) options.free &= ~LENSPROF_FREE_CENTER;
     options.own_light = o.own_light;
     options.several = o.several;
     options.find_card = o.find_card;

@@ -3,8 +3,6 @@
 #include <ctime>
 #include <filesystem>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
@@ -14,22 +12,27 @@
 
 namespace lensprof {
 
-void declare_store(CLI::App &app, StoreOptions &o) {
-    declare_db(app, o.db);
-    app.add_flag("--no-store", o.no_store, "do not store the profile");
-    app.add_flag("--force", o.force, "store a result that is not usable");
-    app.add_option("--maker", o.maker, "camera maker, instead of EXIF's");
-    app.add_option("--camera", o.camera, "camera model");
-    app.add_option("--lens", o.lens, "lens");
-    app.add_option(
-        "--unit", o.unit,
-        "the profile is of one camera and lens alone: their serial numbers, or exif for those of the picture");
-    app.add_option("--crop-factor", o.crop_factor, "43.27 mm over the diagonal of the camera's sensor")
-        ->check(in_range(0.01, 1e4));
-    app.add_option("--focal", o.focal, "focal length, mm")->check(in_range(0.01, 1e5));
-    app.add_option("--aperture", o.aperture, "f-number")->check(in_range(0.01, 1e4));
-    app.add_option("--distance", o.distance, "focus distance, m")->check(in_range(1e-6, INFINITY));
-    app.add_option("--processing", o.processing, "raw, jpeg or corrected (falloff corrected in camera)");
+Choices<std::optional<uint32_t>> processing_choices() {
+    return {{"raw", LENSPROF_PROCESSING_RAW},
+            {"jpeg", LENSPROF_PROCESSING_JPEG},
+            {"corrected", LENSPROF_PROCESSING_CORRECTED}};
+}
+
+void declare_store(Command &command, StoreOptions &o) {
+    declare_db(command, o.db);
+    command.flag("--no-store", o.no_store, "do not store the profile");
+    command.flag("--force", o.force, "store a result that is not usable");
+    command.text("--maker", o.maker, "camera maker, instead of EXIF's");
+    command.text("--camera", o.camera, "camera model");
+    command.text("--lens", o.lens, "lens");
+    command.text("--unit", o.unit,
+                 "the profile is of one camera and lens alone: their serial numbers, or exif for those of the picture");
+    command.number("--crop-factor", o.crop_factor, crop_factors, "43.27 mm over the diagonal of the camera's sensor");
+    command.number("--focal", o.focal, focal_lengths, "focal length, mm, as 50 or 50mm");
+    command.number("--aperture", o.aperture, f_numbers, "f-number, as 4 or f/4");
+    command.number("--distance", o.distance, distances, "focus distance, m, as 3 or 3m");
+    command.choice("--processing", o.processing, processing_choices(),
+                   "raw, jpeg or corrected (falloff corrected in camera)");
 }
 
 void check_store_options(const StoreOptions &o) {
@@ -47,7 +50,7 @@ lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &
     if (o.focal != LENSPROF_UNKNOWN) key.focal_mm = o.focal;
     if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;
     if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;
-    if (!o.processing.empty()) key.processing = processing_of_name(o.processing);
+    if (o.processing) key.processing = *o.processing;
     if (!*key.camera_model && !*key.lens && !o.no_store)
         throw Failure(ExitCode::usage,
                       file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");

@@ -2,25 +2,27 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "cli/program/library.hpp"
-
-namespace CLI {
-class App;
-}
+#include "cli/program/options.hpp"
 
 namespace lensprof {
 
 // The options of every command that stores a profile.
 struct StoreOptions {
-    std::string db, maker, camera, lens, unit, processing;
+    std::string db, maker, camera, lens, unit;
+    std::optional<uint32_t> processing;  // LENSPROF_PROCESSING_...
     double crop_factor = LENSPROF_UNKNOWN, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN,
            distance = LENSPROF_UNKNOWN;
     bool no_store = false, force = false;
 };
 
-void declare_store(CLI::App &app, StoreOptions &o);
+void declare_store(Command &command, StoreOptions &o);
+
+// The words of --processing.
+Choices<std::optional<uint32_t>> processing_choices();
 
 // Failure (usage) for options that contradict each other.
 void check_store_options(const StoreOptions &o);

@@ -2,14 +2,14 @@
 #pragma once
 
 #include "cli/profiles/foreign_file.hpp"
-
-namespace CLI {
-class App;
-}
+#include "cli/program/options.hpp"
 
 namespace lensprof {
 
 // `options` outlives the parsing.
-void declare_foreign(CLI::App &app, ForeignOptions &options, bool written);
+void declare_foreign(Command &command, ForeignOptions &options, bool written);
+
+// The words of --format.
+Choices<std::string> format_choices(bool written_only);
 
 }  // namespace lensprof

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
+#include "cli/fitting/profile_store.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
@@ -13,23 +12,19 @@
 
 namespace lensprof {
 
-void KeyFilter::add_options(CLI::App &app) {
-    app.add_option("--camera", camera_, "camera model");
-    app.add_option("--maker", maker_, "camera maker");
-    app.add_option("--lens", lens_, "lens");
-    app.add_option("--unit", unit_, "serial numbers of the one camera and lens that a profile is of");
-    app.add_option("--focal", focal_, "focal length, mm")->check(in_range(0.01, 1e5));
-    app.add_option("--aperture", aperture_, "f-number")->check(in_range(0.01, 1e4));
-    app.add_option("--distance", distance_, "focus distance, m")->check(in_range(1e-6, INFINITY));
-    app.add_option("--processing", processing_, "raw, jpeg or corrected");
-}
-
-void KeyFilter::check_words() const {
-    if (!processing_.empty()) processing_of_name(processing_);
+void KeyFilter::add_options(Command &command) {
+    command.text("--camera", camera_, "camera model");
+    command.text("--maker", maker_, "camera maker");
+    command.text("--lens", lens_, "lens");
+    command.text("--unit", unit_, "serial numbers of the one camera and lens that a profile is of");
+    command.number("--focal", focal_, focal_lengths, "focal length, mm, as 50 or 50mm");
+    command.number("--aperture", aperture_, f_numbers, "f-number, as 4 or f/4");
+    command.number("--distance", distance_, distances, "focus distance, m, as 3 or 3m");
+    command.choice("--processing", processing_, processing_choices(), "raw, jpeg or corrected");
 }
 
 bool KeyFilter::is_empty() const {
-    return maker_.empty() && !has_camera_or_lens() && unit_.empty() && processing_.empty() && focal_ == LENSPROF_UNKNOWN
+    return maker_.empty() && !has_camera_or_lens() && unit_.empty() && !processing_ && focal_ == LENSPROF_UNKNOWN
            && aperture_ == LENSPROF_UNKNOWN && distance_ == LENSPROF_UNKNOWN;
 }
 
@@ -43,7 +38,7 @@ lensprof_profile_key KeyFilter::key(uint32_t processing) const {
     key.focal_mm = focal_;
     key.aperture = aperture_;
     key.distance_m = distance_;
-    key.processing = processing_.empty() ? processing : processing_of_name(processing_);
+    key.processing = processing_.value_or(processing);
     return key;
 }
 
@@ -55,8 +50,8 @@ std::vector<lensprof_store_row> KeyFilter::rows(lensprof_store *store, const std
     std::vector<lensprof_store_row> rows(found);
     check(lensprof_store_list(store, &filter, rows.data(), found, &found, &error), store_path(db), &error);
     rows.resize(std::min<size_t>(rows.size(), found));
-    if (processing_.empty()) return rows;
-    const uint32_t processing = processing_of_name(processing_);
+    if (!processing_) return rows;
+    const uint32_t processing = *processing_;
     rows.erase(
         std::remove_if(rows.begin(), rows.end(),
                        [=](const lensprof_store_row &row) { return !row.damaged && row.key.processing != processing; }),

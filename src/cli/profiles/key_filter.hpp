@@ -1,33 +1,28 @@
 // Options that choose profiles by what they are for.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <lensprof/lensprof.h>
 
 #include "cli/program/library.hpp"
-
-namespace CLI {
-class App;
-}
+#include "cli/program/options.hpp"
 
 namespace lensprof {
 
 // Camera, lens and setting as asked for; what is not given may be anything.
 class KeyFilter {
 public:
-    void add_options(CLI::App &app);
-
-    // Failure (usage) for a word of --processing that is none, whatever is stored.
-    void check_words() const;
+    void add_options(Command &command);
 
     bool is_empty() const;
     bool has_camera_or_lens() const { return !camera_.empty() || !lens_.empty(); }
 
     // What was given, the rest unknown; `processing` where none was given.
     lensprof_profile_key key(uint32_t processing) const;
-    bool has_processing() const { return !processing_.empty(); }
+    bool has_processing() const { return processing_.has_value(); }
 
     // Rows of the profiles that match, in the order of lensprof_store_list, and all damaged rows; `db` as given, for
     // texts.
@@ -40,7 +35,8 @@ public:
     std::string nothing_found(const std::string &db) const;
 
 private:
-    std::string maker_, camera_, lens_, unit_, processing_;
+    std::string maker_, camera_, lens_, unit_;
+    std::optional<uint32_t> processing_;
     double focal_ = LENSPROF_UNKNOWN, aperture_ = LENSPROF_UNKNOWN, distance_ = LENSPROF_UNKNOWN;
 };
 

@@ -1,7 +1,7 @@
-// `lensprof profile list | show | remove | export`, and the way to the verbs that have files of their own.
+// `lensprof profile list | show | remove`, and the verbs that have files of their own.
 #include <algorithm>
+#include <optional>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/profiles/key_filter.hpp"
@@ -65,22 +65,17 @@ int list(const std::string &db, const KeyFilter &filter, bool json, Streams &str
     return report_damaged(store.get(), rows, streams);
 }
 
-// What a verb is asked for.
-struct ProfileOptions {
+// What `show` is asked for.
+struct ShowOptions {
     std::vector<int64_t> ids;
     KeyFilter filter;
-    std::string db, blob, chart_out, channel;
+    std::string db, blob, chart_out;
+    std::optional<int> channel;  // of charts; -1: all
     bool json = false, chart = false;
 };
 
 // One curve a profile where there are several, so that they can be compared.
-int channel_of(const ProfileOptions &o, size_t profiles) {
-    static const char *const names[] = {"red", "green", "blue"};
-    if (o.channel.empty()) return profiles > 1 ? 1 : -1;
-    for (int c = 0; c < 3; c++)
-        if (o.channel == names[c]) return c;
-    return -1;
-}
+int channel_of(const ShowOptions &o, size_t profiles) { return o.channel.value_or(profiles > 1 ? 1 : -1); }
 
 void print_profiles(const std::vector<StoredProfile> &profiles, bool json, Streams &streams) {
     if (!json) {
@@ -123,11 +118,13 @@ void print_blob(const std::string &path, const BlobStamp &stamp, const lensprof_
     print_json(object, streams.out);
 }
 
-int show(const ProfileOptions &o, Streams &streams) {
+int show(const ShowOptions &o, Streams &streams) {
     if (int(!o.ids.empty()) + int(!o.filter.is_empty()) + int(!o.blob.empty()) != 1)
         throw Failure(ExitCode::usage,
                       "profile show: give either ids that `lensprof profile list` shows, or --camera, "
                       "--lens and the like, or --blob");
+    if (o.channel && !o.chart && o.chart_out.empty())
+        throw Failure(ExitCode::usage, "profile show: --channel belongs to --chart and --chart-out; add one of them");
     if (!o.blob.empty() && !o.db.empty())
         throw Failure(ExitCode::usage, "profile show: --blob reads a file of its own; leave --db out");
     if (!o.chart_out.empty()) check_chart_name(o.chart_out);
@@ -170,57 +167,68 @@ int remove(const std::string &db, int64_t id, bool json, Streams &streams) {
     return 0;
 }
 
-// Options that a verb would not look at are mistakes.
-void check_verb(const std::string &verb, const ProfileOptions &o) {
-    if (verb != "show" && (o.chart || !o.chart_out.empty() || !o.channel.empty()))
-        throw Failure(ExitCode::usage, "profile " + verb + ": --chart, --chart-out and --channel belong to show");
-    if (verb == "show" && !o.channel.empty() && !o.chart && o.chart_out.empty())
-        throw Failure(ExitCode::usage, "profile show: --channel belongs to --chart and --chart-out; add one of them");
-    if (verb == "remove" && !o.filter.is_empty())
-        throw Failure(ExitCode::usage, "profile remove: --camera, --lens and the like belong to list and show");
-    if (verb == "list" && !o.ids.empty())
-        throw Failure(ExitCode::usage, "profile list: lists profiles without ids; `profile show` takes ids");
-    if (verb == "remove" && o.ids.size() != 1)
-        throw Failure(ExitCode::usage, "profile remove: give the id, one, that `lensprof profile list` shows");
-    if (verb != "show" && !o.blob.empty())
-        throw Failure(ExitCode::usage, "profile " + verb + ": --blob belongs to show and export");
+void declare_list(Command &profile) {
+    struct Options {
+        std::string db;
+        KeyFilter filter;
+        bool json = false;
+    };
+    Command command = profile.add("list", "the profiles of the database, a line each");
+    auto o = std::make_shared<Options>();
+    declare_db(command, o->db);
+    declare_json(command, o->json);
+    command.group("What to list");
+    o->filter.add_options(command);
+    command.run([o](Streams &streams) { return list(o->db, o->filter, o->json, streams); });
+}
+
+void declare_show(Command &profile) {
+    Command command = profile.add("show", "all of some profiles, or of a blob");
+    auto o = std::make_shared<ShowOptions>();
+    command.profile_ids("ID", o->ids, "profiles to show");
+    declare_db(command, o->db);
+    declare_json(command, o->json);
+    command.flag("--chart", o->chart, "relative illuminance, M over r, as a chart and a table instead");
+    command.file("--chart-out", o->chart_out, "draw that chart into this .svg or .png");
+    command.choice("--channel", o->channel, {{"red", 0}, {"green", 1}, {"blue", 2}, {"all", -1}},
+                   "in charts, of profiles with a falloff a channel: red, green, blue or all; default all for one "
+                   "profile, green for several");
+    command.file("--blob", o->blob, "a blob (docs/blob.md) to read instead of the database");
+    command.group("What to show, instead of ids");
+    o->filter.add_options(command);
+    command.run([o](Streams &streams) { return show(*o, streams); });
+}
+
+void declare_remove(Command &profile) {
+    struct Options {
+        std::vector<int64_t> ids;
+        std::string db;
+        bool json = false;
+    };
+    Command command = profile.add("remove", "take a profile out of the database");
+    auto o = std::make_shared<Options>();
+    command.profile_ids("ID", o->ids, "the profile, one, as `lensprof profile list` shows it");
+    declare_db(command, o->db);
+    declare_json(command, o->json);
+    command.run([o](Streams &streams) {
+        if (o->ids.size() != 1)
+            throw Failure(ExitCode::usage, "profile remove: give the id, one, that `lensprof profile list` shows");
+        return remove(o->db, o->ids[0], o->json, streams);
+    });
 }
 
 }  // namespace
 
-int run_profile(const std::vector<std::string> &arguments, Streams &streams) {
-    static const Command others[] = {{"import", "", run_profile_import},
-                                     {"export", "", run_profile_export},
-                                     {"merge", "", run_profile_merge},
-                                     {"check", "", run_profile_check},
-                                     {"stats", "", run_profile_stats}};
-    for (const Command &other : others)
-        if (!arguments.empty() && arguments[0] == other.name)
-            return other.run({arguments.begin() + 1, arguments.end()}, streams);
-    std::string verb;
-    ProfileOptions o;
-    CLI::App app(
-        "Lists, shows or removes profiles of the database. `lensprof profile import`, `export`, `merge`, `check` "
-        "and `stats` have options of their own.",
-        "lensprof profile");
-    app.add_option("VERB", verb, "list, show or remove")->required()->check(CLI::IsMember({"list", "show", "remove"}));
-    app.add_option("ID", o.ids, "profiles to show, or the one to remove")->check(is_profile_id);
-    declare_db(app, o.db);
-    app.add_flag("--json", o.json, "print one JSON object");
-    app.add_flag("--chart", o.chart, "show: relative illuminance, M over r, as a chart and a table instead");
-    app.add_option("--chart-out", o.chart_out, "show: draw that chart into this .svg or .png");
-    app.add_option("--channel", o.channel,
-                   "in charts, of profiles with a falloff a channel: red, green, blue or all; default all for one "
-                   "profile, green for several")
-        ->check(CLI::IsMember({"red", "green", "blue", "all"}));
-    app.add_option("--blob", o.blob, "show: a blob (docs/blob.md) to read instead of the database");
-    app.option_defaults()->group("What to list or show, instead of ids");
-    o.filter.add_options(app);
-    if (!parse(app, arguments, streams)) return 0;
-    check_verb(verb, o);
-    o.filter.check_words();
-    if (verb == "list") return list(o.db, o.filter, o.json, streams);
-    return verb == "show" ? show(o, streams) : remove(o.db, o.ids[0], o.json, streams);
+void declare_profile(Command &program) {
+    Command profile = program.add("profile", "list, show, remove, export, import, merge or check profiles");
+    declare_list(profile);
+    declare_show(profile);
+    declare_remove(profile);
+    declare_profile_export(profile);
+    declare_profile_import(profile);
+    declare_profile_merge(profile);
+    declare_profile_check(profile);
+    declare_profile_stats(profile);
 }
 
 }  // namespace lensprof

@@ -1,5 +1,4 @@
 // `lensprof profile check` and `lensprof profile stats`: the state of a database.
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/program/commands.hpp"
@@ -22,17 +21,18 @@ lensprof_status collect(void *user, const lensprof_store_fault *fault) {
     return LENSPROF_OK;
 }
 
-// What both have in common. Returns whether the command shall run.
+// What both have in common.
 struct Options {
     std::string db;
     bool json = false;
-
-    bool read(CLI::App &app, const std::vector<std::string> &arguments, Streams &streams) {
-        declare_db(app, db);
-        app.add_flag("--json", json, "print one JSON object");
-        return parse(app, arguments, streams);
-    }
 };
+
+void declare(Command command, int (*run)(const Options &, Streams &)) {
+    auto o = std::make_shared<Options>();
+    declare_db(command, o->db);
+    declare_json(command, o->json);
+    command.run([o, run](Streams &streams) { return run(*o, streams); });
+}
 
 std::string range(const double *ends, const char *front, const char *behind) {
     if (ends[0] == LENSPROF_UNKNOWN) return "not known of any";
@@ -98,15 +98,7 @@ void print_stats(const std::string &file, const lensprof_store_stats &s, std::os
     print_groups("source", s.source, s.sources, out);
 }
 
-}  // namespace
-
-int run_profile_check(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app(
-        "Reads and checks the whole database, and lists everything that is wrong. Exit code 0 when nothing is, 6 "
-        "otherwise. Writes nothing.",
-        "lensprof profile check");
-    if (!o.read(app, arguments, streams)) return 0;
+int run_check(const Options &o, Streams &streams) {
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     const std::string file = store_path(o.db);
     std::vector<Fault> faults;
@@ -132,10 +124,7 @@ int run_profile_check(const std::vector<std::string> &arguments, Streams &stream
     return static_cast<int>(faults.empty() ? ExitCode::done : ExitCode::store);
 }
 
-int run_profile_stats(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app("Counts what is in the database.", "lensprof profile stats");
-    if (!o.read(app, arguments, streams)) return 0;
+int run_stats(const Options &o, Streams &streams) {
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     auto stats = std::make_unique<lensprof_store_stats>();
     lensprof_store_stats_init(stats.get());
@@ -146,6 +135,18 @@ int run_profile_stats(const std::vector<std::string> &arguments, Streams &stream
     else
         print_stats(store_path(o.db), *stats, streams.out);
     return 0;
+}
+
+}  // namespace
+
+void declare_profile_check(Command &profile) {
+    declare(profile.add("check", "read and check the whole database",
+                        "Lists everything that is wrong. Exit code 0 when nothing is, 6 otherwise. Writes nothing."),
+            run_check);
+}
+
+void declare_profile_stats(Command &profile) {
+    declare(profile.add("stats", "count what is in the database"), run_stats);
 }
 
 }  // namespace lensprof

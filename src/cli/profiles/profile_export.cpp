@@ -1,7 +1,6 @@
 // `lensprof profile export`: profiles as files of other programs, and as blobs for firmware.
 #include <cstdlib>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/pictures/picture.hpp"
@@ -29,23 +28,22 @@ struct Options {
     bool covariance = false, all = false, json = false;
 };
 
-void declare(CLI::App &app, Options &o) {
-    app.add_option("ID", o.ids, "profiles that `lensprof profile list` shows")->check(is_profile_id);
-    app.add_option("-o,--output", o.output,
-                   "file to write; its name chooses the format. DNG opcodes go into a file that is there");
-    app.add_option("--format", o.format, "another format than the name's")->check(CLI::IsMember(foreign_names(true)));
-    app.add_option("--blob", o.blob, "the same as --format blob -o FILE: for firmware to read in place (docs/blob.md)");
-    app.add_flag("--covariance", o.covariance, "blob: the covariance as well, which a camera has no use for");
-    app.add_flag("--all", o.all, "all profiles of the database");
-    declare_foreign(app, o.foreign, true);
-    app.add_option("--crop-factor", o.crop_factor,
-                   "43.27 mm over the sensor's diagonal, for profiles that do not know it; lensfun and lcp need it")
-        ->check(in_range(0.01, 1e4));
-    declare_db(app, o.db);
-    app.add_flag("--json", o.json, "print one JSON object");
-    app.option_defaults()->group("Which profiles, instead of ids");
-    o.filter.add_options(app);
-    app.footer(about_foreign(true));
+void declare(Command &command, Options &o) {
+    command.profile_ids("ID", o.ids, "profiles that `lensprof profile list` shows");
+    command.file("-o,--output", o.output,
+                 "file to write; its name chooses the format. DNG opcodes go into a file that is there");
+    command.choice("--format", o.format, format_choices(true), "another format than the name's");
+    command.file("--blob", o.blob, "the same as --format blob -o FILE: for firmware to read in place (docs/blob.md)");
+    command.flag("--covariance", o.covariance, "blob: the covariance as well, which a camera has no use for");
+    command.flag("--all", o.all, "all profiles of the database");
+    declare_foreign(command, o.foreign, true);
+    command.number("--crop-factor", o.crop_factor, crop_factors,
+                   "43.27 mm over the sensor's diagonal, for profiles that do not know it; lensfun and lcp need it");
+    declare_db(command, o.db);
+    declare_json(command, o.json);
+    command.group("Which profiles, instead of ids");
+    o.filter.add_options(command);
+    command.footer(about_foreign(true));
 }
 
 void check_options(Options &o) {
@@ -58,7 +56,6 @@ void check_options(Options &o) {
         throw Failure(ExitCode::usage,
                       "profile export: give either ids that `lensprof profile list` shows, or --camera, "
                       "--lens and the like, or --all");
-    o.filter.check_words();
     if (is_same_file(o.output, store_path(o.db)))
         throw Failure(ExitCode::usage, o.output + ": is the profile database; give the output another name");
 }
@@ -116,13 +113,7 @@ void export_foreign(const Options &o, const ForeignRule &rule, const std::vector
                               chosen.size() == 1 ? "" : "s", rule.name);
 }
 
-}  // namespace
-
-int run_profile_export(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app("Writes profiles as files of other programs, complete or not at all.", "lensprof profile export");
-    declare(app, o);
-    if (!parse(app, arguments, streams)) return 0;
+int run(Options &o, Streams &streams) {
     check_options(o);
     const ForeignRule &rule = format_to_write(o.output, o.format);
     if (o.covariance && rule.format != ForeignFormat::blob)
@@ -137,6 +128,16 @@ int run_profile_export(const std::vector<std::string> &arguments, Streams &strea
                                            + " were chosen; give one id");
     export_blob(o, chosen[0], streams);
     return 0;
+}
+
+}  // namespace
+
+void declare_profile_export(Command &profile) {
+    Command command = profile.add("export", "write profiles as files of other programs, or as blobs",
+                                  "Writes profiles as files of other programs, complete or not at all.");
+    auto o = std::make_shared<Options>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
 }  // namespace lensprof

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <set>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/profile_store.hpp"
@@ -165,27 +164,7 @@ void print_import(const Import &import, size_t files, Streams &streams) {
             import.flagged.size(), refused);
 }
 
-}  // namespace
-
-int run_profile_import(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app(
-        "Stores what other programs' files hold, all of them or none. Their content, else their name, tells the "
-        "format.",
-        "lensprof profile import");
-    app.add_option("FILES", o.files,
-                   "files of profiles; or one with a response, one with a falloff, or both, for one profile")
-        ->required();
-    app.add_option("--format", o.format, "of all the files, where it is not what they look like")
-        ->check(CLI::IsMember(foreign_names(false)));
-    declare_foreign(app, o.foreign, false);
-    declare_db(app, o.db, ", made where there is none");
-    app.add_flag("--json", o.json, "print one JSON object");
-    app.option_defaults()->group("Whose response or falloff it is");
-    o.key.add_options(app);
-    app.footer(about_foreign(false));
-    if (!parse(app, arguments, streams)) return 0;
-    o.key.check_words();
+int run(const Options &o, Streams &streams) {
     std::vector<Input> inputs;
     std::set<std::string> seen;
     for (const std::string &file : o.files)
@@ -215,6 +194,28 @@ int run_profile_import(const std::vector<std::string> &arguments, Streams &strea
     else
         print_import(import, inputs.size(), streams);
     return 0;
+}
+
+}  // namespace
+
+void declare_profile_import(Command &profile) {
+    Command command = profile.add(
+        "import", "store what files of other programs hold",
+        "Stores what other programs' files hold, all of them or none. Their content, else their name, tells the "
+        "format.");
+    auto o = std::make_shared<Options>();
+    command.files("FILES", o->files,
+                  "files of profiles; or one with a response, one with a falloff, or both, for one profile");
+    command.require("FILES");
+    command.choice("--format", o->format, format_choices(false),
+                   "of all the files, where it is not what they look like");
+    declare_foreign(command, o->foreign, false);
+    declare_db(command, o->db, ", made where there is none");
+    declare_json(command, o->json);
+    command.group("Whose response or falloff it is");
+    o->key.add_options(command);
+    command.footer(about_foreign(false));
+    command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
 }  // namespace lensprof

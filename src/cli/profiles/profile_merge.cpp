@@ -1,5 +1,4 @@
 // `lensprof profile merge`: profiles of other databases.
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/profile_store.hpp"
@@ -14,6 +13,12 @@
 
 namespace lensprof {
 namespace {
+
+struct Options {
+    std::string db;
+    std::vector<std::string> files;
+    bool json = false;
+};
 
 // One of the databases to be merged.
 struct Other {
@@ -45,37 +50,39 @@ void merge_all(const std::string &db, std::vector<Other> &others) {
     check(lensprof_store_commit(store.get(), &error), store_path(db), &error);
 }
 
-}  // namespace
-
-int run_profile_merge(const std::vector<std::string> &arguments, Streams &streams) {
-    std::string db;
-    std::vector<std::string> files;
-    bool json = false;
-    CLI::App app(
-        "Adds the profiles of other lensprof databases that are not there yet, with where they come from as it "
-        "is. All files or none.",
-        "lensprof profile merge");
-    app.add_option("OTHER.db", files, "databases to read; they stay as they are")->required();
-    declare_db(app, db, ", made where there is none");
-    app.add_flag("--json", json, "print one JSON object");
-    if (!parse(app, arguments, streams)) return 0;
-    std::vector<Other> others = open_others(db, files);
-    const bool is_new = !path_exists(store_path(db));
+int run(const Options &o, Streams &streams) {
+    std::vector<Other> others = open_others(o.db, o.files);
+    const bool is_new = !path_exists(store_path(o.db));
     try {
-        merge_all(db, others);
+        merge_all(o.db, others);
     } catch (const Failure &) {
-        if (is_new) remove_empty_store(store_path(db));
+        if (is_new) remove_empty_store(store_path(o.db));
         throw;
     }
     Json merged = Json::array();
     for (const Other &other : others) {
         merged.push_back({{"file", other.file}, {"added", other.added}, {"known", other.known}});
-        if (!json)
+        if (!o.json)
             streams.out << format("%s: %u profiles added to %s, %u were there\n", other.file.c_str(), other.added,
-                                  store_path(db).c_str(), other.known);
+                                  store_path(o.db).c_str(), other.known);
     }
-    if (json) print_json(Json{{"schema", 1}, {"merged", merged}}, streams.out);
+    if (o.json) print_json(Json{{"schema", 1}, {"merged", merged}}, streams.out);
     return 0;
+}
+
+}  // namespace
+
+void declare_profile_merge(Command &profile) {
+    Command command = profile.add(
+        "merge", "add the profiles of other databases",
+        "Adds the profiles of other lensprof databases that are not there yet, with where they come from as it "
+        "is. All files or none.");
+    auto o = std::make_shared<Options>();
+    command.files("OTHER.db", o->files, "databases to read; they stay as they are");
+    command.require("OTHER.db");
+    declare_db(command, o->db, ", made where there is none");
+    declare_json(command, o->json);
+    command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
 }  // namespace lensprof

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/profiles/key_filter.hpp"
@@ -17,24 +16,24 @@ namespace lensprof {
 namespace {
 
 struct Options {
-    std::string db, rule = "weakest";
+    std::string db;
+    uint32_t distance_rule = LENSPROF_DISTANCE_WEAKEST;
     KeyFilter filter;
     double crop_factor = LENSPROF_UNKNOWN;
     bool doubtful = false, json = false;
 };
 
-void declare(CLI::App &app, Options &o) {
-    o.filter.add_options(app);
-    app.add_option("--crop-factor", o.crop_factor, "43.27 mm over the diagonal of the camera's sensor")
-        ->check(in_range(0.01, 1e4));
-    app.add_option("--unknown-distance", o.rule,
+void declare(Command &command, Options &o) {
+    o.filter.add_options(command);
+    command.number("--crop-factor", o.crop_factor, crop_factors, "43.27 mm over the diagonal of the camera's sensor");
+    command.choice("--unknown-distance", o.distance_rule,
+                   {{"weakest", LENSPROF_DISTANCE_WEAKEST}, {"farthest", LENSPROF_DISTANCE_FARTHEST}},
                    "without --distance: weakest, the weakest falloff of all stored distances, which never corrects too "
-                   "much (default), or farthest")
-        ->check(CLI::IsMember({"weakest", "farthest"}));
-    app.add_flag("--doubtful", o.doubtful, "predict also from profiles that were imported with a doubt");
-    declare_db(app, o.db);
-    app.add_flag("--json", o.json, "print one JSON object");
-    app.footer(
+                   "much (default), or farthest");
+    command.flag("--doubtful", o.doubtful, "predict also from profiles that were imported with a doubt");
+    declare_db(command, o.db);
+    declare_json(command, o.json);
+    command.footer(
         "When no profile is stored for the setting, the falloff is predicted from those of the same lens at other\n"
         "settings; the answer says from which, how far away they are, and how sure it is.");
 }
@@ -83,7 +82,7 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
                    Streams &streams) {
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
-    options.distance_rule = o.rule == "weakest" ? LENSPROF_DISTANCE_WEAKEST : LENSPROF_DISTANCE_FARTHEST;
+    options.distance_rule = o.distance_rule;
     options.with_doubt = o.doubtful;
     options.any_processing = !o.filter.has_processing();
     lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
@@ -109,17 +108,7 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
     return true;
 }
 
-}  // namespace
-
-int run_query(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app(
-        "Prints the profile for a camera, lens and setting: the newest that is stored, or one predicted from those of "
-        "the lens's other settings, and how sure it is.",
-        "lensprof query");
-    declare(app, o);
-    if (!parse(app, arguments, streams)) return 0;
-    o.filter.check_words();
+int run(const Options &o, Streams &streams) {
     if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     auto rows = o.filter.rows(store.get(), o.db);
@@ -127,6 +116,18 @@ int run_query(const std::vector<std::string> &arguments, Streams &streams) {
     if (!o.doubtful) leave_out_doubtful(rows);
     if (rows.size() == 1 || !answer_lookup(o, store.get(), rows, streams)) answer_stored(o, store.get(), rows, streams);
     return 0;
+}
+
+}  // namespace
+
+void declare_query(Command &program) {
+    Command command = program.add(
+        "query", "look a profile up by camera, lens, focal length and aperture",
+        "Prints the profile for a camera, lens and setting: the newest that is stored, or one predicted from those of "
+        "the lens's other settings, and how sure it is.");
+    auto o = std::make_shared<Options>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
 }  // namespace lensprof

@@ -1,37 +1,87 @@
 #include "cli/program/numbers.hpp"
 
-#include <cmath>
+#include <cstdlib>
 #include <sstream>
+#include <stdexcept>
 
 #include "cli/program/error.hpp"
 
 namespace lensprof {
+namespace {
 
-double number_of(const std::string &word, const std::string &option) {
-    std::istringstream text(word);
+struct UnitRule {
+    const char *thing, *unit, *forms;
+};
+
+UnitRule rule_of(Unit unit) {
+    switch (unit) {
+    case Unit::focal_mm: return {"a focal length", "mm", "50 or 50mm"};
+    case Unit::f_number: return {"an aperture", "", "4, f/4 or F4"};
+    case Unit::time_s: return {"an exposure time", "s", "0.5, 1/60 or 1/60s"};
+    case Unit::distance_m: return {"a distance", "m", "3 or 3m"};
+    default: return {"", "", ""};
+    }
+}
+
+std::string range_text(const Quantity &quantity) {
+    std::ostringstream text;
+    text << " is not a number from " << quantity.low << " to " << quantity.high;
+    return text.str();
+}
+
+// The number at the start of `text`, of which it leaves the rest; false where there is none.
+bool take_number(const char *&text, double &value) {
+    char *end = nullptr;
+    value = std::strtod(text, &end);
+    const bool found = end != text;
+    text = end;
+    return found;
+}
+
+}  // namespace
+
+double number_of(const std::string &word, const Quantity &quantity) {
+    const char *text = word.c_str();
+    if (quantity.unit == Unit::f_number && (*text == 'f' || *text == 'F')) text += text[1] == '/' ? 2 : 1;
     double value = 0.0, divisor = 1.0;
-    char slash = '/';
-    bool good = static_cast<bool>(text >> value);
-    if (good && text.peek() == '/') good = (text >> slash >> divisor) && divisor > 0.0;
-    if (!good || text.peek() != EOF || !std::isfinite(value / divisor))
-        throw Failure(ExitCode::usage, option + ": '" + word + "' is not a number; separate numbers with commas");
-    return value / divisor;
+    bool good = take_number(text, value);
+    if (good && *text == '/') good = take_number(++text, divisor) && divisor > 0.0;
+    while (*text == ' ') text++;
+    const UnitRule rule = rule_of(quantity.unit);
+    const std::string rest = text;
+    if (good && !rest.empty() && quantity.unit != Unit::none && rest != rule.unit)
+        throw std::invalid_argument(word + ": '" + rest + "' is not the unit of " + rule.thing + "; give "
+                                    + rule.forms);
+    value /= divisor;
+    if (!good || (!rest.empty() && rest != rule.unit) || !(value >= quantity.low && value <= quantity.high))
+        throw std::invalid_argument(word + range_text(quantity));
+    return value;
 }
 
-std::vector<double> numbers_of(const std::string &list, const std::string &option) {
-    std::vector<double> values;
-    std::istringstream text(list + ",");
-    for (std::string word; std::getline(text, word, ',');) values.push_back(number_of(word, option));
-    return values;
+uint32_t count_of(const std::string &word, uint32_t low, uint32_t high) {
+    const bool digits = !word.empty() && word.size() <= 10 && word.find_first_not_of("0123456789") == std::string::npos;
+    const uint64_t value = digits ? std::strtoull(word.c_str(), nullptr, 10) : 0;
+    if (!digits || value < low || value > high)
+        throw std::invalid_argument(word + " is not a whole number from " + std::to_string(low) + " to "
+                                    + std::to_string(high));
+    return static_cast<uint32_t>(value);
 }
 
-std::vector<double> numbers_of(const std::string &list, const std::string &option, size_t count, const char *things) {
-    std::vector<double> values = numbers_of(list, option);
+std::vector<std::string> split(const std::string &list, char separator) {
+    std::vector<std::string> words(1);
+    for (const char c : list)
+        if (c == separator)
+            words.emplace_back();
+        else
+            words.back() += c;
+    return words;
+}
+
+void demand_count(const std::vector<double> &values, const std::string &option, size_t count, const char *things) {
     if (values.size() != count)
         throw Failure(ExitCode::usage, option + ": " + std::to_string(values.size()) + " values for "
                                            + std::to_string(count) + " " + things
                                            + "; give one for each, in their order");
-    return values;
 }
 
 }  // namespace lensprof

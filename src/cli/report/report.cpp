@@ -108,21 +108,9 @@ const char *camera_kind_name(uint32_t kind) {
     return kind <= LENSPROF_CAMERA_DIGITAL ? names[kind] : "unknown";
 }
 
-uint32_t camera_kind_of_name(const std::string &name) {
-    for (uint32_t kind = 0; kind <= LENSPROF_CAMERA_DIGITAL; kind++)
-        if (name == camera_kind_name(kind)) return kind;
-    throw Failure(ExitCode::usage, name + ": not a kind of camera; use any, film or digital");
-}
-
 const char *processing_name(uint32_t processing) {
     static const char *const names[] = {"raw", "jpeg", "corrected"};
     return processing <= LENSPROF_PROCESSING_CORRECTED ? names[processing] : "unknown";
-}
-
-uint32_t processing_of_name(const std::string &name) {
-    for (uint32_t p = 0; p <= LENSPROF_PROCESSING_CORRECTED; p++)
-        if (name == processing_name(p)) return p;
-    throw Failure(ExitCode::usage, name + ": not a processing state; use raw, jpeg or corrected");
 }
 
 namespace {

@@ -82,15 +82,13 @@ std::string spell_part(const KeyParts &parts, size_t part);
 // "Canon EOS 5D, EF 50mm, 50 mm, f/1.8, focus unknown, jpeg".
 std::string describe_key(const lensprof_profile_key &key);
 
-// raw, jpeg, corrected; and back, with Failure (usage) for another word.
+// raw, jpeg, corrected.
 const char *processing_name(uint32_t processing);
-uint32_t processing_of_name(const std::string &name);
 
 // prior, exif, known, none.
 const char *gamma_name(uint32_t from);
 
-// any, film, digital; and back, with Failure (usage) for another word.
+// any, film, digital.
 const char *camera_kind_name(uint32_t kind);
-uint32_t camera_kind_of_name(const std::string &name);
 
 }  // namespace lensprof

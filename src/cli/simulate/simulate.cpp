@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <stdexcept>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/project.hpp"
@@ -25,61 +25,28 @@
 namespace lensprof {
 namespace {
 
+// Of the pictures.
+struct Format {
+    const char *extension;
+    uint32_t sample;
+};
+
+const Choices<Format> formats = {
+    {"png", {".png", LENSPROF_SAMPLE_U8}},     {"png16", {".png", LENSPROF_SAMPLE_U16}},
+    {"tiff", {".tif", LENSPROF_SAMPLE_U8}},    {"tiff16", {".tif", LENSPROF_SAMPLE_U16}},
+    {"tiff32", {".tif", LENSPROF_SAMPLE_F32}}, {"jpeg", {".jpg", LENSPROF_SAMPLE_U8}},
+};
+
 struct Options {
-    std::string output, size = "800x600", response = "srgb", formats = "png";
-    uint32_t images = 6, rows = 1, seed = 1, points = 0, test_points = 0;
+    std::string output;
+    lensprof_response response;
+    std::vector<Format> formats = {{".png", LENSPROF_SAMPLE_U8}};
+    uint32_t images = 6, rows = 1, seed = 1, points = 0, test_points = 0, width = 800, height = 600;
     double hfov = 50, overlap = 0.4, jitter = 1, ev = 1, mean_ev = 0, wb = 0.15, noise = 2, outliers = 0, misalign = 0,
            objects = 0, local_tone = 0, exif_rounding = 0;
     std::vector<double> vignetting{-0.30, 0.05, -0.15}, center{0.02, -0.015};
     bool no_images = false, exif = false;
 };
-
-void declare(CLI::App &app, Options &o) {
-    app.add_option("-o,--output", o.output, "folder for pictures, pano.pto and truth.json")->required();
-    app.add_option("--images", o.images, "number of pictures")->check(in_range(2, 5000));
-    app.add_option("--rows", o.rows, "rows of pictures")->check(in_range(1, 100));
-    app.add_option("--size", o.size, "WIDTHxHEIGHT, px");
-    app.add_option("--hfov", o.hfov, "horizontal field of view, degrees")->check(in_range(1.0, 150.0));
-    app.add_option("--overlap", o.overlap, "share of a picture that the next one sees too")->check(in_range(0.0, 0.99));
-    app.add_option("--jitter", o.jitter, "sigma of yaw, pitch and roll, degrees")->check(in_range(0.0, 20.0));
-    app.add_option("--misalign", o.misalign, "sigma of the error of the project's yaw and pitch, px")
-        ->check(in_range(0.0, 1e3));
-    app.add_option("--response", o.response, "linear, srgb, gamma:G, film, or emor:a,b,... (EMoR coefficients)");
-    app.add_option("--vignetting", o.vignetting, "k1,k2,k3, or nine numbers for red, green, blue")->delimiter(',');
-    app.add_option("--center", o.center, "x,y of the falloff's centre, half diagonals")->delimiter(',')->expected(2);
-    app.add_option("--ev", o.ev, "exposures are uniform within +- this, EV")->check(in_range(0.0, 8.0));
-    app.add_option("--mean-ev", o.mean_ev, "about this; at 0 the brightest clouds are white")
-        ->check(in_range(-8.0, 8.0));
-    app.add_option("--wb", o.wb, "white balance factors are uniform within 1 +- this")->check(in_range(0.0, 0.9));
-    app.add_option("--noise", o.noise, "sigma, levels of 255")->check(in_range(0.0, 100.0));
-    app.add_option("--outliers", o.outliers, "share of pixels (and of --points pairs) replaced by random numbers")
-        ->check(in_range(0.0, 1.0));
-    app.add_option("--objects", o.objects,
-                   "share of every picture that moving objects cover; pairs with an end on one "
-                   "see it")
-        ->check(in_range(0.0, 0.9));
-    app.add_option("--local-tone", o.local_tone, "local tone mapping after the response, strongest gain, EV")
-        ->check(in_range(0.0, 4.0));
-    app.add_flag("--exif", o.exif, "pictures tell exposure time and ISO too, true to the exposures");
-    app.add_option("--exif-rounding", o.exif_rounding, "sigma of the error of what they tell, EV")
-        ->check(in_range(0.0, 4.0));
-    app.add_option("--format", o.formats, "png, png16, tiff, tiff16, tiff32, jpeg; several, with commas, take turns");
-    app.add_option("--seed", o.seed, "another seed, another scene and camera");
-    app.add_option("--points", o.points, "also write points.txt with this many noisy pairs")->check(in_range(0, 1e6));
-    app.add_option("--test-points", o.test_points, "also write test_points.txt with noise-free pairs, for scoring")
-        ->check(in_range(0, 1e6));
-    app.add_flag("--no-images", o.no_images, "write no pictures");
-}
-
-std::vector<std::string> split(const std::string &text, char separator) {
-    std::vector<std::string> parts(1);
-    for (char c : text)
-        if (c == separator)
-            parts.emplace_back();
-        else
-            parts.back() += c;
-    return parts;
-}
 
 double srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; }
 
@@ -92,7 +59,7 @@ double film(double x) {
 
 lensprof_response response_of(const std::string &name) {
     lensprof_response response;
-    std::vector<std::string> parts = split(name, ':');
+    const std::vector<std::string> parts = split(name, ':');
     lensprof_status status = LENSPROF_OK;
     if (name == "linear") {
         lensprof_response_set_linear(&response);
@@ -102,31 +69,60 @@ lensprof_response response_of(const std::string &name) {
             table.push_back(name == "srgb" ? srgb(j / 1023.0) : film(j / 1023.0));
         status = lensprof_response_set_table(&response, table.data(), static_cast<uint32_t>(table.size()));
     } else if (parts.size() == 2 && parts[0] == "gamma") {
-        status = lensprof_response_set_gamma(&response, number_of(parts[1], "--response"));
+        status = lensprof_response_set_gamma(&response, number_of(parts[1], any_number));
     } else if (parts.size() == 2 && parts[0] == "emor") {
         std::vector<double> emor;
-        for (const auto &word : split(parts[1], ',')) emor.push_back(number_of(word, "--response"));
+        for (const auto &word : split(parts[1])) emor.push_back(number_of(word, any_number));
         status = lensprof_response_set_emor(&response, emor.data(), static_cast<uint32_t>(emor.size()));
     } else {
-        throw Failure(ExitCode::usage, "--response " + name + ": use linear, srgb, film, gamma:G or emor:a,b,...");
+        throw std::invalid_argument(name + ": use linear, srgb, film, gamma:G or emor:a,b,...");
     }
-    if (status != LENSPROF_OK) throw Failure(ExitCode::usage, "--response " + name + ": is not a monotone response");
+    if (status != LENSPROF_OK) throw std::invalid_argument(name + ": is not a monotone response");
     return response;
 }
 
-struct Format {
-    std::string extension;
-    uint32_t sample;
-};
+void declare_camera(Command &command, Options &o) {
+    o.response = response_of("srgb");
+    command.size("--size", o.width, o.height, {16, 32768}, "of the pictures, px");
+    command.number("--hfov", o.hfov, {1.0, 150.0}, "horizontal field of view, degrees");
+    command.number("--overlap", o.overlap, {0.0, 0.99}, "share of a picture that the next one sees too");
+    command.number("--jitter", o.jitter, {0.0, 20.0}, "sigma of yaw, pitch and roll, degrees");
+    command.number("--misalign", o.misalign, {0.0, 1e3}, "sigma of the error of the project's yaw and pitch, px");
+    command.word(
+        "--response", "RESPONSE", [&o](const std::string &word) { o.response = response_of(word); },
+        "linear, srgb, gamma:G, film, or emor:a,b,... (EMoR coefficients)");
+    command.numbers("--vignetting", o.vignetting, any_number, "k1,k2,k3, or nine numbers for red, green, blue");
+    command.numbers("--center", o.center, any_number, "x,y of the falloff's centre, half diagonals");
+    command.number("--ev", o.ev, {0.0, 8.0}, "exposures are uniform within +- this, EV");
+    command.number("--mean-ev", o.mean_ev, {-8.0, 8.0}, "about this; at 0 the brightest clouds are white");
+    command.number("--wb", o.wb, {0.0, 0.9}, "white balance factors are uniform within 1 +- this");
+}
 
-Format format_of(const std::string &name) {
-    if (name == "png") return {".png", LENSPROF_SAMPLE_U8};
-    if (name == "png16") return {".png", LENSPROF_SAMPLE_U16};
-    if (name == "tiff") return {".tif", LENSPROF_SAMPLE_U8};
-    if (name == "tiff16") return {".tif", LENSPROF_SAMPLE_U16};
-    if (name == "tiff32") return {".tif", LENSPROF_SAMPLE_F32};
-    if (name == "jpeg") return {".jpg", LENSPROF_SAMPLE_U8};
-    throw Failure(ExitCode::usage, "--format " + name + ": use png, png16, tiff, tiff16, tiff32 or jpeg");
+void declare_disturbances(Command &command, Options &o) {
+    command.number("--noise", o.noise, {0.0, 100.0}, "sigma, levels of 255");
+    command.number("--outliers", o.outliers, {0.0, 1.0},
+                   "share of pixels (and of --points pairs) replaced by random numbers");
+    command.number("--objects", o.objects, {0.0, 0.9},
+                   "share of every picture that moving objects cover; pairs with an end on one see it");
+    command.number("--local-tone", o.local_tone, {0.0, 4.0},
+                   "local tone mapping after the response, strongest gain, EV");
+    command.flag("--exif", o.exif, "pictures tell exposure time and ISO too, true to the exposures");
+    command.number("--exif-rounding", o.exif_rounding, {0.0, 4.0}, "sigma of the error of what they tell, EV");
+}
+
+void declare(Command &command, Options &o) {
+    command.file("-o,--output", o.output, "folder for pictures, pano.pto and truth.json");
+    command.require("--output");
+    command.count("--images", o.images, 2, 5000, "number of pictures");
+    command.count("--rows", o.rows, 1, 100, "rows of pictures");
+    declare_camera(command, o);
+    declare_disturbances(command, o);
+    command.list("--format", o.formats, formats, "of the pictures; several, with commas, take turns");
+    command.count("--seed", o.seed, 0, UINT32_MAX, "another seed, another scene and camera");
+    command.count("--points", o.points, 0, 1000000, "also write points.txt with this many noisy pairs");
+    command.count("--test-points", o.test_points, 0, 1000000,
+                  "also write test_points.txt with noise-free pairs, for scoring");
+    command.flag("--no-images", o.no_images, "write no pictures");
 }
 
 // A wide aperture, which stays: falloff changes with it.
@@ -163,19 +159,14 @@ void check_exif(const Options &o) {
 }
 
 void place_cameras(const Options &o, Random &random, Truth &truth) {
-    auto size = split(o.size, 'x');
-    if (size.size() != 2) throw Failure(ExitCode::usage, "--size " + o.size + ": give WIDTHxHEIGHT");
-    double width = number_of(size[0], "--size"), height = number_of(size[1], "--size");
-    if (!(width >= 16 && height >= 16 && width <= 32768 && height <= 32768))
-        throw Failure(ExitCode::usage, "--size " + o.size + ": sides must be 16..32768");
     double degree = std::acos(-1.0) / 180.0,
-           vfov = 2.0 / degree * std::atan(std::tan(o.hfov / 2.0 * degree) * height / width);
+           vfov = 2.0 / degree * std::atan(std::tan(o.hfov / 2.0 * degree) * o.height / o.width);
     uint32_t columns = (o.images + o.rows - 1) / o.rows;
     for (uint32_t i = 0; i < o.images; i++) {
         uint32_t row = i / columns, column = i % columns;
         lensprof_camera camera{};
-        camera.width = static_cast<uint32_t>(width);
-        camera.height = static_cast<uint32_t>(height);
+        camera.width = o.width;
+        camera.height = o.height;
         camera.hfov_deg = o.hfov;
         double yaw = (column - (columns - 1) / 2.0 + (row % 2 ? 0.5 : 0.0)) * o.hfov * (1.0 - o.overlap);
         camera.yaw_deg = std::remainder(yaw + o.jitter * random.normal(), 360.0);
@@ -189,11 +180,12 @@ void place_cameras(const Options &o, Random &random, Truth &truth) {
 Truth make_truth(const Options &o) {
     Truth truth;
     truth.seed = o.seed;
-    truth.response = response_of(o.response);
+    truth.response = o.response;
     truth.noise_levels = o.noise;
     truth.outlier_share = o.outliers;
     if (o.vignetting.size() != 3 && o.vignetting.size() != 9)
         throw Failure(ExitCode::usage, "--vignetting: give three numbers, or nine");
+    if (o.center.size() != 2) throw Failure(ExitCode::usage, "--center: give two numbers, x,y");
     truth.vignettings = static_cast<uint32_t>(o.vignetting.size() / 3);
     for (uint32_t c = 0; c < 3; c++) {
         for (uint32_t n = 0; n < 3; n++)
@@ -204,7 +196,6 @@ Truth make_truth(const Options &o) {
     }
     Random random(o.seed);
     place_cameras(o, random, truth);
-    auto formats = split(o.formats, ',');
     for (uint32_t i = 0; i < o.images; i++) {
         lensprof_exposure e;
         lensprof_exposure_init(&e);
@@ -213,7 +204,7 @@ Truth make_truth(const Options &o) {
         e.ev = draws[0];
         if (i > 0) e.white_balance[0] = draws[1], e.white_balance[2] = draws[2];
         truth.exposures.push_back(e);
-        truth.files.push_back(format("img%03u", i) + format_of(formats[i % formats.size()]).extension);
+        truth.files.push_back(format("img%03u", i) + o.formats[i % o.formats.size()].extension);
     }
     return truth;
 }
@@ -378,12 +369,11 @@ Json truth_json(const Truth &truth) {
 }
 
 void write_pictures(const Options &o, const Truth &truth, const Scene &scene, Progress &progress) {
-    auto formats = split(o.formats, ',');
     for_each_parallel(static_cast<uint32_t>(truth.files.size()), "rendering", progress, [&](uint32_t i) {
         Picture picture = render(truth, scene, i);
         expose(truth, i, picture);
         if (!truth.tone.empty()) map_tones(truth, i, picture);
-        digitise(truth, i, format_of(formats[i % formats.size()]).sample, picture);
+        digitise(truth, i, o.formats[i % o.formats.size()].sample, picture);
         PictureMetadata metadata = metadata_of(truth, i);
         WriteOptions write;
         write.metadata = &metadata;
@@ -393,15 +383,7 @@ void write_pictures(const Options &o, const Truth &truth, const Scene &scene, Pr
     });
 }
 
-}  // namespace
-
-int run_simulate(const std::vector<std::string> &arguments, Streams &streams) {
-    Options o;
-    CLI::App app("Renders overlapping pictures of a procedural scene, taken by a camera whose truth is written down.",
-                 "lensprof simulate");
-    declare(app, o);
-    if (!parse(app, arguments, streams)) return 0;
-    for (const auto &name : split(o.formats, ',')) format_of(name);
+int run(const Options &o, Streams &streams) {
     check_exif(o);
     Truth truth = make_truth(o);
     Scene scene(o.seed);
@@ -417,7 +399,7 @@ int run_simulate(const std::vector<std::string> &arguments, Streams &streams) {
     write_file((folder / "truth.json").string(), json.data(), json.size());
     if (o.points || o.test_points) {
         Project read = read_project(pto, false);
-        uint32_t levels = format_of(split(o.formats, ',')[0]).sample == LENSPROF_SAMPLE_U8 ? 255 : 65535;
+        uint32_t levels = o.formats[0].sample == LENSPROF_SAMPLE_U8 ? 255 : 65535;
         auto write = [&](const char *name, uint32_t count, double darkest, bool noisy) {
             std::string text = points_text(simulate_pairs(truth, scene, count, darkest, noisy, levels), read);
             write_file((folder / name).string(), text.data(), text.size());
@@ -428,6 +410,17 @@ int run_simulate(const std::vector<std::string> &arguments, Streams &streams) {
     progress.clear();
     streams.out << pto << "\n";
     return 0;
+}
+
+}  // namespace
+
+void declare_simulate(Command &program) {
+    Command command = program.add(
+        "simulate", "render overlapping pictures with a known camera",
+        "Renders overlapping pictures of a procedural scene, taken by a camera whose truth is written down.");
+    auto o = std::make_shared<Options>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run(*o, streams); });
 }
 
 }  // namespace lensprof

@@ -1,0 +1,16 @@
+// Which word was meant.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace lensprof {
+
+// The one of `words` with the fewest letters changed, left out, added or swapped with their neighbour (optimal string
+// alignment), the first of several; empty where all differ in more than a third of the letters.
+std::string nearest_of(const std::string &word, const std::vector<std::string> &words);
+
+// "; did you mean NEAREST?", or empty.
+std::string did_you_mean(const std::string &word, const std::vector<std::string> &words);
+
+}  // namespace lensprof
