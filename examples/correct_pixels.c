@@ -21,19 +21,16 @@ static int correct(uint8_t pixels[HEIGHT][WIDTH][3]) {
     const lensprof_plan *plan;
     lensprof_apply_options options;
     lensprof_image view = {pixels, WIDTH * 3, WIDTH, HEIGHT, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
+    lensprof_error error = {""};
     lensprof_status status;
 
     lensprof_apply_options_init(&options);
     options.frame_width = WIDTH;
     options.frame_height = HEIGHT;
-    options.responses = profile.responses;
-    options.vignettings = profile.vignettings;
-    options.response = profile.response;
-    options.vignetting = profile.vignetting;
-    options.grid = &profile.grid;
-    status = lensprof_plan_init(plan_memory, sizeof plan_memory, &options, &plan);
+    status = lensprof_apply_options_set_profile(&options, &profile);
+    if (status == LENSPROF_OK) status = lensprof_plan_init(plan_memory, sizeof plan_memory, &options, &plan, &error);
     if (status == LENSPROF_OK) status = lensprof_apply(plan, &view, &view, 0, 0);
-    if (status != LENSPROF_OK) printf("cannot correct: %s\n", lensprof_status_name(status));
+    if (status != LENSPROF_OK) printf("cannot correct: %s: %s\n", lensprof_status_name(status), error.text);
     return status == LENSPROF_OK;
 }
 

@@ -42,7 +42,7 @@ static inline void seal(uint8_t *blob, size_t bytes) {
 /* A blob of its own size, so that a sanitizer sees every byte too far. */
 static inline uint8_t *pack(const lensprof_profile *profile, uint32_t flags, size_t *bytes) {
     *bytes = 0;
-    assert_int_equal(lensprof_profile_pack(profile, flags, NULL, 0, bytes), LENSPROF_ERROR_CAPACITY);
+    assert_ok(lensprof_profile_pack(profile, flags, NULL, 0, bytes));
     const size_t asked = *bytes;
     uint8_t *blob = malloc(asked);
     assert_ok(lensprof_profile_pack(profile, flags, blob, asked, bytes));

@@ -11,7 +11,7 @@ static lensprof_status get_plan(const lensprof_fixed_plan **plan) {
     options.blob = camera_blob;
     options.blob_bytes = camera_blob_bytes;
     put_number("plan: bytes ", (uint32_t)lensprof_fixed_plan_bytes(&options));
-    return lensprof_fixed_plan_init(memory, sizeof memory, &options, plan);
+    return lensprof_fixed_plan_init(memory, sizeof memory, &options, plan, NULL);
 }
 #else
 static lensprof_status get_plan(const lensprof_fixed_plan **plan) {

@@ -21,7 +21,7 @@ static lensprof_status correct(const char *name, const lensprof_response *respon
         options.blob_bytes = camera_blob_bytes;
     }
     paint_stack();
-    status = lensprof_plan_init(plan_memory, sizeof plan_memory, &options, &plan);
+    status = lensprof_plan_init(plan_memory, sizeof plan_memory, &options, &plan, NULL);
     put_number("plan: bytes ", (uint32_t)lensprof_plan_bytes(&options));
     put_number("plan: stack ", deepest_stack());
     paint_stack();

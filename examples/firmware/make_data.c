@@ -45,7 +45,7 @@ static int render(uint8_t rows[STRIP_ROWS][STRIP_WIDTH][3]) {
     options.direction = LENSPROF_DIRECTION_SIMULATE;
     options.input = LENSPROF_ENCODING_LINEAR;
     options.source_sample = LENSPROF_SAMPLE_F32;
-    return lensprof_plan_init(memory, sizeof memory, &options, &plan) == LENSPROF_OK
+    return lensprof_plan_init(memory, sizeof memory, &options, &plan, NULL) == LENSPROF_OK
            && lensprof_apply(plan, &from, &to, 0, 0) == LENSPROF_OK;
 }
 
@@ -66,7 +66,7 @@ static int print_plan(void) {
     options.blob = blob;
     options.blob_bytes = blob_bytes;
     bytes = lensprof_fixed_plan_bytes(&options);
-    if (lensprof_fixed_plan_init(memory, sizeof memory, &options, &plan) != LENSPROF_OK) return 0;
+    if (lensprof_fixed_plan_init(memory, sizeof memory, &options, &plan, NULL) != LENSPROF_OK) return 0;
     printf("\nconst uint32_t fixed_plan_bytes = %u;\nconst uint32_t fixed_plan[] = {", (unsigned)bytes);
     for (size_t i = 0; i < bytes / 4; i++) printf("%s0x%08x,", i % 8 ? " " : "\n    ", memory[i]);
     printf("};\n");

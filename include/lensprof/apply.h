@@ -13,18 +13,18 @@
 #ifndef LENSPROF_APPLY_H
 #define LENSPROF_APPLY_H
 
-#include "model.h"
+#include "profile.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-typedef enum lensprof_sample {
+typedef enum lensprof_sample_type {
     LENSPROF_SAMPLE_U8 = 0,  /* 0..255 = 0..1 */
     LENSPROF_SAMPLE_U16 = 1, /* 0..65535 = 0..1, native byte order, 2-byte aligned */
     LENSPROF_SAMPLE_F32 = 2, /* 0..1, 4-byte aligned */
     LENSPROF_SAMPLE_F16 = 3  /* IEEE binary16, 0..1, 2-byte aligned */
-} lensprof_sample;
+} lensprof_sample_type;
 
 typedef enum lensprof_layout {
     LENSPROF_LAYOUT_GREY = 0,
@@ -45,7 +45,7 @@ typedef struct lensprof_image {
     void *data;          /* upper left sample of the view */
     ptrdiff_t row_bytes; /* from one row to the next; negative for bottom-up images */
     uint32_t width, height;
-    uint32_t sample; /* lensprof_sample */
+    uint32_t sample; /* lensprof_sample_type */
     uint32_t layout; /* lensprof_layout */
 } lensprof_image;
 
@@ -54,7 +54,7 @@ LENSPROF_API uint32_t lensprof_layout_samples(uint32_t layout);
 LENSPROF_API uint32_t lensprof_layout_channels(uint32_t layout);
 
 /* Bytes of one sample (1, 2 or 4); 0 for an unknown one. */
-LENSPROF_API uint32_t lensprof_sample_bytes(uint32_t sample);
+LENSPROF_API uint32_t lensprof_sample_type_bytes(uint32_t type);
 
 /* LENSPROF_OK when data is aligned and not NULL, the sizes are in 1..2^20, and |row_bytes| holds a row and is
  * at most 2^28. */
@@ -110,19 +110,24 @@ static inline void lensprof_apply_options_init(lensprof_apply_options *options) 
     lensprof_apply_options_init_sized(options, sizeof *options);
 }
 
+/* The model is a profile's: responses, vignettings and gain grid point into *profile, which must stay as it is until
+ * the plan is made; no blob. All else stays. Errors: ARGUMENT; STRUCT_SIZE of either. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *options,
+                                                                                  const lensprof_profile *profile);
+
 typedef struct lensprof_plan lensprof_plan;
 
 /* Bytes of memory that lensprof_plan_init needs for these options; 0 when a field they depend on is invalid. */
 LENSPROF_API size_t lensprof_plan_bytes(const lensprof_apply_options *options);
 
-/* Prepares a plan in memory[bytes] (8-byte aligned, owned by the caller, must outlive the plan). Nothing is to
+/* Prepares a plan in memory[size] (8-byte aligned, owned by the caller, must outlive the plan). Nothing is to
  * be released. Errors: NULL or unknown values ARGUMENT, struct_size STRUCT_SIZE, zero frame SIZE, too little or
  * unaligned memory CAPACITY, and what the model's validate functions say; three vignettings must have one centre;
  * target over source must be within 1e-12..1e12 (EXPOSURE); of a blob CORRUPT and LAYOUT as lensprof_profile_unpack. A
  * plan made from a blob and one made from the profile unpacked from it are the same. Takes well under a millisecond. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_plan_init(void *memory, size_t bytes,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_plan_init(void *memory, size_t size,
                                                                   const lensprof_apply_options *options,
-                                                                  const lensprof_plan **plan);
+                                                                  const lensprof_plan **plan, lensprof_error *error);
 
 /* Applies the plan to a tile whose upper left pixel is pixel (x0, y0) of the frame. `target` has the tile's size;
  * it may be the same memory as `source` (same sample type and row_bytes), otherwise the byte ranges from the first to

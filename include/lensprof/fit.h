@@ -227,13 +227,24 @@ lensprof_fit_radiance(const lensprof_fit_options *options, const lensprof_fit_im
                       const lensprof_observation *observations, uint32_t observation_count,
                       lensprof_exposure *exposures, lensprof_fit_result *result, lensprof_error *error);
 
+/* Puts what a fit found into an initialised profile, to be stored or applied: response, vignettings, covariance, no
+ * gain grid, and in its provenance method (that of the options), software, pictures and pairs (with those of the
+ * profile that is in the result as its prior), heldout_rms, inlier_share and not_usable. All else stays: key, source,
+ * time, prior_id and forced are the caller's to set. options: those of the fit, whose profile is read; NULL = not
+ * known. image_count: pictures that were fitted. Errors: ARGUMENT, also for a result that no fit has filled;
+ * STRUCT_SIZE; MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_from_fit(lensprof_profile *profile,
+                                                                         const lensprof_fit_result *result,
+                                                                         const lensprof_fit_options *options,
+                                                                         uint32_t image_count, lensprof_error *error);
+
 /* Root mean square of the symmetric transfer residual (levels of 255) and, when not NULL, its median absolute
  * value, of pairs under a given model (vignetting of the three channels): the figure that
  * lensprof_fit_result.heldout_rms states. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting vignetting[3],
-                      const lensprof_fit_image *images, const lensprof_exposure *exposures, uint32_t image_count,
-                      const lensprof_pair *pairs, uint32_t pair_count, uint32_t channels, double *rms, double *median);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_transfer_rms(
+    const lensprof_response *response, const lensprof_vignetting vignetting[3], const lensprof_fit_image *images,
+    const lensprof_exposure *exposures, uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
+    uint32_t channels, double *rms, double *median, lensprof_error *error);
 
 #ifdef __cplusplus
 }

@@ -25,18 +25,19 @@ typedef struct lensprof_fixed_plan lensprof_fixed_plan;
 /* Bytes of memory that lensprof_fixed_plan_init needs for these options; 0 when they are invalid or not supported. */
 LENSPROF_API size_t lensprof_fixed_plan_bytes(const lensprof_apply_options *options);
 
-/* Prepares a plan in memory[bytes] (4-byte aligned, owned by the caller, must outlive the plan). Errors: as
+/* Prepares a plan in memory[size] (4-byte aligned, owned by the caller, must outlive the plan). Errors: as
  * lensprof_plan_init, and UNSUPPORTED for formats and options that are not in the list above and for a falloff whose
  * |k1| + |k2| + |k3|, each times its power of the frame's reach, is beyond 500, which integers do not hold. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_init(void *memory, size_t bytes,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_init(void *memory, size_t size,
                                                                         const lensprof_apply_options *options,
-                                                                        const lensprof_fixed_plan **plan);
+                                                                        const lensprof_fixed_plan **plan,
+                                                                        lensprof_error *error);
 
-/* A plan that was prepared elsewhere: the lensprof_fixed_plan_bytes bytes of its memory, copied to memory[bytes]
+/* A plan that was prepared elsewhere: the lensprof_fixed_plan_bytes bytes of its memory, copied to data[size]
  * (4-byte aligned; may be read-only), on machines of one byte order. Errors: NULL or unaligned ARGUMENT, fewer bytes
  * than the plan has CAPACITY, of another version LAYOUT, damaged CORRUPT (by its CRC-32, or because no plan holds such
  * numbers: a plan that opens is safe to apply, whoever made its bytes). */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_open(const void *memory, size_t bytes,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fixed_plan_open(const void *data, size_t size,
                                                                         const lensprof_fixed_plan **plan);
 
 /* As lensprof_apply. */

@@ -131,14 +131,14 @@ typedef struct lensprof_store_row {
 } lensprof_store_row;
 
 /* Lists profiles in the order camera maker, model, lens, focal, aperture, distance, id. Where filter (may be NULL) has
- * a text or a known number, only equal ones; its processing does not matter. rows[capacity]; *found receives how many
- * there are, which may be more than capacity (which is no error; capacity 0 = count only). A row whose key or
+ * a text or a known number, only equal ones; its processing does not matter. rows[capacity] and
+ * *count as in base.h. A row whose key or
  * provenance cannot be read does not end the list: it is a row with `damaged` 1 and its id. lensprof_store_get reports
  * what is wrong with it; lensprof_store_check finds damage in the rest of a profile, too. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list(lensprof_store *store,
                                                                    const lensprof_profile_key *filter,
                                                                    lensprof_store_row *rows, uint32_t capacity,
-                                                                   uint32_t *found, lensprof_error *error);
+                                                                   uint32_t *count, lensprof_error *error);
 
 /* Whether a profile is stored already: *id receives that of one with the same key, content and provenance, whatever its
  * method, software, prior and forced, or 0. Numbers must be equal; of responses those that their kind has. For those

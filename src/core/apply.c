@@ -11,7 +11,8 @@ static lensprof_status validate_tile(const lensprof_plan *plan, const lensprof_i
 
 static void apply_rows(const lensprof_plan *plan, const lensprof_image *source, const lensprof_image *target,
                        uint32_t planes, uint32_t x0, uint32_t y0) {
-    const size_t bytes = (size_t)target->width * target->height * plan->samples * lensprof_sample_bytes(target->sample);
+    const size_t bytes =
+        (size_t)target->width * target->height * plan->samples * lensprof_sample_type_bytes(target->sample);
     const int stream = bytes >= STREAMED && target->sample == LENSPROF_SAMPLE_F32 && !lp_is_in_place(source, target);
     for (uint32_t y = 0; y < source->height; y++) {
         const uint8_t *from[3] = {NULL, NULL, NULL};

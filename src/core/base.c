@@ -1,11 +1,21 @@
-/* Version and names of status codes. */
-#include <lensprof/base.h>
+/* Version, names of status codes, and their sentences. */
+#include "core/fail.h"
 
 #define TEXT_OF(x) #x
 #define TEXT(x) TEXT_OF(x)
 
 const char *lensprof_version(void) {
     return TEXT(LENSPROF_VERSION_MAJOR) "." TEXT(LENSPROF_VERSION_MINOR) "." TEXT(LENSPROF_VERSION_PATCH);
+}
+
+lensprof_status lp_fail(lensprof_error *error, lensprof_status status, const char *text) {
+    if (!error) return status;
+    const lensprof_item none = {LENSPROF_ITEM_NONE, 0, 0, 0};
+    size_t length = 0;
+    error->item = none;
+    for (; text[length] && length + 1 < sizeof error->text; length++) error->text[length] = text[length];
+    error->text[length] = 0;
+    return status;
 }
 
 const char *lensprof_status_name(lensprof_status status) {

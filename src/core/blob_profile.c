@@ -106,19 +106,19 @@ static void put_rest(uint8_t **at, const lensprof_profile *p, uint32_t covarianc
         for (size_t n = 0; n < t.length[i]; n++) put(at, (uint8_t)t.text[i][n], 1);
 }
 
-lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags, void *blob, size_t capacity,
-                                      size_t *bytes) {
-    if (!profile || !bytes || (!blob && capacity) || flags & ~(uint32_t)LENSPROF_PACK_COVARIANCE)
-        return LENSPROF_ERROR_ARGUMENT;
+lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags, void *data, size_t capacity,
+                                      size_t *count) {
+    if (!profile || (!data && capacity) || flags & ~(uint32_t)LENSPROF_PACK_COVARIANCE) return LENSPROF_ERROR_ARGUMENT;
     const lensprof_status status = lensprof_profile_validate(profile);
     if (status != LENSPROF_OK) return status;
     const uint32_t covariance = flags & LENSPROF_PACK_COVARIANCE ? profile->covariance_size : 0;
-    *bytes = bytes_of(profile, covariance);
-    if (capacity < *bytes) return LENSPROF_ERROR_CAPACITY;
-    uint8_t *at = blob;
-    put_fixed(&at, profile, covariance, *bytes);
+    const size_t bytes = bytes_of(profile, covariance);
+    if (count) *count = bytes;
+    if (capacity < bytes) return capacity ? LENSPROF_ERROR_CAPACITY : LENSPROF_OK;
+    uint8_t *at = data;
+    put_fixed(&at, profile, covariance, bytes);
     put_rest(&at, profile, covariance);
-    put(&at, lp_crc32(blob, *bytes - 4), 4);
+    put(&at, lp_crc32(data, bytes - 4), 4);
     return LENSPROF_OK;
 }
 
@@ -143,11 +143,11 @@ static void copy_covariance(const lp_blob *blob, lensprof_profile *profile) {
             profile->covariance[i * n + j] = profile->covariance[j * n + i] = lp_f64_at(at);
 }
 
-lensprof_status lensprof_profile_unpack(const void *blob, size_t bytes, lensprof_profile *profile) {
+lensprof_status lensprof_profile_unpack(const void *data, size_t size, lensprof_profile *profile) {
     lp_blob b;
-    if (!blob || !profile) return LENSPROF_ERROR_ARGUMENT;
+    if (!data || !profile) return LENSPROF_ERROR_ARGUMENT;
     if (lp_sized_wrong(profile, LP_FIRST_PROFILE, sizeof *profile)) return LENSPROF_ERROR_STRUCT_SIZE;
-    const lensprof_status status = lp_blob_open(blob, bytes, &b);
+    const lensprof_status status = lp_blob_open(data, size, &b);
     if (status != LENSPROF_OK) return status;
     const lp_model *m = &b.model;
     lensprof_profile_init_sized(profile, profile->struct_size);

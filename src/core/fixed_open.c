@@ -63,13 +63,13 @@ static int are_tables_sound(const lensprof_fixed_plan *plan) {
     return 1;
 }
 
-lensprof_status lensprof_fixed_plan_open(const void *memory, size_t bytes, const lensprof_fixed_plan **result) {
-    const lensprof_fixed_plan *plan = memory;
-    if (!memory || !result || (uintptr_t)memory % 4) return LENSPROF_ERROR_ARGUMENT;
-    if (bytes < sizeof *plan) return LENSPROF_ERROR_CAPACITY;
+lensprof_status lensprof_fixed_plan_open(const void *data, size_t size, const lensprof_fixed_plan **result) {
+    const lensprof_fixed_plan *plan = data;
+    if (!data || !result || (uintptr_t)data % 4) return LENSPROF_ERROR_ARGUMENT;
+    if (size < sizeof *plan) return LENSPROF_ERROR_CAPACITY;
     if ((plan->magic ^ LP_FIXED_MAGIC) & 0xffffffu) return LENSPROF_ERROR_CORRUPT;
     if (plan->magic != LP_FIXED_MAGIC) return LENSPROF_ERROR_LAYOUT;
-    if (plan->bytes > bytes) return LENSPROF_ERROR_CAPACITY;
+    if (plan->bytes > size) return LENSPROF_ERROR_CAPACITY;
     if (plan->bytes < sizeof *plan || plan->bytes % 4 || plan->check != lp_fixed_check(plan))
         return LENSPROF_ERROR_CORRUPT;
     if (!is_layout_sound(plan) || !is_reach_sound(plan) || !are_gains_sound(plan) || !are_tables_sound(plan))

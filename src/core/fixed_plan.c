@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/fail.h"
+
 #define LEAST_FALLOFF_SHIFT 21 /* M in 2^-21: 1 / 2000 of the smallest one allowed */
 #define SMALLEST_M 0.0005      /* below the smallest one allowed, above 0 after rounding */
 
@@ -93,21 +95,23 @@ static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_optio
 
 /* ---- plan ---- */
 
-static lensprof_status validate(const lensprof_apply_options *given, lensprof_apply_options *o, lp_model *m) {
-    const lensprof_status status = lp_options_validate(given, o, m);
+static lensprof_status validate(const lensprof_apply_options *given, lensprof_apply_options *o, lp_model *m,
+                                lensprof_error *error) {
+    const lensprof_status status = lp_options_validate(given, o, m, error);
     if (status != LENSPROF_OK) return status;
     if (o->source_sample > LENSPROF_SAMPLE_U16 || o->target_sample != o->source_sample
         || o->source_layout == LENSPROF_LAYOUT_PLANAR || m->columns || o->dither)
-        return LENSPROF_ERROR_UNSUPPORTED;
+        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED,
+                       "integers take U8 and U16 to the same, no planes, grid or dither");
     if (o->source_sample == LENSPROF_SAMPLE_U16 && !(is_linear(o, m, o->input) && is_linear(o, m, o->output)))
-        return LENSPROF_ERROR_UNSUPPORTED;
+        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers take U16 through a linear response only");
     return LENSPROF_OK;
 }
 
 size_t lensprof_fixed_plan_bytes(const lensprof_apply_options *options) {
     lensprof_apply_options own;
     lp_model model;
-    return options && validate(options, &own, &model) == LENSPROF_OK ? bytes_of(&own, &model) : 0;
+    return options && validate(options, &own, &model, NULL) == LENSPROF_OK ? bytes_of(&own, &model) : 0;
 }
 
 static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
@@ -136,26 +140,27 @@ static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_option
                           && o->output == LENSPROF_ENCODING_RESPONSE;
 }
 
-lensprof_status lensprof_fixed_plan_init(void *memory, size_t bytes, const lensprof_apply_options *given,
-                                         const lensprof_fixed_plan **result) {
-    if (!memory || !given || !result) return LENSPROF_ERROR_ARGUMENT;
+lensprof_status lensprof_fixed_plan_init(void *memory, size_t size, const lensprof_apply_options *given,
+                                         const lensprof_fixed_plan **result, lensprof_error *error) {
+    if (!memory || !given || !result) return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "memory, options or plan is NULL");
     lensprof_apply_options own;
     const lensprof_apply_options *options = &own;
     lensprof_fixed_plan head;
     memset(&head, 0, sizeof head);
     lp_model model;
-    const lensprof_status status = validate(given, &own, &model);
+    const lensprof_status status = validate(given, &own, &model, error);
     if (status != LENSPROF_OK) return status;
     prepare_layout(&head, options, &model);
-    if (!prepare_falloffs(&head, options, &model)) return LENSPROF_ERROR_UNSUPPORTED;
+    if (!prepare_falloffs(&head, options, &model))
+        return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "the falloff is too steep for integers");
     prepare_gains(&head, options);
     head.magic = LP_FIXED_MAGIC;
     head.bytes = (uint32_t)bytes_of(options, &model);
-    if (bytes < head.bytes || (uintptr_t)memory % 4) return LENSPROF_ERROR_CAPACITY;
+    if (size < head.bytes || (uintptr_t)memory % 4) return lp_fail(error, LENSPROF_ERROR_CAPACITY, LP_MEMORY_TEXT);
     lensprof_fixed_plan *plan = memory;
     *plan = head;
     prepare_tables(plan, options, &model);
     plan->check = lp_fixed_check(plan);
     *result = plan;
-    return LENSPROF_OK;
+    return lp_fail(error, LENSPROF_OK, "");
 }

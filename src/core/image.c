@@ -17,14 +17,14 @@ uint32_t lensprof_layout_channels(uint32_t layout) {
     return layout < sizeof channels ? channels[layout] : 0;
 }
 
-uint32_t lensprof_sample_bytes(uint32_t sample) {
+uint32_t lensprof_sample_type_bytes(uint32_t sample) {
     static const uint8_t bytes[] = {1, 2, 4, 2};
     return sample < sizeof bytes ? bytes[sample] : 0;
 }
 
 lensprof_status lensprof_image_validate(const lensprof_image *image) {
     if (!image || !image->data) return LENSPROF_ERROR_ARGUMENT;
-    uint32_t bytes = lensprof_sample_bytes(image->sample), samples = lensprof_layout_samples(image->layout);
+    uint32_t bytes = lensprof_sample_type_bytes(image->sample), samples = lensprof_layout_samples(image->layout);
     if (!bytes || !samples || image->layout == LENSPROF_LAYOUT_PLANAR) return LENSPROF_ERROR_ARGUMENT;
     if (!image->width || !image->height || image->width > LP_LARGEST_SIDE || image->height > LP_LARGEST_SIDE)
         return LENSPROF_ERROR_SIZE;
@@ -55,7 +55,7 @@ static void extent(const lensprof_image *image, uintptr_t *first, uintptr_t *las
     uintptr_t top = (uintptr_t)image->data;
     uintptr_t bottom = top + (uintptr_t)((intptr_t)(image->height - 1) * image->row_bytes);
     uintptr_t row =
-        (uintptr_t)image->width * lensprof_layout_samples(image->layout) * lensprof_sample_bytes(image->sample);
+        (uintptr_t)image->width * lensprof_layout_samples(image->layout) * lensprof_sample_type_bytes(image->sample);
     *first = top < bottom ? top : bottom;
     *last = (top < bottom ? bottom : top) + row - 1;
 }

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/fail.h"
+#include "core/profile.h"
 #include "core/response.h"
 
 #define FIRST_OPTIONS LP_END_OF(lensprof_apply_options, blob_bytes)
@@ -15,6 +17,21 @@ void lensprof_apply_options_init_sized(lensprof_apply_options *options, size_t s
     options->strength = 1.0;
     lensprof_exposure_init(&options->source);
     lensprof_exposure_init(&options->target);
+}
+
+lensprof_status lensprof_apply_options_set_profile(lensprof_apply_options *options, const lensprof_profile *profile) {
+    if (!options || !profile) return LENSPROF_ERROR_ARGUMENT;
+    if (lp_sized_wrong(options, FIRST_OPTIONS, sizeof *options)
+        || lp_sized_wrong(profile, LP_FIRST_PROFILE, sizeof *profile))
+        return LENSPROF_ERROR_STRUCT_SIZE;
+    options->responses = profile->responses;
+    options->vignettings = profile->vignettings;
+    options->response = profile->response;
+    options->vignetting = profile->vignetting;
+    options->grid = profile->grid.columns ? &profile->grid : NULL;
+    options->blob = NULL;
+    options->blob_bytes = 0;
+    return LENSPROF_OK;
 }
 
 lensprof_status lp_options_take(const lensprof_apply_options *given, lensprof_apply_options *own) {
@@ -75,22 +92,27 @@ double lp_model_invert(const struct lp_model_response *response, double b) {
     return lp_curve_between(lp_model_sample(response, low), lp_model_sample(response, high), b, low);
 }
 
-/* The model in the caller's structs; lp_options_model checks the grid, and all of a blob. */
-static lensprof_status validate_structs(const lensprof_apply_options *o) {
+static lensprof_status validate_curves(const lensprof_apply_options *o, lensprof_error *error) {
     lensprof_status status = LENSPROF_OK;
-    if (!o->response || !o->vignetting || (o->responses != 1 && o->responses != 3)
-        || (o->vignettings != 1 && o->vignettings != 3))
-        return LENSPROF_ERROR_ARGUMENT;
     for (uint32_t c = 0; c < o->responses && status == LENSPROF_OK; c++)
         status = lensprof_response_validate(&o->response[c]);
-    for (uint32_t c = 0; c < o->vignettings && status == LENSPROF_OK; c++) {
+    if (status != LENSPROF_OK) return lp_fail(error, status, "a response is invalid");
+    for (uint32_t c = 0; c < o->vignettings && status == LENSPROF_OK; c++)
         status = lensprof_vignetting_validate(&o->vignetting[c]);
-        if (status == LENSPROF_OK
-            && (o->vignetting[c].center[0] != o->vignetting[0].center[0]
-                || o->vignetting[c].center[1] != o->vignetting[0].center[1]))
-            status = LENSPROF_ERROR_VIGNETTING; /* one centre for all channels */
-    }
-    return status;
+    if (status != LENSPROF_OK) return lp_fail(error, status, "a vignetting is not positive on the whole frame");
+    for (uint32_t c = 1; c < o->vignettings; c++)
+        if (o->vignetting[c].center[0] != o->vignetting[0].center[0]
+            || o->vignetting[c].center[1] != o->vignetting[0].center[1])
+            return lp_fail(error, LENSPROF_ERROR_VIGNETTING, "the vignettings differ in their centres");
+    return LENSPROF_OK;
+}
+
+/* The model in the caller's structs; lp_options_model checks the grid, and all of a blob. */
+static lensprof_status validate_structs(const lensprof_apply_options *o, lensprof_error *error) {
+    if (!o->response || !o->vignetting || (o->responses != 1 && o->responses != 3)
+        || (o->vignettings != 1 && o->vignettings != 3))
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "no model: 1 or 3 responses and vignettings, or a blob");
+    return validate_curves(o, error);
 }
 
 double lp_center(const lensprof_apply_options *o, const lp_model *m, int axis) {
@@ -102,27 +124,43 @@ double lp_exposure_ratio(const lensprof_apply_options *o, uint32_t channel) {
     return lensprof_exposure_factor(&o->target, channel) / lensprof_exposure_factor(&o->source, channel);
 }
 
-/* All but what the model decides. */
-static lensprof_status validate_options(const lensprof_apply_options *o) {
-    if (o->direction > LENSPROF_DIRECTION_SIMULATE || o->input > LENSPROF_ENCODING_LINEAR
-        || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE
-        || !lensprof_sample_bytes(o->source_sample) || !lensprof_sample_bytes(o->target_sample)
-        || !lensprof_layout_samples(o->source_layout))
-        return LENSPROF_ERROR_ARGUMENT;
-    if (!(o->strength >= 0.0 && o->strength <= 1.0) || o->dither > 1 || o->reserved
-        || !(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LP_LARGEST_GAIN_CAP)))
-        return LENSPROF_ERROR_ARGUMENT;
-    if (!o->frame_width || !o->frame_height || o->frame_width > LP_LARGEST_SIDE || o->frame_height > LP_LARGEST_SIDE)
-        return LENSPROF_ERROR_SIZE;
+static lensprof_status validate_exposures(const lensprof_apply_options *o, lensprof_error *error) {
     lensprof_status status = lensprof_exposure_validate(&o->source);
     if (status == LENSPROF_OK) status = lensprof_exposure_validate(&o->target);
     for (uint32_t c = 0; c < 3 && status == LENSPROF_OK; c++) /* single precision must hold the factor */
         if (!(lp_exposure_ratio(o, c) >= 1e-12 && lp_exposure_ratio(o, c) <= 1e12)) status = LENSPROF_ERROR_EXPOSURE;
-    return status == LENSPROF_OK && !o->blob ? validate_structs(o) : status;
+    return status == LENSPROF_OK ? status : lp_fail(error, status, "source or target is invalid, or over 1e12 apart");
 }
 
-lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *own, lp_model *model) {
-    lensprof_status status = lp_options_take(given, own);
-    if (status == LENSPROF_OK) status = validate_options(own);
-    return status == LENSPROF_OK ? lp_options_model(own, model) : status;
+/* All but what the model decides. */
+static lensprof_status validate_options(const lensprof_apply_options *o, lensprof_error *error) {
+    if (o->direction > LENSPROF_DIRECTION_SIMULATE || o->input > LENSPROF_ENCODING_LINEAR
+        || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE)
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "direction, input, output or saturated is unknown");
+    if (!lensprof_sample_type_bytes(o->source_sample) || !lensprof_sample_type_bytes(o->target_sample)
+        || !lensprof_layout_samples(o->source_layout))
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "source_sample, target_sample or source_layout is unknown");
+    if (!(o->strength >= 0.0 && o->strength <= 1.0))
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "strength is not within 0..1");
+    if (!(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LP_LARGEST_GAIN_CAP)))
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "gain_cap is not 0 or within 1..1e6");
+    if (o->dither > 1 || o->reserved)
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "dither is not 0 or 1, or reserved is not 0");
+    if (!o->frame_width || !o->frame_height || o->frame_width > LP_LARGEST_SIDE || o->frame_height > LP_LARGEST_SIDE)
+        return lp_fail(error, LENSPROF_ERROR_SIZE, "frame_width or frame_height is 0, or over 2^20");
+    const lensprof_status status = validate_exposures(o, error);
+    return status == LENSPROF_OK && !o->blob ? validate_structs(o, error) : status;
+}
+
+lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *own, lp_model *model,
+                                    lensprof_error *error) {
+    lensprof_apply_options_init(own);
+    const char *wrong = lp_sized_take(own, given, FIRST_OPTIONS);
+    if (wrong) return lp_fail(error, LENSPROF_ERROR_STRUCT_SIZE, wrong);
+    lensprof_status status = validate_options(own, error);
+    if (status != LENSPROF_OK) return status;
+    status = lp_options_model(own, model);
+    if (status == LENSPROF_OK) return status;
+    return lp_fail(error, status,
+                   own->blob ? "the blob is invalid, or beside other curves" : "the gain grid is invalid");
 }

@@ -8,14 +8,18 @@
 
 #define LP_LARGEST_GAIN_CAP 1e6 /* over all attenuations that are allowed */
 
+/* Text of CAPACITY for the memory of a plan. Texts are short here: a camera's flash has them. */
+#define LP_MEMORY_TEXT "memory is too small or unaligned"
+
 /* The caller's options, of any version, as this library's: OK or STRUCT_SIZE. */
 lensprof_status lp_options_take(const lensprof_apply_options *given, lensprof_apply_options *own);
 
 /* The model. Of structs no more is checked than its size depends on; the vignetting may not be there yet. */
 lensprof_status lp_options_model(const lensprof_apply_options *options, lp_model *model);
 
-/* The status that lensprof_plan_init gives the caller's options; these as this library's, and their model. */
-lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *own, lp_model *model);
+/* The status and text that lensprof_plan_init gives the caller's options; these as this library's, and their model. */
+lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *own, lp_model *model,
+                                    lensprof_error *error);
 
 /* The responses that pixels pass through: grey is treated as green. */
 uint32_t lp_curves(const lensprof_apply_options *options, const lp_model *model);

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/fail.h"
 #include "core/plan_curves.h"
 
 static size_t nodes_of(const lp_model *m) { return (size_t)m->channels * m->rows * m->columns; }
@@ -18,8 +19,8 @@ static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m) {
 size_t lensprof_plan_bytes(const lensprof_apply_options *options) {
     lensprof_apply_options o;
     lp_model model;
-    if (!options || lp_options_take(options, &o) != LENSPROF_OK || !lensprof_sample_bytes(o.source_sample)
-        || !lensprof_sample_bytes(o.target_sample) || !lensprof_layout_samples(o.source_layout))
+    if (!options || lp_options_take(options, &o) != LENSPROF_OK || !lensprof_sample_type_bytes(o.source_sample)
+        || !lensprof_sample_type_bytes(o.target_sample) || !lensprof_layout_samples(o.source_layout))
         return 0;
     return lp_options_model(&o, &model) == LENSPROF_OK ? bytes_of(&o, &model) : 0;
 }
@@ -95,15 +96,16 @@ static void prepare_gains(lensprof_plan *plan, const lensprof_apply_options *o, 
     share_gains(plan);
 }
 
-lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_apply_options *given,
-                                   const lensprof_plan **result) {
-    if (!memory || !given || !result) return LENSPROF_ERROR_ARGUMENT;
+lensprof_status lensprof_plan_init(void *memory, size_t size, const lensprof_apply_options *given,
+                                   const lensprof_plan **result, lensprof_error *error) {
+    if (!memory || !given || !result) return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "memory, options or plan is NULL");
     lensprof_apply_options own;
     const lensprof_apply_options *options = &own;
     lp_model model;
-    const lensprof_status status = lp_options_validate(given, &own, &model);
+    const lensprof_status status = lp_options_validate(given, &own, &model, error);
     if (status != LENSPROF_OK) return status;
-    if (bytes < bytes_of(options, &model) || (uintptr_t)memory % 8) return LENSPROF_ERROR_CAPACITY;
+    if (size < bytes_of(options, &model) || (uintptr_t)memory % 8)
+        return lp_fail(error, LENSPROF_ERROR_CAPACITY, LP_MEMORY_TEXT);
 
     lensprof_plan *plan = memory;
     memset(plan, 0, sizeof *plan);
@@ -123,5 +125,5 @@ lensprof_status lensprof_plan_init(void *memory, size_t bytes, const lensprof_ap
     prepare_grid(plan, &model, tables);
     prepare_gains(plan, options, &model);
     *result = plan;
-    return LENSPROF_OK;
+    return lp_fail(error, LENSPROF_OK, "");
 }

@@ -112,10 +112,10 @@ double read_alsc(std::string_view text, double ct, Shape shape, lensprof_profile
 
 using namespace lensprof;
 
-lensprof_status lensprof_alsc_read(const char *text, size_t bytes, double ct, uint32_t columns, uint32_t rows,
+lensprof_status lensprof_alsc_read(const void *data, size_t size, double ct, uint32_t columns, uint32_t rows,
                                    uint32_t width, uint32_t height, lensprof_profile *profile, double *worst,
                                    lensprof_error *error) {
-    if ((!text && bytes) || !profile || !(ct == LENSPROF_UNKNOWN || (ct > 0.0 && ct <= 1e6))) {
+    if ((!data && size) || !profile || !(ct == LENSPROF_UNKNOWN || (ct > 0.0 && ct <= 1e6))) {
         set_error(
             error,
             "lensprof_alsc_read: give a buffer, a profile and a colour temperature of up to 1000000 K or unknown");
@@ -124,7 +124,7 @@ lensprof_status lensprof_alsc_read(const char *text, size_t bytes, double ct, ui
     return at_boundary(error, [&] {
         double error_found = 0.0;
         change_profile(profile, [&](lensprof_profile &own) {
-            error_found = read_alsc({bytes ? text : "", bytes}, ct, {columns, rows, width, height}, own);
+            error_found = read_alsc(view_of(data, size), ct, {columns, rows, width, height}, own);
         });
         if (worst) *worst = error_found;
     });

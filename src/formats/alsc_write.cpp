@@ -92,9 +92,9 @@ std::string alsc_text(const lensprof_profile &profile, double ct, const Shape &s
 using namespace lensprof;
 
 lensprof_status lensprof_alsc_write(const lensprof_profile *profile, double ct, uint32_t columns, uint32_t rows,
-                                    uint32_t width, uint32_t height, char *text, size_t capacity, size_t *needed,
+                                    uint32_t width, uint32_t height, void *data, size_t capacity, size_t *count,
                                     lensprof_error *error) {
-    if (!profile || !(ct == LENSPROF_UNKNOWN || (ct >= 1.0 && ct <= 1e6)) || (!text && capacity)) {
+    if (!profile || !(ct == LENSPROF_UNKNOWN || (ct >= 1.0 && ct <= 1e6)) || (!data && capacity)) {
         set_error(
             error,
             "lensprof_alsc_write: give a profile, a colour temperature of 1 to 1000000 K or unknown, and a buffer");
@@ -102,7 +102,7 @@ lensprof_status lensprof_alsc_write(const lensprof_profile *profile, double ct, 
     }
     if (ct == LENSPROF_UNKNOWN) ct = profile->key.color_temperature_k;
     if (ct == LENSPROF_UNKNOWN) ct = kAlscTemperatureK;
-    return write_at_boundary(text, capacity, needed, error, [&] {
+    return write_at_boundary(data, capacity, count, error, [&] {
         return alsc_text(*profile, std::max(ct, 1.0), {columns, rows, width, height});
     });
 }

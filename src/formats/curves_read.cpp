@@ -191,15 +191,15 @@ void read_columns(const Table &table, bool blue_first, uint32_t curve, Curves &c
 
 using namespace lensprof;
 
-lensprof_status lensprof_curves_read(const char *text, size_t bytes, uint32_t curve, lensprof_response *responses,
+lensprof_status lensprof_curves_read(const void *data, size_t size, uint32_t curve, lensprof_response *responses,
                                      uint32_t *count, lensprof_error *error) {
-    if ((!text && bytes) || !responses || !count || curve > LENSPROF_CURVE_FORWARD) {
+    if ((!data && size) || !responses || !count || curve > LENSPROF_CURVE_FORWARD) {
         set_error(error,
-                  "lensprof_curves_read: text, responses or count is NULL, or an unknown kind; see lensprof_curve");
+                  "lensprof_curves_read: data, responses or count is NULL, or an unknown kind; see lensprof_curve");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {
-        const CurveText file(std::string_view(bytes ? text : "", bytes));
+        const CurveText file(view_of(data, size));
         Curves curves{};
         if (!file.tables()[0].name.empty())
             read_matrices(file.tables(), curves);

@@ -47,12 +47,14 @@ std::string curves_text(const lensprof_response *responses, uint32_t count, uint
 
 using namespace lensprof;
 
-lensprof_status lensprof_curves_write(const lensprof_response *responses, uint32_t count, uint32_t curve, uint32_t rows,
-                                      char *text, size_t capacity, size_t *needed, lensprof_error *error) {
-    if (!responses || (count != 1 && count != 3) || curve > LENSPROF_CURVE_FORWARD || rows < 2 || rows > kMostCurveRows
-        || (!text && capacity)) {
+lensprof_status lensprof_curves_write(const lensprof_response *responses, uint32_t response_count, uint32_t curve,
+                                      uint32_t rows, void *data, size_t capacity, size_t *count,
+                                      lensprof_error *error) {
+    if (!responses || (response_count != 1 && response_count != 3) || curve > LENSPROF_CURVE_FORWARD || rows < 2
+        || rows > kMostCurveRows || (!data && capacity)) {
         set_error(error, "lensprof_curves_write: give 1 or 3 responses, a kind of table, 2 to 65536 rows and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    return write_at_boundary(text, capacity, needed, error, [&] { return curves_text(responses, count, curve, rows); });
+    return write_at_boundary(data, capacity, count, error,
+                             [&] { return curves_text(responses, response_count, curve, rows); });
 }

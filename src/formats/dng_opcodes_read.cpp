@@ -139,11 +139,11 @@ std::string read_gains(const OpcodeGains &gains, PixelFrame frame, uint32_t layo
 
 using namespace lensprof;
 
-lensprof_status lensprof_dng_opcodes_read(const void *bytes, size_t size, uint32_t width, uint32_t height,
+lensprof_status lensprof_dng_opcodes_read(const void *data, size_t size, uint32_t width, uint32_t height,
                                           uint32_t layout, const char *source, lensprof_import_visitor visit,
                                           void *user, lensprof_error *error) {
-    if ((!bytes && size) || !visit) {
-        set_error(error, "lensprof_dng_opcodes_read: bytes or visit is NULL; pass a buffer and a function");
+    if ((!data && size) || !visit) {
+        set_error(error, "lensprof_dng_opcodes_read: data or visit is NULL; pass a buffer and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }
     lensprof_status visited = LENSPROF_OK;
@@ -151,7 +151,7 @@ lensprof_status lensprof_dng_opcodes_read(const void *bytes, size_t size, uint32
         const auto profile = std::make_unique<lensprof_profile>();
         lensprof_profile_init(profile.get());
         set_import_provenance(*profile, source, "DNG opcodes");
-        const OpcodeGains gains = parse_opcodes(static_cast<const uint8_t *>(bytes), size);
+        const OpcodeGains gains = parse_opcodes(static_cast<const uint8_t *>(data), size);
         const std::string remark = read_gains(gains, {width, height}, layout, *profile);
         visited = visit_entry(*profile, remark, visit, user);
     });

@@ -188,10 +188,10 @@ double write_maps(const lensprof_profile &profile, PixelFrame frame, uint32_t la
 using namespace lensprof;
 
 lensprof_status lensprof_dng_opcodes_write(const lensprof_profile *profile, uint32_t width, uint32_t height,
-                                           uint32_t layout, uint32_t form, void *bytes, size_t capacity, size_t *needed,
+                                           uint32_t layout, uint32_t form, void *data, size_t capacity, size_t *count,
                                            double *worst, lensprof_error *error) {
-    if (!profile || (!bytes && capacity)) {
-        set_error(error, "lensprof_dng_opcodes_write: profile or bytes is NULL; pass a profile and a buffer");
+    if (!profile || (!data && capacity)) {
+        set_error(error, "lensprof_dng_opcodes_write: profile or data is NULL; pass a profile and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
     OpcodeBytes list;
@@ -207,12 +207,7 @@ lensprof_status lensprof_dng_opcodes_write(const lensprof_profile *profile, uint
                                             : write_maps(*profile, frame, layout, list);
     });
     if (status != LENSPROF_OK) return status;
-    if (needed) *needed = list.all().size();
     if (worst) *worst = found;
-    if (capacity < list.all().size()) {
-        set_error(error, "the list is longer than the buffer; call again with the size needed");
-        return LENSPROF_ERROR_CAPACITY;
-    }
-    std::memcpy(bytes, list.all().data(), list.all().size());
-    return LENSPROF_OK;
+    const std::string_view bytes = view_of(list.all().data(), list.all().size());
+    return copy_bytes(bytes, data, std::min(capacity, bytes.size()), count, error);  // no terminator
 }

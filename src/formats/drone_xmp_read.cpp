@@ -257,12 +257,12 @@ std::string DroneXmpReader::read(const char *source, lensprof_profile &profile) 
 
 using namespace lensprof;
 
-lensprof_status lensprof_drone_xmp_read(const char *text, size_t bytes, uint32_t width, uint32_t height,
+lensprof_status lensprof_drone_xmp_read(const void *data, size_t size, uint32_t width, uint32_t height,
                                         const char *source, lensprof_import_visitor visit, void *user,
                                         lensprof_error *error) {
-    if ((!text && bytes) || !visit || !width || !height) {
+    if ((!data && size) || !visit || !width || !height) {
         set_error(error,
-                  "lensprof_drone_xmp_read: text or visit is NULL, or a side is 0; pass a packet, its picture's size "
+                  "lensprof_drone_xmp_read: data or visit is NULL, or a side is 0; pass a packet, its picture's size "
                   "and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }
@@ -270,7 +270,7 @@ lensprof_status lensprof_drone_xmp_read(const char *text, size_t bytes, uint32_t
     const lensprof_status status = at_boundary(error, [&] {
         const auto profile = std::make_unique<lensprof_profile>();
         lensprof_profile_init(profile.get());
-        std::string_view packet(bytes ? text : "", bytes);
+        std::string_view packet = view_of(data, size);
         while (!packet.empty() && packet.back() == '\0') packet.remove_suffix(1);  // padding of the tag
         const DroneXmpReader reader(packet, {width, height});
         const std::string remark = reader.read(source, *profile);

@@ -252,15 +252,15 @@ lensprof_status walk(const JsonText &text, const char *source, lensprof_profile 
 
 using namespace lensprof;
 
-lensprof_status lensprof_json_read(const char *text, size_t bytes, const char *source, lensprof_import_visitor visit,
+lensprof_status lensprof_json_read(const void *data, size_t size, const char *source, lensprof_import_visitor visit,
                                    void *user, lensprof_error *error) {
-    if ((!text && bytes) || !visit) {
-        set_error(error, "lensprof_json_read: text or visit is NULL; pass a buffer and a function");
+    if ((!data && size) || !visit) {
+        set_error(error, "lensprof_json_read: data or visit is NULL; pass a buffer and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }
     lensprof_status visited = LENSPROF_OK;
     const lensprof_status status = at_boundary(error, [&] {
-        const JsonText json(std::string_view(bytes ? text : "", bytes));
+        const JsonText json(view_of(data, size));
         const auto profile = std::make_unique<lensprof_profile>();
         walk(json, source, *profile, [](lensprof_profile &) { return LENSPROF_OK; });  // all are checked first
         visited = walk(json, source, *profile, [&](lensprof_profile &found) {

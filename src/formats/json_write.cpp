@@ -193,11 +193,11 @@ void write_profile(JsonWriter &json, const lensprof_profile &profile) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_json_write(const lensprof_profile *const *profiles, uint32_t count, char *text,
-                                    size_t capacity, size_t *needed, lensprof_error *error) {
-    if ((!profiles && count) || (!text && capacity)) {
-        set_error(error, "lensprof_json_write: profiles or text is NULL; pass a buffer");
+lensprof_status lensprof_json_write(const lensprof_profile *const *profiles, uint32_t profile_count, void *data,
+                                    size_t capacity, size_t *count, lensprof_error *error) {
+    if ((!profiles && profile_count) || (!data && capacity)) {
+        set_error(error, "lensprof_json_write: profiles or data is NULL; pass a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    return write_at_boundary(text, capacity, needed, error, [&] { return profiles_text(profiles, count); });
+    return write_at_boundary(data, capacity, count, error, [&] { return profiles_text(profiles, profile_count); });
 }

@@ -139,21 +139,20 @@ void LcpWriter::append(const lensprof_profile &profile, uint32_t index) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_lcp_write(const lensprof_profile *const *profiles, uint32_t count, uint32_t width,
-                                   uint32_t height, char *text, size_t capacity, size_t *needed,
-                                   lensprof_error *error) {
-    if ((!profiles && count) || (!text && capacity)) {
-        set_error(error, "lensprof_lcp_write: profiles or text is NULL; pass a buffer");
+lensprof_status lensprof_lcp_write(const lensprof_profile *const *profiles, uint32_t profile_count, uint32_t width,
+                                   uint32_t height, void *data, size_t capacity, size_t *count, lensprof_error *error) {
+    if ((!profiles && profile_count) || (!data && capacity)) {
+        set_error(error, "lensprof_lcp_write: profiles or data is NULL; pass a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    return write_at_boundary(text, capacity, needed, error, [&] {
+    return write_at_boundary(data, capacity, count, error, [&] {
         const bool known = width && height;
         if (!known && (width || height))
             throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "a frame of one side; pass width and height, or 0 for 3:2"};
         if (width > 1000000 || height > 1000000)
             throw FormatFailure{LENSPROF_ERROR_SIZE, "a frame of over a million pixels a side; pass its size"};
         LcpWriter writer({known ? width : kLcpWidth, known ? height : kLcpHeight, known});
-        for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t i = 0; i < profile_count; i++) {
             demand_of_profile(profiles[i] != nullptr, i, "is NULL; pass a profile");
             writer.append(*profiles[i], i);
         }

@@ -231,15 +231,15 @@ lensprof_status LensfunReader::walk(Use use) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_lensfun_read(const char *text, size_t bytes, const char *source, lensprof_import_visitor visit,
+lensprof_status lensprof_lensfun_read(const void *data, size_t size, const char *source, lensprof_import_visitor visit,
                                       void *user, lensprof_error *error) {
-    if ((!text && bytes) || !visit) {
-        set_error(error, "lensprof_lensfun_read: text or visit is NULL; pass a buffer and a function");
+    if ((!data && size) || !visit) {
+        set_error(error, "lensprof_lensfun_read: data or visit is NULL; pass a buffer and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }
     lensprof_status visited = LENSPROF_OK;
     const lensprof_status status = at_boundary(error, [&] {
-        LensfunReader reader(std::string_view(bytes ? text : "", bytes), source);
+        LensfunReader reader(view_of(data, size), source);
         reader.walk([](lensprof_profile &) { return LENSPROF_OK; });  // all entries are checked first
         visited = reader.walk([&](lensprof_profile &profile) { return visit_entry(profile, "", visit, user); });
     });

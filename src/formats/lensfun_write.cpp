@@ -89,11 +89,11 @@ std::string database_text(const lensprof_profile *const *profiles, uint32_t coun
 
 using namespace lensprof;
 
-lensprof_status lensprof_lensfun_write(const lensprof_profile *const *profiles, uint32_t count, char *text,
-                                       size_t capacity, size_t *needed, lensprof_error *error) {
-    if ((!profiles && count) || (!text && capacity)) {
-        set_error(error, "lensprof_lensfun_write: profiles or text is NULL; pass a buffer");
+lensprof_status lensprof_lensfun_write(const lensprof_profile *const *profiles, uint32_t profile_count, void *data,
+                                       size_t capacity, size_t *count, lensprof_error *error) {
+    if ((!profiles && profile_count) || (!data && capacity)) {
+        set_error(error, "lensprof_lensfun_write: profiles or data is NULL; pass a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    return write_at_boundary(text, capacity, needed, error, [&] { return database_text(profiles, count); });
+    return write_at_boundary(data, capacity, count, error, [&] { return database_text(profiles, profile_count); });
 }

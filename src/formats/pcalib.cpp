@@ -59,20 +59,20 @@ std::string pcalib_text(const lensprof_response &response) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_pcalib_read(const char *text, size_t bytes, lensprof_response *response,
+lensprof_status lensprof_pcalib_read(const void *data, size_t size, lensprof_response *response,
                                      lensprof_error *error) {
-    if ((!text && bytes) || !response) {
-        set_error(error, "lensprof_pcalib_read: text or response is NULL; pass a buffer and a response");
+    if ((!data && size) || !response) {
+        set_error(error, "lensprof_pcalib_read: data or response is NULL; pass a buffer and a response");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    return at_boundary(error, [&] { *response = read_pcalib(std::string_view(bytes ? text : "", bytes)); });
+    return at_boundary(error, [&] { *response = read_pcalib(view_of(data, size)); });
 }
 
-lensprof_status lensprof_pcalib_write(const lensprof_response *response, char *text, size_t capacity, size_t *needed,
+lensprof_status lensprof_pcalib_write(const lensprof_response *response, void *data, size_t capacity, size_t *count,
                                       lensprof_error *error) {
-    if (!response || (!text && capacity)) {
-        set_error(error, "lensprof_pcalib_write: response or text is NULL; pass a response and a buffer");
+    if (!response || (!data && capacity)) {
+        set_error(error, "lensprof_pcalib_write: response or data is NULL; pass a response and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    return write_at_boundary(text, capacity, needed, error, [&] { return pcalib_text(*response); });
+    return write_at_boundary(data, capacity, count, error, [&] { return pcalib_text(*response); });
 }

@@ -241,50 +241,47 @@ std::string vignetting_data(const lensprof_profile &profile, uint32_t width, uin
 
 using namespace lensprof;
 
-lensprof_status lensprof_radical_response_read(const void *data, size_t bytes, lensprof_response *responses,
+lensprof_status lensprof_radical_response_read(const void *data, size_t size, lensprof_response *responses,
                                                lensprof_error *error) {
-    if ((!data && bytes) || !responses) {
+    if ((!data && size) || !responses) {
         set_error(error, "lensprof_radical_response_read: data or responses is NULL; pass a buffer and 3 responses");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {
         auto found = std::make_unique<std::array<lensprof_response, 3>>();
-        read_responses({bytes ? static_cast<const char *>(data) : "", bytes}, found->data());
+        read_responses(view_of(data, size), found->data());
         std::copy(found->begin(), found->end(), responses);
     });
 }
 
-lensprof_status lensprof_radical_response_write(const lensprof_response *responses, uint32_t count, void *data,
-                                                size_t capacity, size_t *needed, lensprof_error *error) {
-    if (!responses || (count != 1 && count != 3) || (!data && capacity)) {
+lensprof_status lensprof_radical_response_write(const lensprof_response *responses, uint32_t response_count, void *data,
+                                                size_t capacity, size_t *count, lensprof_error *error) {
+    if (!responses || (response_count != 1 && response_count != 3) || (!data && capacity)) {
         set_error(error, "lensprof_radical_response_write: give 1 or 3 responses and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    return write_at_boundary(static_cast<char *>(data), capacity, needed, error,
-                             [&] { return responses_data(responses, count); });
+    return write_at_boundary(data, capacity, count, error, [&] { return responses_data(responses, response_count); });
 }
 
-lensprof_status lensprof_radical_vignetting_read(const void *data, size_t bytes, lensprof_profile *profile,
+lensprof_status lensprof_radical_vignetting_read(const void *data, size_t size, lensprof_profile *profile,
                                                  double *worst, lensprof_error *error) {
-    if ((!data && bytes) || !profile) {
+    if ((!data && size) || !profile) {
         set_error(error, "lensprof_radical_vignetting_read: data or profile is NULL; pass a buffer and a profile");
         return LENSPROF_ERROR_ARGUMENT;
     }
     return at_boundary(error, [&] {
         double error_found = 0.0;
-        change_profile(profile, [&](lensprof_profile &own) {
-            error_found = read_vignetting({bytes ? static_cast<const char *>(data) : "", bytes}, own);
-        });
+        change_profile(profile,
+                       [&](lensprof_profile &own) { error_found = read_vignetting(view_of(data, size), own); });
         if (worst) *worst = error_found;
     });
 }
 
 lensprof_status lensprof_radical_vignetting_write(const lensprof_profile *profile, uint32_t width, uint32_t height,
-                                                  void *data, size_t capacity, size_t *needed, lensprof_error *error) {
+                                                  void *data, size_t capacity, size_t *count, lensprof_error *error) {
     if (!profile || (!data && capacity)) {
         set_error(error, "lensprof_radical_vignetting_write: give a profile and a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    return write_at_boundary(static_cast<char *>(data), capacity, needed, error,
-                             [&] { return vignetting_data(*profile, width, height); });
+    return write_at_boundary(data, capacity, count, error, [&] { return vignetting_data(*profile, width, height); });
 }

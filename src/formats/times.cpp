@@ -82,29 +82,28 @@ std::string times_text(const lensprof_frame_time *frames, uint32_t count) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_times_read(const char *text, size_t bytes, lensprof_frame_time *frames, uint32_t capacity,
-                                    uint32_t *found, lensprof_error *error) {
-    if ((!text && bytes) || (!frames && capacity) || !found) {
-        set_error(error, "lensprof_times_read: text, frames or found is NULL; pass buffers");
+lensprof_status lensprof_times_read(const void *data, size_t size, lensprof_frame_time *frames, uint32_t capacity,
+                                    uint32_t *count, lensprof_error *error) {
+    if ((!data && size) || (!frames && capacity) || !count) {
+        set_error(error, "lensprof_times_read: data, frames or count is NULL; pass buffers");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    const std::string_view all(bytes ? text : "", bytes);
+    const std::string_view all = view_of(data, size);
     return at_boundary(error, [&] {
-        const uint32_t count = walk(all, [](uint32_t, const lensprof_frame_time &) {});
-        *found = count;
+        *count = walk(all, [](uint32_t, const lensprof_frame_time &) {});
         if (!capacity) return;
-        if (count > capacity)
-            throw FormatFailure{LENSPROF_ERROR_CAPACITY, std::to_string(count) + " frames for a buffer of "
+        if (*count > capacity)
+            throw FormatFailure{LENSPROF_ERROR_CAPACITY, std::to_string(*count) + " frames for a buffer of "
                                                              + std::to_string(capacity) + "; pass a larger one"};
         walk(all, [&](uint32_t index, const lensprof_frame_time &frame) { frames[index] = frame; });
     });
 }
 
-lensprof_status lensprof_times_write(const lensprof_frame_time *frames, uint32_t count, char *text, size_t capacity,
-                                     size_t *needed, lensprof_error *error) {
-    if ((!frames && count) || (!text && capacity)) {
-        set_error(error, "lensprof_times_write: frames or text is NULL; pass buffers");
+lensprof_status lensprof_times_write(const lensprof_frame_time *frames, uint32_t frame_count, void *data,
+                                     size_t capacity, size_t *count, lensprof_error *error) {
+    if ((!frames && frame_count) || (!data && capacity)) {
+        set_error(error, "lensprof_times_write: frames or data is NULL; pass buffers");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    return write_at_boundary(text, capacity, needed, error, [&] { return times_text(frames, count); });
+    return write_at_boundary(data, capacity, count, error, [&] { return times_text(frames, frame_count); });
 }

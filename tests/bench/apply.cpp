@@ -80,11 +80,12 @@ public:
         if (whole) options.target = {0.3, {1.1, 1.0, 0.9}};
         memory_.resize(lensprof_plan_bytes(&options) / 8 + 1);
         const double began = cpu_seconds();
-        if (lensprof_plan_init(memory_.data(), memory_.size() * 8, &options, &plan_) != LENSPROF_OK) std::abort();
+        if (lensprof_plan_init(memory_.data(), memory_.size() * 8, &options, &plan_, nullptr) != LENSPROF_OK)
+            std::abort();
         init_s = cpu_seconds() - began;
     }
     void apply(const void *source, void *target, uint32_t sample) const {
-        const ptrdiff_t row = static_cast<ptrdiff_t>(kWidth) * 3 * lensprof_sample_bytes(sample);
+        const ptrdiff_t row = static_cast<ptrdiff_t>(kWidth) * 3 * lensprof_sample_type_bytes(sample);
         const lensprof_image from = {const_cast<void *>(source), row, kWidth, kHeight, sample, LENSPROF_LAYOUT_RGB};
         lensprof_image to = from;
         to.data = target;

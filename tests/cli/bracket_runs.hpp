@@ -37,7 +37,7 @@ inline void save_shot(const std::string &path, const Shot &shot) {
     picture.sample = shot.sample;
     picture.layout = shot.layout;
     const uint32_t channels = lensprof_layout_samples(shot.layout);
-    picture.row_bytes = shot.width * channels * lensprof_sample_bytes(shot.sample);
+    picture.row_bytes = shot.width * channels * lensprof_sample_type_bytes(shot.sample);
     picture.pixels.resize(picture.row_bytes * shot.height);
     uint64_t random = 7 + uint64_t(1000.0 * (shot.ev + 64.0));
     const auto put = [&](size_t at, double value) {

@@ -94,7 +94,7 @@ inline Picture make_noise(uint32_t width, uint32_t height, uint32_t sample, uint
     picture.height = picture.frame_height = height;
     picture.sample = sample;
     picture.layout = layout;
-    picture.row_bytes = width * lensprof_layout_samples(layout) * lensprof_sample_bytes(sample);
+    picture.row_bytes = width * lensprof_layout_samples(layout) * lensprof_sample_type_bytes(sample);
     picture.pixels.resize(picture.row_bytes * height);
     uint64_t state = width + 31 * height + sample;
     for (uint8_t &byte : picture.pixels) byte = static_cast<uint8_t>(256 * lp_random(&state));
@@ -146,7 +146,8 @@ struct TiffKind {
 
 inline void write_block(TIFF *tiff, const Picture &picture, uint32_t x0, uint32_t y0, uint32_t width, uint32_t height,
                         int plane) {
-    const uint32_t samples = lensprof_layout_samples(picture.layout), bytes = lensprof_sample_bytes(picture.sample);
+    const uint32_t samples = lensprof_layout_samples(picture.layout),
+                   bytes = lensprof_sample_type_bytes(picture.sample);
     Bytes block;
     for (uint32_t y = y0; y < y0 + height; ++y) {
         for (uint32_t x = x0; x < x0 + width; ++x) {
@@ -172,7 +173,7 @@ inline void write_tiff_file(const std::string &path, const Picture &picture, con
     const uint32_t samples = lensprof_layout_samples(picture.layout);
     TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, picture.width);
     TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, picture.height);
-    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, kind.bits ? kind.bits : 8 * lensprof_sample_bytes(picture.sample));
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, kind.bits ? kind.bits : 8 * lensprof_sample_type_bytes(picture.sample));
     TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, picture.sample == LENSPROF_SAMPLE_F32 ? SAMPLEFORMAT_IEEEFP : kind.format);
     TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, samples);
     TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, kind.planar);

@@ -60,11 +60,12 @@ Picture corrected_whole(const std::string &file, const lensprof_profile &model, 
     options.vignetting = model.vignetting;
     options.grid = &model.grid;
     result.sample = options.target_sample;
-    result.row_bytes = source.width * lensprof_layout_samples(source.layout) * lensprof_sample_bytes(result.sample);
+    result.row_bytes =
+        source.width * lensprof_layout_samples(source.layout) * lensprof_sample_type_bytes(result.sample);
     result.pixels.assign(result.row_bytes * result.height, 0);
     std::vector<uint64_t> memory(lensprof_plan_bytes(&options) / 8 + 1);
     const lensprof_plan *plan = nullptr;
-    assert_ok(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan));
+    assert_ok(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan, nullptr));
     lensprof_image from = source.view(), to = result.view();
     assert_ok(lensprof_apply(plan, &from, &to, 0, 0));
     return result;

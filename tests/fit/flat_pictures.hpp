@@ -74,7 +74,7 @@ struct FlatPictures {
 
     // Takes a picture; `shot` as lensprof_flat_image.
     lensprof_flat_image &shoot(uint32_t shot, double ev = 0.0, double turn_deg = 0.0) {
-        const uint32_t bytes = lensprof_sample_bytes(sample);
+        const uint32_t bytes = lensprof_sample_type_bytes(sample);
         data.push_back(std::make_unique<std::vector<uint8_t>>(static_cast<size_t>(width) * height * channels * bytes));
         uint8_t *at = data.back()->data();
         const std::vector<double> &normals = normal_numbers();

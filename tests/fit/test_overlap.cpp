@@ -56,7 +56,7 @@ double clean_rms(const Simulation &s, const Run &run) {
     clean.make(1000, 0.0, 0.0, 1.0, 42);
     double rms = 0;
     assert_ok(lensprof_transfer_rms(&run.result.response, run.result.vignetting, s.fit_images.data(),
-                                    run.exposures.data(), s.images, clean.pairs.data(), 1000, s.channels, &rms,
+                                    run.exposures.data(), s.images, clean.pairs.data(), 1000, s.channels, &rms, nullptr,
                                     nullptr));
     return rms;
 }

@@ -165,7 +165,7 @@ std::vector<double> corrected(const lensprof_response &response, const lensprof_
     options.target.white_balance[0] = std::exp(log_red), options.target.white_balance[2] = std::exp(log_blue);
     std::vector<uint64_t> memory(lensprof_plan_bytes(&options) / 8 + 1);
     const lensprof_plan *plan;
-    assert_ok(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan));
+    assert_ok(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan, nullptr));
     std::vector<float> in = pixels, out(pixels.size());
     lensprof_image source{in.data(),          static_cast<ptrdiff_t>(side * 12), side, side, LENSPROF_SAMPLE_F32,
                           LENSPROF_LAYOUT_RGB};

@@ -50,7 +50,7 @@ inline std::string write_lensfun(const std::vector<lensprof_profile> &profiles, 
     lensprof_error error;
     lensprof_status result = lensprof_lensfun_write(pointers.data(), count, nullptr, 0, &needed, &error);
     std::string text(needed, '\0');
-    if (result == LENSPROF_ERROR_CAPACITY)
+    if (result == LENSPROF_OK)
         result = lensprof_lensfun_write(pointers.data(), count, text.data(), needed, &needed, &error);
     if (status) *status = result;
     if (why) *why = error.text;

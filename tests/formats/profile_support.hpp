@@ -84,13 +84,13 @@ inline Read read_json(const std::string &text, const char *source = "a.json") {
 }
 
 // Asks `write(text, capacity, needed, error)` for the size, then for the text; "" and the error's text where it fails.
-using WriteText = std::function<lensprof_status(char *, size_t, size_t *, lensprof_error *)>;
+using WriteText = std::function<lensprof_status(void *, size_t, size_t *, lensprof_error *)>;
 inline std::string written(const WriteText &write, lensprof_status *status = nullptr, std::string *why = nullptr) {
     size_t needed = 0;
     lensprof_error error{};
     lensprof_status result = write(nullptr, 0, &needed, &error);
     std::string text(needed, '\0');
-    if (result == LENSPROF_ERROR_CAPACITY) result = write(text.data(), needed, &needed, &error);
+    if (result == LENSPROF_OK) result = write(text.data(), needed, &needed, &error);
     if (status)
         *status = result;
     else
@@ -100,7 +100,7 @@ inline std::string written(const WriteText &write, lensprof_status *status = nul
 }
 
 inline std::string write_json(const std::vector<const lensprof_profile *> &profiles) {
-    return written([&](char *text, size_t capacity, size_t *needed, lensprof_error *error) {
+    return written([&](void *text, size_t capacity, size_t *needed, lensprof_error *error) {
         return lensprof_json_write(profiles.data(), static_cast<uint32_t>(profiles.size()), text, capacity, needed,
                                    error);
     });

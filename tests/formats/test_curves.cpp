@@ -23,7 +23,7 @@ std::unique_ptr<Curves> read(const std::string &text, uint32_t curve = LENSPROF_
 }
 
 std::string write(const lensprof_response *responses, uint32_t count, uint32_t curve, uint32_t rows) {
-    return written([&](char *text, size_t capacity, size_t *needed, lensprof_error *error) {
+    return written([&](void *text, size_t capacity, size_t *needed, lensprof_error *error) {
         return lensprof_curves_write(responses, count, curve, rows, text, capacity, needed, error);
     });
 }

@@ -80,9 +80,7 @@ void assert_refused(const Imported &imported, lensprof_status status, const char
 Bytes write(const lensprof_profile &profile, uint32_t layout, uint32_t form, double *worst = nullptr,
             uint32_t width = 600, uint32_t height = 400) {
     size_t needed = 0;
-    assert_int_equal(
-        lensprof_dng_opcodes_write(&profile, width, height, layout, form, nullptr, 0, &needed, nullptr, nullptr),
-        LENSPROF_ERROR_CAPACITY);
+    assert_ok(lensprof_dng_opcodes_write(&profile, width, height, layout, form, nullptr, 0, &needed, nullptr, nullptr));
     Bytes bytes(needed);
     assert_ok(lensprof_dng_opcodes_write(&profile, width, height, layout, form, bytes.data(), needed, &needed, worst,
                                          nullptr));
@@ -300,7 +298,7 @@ void test_write_refused(void **) {
     auto profile = profile_of(-0.3, 0, 0);
     fails(*profile, LENSPROF_LAYOUT_RGB, 2, LENSPROF_ERROR_ARGUMENT, "form");
     fails(*profile, LENSPROF_LAYOUT_RGBA, 0, LENSPROF_ERROR_ARGUMENT, "layout");
-    fails(*profile, LENSPROF_LAYOUT_RGB, 0, LENSPROF_ERROR_CAPACITY, "longer than the buffer");
+    fails(*profile, LENSPROF_LAYOUT_RGB, 0, LENSPROF_ERROR_CAPACITY, "buffer is too small");
     profile->vignettings = 3;
     fails(*profile, LENSPROF_LAYOUT_RGB, 0, LENSPROF_ERROR_UNSUPPORTED, "write GainMap");
     fails(*profile, LENSPROF_LAYOUT_GREY, 1, LENSPROF_ERROR_UNSUPPORTED, "pictures of one");

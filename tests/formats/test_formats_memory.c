@@ -37,14 +37,14 @@ static lensprof_status read_wrong(world *w) {
 static lensprof_status draw(world *w) {
     uint8_t mask[100 * 60];
     memset(mask, 7, sizeof mask);
-    lensprof_status status = lensprof_pto_draw_mask(w->pto, 2, mask, 100, 60, 100);
+    lensprof_status status = lensprof_pto_draw_mask(w->pto, 2, mask, 100, 60, 100, NULL);
     for (size_t i = 0; i < sizeof mask; i++) assert_true((mask[i] == 7) == (status != LENSPROF_OK));
     return status;
 }
 
 static lensprof_status set_result(world *w) {
     const lensprof_vignetting vignetting = {{-0.2, 0, 0}, {0, 0}};
-    return lensprof_pto_set_result(w->pto, &w->response, &vignetting, w->exposures, 4, 0);
+    return lensprof_pto_set_result(w->pto, &w->response, &vignetting, w->exposures, 4, 0, NULL);
 }
 
 static lensprof_status write_points(world *w) {
@@ -52,7 +52,7 @@ static lensprof_status write_points(world *w) {
     const lensprof_camera cameras[2] = {{.width = 6, .height = 8}, {.width = 6, .height = 8}};
     const lensprof_pair pair = {{0, 1}, {{1, 2}, {3, 4}}, {{0, 0, 0}, {1, 1, 1}}};
     char text[200] = "untouched";
-    lensprof_status status = lensprof_points_write(&pair, 1, cameras, 2, text, sizeof text, NULL);
+    lensprof_status status = lensprof_points_write(&pair, 1, cameras, 2, text, sizeof text, NULL, NULL);
     assert_true((strcmp(text, "untouched") == 0) == (status != LENSPROF_OK));
     return status;
 }

@@ -125,7 +125,7 @@ static void test_nona_corrects_with_a_written_project(void **state) {
         "Vm5 n\"hugin0.ppm\"\n"
         "i w60 h40 f0 v=0 Ra=0 Rb=0 Rc=0 Rd=0 Re=0 r0 p0 y0 Va=0 Vb=0 Vc=0 Vd=0 "
         "n\"hugin1.ppm\"\n");
-    assert_ok(lensprof_pto_set_result(pto, response, &falloff, taken, 2, 0));
+    assert_ok(lensprof_pto_set_result(pto, response, &falloff, taken, 2, 0, NULL));
     char *project = write_pto(pto);
     run_nona(project);
     double expected[3];
@@ -164,7 +164,7 @@ static void compare_masks(const char *project, uint32_t images, int tolerance) {
         int differ = 0, used = 0;
         snprintf(path, sizeof path, "hugin_out%04u.tif", i);
         read_tiff(path, pixels);
-        assert_ok(lensprof_pto_draw_mask(pto, i, mask, WIDTH, HEIGHT, WIDTH));
+        assert_ok(lensprof_pto_draw_mask(pto, i, mask, WIDTH, HEIGHT, WIDTH, NULL));
         for (int k = 0; k < WIDTH * HEIGHT; k++) {
             differ += mask[k] != (pixels[4 * k + 3] > 127);
             used += mask[k];
@@ -244,7 +244,7 @@ static void test_vig_optimize_reads_written_points(void **state) {
     make_pairs(pairs, PAIRS, &centred);
     size_t bytes;
     uint32_t found;
-    assert_ok(lensprof_points_write(pairs, PAIRS, cameras, 2, text, sizeof text, &bytes));
+    assert_ok(lensprof_points_write(pairs, PAIRS, cameras, 2, text, sizeof text, &bytes, NULL));
     write_file("hugin_points.txt", text, bytes);
     write_file("hugin.pto", project, strlen(project));
     assert_int_equal(system("vig_optimize -i hugin_points.txt -w hugin_points2.txt -o hugin_solved.pto hugin.pto"

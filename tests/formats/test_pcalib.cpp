@@ -15,7 +15,7 @@ lensprof_status read_pcalib(const std::string &text, lensprof_response *response
 }
 
 std::string write_pcalib(const lensprof_response &response) {
-    return written([&](char *text, size_t capacity, size_t *needed, lensprof_error *error) {
+    return written([&](void *text, size_t capacity, size_t *needed, lensprof_error *error) {
         return lensprof_pcalib_write(&response, text, capacity, needed, error);
     });
 }
@@ -146,7 +146,7 @@ void test_times(void **) {
     assert_true(frames[0].time_s == 1436370534.123456 && frames[0].exposure_ms == 0.5);
     assert_string_equal(frames[1].id, "img_2.jpg");
     assert_true(frames[1].exposure_ms == LENSPROF_UNKNOWN && frames[2].exposure_ms == LENSPROF_UNKNOWN);
-    const auto write = [&](char *to, size_t capacity, size_t *needed, lensprof_error *error) {
+    const auto write = [&](void *to, size_t capacity, size_t *needed, lensprof_error *error) {
         return lensprof_times_write(frames.data(), static_cast<uint32_t>(frames.size()), to, capacity, needed, error);
     };
     const std::string again = written(write);

@@ -7,7 +7,7 @@ static void assert_drawn(const lensprof_pto *pto, uint32_t index, uint32_t width
     char drawn[64 * 32 + 1];
     assert_true(strlen(picture) == (size_t)width * height);
     memset(mask, 77, sizeof mask);
-    assert_ok(lensprof_pto_draw_mask(pto, index, mask, width, height, (ptrdiff_t)width));
+    assert_ok(lensprof_pto_draw_mask(pto, index, mask, width, height, (ptrdiff_t)width, NULL));
     for (uint32_t i = 0; i < width * height; i++) drawn[i] = mask[i] == 1 ? '#' : mask[i] == 0 ? '.' : '?';
     drawn[width * height] = '\0';
     for (uint32_t y = 0; y < height; y++) {
@@ -59,7 +59,7 @@ static void test_circular_crop(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto("i w12 h10 f2 v90 S1,11,1,9\n");
     uint8_t mask[10][12];
-    assert_ok(lensprof_pto_draw_mask(pto, 0, mask[0], 12, 10, 12));
+    assert_ok(lensprof_pto_draw_mask(pto, 0, mask[0], 12, 10, 12, NULL));
     for (int y = 0; y < 10; y++)
         for (int x = 0; x < 12; x++) assert_int_equal(mask[y][x], (x - 6) * (x - 6) + (y - 5) * (y - 5) < 16);
     lensprof_pto_destroy(pto);
@@ -106,7 +106,7 @@ static void test_triangle_in_views(void **state) {
         uint32_t width = sizes[s][0], height = sizes[s][1];
         uint8_t mask[64 * 32];
         int excluded = 0;
-        assert_ok(lensprof_pto_draw_mask(pto, 0, mask, width, height, width));
+        assert_ok(lensprof_pto_draw_mask(pto, 0, mask, width, height, width, NULL));
         for (uint32_t v = 0; v < height; v++) {
             for (uint32_t u = 0; u < width; u++) {
                 double x = (u + 0.5) * 40 / width - 0.5, y = (v + 0.5) * 30 / height - 0.5;
@@ -157,16 +157,16 @@ static void test_rows(void **state) {
     lensprof_pto *pto = read_pto("i w4 h3 S0,4,0,1\n");
     uint8_t mask[3 * 6];
     memset(mask, 9, sizeof mask);
-    assert_ok(lensprof_pto_draw_mask(pto, 0, mask + 12, 4, 3, -6)); /* bottom row first in memory */
+    assert_ok(lensprof_pto_draw_mask(pto, 0, mask + 12, 4, 3, -6, NULL)); /* bottom row first in memory */
     const uint8_t expected[18] = {0, 0, 0, 0, 9, 9, 0, 0, 0, 0, 9, 9, 1, 1, 1, 1, 9, 9};
     assert_memory_equal(mask, expected, sizeof expected);
-    assert_int_equal(lensprof_pto_draw_mask(pto, 0, mask, 4, 3, 3), LENSPROF_ERROR_SIZE);
-    assert_int_equal(lensprof_pto_draw_mask(pto, 0, mask, 4, 3, -3), LENSPROF_ERROR_SIZE);
-    assert_int_equal(lensprof_pto_draw_mask(pto, 0, mask, 0, 3, 4), LENSPROF_ERROR_SIZE);
-    assert_int_equal(lensprof_pto_draw_mask(pto, 0, mask, 4, 0, 4), LENSPROF_ERROR_SIZE);
-    assert_int_equal(lensprof_pto_draw_mask(pto, 1, mask, 4, 3, 4), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_draw_mask(pto, 0, NULL, 4, 3, 4), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_draw_mask(NULL, 0, mask, 4, 3, 4), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_draw_mask(pto, 0, mask, 4, 3, 3, NULL), LENSPROF_ERROR_SIZE);
+    assert_int_equal(lensprof_pto_draw_mask(pto, 0, mask, 4, 3, -3, NULL), LENSPROF_ERROR_SIZE);
+    assert_int_equal(lensprof_pto_draw_mask(pto, 0, mask, 0, 3, 4, NULL), LENSPROF_ERROR_SIZE);
+    assert_int_equal(lensprof_pto_draw_mask(pto, 0, mask, 4, 0, 4, NULL), LENSPROF_ERROR_SIZE);
+    assert_int_equal(lensprof_pto_draw_mask(pto, 1, mask, 4, 3, 4, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_draw_mask(pto, 0, NULL, 4, 3, 4, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_draw_mask(NULL, 0, mask, 4, 3, 4, NULL), LENSPROF_ERROR_ARGUMENT);
     assert_memory_equal(mask, expected, sizeof expected);
     lensprof_pto_destroy(pto);
 }

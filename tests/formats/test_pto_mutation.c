@@ -77,10 +77,10 @@ static void use(lensprof_pto *pto, const lensprof_response *response) {
         lensprof_pto_image image = image_of(pto, i);
         assert_ok(lensprof_camera_validate(&image.camera));
         assert_true(image.response_of <= i && image.vignetting_of <= i && image.center_of <= i && image.ev_of <= i);
-        assert_ok(lensprof_pto_draw_mask(pto, i, mask, 12, 9, 12));
+        assert_ok(lensprof_pto_draw_mask(pto, i, mask, 12, 9, 12, NULL));
         lensprof_exposure_init(&exposures[i]);
     }
-    assert_ok(lensprof_pto_set_result(pto, response, &vignetting, exposures, count, count / 2));
+    assert_ok(lensprof_pto_set_result(pto, response, &vignetting, exposures, count, count / 2, NULL));
     char *text = write_pto(pto);
     lensprof_pto_destroy(read_pto(text));
     free(text);

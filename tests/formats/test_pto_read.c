@@ -63,7 +63,7 @@ static void test_defaults(void **state) {
     expected.free = LENSPROF_FREE_BLUE;
     assert_memory_equal(&image, &expected, sizeof image);
     char name[4] = "x";
-    assert_ok(lensprof_pto_get_name(pto, 3, name, sizeof name, NULL));
+    assert_ok(lensprof_pto_get_name(pto, 3, name, sizeof name, NULL, NULL));
     assert_string_equal(name, "");
     lensprof_pto_destroy(pto);
 }
@@ -127,13 +127,13 @@ static void test_names(void **state) {
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
     char name[32] = "untouched";
     size_t needed = 0;
-    assert_int_equal(lensprof_pto_get_name(pto, 0, NULL, 0, &needed), LENSPROF_ERROR_CAPACITY);
-    assert_int_equal(needed, strlen("first picture.jpg") + 1);
-    assert_int_equal(lensprof_pto_get_name(pto, 0, name, needed - 1, NULL), LENSPROF_ERROR_CAPACITY);
+    assert_ok(lensprof_pto_get_name(pto, 0, NULL, 0, &needed, NULL));
+    assert_int_equal(needed, strlen("first picture.jpg"));
+    assert_int_equal(lensprof_pto_get_name(pto, 0, name, needed - 1, NULL, NULL), LENSPROF_ERROR_CAPACITY);
     assert_string_equal(name, "untouched");
-    assert_ok(lensprof_pto_get_name(pto, 0, name, needed, &needed));
+    assert_ok(lensprof_pto_get_name(pto, 0, name, needed + 1, &needed, NULL));
     assert_string_equal(name, "first picture.jpg");
-    assert_int_equal(lensprof_pto_get_name(pto, 4, name, sizeof name, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_get_name(pto, 4, name, sizeof name, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
     lensprof_pto_destroy(pto);
 }
 
@@ -149,9 +149,9 @@ static void test_spelling(void **state) {
     assert_true(image.camera.yaw_deg == 1);
     assert_int_equal(image.free, LENSPROF_FREE_EV);
     char name[8];
-    assert_ok(lensprof_pto_get_name(pto, 0, name, sizeof name, NULL));
+    assert_ok(lensprof_pto_get_name(pto, 0, name, sizeof name, NULL, NULL));
     assert_string_equal(name, "a\tb.jpg");
-    assert_ok(lensprof_pto_get_name(pto, 1, name, sizeof name, NULL));
+    assert_ok(lensprof_pto_get_name(pto, 1, name, sizeof name, NULL, NULL));
     assert_string_equal(name, "c");
     lensprof_pto_destroy(pto);
 }
@@ -250,10 +250,10 @@ static void test_arguments(void **state) {
     lensprof_pto_image_init(&image);
     assert_int_equal(lensprof_pto_read(NULL, 0, &pto, &error), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_pto_read("", 0, NULL, &error), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_get_image(pto, 1, &image), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_get_image(pto, 0, NULL), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_get_image(NULL, 0, &image), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_get_name(pto, 0, NULL, 5, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_get_image(pto, 1, &image, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_get_image(pto, 0, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_get_image(NULL, 0, &image, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_get_name(pto, 0, NULL, 5, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_pto_image_count(NULL), 0);
     lensprof_pto_destroy(pto);
     lensprof_pto_destroy(NULL);
@@ -264,12 +264,12 @@ static void test_response_as_hugin_sees_it(void **state) {
     (void)state;
     lensprof_response response;
     lensprof_pto *pto = read_pto("i w8 h4 Ra0.5\ni w8 h4 Rt1 Ra3\ni w8 h4 Ra20\n");
-    assert_ok(lensprof_pto_get_response(pto, 0, &response));
+    assert_ok(lensprof_pto_get_response(pto, 0, &response, NULL));
     assert_int_equal(response.kind, LENSPROF_RESPONSE_EMOR);
     assert_close(response.table[300], lensprof_emor_table(0)[300] + 0.5 * lensprof_emor_table(1)[300], 1e-12);
-    assert_ok(lensprof_pto_get_response(pto, 1, &response));
+    assert_ok(lensprof_pto_get_response(pto, 1, &response, NULL));
     assert_int_equal(response.kind, LENSPROF_RESPONSE_LINEAR);
-    assert_ok(lensprof_pto_get_response(pto, 2, &response));
+    assert_ok(lensprof_pto_get_response(pto, 2, &response, NULL));
     assert_int_equal(response.kind, LENSPROF_RESPONSE_TABLE);
     assert_ok(lensprof_response_validate(&response));
     double highest = 0.0;
@@ -277,7 +277,7 @@ static void test_response_as_hugin_sees_it(void **state) {
         highest = fmax(highest, lensprof_emor_table(0)[j] + 20 * lensprof_emor_table(1)[j]);
         assert_close(response.table[j], fmin(highest, 1.0), 1e-12);
     }
-    assert_int_equal(lensprof_pto_get_response(pto, 3, &response), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_get_response(pto, 3, &response, NULL), LENSPROF_ERROR_ARGUMENT);
     lensprof_pto_destroy(pto);
 }
 

@@ -22,16 +22,16 @@ static void test_write_into_buffers(void **state) {
     lensprof_pto *pto = read_pto(text);
     char buffer[16] = "untouched";
     size_t needed = 0;
-    assert_int_equal(lensprof_pto_write(pto, buffer, 9, &needed), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(lensprof_pto_write(pto, buffer, 9, &needed, NULL), LENSPROF_ERROR_CAPACITY);
     assert_int_equal(needed, 10);
     assert_string_equal(buffer, "untouched");
     buffer[10] = 'x';
-    assert_ok(lensprof_pto_write(pto, buffer, 10, NULL)); /* exactly the bytes */
+    assert_ok(lensprof_pto_write(pto, buffer, 10, NULL, NULL)); /* exactly the bytes */
     assert_memory_equal(buffer, "i w10 h10\nx", 11);
-    assert_ok(lensprof_pto_write(pto, buffer, 11, NULL)); /* room for a terminator */
+    assert_ok(lensprof_pto_write(pto, buffer, 11, NULL, NULL)); /* room for a terminator */
     assert_string_equal(buffer, text);
-    assert_int_equal(lensprof_pto_write(NULL, buffer, 11, NULL), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_write(pto, NULL, 11, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_write(NULL, buffer, 11, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_write(pto, NULL, 11, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
     lensprof_pto_destroy(pto);
 }
 
@@ -50,7 +50,7 @@ static lensprof_pto *sample_with_result(void) {
     lensprof_exposure exposures[4];
     make_exposures(exposures);
     assert_ok(lensprof_response_set_emor(response, emor, 5));
-    assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 4, 3));
+    assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 4, 3, NULL));
     free(response);
     return pto;
 }
@@ -141,7 +141,7 @@ static void test_reference_stays(void **state) {
     assert_ok(lensprof_response_set_emor(response, emor, 5));
     const lensprof_exposure exposures[2] = {{3, {1.3, 1, 0.7}}, {2, {1.3, 1, 0.35}}};
     lensprof_pto *pto = read_pto("i w10 h10 Eev7.123456 Er1.1 Eb0.9\r\ni w10 h10 Eev1 Er1 Eb1 Rt1 Vm0\r\n");
-    assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 2, 0));
+    assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 2, 0, NULL));
     lensprof_pto_image image = image_of(pto, 0);
     assert_true(image.exposure.ev == -7.123456);
     assert_true(image.exposure.white_balance[0] == 1.1 && image.exposure.white_balance[2] == 0.9);
@@ -171,7 +171,7 @@ static void test_other_responses_are_projected(void **state) {
         if (kind == 1) assert_ok(lensprof_response_set_gamma(response, 2.2));
         if (kind == 2) assert_ok(lensprof_response_set_emor(response, seven, 7));
         lensprof_pto *pto = read_pto("i w10 h10\n");
-        assert_ok(lensprof_pto_set_result(pto, response, &falloff, &exposure, 1, 0));
+        assert_ok(lensprof_pto_set_result(pto, response, &falloff, &exposure, 1, 0, NULL));
         lensprof_pto_image image = image_of(pto, 0);
         double rest[LENSPROF_RESPONSE_SAMPLES];
         for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) {
@@ -198,18 +198,18 @@ static void test_set_result_refuses(void **state) {
     lensprof_vignetting dark = {{-1, 0, 0}, {0, 0}};
     const char *before = "i w10 h10\ni w10 h10\n";
     lensprof_pto *pto = read_pto(before);
-    assert_int_equal(lensprof_pto_set_result(NULL, response, &falloff, e, 2, 0), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_set_result(pto, NULL, &falloff, e, 2, 0), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_set_result(pto, response, NULL, e, 2, 0), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, NULL, 2, 0), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, e, 1, 0), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, e, 2, 2), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_set_result(pto, response, &dark, e, 2, 0), LENSPROF_ERROR_VIGNETTING);
+    assert_int_equal(lensprof_pto_set_result(NULL, response, &falloff, e, 2, 0, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, NULL, &falloff, e, 2, 0, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, response, NULL, e, 2, 0, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, NULL, 2, 0, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, e, 1, 0, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, e, 2, 2, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_result(pto, response, &dark, e, 2, 0, NULL), LENSPROF_ERROR_VIGNETTING);
     e[1].white_balance[2] = 0;
-    assert_int_not_equal(lensprof_pto_set_result(pto, response, &falloff, e, 2, 0), LENSPROF_OK);
+    assert_int_not_equal(lensprof_pto_set_result(pto, response, &falloff, e, 2, 0, NULL), LENSPROF_OK);
     e[1].white_balance[2] = 1;
     response->table[500] = 0;
-    assert_int_not_equal(lensprof_pto_set_result(pto, response, &falloff, e, 2, 0), LENSPROF_OK);
+    assert_int_not_equal(lensprof_pto_set_result(pto, response, &falloff, e, 2, 0, NULL), LENSPROF_OK);
     char *after = write_pto(pto);
     assert_string_equal(after, before);
     free(after);
@@ -221,27 +221,27 @@ static void test_set_name(void **state) {
     (void)state;
     lensprof_pto *pto = read_pto(SAMPLE_PTO);
     char name[64];
-    assert_ok(lensprof_pto_set_name(pto, 1, "../other folder/2.jpg"));
-    assert_ok(lensprof_pto_set_name(pto, 3, "fourth.jpg")); /* its line has no name yet */
-    assert_ok(lensprof_pto_get_name(pto, 1, name, sizeof name, NULL));
+    assert_ok(lensprof_pto_set_name(pto, 1, "../other folder/2.jpg", NULL));
+    assert_ok(lensprof_pto_set_name(pto, 3, "fourth.jpg", NULL)); /* its line has no name yet */
+    assert_ok(lensprof_pto_get_name(pto, 1, name, sizeof name, NULL, NULL));
     assert_string_equal(name, "../other folder/2.jpg");
-    assert_ok(lensprof_pto_get_name(pto, 3, name, sizeof name, NULL));
+    assert_ok(lensprof_pto_get_name(pto, 3, name, sizeof name, NULL, NULL));
     assert_string_equal(name, "fourth.jpg");
-    assert_ok(lensprof_pto_get_name(pto, 0, name, sizeof name, NULL));
+    assert_ok(lensprof_pto_get_name(pto, 0, name, sizeof name, NULL, NULL));
     assert_string_equal(name, "first picture.jpg");
-    assert_ok(lensprof_pto_set_name(pto, 1, "second.jpg"));
-    assert_ok(lensprof_pto_set_name(pto, 0, "first picture.jpg"));
+    assert_ok(lensprof_pto_set_name(pto, 1, "second.jpg", NULL));
+    assert_ok(lensprof_pto_set_name(pto, 0, "first picture.jpg", NULL));
     char *text = write_pto(pto);
     assert_null(strstr(text, "other folder"));
     lensprof_pto *again = read_pto(text);
-    assert_ok(lensprof_pto_get_name(again, 3, name, sizeof name, NULL));
+    assert_ok(lensprof_pto_get_name(again, 3, name, sizeof name, NULL, NULL));
     assert_string_equal(name, "fourth.jpg");
     lensprof_pto_destroy(again);
     free(text);
-    assert_int_equal(lensprof_pto_set_name(pto, 0, ""), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_set_name(pto, 0, "a\"b"), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_set_name(pto, 4, "x"), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_pto_set_name(pto, 0, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_name(pto, 0, "", NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_name(pto, 0, "a\"b", NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_name(pto, 4, "x", NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_name(pto, 0, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
     lensprof_pto_destroy(pto);
 }
 
@@ -257,11 +257,11 @@ static void test_result_keeps_set_names(void **state) {
     lensprof_exposure_init(&exposures[1]);
     exposures[1].ev = 2;
     char name[64];
-    assert_ok(lensprof_pto_set_name(pto, 1, "pictures/b.jpg"));
-    assert_ok(lensprof_pto_set_result(pto, response, &vignetting, exposures, 2, 0));
-    assert_ok(lensprof_pto_get_name(pto, 1, name, sizeof name, NULL));
+    assert_ok(lensprof_pto_set_name(pto, 1, "pictures/b.jpg", NULL));
+    assert_ok(lensprof_pto_set_result(pto, response, &vignetting, exposures, 2, 0, NULL));
+    assert_ok(lensprof_pto_get_name(pto, 1, name, sizeof name, NULL, NULL));
     assert_string_equal(name, "pictures/b.jpg");
-    assert_ok(lensprof_pto_set_name(pto, 0, "pictures/a.jpg"));
+    assert_ok(lensprof_pto_set_name(pto, 0, "pictures/a.jpg", NULL));
     char *text = write_pto(pto);
     assert_non_null(strstr(text, "Eev1 n\"pictures/b.jpg\""));
     assert_non_null(strstr(text, "Eev3 n\"pictures/a.jpg\""));

@@ -29,7 +29,7 @@ lensprof_status read_responses(const std::string &data, Responses &responses, st
 }
 
 std::string write_responses(const lensprof_response *responses, uint32_t count) {
-    return written([&](char *data, size_t capacity, size_t *needed, lensprof_error *error) {
+    return written([&](void *data, size_t capacity, size_t *needed, lensprof_error *error) {
         return lensprof_radical_response_write(responses, count, data, capacity, needed, error);
     });
 }
@@ -86,7 +86,7 @@ Found read_vgn(const std::string &data) {
 }
 
 std::string write_vgn(const lensprof_profile &profile, uint32_t width, uint32_t height) {
-    return written([&](char *data, size_t capacity, size_t *needed, lensprof_error *error) {
+    return written([&](void *data, size_t capacity, size_t *needed, lensprof_error *error) {
         return lensprof_radical_vignetting_write(&profile, width, height, data, capacity, needed, error);
     });
 }

@@ -47,7 +47,7 @@ bool try_pcalib(const std::vector<char> &bytes) {
     demand(status == LENSPROF_OK || response.kind == 99, "an output of a failed call");
     if (status != LENSPROF_OK) return false;
     demand(lensprof_response_validate(&response) == LENSPROF_OK, "a response that is not valid");
-    const std::vector<char> text = written([&](char *to, size_t capacity, size_t *needed) {
+    const std::vector<char> text = written([&](void *to, size_t capacity, size_t *needed) {
         return lensprof_pcalib_write(&response, to, capacity, needed, nullptr);
     });
     demand(lensprof_pcalib_read(text.data(), text.size(), &responses->r[1], nullptr) == LENSPROF_OK, "not read again");
@@ -65,7 +65,7 @@ bool try_curves(const std::vector<char> &bytes, uint32_t curve) {
     if (status != LENSPROF_OK) return false;
     for (uint32_t c = 0; c < count; c++)
         demand(lensprof_response_validate(&responses->r[c]) == LENSPROF_OK, "a response that is not valid");
-    const std::vector<char> text = written([&](char *to, size_t capacity, size_t *needed) {
+    const std::vector<char> text = written([&](void *to, size_t capacity, size_t *needed) {
         return lensprof_curves_write(responses->r, count, curve, 64, to, capacity, needed, nullptr);
     });
     // A response that is black but at its end has no irradiance that a table of logarithms could hold.
@@ -84,7 +84,7 @@ bool try_times(const std::vector<char> &bytes) {
     demand(lensprof_times_read(bytes.data(), bytes.size(), frames.data(), count + 1, &count, nullptr) == LENSPROF_OK,
            "not read twice");
     if (count == 0) return true;
-    const std::vector<char> text = written([&](char *to, size_t capacity, size_t *needed) {
+    const std::vector<char> text = written([&](void *to, size_t capacity, size_t *needed) {
         return lensprof_times_write(frames.data(), count, to, capacity, needed, nullptr);
     });
     uint32_t same = 0;

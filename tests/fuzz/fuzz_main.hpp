@@ -38,7 +38,7 @@ void demand(bool holds, const char *what) {
 template <typename Write>
 [[maybe_unused]] std::vector<char> written(Write write) {
     size_t bytes = 0;
-    demand(write(nullptr, 0, &bytes) == LENSPROF_ERROR_CAPACITY, "not written");
+    demand(write(nullptr, 0, &bytes) == LENSPROF_OK, "not written");
     std::vector<char> data(bytes);
     demand(write(data.data(), bytes, &bytes) == LENSPROF_OK, "not written");
     return data;

@@ -79,7 +79,7 @@ bool try_responses(const std::vector<char> &bytes) {
     if (status != LENSPROF_OK) return false;
     for (int c = 0; c < 3; c++)
         demand(lensprof_response_validate(&responses[c]) == LENSPROF_OK, "a response that is not valid");
-    const std::vector<char> data = written([&](char *to, size_t capacity, size_t *needed) {
+    const std::vector<char> data = written([&](void *to, size_t capacity, size_t *needed) {
         return lensprof_radical_response_write(responses.get(), 3, to, capacity, needed, nullptr);
     });
     demand(lensprof_radical_response_read(data.data(), data.size(), responses.get() + 3, nullptr) == LENSPROF_OK,
@@ -94,7 +94,7 @@ bool try_vignetting(const std::vector<char> &bytes) {
     const lensprof_status status =
         lensprof_radical_vignetting_read(bytes.data(), bytes.size(), profile.get(), &worst, &error);
     if (!check_falloff(status, error, *profile, worst)) return false;
-    const std::vector<char> data = written([&](char *to, size_t capacity, size_t *needed) {
+    const std::vector<char> data = written([&](void *to, size_t capacity, size_t *needed) {
         return lensprof_radical_vignetting_write(profile.get(), 16, 12, to, capacity, needed, nullptr);
     });
     const lensprof_status read =
@@ -111,7 +111,7 @@ bool try_tables(const std::vector<char> &bytes) {
     const lensprof_status status =
         lensprof_alsc_read(bytes.data(), bytes.size(), 4000, 4, 3, 400, 300, profile.get(), &worst, &error);
     if (!check_falloff(status, error, *profile, worst)) return false;
-    written([&](char *to, size_t capacity, size_t *needed) {
+    written([&](void *to, size_t capacity, size_t *needed) {
         return lensprof_alsc_write(profile.get(), 4000, 4, 3, 400, 300, to, capacity, needed, nullptr);
     });
     return true;

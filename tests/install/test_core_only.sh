@@ -16,3 +16,15 @@ if find "$work/build" -name '*.so*' -o -name 'lensprof' -type f | grep .; then e
 "$CC" -std=c99 -I include examples/correct_pixels.c "$archive" -lm -o "$work/correct_pixels"
 "$work/correct_pixels" | tee "$work/out"
 grep -q "^corrected:   corner 147, middle 147$" "$work/out"
+
+# Installed alone: its package is found, and the library's is not.
+prefix=$work/prefix
+cmake --install "$work/build" --prefix "$prefix" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+unset CXX
+cmake -S tests/install/consumer_core -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DEXAMPLES="$PWD/examples" > "$work/log" 2>&1 \
+    && cmake --build "$work/consumer" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+"$work/consumer/consumer_core" | grep -q "^corrected:   corner 147, middle 147$"
+if cmake -S tests/install/consumer -B "$work/none" -DCMAKE_PREFIX_PATH="$prefix" > "$work/log" 2>&1; then
+    echo "the library was found in a prefix that has the core alone"; exit 1
+fi
+grep -q "component library is not installed" "$work/log" || { cat "$work/log"; exit 1; }

@@ -47,10 +47,22 @@ if quiet "$CC" -std=c99 -Wall -Wextra -Werror $(pkg-config --cflags lensprof) "$
     LD_LIBRARY_PATH=$lib_dir "$work/fit_pairs" | grep -q "usable: yes" || wrong "fit_pairs through pkg-config does not run"
 fi
 
+# shellcheck disable=SC2046 # the flags are words
+if quiet "$CC" -std=c99 -Wall -Wextra -Werror $(pkg-config --cflags lensprof-core) "$source_dir/examples/correct_pixels.c" \
+    -o "$work/correct_pixels" $(pkg-config --libs lensprof-core); then
+    "$work/correct_pixels" | grep -q "^corrected:   corner 147" || wrong "correct_pixels through pkg-config does not run"
+    if ldd "$work/correct_pixels" | grep liblensprof; then wrong "lensprof-core.pc links the shared library"; fi
+fi
+
 say "find_package"
 if quiet cmake -S "$here/consumer" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" && quiet cmake --build "$work/consumer"; then
     [ "$("$work/consumer/consumer_c")" = "lensprof $version from C" ] || wrong "consumer_c"
     [ "$("$work/consumer/consumer_cpp")" = "lensprof $version from C++" ] || wrong "consumer_cpp"
+fi
+if quiet cmake -S "$here/consumer_core" -B "$work/consumer_core" -DCMAKE_PREFIX_PATH="$prefix" -DEXAMPLES="$source_dir/examples" \
+    && quiet cmake --build "$work/consumer_core"; then
+    "$work/consumer_core/consumer_core" | grep -q "^corrected:   corner 147" || wrong "consumer_core does not run"
+    if ldd "$work/consumer_core/consumer_core" | grep liblensprof; then wrong "the core needs the shared library"; fi
 fi
 if cmake -S "$here/consumer" -B "$work/nowhere" -DCMAKE_PREFIX_PATH="$work" > /dev/null 2>&1; then
     wrong "find_package found lensprof where it is not: the test proves nothing"

@@ -94,7 +94,7 @@ LAYERS = {
 ROOMS = {
     "src/fit": ["base", "problem", "prior", "solver", "verdict", "methods", "methods/transfer_function", "sampling", "flat",
                 "api"],
-    "src/formats": ["text", "falloff", "hugin", ""],
+    "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
     "src/cli": ["program", "report", "pictures", "fitting", "profiles", "correct", "simulate"],
 }

@@ -107,7 +107,7 @@ OF_DOUBLE = re.compile(r"^__aeabi_(c?d[a-z]\w*|\w+2d)$")
 OF_FLOAT = re.compile(r"^__aeabi_(c?[df][a-z]\w*|\w+2[df])$")
 # Pixels: no function but these; no double precision in the row kernel, no floating point in fixed.
 PIXELS = {"row_scalar": OF_DOUBLE, "fixed": OF_FLOAT}
-PIXELS_MAY_NEED = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_", "lensprof_sample_bytes", "lp_tile_validate",
+PIXELS_MAY_NEED = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_", "lensprof_sample_type_bytes", "lp_tile_validate",
                    "lp_log2_table", "lp_exp2_table"}
 
 

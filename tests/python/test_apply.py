@@ -157,7 +157,7 @@ class Values(unittest.TestCase):
     def test_facts_of_layouts_and_samples(self):
         self.assertEqual([lp.layout_samples(layout) for layout in lp.Layout], [1, 2, 3, 4, 3, 4, 1, 1, 1, 1, 1])
         self.assertEqual([lp.layout_channels(layout) for layout in lp.Layout], [1, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3])
-        self.assertEqual([lp.sample_bytes(sample) for sample in lp.SampleType], [1, 2, 4, 2])
+        self.assertEqual([lp.sample_type_bytes(sample) for sample in lp.SampleType], [1, 2, 4, 2])
 
     def test_planes_mosaics_and_halves(self):
         rng = np.random.default_rng(4)

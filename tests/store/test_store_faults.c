@@ -127,7 +127,7 @@ static lensprof_status whole_database(lensprof_store *store, const lensprof_prof
 static lensprof_status session(const char *path, const lensprof_profile *profile, bool *done, lensprof_error *error) {
     static lensprof_profile found = {.struct_size = sizeof found};
     lensprof_store *store = NULL;
-    lensprof_store_row rows[40];
+    static lensprof_store_row rows[2000];
     uint32_t count;
     int64_t id;
     *done = false;
@@ -137,7 +137,7 @@ static lensprof_status session(const char *path, const lensprof_profile *profile
     if (status == LENSPROF_OK) status = lensprof_store_find(store, &profile->key, &found, &id, error);
     if (status == LENSPROF_OK) assert_same_profile(&found, profile);
     if (status == LENSPROF_OK) status = lensprof_store_get(store, id, &found, error);
-    if (status == LENSPROF_OK) status = lensprof_store_list(store, NULL, rows, 40, &count, error);
+    if (status == LENSPROF_OK) status = lensprof_store_list(store, NULL, rows, 2000, &count, error);
     if (status == LENSPROF_OK) status = whole_database(store, profile, error);
     if (status == LENSPROF_OK) status = lensprof_store_remove(store, id, error);
     if (status == LENSPROF_OK) *done = false;

@@ -181,21 +181,28 @@ static void test_list_filter(void **state) {
 }
 
 static void test_list_capacity(void **state) {
-    lensprof_store_row rows[3];
+    lensprof_store_row rows[9];
     uint32_t found = 0;
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     fill_listing(store);
     assert_ok(lensprof_store_list(store, NULL, NULL, 0, &found, NULL));
     assert_int_equal(found, 8);
     memset(rows, 0x55, sizeof rows);
-    assert_ok(lensprof_store_list(store, NULL, rows, 2, &found, NULL));
+    lensprof_error error;
+    found = 0;
+    assert_int_equal(lensprof_store_list(store, NULL, rows, 7, &found, &error), LENSPROF_ERROR_CAPACITY);
+    assert_non_null(strstr(error.text, "8 rows for a buffer of 7"));
+    assert_int_equal(found, 8);
+    assert_int_equal(rows[0].id, 0x5555555555555555);
+    found = 0;
+    assert_ok(lensprof_store_list(store, NULL, rows, 8, &found, NULL));
     assert_int_equal(found, 8);
     assert_int_equal(rows[0].id, 6);
     assert_int_equal(rows[1].id, 7);
     assert_string_equal(rows[1].key.camera_maker, "Canon");
     assert_close(rows[1].key.focal_mm, 200.0, 0.0);
     assert_close(rows[1].provenance.heldout_rms, LENSPROF_UNKNOWN, 0.0);
-    assert_int_equal(rows[2].id, 0x5555555555555555);
+    assert_int_equal(rows[8].id, 0x5555555555555555);
     lensprof_store_close(store);
 }
 
@@ -218,7 +225,7 @@ static void test_long_list(void **state) {
     assert_ok(lensprof_store_list(store, NULL, rows, COUNT, &found, NULL));
     assert_int_equal(found, COUNT);
     for (int i = 0; i < COUNT; i++) assert_close(rows[i].key.focal_mm, i + 1.0, 0.0);
-    assert_ok(lensprof_store_list(store, NULL, rows, 999, &found, NULL));
+    assert_int_equal(lensprof_store_list(store, NULL, rows, 999, &found, NULL), LENSPROF_ERROR_CAPACITY);
     assert_int_equal(found, COUNT);
     lensprof_store_close(store);
     free(rows);

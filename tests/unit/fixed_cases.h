@@ -28,7 +28,7 @@ static const uint32_t layouts[] = {
 
 static void make_plan(fixture *f) {
     assert_in_range(lensprof_fixed_plan_bytes(&f->m.options), 1, sizeof f->memory);
-    assert_ok(lensprof_fixed_plan_init(f->memory, sizeof f->memory, &f->m.options, &f->plan));
+    assert_ok(lensprof_fixed_plan_init(f->memory, sizeof f->memory, &f->m.options, &f->plan, NULL));
 }
 
 /* A random model that integers take, and random pixels of a row somewhere in its frame. */
@@ -43,7 +43,7 @@ static void make_case(fixture *f, uint32_t sample, uint64_t *random) {
     o->input = sample == LENSPROF_SAMPLE_U16 || lp_random(random) < 0.3;
     o->output = sample == LENSPROF_SAMPLE_U16 || lp_random(random) < 0.3;
     const uint32_t samples = lensprof_layout_samples(o->source_layout);
-    f->bytes = samples * lensprof_sample_bytes(sample);
+    f->bytes = samples * lensprof_sample_type_bytes(sample);
     for (uint32_t i = 0; i < ROOM; i++) f->in[i] = (uint8_t)(256.0 * lp_random(random));
     f->x0 = (uint32_t)((o->frame_width - PIXELS) * lp_random(random));
     f->y0 = (uint32_t)(o->frame_height * lp_random(random));

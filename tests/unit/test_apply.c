@@ -56,7 +56,7 @@ static void make_plan(fixture *f) {
     size_t bytes = lensprof_plan_bytes(&f->options);
     assert_true(bytes > 0);
     f->memory = malloc(bytes);
-    assert_ok(lensprof_plan_init(f->memory, bytes, &f->options, &f->plan));
+    assert_ok(lensprof_plan_init(f->memory, bytes, &f->options, &f->plan, NULL));
 }
 
 /* The formula of apply.h for one sample; channel -1 is grey (treated as green). */
@@ -92,7 +92,7 @@ static double get(const uint8_t *p, uint32_t sample) {
 
 static lensprof_image make_image(uint32_t sample, uint32_t layout, uint64_t seed) {
     lensprof_image image = {NULL, 0, W, H, sample, layout};
-    uint32_t bytes = lensprof_sample_bytes(sample), count = W * H * lensprof_layout_samples(layout);
+    uint32_t bytes = lensprof_sample_type_bytes(sample), count = W * H * lensprof_layout_samples(layout);
     image.row_bytes = (ptrdiff_t)(W * lensprof_layout_samples(layout) * bytes);
     uint8_t *data = malloc((size_t)count * bytes);
     for (uint32_t i = 0; i < count; i++) put(data + (size_t)i * bytes, sample, lp_random(&seed));
@@ -107,8 +107,8 @@ static int channel_of(uint32_t layout, uint32_t s) {
 }
 
 static void compare(const fixture *f, const lensprof_image *source, const lensprof_image *target) {
-    uint32_t samples = lensprof_layout_samples(source->layout), sb = lensprof_sample_bytes(source->sample),
-             tb = lensprof_sample_bytes(target->sample);
+    uint32_t samples = lensprof_layout_samples(source->layout), sb = lensprof_sample_type_bytes(source->sample),
+             tb = lensprof_sample_type_bytes(target->sample);
     for (uint32_t y = 0; y < H; y++)
         for (uint32_t x = 0; x < W; x++)
             for (uint32_t s = 0; s < samples; s++) {
@@ -287,12 +287,15 @@ static void test_plan_refuses(void **state) {
     uint8_t *memory = malloc(bytes + 8);
     const lensprof_plan *plan = NULL;
     const lensprof_apply_options good = f.options;
+    lensprof_error error = {""};
     memset(memory, 0xAA, bytes + 8);
-#define REFUSED(change, status)                                                         \
-    do {                                                                                \
-        f.options = good;                                                               \
-        change;                                                                         \
-        assert_int_equal(lensprof_plan_init(memory, bytes, &f.options, &plan), status); \
+#define REFUSED(change, status)                                                                 \
+    do {                                                                                        \
+        f.options = good;                                                                       \
+        change;                                                                                 \
+        assert_int_equal(lensprof_plan_init(memory, bytes, &f.options, &plan, &error), status); \
+        if (strlen(error.text) < 10) fail_msg("no text: %s", #change);                          \
+        error.text[0] = 0;                                                                      \
     } while (0)
     REFUSED(f.options.struct_size = 4, LENSPROF_ERROR_STRUCT_SIZE);
     REFUSED(f.options.direction = 2, LENSPROF_ERROR_ARGUMENT);
@@ -329,14 +332,61 @@ static void test_plan_refuses(void **state) {
     REFUSED(f.response[0].table[3] = 0.0, LENSPROF_ERROR_RESPONSE);
 #undef REFUSED
     make_model(&f, LENSPROF_RESPONSE_EMOR, 1);
-    assert_int_equal(lensprof_plan_init(memory, bytes - 1, &f.options, &plan), LENSPROF_ERROR_CAPACITY);
-    assert_int_equal(lensprof_plan_init(memory + 1, bytes, &f.options, &plan), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(lensprof_plan_init(memory, bytes - 1, &f.options, &plan, NULL), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(lensprof_plan_init(memory + 1, bytes, &f.options, &plan, NULL), LENSPROF_ERROR_CAPACITY);
     for (size_t i = 0; i < bytes + 8; i++) assert_int_equal(memory[i], 0xAA);
     assert_null(plan);
     f.options.struct_size = 0;
     assert_int_equal(lensprof_plan_bytes(&f.options), 0);
     assert_int_equal(lensprof_plan_bytes(NULL), 0);
     free(memory);
+}
+
+/* A profile's model stands in place of what was set; the plan is that of its parts set one by one. */
+static void test_model_of_a_profile(void **state) {
+    (void)state;
+    fixture f;
+    static lensprof_profile profile;
+    make_model(&f, LENSPROF_RESPONSE_EMOR, 3);
+    lensprof_profile_init(&profile);
+    profile.responses = profile.vignettings = 3;
+    memcpy(profile.response, f.options.response, sizeof profile.response);
+    memcpy(profile.vignetting, f.options.vignetting, sizeof profile.vignetting);
+    make_grid(&f, 4, 3, 1);
+    for (int with_grid = 0; with_grid < 2; with_grid++) {
+        if (with_grid) profile.grid = f.grid;
+        f.options.responses = f.options.vignettings = 3;
+        f.options.response = profile.response, f.options.vignetting = profile.vignetting;
+        f.options.grid = with_grid ? &f.grid : NULL;
+        f.options.blob = NULL;
+        make_plan(&f);
+        const size_t bytes = lensprof_plan_bytes(&f.options);
+        uint8_t *const by_hand = f.memory;
+        f.options.responses = 1, f.options.response = NULL, f.options.vignetting = NULL;
+        f.options.grid = NULL, f.options.blob = "blob", f.options.blob_bytes = 4;
+        assert_ok(lensprof_apply_options_set_profile(&f.options, &profile));
+        assert_int_equal(lensprof_plan_bytes(&f.options), bytes);
+        assert_ptr_equal(f.options.response, profile.response);
+        assert_true(f.options.grid == (with_grid ? &profile.grid : NULL));
+        assert_null(f.options.blob);
+        make_plan(&f);
+        uint8_t light[2][7 * 5 * 3];
+        memset(light, 100, sizeof light);
+        for (int i = 0; i < 2; i++) {
+            const lensprof_image view = {light[i], 21, 7, 5, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
+            const lensprof_plan *plan = i ? f.plan : (const lensprof_plan *)(const void *)by_hand;
+            assert_ok(lensprof_apply(plan, &view, &view, 0, 0));
+        }
+        assert_memory_equal(light[0], light[1], sizeof light[0]);
+        free(by_hand);
+        free(f.memory);
+    }
+    assert_int_equal(lensprof_apply_options_set_profile(NULL, &profile), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_apply_options_set_profile(&f.options, NULL), LENSPROF_ERROR_ARGUMENT);
+    profile.struct_size += 8;
+    assert_int_equal(lensprof_apply_options_set_profile(&f.options, &profile), LENSPROF_ERROR_STRUCT_SIZE);
+    profile.struct_size = sizeof profile, f.options.struct_size = 0;
+    assert_int_equal(lensprof_apply_options_set_profile(&f.options, &profile), LENSPROF_ERROR_STRUCT_SIZE);
 }
 
 static void test_apply_refuses_and_writes_nothing(void **state) {
@@ -386,6 +436,7 @@ int main(void) {
         cmocka_unit_test(test_not_a_number_stays_in_its_sample),
         cmocka_unit_test(test_saturated_pixels_stay_neutral),
         cmocka_unit_test(test_plan_refuses),
+        cmocka_unit_test(test_model_of_a_profile),
         cmocka_unit_test(test_apply_refuses_and_writes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

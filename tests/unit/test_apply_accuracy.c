@@ -20,7 +20,7 @@ static double worst_error(const model *m, uint32_t sample, uint64_t *random, dou
     const lensprof_plan *plan;
     double worst = 0.0;
     void *memory = malloc(lensprof_plan_bytes(&m->options));
-    assert_ok(lensprof_plan_init(memory, lensprof_plan_bytes(&m->options), &m->options, &plan));
+    assert_ok(lensprof_plan_init(memory, lensprof_plan_bytes(&m->options), &m->options, &plan, NULL));
     for (uint32_t i = 0; i < 3 * PIXELS; i++) {
         double value = lp_random(random);
         if (sample == LENSPROF_SAMPLE_U8)

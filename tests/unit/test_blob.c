@@ -141,7 +141,7 @@ static void test_format_is_that_of_the_files(void **state) {
 
 static void assert_size(const lensprof_profile *p, size_t expected) {
     size_t bytes = 0;
-    assert_int_equal(lensprof_profile_pack(p, LENSPROF_PACK_COVARIANCE, NULL, 0, &bytes), LENSPROF_ERROR_CAPACITY);
+    assert_ok(lensprof_profile_pack(p, LENSPROF_PACK_COVARIANCE, NULL, 0, &bytes));
     assert_int_equal(bytes, expected);
 }
 
@@ -196,7 +196,6 @@ static void test_pack_refuses(void **state) {
     golden_profile(0, p);
     memset(blob, 0xA5, sizeof blob);
     assert_int_equal(lensprof_profile_pack(NULL, 0, blob, sizeof blob, &bytes), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_profile_pack(p, 0, blob, sizeof blob, NULL), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_profile_pack(p, 0, NULL, 1, &bytes), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_profile_pack(p, 2, blob, sizeof blob, &bytes), LENSPROF_ERROR_ARGUMENT);
     p->vignetting[0].k[0] = -2.0;

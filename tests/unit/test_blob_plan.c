@@ -25,7 +25,7 @@ static void fill(pictures *p, uint32_t sample, uint64_t *random) {
 
 static lensprof_image view(uint8_t *data, uint32_t sample, uint32_t layout) {
     if (layout == LENSPROF_LAYOUT_PLANAR) layout = LENSPROF_LAYOUT_GREY;
-    const ptrdiff_t row = (ptrdiff_t)(W * lensprof_layout_samples(layout) * lensprof_sample_bytes(sample));
+    const ptrdiff_t row = (ptrdiff_t)(W * lensprof_layout_samples(layout) * lensprof_sample_type_bytes(sample));
     return (lensprof_image){data, row, W, H, sample, layout};
 }
 
@@ -46,7 +46,7 @@ static const lensprof_plan *make_plan(const lensprof_apply_options *o, void **me
     const lensprof_plan *plan = NULL;
     assert_true(bytes > 0);
     *memory = malloc(bytes);
-    assert_ok(lensprof_plan_init(*memory, bytes, o, &plan));
+    assert_ok(lensprof_plan_init(*memory, bytes, o, &plan, NULL));
     return plan;
 }
 
@@ -163,7 +163,7 @@ static void test_plan_refuses(void **state) {
     do {                                                                                 \
         o = good;                                                                        \
         change;                                                                          \
-        assert_int_equal(lensprof_plan_init(memory, needed, &o, &plan), status);         \
+        assert_int_equal(lensprof_plan_init(memory, needed, &o, &plan, NULL), status);   \
         if (status != LENSPROF_ERROR_SIZE) assert_int_equal(lensprof_plan_bytes(&o), 0); \
     } while (0)
     REFUSED(o.response = p->response, LENSPROF_ERROR_ARGUMENT);
@@ -184,11 +184,11 @@ static void test_plan_refuses(void **state) {
     blob[4] = 1;
     seal(blob, bytes);
 #undef REFUSED
-    assert_int_equal(lensprof_plan_init(memory, needed - 1, &good, &plan), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(lensprof_plan_init(memory, needed - 1, &good, &plan, NULL), LENSPROF_ERROR_CAPACITY);
     for (size_t i = 0; i < needed; i++) assert_int_equal(memory[i], 0xAA);
     assert_null(plan);
     good.responses = good.vignettings = 77; /* the blob's own count */
-    assert_ok(lensprof_plan_init(memory, needed, &good, &plan));
+    assert_ok(lensprof_plan_init(memory, needed, &good, &plan, NULL));
     free(memory), free(blob), free(p);
 }
 

@@ -73,7 +73,7 @@ static void test_wild_models_are_within_a_level(void **state) {
             while (lensprof_vignetting_validate(v) != LENSPROF_OK);
         }
         o->source.ev = 16.0 * lp_random(&random) - 8.0;
-        const lensprof_status status = lensprof_fixed_plan_init(f.memory, sizeof f.memory, o, &f.plan);
+        const lensprof_status status = lensprof_fixed_plan_init(f.memory, sizeof f.memory, o, &f.plan, NULL);
         refused += status == LENSPROF_ERROR_UNSUPPORTED;
         if (status != LENSPROF_OK)
             assert_int_equal(status, LENSPROF_ERROR_UNSUPPORTED);
@@ -127,7 +127,7 @@ static void test_white_stays_white(void **state) {
         for (uint32_t i = 0; i < ROOM; i++) f.in[i] = (uint8_t)(255.9 - 120.0 * pow(lp_random(&random), 2.0));
         make_plan(&f);
         const lensprof_plan *plan;
-        assert_ok(lensprof_plan_init(memory, sizeof memory, o, &plan));
+        assert_ok(lensprof_plan_init(memory, sizeof memory, o, &plan, NULL));
         assert_ok(lensprof_fixed_apply(f.plan, &f.from, &f.to, f.x0, f.y0));
         lensprof_image target = f.to;
         target.data = wanted;
@@ -250,7 +250,7 @@ static void test_blobs_give_the_same_plan(void **state) {
         make_plan(&f);
         assert_memory_equal(f.memory, wanted, sizeof wanted);
         blob[bytes / 2] ^= 1;
-        assert_int_equal(lensprof_fixed_plan_init(f.memory, sizeof f.memory, o, &f.plan), LENSPROF_ERROR_CORRUPT);
+        assert_int_equal(lensprof_fixed_plan_init(f.memory, sizeof f.memory, o, &f.plan, NULL), LENSPROF_ERROR_CORRUPT);
         assert_memory_equal(f.memory, wanted, sizeof wanted);
         assert_int_equal(lensprof_fixed_plan_bytes(o), 0);
     }
@@ -261,7 +261,7 @@ static void expect_refused(fixture *f, lensprof_status wanted) {
     static uint8_t before[sizeof f->memory];
     memset(f->memory, 0x5A, sizeof f->memory);
     memcpy(before, f->memory, sizeof before);
-    assert_int_equal(lensprof_fixed_plan_init(f->memory, sizeof f->memory, &f->m.options, &plan), wanted);
+    assert_int_equal(lensprof_fixed_plan_init(f->memory, sizeof f->memory, &f->m.options, &plan, NULL), wanted);
     assert_null(plan);
     assert_memory_equal(f->memory, before, sizeof before);
 }
@@ -308,11 +308,11 @@ static void test_options_that_are_refused(void **state) {
     make_plan(&f);
     const lensprof_fixed_plan *plan;
     const size_t bytes = lensprof_fixed_plan_bytes(o);
-    assert_int_equal(lensprof_fixed_plan_init(f.memory, bytes - 1, o, &plan), LENSPROF_ERROR_CAPACITY);
-    assert_int_equal(lensprof_fixed_plan_init((uint8_t *)f.memory + 2, bytes, o, &plan), LENSPROF_ERROR_CAPACITY);
-    assert_int_equal(lensprof_fixed_plan_init(NULL, bytes, o, &plan), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fixed_plan_init(f.memory, bytes, NULL, &plan), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_fixed_plan_init(f.memory, bytes, o, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fixed_plan_init(f.memory, bytes - 1, o, &plan, NULL), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(lensprof_fixed_plan_init((uint8_t *)f.memory + 2, bytes, o, &plan, NULL), LENSPROF_ERROR_CAPACITY);
+    assert_int_equal(lensprof_fixed_plan_init(NULL, bytes, o, &plan, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fixed_plan_init(f.memory, bytes, NULL, &plan, NULL), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fixed_plan_init(f.memory, bytes, o, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
 }
 
 static void test_tiles_that_are_refused(void **state) {

@@ -23,7 +23,7 @@ static int try_plan(const uint32_t *words, size_t bytes, int seal, const fixture
         from.sample = opened->sample, from.layout = opened->layout;
         from.width = opened->frame_width < PIXELS ? opened->frame_width : PIXELS;
         const size_t row =
-            (size_t)from.width * lensprof_layout_samples(from.layout) * lensprof_sample_bytes(from.sample);
+            (size_t)from.width * lensprof_layout_samples(from.layout) * lensprof_sample_type_bytes(from.sample);
         from.data = malloc(row);
         memcpy(from.data, f->in, row);
         assert_ok(lensprof_fixed_apply(opened, &from, &from, corner & 1 ? opened->frame_width - from.width : 0,

@@ -95,7 +95,7 @@ static void *make_plan(const model *m, uint32_t lanes, const lensprof_plan **pla
     size_t bytes = lensprof_plan_bytes(&m->options);
     void *memory = malloc(bytes);
     assert_true(bytes > 0);
-    assert_ok(lensprof_plan_init(memory, bytes, &m->options, plan));
+    assert_ok(lensprof_plan_init(memory, bytes, &m->options, plan, NULL));
     ((lensprof_plan *)memory)->row = lp_row_best(lanes);
     return memory;
 }
@@ -116,7 +116,7 @@ static void fill_samples(uint8_t *p, size_t bytes, uint32_t sample, uint64_t ran
 
 /* Rows of a tile that end where the guarded memory does, with `gap` bytes between rows. */
 static lensprof_image tile_in(const guarded *g, uint32_t sample, uint32_t layout, uint32_t width, size_t gap) {
-    uint32_t bytes = lensprof_sample_bytes(sample) * lensprof_layout_samples(layout);
+    uint32_t bytes = lensprof_sample_type_bytes(sample) * lensprof_layout_samples(layout);
     lensprof_image image = {NULL, (ptrdiff_t)(width * bytes + gap), width, ROWS, sample, layout};
     image.data = g->end - (width * bytes + (size_t)(ROWS - 1) * (size_t)image.row_bytes);
     return image;
@@ -183,8 +183,8 @@ static void test_pieces_give_the_row(void **state) {
         const lensprof_plan *plan;
         void *memory = make_plan(&m, 0, &plan);
         uint32_t samples = lensprof_layout_samples(m.options.source_layout);
-        uint32_t in = samples * lensprof_sample_bytes(m.options.source_sample),
-                 out = samples * lensprof_sample_bytes(m.options.target_sample);
+        uint32_t in = samples * lensprof_sample_type_bytes(m.options.source_sample),
+                 out = samples * lensprof_sample_type_bytes(m.options.target_sample);
         fill_samples(source, sizeof source, m.options.source_sample, seed);
         lensprof_image from = {source, 0, FRAME_W, 1, m.options.source_sample, m.options.source_layout};
         lensprof_image to = {whole, 0, FRAME_W, 1, m.options.target_sample, m.options.source_layout};
@@ -213,8 +213,8 @@ static void test_planes_are_the_same_picture(void **state) {
     for (uint64_t seed = 0; seed < 400; seed++) {
         model m;
         make_model(&m, seed);
-        uint32_t in = lensprof_sample_bytes(m.options.source_sample),
-                 out = lensprof_sample_bytes(m.options.target_sample);
+        uint32_t in = lensprof_sample_type_bytes(m.options.source_sample),
+                 out = lensprof_sample_type_bytes(m.options.target_sample);
         fill_samples(rgb, sizeof rgb, m.options.source_sample, seed);
         lensprof_image from = {rgb, 0, W, 1, m.options.source_sample, LENSPROF_LAYOUT_RGB}, to = from;
         to.data = target, to.sample = m.options.target_sample;

@@ -6,17 +6,19 @@ ValueError.
 """
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
                    RESPONSE_SAMPLES, UNKNOWN, CameraKind, CurveKind, Direction, DistanceRule, DngForm, Encoding,
-                   FlatGrid, FlatLight, Free, GammaFrom, ItemKind, Layout, Loss, MapSense, Method, Pack, Processing,
-                   ProfilePrior, Projection, Reason, ResponseKind, SampleType, Sampling, Saturated, Status, StoreMode)
+                   FlatGrid, FlatLight, Format, Free, GammaFrom, Holds, ItemKind, Layout, Loss, MapSense, Method, Pack,
+                   Processing, ProfilePrior, Projection, Reason, ResponseKind, SampleType, Sampling, Saturated, Status,
+                   StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE,
                       PAIR_DTYPE)
 from ._library import Error, status_name, version
-from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_bytes, simulate
+from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_type_bytes, simulate
 from .fit import FitImage, FitOptions, FitResult, fit_overlap, fit_radiance, transfer_rms
 from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
-from .formats import (FrameTime, Pto, PtoImage, alsc_read, alsc_write, curves_read, curves_write, dng_opcodes_read,
-                      dng_opcodes_write, drone_xmp_read, json_read, json_write, lcp_read, lcp_write, lensfun_read,
+from .formats import (FormatInfo, FrameTime, Pto, PtoImage, alsc_read, alsc_write, curves_read, curves_write,
+                      detect_format, dng_opcodes_read, dng_opcodes_write, drone_xmp_read, export_profiles,
+                      format_info, import_profiles, json_read, json_write, lcp_read, lcp_write, lensfun_read,
                       lensfun_write, map_read, map_write, pcalib_read, pcalib_write, points_read, points_write,
                       radical_response_read, radical_response_write, radical_vignetting_read,
                       radical_vignetting_write, times_read, times_write)
@@ -31,16 +33,18 @@ __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CurveKind", "Direction",
     "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES",
     "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResult", "FixedPlan",
-    "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "FrameTime", "Free", "GRID_SIDE", "GainGrid",
-    "GammaFrom", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "Layout", "Lookup", "LookupOptions", "Loss", "MODES_AUTO", "MapSense",
-    "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey",
-    "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage", "RESPONSE_SAMPLES", "Reason", "Response", "ResponseKind",
-    "SampleImage", "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault",
-    "StoreMode", "StoreRow", "StoreStats", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct",
-    "curves_read", "curves_write", "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table",
-    "fit_flat", "fit_overlap", "fit_radiance", "half_diagonal", "json_read", "json_write", "layout_channels",
-    "layout_samples", "lcp_read", "lcp_write", "lensfun_read", "lensfun_write", "map_read", "map_write", "pcalib_read", "pcalib_write",
-    "points_read", "points_write", "radical_response_read", "radical_response_write", "radical_vignetting_read",
-    "radical_vignetting_write", "reason_name", "reason_text", "sample_bytes", "sample_overlap", "sample_tracks", "simulate", "status_name",
-    "times_read", "times_write", "transfer_rms", "version",
+    "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime", "Free",
+    "GRID_SIDE", "GainGrid", "GammaFrom", "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "Layout", "Lookup",
+    "LookupOptions", "Loss", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
+    "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage",
+    "RESPONSE_SAMPLES", "Reason", "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType",
+    "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreRow", "StoreStats", "UNKNOWN",
+    "Vignetting", "alsc_read", "alsc_write", "correct", "curves_read", "curves_write", "detect_format",
+    "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table", "export_profiles", "fit_flat",
+    "fit_overlap", "fit_radiance", "format_info", "half_diagonal", "import_profiles", "json_read", "json_write",
+    "layout_channels", "layout_samples", "lcp_read", "lcp_write", "lensfun_read", "lensfun_write", "map_read",
+    "map_write", "pcalib_read", "pcalib_write", "points_read", "points_write", "radical_response_read",
+    "radical_response_write", "radical_vignetting_read", "radical_vignetting_write", "reason_name", "reason_text",
+    "sample_overlap", "sample_tracks", "sample_type_bytes", "simulate", "status_name", "times_read", "times_write",
+    "transfer_rms", "version",
 ]

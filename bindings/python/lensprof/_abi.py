@@ -76,8 +76,20 @@ class ResponseKind(IntEnum):
     TABLE = 3
 
 
+class Processing(IntEnum):
+    """lensprof_processing; see lensprof/profile.h."""
+    RAW = 0
+    JPEG = 1
+    CORRECTED = 2
+
+
+class Pack(IntFlag):
+    """lensprof_pack; see lensprof/profile.h."""
+    COVARIANCE = 0x01
+
+
 class SampleType(IntEnum):
-    """lensprof_sample; see lensprof/apply.h."""
+    """lensprof_sample_type; see lensprof/apply.h."""
     U8 = 0
     U16 = 1
     F32 = 2
@@ -115,18 +127,6 @@ class Saturated(IntEnum):
     """lensprof_saturated; see lensprof/apply.h."""
     NEUTRAL = 0
     AS_VALUE = 1
-
-
-class Processing(IntEnum):
-    """lensprof_processing; see lensprof/profile.h."""
-    RAW = 0
-    JPEG = 1
-    CORRECTED = 2
-
-
-class Pack(IntFlag):
-    """lensprof_pack; see lensprof/profile.h."""
-    COVARIANCE = 0x01
 
 
 class Reason(IntEnum):
@@ -312,6 +312,31 @@ class DngForm(IntEnum):
     """lensprof_dng_form; see lensprof/formats.h."""
     RADIAL = 0
     GAIN_MAP = 1
+    AUTO = 2
+
+
+class Format(IntEnum):
+    """lensprof_format; see lensprof/formats.h."""
+    AUTO = 0
+    LENSFUN = 1
+    LCP = 2
+    JSON = 3
+    BLOB = 4
+    DNG_OPCODES = 5
+    DRONE_XMP = 6
+    ALSC = 7
+    MAP = 8
+    PCALIB = 9
+    CURVES = 10
+    RADICAL_RESPONSE = 11
+    RADICAL_VIGNETTING = 12
+
+
+class Holds(IntEnum):
+    """lensprof_holds; see lensprof/formats.h."""
+    PROFILES = 0
+    RESPONSE = 1
+    FALLOFF = 2
 
 
 class StoreMode(IntEnum):
@@ -392,49 +417,6 @@ class Exposure(Structure):
     ]
 
 
-class Image(Structure):
-    _fields_ = [
-        ("data", c_void_p),
-        ("row_bytes", c_ssize_t),
-        ("width", c_uint32),
-        ("height", c_uint32),
-        ("sample", c_uint32),
-        ("layout", c_uint32),
-    ]
-
-
-class ApplyOptions(Structure):
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("direction", c_uint32),
-        ("input", c_uint32),
-        ("output", c_uint32),
-        ("frame_width", c_uint32),
-        ("frame_height", c_uint32),
-        ("source_sample", c_uint32),
-        ("source_layout", c_uint32),
-        ("target_sample", c_uint32),
-        ("saturated", c_uint32),
-        ("responses", c_uint32),
-        ("vignettings", c_uint32),
-        ("response", POINTER(Response)),
-        ("vignetting", POINTER(Vignetting)),
-        ("source", Exposure),
-        ("target", Exposure),
-        ("grid", POINTER(GainGrid)),
-        ("strength", c_double),
-        ("gain_cap", c_double),
-        ("dither", c_uint32),
-        ("reserved", c_uint32),
-        ("blob", c_void_p),
-        ("blob_bytes", c_size_t),
-    ]
-
-
-class Plan(Structure):
-    """Opaque."""
-
-
 class ProfileKey(Structure):
     _fields_ = [
         ("camera_maker", c_char * 64),
@@ -482,6 +464,49 @@ class Profile(Structure):
         ("grid", GainGrid),
         ("covariance", c_double * 1296),
     ]
+
+
+class Image(Structure):
+    _fields_ = [
+        ("data", c_void_p),
+        ("row_bytes", c_ssize_t),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("sample", c_uint32),
+        ("layout", c_uint32),
+    ]
+
+
+class ApplyOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("direction", c_uint32),
+        ("input", c_uint32),
+        ("output", c_uint32),
+        ("frame_width", c_uint32),
+        ("frame_height", c_uint32),
+        ("source_sample", c_uint32),
+        ("source_layout", c_uint32),
+        ("target_sample", c_uint32),
+        ("saturated", c_uint32),
+        ("responses", c_uint32),
+        ("vignettings", c_uint32),
+        ("response", POINTER(Response)),
+        ("vignetting", POINTER(Vignetting)),
+        ("source", Exposure),
+        ("target", Exposure),
+        ("grid", POINTER(GainGrid)),
+        ("strength", c_double),
+        ("gain_cap", c_double),
+        ("dither", c_uint32),
+        ("reserved", c_uint32),
+        ("blob", c_void_p),
+        ("blob_bytes", c_size_t),
+    ]
+
+
+class Plan(Structure):
+    """Opaque."""
 
 
 class Camera(Structure):
@@ -777,7 +802,7 @@ class ImportEntry(Structure):
     _fields_ = [
         ("profile", POINTER(Profile)),
         ("usable", c_uint32),
-        ("reserved", c_uint32),
+        ("holds", c_uint32),
     ]
 
 
@@ -799,6 +824,51 @@ class Map(Structure):
         ("channels", c_uint32),
         ("sense", c_uint32),
         ("values", POINTER(c_float)),
+    ]
+
+
+class FormatInfo(Structure):
+    _fields_ = [
+        ("format", c_uint32),
+        ("holds", c_uint32),
+        ("is_written", c_uint32),
+        ("is_many", c_uint32),
+        ("name", c_char_p),
+        ("about", c_char_p),
+    ]
+
+
+class ImportOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("format", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("columns", c_uint32),
+        ("rows", c_uint32),
+        ("layout", c_uint32),
+        ("curve", c_uint32),
+        ("color_temperature_k", c_double),
+        ("name", c_char_p),
+        ("map", POINTER(Map)),
+        ("key", POINTER(ProfileKey)),
+    ]
+
+
+class ExportOptions(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("format", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("columns", c_uint32),
+        ("rows", c_uint32),
+        ("layout", c_uint32),
+        ("dng_form", c_uint32),
+        ("curve", c_uint32),
+        ("pack", c_uint32),
+        ("color_temperature_k", c_double),
+        ("name", c_char_p),
     ]
 
 
@@ -887,13 +957,13 @@ ENUMS = {
     "LENSPROF_": Status,
     "LENSPROF_ITEM_": ItemKind,
     "LENSPROF_RESPONSE_": ResponseKind,
+    "LENSPROF_PROCESSING_": Processing,
+    "LENSPROF_PACK_": Pack,
     "LENSPROF_SAMPLE_": SampleType,
     "LENSPROF_LAYOUT_": Layout,
     "LENSPROF_DIRECTION_": Direction,
     "LENSPROF_ENCODING_": Encoding,
     "LENSPROF_SATURATED_": Saturated,
-    "LENSPROF_PROCESSING_": Processing,
-    "LENSPROF_PACK_": Pack,
     "LENSPROF_REASON_": Reason,
     "LENSPROF_PROJECTION_": Projection,
     "LENSPROF_SAMPLING_": Sampling,
@@ -907,6 +977,8 @@ ENUMS = {
     "LENSPROF_CURVE_": CurveKind,
     "LENSPROF_MAP_": MapSense,
     "LENSPROF_DNG_": DngForm,
+    "LENSPROF_FORMAT_": Format,
+    "LENSPROF_HOLDS_": Holds,
     "LENSPROF_STORE_": StoreMode,
     "LENSPROF_DISTANCE_": DistanceRule,
     "LENSPROF_FREE_": Free,
@@ -919,11 +991,11 @@ STRUCTS = {
     "lensprof_vignetting": Vignetting,
     "lensprof_gain_grid": GainGrid,
     "lensprof_exposure": Exposure,
-    "lensprof_image": Image,
-    "lensprof_apply_options": ApplyOptions,
     "lensprof_profile_key": ProfileKey,
     "lensprof_provenance": Provenance,
     "lensprof_profile": Profile,
+    "lensprof_image": Image,
+    "lensprof_apply_options": ApplyOptions,
     "lensprof_camera": Camera,
     "lensprof_pair": Pair,
     "lensprof_observation": Observation,
@@ -942,6 +1014,9 @@ STRUCTS = {
     "lensprof_import_entry": ImportEntry,
     "lensprof_frame_time": FrameTime,
     "lensprof_map": Map,
+    "lensprof_format_info": FormatInfo,
+    "lensprof_import_options": ImportOptions,
+    "lensprof_export_options": ExportOptions,
     "lensprof_lookup_options": LookupOptions,
     "lensprof_lookup": Lookup,
     "lensprof_store_row": StoreRow,
@@ -967,9 +1042,9 @@ CALLBACKS = {
 INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     GainGrid: ("lensprof_gain_grid_init", []),
     Exposure: ("lensprof_exposure_init", []),
-    ApplyOptions: ("lensprof_apply_options_init_sized", [ApplyOptions]),
     ProfileKey: ("lensprof_profile_key_init", []),
     Profile: ("lensprof_profile_init_sized", [Profile]),
+    ApplyOptions: ("lensprof_apply_options_init_sized", [ApplyOptions]),
     SampleImage: ("lensprof_sample_image_init_sized", [SampleImage]),
     SampleOptions: ("lensprof_sample_options_init_sized", [SampleOptions]),
     FitOptions: ("lensprof_fit_options_init_sized", [FitOptions]),
@@ -978,6 +1053,8 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     FlatOptions: ("lensprof_flat_options_init_sized", [FlatOptions]),
     FlatResult: ("lensprof_flat_result_init_sized", [FlatResult, FlatImageQuality]),
     PtoImage: ("lensprof_pto_image_init_sized", [PtoImage]),
+    ImportOptions: ("lensprof_import_options_init_sized", [ImportOptions]),
+    ExportOptions: ("lensprof_export_options_init_sized", [ExportOptions]),
     LookupOptions: ("lensprof_lookup_options_init_sized", [LookupOptions]),
     Lookup: ("lensprof_lookup_init_sized", [Lookup]),
     StoreStats: ("lensprof_store_stats_init_sized", [StoreStats]),
@@ -1008,16 +1085,6 @@ FUNCTIONS = {
     "lensprof_exposure_init": (None, [POINTER(Exposure)]),
     "lensprof_exposure_factor": (c_double, [POINTER(Exposure), c_uint32]),
     "lensprof_exposure_validate": (c_int, [POINTER(Exposure)]),
-    # apply.h
-    "lensprof_layout_samples": (c_uint32, [c_uint32]),
-    "lensprof_layout_channels": (c_uint32, [c_uint32]),
-    "lensprof_sample_bytes": (c_uint32, [c_uint32]),
-    "lensprof_image_validate": (c_int, [POINTER(Image)]),
-    "lensprof_apply_options_init_sized": (None, [POINTER(ApplyOptions), c_size_t]),
-    "lensprof_plan_bytes": (c_size_t, [POINTER(ApplyOptions)]),
-    "lensprof_plan_init": (c_int, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(POINTER(Plan))]),
-    "lensprof_apply": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Image), c_uint32, c_uint32]),
-    "lensprof_apply_planar": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Image), c_uint32, c_uint32]),
     # profile.h
     "lensprof_profile_key_init": (None, [POINTER(ProfileKey)]),
     "lensprof_profile_key_validate": (c_int, [POINTER(ProfileKey)]),
@@ -1030,6 +1097,18 @@ FUNCTIONS = {
     "lensprof_profile_corner_falloff": (c_double, [POINTER(Profile), c_uint32, POINTER(c_double)]),
     "lensprof_profile_pack": (c_int, [POINTER(Profile), c_uint32, c_void_p, c_size_t, POINTER(c_size_t)]),
     "lensprof_profile_unpack": (c_int, [c_void_p, c_size_t, POINTER(Profile)]),
+    # apply.h
+    "lensprof_layout_samples": (c_uint32, [c_uint32]),
+    "lensprof_layout_channels": (c_uint32, [c_uint32]),
+    "lensprof_sample_type_bytes": (c_uint32, [c_uint32]),
+    "lensprof_image_validate": (c_int, [POINTER(Image)]),
+    "lensprof_apply_options_init_sized": (None, [POINTER(ApplyOptions), c_size_t]),
+    "lensprof_apply_options_set_profile": (c_int, [POINTER(ApplyOptions), POINTER(Profile)]),
+    "lensprof_plan_bytes": (c_size_t, [POINTER(ApplyOptions)]),
+    "lensprof_plan_init": (c_int, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(POINTER(Plan)),
+                                   POINTER(ErrorText)]),
+    "lensprof_apply": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Image), c_uint32, c_uint32]),
+    "lensprof_apply_planar": (c_int, [POINTER(Plan), POINTER(Image), POINTER(Image), c_uint32, c_uint32]),
     # reason.h
     "lensprof_reason_name": (c_char_p, [c_uint32]),
     "lensprof_reason_text": (c_char_p, [c_uint32]),
@@ -1052,12 +1131,15 @@ FUNCTIONS = {
                                      POINTER(Exposure), POINTER(FitResult), POINTER(ErrorText)]),
     "lensprof_fit_radiance": (c_int, [POINTER(FitOptions), POINTER(FitImage), c_uint32, POINTER(Observation), c_uint32,
                                       POINTER(Exposure), POINTER(FitResult), POINTER(ErrorText)]),
+    "lensprof_profile_from_fit": (c_int, [POINTER(Profile), POINTER(FitResult), POINTER(FitOptions), c_uint32,
+                                          POINTER(ErrorText)]),
     "lensprof_transfer_rms": (c_int, [POINTER(Response), POINTER(Vignetting), POINTER(FitImage), POINTER(Exposure),
-                                      c_uint32, POINTER(Pair), c_uint32, c_uint32, POINTER(c_double),
-                                      POINTER(c_double)]),
+                                      c_uint32, POINTER(Pair), c_uint32, c_uint32, POINTER(c_double), POINTER(c_double),
+                                      POINTER(ErrorText)]),
     # fixed.h
     "lensprof_fixed_plan_bytes": (c_size_t, [POINTER(ApplyOptions)]),
-    "lensprof_fixed_plan_init": (c_int, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(POINTER(FixedPlan))]),
+    "lensprof_fixed_plan_init": (c_int, [c_void_p, c_size_t, POINTER(ApplyOptions), POINTER(POINTER(FixedPlan)),
+                                         POINTER(ErrorText)]),
     "lensprof_fixed_plan_open": (c_int, [c_void_p, c_size_t, POINTER(POINTER(FixedPlan))]),
     "lensprof_fixed_apply": (c_int, [POINTER(FixedPlan), POINTER(Image), POINTER(Image), c_uint32, c_uint32]),
     # flat.h
@@ -1066,38 +1148,42 @@ FUNCTIONS = {
     "lensprof_flat_result_init_sized": (None, [POINTER(FlatResult), c_size_t, c_size_t]),
     "lensprof_fit_flat": (c_int, [POINTER(FlatOptions), POINTER(FlatImage), c_uint32, POINTER(FlatResult),
                                   POINTER(ErrorText)]),
+    "lensprof_profile_from_flat": (c_int, [POINTER(Profile), POINTER(FlatResult), POINTER(FlatOptions), c_uint32,
+                                           POINTER(ErrorText)]),
     # formats.h
     "lensprof_pto_image_init_sized": (None, [POINTER(PtoImage), c_size_t]),
-    "lensprof_pto_read": (c_int, [c_char_p, c_size_t, POINTER(POINTER(Pto)), POINTER(ErrorText)]),
+    "lensprof_pto_read": (c_int, [c_void_p, c_size_t, POINTER(POINTER(Pto)), POINTER(ErrorText)]),
     "lensprof_pto_destroy": (None, [POINTER(Pto)]),
     "lensprof_pto_image_count": (c_uint32, [POINTER(Pto)]),
-    "lensprof_pto_get_image": (c_int, [POINTER(Pto), c_uint32, POINTER(PtoImage)]),
-    "lensprof_pto_get_response": (c_int, [POINTER(Pto), c_uint32, POINTER(Response)]),
-    "lensprof_pto_get_name": (c_int, [POINTER(Pto), c_uint32, c_char_p, c_size_t, POINTER(c_size_t)]),
-    "lensprof_pto_set_name": (c_int, [POINTER(Pto), c_uint32, c_char_p]),
-    "lensprof_pto_draw_mask": (c_int, [POINTER(Pto), c_uint32, POINTER(c_uint8), c_uint32, c_uint32, c_ssize_t]),
-    "lensprof_pto_set_result": (c_int, [POINTER(Pto), POINTER(Response), POINTER(Vignetting), POINTER(Exposure),
-                                        c_uint32, c_uint32]),
-    "lensprof_pto_write": (c_int, [POINTER(Pto), c_char_p, c_size_t, POINTER(c_size_t)]),
-    "lensprof_points_read": (c_int, [c_char_p, c_size_t, POINTER(Pair), c_uint32, POINTER(c_uint32),
-                                     POINTER(ErrorText)]),
-    "lensprof_points_write": (c_int, [POINTER(Pair), c_uint32, POINTER(Camera), c_uint32, c_char_p, c_size_t,
-                                      POINTER(c_size_t)]),
-    "lensprof_lensfun_read": (c_int, [c_char_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
-    "lensprof_lensfun_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_char_p, c_size_t, POINTER(c_size_t),
+    "lensprof_pto_get_image": (c_int, [POINTER(Pto), c_uint32, POINTER(PtoImage), POINTER(ErrorText)]),
+    "lensprof_pto_get_response": (c_int, [POINTER(Pto), c_uint32, POINTER(Response), POINTER(ErrorText)]),
+    "lensprof_pto_get_name": (c_int, [POINTER(Pto), c_uint32, c_char_p, c_size_t, POINTER(c_size_t),
+                                      POINTER(ErrorText)]),
+    "lensprof_pto_set_name": (c_int, [POINTER(Pto), c_uint32, c_char_p, POINTER(ErrorText)]),
+    "lensprof_pto_draw_mask": (c_int, [POINTER(Pto), c_uint32, POINTER(c_uint8), c_uint32, c_uint32, c_ssize_t,
                                        POINTER(ErrorText)]),
-    "lensprof_json_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_char_p, c_size_t, POINTER(c_size_t),
-                                    POINTER(ErrorText)]),
-    "lensprof_json_read": (c_int, [c_char_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
-    "lensprof_pcalib_read": (c_int, [c_char_p, c_size_t, POINTER(Response), POINTER(ErrorText)]),
-    "lensprof_pcalib_write": (c_int, [POINTER(Response), c_char_p, c_size_t, POINTER(c_size_t), POINTER(ErrorText)]),
-    "lensprof_times_read": (c_int, [c_char_p, c_size_t, POINTER(FrameTime), c_uint32, POINTER(c_uint32),
-                                    POINTER(ErrorText)]),
-    "lensprof_times_write": (c_int, [POINTER(FrameTime), c_uint32, c_char_p, c_size_t, POINTER(c_size_t),
+    "lensprof_pto_set_result": (c_int, [POINTER(Pto), POINTER(Response), POINTER(Vignetting), POINTER(Exposure),
+                                        c_uint32, c_uint32, POINTER(ErrorText)]),
+    "lensprof_pto_write": (c_int, [POINTER(Pto), c_void_p, c_size_t, POINTER(c_size_t), POINTER(ErrorText)]),
+    "lensprof_points_read": (c_int, [c_void_p, c_size_t, POINTER(Pair), c_uint32, POINTER(c_uint32),
                                      POINTER(ErrorText)]),
-    "lensprof_curves_read": (c_int, [c_char_p, c_size_t, c_uint32, POINTER(Response), POINTER(c_uint32),
+    "lensprof_points_write": (c_int, [POINTER(Pair), c_uint32, POINTER(Camera), c_uint32, c_void_p, c_size_t,
+                                      POINTER(c_size_t), POINTER(ErrorText)]),
+    "lensprof_lensfun_read": (c_int, [c_void_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
+    "lensprof_lensfun_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_void_p, c_size_t, POINTER(c_size_t),
+                                       POINTER(ErrorText)]),
+    "lensprof_json_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_void_p, c_size_t, POINTER(c_size_t),
+                                    POINTER(ErrorText)]),
+    "lensprof_json_read": (c_int, [c_void_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
+    "lensprof_pcalib_read": (c_int, [c_void_p, c_size_t, POINTER(Response), POINTER(ErrorText)]),
+    "lensprof_pcalib_write": (c_int, [POINTER(Response), c_void_p, c_size_t, POINTER(c_size_t), POINTER(ErrorText)]),
+    "lensprof_times_read": (c_int, [c_void_p, c_size_t, POINTER(FrameTime), c_uint32, POINTER(c_uint32),
+                                    POINTER(ErrorText)]),
+    "lensprof_times_write": (c_int, [POINTER(FrameTime), c_uint32, c_void_p, c_size_t, POINTER(c_size_t),
                                      POINTER(ErrorText)]),
-    "lensprof_curves_write": (c_int, [POINTER(Response), c_uint32, c_uint32, c_uint32, c_char_p, c_size_t,
+    "lensprof_curves_read": (c_int, [c_void_p, c_size_t, c_uint32, POINTER(Response), POINTER(c_uint32),
+                                     POINTER(ErrorText)]),
+    "lensprof_curves_write": (c_int, [POINTER(Response), c_uint32, c_uint32, c_uint32, c_void_p, c_size_t,
                                       POINTER(c_size_t), POINTER(ErrorText)]),
     "lensprof_map_read": (c_int, [POINTER(Map), c_uint32, c_uint32, POINTER(Profile), POINTER(c_double),
                                   POINTER(ErrorText)]),
@@ -1114,15 +1200,23 @@ FUNCTIONS = {
                                           c_void_p, POINTER(ErrorText)]),
     "lensprof_dng_opcodes_write": (c_int, [POINTER(Profile), c_uint32, c_uint32, c_uint32, c_uint32, c_void_p, c_size_t,
                                            POINTER(c_size_t), POINTER(c_double), POINTER(ErrorText)]),
-    "lensprof_lcp_read": (c_int, [c_char_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
-    "lensprof_lcp_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_uint32, c_uint32, c_char_p, c_size_t,
+    "lensprof_lcp_read": (c_int, [c_void_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
+    "lensprof_lcp_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_uint32, c_uint32, c_void_p, c_size_t,
                                    POINTER(c_size_t), POINTER(ErrorText)]),
-    "lensprof_drone_xmp_read": (c_int, [c_char_p, c_size_t, c_uint32, c_uint32, c_char_p, ImportVisitor, c_void_p,
+    "lensprof_drone_xmp_read": (c_int, [c_void_p, c_size_t, c_uint32, c_uint32, c_char_p, ImportVisitor, c_void_p,
                                         POINTER(ErrorText)]),
-    "lensprof_alsc_read": (c_int, [c_char_p, c_size_t, c_double, c_uint32, c_uint32, c_uint32, c_uint32,
+    "lensprof_alsc_read": (c_int, [c_void_p, c_size_t, c_double, c_uint32, c_uint32, c_uint32, c_uint32,
                                    POINTER(Profile), POINTER(c_double), POINTER(ErrorText)]),
-    "lensprof_alsc_write": (c_int, [POINTER(Profile), c_double, c_uint32, c_uint32, c_uint32, c_uint32, c_char_p,
+    "lensprof_alsc_write": (c_int, [POINTER(Profile), c_double, c_uint32, c_uint32, c_uint32, c_uint32, c_void_p,
                                     c_size_t, POINTER(c_size_t), POINTER(ErrorText)]),
+    "lensprof_format_get_info": (POINTER(FormatInfo), [c_uint32]),
+    "lensprof_format_detect": (c_uint32, [c_void_p, c_size_t, c_char_p]),
+    "lensprof_import_options_init_sized": (None, [POINTER(ImportOptions), c_size_t]),
+    "lensprof_import": (c_int, [c_void_p, c_size_t, POINTER(ImportOptions), ImportVisitor, c_void_p,
+                                POINTER(ErrorText)]),
+    "lensprof_export_options_init_sized": (None, [POINTER(ExportOptions), c_size_t]),
+    "lensprof_export": (c_int, [POINTER(POINTER(Profile)), c_uint32, POINTER(ExportOptions), c_void_p, c_size_t,
+                                POINTER(c_size_t), POINTER(ErrorText)]),
     # store.h
     "lensprof_store_open": (c_int, [c_char_p, c_uint32, POINTER(POINTER(Store)), POINTER(ErrorText)]),
     "lensprof_store_close": (None, [POINTER(Store)]),

@@ -29,9 +29,9 @@ def layout_channels(layout: Layout) -> int:
     return lib.lensprof_layout_channels(Layout(layout))
 
 
-def sample_bytes(sample: SampleType) -> int:
+def sample_type_bytes(sample: SampleType) -> int:
     """Bytes of one sample: 1, 2 or 4."""
-    return lib.lensprof_sample_bytes(SampleType(sample))
+    return lib.lensprof_sample_type_bytes(SampleType(sample))
 
 
 class ApplyOptions(Struct, _abi.ApplyOptions):
@@ -66,6 +66,14 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     blob = Bytes("blob_bytes")
     blob_bytes = Count("assign blob")
 
+    def set_profile(self, profile: Profile) -> None:
+        """Response, vignetting and grid of a copy of the profile, in place of what was set."""
+        own = Profile._copy_of(byref(profile))
+        check(lib.lensprof_apply_options_set_profile(byref(self), byref(own)), "not a profile")
+        shown = _abi.Profile.from_buffer(own)
+        vars(self).update(_response=shown.response[:own.responses], _vignetting=shown.vignetting[:own.vignettings],
+                          _grid=[shown.grid] if shown.grid.columns else (), _blob=None)
+
 
 class Plan:
     """Everything prepared for one picture; may be applied to any of its tiles, by several threads at once."""
@@ -74,10 +82,9 @@ class Plan:
         size = lib.lensprof_plan_bytes(byref(options))
         self._memory = np.zeros(size // 8 + 1, dtype=np.uint64)
         self._plan = POINTER(_abi.Plan)()
-        check(lib.lensprof_plan_init(self._memory.ctypes.data, self._memory.nbytes, byref(options), byref(self._plan)),
-              "these options cannot be applied: give a frame of 1..1048576 px, a valid response, vignetting (one "
-              "centre for all channels), gain grid, source and target, strength 0..1, gain_cap 0 or 1..1e6; or an undamaged "
-              "blob and no response, vignetting and grid")
+        error = _abi.ErrorText()
+        check(lib.lensprof_plan_init(self._memory.ctypes.data, self._memory.nbytes, byref(options), byref(self._plan),
+                                     byref(error)), "these options cannot be applied", error)
         self._layout = options.source_layout
         self._target_dtype = _arrays.sample_dtype(options.target_sample)
 
@@ -124,11 +131,10 @@ class FixedPlan:
             raise TypeError("a FixedPlan is made of ApplyOptions; of its data by FixedPlan.open(data, layout)")
         size = lib.lensprof_fixed_plan_bytes(byref(options))
         self._memory = np.zeros(size // 4 + 1, dtype=np.uint32)
-        self._plan = POINTER(_abi.FixedPlan)()
+        self._plan, error = POINTER(_abi.FixedPlan)(), _abi.ErrorText()
         check(lib.lensprof_fixed_plan_init(self._memory.ctypes.data, self._memory.nbytes, byref(options),
-                                           byref(self._plan)),
-              "these options cannot be applied in integers: give what Plan takes, uint8 in and out (or linear uint16), "
-              "without planes, gain grid and dither")
+                                           byref(self._plan), byref(error)),
+              "these options cannot be applied in integers", error)
         self.data = self._memory.tobytes()[:size]
         self._layout = options.source_layout
 
@@ -160,8 +166,8 @@ def _apply(direction: Direction, array: np.ndarray, profile: Profile, out: Optio
     target = view.sample if out is None else _arrays.image(out, layout, writable=True, what="out").sample
     options = ApplyOptions(direction=direction, frame_width=view.width, frame_height=view.height,
                            source_sample=view.sample, source_layout=view.layout, target_sample=target,
-                           response=profile.response, vignetting=profile.vignetting, grid=profile.grid,
                            **{name: value for name, value in fields.items() if value is not None})
+    options.set_profile(profile)
     return Plan(options).apply(array, out)
 
 

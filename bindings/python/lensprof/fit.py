@@ -8,7 +8,7 @@ import numpy as np
 
 from . import _abi, _arrays
 from ._abi import CameraKind, Free, GammaFrom, Loss, Method, ProfilePrior, Reason
-from ._library import check, lib, version
+from ._library import check, lib
 from ._progress import WithProgress, calling
 from ._struct import (Curves, Enumerated, Flag, Nested, Numbers, OptionalReference, Struct, Text, Value, Vector, integer,
                       one_or_three)
@@ -121,9 +121,10 @@ class FitResult(Struct, _abi.FitResult):
     reason_item = Nested(Item)
     reason_value = Numbers("reason_values")
 
-    def __init__(self, image_count: int, method: Method = Method.TRANSFER):
+    def __init__(self, image_count: int, options: Optional[FitOptions] = None):
         super().__init__()
-        self._method = Method(method)
+        given = options or FitOptions()
+        self._options = FitOptions(method=given.method, profile=given.profile)
         self._exposures = np.zeros(image_count, dtype=_arrays.EXPOSURE_DTYPE)
         self._quality = np.zeros(image_count, dtype=_arrays.IMAGE_QUALITY_DTYPE)
 
@@ -145,12 +146,10 @@ class FitResult(Struct, _abi.FitResult):
 
     def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0) -> Profile:
         """A profile of this result, to be stored or applied. source: file that it was made from. Time 0 = unknown."""
-        profile = Profile(key=key, response=self.response, vignetting=self.vignetting, covariance=self.covariance)
-        origin = {"method": self._method.name.lower(), "software": f"lensprof {version()}", "source": source,
-                  "created_unix_s": created_unix_s, "images": len(self._exposures), "pairs": self.pairs,
-                  "heldout_rms": self.heldout_rms, "inlier_share": self.inlier_share}
-        for name, value in origin.items():
-            setattr(profile.provenance, name, value)
+        profile, error = Profile(key=key), _abi.ErrorText()
+        check(lib.lensprof_profile_from_fit(byref(profile), byref(self), byref(self._options), len(self._exposures),
+                                            byref(error)), "no profile", error)
+        profile.provenance.source, profile.provenance.created_unix_s = source, created_unix_s
         return profile
 
 
@@ -159,7 +158,7 @@ def _fit_images(images: Sequence[FitImage]) -> Any:
 
 
 def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], options: FitOptions) -> FitResult:
-    error, result = _abi.ErrorText(), FitResult(len(images), options.method)
+    error, result = _abi.ErrorText(), FitResult(len(images), options)
     out = _abi.FitResult.from_buffer(result)
     out.image_quality = _arrays.address(result.image_quality, _abi.FitImageQuality)
     with calling(options) as call:
@@ -190,10 +189,10 @@ def transfer_rms(response: Response, vignetting: Union[Vignetting, Iterable[Vign
     given = _arrays.exposures(exposures)
     if len(given) != len(images):
         raise ValueError(f"{len(given)} exposures for {len(images)} images; give one an image")
-    rms, median = c_double(), c_double()
+    rms, median, error = c_double(), c_double(), _abi.ErrorText()
     check(lib.lensprof_transfer_rms(byref(response), (_abi.Vignetting * 3)(*(curves * 3)[:3]), _fit_images(images),
                                     _arrays.address(given, _abi.Exposure), len(images), *_arrays.pairs(pairs),
-                                    integer(channels, "channels"), byref(rms), byref(median)),
-          "this model and these pairs do not go together: give valid curves, channels 1 or 3, at least one pair, image "
-          "numbers of the images, finite values in 0..1")
+                                    integer(channels, "channels"), byref(rms), byref(median),
+                                    byref(error)),
+          "this model and these pairs do not go together", error)
     return rms.value, median.value

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _abi, _arrays
 from ._abi import FlatGrid, FlatLight, Free, Layout, Reason
-from ._library import check, initialised, lib, version
+from ._library import check, initialised, lib
 from ._progress import WithProgress, calling
 from ._struct import Count, Curves, Enumerated, Flag, Nested, Numbers, Referenced, Struct, Text, integer
 from .model import GainGrid, Response, Vignetting
@@ -136,15 +136,12 @@ class FlatResult(Struct, _abi.FlatResult):
     def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0,
                 response: Optional[Response] = None) -> Profile:
         """A profile of this result with the response that it was made with. source: file that it was made from."""
-        profile = Profile(key=key, vignetting=self.vignetting, covariance=self.covariance)
-        profile.grid = self.gain_grid
+        profile, options, error = Profile(key=key), FlatOptions(), _abi.ErrorText()
         if response is not None:
-            profile.response = response
-        origin = {"method": "flat", "software": f"lensprof {version()}", "source": source,
-                  "created_unix_s": created_unix_s, "images": len(self._quality), "pairs": self.cells,
-                  "inlier_share": self.inlier_share}
-        for name, value in origin.items():
-            setattr(profile.provenance, name, value)
+            options.response = response
+        check(lib.lensprof_profile_from_flat(byref(profile), byref(self), byref(options), len(self._quality),
+                                             byref(error)), "no profile", error)
+        profile.provenance.source, profile.provenance.created_unix_s = source, created_unix_s
         return profile
 
 

@@ -1,32 +1,30 @@
 """Other tools' files, from and to memory; see lensprof/formats.h."""
 from __future__ import annotations
 
-from ctypes import POINTER, byref, c_double, c_float, c_size_t, c_uint32, cast, create_string_buffer
-from typing import Any, Callable, Iterable, Optional, Sequence, Union
+from ctypes import POINTER, byref, c_double, c_float, c_size_t, c_uint32, cast, create_string_buffer, pointer
+from typing import Any, Callable, Iterable, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import CurveKind, DngForm, Free, Layout, MapSense, Status
+from ._abi import CurveKind, DngForm, Format, Free, Holds, Layout, MapSense, Pack, Status
 from ._library import Handle, check, initialised, lib
 from ._struct import Enumerated, Flag, Nested, Text, Value, Vector, integer, one_or_three
 from .geometry import Camera
 from .model import Exposure, Response, Vignetting
-from .profile import Profile
+from .profile import Profile, ProfileKey
 
 
 def _bytes(text: Union[str, bytes]) -> bytes:
     return text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
 
 
-def _written(write: Callable[[Any, int, Any], int], what: str, error: Optional[_abi.ErrorText] = None) -> bytes:
-    """Asks for the size, then for the text."""
-    needed = c_size_t()
-    status = write(None, 0, byref(needed))
-    if status != Status.ERROR_CAPACITY:
-        check(status, what, error)
-    buffer = create_string_buffer(needed.value)
-    check(write(buffer, needed.value, byref(needed)), what, error)
+def _written(write: Callable[..., int], what: str) -> bytes:
+    """Calls write(data, capacity, count, error): asks for the size, then for the bytes."""
+    error, count = _abi.ErrorText(), c_size_t()
+    check(write(None, 0, byref(count), byref(error)), what, error)
+    buffer = create_string_buffer(count.value)
+    check(write(buffer, count.value, byref(count), byref(error)), what, error)
     return buffer.raw
 
 
@@ -59,9 +57,9 @@ class Pto(Handle):
 
     def __init__(self, text: Union[str, bytes]):
         """Parses a project, e.g. Path("pano.pto").read_bytes()."""
-        data, pointer, error = _bytes(text), POINTER(_abi.Pto)(), _abi.ErrorText()
-        check(lib.lensprof_pto_read(data, len(data), byref(pointer), byref(error)), "the project cannot be read", error)
-        super().__init__(pointer, lib.lensprof_pto_destroy)
+        data, handle, error = _bytes(text), POINTER(_abi.Pto)(), _abi.ErrorText()
+        check(lib.lensprof_pto_read(data, len(data), byref(handle), byref(error)), "the project cannot be read", error)
+        super().__init__(handle, lib.lensprof_pto_destroy)
 
     def __len__(self) -> int:
         """Number of images."""
@@ -73,16 +71,18 @@ class Pto(Handle):
 
     def image(self, index: int) -> PtoImage:
         """The `i` line of an image, in lensprof's conventions."""
-        image = PtoImage()
+        image, error = PtoImage(), _abi.ErrorText()
         with self._use() as pto:
-            check(lib.lensprof_pto_get_image(pto, integer(index, "index"), byref(image)), self._no_image(index))
+            check(lib.lensprof_pto_get_image(pto, integer(index, "index"), byref(image), byref(error)),
+                  self._no_image(index), error)
         return image
 
     def response(self, index: int) -> Response:
         """The response of an image as Hugin evaluates it."""
-        response = Response()
+        response, error = Response(), _abi.ErrorText()
         with self._use() as pto:
-            check(lib.lensprof_pto_get_response(pto, integer(index, "index"), byref(response)), self._no_image(index))
+            check(lib.lensprof_pto_get_response(pto, integer(index, "index"), byref(response), byref(error)),
+                  self._no_image(index), error)
         return response
 
     def name(self, index: int) -> str:
@@ -90,17 +90,15 @@ class Pto(Handle):
         number = integer(index, "index")
         with self._use() as pto:
             text = _written(lambda *buffer: lib.lensprof_pto_get_name(pto, number, *buffer), self._no_image(index))
-        return text.rstrip(b"\0").decode("utf-8", "surrogateescape")
+        return text.decode("utf-8", "surrogateescape")
 
     def set_name(self, index: int, name: str) -> None:
         """Changes the file name of an image, for a project that is written to another folder."""
-        text = _bytes(name)
+        text, error = _bytes(name), _abi.ErrorText()
         if b"\0" in text:
             raise ValueError(f"{name!r}: a file name holds no zero bytes")
         with self._use() as pto:
-            check(lib.lensprof_pto_set_name(pto, integer(index, "index"), text),
-                  f"image {index}, name {name!r}: the project has no such image, or the name is empty or has quotes or "
-                  "control characters")
+            check(lib.lensprof_pto_set_name(pto, integer(index, "index"), text, byref(error)), repr(name), error)
 
     def draw_mask(self, index: int, mask: np.ndarray) -> np.ndarray:
         """Draws where pairs may be taken from an image into a uint8 or bool array (height, width): 1, else 0. Returns
@@ -110,10 +108,11 @@ class Pto(Handle):
         """
         rows, columns = (mask.shape + (0, 0))[:2]
         pixels, row_bytes = _arrays.mask(mask, (rows, columns), writable=True)
+        error = _abi.ErrorText()
         with self._use() as pto:
             check(lib.lensprof_pto_draw_mask(pto, integer(index, "index"), pixels, integer(columns, "columns"),
-                                             integer(rows, "rows"), row_bytes),
-                  f"image {index}, mask of {columns} x {rows}: the project has no such image, or the mask no pixels")
+                                             integer(rows, "rows"), row_bytes, byref(error)),
+                  f"mask of {columns} x {rows}", error)
         return mask
 
     def set_result(self, response: Response, vignetting: Vignetting, exposures: Union[np.ndarray, Iterable[Exposure]],
@@ -126,10 +125,11 @@ class Pto(Handle):
         """
         given = _arrays.exposures(exposures)
         pointer, count = _arrays.structured(given, _arrays.EXPOSURE_DTYPE, _abi.Exposure, "exposures")
+        error = _abi.ErrorText()
         with self._use() as pto:
             check(lib.lensprof_pto_set_result(pto, byref(response), byref(vignetting), pointer, count,
-                                              integer(reference, "reference")),
-                  f"{count} exposures, reference {reference}: give one valid exposure an image, and valid curves")
+                                              integer(reference, "reference"), byref(error)),
+                  f"{count} exposures, reference {reference}", error)
 
     def write(self) -> bytes:
         """The project as text: what was read, unchanged but for what was set."""
@@ -153,8 +153,7 @@ def points_write(pairs: np.ndarray, cameras: Sequence[Camera]) -> bytes:
     pointer, count = _arrays.pairs(pairs)
     frames = (_abi.Camera * len(cameras))(*cameras)
     return _written(lambda *buffer: lib.lensprof_points_write(pointer, count, frames, len(frames), *buffer),
-                    f"{count} pairs over {len(cameras)} cameras: image numbers must be below that, sizes above 0, "
-                    "numbers finite")
+                    f"{count} pairs over {len(cameras)} cameras")
 
 
 def _imported(read: Callable[..., int], source: str, what: str) -> list[tuple[Profile, bool]]:
@@ -180,14 +179,14 @@ def _imported(read: Callable[..., int], source: str, what: str) -> list[tuple[Pr
     return found
 
 
-def _database(write: Callable[..., int], profiles: Iterable[Profile], settings: tuple, what: str) -> str:
-    """Calls write(profiles, count, *settings, text, capacity, needed, error)."""
-    given, error = list(profiles), _abi.ErrorText()
+def _database(write: Callable[..., int], profiles: Iterable[Profile], settings: tuple, what: str) -> bytes:
+    """Calls write(profiles, count, *settings, data, capacity, count, error)."""
+    given = list(profiles)
     if not all(isinstance(profile, Profile) for profile in given):
         raise TypeError("profiles takes an iterable of Profile")
     kind = POINTER(_abi.Profile)
     pointers = (kind * len(given))(*(cast(byref(profile), kind) for profile in given))
-    return _written(lambda *buffer: write(pointers, len(given), *settings, *buffer, byref(error)), what, error).decode()
+    return _written(lambda *buffer: write(pointers, len(given), *settings, *buffer), what)
 
 
 def lensfun_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profile, bool]]:
@@ -204,7 +203,7 @@ def lensfun_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profil
 def lensfun_write(profiles: Iterable[Profile]) -> str:
     """A Lensfun database (.xml) of the falloffs of profiles, whose lens, crop factor, focal length and aperture are
     known."""
-    return _database(lib.lensprof_lensfun_write, profiles, (), "the database cannot be written")
+    return _database(lib.lensprof_lensfun_write, profiles, (), "the database cannot be written").decode()
 
 
 def json_read(text: Union[str, bytes], source: str = "") -> list[Profile]:
@@ -219,7 +218,7 @@ def json_read(text: Union[str, bytes], source: str = "") -> list[Profile]:
 
 def json_write(profiles: Iterable[Profile]) -> str:
     """Profiles as JSON (docs/json.md), from which json_read makes the same."""
-    return _database(lib.lensprof_json_write, profiles, (), "the profiles cannot be written")
+    return _database(lib.lensprof_json_write, profiles, (), "the profiles cannot be written").decode()
 
 
 def pcalib_read(text: Union[str, bytes]) -> Response:
@@ -231,9 +230,8 @@ def pcalib_read(text: Union[str, bytes]) -> Response:
 
 def pcalib_write(response: Response) -> str:
     """A pcalib.txt: 256 irradiances from 0 to 255, strictly increasing."""
-    error = _abi.ErrorText()
-    return _written(lambda *buffer: lib.lensprof_pcalib_write(byref(response), *buffer, byref(error)),
-                    "pcalib cannot be written", error).decode()
+    return _written(lambda *buffer: lib.lensprof_pcalib_write(byref(response), *buffer),
+                    "pcalib cannot be written").decode()
 
 
 class FrameTime(Value, _abi.FrameTime):
@@ -256,10 +254,10 @@ def times_read(text: Union[str, bytes]) -> list[FrameTime]:
 
 def times_write(frames: Iterable[FrameTime]) -> str:
     """A times.txt of frames."""
-    given, error = list(frames), _abi.ErrorText()
+    given = list(frames)
     array = (_abi.FrameTime * len(given))(*given)
-    return _written(lambda *buffer: lib.lensprof_times_write(array, len(given), *buffer, byref(error)),
-                    "times cannot be written", error).decode()
+    return _written(lambda *buffer: lib.lensprof_times_write(array, len(given), *buffer),
+                    "times cannot be written").decode()
 
 
 def curves_read(text: Union[str, bytes], kind: CurveKind = CurveKind.INVERSE) -> list[Response]:
@@ -274,11 +272,11 @@ def curves_read(text: Union[str, bytes], kind: CurveKind = CurveKind.INVERSE) ->
 def curves_write(responses: Union[Response, Iterable[Response]], kind: CurveKind = CurveKind.INVERSE,
                  rows: int = 256) -> str:
     """One or three responses as CSV."""
-    given, error = one_or_three(responses, Response, "responses"), _abi.ErrorText()
+    given = one_or_three(responses, Response, "responses")
     array = (_abi.Response * len(given))(*given)
     return _written(lambda *buffer: lib.lensprof_curves_write(array, len(given), int(CurveKind(kind)),
-                                                              integer(rows, "rows"), *buffer, byref(error)),
-                    "the table cannot be written", error).decode()
+                                                              integer(rows, "rows"), *buffer),
+                    "the table cannot be written").decode()
 
 
 def _refitted(read: Callable[..., int], profile: Optional[Profile], what: str) -> tuple[Profile, float]:
@@ -330,10 +328,10 @@ def radical_response_read(data: bytes) -> list[Response]:
 
 def radical_response_write(responses: Union[Response, Iterable[Response]]) -> bytes:
     """A .crf file of radical."""
-    given, error = one_or_three(responses, Response, "responses"), _abi.ErrorText()
+    given = one_or_three(responses, Response, "responses")
     array = (_abi.Response * len(given))(*given)
-    return _written(lambda *buffer: lib.lensprof_radical_response_write(array, len(given), *buffer, byref(error)),
-                    "the file cannot be written", error)
+    return _written(lambda *buffer: lib.lensprof_radical_response_write(array, len(given), *buffer),
+                    "the file cannot be written")
 
 
 def radical_vignetting_read(data: bytes, profile: Optional[Profile] = None) -> tuple[Profile, float]:
@@ -344,11 +342,9 @@ def radical_vignetting_read(data: bytes, profile: Optional[Profile] = None) -> t
 
 def radical_vignetting_write(profile: Profile, width: int, height: int) -> bytes:
     """A .vgn file of radical for pictures of width x height px."""
-    error = _abi.ErrorText()
     return _written(lambda *buffer: lib.lensprof_radical_vignetting_write(byref(profile), integer(width, "width"),
-                                                                          integer(height, "height"), *buffer,
-                                                                          byref(error)),
-                    "the file cannot be written", error)
+                                                                          integer(height, "height"), *buffer),
+                    "the file cannot be written")
 
 
 def dng_opcodes_read(data: bytes, width: int, height: int, layout: Layout = Layout.RGB,
@@ -371,10 +367,10 @@ def dng_opcodes_write(profile: Profile, width: int, height: int, layout: Layout 
     """The falloff of a profile as a DNG opcode list, and the largest relative error of its gains within the frame."""
     if not isinstance(profile, Profile):
         raise TypeError("profile takes a Profile")
-    error, worst = _abi.ErrorText(), c_double()
+    worst = c_double()
     numbers = (integer(width, "width"), integer(height, "height"), integer(layout, "layout"), integer(form, "form"))
-    text = _written(lambda *buffer: lib.lensprof_dng_opcodes_write(byref(profile), *numbers, *buffer, byref(worst),
-                                                                   byref(error)), "the opcodes cannot be written", error)
+    text = _written(lambda *buffer: lib.lensprof_dng_opcodes_write(byref(profile), *numbers, *buffer[:3], byref(worst),
+                                                                   buffer[3]), "the opcodes cannot be written")
     return text, worst.value
 
 
@@ -389,7 +385,7 @@ def lcp_write(profiles: Iterable[Profile], width: int = 0, height: int = 0) -> s
     """An Adobe lens profile (.lcp) of the falloffs of profiles of one camera and lens, whose crop factor, focal length
     and aperture are known. width, height: of the frames; both 0 = not known, of 3:2."""
     return _database(lib.lensprof_lcp_write, profiles, (integer(width, "width"), integer(height, "height")),
-                     "the lens profile cannot be written")
+                     "the lens profile cannot be written").decode()
 
 
 def drone_xmp_read(text: Union[str, bytes], width: int, height: int, source: str = "") -> tuple[Profile, bool]:
@@ -418,6 +414,72 @@ def alsc_read(text: Union[str, bytes], frame: tuple[int, int], ct: float = _abi.
 def alsc_write(profile: Profile, frame: tuple[int, int], ct: float = _abi.UNKNOWN,
                size: tuple[int, int] = (16, 12)) -> str:
     """Falloff and gain grid as the "rpi.alsc" of a tuning file, with tables of size (columns, rows)."""
-    numbers, error = [integer(n, "columns, rows, width or height") for n in (*size, *frame)], _abi.ErrorText()
-    return _written(lambda *buffer: lib.lensprof_alsc_write(byref(profile), ct, *numbers, *buffer, byref(error)),
-                    "the tables cannot be written", error).decode()
+    numbers = [integer(n, "columns, rows, width or height") for n in (*size, *frame)]
+    return _written(lambda *buffer: lib.lensprof_alsc_write(byref(profile), ct, *numbers, *buffer),
+                    "the tables cannot be written").decode()
+
+
+class FormatInfo(NamedTuple):
+    """A format: its one word, one line about it, what its files hold, whether it is written, and holds several."""
+
+    name: str
+    about: str
+    holds: Holds
+    is_written: bool
+    is_many: bool
+
+
+def format_info(format: Format) -> FormatInfo:
+    """What is known of a format but AUTO."""
+    found = lib.lensprof_format_get_info(int(Format(format)))
+    if not found:
+        raise ValueError("AUTO is no format; pass another lensprof.Format")
+    info = found.contents
+    return FormatInfo(info.name.decode(), info.about.decode(), Holds(info.holds), bool(info.is_written), bool(info.is_many))
+
+
+def detect_format(data: Union[str, bytes], name: str = "") -> Format:
+    """The format of a file by its content, then by the ending of its name; Format.AUTO where neither tells."""
+    content = _bytes(data)
+    return Format(lib.lensprof_format_detect(content, len(content), _bytes(name)))
+
+
+def import_profiles(data: Union[str, bytes], name: str = "", *, format: Format = Format.AUTO,
+                    key: Optional[ProfileKey] = None, frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0),
+                    layout: Layout = Layout.RGB, curve: CurveKind = CurveKind.INVERSE,
+                    color_temperature_k: float = _abi.UNKNOWN) -> list[tuple[Profile, bool]]:
+    """The profiles of a file of any format, as lensfun_read gives those of a database.
+
+    A response or a falloff makes one profile with `key`. name: of the file, for detection and provenance.source. frame:
+    width and height of the pictures, which opcodes, XMP and alsc do not say. tables: columns and rows, of alsc. The
+    bytes are those of the format, and not of a picture around them: opcodes without their DNG, XMP without its JPEG.
+    """
+    content, options = _bytes(data), initialised(_abi.ImportOptions)
+    options.format, options.layout, options.curve = int(Format(format)), int(Layout(layout)), int(CurveKind(curve))
+    options.width, options.height = (integer(side, "frame") for side in frame)
+    options.columns, options.rows = (integer(side, "tables") for side in tables)
+    options.color_temperature_k = color_temperature_k
+    if key is not None:
+        options.key = pointer(_abi.ProfileKey.from_buffer(key))
+
+    def read(source: bytes, *rest: Any) -> int:
+        options.name = source
+        return lib.lensprof_import(content, len(content), byref(options), *rest)
+
+    return _imported(read, name, "the file cannot be read")
+
+
+def export_profiles(profiles: Iterable[Profile], name: str = "", *, format: Format = Format.AUTO,
+                    frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0), layout: Layout = Layout.RGB,
+                    form: DngForm = DngForm.AUTO, curve: CurveKind = CurveKind.INVERSE, covariance: bool = False,
+                    color_temperature_k: float = _abi.UNKNOWN) -> bytes:
+    """A file of any format that is written, chosen by `format` or the ending of the name: of all the profiles where it
+    holds several, else of one. frame, tables: as for import_profiles; rows of curves are tables[1]. form: of opcodes.
+    covariance: of a blob."""
+    options, text = initialised(_abi.ExportOptions), _bytes(name)
+    options.format, options.layout, options.curve = int(Format(format)), int(Layout(layout)), int(CurveKind(curve))
+    options.width, options.height = (integer(side, "frame") for side in frame)
+    options.columns, options.rows = (integer(side, "tables") for side in tables)
+    options.dng_form, options.pack = int(DngForm(form)), int(Pack.COVARIANCE) if covariance else 0
+    options.color_temperature_k, options.name = color_temperature_k, text
+    return _database(lib.lensprof_export, profiles, (byref(options),), "the file cannot be written")

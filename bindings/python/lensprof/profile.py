@@ -151,10 +151,11 @@ class Profile(Value, _abi.Profile):
         """A blob for firmware, which lensprof_plan_init reads in place (docs/blob.md): response samples in single
         precision, without the provenance's source, and without the covariance unless asked for."""
         needed, flags = c_size_t(), Pack.COVARIANCE if covariance else 0
-        lib.lensprof_profile_pack(byref(self), flags, None, 0, byref(needed))
+        self.validate()
+        check(lib.lensprof_profile_pack(byref(self), flags, None, 0, byref(needed)), "the profile cannot be packed")
         buffer = create_string_buffer(needed.value)
         check(lib.lensprof_profile_pack(byref(self), flags, buffer, needed.value, byref(needed)),
-              f"{self.key}: not a valid profile; see validate()")
+              "the profile cannot be packed")
         return buffer.raw
 
     @classmethod

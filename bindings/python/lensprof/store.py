@@ -210,9 +210,13 @@ class Store(Handle):
         key = None if filter is None else byref(filter)
         rows, found = (_abi.StoreRow * 0)(), c_uint32()
         while True:  # until they fit: another process may add rows between two calls
-            self._call(lib.lensprof_store_list, key, rows, len(rows), byref(found))
-            if found.value <= len(rows):
-                break
+            try:
+                self._call(lib.lensprof_store_list, key, rows, len(rows), byref(found))
+                if found.value <= len(rows):
+                    break
+            except Error as error:
+                if error.status != Status.ERROR_CAPACITY:
+                    raise
             rows = (_abi.StoreRow * found.value)()
         size = ctypes.sizeof(_abi.StoreRow)
         return [StoreRow.from_buffer(rows, i * size) for i in range(found.value)]

@@ -37,7 +37,7 @@ POINTERS = {"c_char": "c_char_p", "None": "c_void_p"}  # every other pointer is 
 
 # Classes that are not named after their type, and enumerations whose members are combined.
 NAMES = {"lensprof_curve": "CurveKind", "lensprof_error": "ErrorText", "lensprof_fit_method": "Method",
-         "lensprof_sample": "SampleType"}
+         "lensprof_sample_type": "SampleType"}
 FLAGS = {"lensprof_pack"}
 
 

@@ -14,6 +14,7 @@
 #include "cli/program/commands.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/paths.hpp"
+#include "cli/report/falloff.hpp"
 
 namespace lensprof {
 namespace {

@@ -74,7 +74,9 @@ void declare(Command &command, Options &o) {
 
 std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
     auto profile = std::shared_ptr<lensprof_profile>(new_profile());
-    check(lensprof_pto_get_response(project.pto.get(), project.reference, &profile->response[0]), project.path);
+    lensprof_error error{};
+    check(lensprof_pto_get_response(project.pto.get(), project.reference, &profile->response[0], &error), project.path,
+          &error);
     profile->vignetting[0] = project.images[project.reference].vignetting;
     return profile;
 }

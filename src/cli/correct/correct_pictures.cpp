@@ -24,7 +24,8 @@ class Plan {
 public:
     Plan(const lensprof_apply_options &options, const std::string &item)
         : memory_(lensprof_plan_bytes(&options) / 8 + 1) {
-        check(lensprof_plan_init(memory_.data(), memory_.size() * 8, &options, &plan_), item);
+        lensprof_error error{};
+        check(lensprof_plan_init(memory_.data(), memory_.size() * 8, &options, &plan_, &error), item, &error);
     }
     const lensprof_plan *get() const { return plan_; }
 
@@ -46,11 +47,7 @@ lensprof_apply_options options_of(const Picture &source, const Correction &job, 
     options.source_sample = source.sample;
     options.source_layout = source.layout;
     options.target_sample = kind.linear ? static_cast<uint32_t>(LENSPROF_SAMPLE_F32) : source.sample;
-    options.responses = job.model->responses;
-    options.vignettings = job.model->vignettings;
-    options.response = job.model->response;
-    options.vignetting = job.model->vignetting;
-    options.grid = &job.model->grid;
+    check(lensprof_apply_options_set_profile(&options, job.model.get()), job.source);
     options.source = job.own;
     options.target = job.wanted;
     return options;
@@ -61,7 +58,7 @@ Picture header_of_result(const Picture &source, uint32_t sample) {
     Picture result = source;
     result.sample = sample;
     result.row_bytes =
-        static_cast<size_t>(result.width) * lensprof_layout_samples(result.layout) * lensprof_sample_bytes(sample);
+        static_cast<size_t>(result.width) * lensprof_layout_samples(result.layout) * lensprof_sample_type_bytes(sample);
     return result;
 }
 

@@ -82,7 +82,8 @@ lensprof_fit_options project_options(const Options &o, const Project &project, l
     options.reference = project.reference;
     options.vignettings = o.falloff_curves;
     options.vignetting = lens.vignetting;
-    check(lensprof_pto_get_response(project.pto.get(), project.reference, &fixed), project.path);
+    lensprof_error error{};
+    check(lensprof_pto_get_response(project.pto.get(), project.reference, &fixed, &error), project.path, &error);
     options.response = &fixed;
     if (options.free & falloff_flags)
         if (lensprof_vignetting_validate(&options.vignetting) != LENSPROF_OK)
@@ -156,15 +157,17 @@ constexpr uint32_t project_modes = 5;  // Ra..Re
 
 // The text of the project with the result in it.
 std::string project_text(const Options &o, Project &project, const Fitted &fitted, uint32_t reference) {
+    lensprof_error error{};
     check(lensprof_pto_set_result(project.pto.get(), &fitted.result.response, &green_falloff(fitted.result),
-                                  fitted.exposures.data(), static_cast<uint32_t>(fitted.exposures.size()), reference),
-          o.pto);
+                                  fitted.exposures.data(), static_cast<uint32_t>(fitted.exposures.size()), reference,
+                                  &error),
+          o.pto, &error);
     // Names are relative to the project's folder, which may be another one now.
     const auto folder = std::filesystem::path(absolute_path(o.pto_out)).parent_path();
     if (folder != std::filesystem::path(absolute_path(o.pto)).parent_path())
         for (uint32_t i = 0; i < project.files.size(); i++) {
             const auto file = std::filesystem::path(absolute_path(project.files[i])).lexically_proximate(folder);
-            check(lensprof_pto_set_name(project.pto.get(), i, file.string().c_str()), project.files[i]);
+            check(lensprof_pto_set_name(project.pto.get(), i, file.string().c_str(), &error), project.files[i], &error);
         }
     return pto_text(*project.pto);
 }

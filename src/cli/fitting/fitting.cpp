@@ -9,6 +9,7 @@
 #include "cli/fitting/project.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/options.hpp"
+#include "cli/report/falloff.hpp"
 
 namespace lensprof {
 namespace {
@@ -17,9 +18,6 @@ int on_progress(double done, void *progress) {
     static_cast<Progress *>(progress)->update("fitting", done);
     return interrupted();
 }
-
-// Of counts, which do not run over.
-uint32_t sum_of(uint32_t a, uint32_t b) { return a + std::min(b, UINT32_MAX - a); }
 
 }  // namespace
 
@@ -187,16 +185,13 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
     bool good = report.fit.usable || store.force;
     stop_if_interrupted();
     if (good && !store.no_store) {
-        auto profile = profile_of(report.fit);
+        lensprof_fit_options options;
+        lensprof_fit_options_init(&options);
+        if (finish.prior) options.profile = finish.prior->profile.get();
+        auto profile = profile_of(report.fit, &options, report.names.size());
         profile->key = key;
-        profile->provenance.images = static_cast<uint32_t>(report.names.size());
-        int64_t held = 0;
-        if (finish.prior && report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED) {
-            held = finish.prior->id;
-            const lensprof_provenance &earlier = finish.prior->profile->provenance;
-            profile->provenance.images = sum_of(profile->provenance.images, earlier.images);
-            profile->provenance.pairs = sum_of(profile->provenance.pairs, earlier.pairs);
-        }
+        const bool holds = finish.prior && report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED;
+        const int64_t held = holds ? finish.prior->id : 0;
         report.profile_id =
             store_profile(store, *profile, {finish.method, finish.source, report.fit.usable != 0, held});
     }

@@ -125,12 +125,8 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
 
 int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &report) {
     const auto &fit = report.fit;
-    auto profile = profile_of_curves(fit, input.response.data(), static_cast<uint32_t>(input.response.size()));
+    auto profile = profile_of(fit, input.response, input.images.size());
     profile->key = input.key;
-    profile->grid = fit.gain_grid;
-    profile->provenance.images = static_cast<uint32_t>(input.images.size());
-    profile->provenance.pairs = fit.cells;
-    profile->provenance.inlier_share = fit.inlier_share;
     return store_profile(o.store, *profile, {"flat", o.files.front(), fit.usable != 0});
 }
 

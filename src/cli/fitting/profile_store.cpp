@@ -7,7 +7,6 @@
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
-#include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
 
 namespace lensprof {
@@ -83,14 +82,6 @@ void remove_empty_store(const std::string &file) {
     for (const char *end : {"", "-wal", "-shm"}) std::filesystem::remove(file + end, ignored);
 }
 
-std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit) {
-    auto profile = profile_of_curves(fit, &fit.response, 1);
-    profile->provenance.pairs = fit.pairs;
-    profile->provenance.heldout_rms = fit.heldout_rms;
-    profile->provenance.inlier_share = fit.inlier_share;
-    return profile;
-}
-
 std::string source_of(const std::string &file) { return one_name(file); }
 
 int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin) {
@@ -98,7 +89,6 @@ int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Or
     set_text(p.method, sizeof p.method, origin.method);
     p.prior_id = origin.held;
     p.forced = !origin.usable;
-    set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
     set_text(p.source, sizeof p.source, source_of(origin.source));
     p.created_unix_s = static_cast<int64_t>(std::time(nullptr));
     bool is_new = !path_exists(store_path(o.db));

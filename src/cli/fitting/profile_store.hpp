@@ -37,9 +37,6 @@ void check_store(const StoreOptions &o);
 // A database that was to be made for what failed is not left behind empty; one that somebody else has filled stays.
 void remove_empty_store(const std::string &file);
 
-// A profile of what a fit found, its key and provenance but the result's numbers still empty.
-std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit);
-
 // A file as provenances name it: one name, however it was written.
 std::string source_of(const std::string &file);
 
@@ -50,7 +47,7 @@ struct Origin {
     int64_t held = 0;  // the profile that is in it; 0 = none
 };
 
-// Completes the provenance, with this program, source_of(source) and the time, and stores the profile. A new database
+// Completes the provenance, with source_of(source) and the time, and stores the profile. A new database
 // that could not take it is not left behind. Returns its number.
 int64_t store_profile(const StoreOptions &o, lensprof_profile &profile, const Origin &origin);
 

@@ -75,8 +75,10 @@ SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
     check_finite(result.picture.view(), 0, p.reduction, file);
     if (!project.pto) return result;
     std::vector<uint8_t> mask(static_cast<size_t>(p.width) * p.height);
-    check(lensprof_pto_draw_mask(project.pto.get(), i, mask.data(), p.width, p.height, static_cast<ptrdiff_t>(p.width)),
-          file);
+    lensprof_error error{};
+    check(lensprof_pto_draw_mask(project.pto.get(), i, mask.data(), p.width, p.height, static_cast<ptrdiff_t>(p.width),
+                                 &error),
+          file, &error);
     if (std::find(mask.begin(), mask.end(), 0) != mask.end()) result.mask = std::move(mask);
     return result;
 }
@@ -110,7 +112,8 @@ Project read_project(const std::string &path, bool one_lens) {
     for (uint32_t i = 0; i < lensprof_pto_image_count(project.pto.get()); i++) {
         lensprof_pto_image image;
         lensprof_pto_image_init(&image);
-        check(lensprof_pto_get_image(project.pto.get(), i, &image), path);
+        lensprof_error error{};
+        check(lensprof_pto_get_image(project.pto.get(), i, &image, &error), path, &error);
         project.images.push_back(image);
         project.names.push_back(pto_name(*project.pto, i));
         project.files.push_back((folder / project.names[i]).string());
@@ -263,16 +266,10 @@ std::vector<lensprof_pair> read_points(const std::string &path, const Project &p
 std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &project) {
     std::vector<lensprof_camera> cameras;
     for (const auto &image : project.images) cameras.push_back(image.camera);
-    auto write = [&](char *text, size_t capacity, size_t *needed) {
+    return written("points", [&](void *text, size_t capacity, size_t *count, lensprof_error *error) {
         return lensprof_points_write(pairs.data(), static_cast<uint32_t>(pairs.size()), cameras.data(),
-                                     static_cast<uint32_t>(cameras.size()), text, capacity, needed);
-    };
-    size_t needed = 0;
-    if (write(nullptr, 0, &needed) != LENSPROF_ERROR_CAPACITY) return {};
-    std::string text(needed, 0);
-    check(write(text.data(), needed, &needed), "points");
-    text.resize(needed);
-    return text;
+                                     static_cast<uint32_t>(cameras.size()), text, capacity, count, error);
+    });
 }
 
 std::vector<lensprof_exposure> relative_exposures(std::vector<lensprof_exposure> exposures, uint32_t reference) {

@@ -15,7 +15,7 @@ namespace lensprof {
 namespace codec {
 
 uint64_t pixel_bytes(const Picture &picture) {
-    return lensprof_layout_samples(picture.layout) * uint64_t(lensprof_sample_bytes(picture.sample));
+    return lensprof_layout_samples(picture.layout) * uint64_t(lensprof_sample_type_bytes(picture.sample));
 }
 
 void set_frame(Picture &picture, uint32_t frame_width, uint32_t frame_height, const ReadRequest &request) {

@@ -62,7 +62,7 @@ std::unique_ptr<codec::RowSink> create_sink(const std::string &file, FileFormat 
 void check_held(const std::string &path, const Picture &picture) {
     const bool sized = picture.width > 0 && picture.height > 0 && picture.width <= picture_max_side
                        && picture.height <= picture_max_side;
-    const bool known = picture.layout <= LENSPROF_LAYOUT_RGBA && lensprof_sample_bytes(picture.sample) > 0;
+    const bool known = picture.layout <= LENSPROF_LAYOUT_RGBA && lensprof_sample_type_bytes(picture.sample) > 0;
     if (!sized || !known || picture.row_bytes < codec::pixel_bytes(picture) * picture.width
         || picture.pixels.size() / picture.height < picture.row_bytes)
         throw Failure(ExitCode::failed, path + ": cannot write: no valid picture in memory; please report this");

@@ -65,7 +65,7 @@ struct Picture {
     uint32_t width = 0, height = 0;              // of the pixels held
     uint32_t frame_width = 0, frame_height = 0;  // of the file's full frame
     uint32_t reduction = 1;                 // side in frame pixels of the square that one held pixel is the mean of
-    uint32_t sample = LENSPROF_SAMPLE_U8;   // lensprof_sample
+    uint32_t sample = LENSPROF_SAMPLE_U8;   // lensprof_sample_type
     uint32_t layout = LENSPROF_LAYOUT_RGB;  // lensprof_layout: GREY, GREY_ALPHA, RGB or RGBA
     size_t row_bytes = 0;
     std::vector<uint8_t> pixels;  // row_bytes * height

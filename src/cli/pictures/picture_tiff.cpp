@@ -223,7 +223,7 @@ BandReader::BandReader(const Tiff &tiff, const std::string &path, const Picture 
       tiled_(TIFFIsTiled(tiff.handle) != 0),
       by_row_(!tiled_ && tiff.field<uint16_t>(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_CONTIG),
       inverted_(tiff.field<uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE),
-      sample_bytes_(lensprof_sample_bytes(picture.sample)),
+      sample_bytes_(lensprof_sample_type_bytes(picture.sample)),
       pixel_bytes_(static_cast<size_t>(pixel_bytes(picture))),
       row_bytes_(pixel_bytes_ * picture.frame_width),
       planes_(tiff.field<uint16_t>(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_SEPARATE
@@ -352,7 +352,7 @@ void set_tags(TIFF *handle, const Picture &picture, uint32_t rows_per_strip) {
     const uint16_t compression = compression_to_write(traits);
     TIFFSetField(handle, TIFFTAG_IMAGEWIDTH, picture.width);
     TIFFSetField(handle, TIFFTAG_IMAGELENGTH, picture.height);
-    TIFFSetField(handle, TIFFTAG_BITSPERSAMPLE, 8 * lensprof_sample_bytes(picture.sample));
+    TIFFSetField(handle, TIFFTAG_BITSPERSAMPLE, 8 * lensprof_sample_type_bytes(picture.sample));
     TIFFSetField(handle, TIFFTAG_SAMPLEFORMAT, is_float ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT);
     TIFFSetField(handle, TIFFTAG_SAMPLESPERPIXEL, samples);
     TIFFSetField(handle, TIFFTAG_PHOTOMETRIC, samples > 2 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);

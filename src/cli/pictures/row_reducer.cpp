@@ -68,7 +68,7 @@ void RowReducer::accept() {
 
 void RowReducer::halve_rows() {
     const size_t pixel = lensprof_layout_samples(picture_.layout), count = size_t(picture_.width) * blocks_;
-    const size_t row_samples = scratch_row_ / lensprof_sample_bytes(picture_.sample);
+    const size_t row_samples = scratch_row_ / lensprof_sample_type_bytes(picture_.sample);
     if (picture_.sample == LENSPROF_SAMPLE_U8)
         reduce_blocks<uint8_t, int32_t>(scratch_.data(), row_samples, pixel, count);
     else if (picture_.sample == LENSPROF_SAMPLE_U16)

@@ -12,39 +12,8 @@
 
 namespace lensprof {
 
-enum class ForeignFormat {
-    lensfun,
-    lcp,
-    json,
-    blob,
-    opcodes,
-    xmp,
-    alsc,
-    map,
-    pcalib,
-    curves,
-    crf,
-    vgn
-};
-
-// What a file of a format holds.
-enum class ForeignPart {
-    profiles,
-    response,
-    falloff
-};
-
-// One format, as the command knows it.
-struct ForeignRule {
-    ForeignFormat format;
-    const char *name;   // of --format
-    const char *about;  // one line for people
-    ForeignPart part;
-    bool is_written;
-};
-const std::vector<ForeignRule> &foreign_rules();
-const ForeignRule &rule_of(ForeignFormat format);
-std::vector<std::string> foreign_names(bool written_only);
+// One format, as the library knows it.
+using ForeignRule = lensprof_format_info;
 std::string about_foreign(bool written_only);  // for --help: a line a format
 
 // What files do not say themselves.
@@ -54,8 +23,8 @@ struct ForeignOptions {
     uint32_t curve = LENSPROF_CURVE_INVERSE;
     uint32_t depth = 16;  // bits of a map as PNG
     double color_temperature_k = LENSPROF_UNKNOWN;
-    std::string sense;            // of maps: attenuation, gain, or empty: PNG the one, TIFF the other
-    std::string opcode = "auto";  // radial, map or auto
+    std::string sense;  // of maps: attenuation, gain, or empty: PNG the one, TIFF the other
+    uint32_t opcode = LENSPROF_DNG_AUTO;
 };
 
 // By --format; where that is empty, by the file's content, then its name. Failure (usage or unreadable) names it.

@@ -24,15 +24,15 @@ void declare_foreign(Command &command, ForeignOptions &o, bool written) {
                    "alsc: K; default that of the file or profile, or 4500");
     if (!written) return;
     command.choice("--depth", o.depth, {{"8", 8}, {"16", 16}}, "maps as PNG: bits, 8 or 16 (default)");
-    command.choice<std::string>(
-        "--opcode", o.opcode, {{"auto", "auto"}, {"radial", "radial"}, {"map", "map"}},
-        "opcodes: radial (FixVignetteRadial), map (GainMap) or auto: radial where that is exact to 0.5 %");
+    command.choice("--opcode", o.opcode,
+                   {{"auto", LENSPROF_DNG_AUTO}, {"radial", LENSPROF_DNG_RADIAL}, {"map", LENSPROF_DNG_GAIN_MAP}},
+                   "opcodes: radial (FixVignetteRadial), map (GainMap) or auto: radial where that is exact to 0.5 %");
 }
 
 Choices<std::string> format_choices(bool written_only) {
     Choices<std::string> choices;
-    for (const ForeignRule &rule : foreign_rules())
-        if (rule.is_written || !written_only) choices.emplace_back(rule.name, rule.name);
+    for (uint32_t format = 1; const ForeignRule *rule = lensprof_format_get_info(format); format++)
+        if (rule->is_written || !written_only) choices.emplace_back(rule->name, rule->name);
     return choices;
 }
 

@@ -6,28 +6,12 @@
 #include "cli/pictures/opcode_tag.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli/profiles/foreign_file.hpp"
-#include "cli/profiles/profile_blob.hpp"
 #include "cli/program/library.hpp"
 
 namespace lensprof {
 namespace {
 
 constexpr uint64_t most_map_values = 100000000;
-constexpr size_t most_bytes = size_t(64) << 20;  // of a file of profiles, as read_profiles
-
-// What a writer of the library makes, by asking for the size first: write(buffer, capacity, &needed, &error).
-// `names` are those of the profiles.
-template <typename Write>
-std::string bytes_of(const std::string &path, const std::vector<std::string> &names, const Write &write) {
-    size_t needed = 0;
-    lensprof_error error{};
-    lensprof_status status = write(static_cast<char *>(nullptr), size_t(0), &needed, &error);
-    if (status != LENSPROF_ERROR_CAPACITY) check_named(status, path, error, LENSPROF_ITEM_PROFILE, names);
-    std::string bytes(needed, 0);
-    status = write(bytes.data(), bytes.size(), &needed, &error);
-    check_named(status, path, error, LENSPROF_ITEM_PROFILE, names);
-    return bytes;
-}
 
 void demand_frame(const std::string &path, const ForeignRule &rule, const ForeignOptions &o) {
     if (!o.width || !o.height)
@@ -58,7 +42,7 @@ void write_map(const std::string &path, const ForeignOptions &o, const lensprof_
     picture.width = picture.frame_width = columns, picture.height = picture.frame_height = rows;
     picture.layout = channels == 3 ? LENSPROF_LAYOUT_RGB : LENSPROF_LAYOUT_GREY;
     picture.sample = is_tiff ? LENSPROF_SAMPLE_F32 : o.depth == 8 ? LENSPROF_SAMPLE_U8 : LENSPROF_SAMPLE_U16;
-    const size_t size = lensprof_sample_bytes(picture.sample);
+    const size_t size = lensprof_sample_type_bytes(picture.sample);
     picture.row_bytes = size_t(columns) * channels * size;
     picture.pixels.resize(picture.row_bytes * rows);
     for (size_t i = 0; i < values.size(); i++) {  // 0 would be: not known
@@ -97,73 +81,51 @@ void demand_no_others(const std::string &path, const OpcodeLists &lists) {
                                               "distortion); take a picture without");
 }
 
-// One opcode of a radial falloff where that comes near enough, else a map.
-void write_opcodes(const std::string &path, const ForeignOptions &o, const lensprof_profile &profile) {
-    constexpr double near_enough = 0.005;
+std::string bytes_of(const std::string &path, const lensprof_export_options &options,
+                     const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names) {
+    const auto write = [&](void *data, size_t capacity, size_t *count, lensprof_error *error) {
+        return lensprof_export(profiles.data(), static_cast<uint32_t>(profiles.size()), &options, data, capacity, count,
+                               error);
+    };
+    return written(path, write, names);
+}
+
+lensprof_export_options options_of(const ForeignRule &rule, const ForeignOptions &o) {
+    lensprof_export_options options;
+    lensprof_export_options_init(&options);
+    options.format = rule.format;
+    options.width = o.width, options.height = o.height;
+    options.columns = o.columns, options.rows = o.rows;
+    options.curve = o.curve;
+    options.dng_form = o.opcode;
+    options.color_temperature_k = o.color_temperature_k;
+    return options;
+}
+
+// Into the picture that is there.
+void write_opcodes(const std::string &path, lensprof_export_options options, const lensprof_profile &profile) {
     const OpcodeLists lists = read_opcode_lists(path);
     demand_no_others(path, lists);
     // after demosaicing there are three channels; linear raw images and plain TIFF have them from the start
-    const uint32_t layout = lists.layout == LENSPROF_LAYOUT_GREY ? LENSPROF_LAYOUT_GREY : LENSPROF_LAYOUT_RGB;
-    const auto written = [&](uint32_t form, double &worst) {
-        return bytes_of(path, {}, [&](char *bytes, size_t capacity, size_t *needed, lensprof_error *error) {
-            return lensprof_dng_opcodes_write(&profile, lists.width, lists.height, layout, form, bytes, capacity,
-                                              needed, &worst, error);
-        });
-    };
-    double worst = 0.0;
-    std::string bytes;
-    const bool may_be_radial = profile.vignettings == 1 && !profile.grid.columns;
-    if (o.opcode == "radial" || (o.opcode == "auto" && may_be_radial)) bytes = written(LENSPROF_DNG_RADIAL, worst);
-    if (o.opcode == "map" || bytes.empty() || (o.opcode == "auto" && worst > near_enough))
-        bytes = written(LENSPROF_DNG_GAIN_MAP, worst);
+    if (lists.layout == LENSPROF_LAYOUT_GREY) options.layout = lists.layout;
+    options.width = lists.width, options.height = lists.height;
+    const std::string bytes = bytes_of(path, options, {&profile}, {});
     write_opcode_list(path, path, tag_opcode_list3, {bytes.begin(), bytes.end()});
-}
-
-std::string text_of(const ForeignRule &rule, const std::string &path, const ForeignOptions &o,
-                    const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names) {
-    const lensprof_profile &first = *profiles[0];
-    const auto count = static_cast<uint32_t>(profiles.size());
-    return bytes_of(path, names, [&](char *bytes, size_t capacity, size_t *needed, lensprof_error *error) {
-        switch (rule.format) {
-        case ForeignFormat::lensfun:
-            return lensprof_lensfun_write(profiles.data(), count, bytes, capacity, needed, error);
-        case ForeignFormat::lcp:
-            return lensprof_lcp_write(profiles.data(), count, o.width, o.height, bytes, capacity, needed, error);
-        case ForeignFormat::json: return lensprof_json_write(profiles.data(), count, bytes, capacity, needed, error);
-        case ForeignFormat::pcalib:  // one curve: green's of three
-            return lensprof_pcalib_write(&first.response[first.responses / 2], bytes, capacity, needed, error);
-        case ForeignFormat::curves:
-            return lensprof_curves_write(first.response, first.responses, o.curve, o.rows ? o.rows : 256, bytes,
-                                         capacity, needed, error);
-        case ForeignFormat::crf:
-            return lensprof_radical_response_write(first.response, first.responses, bytes, capacity, needed, error);
-        case ForeignFormat::vgn:
-            return lensprof_radical_vignetting_write(&first, o.width, o.height, bytes, capacity, needed, error);
-        default:
-            return lensprof_alsc_write(&first, o.color_temperature_k, o.columns ? o.columns : 16, o.rows ? o.rows : 12,
-                                       o.width, o.height, bytes, capacity, needed, error);
-        }
-    });
 }
 
 }  // namespace
 
 void write_foreign(const ForeignRule &rule, const std::string &path, const ForeignOptions &o,
                    const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names) {
-    const bool holds_many = rule.format == ForeignFormat::lensfun || rule.format == ForeignFormat::lcp
-                            || rule.format == ForeignFormat::json;
-    if (!holds_many && profiles.size() != 1)
+    if (!rule.is_many && profiles.size() != 1)
         throw Failure(ExitCode::usage, path + ": " + rule.name + " holds one profile, and "
                                            + std::to_string(profiles.size()) + " were chosen; give one id");
-    const ForeignFormat format = rule.format;
-    if (format == ForeignFormat::map || format == ForeignFormat::vgn || format == ForeignFormat::alsc)
+    const uint32_t format = rule.format;
+    if (format == LENSPROF_FORMAT_MAP || format == LENSPROF_FORMAT_RADICAL_VIGNETTING || format == LENSPROF_FORMAT_ALSC)
         demand_frame(path, rule, o);
-    if (format == ForeignFormat::map) return write_map(path, o, *profiles[0]);
-    if (format == ForeignFormat::opcodes) return write_opcodes(path, o, *profiles[0]);
-    const std::string text = text_of(rule, path, o, profiles, names);
-    if (holds_many && text.size() > most_bytes)
-        throw Failure(ExitCode::usage, path + ": would be larger than the 64 MiB that are read; export fewer profiles, or use "
-                                              "`lensprof profile merge`");
+    if (format == LENSPROF_FORMAT_MAP) return write_map(path, o, *profiles[0]);
+    if (format == LENSPROF_FORMAT_DNG_OPCODES) return write_opcodes(path, options_of(rule, o), *profiles[0]);
+    const std::string text = bytes_of(path, options_of(rule, o), profiles, names);
     write_file(path, text.data(), text.size());
 }
 

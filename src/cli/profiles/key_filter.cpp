@@ -47,8 +47,13 @@ std::vector<lensprof_store_row> KeyFilter::rows(lensprof_store *store, const std
     lensprof_error error{};
     uint32_t found = 0;
     check(lensprof_store_list(store, &filter, nullptr, 0, &found, &error), store_path(db), &error);
-    std::vector<lensprof_store_row> rows(found);
-    check(lensprof_store_list(store, &filter, rows.data(), found, &found, &error), store_path(db), &error);
+    std::vector<lensprof_store_row> rows;
+    lensprof_status status = LENSPROF_OK;
+    do {  // again where others add profiles meanwhile
+        rows.resize(found);
+        status = lensprof_store_list(store, &filter, rows.data(), found, &found, &error);
+    } while (status == LENSPROF_ERROR_CAPACITY);
+    check(status, store_path(db), &error);
     rows.resize(std::min<size_t>(rows.size(), found));
     if (!processing_) return rows;
     const uint32_t processing = *processing_;

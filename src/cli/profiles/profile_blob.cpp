@@ -24,14 +24,11 @@ BlobStamp stamp_of(const unsigned char *blob, size_t bytes) {
 
 BlobStamp write_blob(const lensprof_profile &profile, bool with_covariance, const std::string &path) {
     const uint32_t flags = with_covariance ? LENSPROF_PACK_COVARIANCE : 0;
-    size_t bytes = 0;
-    if (const auto status = lensprof_profile_pack(&profile, flags, nullptr, 0, &bytes);
-        status != LENSPROF_ERROR_CAPACITY)
-        check(status, path);
-    std::vector<unsigned char> blob(bytes);
-    check(lensprof_profile_pack(&profile, flags, blob.data(), blob.size(), &bytes), path);
+    const std::string blob = written(path, [&](void *data, size_t capacity, size_t *count, lensprof_error *) {
+        return lensprof_profile_pack(&profile, flags, data, capacity, count);
+    });
     write_file(path, blob.data(), blob.size());
-    return stamp_of(blob.data(), blob.size());
+    return stamp_of(reinterpret_cast<const unsigned char *>(blob.data()), blob.size());
 }
 
 std::unique_ptr<lensprof_profile> read_blob(const std::string &path, BlobStamp &stamp) {

@@ -80,8 +80,8 @@ void export_blob(const Options &o, const StoredProfile &stored, Streams &streams
 // What a format cannot hold and is not refused.
 void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<StoredProfile> &chosen,
                    Streams &streams) {
-    const bool is_mean = rule.format == ForeignFormat::lensfun || rule.format == ForeignFormat::lcp
-                         || (rule.format == ForeignFormat::map && format_of_name(o.output) == FileFormat::png);
+    const bool is_mean = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP
+                         || (rule.format == LENSPROF_FORMAT_MAP && format_of_name(o.output) == FileFormat::png);
     if (!is_mean) return;
     for (const StoredProfile &one : chosen)
         if (one.profile->vignettings == 3)
@@ -94,7 +94,7 @@ void export_foreign(const Options &o, const ForeignRule &rule, const std::vector
     std::vector<const lensprof_profile *> profiles;
     std::vector<std::string> names;
     Json ids = Json::array();
-    const bool needs_crop = rule.format == ForeignFormat::lensfun || rule.format == ForeignFormat::lcp;
+    const bool needs_crop = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP;
     for (const StoredProfile &one : chosen) {
         double &crop = one.profile->key.crop_factor;
         if (crop == LENSPROF_UNKNOWN) crop = o.crop_factor;
@@ -116,10 +116,10 @@ void export_foreign(const Options &o, const ForeignRule &rule, const std::vector
 int run(Options &o, Streams &streams) {
     check_options(o);
     const ForeignRule &rule = format_to_write(o.output, o.format);
-    if (o.covariance && rule.format != ForeignFormat::blob)
+    if (o.covariance && rule.format != LENSPROF_FORMAT_BLOB)
         throw Failure(ExitCode::usage, "profile export: --covariance belongs to --format blob");
     const std::vector<StoredProfile> chosen = o.filter.profiles(o.db, o.ids);
-    if (rule.format != ForeignFormat::blob) {
+    if (rule.format != LENSPROF_FORMAT_BLOB) {
         export_foreign(o, rule, chosen, streams);
         return 0;
     }

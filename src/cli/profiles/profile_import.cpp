@@ -97,8 +97,8 @@ std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector
     auto profile = new_profile();
     std::string response, falloff, names;
     for (const Input &input : inputs) {
-        if (input.rule->part == ForeignPart::profiles) continue;
-        std::string &taken = input.rule->part == ForeignPart::response ? response : falloff;
+        if (input.rule->holds == LENSPROF_HOLDS_PROFILES) continue;
+        std::string &taken = input.rule->holds == LENSPROF_HOLDS_RESPONSE ? response : falloff;
         if (!taken.empty())
             throw Failure(ExitCode::usage, input.file + ": holds a " + (&taken == &response ? "response" : "falloff")
                                                + ", as " + taken + " does; import the one profile after the other");
@@ -108,7 +108,7 @@ std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector
     if (names.empty()) return nullptr;
     profile->key = o.key.key(response.empty() ? LENSPROF_PROCESSING_RAW : LENSPROF_PROCESSING_JPEG);
     for (const Input &input : inputs)
-        if (input.rule->part != ForeignPart::profiles) read_part(*input.rule, input.file, o.foreign, *profile);
+        if (input.rule->holds != LENSPROF_HOLDS_PROFILES) read_part(*input.rule, input.file, o.foreign, *profile);
     if (!*profile->key.camera_model && !*profile->key.lens)
         throw Failure(ExitCode::usage, (response.empty() ? falloff : response)
                                            + ": does not say which camera and lens it is of; give --camera or --lens");
@@ -124,7 +124,7 @@ std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector
 void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts,
                lensprof_import_visitor visit) {
     for (const Input &input : inputs) {
-        if (input.rule->part != ForeignPart::profiles) continue;
+        if (input.rule->holds != LENSPROF_HOLDS_PROFILES) continue;
         import.file = input.file;
         try {
             read_profiles(*input.rule, input.file, visit, &import);

@@ -101,21 +101,15 @@ Pto read_pto(const std::string &path) {
 }
 
 std::string pto_name(const lensprof_pto &pto, uint32_t index) {
-    size_t needed = 0;
-    if (lensprof_pto_get_name(&pto, index, nullptr, 0, &needed) != LENSPROF_ERROR_CAPACITY) return {};
-    std::string name(needed, 0);
-    check(lensprof_pto_get_name(&pto, index, name.data(), needed, &needed), "image name");
-    name.resize(needed - 1);
-    return name;
+    return written("image name", [&](char *name, size_t capacity, size_t *count, lensprof_error *error) {
+        return lensprof_pto_get_name(&pto, index, name, capacity, count, error);
+    });
 }
 
 std::string pto_text(const lensprof_pto &pto) {
-    size_t needed = 0;
-    if (lensprof_pto_write(&pto, nullptr, 0, &needed) != LENSPROF_ERROR_CAPACITY) return {};
-    std::string text(needed, 0);
-    check(lensprof_pto_write(&pto, text.data(), needed, &needed), "project");
-    text.resize(needed);
-    return text;
+    return written("project", [&](void *text, size_t capacity, size_t *count, lensprof_error *error) {
+        return lensprof_pto_write(&pto, text, capacity, count, error);
+    });
 }
 
 void set_text(char *field, size_t size, const std::string &text) {

@@ -23,6 +23,18 @@ std::string with_name(const std::string &text, const lensprof_item &item, const 
 void check_named(lensprof_status status, const std::string &item, const lensprof_error &error, lensprof_item_kind kind,
                  const std::vector<std::string> &names);
 
+// What a function of the library writes: write(data, capacity, &count, &error) as in lensprof/base.h. `names` are those
+// of its profiles, where an error may name one.
+template <class Write>
+std::string written(const std::string &item, Write write, const std::vector<std::string> &names = {}) {
+    lensprof_error error{};
+    size_t count = 0;
+    check_named(write(nullptr, 0, &count, &error), item, error, LENSPROF_ITEM_PROFILE, names);
+    std::string text(count, 0);
+    if (count) check_named(write(text.data(), count, &count, &error), item, error, LENSPROF_ITEM_PROFILE, names);
+    return text;
+}
+
 struct StoreClose {
     void operator()(lensprof_store *store) const { lensprof_store_close(store); }
 };

@@ -1,10 +1,10 @@
 // Falloffs of fits and profiles, for tables and charts.
 #pragma once
 
-#include <algorithm>
 #include <memory>
+#include <vector>
 
-#include <lensprof/profile.h>
+#include <lensprof/lensprof.h>
 
 #include "cli/program/library.hpp"
 
@@ -13,17 +13,27 @@ namespace lensprof {
 // False where all is light as the centre is: a falloff held at none, or not measured, as by `bracket`.
 inline bool has_falloff(const lensprof_vignetting &v) { return v.k[0] != 0.0 || v.k[1] != 0.0 || v.k[2] != 0.0; }
 
-// The curves and the covariance of a fit (lensprof_fit_result, lensprof_flat_result) with these responses, 1 or 3.
-template <class Fit>
-std::unique_ptr<lensprof_profile> profile_of_curves(const Fit &fit, const lensprof_response *response,
-                                                    uint32_t responses) {
+// What a fit found, and how sure it is; key and origin are still empty.
+inline std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit,
+                                                    const lensprof_fit_options *options = nullptr, size_t images = 0) {
     auto profile = new_profile();
-    profile->responses = responses;
-    std::copy_n(response, responses, profile->response);
-    profile->vignettings = fit.vignettings;
-    std::copy_n(fit.vignetting, 3, profile->vignetting);
-    profile->covariance_size = fit.covariance_size;
-    std::copy_n(fit.covariance, fit.covariance_size * fit.covariance_size, profile->covariance);
+    lensprof_error error{};
+    check(lensprof_profile_from_fit(profile.get(), &fit, options, static_cast<uint32_t>(images), &error), "fit",
+          &error);
+    return profile;
+}
+
+// The same of a card, with the responses of its pictures.
+inline std::unique_ptr<lensprof_profile>
+profile_of(const lensprof_flat_result &fit, const std::vector<lensprof_response> &responses, size_t images = 0) {
+    auto profile = new_profile();
+    lensprof_flat_options options;
+    lensprof_flat_options_init(&options);
+    options.response = responses.data();
+    options.responses = static_cast<uint32_t>(responses.size());
+    lensprof_error error{};
+    check(lensprof_profile_from_flat(profile.get(), &fit, &options, static_cast<uint32_t>(images), &error), "fit",
+          &error);
     return profile;
 }
 

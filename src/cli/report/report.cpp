@@ -304,7 +304,7 @@ void print_prior(const BuildReport &report, std::ostream &out) {
 void print_build(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_exposures(report, out);
-    if (report.has_falloff) print_vignettings(*profile_of_curves(fit, &fit.response, 1), out);
+    if (report.has_falloff) print_vignettings(*profile_of(fit), out);
     print_response(fit.response, out);
     print_gamma(report, out);
     print_prior(report, out);
@@ -349,14 +349,10 @@ Json provenance_json(const lensprof_provenance &p) {
 
 Json profile_json(int64_t id, const lensprof_profile &profile) {
     const lensprof_profile *const pointer = &profile;
-    lensprof_error error{};
-    size_t bytes = 0;
-    lensprof_status status = lensprof_json_write(&pointer, 1, nullptr, 0, &bytes, &error);
-    std::string text(bytes, '\0');
-    if (status == LENSPROF_ERROR_CAPACITY)
-        status = lensprof_json_write(&pointer, 1, text.data(), bytes, &bytes, &error);
-    check(status, "profile as JSON", &error);
-    Json json = Json::parse(text);
+    const auto write = [&](void *text, size_t capacity, size_t *count, lensprof_error *error) {
+        return lensprof_json_write(&pointer, 1, text, capacity, count, error);
+    };
+    Json json = Json::parse(written("profile as JSON", write));
     if (id) json["id"] = id;
     return json;
 }

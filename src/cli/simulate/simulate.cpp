@@ -244,7 +244,8 @@ void expose(const Truth &truth, uint32_t i, Picture &picture) {
     options.source = truth.exposures[i];
     std::vector<uint64_t> memory(lensprof_plan_bytes(&options) / 8 + 1);
     const lensprof_plan *plan = nullptr;
-    check(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan), "simulate");
+    lensprof_error error{};
+    check(lensprof_plan_init(memory.data(), memory.size() * 8, &options, &plan, &error), "simulate", &error);
     lensprof_image view = picture.view();
     check(lensprof_apply(plan, &view, &view, 0, 0), "simulate");
 }
@@ -266,7 +267,7 @@ void digitise(const Truth &truth, uint32_t i, uint32_t sample, Picture &picture)
     Random random(truth.seed * 7919ull + i);
     Picture result = picture;
     result.sample = sample;
-    result.row_bytes = static_cast<size_t>(result.width) * 3 * lensprof_sample_bytes(sample);
+    result.row_bytes = static_cast<size_t>(result.width) * 3 * lensprof_sample_type_bytes(sample);
     result.pixels.assign(result.row_bytes * result.height, 0);
     for (uint32_t y = 0; y < picture.height; y++) {
         const auto *row = reinterpret_cast<const float *>(&picture.pixels[y * picture.row_bytes]);

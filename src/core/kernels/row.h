@@ -224,7 +224,7 @@ static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes
 #endif
         do_run(plan, &r, near_white, s);
 #if CAN_STREAM
-        if (stream) stream_copy(runs[p].to, room, r.count * lensprof_sample_bytes(plan->target_sample));
+        if (stream) stream_copy(runs[p].to, room, r.count * lensprof_sample_type_bytes(plan->target_sample));
 #endif
     }
     (void)stream;
@@ -243,8 +243,8 @@ static inline void fetch_ahead(const uint8_t *from, uint32_t bytes) {
 void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8_t *const target[3], uint32_t x,
                 uint32_t y, uint32_t count, int stream) {
     const uint32_t planes = plan->layout == LENSPROF_LAYOUT_PLANAR ? 3 : 1;
-    const uint32_t from_step = plan->samples * lensprof_sample_bytes(plan->source_sample);
-    const uint32_t to_step = plan->samples * lensprof_sample_bytes(plan->target_sample);
+    const uint32_t from_step = plan->samples * lensprof_sample_type_bytes(plan->source_sample);
+    const uint32_t to_step = plan->samples * lensprof_sample_type_bytes(plan->target_sample);
     const float dy = (float)((int32_t)y - plan->center_px[1]) - plan->center_part[1];
     strip s;
     if (plan->columns) blend_rows(plan, y, &s);

@@ -54,7 +54,7 @@ ALWAYS_INLINE lane_f load_values(uint32_t sample, const uint8_t *p) {
 }
 
 ALWAYS_INLINE void load_codes(uint32_t sample, const uint8_t *from, uint32_t count, float *light) {
-    const uint32_t bytes = lensprof_sample_bytes(sample), whole = count - count % LANES;
+    const uint32_t bytes = lensprof_sample_type_bytes(sample), whole = count - count % LANES;
     for (uint32_t i = 0; i < whole; i += LANES) {
         f_store(light + i, load_values(sample, from + i * bytes));
     }
@@ -112,7 +112,7 @@ ALWAYS_INLINE void store_vector(const lensprof_plan *plan, uint32_t sample, int 
 
 ALWAYS_INLINE void store_samples(const lensprof_plan *plan, uint32_t sample, const strip *s, uint32_t at, uint8_t *to,
                                  uint32_t count) {
-    const uint32_t bytes = lensprof_sample_bytes(sample);
+    const uint32_t bytes = lensprof_sample_type_bytes(sample);
     uint32_t i = 0;
     for (; i + LANES <= count; i += LANES)
         store_vector(plan, sample, 0, s, at + i, f_load(s->light + at + i), to + i * bytes);
@@ -127,7 +127,7 @@ ALWAYS_INLINE void store_samples(const lensprof_plan *plan, uint32_t sample, con
 /* ---- alpha ---- */
 
 static void take_alpha(const lensprof_plan *plan, const uint8_t *from, uint32_t count, strip *s) {
-    const uint32_t bytes = lensprof_sample_bytes(plan->source_sample);
+    const uint32_t bytes = lensprof_sample_type_bytes(plan->source_sample);
     for (uint32_t i = 0; i < count; i++) memcpy(s->alpha[i], from + ((i + 1) * plan->samples - 1) * bytes, bytes);
 }
 
@@ -156,7 +156,7 @@ static float get_value(uint32_t sample, const uint8_t *p) {
 
 /* As it was, converted where the types differ. */
 static void give_alpha(const lensprof_plan *plan, const strip *s, uint8_t *to, uint32_t count) {
-    const uint32_t bytes = lensprof_sample_bytes(plan->target_sample);
+    const uint32_t bytes = lensprof_sample_type_bytes(plan->target_sample);
     for (uint32_t i = 0; i < count; i++) {
         uint8_t *p = to + ((i + 1) * plan->samples - 1) * bytes;
         if (plan->source_sample == plan->target_sample)

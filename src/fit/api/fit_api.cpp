@@ -4,6 +4,7 @@
 #include <memory>
 #include <new>
 
+#include "fit/api/profile.hpp"
 #include "fit/base/sized.hpp"
 #include "fit/methods/debevec.hpp"
 #include "fit/methods/overlap.hpp"
@@ -296,6 +297,32 @@ lensprof_status fit_pairs(Call &call, const lensprof_pair *pairs, uint32_t count
     return LENSPROF_OK;
 }
 
+const char *method_name(uint32_t method) {
+    switch (method) {
+    case LENSPROF_METHOD_TRANSFER: return "transfer";
+    case LENSPROF_METHOD_RADIANCE: return "radiance";
+    case LENSPROF_METHOD_TRANSFER_FUNCTION: return "transfer-function";
+    case LENSPROF_METHOD_DEBEVEC: return "debevec";
+    default: return "";
+    }
+}
+
+// Of counts, which do not run over.
+uint32_t sum_of(uint32_t a, uint32_t b) { return a + std::min(b, UINT32_MAX - a); }
+
+lensprof_status check_model(const lensprof_response &response, const lensprof_vignetting *vignetting, uint32_t channels,
+                            const lensprof_exposure *exposures, uint32_t image_count, lensprof_error *error) {
+    lensprof_status status = lensprof_response_validate(&response);
+    if (status != LENSPROF_OK) return fail(status, error, "the response is invalid; see lensprof_response_validate");
+    for (uint32_t c = 0; c < channels; c++)
+        if ((status = lensprof_vignetting_validate(&vignetting[c])) != LENSPROF_OK)
+            return fail(status, error, "vignetting %u is invalid; see lensprof_vignetting_validate", c);
+    for (uint32_t i = 0; i < image_count; i++)
+        if ((status = lensprof_exposure_validate(&exposures[i])) != LENSPROF_OK)
+            return fail(status, error, "image %u: its exposure is invalid; see lensprof_exposure_validate", i);
+    return LENSPROF_OK;
+}
+
 }  // namespace
 
 extern "C" {
@@ -364,24 +391,47 @@ lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const
     });
 }
 
+lensprof_status lensprof_profile_from_fit(lensprof_profile *profile, const lensprof_fit_result *result,
+                                          const lensprof_fit_options *given, uint32_t image_count,
+                                          lensprof_error *error) {
+    clear(error);
+    if (!profile || !result) return fail(LENSPROF_ERROR_ARGUMENT, error, "profile or result is NULL");
+    lensprof_fit_options options;
+    lensprof_fit_options_init(&options);
+    lensprof_fit_result fit;
+    lensprof_fit_result_init(&fit);
+    const lensprof_status status = take_fitted(given, kFirstOptions, options, result, kFirstResult, fit, error);
+    if (status != LENSPROF_OK) return status;
+    const auto change = [&](lensprof_profile &own) {
+        put_result(fit, given ? method_name(options.method) : "", image_count, own);
+        own.responses = 1;
+        own.response[0] = fit.response;
+        lensprof_gain_grid_init(&own.grid);
+        own.provenance.pairs = fit.pairs;
+        own.provenance.heldout_rms = fit.heldout_rms;
+        if (fit.profile_prior != LENSPROF_PROFILE_PRIOR_USED || !options.profile) return;
+        own.provenance.images = sum_of(image_count, options.profile->provenance.images);
+        own.provenance.pairs = sum_of(fit.pairs, options.profile->provenance.pairs);
+    };
+    return change_given_profile(profile, change, error);
+}
+
 lensprof_status lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting vignetting[3],
                                       const lensprof_fit_image *images, const lensprof_exposure *exposures,
                                       uint32_t image_count, const lensprof_pair *pairs, uint32_t pair_count,
-                                      uint32_t channels, double *rms, double *median) {
+                                      uint32_t channels, double *rms, double *median, lensprof_error *error) {
+    clear(error);
     if (!response || !vignetting || !images || !exposures || !pairs || !rms || !pair_count
         || (channels != 1 && channels != 3))
-        return LENSPROF_ERROR_ARGUMENT;
-    lensprof_status status = lensprof_response_validate(response);
-    for (uint32_t c = 0; c < channels && status == LENSPROF_OK; c++)
-        status = lensprof_vignetting_validate(&vignetting[c]);
-    for (uint32_t i = 0; i < image_count && status == LENSPROF_OK; i++)
-        status = lensprof_exposure_validate(&exposures[i]);
+        return fail(LENSPROF_ERROR_ARGUMENT, error,
+                    "transfer rms: a pointer is NULL, there are no pairs, or channels is not 1 or 3");
+    lensprof_status status = check_model(*response, vignetting, channels, exposures, image_count, error);
     if (status != LENSPROF_OK) return status;
     try {
         std::vector<lensprof_fit_image> own;
-        status = take_images(images, image_count, own, nullptr);
+        status = take_images(images, image_count, own, error);
         if (status == LENSPROF_OK)
-            status = check_pairs(pairs, pair_count, own.data(), image_count, static_cast<int>(channels), nullptr);
+            status = check_pairs(pairs, pair_count, own.data(), image_count, static_cast<int>(channels), error);
         if (status != LENSPROF_OK) return status;
         Summary summary = transfer_summary(*response, vignetting, own.data(), exposures, image_count, pairs, pair_count,
                                            static_cast<int>(channels));
@@ -389,7 +439,7 @@ lensprof_status lensprof_transfer_rms(const lensprof_response *response, const l
         if (median) *median = summary.median;
         return LENSPROF_OK;
     } catch (const std::exception &) {
-        return LENSPROF_ERROR_MEMORY;
+        return fail(LENSPROF_ERROR_MEMORY, error, "transfer rms: out of memory");
     }
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <new>
 
+#include "fit/api/profile.hpp"
 #include "fit/base/parallel.hpp"
 #include "fit/base/sized.hpp"
 #include "fit/flat/fit.hpp"
@@ -145,12 +146,12 @@ void lensprof_flat_result_init_sized(lensprof_flat_result *result, size_t size, 
 }
 
 lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const lensprof_flat_image *images,
-                                  uint32_t count, lensprof_flat_result *result, lensprof_error *error) {
+                                  uint32_t image_count, lensprof_flat_result *result, lensprof_error *error) {
     clear(error);
     if (!options || !images || !result) return fail(LENSPROF_ERROR_ARGUMENT, error, "flat: a pointer is NULL");
     try {
         const auto call = std::make_unique<Call>();
-        lensprof_status status = take_call(options, images, count, *result, *call, error);
+        lensprof_status status = take_call(options, images, image_count, *result, *call, error);
         if (status == LENSPROF_OK) status = run(*call, error);
         if (status == LENSPROF_OK) give_result(call->result, call->quality, result);
         return status;
@@ -163,6 +164,30 @@ lensprof_status lensprof_fit_flat(const lensprof_flat_options *options, const le
     } catch (...) {
         return fail(LENSPROF_ERROR_INTERNAL, error, "flat: an unknown exception");
     }
+}
+
+lensprof_status lensprof_profile_from_flat(lensprof_profile *profile, const lensprof_flat_result *result,
+                                           const lensprof_flat_options *given, uint32_t image_count,
+                                           lensprof_error *error) {
+    clear(error);
+    if (!profile || !result) return fail(LENSPROF_ERROR_ARGUMENT, error, "profile or result is NULL");
+    lensprof_flat_options options;
+    lensprof_flat_options_init(&options);
+    lensprof_flat_result flat;
+    lensprof_flat_result_init(&flat);
+    const lensprof_status status = take_fitted(given, kFirstOptions, options, result, kFirstResult, flat, error);
+    if (status != LENSPROF_OK) return status;
+    if (options.responses != 1 && options.responses != 3)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "options: responses is %u; give 1 or 3", options.responses);
+    const auto change = [&](lensprof_profile &own) {
+        put_result(flat, "flat", image_count, own);
+        own.responses = options.response ? options.responses : 1;
+        lensprof_response_set_linear(&own.response[0]);
+        if (options.response) std::copy_n(options.response, own.responses, own.response);
+        own.grid = flat.gain_grid;
+        own.provenance.pairs = flat.cells;
+    };
+    return change_given_profile(profile, change, error);
 }
 
 }  // extern "C"

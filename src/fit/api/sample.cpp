@@ -82,20 +82,18 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
 
 // Both samplings: `room` for what is wanted, what `draw` finds into `items`.
 template <class Item, class Draw>
-lensprof_status sample_into(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count,
-                            uint64_t room, Item *items, uint32_t capacity, uint32_t *found, Draw draw,
-                            lensprof_error *error) {
-    if (capacity == 0) {
-        *found = static_cast<uint32_t>(room);
-        return LENSPROF_OK;
-    }
+lensprof_status sample_into(const lensprof_sample_options &options, const lensprof_sample_image *images,
+                            uint32_t image_count, uint64_t room, Item *items, uint32_t capacity, uint32_t *count,
+                            Draw draw, lensprof_error *error) {
+    if (capacity < room) *count = static_cast<uint32_t>(room);
+    if (capacity == 0) return LENSPROF_OK;
     if (capacity < room)
         return fail(LENSPROF_ERROR_CAPACITY, error, "sample: room for %u items is needed", static_cast<uint32_t>(room));
     std::vector<Item> result;
-    const lensprof_status status = sample(options, images, count, draw, result, error);
+    const lensprof_status status = sample(options, images, image_count, draw, result, error);
     if (status != LENSPROF_OK) return status;
     std::copy(result.begin(), result.end(), items);
-    *found = static_cast<uint32_t>(result.size());
+    *count = static_cast<uint32_t>(result.size());
     return LENSPROF_OK;
 }
 
@@ -115,37 +113,37 @@ void lensprof_sample_image_init_sized(lensprof_sample_image *image, size_t size)
 }
 
 lensprof_status lensprof_sample_overlap(const lensprof_sample_options *given, const lensprof_sample_image *images,
-                                        uint32_t count, lensprof_pair *pairs, uint32_t capacity, uint32_t *found,
+                                        uint32_t image_count, lensprof_pair *pairs, uint32_t capacity, uint32_t *count,
                                         lensprof_error *error) {
     clear(error);
-    if (!given || !images || !found || (capacity && !pairs))
+    if (!given || !images || !count || (capacity && !pairs))
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: a pointer is NULL");
     lensprof_sample_options options;
-    lensprof_status status = take_options(given, count, options, error);
+    lensprof_status status = take_options(given, image_count, options, error);
     if (status != LENSPROF_OK) return status;
-    uint32_t wanted = options.pairs ? options.pairs : std::max(2000u, 300 * count);
+    uint32_t wanted = options.pairs ? options.pairs : std::max(2000u, 300 * image_count);
     auto draw = [&](Sampler &sampler) {
         return options.sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper(wanted) : sampler.balanced(wanted);
     };
-    return sample_into(options, images, count, wanted, pairs, capacity, found, draw, error);
+    return sample_into(options, images, image_count, wanted, pairs, capacity, count, draw, error);
 }
 
 lensprof_status lensprof_sample_tracks(const lensprof_sample_options *given, const lensprof_sample_image *images,
-                                       uint32_t count, lensprof_observation *observations, uint32_t capacity,
-                                       uint32_t *found, lensprof_error *error) {
+                                       uint32_t image_count, lensprof_observation *observations, uint32_t capacity,
+                                       uint32_t *count, lensprof_error *error) {
     clear(error);
-    if (!given || !images || !found || (capacity && !observations))
+    if (!given || !images || !count || (capacity && !observations))
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: a pointer is NULL");
     lensprof_sample_options options;
-    lensprof_status status = take_options(given, count, options, error);
+    lensprof_status status = take_options(given, image_count, options, error);
     if (status != LENSPROF_OK) return status;
-    uint32_t wanted = options.pairs ? options.pairs : std::max(2000u, 150 * count);
+    uint32_t wanted = options.pairs ? options.pairs : std::max(2000u, 150 * image_count);
     auto draw = [&](Sampler &sampler) {
         return options.sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper_tracks(wanted)
                                                            : sampler.balanced_tracks(wanted);
     };
-    uint64_t room = uint64_t{wanted} * std::min(count, kLongestTrack);
-    return sample_into(options, images, count, room, observations, capacity, found, draw, error);
+    uint64_t room = uint64_t{wanted} * std::min(image_count, kLongestTrack);
+    return sample_into(options, images, image_count, room, observations, capacity, count, draw, error);
 }
 
 }  // extern "C"

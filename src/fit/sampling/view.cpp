@@ -18,7 +18,7 @@ constexpr double kAlmostWhite = 1.0 - 1e-9;       // 1 itself is a channel that 
 constexpr float kSmallestSpread = 1.0f / 255.0f;  // of a patch without noise
 
 const uint8_t *pixel(const lensprof_image &view, int u, int v, uint32_t sample) {
-    uint32_t bytes = lensprof_sample_bytes(view.sample);
+    uint32_t bytes = lensprof_sample_type_bytes(view.sample);
     return static_cast<const uint8_t *>(view.data) + static_cast<ptrdiff_t>(v) * view.row_bytes
            + (static_cast<size_t>(u) * lensprof_layout_samples(view.layout) + sample) * bytes;
 }

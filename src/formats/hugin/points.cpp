@@ -68,6 +68,21 @@ bool is_finite(const lensprof_pair &pair) {
     return sum == 0.0;
 }
 
+void check_pairs(const lensprof_pair *pairs, uint32_t pair_count, const lensprof_camera *cameras,
+                 uint32_t camera_count) {
+    for (uint32_t i = 0; i < pair_count; i++) {
+        const std::string item = "pair " + std::to_string(i) + ": ";
+        if (pairs[i].image[0] >= camera_count || pairs[i].image[1] >= camera_count)
+            throw FormatFailure{LENSPROF_ERROR_ARGUMENT, item + "an image without a camera; give one of each image"};
+        if (!is_finite(pairs[i]))
+            throw FormatFailure{LENSPROF_ERROR_NOT_FINITE, item + "a number that is not finite; leave the pair out"};
+    }
+    for (uint32_t i = 0; i < camera_count; i++)
+        if (!cameras[i].width || !cameras[i].height)
+            throw FormatFailure{LENSPROF_ERROR_SIZE,
+                                "camera " + std::to_string(i) + ": a frame without pixels; set width and height"};
+}
+
 void append_pair(std::string &text, const lensprof_pair &pair, const lensprof_camera *cameras) {
     double column[kColumns] = {};
     const lensprof_vignetting centred = {};
@@ -87,36 +102,34 @@ void append_pair(std::string &text, const lensprof_pair &pair, const lensprof_ca
 
 using namespace lensprof;
 
-lensprof_status lensprof_points_read(const char *text, size_t bytes, lensprof_pair *pairs, uint32_t capacity,
-                                     uint32_t *found, lensprof_error *error) {
-    if ((!text && bytes) || !found || (!pairs && capacity)) {
-        set_error(error, "lensprof_points_read: text, pairs or found is NULL; pass a buffer");
+lensprof_status lensprof_points_read(const void *data, size_t size, lensprof_pair *pairs, uint32_t capacity,
+                                     uint32_t *count, lensprof_error *error) {
+    if ((!data && size) || !count || (!pairs && capacity)) {
+        set_error(error, "lensprof_points_read: data, pairs or count is NULL; pass a buffer");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    bool full = false;
-    lensprof_status status = at_boundary(error, [&] {
-        std::string_view all(bytes ? text : "", bytes);
-        uint32_t count = walk_pairs(all, [](const lensprof_pair &, uint32_t) {});  // all lines are checked first
-        full = capacity && count > capacity;
-        if (capacity && !full) walk_pairs(all, [&](const lensprof_pair &pair, uint32_t i) { pairs[i] = pair; });
-        *found = count;
+    return at_boundary(error, [&] {
+        const std::string_view all = view_of(data, size);
+        *count = walk_pairs(all, [](const lensprof_pair &, uint32_t) {});  // all lines are checked first
+        if (!capacity) return;
+        if (*count > capacity)
+            throw FormatFailure{LENSPROF_ERROR_CAPACITY, std::to_string(*count) + " pairs for a buffer of "
+                                                             + std::to_string(capacity) + "; pass a larger one"};
+        walk_pairs(all, [&](const lensprof_pair &pair, uint32_t i) { pairs[i] = pair; });
     });
-    if (full) set_error(error, "more pairs than the buffer holds; call again with a buffer of the number found");
-    return full ? LENSPROF_ERROR_CAPACITY : status;
 }
 
 lensprof_status lensprof_points_write(const lensprof_pair *pairs, uint32_t pair_count, const lensprof_camera *cameras,
-                                      uint32_t count, char *text, size_t capacity, size_t *needed) {
-    if ((!pairs && pair_count) || (!cameras && count) || (!text && capacity)) return LENSPROF_ERROR_ARGUMENT;
-    for (uint32_t i = 0; i < pair_count; i++) {
-        if (pairs[i].image[0] >= count || pairs[i].image[1] >= count) return LENSPROF_ERROR_ARGUMENT;
-        if (!is_finite(pairs[i])) return LENSPROF_ERROR_NOT_FINITE;
+                                      uint32_t camera_count, void *data, size_t capacity, size_t *count,
+                                      lensprof_error *error) {
+    if ((!pairs && pair_count) || (!cameras && camera_count) || (!data && capacity)) {
+        set_error(error, "lensprof_points_write: pairs, cameras or data is NULL; pass buffers");
+        return LENSPROF_ERROR_ARGUMENT;
     }
-    for (uint32_t i = 0; i < count; i++)
-        if (!cameras[i].width || !cameras[i].height) return LENSPROF_ERROR_SIZE;
-    std::string all;
-    lensprof_status status = at_boundary(nullptr, [&] {
+    return write_at_boundary(data, capacity, count, error, [&] {
+        check_pairs(pairs, pair_count, cameras, camera_count);
+        std::string all;
         for (uint32_t i = 0; i < pair_count; i++) append_pair(all, pairs[i], cameras);
+        return all;
     });
-    return status == LENSPROF_OK ? copy_text(all, text, capacity, needed) : status;
 }

@@ -70,11 +70,15 @@ bool concerns(const lensprof_pto &pto, const PtoMask &mask, uint32_t index) {
 using namespace lensprof;
 
 lensprof_status lensprof_pto_draw_mask(const lensprof_pto *pto, uint32_t index, uint8_t *mask, uint32_t width,
-                                       uint32_t height, ptrdiff_t row_bytes) {
-    if (!pto || !mask || index >= pto->images.size()) return LENSPROF_ERROR_ARGUMENT;
+                                       uint32_t height, ptrdiff_t row_bytes, lensprof_error *error) {
+    if (!mask || !has_image(pto, index)) return fail_at_image(pto, index, "mask", error);
     const ptrdiff_t least = static_cast<ptrdiff_t>(width);
-    if (!width || !height || (row_bytes < least && row_bytes > -least)) return LENSPROF_ERROR_SIZE;
-    return at_boundary(nullptr, [&] {
+    if (!width || !height || (row_bytes < least && row_bytes > -least)) {
+        set_error(error,
+                  "lensprof_pto_draw_mask: a mask without pixels, or row_bytes is below its width; correct them");
+        return LENSPROF_ERROR_SIZE;
+    }
+    return at_boundary(error, [&] {
         const lensprof_pto_image &image = pto->images[index].result;
         Axis across = {image.camera.width / static_cast<double>(width), width};
         Axis down = {image.camera.height / static_cast<double>(height), height};

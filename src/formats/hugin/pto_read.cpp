@@ -267,16 +267,16 @@ lensprof_pto parse_pto(std::string text) {
 
 using namespace lensprof;
 
-lensprof_status lensprof_pto_read(const char *text, size_t bytes, lensprof_pto **pto, lensprof_error *error) {
-    if (!text || !pto) {
-        set_error(error, "lensprof_pto_read: text or pto is NULL; pass a project and where to put the handle");
+lensprof_status lensprof_pto_read(const void *data, size_t size, lensprof_pto **pto, lensprof_error *error) {
+    if (!data || !pto) {
+        set_error(error, "lensprof_pto_read: data or pto is NULL; pass a project and where to put the handle");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    if (bytes > kMaxBytes) {
+    if (size > kMaxBytes) {
         set_error(error, "the project is larger than 64 MiB; check that it is a Hugin project");
         return LENSPROF_ERROR_SIZE;
     }
-    return at_boundary(error, [&] { *pto = new lensprof_pto(parse_pto(std::string(text, bytes))); });
+    return at_boundary(error, [&] { *pto = new lensprof_pto(parse_pto(std::string(view_of(data, size)))); });
 }
 
 void lensprof_pto_destroy(lensprof_pto *pto) { delete pto; }
@@ -289,15 +289,37 @@ uint32_t lensprof_pto_image_count(const lensprof_pto *pto) {
     return pto ? static_cast<uint32_t>(pto->images.size()) : 0;
 }
 
-lensprof_status lensprof_pto_get_image(const lensprof_pto *pto, uint32_t index, lensprof_pto_image *image) {
-    if (!pto || !image || index >= pto->images.size()) return LENSPROF_ERROR_ARGUMENT;
-    if (lp_sized_wrong(image, kFirstPtoImage, sizeof *image)) return LENSPROF_ERROR_STRUCT_SIZE;
+namespace lensprof {
+
+lensprof_status fail_at_image(const lensprof_pto *pto, uint32_t index, const char *what, lensprof_error *error) {
+    char text[sizeof error->text];
+    if (has_image(pto, index) || !pto)
+        std::snprintf(text, sizeof text, "pto or %s is NULL; pass a project and a place for it", what);
+    else
+        std::snprintf(text, sizeof text, "image %u: the project has %zu images; count from 0", index,
+                      pto->images.size());
+    set_error(error, text);
+    return LENSPROF_ERROR_ARGUMENT;
+}
+
+}  // namespace lensprof
+
+lensprof_status lensprof_pto_get_image(const lensprof_pto *pto, uint32_t index, lensprof_pto_image *image,
+                                       lensprof_error *error) {
+    if (!image || !has_image(pto, index)) return fail_at_image(pto, index, "image", error);
+    if (const char *wrong = lp_sized_wrong(image, kFirstPtoImage, sizeof *image)) {
+        set_error(error, wrong);
+        return LENSPROF_ERROR_STRUCT_SIZE;
+    }
+    set_error(error, "");
     lp_sized_copy(image, &pto->images[index].result);
     return LENSPROF_OK;
 }
 
-lensprof_status lensprof_pto_get_response(const lensprof_pto *pto, uint32_t index, lensprof_response *response) {
-    if (!pto || !response || index >= pto->images.size()) return LENSPROF_ERROR_ARGUMENT;
+lensprof_status lensprof_pto_get_response(const lensprof_pto *pto, uint32_t index, lensprof_response *response,
+                                          lensprof_error *error) {
+    if (!response || !has_image(pto, index)) return fail_at_image(pto, index, "response", error);
+    set_error(error, "");
     const lensprof_pto_image &image = pto->images[index].result;
     if (image.response_type == 1) {
         lensprof_response_set_linear(response);
@@ -316,10 +338,8 @@ lensprof_status lensprof_pto_get_response(const lensprof_pto *pto, uint32_t inde
 }
 
 lensprof_status lensprof_pto_get_name(const lensprof_pto *pto, uint32_t index, char *name, size_t capacity,
-                                      size_t *needed) {
-    if (!pto || index >= pto->images.size() || (!name && capacity)) return LENSPROF_ERROR_ARGUMENT;
-    const std::string &source = pto->images[index].name;
-    if (needed) *needed = source.size() + 1;
-    if (capacity <= source.size()) return LENSPROF_ERROR_CAPACITY;
-    return copy_text(source, name, capacity, nullptr);
+                                      size_t *count, lensprof_error *error) {
+    if ((!name && capacity) || !has_image(pto, index)) return fail_at_image(pto, index, "name", error);
+    set_error(error, "");
+    return copy_bytes(pto->images[index].name, name, capacity, count, error);
 }

@@ -119,6 +119,18 @@ bool is_name(std::string_view name) {
     });
 }
 
+void check_result(const lensprof_response &response, const lensprof_vignetting &vignetting,
+                  const lensprof_exposure *exposures, uint32_t image_count) {
+    const auto demand = [](lensprof_status status, const std::string &text) {
+        if (status != LENSPROF_OK) throw FormatFailure{status, text};
+    };
+    demand(lensprof_response_validate(&response), "the response is invalid; see lensprof_response_validate");
+    demand(lensprof_vignetting_validate(&vignetting), "the vignetting is invalid; see lensprof_vignetting_validate");
+    for (uint32_t i = 0; i < image_count; i++)
+        demand(lensprof_exposure_validate(&exposures[i]),
+               "image " + std::to_string(i) + ": its exposure is invalid; see lensprof_exposure_validate");
+}
+
 }  // namespace
 }  // namespace lensprof
 
@@ -126,14 +138,16 @@ using namespace lensprof;
 
 lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_response *response,
                                         const lensprof_vignetting *vignetting, const lensprof_exposure *exposures,
-                                        uint32_t count, uint32_t reference) {
-    if (!pto || !response || !vignetting || !exposures || count != pto->images.size() || reference >= count)
+                                        uint32_t image_count, uint32_t reference, lensprof_error *error) {
+    if (!pto || !response || !vignetting || !exposures || image_count != pto->images.size()
+        || reference >= image_count) {
+        set_error(error,
+                  "lensprof_pto_set_result: give a project, curves, an exposure of each image, and one of them "
+                  "as the reference");
         return LENSPROF_ERROR_ARGUMENT;
-    lensprof_status status = lensprof_response_validate(response);
-    if (status == LENSPROF_OK) status = lensprof_vignetting_validate(vignetting);
-    for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = lensprof_exposure_validate(&exposures[i]);
-    if (status != LENSPROF_OK) return status;
-    return at_boundary(nullptr, [&] {
+    }
+    return at_boundary(error, [&] {
+        check_result(*response, *vignetting, exposures, image_count);
         const std::array<double, kHuginModes> modes = hugin_modes(*response);
         *pto = rewrite(*pto, [&](uint32_t i) {
             std::vector<Edit> edits = model_edits(modes, *vignetting, pto->images[i]);
@@ -144,10 +158,14 @@ lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_respon
     });
 }
 
-lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index, const char *name) {
-    if (!pto || !name || index >= pto->images.size() || !is_name(name)) return LENSPROF_ERROR_ARGUMENT;
+lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index, const char *name, lensprof_error *error) {
+    if (!name || !has_image(pto, index)) return fail_at_image(pto, index, "name", error);
+    if (!is_name(name)) {
+        set_error(error, "the name of an image is empty, or has quotes or control characters; give another one");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
     // Only this line is made and read again: a project may have thousands, all of which get a new name.
-    return at_boundary(nullptr, [&] {
+    return at_boundary(error, [&] {
         PtoImage &image = pto->images[index];
         std::string line = edit_line(line_of(*pto, image), image.line, {{"n", '"' + std::string(name) + '"'}});
         std::string written(find_pto_text(split_pto_line(line, image.line), "n"));
@@ -156,10 +174,13 @@ lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index, const c
     });
 }
 
-lensprof_status lensprof_pto_write(const lensprof_pto *pto, char *text, size_t capacity, size_t *needed) {
-    if (!pto || (!text && capacity)) return LENSPROF_ERROR_ARGUMENT;
-    std::string all;
-    lensprof_status status = at_boundary(
-        nullptr, [&] { all = replace_lines(*pto, [&](uint32_t i) { return line_of(*pto, pto->images[i]); }); });
-    return status == LENSPROF_OK ? copy_text(all, text, capacity, needed) : status;
+lensprof_status lensprof_pto_write(const lensprof_pto *pto, void *data, size_t capacity, size_t *count,
+                                   lensprof_error *error) {
+    if (!pto || (!data && capacity)) {
+        set_error(error, "lensprof_pto_write: pto or data is NULL; pass a project and a buffer");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return write_at_boundary(data, capacity, count, error, [&] {
+        return replace_lines(*pto, [&](uint32_t i) { return line_of(*pto, pto->images[i]); });
+    });
 }

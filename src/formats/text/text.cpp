@@ -106,11 +106,16 @@ std::string number_text(double value) {
     return std::string(buffer, result.ptr);
 }
 
-lensprof_status copy_text(const std::string &source, char *text, size_t capacity, size_t *needed) noexcept {
-    if (needed) *needed = source.size();
-    if (capacity < source.size()) return LENSPROF_ERROR_CAPACITY;
-    if (!source.empty()) std::memcpy(text, source.data(), source.size());
-    if (capacity > source.size()) text[source.size()] = '\0';
+lensprof_status copy_bytes(std::string_view source, void *data, size_t capacity, size_t *count,
+                           lensprof_error *error) noexcept {
+    if (count) *count = source.size();
+    if (!capacity) return LENSPROF_OK;
+    if (capacity < source.size()) {
+        set_error(error, "the buffer is too small; ask for the size with capacity 0, and call again");
+        return LENSPROF_ERROR_CAPACITY;
+    }
+    if (!source.empty()) std::memcpy(data, source.data(), source.size());
+    if (capacity > source.size()) static_cast<char *>(data)[source.size()] = '\0';
     return LENSPROF_OK;
 }
 

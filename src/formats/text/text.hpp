@@ -85,19 +85,23 @@ std::string number_text(double value);
 // The same for a name that a caller gives, a file's say: control characters as '?', nothing where it is not UTF-8.
 void put_name(char *field, size_t capacity, const char *name);
 
-// Copies to a caller's buffer; CAPACITY when it is too small. A terminator is added where there is room for one.
-lensprof_status copy_text(const std::string &source, char *text, size_t capacity, size_t *needed) noexcept;
+// A caller's bytes, which may be NULL where there are none.
+inline std::string_view view_of(const void *data, size_t size) {
+    return {size ? static_cast<const char *>(data) : "", size};
+}
 
-// Runs `make`, which returns a whole file, and copies it to the caller's buffer as copy_text does.
+// Copies to a caller's buffer by the rule of base.h: capacity 0 asks for *count; CAPACITY when the buffer is too small.
+// A terminator is added where there is room for one.
+lensprof_status copy_bytes(std::string_view source, void *data, size_t capacity, size_t *count,
+                           lensprof_error *error) noexcept;
+
+// Runs `make`, which returns a whole file, and copies it to the caller's buffer as copy_bytes does.
 template <typename Make>
-lensprof_status write_at_boundary(char *text, size_t capacity, size_t *needed, lensprof_error *error,
+lensprof_status write_at_boundary(void *data, size_t capacity, size_t *count, lensprof_error *error,
                                   Make make) noexcept {
     std::string all;
-    lensprof_status status = at_boundary(error, [&] { all = make(); });
-    if (status != LENSPROF_OK) return status;
-    status = copy_text(all, text, capacity, needed);
-    if (status != LENSPROF_OK) set_error(error, "the text is longer than the buffer; call again with the size needed");
-    return status;
+    const lensprof_status status = at_boundary(error, [&] { all = make(); });
+    return status == LENSPROF_OK ? copy_bytes(all, data, capacity, count, error) : status;
 }
 
 }  // namespace lensprof

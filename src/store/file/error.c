@@ -32,6 +32,14 @@ lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error) 
     return LENSPROF_ERROR_ARGUMENT;
 }
 
+lensprof_status lp_store_fail_capacity(uint32_t rows, uint32_t capacity, lensprof_error *error) {
+    if (error)
+        snprintf(error->text, sizeof error->text,
+                 "profile database: %u rows for a buffer of %u; pass a larger one, or capacity 0 to ask", rows,
+                 capacity);
+    return LENSPROF_ERROR_CAPACITY;
+}
+
 lensprof_status lp_store_fail_size(const char *name, const char *wrong, lensprof_error *error) {
     if (error) snprintf(error->text, sizeof error->text, "%s: %s", name, wrong);
     return LENSPROF_ERROR_STRUCT_SIZE;

@@ -46,6 +46,7 @@ lensprof_status lp_store_fail(const char *path, lensprof_status status, const ch
 lensprof_status lp_store_fail_sql(const char *path, sqlite3 *db, int rc, lensprof_error *error);
 /* For a wrong argument; the text names it and not the file. */
 lensprof_status lp_store_fail_argument(const char *what, lensprof_error *error);
+lensprof_status lp_store_fail_capacity(uint32_t rows, uint32_t capacity, lensprof_error *error);
 /* STRUCT_SIZE for a struct; `wrong` is what lp_sized_wrong says of it. */
 lensprof_status lp_store_fail_size(const char *name, const char *wrong, lensprof_error *error);
 /* Whether a profile's struct_size is one that this library knows; also of outputs. */

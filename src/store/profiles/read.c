@@ -241,11 +241,11 @@ static lensprof_status list_rows(lensprof_store *store, const lensprof_profile_k
 }
 
 lensprof_status lensprof_store_list(lensprof_store *store, const lensprof_profile_key *filter, lensprof_store_row *rows,
-                                    uint32_t capacity, uint32_t *found, lensprof_error *error) {
+                                    uint32_t capacity, uint32_t *count, lensprof_error *error) {
     lensprof_profile_key any;
     listing list = {NULL, 0, 0, capacity, 0};
     lp_store_clear(error);
-    if (!store || !found || (capacity && !rows)) return lp_store_fail_argument("store, rows or found is NULL", error);
+    if (!store || !count || (capacity && !rows)) return lp_store_fail_argument("store, rows or count is NULL", error);
     lensprof_profile_key_init(&any);
     if (!filter) filter = &any;
     if (lensprof_profile_key_validate(filter) != LENSPROF_OK)
@@ -255,8 +255,11 @@ lensprof_status lensprof_store_list(lensprof_store *store, const lensprof_profil
     status = list_rows(store, filter, &list, error);
     lp_store_rollback(store);
     if (status == LENSPROF_OK) {
-        if (list.kept) memcpy(rows, list.rows, list.kept * sizeof *rows);
-        *found = list.found;
+        *count = list.found;
+        if (capacity && list.found > capacity)
+            status = lp_store_fail_capacity(list.found, capacity, error);
+        else if (list.kept)
+            memcpy(rows, list.rows, list.kept * sizeof *rows);
     }
     free(list.rows);
     return status;

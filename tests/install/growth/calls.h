@@ -246,11 +246,10 @@ static lensprof_status call_apply_options(void *given, lensprof_error *error) {
     const lensprof_plan *plan;
     uint8_t pixel[3] = {100, 100, 100};
     const lensprof_image view = {pixel, 3, 1, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
-    (void)error;
     options->frame_width = WIDTH, options->frame_height = HEIGHT;
     options->response = here.profile.response, options->vignetting = here.profile.vignetting;
     const size_t bytes = lensprof_plan_bytes(options);
-    const lensprof_status status = lensprof_plan_init(memory, sizeof memory, options, &plan);
+    const lensprof_status status = lensprof_plan_init(memory, sizeof memory, options, &plan, error);
     expect((bytes > 0 && bytes <= sizeof memory) == (status == LENSPROF_OK), "bytes of a plan");
     if (status != LENSPROF_OK) return status;
     expect(lensprof_apply(plan, &view, &view, 0, 0) == LENSPROF_OK, "apply");
@@ -352,10 +351,35 @@ static lensprof_status call_pto_image(void *given, lensprof_error *error) {
     lensprof_pto *pto;
     lensprof_pto_image *image = given;
     if (lensprof_pto_read(text, sizeof text - 1, &pto, error) != LENSPROF_OK) return LENSPROF_ERROR_SYNTAX;
-    const lensprof_status status = lensprof_pto_get_image(pto, 0, image);
+    const lensprof_status status = lensprof_pto_get_image(pto, 0, image, error);
     if (status == LENSPROF_OK) expect(image->camera.width == 200 && image->exposure.ev == -2.0, "the image");
     lensprof_pto_destroy(pto);
     return status;
+}
+
+static char json[1 << 15];
+
+static lensprof_status call_export_options(void *given, lensprof_error *error) {
+    lensprof_export_options *options = given;
+    const lensprof_profile *const profiles[1] = {&here.profile};
+    options->name = "a.json";
+    return lensprof_export(profiles, 1, options, json, sizeof json, NULL, error);
+}
+
+static lensprof_status expect_entry(void *user, const lensprof_import_entry *entry) {
+    (void)user;
+    expect(entry->profile->vignetting[0].k[0] == true_k1, "the profile imported");
+    return LENSPROF_OK;
+}
+
+static lensprof_status call_import_options(void *given, lensprof_error *error) {
+    lensprof_import_options *options = given;
+    lensprof_export_options written;
+    lensprof_export_options_init(&written);
+    const lensprof_status status = call_export_options(&written, error);
+    if (status != LENSPROF_OK) return status;
+    options->name = "a.json";
+    return lensprof_import(json, strlen(json), options, expect_entry, NULL, error);
 }
 
 /* ---- all of them ---- */
@@ -376,6 +400,8 @@ INIT(lookup_options)
 INIT(lookup)
 INIT(store_stats)
 INIT(pto_image)
+INIT(import_options)
+INIT(export_options)
 
 static void init_fit_image(void *given, size_t size, uint32_t i) {
     lensprof_fit_image_init_sized(given, size, i, WIDTH, HEIGHT);
@@ -407,13 +433,15 @@ static const growing structs[] = {
     {"flat_result", sizeof(lensprof_flat_result), 24456, 1, init_flat_result, call_flat_result, 1, 0},
     {"sample_options", sizeof(lensprof_sample_options), 40, 1, init_sample_options, call_sample_options, 1, 0},
     {"sample_image", sizeof(lensprof_sample_image), 224, 2, init_sample_image, call_sample_images, 1, 0},
-    {"apply_options", sizeof(lensprof_apply_options), 176, 1, init_apply_options, call_apply_options, 0, 0},
+    {"apply_options", sizeof(lensprof_apply_options), 176, 1, init_apply_options, call_apply_options, 1, 0},
     {"profile as input", sizeof(lensprof_profile), 49312, 1, init_profile, call_profile_in, 1, 0},
     {"profile as output", sizeof(lensprof_profile), 49312, 1, init_profile, call_profile_out, 1, 1},
     {"lookup_options", sizeof(lensprof_lookup_options), 16, 1, init_lookup_options, call_lookup_options, 1, 0},
     {"lookup", sizeof(lensprof_lookup), 680, 1, init_lookup, call_lookup, 1, 1},
     {"store_stats", sizeof(lensprof_store_stats), 4336, 1, init_store_stats, call_stats, 1, 1},
-    {"pto_image", sizeof(lensprof_pto_image), 312, 1, init_pto_image, call_pto_image, 0, 1},
+    {"pto_image", sizeof(lensprof_pto_image), 312, 1, init_pto_image, call_pto_image, 1, 1},
+    {"import_options", sizeof(lensprof_import_options), 64, 1, init_import_options, call_import_options, 1, 0},
+    {"export_options", sizeof(lensprof_export_options), 56, 1, init_export_options, call_export_options, 1, 0},
 };
 #define STRUCTS (sizeof structs / sizeof *structs)
 

@@ -2,8 +2,14 @@
  *
  * Rules that hold for the whole API:
  *  - Every function that can fail returns lensprof_status; on error its outputs are untouched.
- *  - Heavy calls also take an optional caller-owned lensprof_error (may be NULL) for a sentence that names
- *    the offending item and the next step. There is no global or thread-local error state.
+ *  - Calls that can fail for more than one reason also take a caller-owned lensprof_error (may be NULL) for a sentence
+ *    that names the offending item and the next step. There is no global or thread-local error state.
+ *  - Bytes that are read are `const void *data, size_t size`; data may be NULL where size is 0.
+ *  - Results of any length go to `buffer, capacity, *count`: in bytes where they are a file or a text, else in
+ * elements. *count receives how many there are. Capacity 0 asks for that: OK, and nothing else is done; the buffer may
+ * be NULL then. Another capacity that is too small is refused with CAPACITY; *count is set, and nothing is written. A
+ * text's terminator is not counted; it is written where there is room for it, so give one byte more than *count where
+ * you need it. count may be NULL where it counts bytes.
  *  - Structs that grow begin with `uint32_t struct_size`. Their `_init` function sets it to the size that the program
  * was compiled with, and every other member to its default; call it before anything else, for outputs too. New members
  *    come last. A library takes every size from that of the struct's first version up to its own: members that an older

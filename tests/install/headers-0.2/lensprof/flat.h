@@ -147,7 +147,7 @@ typedef struct lensprof_flat_result {
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
     lensprof_gain_grid gain_grid; /* what the polynomial leaves: the attenuation is M times it, and it is 1 at the
                                      centre of M. 0 x 0 where it is not asked for, or nothing shows it */
-    lensprof_flat_image_quality *image_quality; /* the caller's array of `count`, set before the call; or NULL */
+    lensprof_flat_image_quality *image_quality; /* the caller's array of `image_count`, set before the call; or NULL */
     uint32_t reason_code;                       /* lensprof_reason: what `reason` states, */
     uint32_t reason_values;                     /* how many numbers, 0..2, */
     lensprof_item reason_item;                  /* which image or shot, */
@@ -160,13 +160,22 @@ static inline void lensprof_flat_result_init(lensprof_flat_result *result) {
     lensprof_flat_result_init_sized(result, sizeof *result, sizeof(lensprof_flat_image_quality));
 }
 
-/* Fits the falloff to `count` pictures. A fit that ran returns OK even when the result is poor: see `usable`.
+/* Fits the falloff to `image_count` pictures. A fit that ran returns OK even when the result is poor: see `usable`.
  * Errors: unusable options, shots with different turns or pictures with different frames ARGUMENT or SIZE; NaN in a
  * float view NOT_FINITE (the text names image and pixel); no cell between black and white NO_SAMPLES; nothing free
  * NO_UNKNOWNS; a response that is none RESPONSE; CANCELLED; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_flat(const lensprof_flat_options *options,
-                                                                 const lensprof_flat_image *images, uint32_t count,
-                                                                 lensprof_flat_result *result, lensprof_error *error);
+                                                                 const lensprof_flat_image *images,
+                                                                 uint32_t image_count, lensprof_flat_result *result,
+                                                                 lensprof_error *error);
+
+/* Puts what was found into an initialised profile, as lensprof_profile_from_fit does: the responses of the options
+ * (linear where there are none), vignettings, covariance and gain grid; method "flat", cells as pairs. options: those
+ * of the fit, whose responses are read; NULL = a linear response. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_from_flat(lensprof_profile *profile,
+                                                                          const lensprof_flat_result *result,
+                                                                          const lensprof_flat_options *options,
+                                                                          uint32_t image_count, lensprof_error *error);
 
 #ifdef __cplusplus
 }

@@ -2,7 +2,8 @@
  * lens profiles, DNG opcodes, XMP of drones' cameras, radical's files, pcalib.txt, times.txt, tables of responses,
  * falloffs as maps; and profiles as JSON.
  *
- * No function here opens a file. Threads: a handle belongs to one thread at a time. */
+ * lensprof_import and lensprof_export, at the end, are one call for any of them. No function here opens a file.
+ * Threads: a handle belongs to one thread at a time. */
 #ifndef LENSPROF_FORMATS_H
 #define LENSPROF_FORMATS_H
 
@@ -45,28 +46,30 @@ static inline void lensprof_pto_image_init(lensprof_pto_image *image) {
  * Errors (the text names the line): ARGUMENT; SIZE over 64 MiB; SYNTAX; VARIABLE for an unknown name or image number on
  * a `v` line; UNSUPPORTED for a lens type that is not in geometry.h, a response type above 1, or over 100000 images;
  * MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_read(const char *text, size_t bytes, lensprof_pto **pto,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_read(const void *data, size_t size, lensprof_pto **pto,
                                                                  lensprof_error *error);
 LENSPROF_API void lensprof_pto_destroy(lensprof_pto *pto); /* NULL is allowed */
 
 LENSPROF_API uint32_t lensprof_pto_image_count(const lensprof_pto *pto);
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_image(const lensprof_pto *pto, uint32_t index,
-                                                                      lensprof_pto_image *image);
+                                                                      lensprof_pto_image *image, lensprof_error *error);
 
 /* The response of an image as Hugin evaluates it: linear, or Ra..Re made monotone by a running maximum (then a
  * TABLE). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_response(const lensprof_pto *pto, uint32_t index,
-                                                                         lensprof_response *response);
+                                                                         lensprof_response *response,
+                                                                         lensprof_error *error);
 
-/* File name of an image as written (relative to the project's folder). With capacity 0 or too small: CAPACITY.
- * *needed (may be NULL) receives the bytes in every case, here with the terminator. */
+/* File name of an image as written (relative to the project's folder). name[capacity] and *count (bytes) as in
+ * base.h. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_get_name(const lensprof_pto *pto, uint32_t index,
-                                                                     char *name, size_t capacity, size_t *needed);
+                                                                     char *name, size_t capacity, size_t *count,
+                                                                     lensprof_error *error);
 
 /* Changes the file name of an image, for a project that is written to another folder. ARGUMENT for an empty name or one
  * with quotes or control characters. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_name(lensprof_pto *pto, uint32_t index,
-                                                                     const char *name);
+                                                                     const char *name, lensprof_error *error);
 
 /* Draws where pairs may be taken from an image, at the size of a (possibly reduced) view of its frame: 1 inside the
  * crop and outside all mask polygons, else 0. Mask types: 0 exclude, 1 include (which takes the place from all other
@@ -74,37 +77,35 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_name(lensprof_pt
  * (linked v). */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_draw_mask(const lensprof_pto *pto, uint32_t index,
                                                                       uint8_t *mask, uint32_t width, uint32_t height,
-                                                                      ptrdiff_t row_bytes);
+                                                                      ptrdiff_t row_bytes, lensprof_error *error);
 
 /* Puts a result into the project: exposures[count of images], one response, one vignetting. A response other than
  * EMoR with at most 5 modes is written as its least squares projection on Hugin's 5 modes. Every image receives the
  * response and vignetting of the fit; links are kept. exposures and white balance are taken relative to those of image
  * `reference`, whose Eev, Er and Eb stay. Errors: ARGUMENT, what the model's validate functions say, MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_result(lensprof_pto *pto,
-                                                                       const lensprof_response *response,
-                                                                       const lensprof_vignetting *vignetting,
-                                                                       const lensprof_exposure *exposures,
-                                                                       uint32_t count, uint32_t reference);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_result(
+    lensprof_pto *pto, const lensprof_response *response, const lensprof_vignetting *vignetting,
+    const lensprof_exposure *exposures, uint32_t image_count, uint32_t reference, lensprof_error *error);
 
-/* The project as text: everything that was read, unchanged but for what was set. Returns CAPACITY when the buffer is
- * too small (capacity 0 asks for the size); *needed receives the bytes without terminator, which is added where there
- * is room. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_write(const lensprof_pto *pto, char *text, size_t capacity,
-                                                                  size_t *needed);
+/* The project as text: everything that was read, unchanged but for what was set. data[capacity] and
+ * *count (bytes) as in base.h. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_write(const lensprof_pto *pto, void *data, size_t capacity,
+                                                                  size_t *count, lensprof_error *error);
 
 /* ---- Hugin point files (vig_optimize -i / -w) ------------------------------------------------------------- */
 
 /* 16 numbers a line: image1 image2 x1 y1 x2 y2 R1 G1 B1 R2 G2 B2 0 r1 r2 0. Grey values up to 0.25 beyond 0..1, which
- * vig_optimize's interpolation leaves at edges, are cut to it. With capacity 0, *found receives the
- * number of lines and nothing else is done; CAPACITY when there are more than capacity. SYNTAX names the line. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_read(const char *text, size_t bytes,
-                                                                    lensprof_pair *pairs, uint32_t capacity,
-                                                                    uint32_t *found, lensprof_error *error);
+ * vig_optimize's interpolation leaves at edges, are cut to it. pairs[capacity] and *count as
+ * in base.h. SYNTAX names the line. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_read(const void *data, size_t size, lensprof_pair *pairs,
+                                                                    uint32_t capacity, uint32_t *count,
+                                                                    lensprof_error *error);
 
-/* Writes the same. cameras[count] give the frame sizes for the radius columns. Sizes as lensprof_pto_write. */
+/* Writes the same. cameras[camera_count] give the frame sizes for the radius columns. Output as in base.h. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_write(const lensprof_pair *pairs, uint32_t pair_count,
-                                                                     const lensprof_camera *cameras, uint32_t count,
-                                                                     char *text, size_t capacity, size_t *needed);
+                                                                     const lensprof_camera *cameras,
+                                                                     uint32_t camera_count, void *data, size_t capacity,
+                                                                     size_t *count, lensprof_error *error);
 
 /* ---- Falloffs of other programs' databases ---------------------------------------------------------------- */
 
@@ -112,9 +113,9 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_points_write(const lensp
 typedef struct lensprof_import_entry {
     const lensprof_profile *profile; /* until the visitor returns: key, provenance, vignetting; a linear response. To
                                       * be kept by lensprof_profile_copy */
-    uint32_t usable;   /* 0: what the file has is no falloff (provenance.doubt says why), and lensprof_profile_validate
-                        * refuses it; 1: a valid profile, which provenance.doubt may still warn of */
-    uint32_t reserved; /* 0 */
+    uint32_t usable; /* 0: what the file has is no falloff (provenance.doubt says why), and lensprof_profile_validate
+                      * refuses it; 1: a valid profile, which provenance.doubt may still warn of */
+    uint32_t holds;  /* lensprof_holds: PROFILES, or by lensprof_import what the file holds, the rest being neutral */
 } lensprof_import_entry;
 
 /* Receives the entries in the order of the file. Anything but OK stops the reading and is what it returns, with the
@@ -138,12 +139,12 @@ typedef lensprof_status (*lensprof_import_visitor)(void *user, const lensprof_im
  * All of the text is checked before the first entry is visited. Document types are skipped and entities not expanded.
  * Errors (the text names line and lens): ARGUMENT; SIZE over 64 MiB, or over 2 million elements or attributes; SYNTAX;
  * UNSUPPORTED for another version or model; MEMORY; what the visitor returns. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_read(const char *text, size_t bytes, const char *source,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_read(const void *data, size_t size, const char *source,
                                                                      lensprof_import_visitor visit, void *user,
                                                                      lensprof_error *error);
 
 /* The falloffs of profiles as a database of version 1, which every Lensfun reads: model "pa", one <lens> for each lens
- * and crop factor. Sizes as lensprof_pto_write. Doubles are written so that they read back the same.
+ * and crop factor. Output as in base.h. Doubles are written so that they read back the same.
  *  - <maker> is the first word of key.lens, <model> all of it; the mount is Lensfun's "Generic".
  *  - Lensfun has one curve for all channels: of three, their mean is written. It has no responses, covariances, units
  *    and provenance: these are left out.
@@ -154,18 +155,19 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_read(const char 
  * UNSUPPORTED for a gain grid or pictures corrected in camera; what lensprof_profile_validate says; CAPACITY;
  * MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_write(const lensprof_profile *const *profiles,
-                                                                      uint32_t count, char *text, size_t capacity,
-                                                                      size_t *needed, lensprof_error *error);
+                                                                      uint32_t profile_count, void *data,
+                                                                      size_t capacity, size_t *count,
+                                                                      lensprof_error *error);
 
 /* ---- Profiles as JSON ------------------------------------------------------------------------------------- */
 
 /* Profiles as `lensprof profile show --json` prints them (docs/json.md): the object of one, or {"schema": 1,
  * "profiles": [...]} of none and of several. Doubles, and the floats of gain grids, are written so that they read back
- * the same; bytes of texts that are not UTF-8 become U+FFFD. Sizes as lensprof_pto_write. Errors (the text names the
+ * the same; bytes of texts that are not UTF-8 become U+FFFD. Output as in base.h. Errors (the text names the
  * profile, counted from 0): ARGUMENT; what lensprof_profile_validate says; CAPACITY; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_json_write(const lensprof_profile *const *profiles,
-                                                                   uint32_t count, char *text, size_t capacity,
-                                                                   size_t *needed, lensprof_error *error);
+                                                                   uint32_t profile_count, void *data, size_t capacity,
+                                                                   size_t *count, lensprof_error *error);
 
 /* Reads them: what lensprof_json_write wrote gives the same profiles, in every bit. Each must have `key` with
  * `processing`, and `vignetting` with `k`; without `gain_grid`, `covariance`, `provenance` and `response` it has none,
@@ -175,7 +177,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_json_write(const lenspro
  * Errors (the text names the line, or the path, as "profiles[2].vignetting.k[0]"): ARGUMENT; SIZE over 64 MiB or 4
  * million values; SYNTAX, also for more than 32 levels; UNSUPPORTED for another schema; what the model's validate
  * functions say; MEMORY; what the visitor returns. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_json_read(const char *text, size_t bytes, const char *source,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_json_read(const void *data, size_t size, const char *source,
                                                                   lensprof_import_visitor visit, void *user,
                                                                   lensprof_error *error);
 
@@ -185,14 +187,14 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_json_read(const char *te
  * 65536), strictly increasing, separated by blanks and line ends. They are rescaled by the first and last, as those
  * tools do, to a TABLE. Errors (the text names the value, counted from 0): ARGUMENT; SYNTAX for fewer than 256 or what
  * is not a finite number; SIZE for over 65536; RESPONSE for a value that is not above the one before; MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pcalib_read(const char *text, size_t bytes,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pcalib_read(const void *data, size_t size,
                                                                     lensprof_response *response, lensprof_error *error);
 
 /* Writes 256 of them, from 0 to 255, on one line. Two are never closer than 1e-4, so that they increase strictly in
- * single precision too; where the response is so steep that they would be, it is less so by that much. Sizes as
- * lensprof_pto_write. Errors: ARGUMENT, what lensprof_response_validate says, CAPACITY, MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pcalib_write(const lensprof_response *response, char *text,
-                                                                     size_t capacity, size_t *needed,
+ * single precision too; where the response is so steep that they would be, it is less so by that much. Output as
+ * in base.h. Errors: ARGUMENT, what lensprof_response_validate says, CAPACITY, MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pcalib_write(const lensprof_response *response, void *data,
+                                                                     size_t capacity, size_t *count,
                                                                      lensprof_error *error);
 
 /* A line of times.txt. lensprof_exposure.ev of a frame, where only its exposure time differs from that of another
@@ -204,17 +206,17 @@ typedef struct lensprof_frame_time {
 } lensprof_frame_time;
 
 /* Lines of name, time and exposure, of which the last may be missing or 0 (unknown); empty lines and those that begin
- * with # are skipped. *found receives the number of frames; with capacity 0 nothing else is done. Errors (the text
- * names the line): ARGUMENT; SYNTAX; CAPACITY when there are more than capacity. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_times_read(const char *text, size_t bytes,
+ * with # are skipped. frames[capacity] and *count as in base.h. Errors (the text names the line):
+ * ARGUMENT; SYNTAX; CAPACITY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_times_read(const void *data, size_t size,
                                                                    lensprof_frame_time *frames, uint32_t capacity,
-                                                                   uint32_t *found, lensprof_error *error);
+                                                                   uint32_t *count, lensprof_error *error);
 
-/* Writes the same; numbers read back the same. Sizes as lensprof_pto_write. Errors (the text names the frame): ARGUMENT
+/* Writes the same; numbers read back the same. Output as in base.h. Errors (the text names the frame): ARGUMENT
  * for a name that is empty, has blanks or begins with #; NOT_FINITE; EXPOSURE; CAPACITY; MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_times_write(const lensprof_frame_time *frames, uint32_t count,
-                                                                    char *text, size_t capacity, size_t *needed,
-                                                                    lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_times_write(const lensprof_frame_time *frames,
+                                                                    uint32_t frame_count, void *data, size_t capacity,
+                                                                    size_t *count, lensprof_error *error);
 
 /* ---- Response curves as tables of text (.csv, pfstools' .m) -------------------------------------------------- */
 
@@ -234,18 +236,18 @@ typedef enum lensprof_curve {
  * of pfstools, with a matrix a channel, whatever `curve`. responses: 3 of them, of which *count are written. Errors
  * (the text names the line): ARGUMENT; SIZE over 65536 rows or 64 MiB; SYNTAX; RESPONSE for a value below that of the
  * row before, or an irradiance below 0; MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_curves_read(const char *text, size_t bytes, uint32_t curve,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_curves_read(const void *data, size_t size, uint32_t curve,
                                                                     lensprof_response *responses, uint32_t *count,
                                                                     lensprof_error *error);
 
 /* Writes `rows` (2 to 65536; 256 for pictures of 8 bit) rows of 1 or 3 responses as a lensprof_curve, after a line of
  * names: the number of the row (FORWARD: irradiance), then the values, which read back the same; irradiances are 0
- * to 1. Logarithms are of at least 1e-6 of them. Sizes as lensprof_pto_write. Errors: ARGUMENT, what
+ * to 1. Logarithms are of at least 1e-6 of them. Output as in base.h. Errors: ARGUMENT, what
  * lensprof_response_validate says, CAPACITY, MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_curves_write(const lensprof_response *responses, uint32_t count,
-                                                                     uint32_t curve, uint32_t rows, char *text,
-                                                                     size_t capacity, size_t *needed,
-                                                                     lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_curves_write(const lensprof_response *responses,
+                                                                     uint32_t response_count, uint32_t curve,
+                                                                     uint32_t rows, void *data, size_t capacity,
+                                                                     size_t *count, lensprof_error *error);
 
 /* ---- Falloffs as maps (vignette.png, gain images) ------------------------------------------------------------ */
 
@@ -287,35 +289,36 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_map_write(const lensprof
 /* The response file of radical: irradiances of 256 greys in three channels, to any scale; to three TABLEs as
  * lensprof_curves_read. Errors: ARGUMENT; SYNTAX; UNSUPPORTED for a matrix of another type; SIZE; RESPONSE for
  * irradiances that decrease or are none; MEMORY. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_response_read(const void *data, size_t bytes,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_response_read(const void *data, size_t size,
                                                                               lensprof_response *responses,
                                                                               lensprof_error *error);
 
-/* Writes 1 (for all channels) or 3 responses; irradiances are 1e-6 to 1, as radical takes their logarithm. Sizes as
- * lensprof_pto_write. Errors: ARGUMENT, what lensprof_response_validate says, CAPACITY, MEMORY. */
+/* Writes 1 (for all channels) or 3 responses; irradiances are 1e-6 to 1, as radical takes their logarithm. Output as
+ * in base.h. Errors: ARGUMENT, what lensprof_response_validate says, CAPACITY, MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_response_write(const lensprof_response *responses,
-                                                                               uint32_t count, void *data,
-                                                                               size_t capacity, size_t *needed,
+                                                                               uint32_t response_count, void *data,
+                                                                               size_t capacity, size_t *count,
                                                                                lensprof_error *error);
 
 /* The vignetting file of radical, polynomial of degree 3 or nonparametric. Polynomials whose channels share a centre
  * are rescaled exactly; others, which have one each, and maps are refitted as by lensprof_map_read, in the frame that
  * the file names. profile, *worst (0 where exact) and errors as there; SYNTAX; UNSUPPORTED for other models. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_vignetting_read(const void *data, size_t bytes,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_vignetting_read(const void *data, size_t size,
                                                                                 lensprof_profile *profile,
                                                                                 double *worst, lensprof_error *error);
 
 /* Writes a profile for pictures of width x height px: a polynomial, or where it has a gain grid a map of 12 bytes a
- * pixel. Sizes as lensprof_pto_write. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
+ * pixel. Output as in base.h. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_radical_vignetting_write(const lensprof_profile *profile,
                                                                                  uint32_t width, uint32_t height,
                                                                                  void *data, size_t capacity,
-                                                                                 size_t *needed, lensprof_error *error);
+                                                                                 size_t *count, lensprof_error *error);
 /* ---- DNG opcode lists (tags OpcodeList2, OpcodeList3) ----------------------------------------------------- */
 
 typedef enum lensprof_dng_form {
-    LENSPROF_DNG_RADIAL = 0,  /* FixVignetteRadial */
-    LENSPROF_DNG_GAIN_MAP = 1 /* GainMap */
+    LENSPROF_DNG_RADIAL = 0,   /* FixVignetteRadial */
+    LENSPROF_DNG_GAIN_MAP = 1, /* GainMap */
+    LENSPROF_DNG_AUTO = 2      /* lensprof_export: RADIAL where that is exact to 0.5 %, else GAIN_MAP */
 } lensprof_dng_form;
 
 /* The falloff of a list of opcodes, the bytes of the tag, as one profile of raw pictures whose key is otherwise empty.
@@ -333,7 +336,7 @@ typedef enum lensprof_dng_form {
  * 1 Mi points of maps; NOT_FOUND where no opcode is a gain; UNSUPPORTED for an opcode that DNG 1.7 has not and that is
  * not optional, for gains after TrimBounds, and for a map of every 2nd pixel where the layout is none of a mosaic, or
  * of fewer; VIGNETTING for gains not above 0 and for what no falloff comes near; MEMORY; what the visitor returns. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_dng_opcodes_read(const void *bytes, size_t size, uint32_t width,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_dng_opcodes_read(const void *data, size_t size, uint32_t width,
                                                                          uint32_t height, uint32_t layout,
                                                                          const char *source,
                                                                          lensprof_import_visitor visit, void *user,
@@ -343,15 +346,15 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_dng_opcodes_read(const v
  *  - RADIAL: 5 coefficients by least squares of the gain's relative error.
  *  - GAIN_MAP: 33 points along the longer side, at least 9 along the shorter. For a mosaic and falloffs a channel four
  *    maps, one for the pixels of each site of its squares; for RGB one map of 1 or 3 planes.
- * *worst (may be NULL) receives the largest |gain * attenuation - 1| within the frame. Sizes as lensprof_pto_write, in
- * bytes and without a terminator; on CAPACITY *worst is set too. Errors: ARGUMENT; what lensprof_profile_validate says;
+ * *worst (may be NULL) receives the largest |gain * attenuation - 1| within the frame. Output as in base.h;
+ * *worst is set on CAPACITY, too. Errors: ARGUMENT; what lensprof_profile_validate says;
  * UNSUPPORTED for pictures corrected in camera, for RADIAL with falloffs a channel, a gain grid or a centre outside the
  * frame, and for falloffs a channel where layout is GREY; CAPACITY; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_dng_opcodes_write(const lensprof_profile *profile,
                                                                           uint32_t width, uint32_t height,
-                                                                          uint32_t layout, uint32_t form, void *bytes,
-                                                                          size_t capacity, size_t *needed,
-                                                                          double *worst, lensprof_error *error);
+                                                                          uint32_t layout, uint32_t form, void *data,
+                                                                          size_t capacity, size_t *count, double *worst,
+                                                                          lensprof_error *error);
 
 /* ---- Adobe lens profile (.lcp) ---------------------------------------------------------------------------- */
 
@@ -365,19 +368,19 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_dng_opcodes_write(const 
  *  - provenance and what is checked first: as lensprof_lensfun_read. doubt, also: a refit that is off by more than 1 %.
  * Of entries that are not usable, k may be NaN. Errors (the text names the line): ARGUMENT; SIZE over 64 MiB, 2 million
  * elements or attributes, 20000 entries or 1000 knots; SYNTAX; MEMORY; what the visitor returns. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lcp_read(const char *text, size_t bytes, const char *source,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lcp_read(const void *data, size_t size, const char *source,
                                                                  lensprof_import_visitor visit, void *user,
                                                                  lensprof_error *error);
 
 /* The falloffs of profiles of one camera, lens, crop factor and processing as a lens profile, with
- * VignetteModelParam1..3 and centre. width, height: of the frames; both 0 = not known, of 3:2. Sizes as
- * lensprof_pto_write. Numbers read back within 1e-9 of themselves. Of falloffs a channel the mean is written; distances
+ * VignetteModelParam1..3 and centre. width, height: of the frames; both 0 = not known, of 3:2. Output as
+ * in base.h. Numbers read back within 1e-9 of themselves. Of falloffs a channel the mean is written; distances
  * that are not known are left out. Errors (the text names the profile, counted from 0): as lensprof_lensfun_write;
  * ARGUMENT also for profiles of several cameras or lenses; SIZE for a side of over a million pixels. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lcp_write(const lensprof_profile *const *profiles,
-                                                                  uint32_t count, uint32_t width, uint32_t height,
-                                                                  char *text, size_t capacity, size_t *needed,
-                                                                  lensprof_error *error);
+                                                                  uint32_t profile_count, uint32_t width,
+                                                                  uint32_t height, void *data, size_t capacity,
+                                                                  size_t *count, lensprof_error *error);
 
 /* ---- Falloffs in the XMP packets of drones' cameras -------------------------------------------------------- */
 
@@ -393,7 +396,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lcp_write(const lensprof
  * Errors: ARGUMENT; SIZE as lensprof_lensfun_read, or over 16 (2D: 64) coefficients; SYNTAX; NOT_FOUND where the packet
  * has none of them; VIGNETTING for a polynomial that is not above 0 in the frame or that no falloff comes near;
  * NOT_FINITE; MEMORY; what the visitor returns. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_drone_xmp_read(const char *text, size_t bytes, uint32_t width,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_drone_xmp_read(const void *data, size_t size, uint32_t width,
                                                                        uint32_t height, const char *source,
                                                                        lensprof_import_visitor visit, void *user,
                                                                        lensprof_error *error);
@@ -408,7 +411,7 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_drone_xmp_read(const cha
  * x 12 and 32 x 32. profile, *worst and errors as lensprof_map_read; SYNTAX names line or path; UNSUPPORTED for a file
  * with corner_strength, which replaces the table.
  */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_read(const char *text, size_t bytes, double ct,
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_read(const void *data, size_t size, double ct,
                                                                   uint32_t columns, uint32_t rows, uint32_t width,
                                                                   uint32_t height, lensprof_profile *profile,
                                                                   double *worst, lensprof_error *error);
@@ -416,11 +419,118 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_read(const char *te
 /* Writes falloff and gain grid of a profile as {"rpi.alsc": ...}, to be put into a tuning file's `algorithms` in place
  * of its own: tables of columns x rows (16 x 12, or 32 x 32 for a Pi 5; 2 to 256 each) for a sensor of width x height
  * px, to 3 decimals as the tuning tool does, of one colour temperature (K; LENSPROF_UNKNOWN: the key's, else 4500).
- * Sizes as lensprof_pto_write. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
+ * Output as in base.h. Errors: ARGUMENT; SIZE; what lensprof_profile_validate says; CAPACITY; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_alsc_write(const lensprof_profile *profile, double ct,
                                                                    uint32_t columns, uint32_t rows, uint32_t width,
-                                                                   uint32_t height, char *text, size_t capacity,
-                                                                   size_t *needed, lensprof_error *error);
+                                                                   uint32_t height, void *data, size_t capacity,
+                                                                   size_t *count, lensprof_error *error);
+
+/* ---- Any of these formats ------------------------------------------------------------------------------------- */
+
+typedef enum lensprof_format {
+    LENSPROF_FORMAT_AUTO = 0, /* by content, then by the ending of the name; to write, by the name */
+    LENSPROF_FORMAT_LENSFUN = 1,
+    LENSPROF_FORMAT_LCP = 2,
+    LENSPROF_FORMAT_JSON = 3,
+    LENSPROF_FORMAT_BLOB = 4,        /* docs/blob.md */
+    LENSPROF_FORMAT_DNG_OPCODES = 5, /* the bytes of a tag, and not the TIFF or DNG file around it */
+    LENSPROF_FORMAT_DRONE_XMP = 6,   /* an XMP packet, and not the picture around it */
+    LENSPROF_FORMAT_ALSC = 7,
+    LENSPROF_FORMAT_MAP = 8, /* a picture, decoded by the caller: lensprof_import_options.map, lensprof_map_write */
+    LENSPROF_FORMAT_PCALIB = 9,
+    LENSPROF_FORMAT_CURVES = 10,
+    LENSPROF_FORMAT_RADICAL_RESPONSE = 11,
+    LENSPROF_FORMAT_RADICAL_VIGNETTING = 12
+} lensprof_format;
+
+/* What a file of a format holds. */
+typedef enum lensprof_holds {
+    LENSPROF_HOLDS_PROFILES = 0, /* with their keys */
+    LENSPROF_HOLDS_RESPONSE = 1,
+    LENSPROF_HOLDS_FALLOFF = 2
+} lensprof_holds;
+
+/* A format. The library's, static. */
+typedef struct lensprof_format_info {
+    uint32_t format;     /* lensprof_format */
+    uint32_t holds;      /* lensprof_holds */
+    uint32_t is_written; /* 1: read and written; 0: read only */
+    uint32_t is_many;    /* 1: a file may hold several profiles; 0: one */
+    const char *name;    /* one word */
+    const char *about;   /* one line, with the ending of its files */
+} lensprof_format_info;
+
+/* NULL for AUTO and beyond the last one. */
+LENSPROF_API const lensprof_format_info *lensprof_format_get_info(uint32_t format);
+
+/* The format of a file by its content (the first 8 KiB do), then by the ending of its name (may be NULL); AUTO where
+ * neither tells. A picture is taken for what its name says: TIFF for opcodes (.dng) or a map, PNG for a map, JPEG for
+ * XMP. */
+LENSPROF_API uint32_t lensprof_format_detect(const void *data, size_t size, const char *name);
+
+/* What files do not say. */
+typedef struct lensprof_import_options {
+    uint32_t struct_size;
+    uint32_t format;                 /* lensprof_format */
+    uint32_t width, height;          /* of the frame, px: opcodes, XMP and alsc want it; else 0 */
+    uint32_t columns, rows;          /* alsc: of tables other than 16 x 12 and 32 x 32; else 0 */
+    uint32_t layout;                 /* opcodes: lensprof_layout that they work on */
+    uint32_t curve;                  /* curves: lensprof_curve */
+    double color_temperature_k;      /* alsc; LENSPROF_UNKNOWN: the file's */
+    const char *name;                /* of the file, for detection and provenance.source; or NULL */
+    const lensprof_map *map;         /* format MAP: the decoded picture, in place of data; else NULL */
+    const lensprof_profile_key *key; /* of files that hold a response or a falloff: of the profile that it becomes.
+                                        NULL: an empty one, JPEG of a response and RAW of a falloff. Texts that are
+                                        empty are filled by the file's, where it has them */
+} lensprof_import_options;
+
+/* AUTO, layout RGB, inverse curves; nothing else known. */
+LENSPROF_API void lensprof_import_options_init_sized(lensprof_import_options *options, size_t size);
+static inline void lensprof_import_options_init(lensprof_import_options *options) {
+    lensprof_import_options_init_sized(options, sizeof *options);
+}
+
+/* Reads a file of any format: each of its profiles is visited, as by the function of the format, or one that has its
+ * response or falloff (`holds` of the entry says which; the other is neutral). doubt, also: a refit that is off by more
+ * than 1 %; an M that rises by more than 0.05, which may be a gain. options may be NULL.
+ * The containers are the caller's business: opcodes in a TIFF or DNG, XMP in a picture and maps as pictures are
+ * UNSUPPORTED, and the text says what to pass. A map is that of the frame, or where there is none of its own size.
+ * Errors: ARGUMENT; STRUCT_SIZE; SIZE over 64 MiB; SYNTAX for an empty file and a damaged blob; UNSUPPORTED also where
+ * neither content nor name tells the format; those of the format's own function; what the visitor returns. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_import(const void *data, size_t size,
+                                                               const lensprof_import_options *options,
+                                                               lensprof_import_visitor visit, void *user,
+                                                               lensprof_error *error);
+
+/* How profiles are written. */
+typedef struct lensprof_export_options {
+    uint32_t struct_size;
+    uint32_t format;            /* lensprof_format */
+    uint32_t width, height;     /* of the frame, px: opcodes, alsc and radical's vignetting need it, lcp may have it */
+    uint32_t columns, rows;     /* alsc: of the tables, 0 = 16 x 12; rows of curves, 0 = 256 */
+    uint32_t layout;            /* opcodes: lensprof_layout that they work on */
+    uint32_t dng_form;          /* opcodes: lensprof_dng_form */
+    uint32_t curve;             /* curves: lensprof_curve */
+    uint32_t pack;              /* blob: lensprof_pack flags */
+    double color_temperature_k; /* alsc; LENSPROF_UNKNOWN: the key's */
+    const char *name;           /* of the file, for AUTO; or NULL */
+} lensprof_export_options;
+
+/* AUTO, layout RGB, the opcode chosen by its error, inverse curves. */
+LENSPROF_API void lensprof_export_options_init_sized(lensprof_export_options *options, size_t size);
+static inline void lensprof_export_options_init(lensprof_export_options *options) {
+    lensprof_export_options_init_sized(options, sizeof *options);
+}
+
+/* Writes profiles as a file of any format that is written: all of them where it holds several, else one; of three
+ * responses pcalib gets that of green. Opcodes are the bytes of a tag; maps are UNSUPPORTED (lensprof_map_write).
+ * Output as in base.h. Errors: ARGUMENT, also for more profiles than the format holds; STRUCT_SIZE; SIZE for a file of
+ * over 64 MiB, which lensprof_import would refuse; UNSUPPORTED for a format that is read only or that the name does not
+ * tell; those of the format's own function. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_export(const lensprof_profile *const *profiles,
+                                                               uint32_t profile_count,
+                                                               const lensprof_export_options *options, void *data,
+                                                               size_t capacity, size_t *count, lensprof_error *error);
 
 #ifdef __cplusplus
 }

@@ -124,17 +124,16 @@ typedef enum lensprof_pack {
  * read in place. It holds the key but its unit, crop factor and colour temperature, the responses (samples in single
  * precision), vignettings, gain grid, and of the provenance all but source, doubt, prior and forced: 132 bytes and the
  * texts for a linear response, 4 kB more for each curve of samples. The same profile gives the same bytes on every
- * machine. `flags`: lensprof_pack, 0 = none. *bytes receives the size of a valid profile's blob, whatever the capacity;
- * CAPACITY when the buffer is smaller (capacity 0 asks for the size, blob may be NULL then), and nothing is written to
- * it. Errors: what lensprof_profile_validate says; ARGUMENT for unknown flags. */
+ * machine. `flags`: lensprof_pack, 0 = none. data[capacity] and *count (bytes) as in base.h. Errors: what
+ * lensprof_profile_validate says; ARGUMENT for unknown flags. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags,
-                                                                     void *blob, size_t capacity, size_t *bytes);
+                                                                     void *data, size_t capacity, size_t *count);
 
-/* The profile of blob[bytes], at any address, to an initialised *profile; packed again, with its covariance, it gives
- * the same blob. Nothing is trusted: CORRUPT when it is no blob, is damaged in any bit, cut or too long, or holds what
- * is not a profile; LAYOUT when a newer lensprof wrote it; STRUCT_SIZE. The profile is written only once the whole blob
- * was found to be good. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_unpack(const void *blob, size_t bytes,
+/* The profile of a blob, data[size], at any address, to an initialised *profile; packed again, with its covariance, it
+ * gives the same blob. Nothing is trusted: CORRUPT when it is no blob, is damaged in any bit, cut or too long, or holds
+ * what is not a profile; LAYOUT when a newer lensprof wrote it; STRUCT_SIZE. The profile is written only once the whole
+ * blob was found to be good. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_unpack(const void *data, size_t size,
                                                                        lensprof_profile *profile);
 
 #ifdef __cplusplus

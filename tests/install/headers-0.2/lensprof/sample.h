@@ -75,17 +75,17 @@ static inline void lensprof_sample_options_init(lensprof_sample_options *options
     lensprof_sample_options_init_sized(options, sizeof *options);
 }
 
-/* Finds correspondences between `count` pictures. Balanced sampling corrects the cameras first, between neighbours and
- * for its own use, where the pictures show that they are some pixels off, leaves out places whose surroundings differ
- * in the two, and all places of two pictures that hardly show the same anywhere. pairs[capacity] is the caller's;
- * *found receives the number written. With capacity 0, *found receives the number wanted, which is the capacity to
- * give, and nothing is sampled; a smaller one is refused with CAPACITY, whatever the overlaps hold. Errors: fewer than
- * two images ARGUMENT; NaN in a float view NOT_FINITE (the text names image and pixel); NO_OVERLAP; NO_SAMPLES when
- * overlaps exist but every sample is masked, black or saturated, or does not show the same; CANCELLED; MEMORY. */
+/* Finds correspondences between `image_count` pictures. Balanced sampling corrects the cameras first, between
+ * neighbours and for its own use, where the pictures show that they are some pixels off, leaves out places whose
+ * surroundings differ in the two, and all places of two pictures that hardly show the same anywhere. pairs[capacity]
+ * and *count as in base.h: the capacity to give is the number wanted, whatever the overlaps hold, and nothing is
+ * sampled to find it; then *count receives the number found, which may be smaller. Errors: fewer than two images
+ * ARGUMENT; NaN in a float view NOT_FINITE (the text names image and pixel); NO_OVERLAP; NO_SAMPLES when overlaps exist
+ * but every sample is masked, black or saturated, or does not show the same; CANCELLED; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sample_overlap(const lensprof_sample_options *options,
                                                                        const lensprof_sample_image *images,
-                                                                       uint32_t count, lensprof_pair *pairs,
-                                                                       uint32_t capacity, uint32_t *found,
+                                                                       uint32_t image_count, lensprof_pair *pairs,
+                                                                       uint32_t capacity, uint32_t *count,
                                                                        lensprof_error *error);
 
 /* Finds points that two pictures or more see, each in up to 16 of those that see it, for lensprof_fit_radiance.
@@ -93,11 +93,10 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sample_overlap(const len
  * grey level; with the same corrections as lensprof_sample_overlap. Paper (Goldman & Chen 2005, section 5): uniform in
  * a cylindrical system, single points, the cameras as they are. A channel above white in all of a patch has the value
  * 1: it is saturated, and that is kept; a patch partly above white is not used. Every point has an observation that is
- * not saturated. observations[capacity] is the caller's, by point; *found receives the number written, with capacity 0
- * the capacity to give. Errors: as lensprof_sample_overlap. */
-LENSPROF_API LENSPROF_MUST_USE lensprof_status
-lensprof_sample_tracks(const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t count,
-                       lensprof_observation *observations, uint32_t capacity, uint32_t *found, lensprof_error *error);
+ * not saturated. observations[capacity] and *count, sorted by point, as there. Errors: as lensprof_sample_overlap. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sample_tracks(
+    const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t image_count,
+    lensprof_observation *observations, uint32_t capacity, uint32_t *count, lensprof_error *error);
 
 #ifdef __cplusplus
 }

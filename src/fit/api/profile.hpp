@@ -1,0 +1,63 @@
+// From a result to a profile: what fits of overlaps and of cards have in common.
+#pragma once
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include <lensprof/profile.h>
+
+#include "core/profile.h"
+#include "fit/base/sized.hpp"
+
+namespace lensprof {
+
+// The curves and covariance of a result, and in its provenance what every fit says.
+template <class Result>
+void put_result(const Result &result, const char *method, uint32_t images, lensprof_profile &profile) {
+    profile.vignettings = result.vignettings;
+    std::copy_n(result.vignetting, 3, profile.vignetting);
+    profile.covariance_size = result.covariance_size;
+    std::fill(std::begin(profile.covariance), std::end(profile.covariance), 0.0);
+    std::copy_n(result.covariance, result.covariance_size * result.covariance_size, profile.covariance);
+    lensprof_provenance &p = profile.provenance;
+    std::snprintf(p.method, sizeof p.method, "%s", method);
+    std::snprintf(p.software, sizeof p.software, "lensprof %s", lensprof_version());
+    p.images = images;
+    p.heldout_rms = LENSPROF_UNKNOWN;
+    p.inlier_share = result.inlier_share;
+    p.not_usable = !result.usable;
+}
+
+// Calls change(profile) on the caller's profile as this library's.
+template <class Change>
+lensprof_status change_given_profile(lensprof_profile *given, Change change, lensprof_error *error) {
+    if (const char *wrong = lp_sized_wrong(given, LP_FIRST_PROFILE, sizeof *given))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "profile: %s", wrong);
+    try {
+        auto own = std::make_unique<lensprof_profile>();
+        lensprof_profile_init(own.get());
+        lp_sized_copy(own.get(), given);
+        change(*own);
+        lp_sized_copy(given, own.get());
+        return LENSPROF_OK;
+    } catch (const std::bad_alloc &) {
+        return fail(LENSPROF_ERROR_MEMORY, error, "profile: out of memory");
+    }
+}
+
+// Takes a result and its options into this library's; ARGUMENT for counts that no fit gives.
+template <class Options, class Result>
+lensprof_status take_fitted(const Options *options, size_t first_options, Options &own_options, const Result *result,
+                            size_t first_result, Result &own, lensprof_error *error) {
+    if (options)
+        if (const char *wrong = lp_sized_take(&own_options, options, first_options))
+            return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "options: %s", wrong);
+    if (const char *wrong = lp_sized_take(&own, result, first_result))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
+    if ((own.vignettings != 1 && own.vignettings != 3) || own.covariance_size > LENSPROF_COVARIANCE_MAX)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "result: no fit has filled it; pass one that returned OK");
+    return LENSPROF_OK;
+}
+
+}  // namespace lensprof
