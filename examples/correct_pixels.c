@@ -21,9 +21,10 @@ static int correct(uint8_t pixels[HEIGHT][WIDTH][3]) {
     const lensprof_plan *plan;
     lensprof_apply_options options;
     lensprof_image view = {pixels, WIDTH * 3, WIDTH, HEIGHT, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB};
-    lensprof_error error = {""};
+    lensprof_error error;
     lensprof_status status;
 
+    error.text[0] = 0;
     lensprof_apply_options_init(&options);
     options.frame_width = WIDTH;
     options.frame_height = HEIGHT;

@@ -66,7 +66,7 @@ PLANTED = (
     ("store.h", "    uint32_t rows; ", "    uint64_t rows; "),
     ("profile.h", "    double focal_mm; ", "    double focal; "),
     ("base.h", "    LENSPROF_ERROR_SIZE = 3, ", "    LENSPROF_ERROR_SIZE = 6, "),
-    ("apply.h", "lensprof_sample_type_bytes(uint32_t sample)", "lensprof_sample_type_bytes(uint64_t sample)"),
+    ("apply.h", "lensprof_sample_type_bytes(uint32_t type)", "lensprof_sample_type_bytes(uint64_t type)"),
     ("base.h", "LENSPROF_API const char *lensprof_version(void);", ""),
 )
 

@@ -287,7 +287,7 @@ static void test_plan_refuses(void **state) {
     uint8_t *memory = malloc(bytes + 8);
     const lensprof_plan *plan = NULL;
     const lensprof_apply_options good = f.options;
-    lensprof_error error = {""};
+    lensprof_error error = {.text = ""};
     memset(memory, 0xAA, bytes + 8);
 #define REFUSED(change, status)                                                                 \
     do {                                                                                        \
