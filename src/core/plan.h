@@ -5,7 +5,8 @@
 #include "core/image.h"
 
 #define LP_FORWARD_SHIFT 10 /* log2 of the samples of a response */
-#define LP_CELLS 1024       /* that values 0..1 are divided into, to find them among the samples */
+#define LP_CELL_SHIFT 11
+#define LP_CELLS (1 << LP_CELL_SHIFT) /* that values 0..1 are divided into, to find them among the samples */
 
 /* How codes or values become irradiance, and how that becomes a value 0..1 again. */
 enum lp_curve {
@@ -46,8 +47,8 @@ struct lensprof_plan {
     const float *nodes[LP_CHANNELS]; /* attenuation less 1 */
     const float *forward;            /* curves x 1024 samples of f, and one number more */
     const float *inverse;            /* curves x codes of g; NULL without */
-    const float *start;              /* for g of values: curves x LP_CELLS + 1, the last sample below cell / LP_CELLS */
-    int32_t step;                    /* from there the first step up the samples is this, then half of it, ... */
+    const uint16_t *start;           /* for g of values: curves x LP_CELLS + 1, the last sample below cell / LP_CELLS */
+    int32_t step; /* from there the first step up the samples is this, then half of it, ...; 0 where a cell has <= 2 */
 };
 
 /* The kernels. Each gives the same bytes. */

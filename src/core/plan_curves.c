@@ -42,7 +42,7 @@ static size_t codes_of(const lensprof_apply_options *o, const lp_model *m) {
     return o->source_sample == LENSPROF_SAMPLE_U8 ? 256 : 65536;
 }
 
-/* Entries of the table of where to begin among the samples; 0 where values do not go through the inverse. */
+/* Entries of the table of where to begin among the samples, of 16 bit; 0 where values do not go through the inverse. */
 static size_t starts_of(const lensprof_apply_options *o, const lp_model *m) {
     const uint32_t decode = codes_of(o, m) ? (uint32_t)LP_CURVE_NONE : decode_of(o, m);
     return decode == LP_CURVE_TABLE || decode == LP_CURVE_MIXED ? LP_CELLS + 1 : 0;
@@ -74,15 +74,16 @@ static void fill_inverse(const struct lp_model_response *response, size_t codes,
     }
 }
 
-/* Where to begin among the samples, for every cell of values, and the first step from there. */
-static void fill_start(lensprof_plan *plan, const float *samples, float *start) {
+/* Where to begin among the samples, for every cell of values, and the first step from there. Kernels look at four
+ * samples at once after the steps, two of which a value may lie beyond. */
+static void fill_start(lensprof_plan *plan, const float *samples, uint16_t *start) {
     uint32_t j = 0;
     for (uint32_t cell = 0; cell <= LP_CELLS; cell++) {
         const float least = (float)cell / LP_CELLS;
         const uint32_t before = j;
         while (j + 1 < LENSPROF_RESPONSE_SAMPLES && samples[j + 1] < least) j++;
-        start[cell] = (float)j;
-        while (plan->step <= (int32_t)(j - before) / 2) plan->step = plan->step ? 2 * plan->step : 1;
+        start[cell] = (uint16_t)(j < LP_CURVE_LAST - 3 ? j : LP_CURVE_LAST - 3);
+        while (j - before > 2 && plan->step < (int32_t)(j - before) / 2) plan->step = plan->step ? 2 * plan->step : 1;
     }
 }
 
@@ -91,7 +92,8 @@ float *lp_prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, c
     plan->curves = lp_curves(o, m);
     plan->decode = decode_of(o, m);
     plan->encode = encode_of(o, m);
-    float *inverse = memory + plan->curves * samples + (samples ? 1 : 0), *start = inverse + plan->curves * codes;
+    float *inverse = memory + plan->curves * samples + (samples ? 1 : 0), *after = inverse + plan->curves * codes;
+    uint16_t *start = (uint16_t *)(void *)after;
     if (samples) inverse[-1] = 0.0f; /* kernels read it, times 0 */
     plan->forward = memory;
     plan->inverse = codes ? inverse : NULL;
@@ -107,10 +109,10 @@ float *lp_prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, c
         memset(start + c * starts, 0, starts * sizeof *start);
         if (starts && !lp_is_power(response)) fill_start(plan, memory + c * samples, start + c * starts);
     }
-    return start + plan->curves * starts;
+    return after + (plan->curves * starts + 1) / 2;
 }
 
 size_t lp_curve_numbers(const lensprof_apply_options *o, const lp_model *m) {
     const size_t samples = samples_of(o, m), after = samples ? 1 : 0;
-    return lp_curves(o, m) * (samples + codes_of(o, m) + starts_of(o, m)) + after;
+    return lp_curves(o, m) * (samples + codes_of(o, m)) + (lp_curves(o, m) * starts_of(o, m) + 1) / 2 + after;
 }

@@ -40,23 +40,41 @@ ALWAYS_INLINE lane_f table_at(const float *samples, lane_f position, lane_i chan
     return f_add(low, f_mul(f_sub(position, f_of_i(j)), f_sub(high, low)));
 }
 
-/* g(b) by the samples of f, 0 <= b <= 1: the smallest x with f(x) >= b. */
-ALWAYS_INLINE lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i channel) {
-    const float *samples = plan->forward;
-    const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
-    const lane_i cell = i_add(i_of_f(f_mul(b, f_set((float)LP_CELLS))), channel); /* a table is one longer than cells */
-    lane_i low = i_of_f(f_gather(plan->start, i_add(cell, first)));
-    for (int32_t step = plan->step; step > 0; step /= 2) {
-        const lane_i next = i_min(i_add(low, i_set(step)), i_set(LAST));
-        low = i_pick(f_less(f_gather(samples, i_add(next, first)), b), next, low);
-    }
-    lane_f below, above;
-    low = i_min(low, i_set(LAST - 1));
-    f_gather_pair(samples, i_add(low, first), &below, &above);
+/* The cell of b in plan->start, of a channel; 0 <= b <= 1. */
+ALWAYS_INLINE lane_i cell_of(lane_f b, lane_i channel) {
+    const lane_i cell = i_of_f(f_mul(b, f_set((float)LP_CELLS)));
+    return i_add(i_add(cell, i_left(channel, LP_CELL_SHIFT)), channel); /* a table is one longer than cells */
+}
+
+/* g(b) by the four samples of f from place `low` on, one of which is the last below b: the smallest x with
+ * f(x) >= b. */
+ALWAYS_INLINE lane_f between_four(const lane_f four[4], lane_i low, lane_f b) {
+    const lane_b one = f_less(four[1], b), two = f_less(four[2], b);
+    const lane_f below = f_pick(two, four[2], f_pick(one, four[1], four[0]));
+    const lane_f above = f_pick(two, four[3], f_pick(one, four[2], four[1]));
+    const lane_f on = f_pick(two, f_set(2.0f), f_pick(one, f_set(1.0f), f_set(0.0f)));
     const lane_f rise = f_sub(above, below);
     const lane_f share = f_div(f_sub(b, below), f_pick(f_less(f_set(0.0f), rise), rise, f_set(1.0f)));
-    const lane_f x = f_div(f_add(f_of_i(low), share), f_set((float)LAST));
+    const lane_f x = f_mul(f_add(f_add(f_of_i(low), on), share), f_set(1.0f / (float)LAST));
     return f_pick(f_less(f_set(0.0f), b), x, f_set(0.0f));
+}
+
+/* g(b) by the samples of f, 0 <= b <= 1. */
+ONCE_IN_SCALAR lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i channel) {
+    const float *samples = plan->forward;
+    const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
+    int32_t at[LANES];
+    lane_f four[4];
+    i_store(at, cell_of(b, channel));
+    for (uint32_t i = 0; i < LANES; i++) at[i] = plan->start[at[i]];
+    lane_i low = i_load(at);
+    for (int32_t step = plan->step; step > 0; step /= 2) {
+        const lane_i next = i_min(i_add(low, i_set(step)), i_set(LAST - 3));
+        low = i_pick(f_less(f_gather(samples, i_add(next, first)), b), next, low);
+    }
+    i_store(at, i_add(low, first));
+    f_fours(samples, at, four);
+    return between_four(four, low, b);
 }
 
 /* The value of a curve; NaN stays. `at`: index into s->channel. `is_light`: x are numbers not below 0. Towards

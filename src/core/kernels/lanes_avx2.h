@@ -31,6 +31,7 @@ static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) {
 
 static inline lane_i i_set(int32_t v) { return _mm256_set1_epi32(v); }
 static inline lane_i i_load(const int32_t *p) { return _mm256_loadu_si256((const __m256i *)(const void *)p); }
+static inline void i_store(int32_t *p, lane_i v) { _mm256_storeu_si256((__m256i *)(void *)p, v); }
 static inline lane_i i_add(lane_i a, lane_i b) { return _mm256_add_epi32(a, b); }
 static inline lane_i i_sub(lane_i a, lane_i b) { return _mm256_sub_epi32(a, b); }
 static inline lane_i i_and(lane_i a, lane_i b) { return _mm256_and_si256(a, b); }
@@ -80,6 +81,31 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
     __m256d b = _mm256_castps_pd(_mm256_shuffle_ps(low, high, 0xdd));
     *first = _mm256_castpd_ps(_mm256_permute4x64_pd(a, 0xd8));
     *second = _mm256_castpd_ps(_mm256_permute4x64_pd(b, 0xd8));
+}
+
+/* Loads of single elements are faster than gathers where the places are in memory. */
+static inline __m128 two_pairs(const float *base, int32_t a, int32_t b) {
+    const __m128 low = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + a));
+    return _mm_loadh_pi(low, (const __m64 *)(const void *)(base + b));
+}
+static inline __m256 join(__m128 low, __m128 high) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
+}
+static inline void f_pairs(const float *base, const int32_t *at, lane_f *first, lane_f *second) {
+    const __m256 a = join(two_pairs(base, at[0], at[1]), two_pairs(base, at[4], at[5]));
+    const __m256 b = join(two_pairs(base, at[2], at[3]), two_pairs(base, at[6], at[7]));
+    *first = _mm256_shuffle_ps(a, b, 0x88);
+    *second = _mm256_shuffle_ps(a, b, 0xdd);
+}
+static inline void f_fours(const float *base, const int32_t *at, lane_f four[4]) {
+    __m256 row[4];
+    for (int i = 0; i < 4; i++) row[i] = join(_mm_loadu_ps(base + at[i]), _mm_loadu_ps(base + at[4 + i]));
+    const __m256 ab = _mm256_unpacklo_ps(row[0], row[1]), cd = _mm256_unpacklo_ps(row[2], row[3]);
+    const __m256 ab_high = _mm256_unpackhi_ps(row[0], row[1]), cd_high = _mm256_unpackhi_ps(row[2], row[3]);
+    four[0] = _mm256_shuffle_ps(ab, cd, 0x44);
+    four[1] = _mm256_shuffle_ps(ab, cd, 0xee);
+    four[2] = _mm256_shuffle_ps(ab_high, cd_high, 0x44);
+    four[3] = _mm256_shuffle_ps(ab_high, cd_high, 0xee);
 }
 
 static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {

@@ -34,6 +34,7 @@ static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) { return _mm512_ma
 
 static inline lane_i i_set(int32_t v) { return _mm512_set1_epi32(v); }
 static inline lane_i i_load(const int32_t *p) { return _mm512_loadu_si512(p); }
+static inline void i_store(int32_t *p, lane_i v) { _mm512_storeu_si512(p, v); }
 static inline lane_i i_add(lane_i a, lane_i b) { return _mm512_add_epi32(a, b); }
 static inline lane_i i_sub(lane_i a, lane_i b) { return _mm512_sub_epi32(a, b); }
 static inline lane_i i_and(lane_i a, lane_i b) { return _mm512_and_si512(a, b); }
@@ -76,6 +77,37 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
     const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
     *first = _mm512_permutex2var_ps(low, even, high);
     *second = _mm512_permutex2var_ps(low, _mm512_add_epi32(even, _mm512_set1_epi32(1)), high);
+}
+
+/* Loads of single elements are faster than gathers where the places are in memory. */
+static inline __m128 two_pairs(const float *base, int32_t a, int32_t b) {
+    const __m128 low = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + a));
+    return _mm_loadh_pi(low, (const __m64 *)(const void *)(base + b));
+}
+static inline __m512 join(__m128 a, __m128 b, __m128 c, __m128 d) {
+    const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(a), b, 1);
+    const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(c), d, 1);
+    return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+}
+static inline void f_pairs(const float *base, const int32_t *at, lane_f *first, lane_f *second) {
+    const __m512 a = join(two_pairs(base, at[0], at[1]), two_pairs(base, at[4], at[5]), two_pairs(base, at[8], at[9]),
+                          two_pairs(base, at[12], at[13]));
+    const __m512 b = join(two_pairs(base, at[2], at[3]), two_pairs(base, at[6], at[7]), two_pairs(base, at[10], at[11]),
+                          two_pairs(base, at[14], at[15]));
+    *first = _mm512_shuffle_ps(a, b, 0x88);
+    *second = _mm512_shuffle_ps(a, b, 0xdd);
+}
+static inline void f_fours(const float *base, const int32_t *at, lane_f four[4]) {
+    __m512 row[4];
+    for (int i = 0; i < 4; i++)
+        row[i] = join(_mm_loadu_ps(base + at[i]), _mm_loadu_ps(base + at[4 + i]), _mm_loadu_ps(base + at[8 + i]),
+                      _mm_loadu_ps(base + at[12 + i]));
+    const __m512 ab = _mm512_unpacklo_ps(row[0], row[1]), cd = _mm512_unpacklo_ps(row[2], row[3]);
+    const __m512 ab_high = _mm512_unpackhi_ps(row[0], row[1]), cd_high = _mm512_unpackhi_ps(row[2], row[3]);
+    four[0] = _mm512_shuffle_ps(ab, cd, 0x44);
+    four[1] = _mm512_shuffle_ps(ab, cd, 0xee);
+    four[2] = _mm512_shuffle_ps(ab_high, cd_high, 0x44);
+    four[3] = _mm512_shuffle_ps(ab_high, cd_high, 0xee);
 }
 
 static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {

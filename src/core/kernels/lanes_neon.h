@@ -29,6 +29,7 @@ static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) { return vbslq_s32
 
 static inline lane_i i_set(int32_t v) { return vdupq_n_s32(v); }
 static inline lane_i i_load(const int32_t *p) { return vld1q_s32(p); }
+static inline void i_store(int32_t *p, lane_i v) { vst1q_s32(p, v); }
 static inline lane_i i_add(lane_i a, lane_i b) { return vaddq_s32(a, b); }
 static inline lane_i i_sub(lane_i a, lane_i b) { return vsubq_s32(a, b); }
 static inline lane_i i_and(lane_i a, lane_i b) { return vandq_s32(a, b); }
@@ -77,6 +78,23 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
         vcombine_f32(vld1_f32(base + vgetq_lane_s32(index, 2)), vld1_f32(base + vgetq_lane_s32(index, 3)));
     *first = vuzp1q_f32(low, high);
     *second = vuzp2q_f32(low, high);
+}
+
+static inline void f_pairs(const float *base, const int32_t *at, lane_f *first, lane_f *second) {
+    const float32x4_t low = vcombine_f32(vld1_f32(base + at[0]), vld1_f32(base + at[1]));
+    const float32x4_t high = vcombine_f32(vld1_f32(base + at[2]), vld1_f32(base + at[3]));
+    *first = vuzp1q_f32(low, high);
+    *second = vuzp2q_f32(low, high);
+}
+static inline void f_fours(const float *base, const int32_t *at, lane_f four[4]) {
+    const float32x4_t a = f_load(base + at[0]), b = f_load(base + at[1]), c = f_load(base + at[2]),
+                      d = f_load(base + at[3]);
+    const float32x4_t ab = vtrn1q_f32(a, b), ab_odd = vtrn2q_f32(a, b); /* a0 b0 a2 b2, a1 b1 a3 b3 */
+    const float32x4_t cd = vtrn1q_f32(c, d), cd_odd = vtrn2q_f32(c, d);
+    four[0] = vcombine_f32(vget_low_f32(ab), vget_low_f32(cd));
+    four[1] = vcombine_f32(vget_low_f32(ab_odd), vget_low_f32(cd_odd));
+    four[2] = vcombine_f32(vget_high_f32(ab), vget_high_f32(cd));
+    four[3] = vcombine_f32(vget_high_f32(ab_odd), vget_high_f32(cd_odd));
 }
 
 static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {

@@ -30,6 +30,7 @@ static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) { return is ? yes 
 
 static inline lane_i i_set(int32_t v) { return v; }
 static inline lane_i i_load(const int32_t *p) { return *p; }
+static inline void i_store(int32_t *p, lane_i v) { *p = v; }
 static inline lane_i i_add(lane_i a, lane_i b) { return a + b; }
 static inline lane_i i_sub(lane_i a, lane_i b) { return a - b; }
 static inline lane_i i_and(lane_i a, lane_i b) { return a & b; }
@@ -70,6 +71,15 @@ static inline lane_f f_gather(const float *base, lane_i index) { return base[ind
 static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second) {
     *first = base[index];
     *second = base[index + 1];
+}
+
+/* Of every place at[0], at[1], ...: base[place] and the element behind it; the four elements from there. */
+static inline void f_pairs(const float *base, const int32_t *at, lane_f *first, lane_f *second) {
+    *first = base[*at];
+    *second = base[*at + 1];
+}
+static inline void f_fours(const float *base, const int32_t *at, lane_f four[4]) {
+    for (int i = 0; i < 4; i++) four[i] = base[*at + i];
 }
 
 /* a0 b0 c0 a1 b1 c1 ... */

@@ -29,6 +29,7 @@ static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) { return _mm_blend
 
 static inline lane_i i_set(int32_t v) { return _mm_set1_epi32(v); }
 static inline lane_i i_load(const int32_t *p) { return _mm_loadu_si128((const __m128i *)(const void *)p); }
+static inline void i_store(int32_t *p, lane_i v) { _mm_storeu_si128((__m128i *)(void *)p, v); }
 static inline lane_i i_add(lane_i a, lane_i b) { return _mm_add_epi32(a, b); }
 static inline lane_i i_sub(lane_i a, lane_i b) { return _mm_sub_epi32(a, b); }
 static inline lane_i i_and(lane_i a, lane_i b) { return _mm_and_si128(a, b); }
@@ -68,6 +69,20 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
     high = _mm_loadh_pi(high, (const __m64 *)(const void *)(base + _mm_extract_epi32(index, 3)));
     *first = _mm_shuffle_ps(low, high, 0x88);
     *second = _mm_shuffle_ps(low, high, 0xdd);
+}
+
+static inline __m128 two_pairs(const float *base, int32_t a, int32_t b) {
+    const __m128 low = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + a));
+    return _mm_loadh_pi(low, (const __m64 *)(const void *)(base + b));
+}
+static inline void f_pairs(const float *base, const int32_t *at, lane_f *first, lane_f *second) {
+    const __m128 low = two_pairs(base, at[0], at[1]), high = two_pairs(base, at[2], at[3]);
+    *first = _mm_shuffle_ps(low, high, 0x88);
+    *second = _mm_shuffle_ps(low, high, 0xdd);
+}
+static inline void f_fours(const float *base, const int32_t *at, lane_f four[4]) {
+    for (int i = 0; i < 4; i++) four[i] = f_load(base + at[i]);
+    _MM_TRANSPOSE4_PS(four[0], four[1], four[2], four[3]);
 }
 
 static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {

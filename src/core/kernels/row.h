@@ -104,20 +104,13 @@ static void store_run(const lensprof_plan *plan, const run *r, const strip *s) {
 }
 
 #if LANES > 1
-/* The usual ways in one pass: samples of one type in and out, through one curve both ways. The same steps as
- * load_run, decode, encode and store_run, and so the same bytes. */
+/* The usual ways in one pass, or by tables in stages: samples of one type in and out, through one curve both ways. The
+ * same steps as load_run, decode, encode and store_run, and so the same bytes. */
 ALWAYS_INLINE lane_f through(const lensprof_plan *plan, const strip *s, uint32_t sample, uint32_t curve, uint32_t at,
                              const uint8_t *from) {
     const int is_light = sample != LENSPROF_SAMPLE_F32; /* codes are */
-    lane_f light;
-    if (curve == LP_CURVE_TABLE && sample == LENSPROF_SAMPLE_U8)
-        light = f_gather(plan->inverse, i_load_u8(from));
-    else if (curve == LP_CURVE_TABLE && sample == LENSPROF_SAMPLE_U16)
-        light = f_gather(plan->inverse, i_load_u16(from));
-    else
-        light = load_values(sample, from);
-    if (curve != LP_CURVE_NONE && !(curve == LP_CURVE_TABLE && is_light))
-        light = curve_value(plan, s, curve, 1, is_light, at, f_mul(light, code_scale(plan)));
+    lane_f light = load_values(sample, from);
+    if (curve != LP_CURVE_NONE) light = curve_value(plan, s, curve, 1, is_light, at, f_mul(light, code_scale(plan)));
     light = f_mul(light, f_load(s->factor + at));
     return curve == LP_CURVE_NONE ? light : curve_value(plan, s, curve, 0, is_light, at, light);
 }
@@ -143,23 +136,119 @@ ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const str
     }
 }
 
+/* Places in tables go through memory, a whole run at a time: loads by them then wait for nothing. */
+
+/* Codes to light. */
+ALWAYS_INLINE void codes_by_table(const lensprof_plan *plan, const run *r, strip *s, uint32_t sample) {
+    const uint16_t *codes = (const uint16_t *)(const void *)r->from;
+    const float *inverse = plan->inverse;
+    float *light = s->light + r->at;
+    for (uint32_t i = 0; i < r->count; i++) light[i] = inverse[sample == LENSPROF_SAMPLE_U8 ? r->from[i] : codes[i]];
+    for (uint32_t i = r->count; i % LANES; i++) light[i] = 0.0f;
+}
+
+/* One by one: compilers' vectors of such loads are slower. */
+static void look_up(const uint16_t *restrict table, int32_t *restrict place, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        place[i] = table[place[i]];
+#if defined(__GNUC__)
+        __asm__ volatile("");
+#endif
+    }
+}
+
+/* Values to light, no steps being needed. */
+static void values_by_table(const lensprof_plan *plan, const run *r, strip *s) {
+    const uint16_t *start = plan->start;
+    const float *samples = plan->forward;
+    float *light = s->light + r->at;
+    int32_t *place = s->place + r->at;
+    load_codes(LENSPROF_SAMPLE_F32, r->from, r->count, light);
+    for (uint32_t i = 0; i < r->count; i += LANES)
+        i_store(place + i, cell_of(cut(f_load(light + i), 0, 1.0f), i_set(0)));
+    look_up(start, place, (r->count + LANES - 1) / LANES * LANES);
+    for (uint32_t i = 0; i < r->count; i += LANES) {
+        const lane_f value = f_load(light + i);
+        lane_f four[4];
+        f_fours(samples, place + i, four);
+        const lane_f x = between_four(four, i_load(place + i), cut(value, 0, 1.0f));
+        f_store(light + i, f_pick(f_is_number(value), x, value));
+    }
+}
+
+/* Light times gain to samples. */
+ALWAYS_INLINE void light_by_table(const lensprof_plan *shared, const run *r, strip *s, uint32_t sample) {
+    lensprof_plan own = *shared; /* which no store can change */
+    const lensprof_plan *plan = &own;
+    const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
+    const int is_light = sample != LENSPROF_SAMPLE_F32; /* codes are */
+    float *light = s->light + r->at, last[LANES];
+    int32_t *place = s->place + r->at;
+    own.dither = 0, own.encode = LP_CURVE_TABLE;
+    for (uint32_t i = 0; i < r->count; i += LANES) {
+        const lane_f x = f_mul(f_load(light + i), f_load(s->factor + r->at + i));
+        f_store(light + i, x);
+        i_store(place + i, i_of_f(cut(x, is_light, (float)LAST)));
+    }
+    for (uint32_t i = 0; i < r->count; i += LANES) {
+        const lane_f x = f_load(light + i), position = cut(x, is_light, (float)LAST);
+        lane_f low, high;
+        f_pairs(plan->forward, place + i, &low, &high);
+        lane_f y = f_add(low, f_mul(f_sub(position, f_of_i(i_load(place + i))), f_sub(high, low)));
+        if (!is_light) y = f_pick(f_is_number(x), y, x);
+        uint8_t *to = i + LANES <= r->count ? r->to + i * bytes : (uint8_t *)last;
+        store_vector(plan, sample, is_light, s, r->at + i, y, to);
+    }
+    const uint32_t rest = r->count % LANES;
+    memcpy(r->to + (r->count - rest) * bytes, last, rest * bytes);
+}
+
+static void through_tables(const lensprof_plan *plan, const run *r, strip *s) {
+    switch (plan->source_sample) {
+    case LENSPROF_SAMPLE_U8:
+        codes_by_table(plan, r, s, LENSPROF_SAMPLE_U8);
+        light_by_table(plan, r, s, LENSPROF_SAMPLE_U8);
+        break;
+    case LENSPROF_SAMPLE_U16:
+        codes_by_table(plan, r, s, LENSPROF_SAMPLE_U16);
+        light_by_table(plan, r, s, LENSPROF_SAMPLE_U16);
+        break;
+    default: values_by_table(plan, r, s); light_by_table(plan, r, s, LENSPROF_SAMPLE_F32);
+    }
+}
+
 /* False for what is not one of the usual ways. */
-static int do_one_pass(const lensprof_plan *plan, const run *r, const strip *s) {
+static int do_one_pass(const lensprof_plan *plan, const run *r, strip *s) {
     if (plan->source_sample != plan->target_sample || plan->decode != plan->encode || plan->dither
         || (plan->curves == 3 && plan->decode != LP_CURVE_NONE))
         return 0;
     switch (8 * plan->source_sample + plan->decode) {
     case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_NONE); return 1;
-    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_U8, LP_CURVE_TABLE); return 1;
     case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_NONE); return 1;
-    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_TABLE); return 1;
     case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_POWER: one_pass(plan, r, s, LENSPROF_SAMPLE_U16, LP_CURVE_POWER); return 1;
     case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_NONE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_NONE); return 1;
-    case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_TABLE: one_pass(plan, r, s, LENSPROF_SAMPLE_F32, LP_CURVE_TABLE); return 1;
+    case 8 * LENSPROF_SAMPLE_U8 + LP_CURVE_TABLE:
+    case 8 * LENSPROF_SAMPLE_U16 + LP_CURVE_TABLE:
+    case 8 * LENSPROF_SAMPLE_F32 + LP_CURVE_TABLE:
+        if (plan->step) return 0;
+        through_tables(plan, r, s);
+        return 1;
     default: return 0;
     }
 }
 #endif
+
+/* The largest of values; 0 of none but NaN. */
+static float largest_value(const float *values, uint32_t count) {
+    lane_f mosts = f_set(0.0f);
+    float each[LANES], most = 0.0f;
+    uint32_t i = 0;
+    for (; LANES > 1 && i + LANES <= count; i += LANES) mosts = f_max(f_load(values + i), mosts);
+    f_store(each, mosts);
+    for (; i < count; i++) most = values[i] > most ? values[i] : most;
+    for (i = 0; i < LANES; i++) most = each[i] > most ? each[i] : most;
+    return most;
+}
 
 /* The largest of the codes or values of a run; 0 of none but NaN. Written so that compilers make vectors of it. */
 static float largest_of(const lensprof_plan *plan, const run *r) {
@@ -167,7 +256,6 @@ static float largest_of(const lensprof_plan *plan, const run *r) {
     const float *values = (const float *)(const void *)r->from;
     uint8_t most8 = 0;
     uint16_t most16 = 0;
-    float most = 0.0f;
     switch (plan->source_sample) {
     case LENSPROF_SAMPLE_U8:
         for (uint32_t i = 0; i < r->count; i++) most8 = r->from[i] > most8 ? r->from[i] : most8;
@@ -175,9 +263,7 @@ static float largest_of(const lensprof_plan *plan, const run *r) {
     case LENSPROF_SAMPLE_U16:
         for (uint32_t i = 0; i < r->count; i++) most16 = codes[i] > most16 ? codes[i] : most16;
         return most16;
-    case LENSPROF_SAMPLE_F32:
-        for (uint32_t i = 0; i < r->count; i++) most = values[i] > most ? values[i] : most;
-        return most;
+    case LENSPROF_SAMPLE_F32: return largest_value(values, r->count);
     default: return 1.0f; /* halves are not looked through: as if there were white */
     }
 }

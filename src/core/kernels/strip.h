@@ -7,6 +7,13 @@
 #define ALWAYS_INLINE static inline
 #endif
 
+/* Of one lane, which microcontrollers run, the code is to be small. */
+#if LANES > 1
+#define ONCE_IN_SCALAR ALWAYS_INLINE
+#else
+#define ONCE_IN_SCALAR static
+#endif
+
 #define LAST (LENSPROF_RESPONSE_SAMPLES - 1)
 #define MOST_SAMPLES (4 * STRIP)
 #define ROOM (MOST_SAMPLES + LANES) /* the last vector of a strip may go beyond */
@@ -14,10 +21,14 @@
 /* Planes stand STRIP + LANES apart on it. */
 typedef struct strip {
     float gain[LP_CHANNELS][STRIP + LANES]; /* of the pixels */
-    float factor[ROOM];                     /* of the samples */
-    float light[ROOM];
-    int32_t channel[ROOM]; /* of the samples, where the channels have curves of their own */
-    float rounding[ROOM];  /* added before a code is cut to an integer, with dither */
+    union {
+        int32_t channel[ROOM]; /* of the samples, where the channels have curves of their own */
+        int32_t place[ROOM];   /* of the samples in a table, where they have one curve */
+    };
+    float
+        light[ROOM]; /* in this order: arrays lie a little more than 4 KiB apart, and processors take a load for one */
+    float factor[ROOM];   /* of what was just stored exactly 4 KiB before; of the samples */
+    float rounding[ROOM]; /* added before a code is cut to an integer, with dither */
     uint8_t alpha[STRIP][4];
     float grid[LP_CHANNELS][LENSPROF_GRID_SIDE + 1];
 } strip;
