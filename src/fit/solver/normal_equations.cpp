@@ -90,13 +90,14 @@ void NormalEquations::map_images(const Sums &sums, const Prior &prior, const Est
                         for (int r : columns_of(link.image[other], c))
                             if (q >= 0 && r >= 0)
                                 entries.emplace_back(q, r, (end == other ? 1.0 : -1.0) * link.weight[c]);
+    const bool has_shared = !columns_.empty();  // a matrix without columns has no rows to point at
     cross_q_ = Eigen::MatrixXd::Zero(count, static_cast<Eigen::Index>(columns_.size()));
     gradient_q_ = Eigen::VectorXd::Zero(count);
     for (uint32_t i = 0; i < problem_.image_count; i++)
         for (int c = 0; c < problem_.channels; c++)
             for (int q : columns_of(i, c))
                 if (q >= 0) {
-                    cross_q_.row(q) += sums.cross.col(3 * static_cast<Eigen::Index>(i) + c).transpose();
+                    if (has_shared) cross_q_.row(q) += sums.cross.col(3 * static_cast<Eigen::Index>(i) + c).transpose();
                     gradient_q_[q] += sums.image_gradient[3 * static_cast<Eigen::Index>(i) + c];
                 }
     for (size_t i = 0; i < prior.known.size(); i++) {
@@ -124,8 +125,10 @@ bool NormalEquations::reduce(double lambda) {
     damped += diagonal;
     factor_.compute(damped);
     if (factor_.info() != Eigen::Success) return false;
-    eliminated_ = factor_.solve(cross_q_);
+    eliminated_ = cross_q_;
     image_only_ = factor_.solve(gradient_q_);
+    if (n == 0) return true;
+    eliminated_ = factor_.solve(cross_q_);
     S_ -= cross_q_.transpose() * eliminated_;
     S_ = 0.5 * (S_ + S_.transpose()).eval();
     b_ -= eliminated_.transpose() * gradient_q_;
@@ -135,7 +138,8 @@ bool NormalEquations::reduce(double lambda) {
 std::vector<std::array<double, 3>> NormalEquations::image_step(const Eigen::VectorXd &shared_step) const {
     std::vector<std::array<double, 3>> step(problem_.image_count, {0.0, 0.0, 0.0});
     if (problem_.image_unknowns == 0) return step;
-    Eigen::VectorXd q = image_only_ - eliminated_ * shared_step;
+    Eigen::VectorXd q = image_only_;
+    if (!columns_.empty()) q -= eliminated_ * shared_step;
     for (uint32_t i = 0; i < problem_.image_count; i++)
         for (int c = 0; c < problem_.channels; c++) {
             if (problem_.ev_unknown[i] >= 0) step[i][c] += q[problem_.ev_unknown[i]];
@@ -151,6 +155,7 @@ double NormalEquations::expected_gain(const Eigen::VectorXd &shared_step) const 
 
 Eigen::VectorXd NormalEquations::image_variance(const Eigen::MatrixXd &shared) const {
     if (problem_.image_unknowns == 0) return {};
+    if (columns_.empty()) return inverse_diagonal(factor_);
     return inverse_diagonal(factor_) + (eliminated_ * shared).cwiseProduct(eliminated_).rowwise().sum();
 }
 
