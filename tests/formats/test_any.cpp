@@ -96,6 +96,17 @@ void test_content_comes_before_the_name(void **) {
     }
 }
 
+void test_words_of_other_formats_in_json(void **) {
+    for (const char *word :
+         {"<lensdatabase", "CameraProfiles", "VignettingModel", "a luminance_lut", "Pi rpi.hq cam"}) {
+        const std::string text = std::string("\n{\"key\":{\"lens\":\"") + word + "\"}}", marked = "\xEF\xBB\xBF" + text;
+        assert_int_equal(lensprof_format_detect(text.data(), text.size(), "a.xml"), LENSPROF_FORMAT_JSON);
+        assert_int_equal(lensprof_format_detect(marked.data(), marked.size(), nullptr), LENSPROF_FORMAT_JSON);
+    }
+    const std::string table = "\xEF\xBB\xBF{\"rpi.alsc\":{}}";
+    assert_int_equal(lensprof_format_detect(table.data(), table.size(), "a.json"), LENSPROF_FORMAT_ALSC);
+}
+
 void test_names_alone(void **) {
     const std::pair<const char *, uint32_t> names[] = {{"a.xml", LENSPROF_FORMAT_LENSFUN},
                                                        {"a.lcp", LENSPROF_FORMAT_LCP},
@@ -365,6 +376,17 @@ void test_export_refuses(void **) {
     refuses({p.get()}, options, LENSPROF_ERROR_ARGUMENT, "flags");
     options.struct_size = 4;
     refuses({p.get()}, options, LENSPROF_ERROR_STRUCT_SIZE, "struct_size");
+    for (uint32_t format = LENSPROF_FORMAT_AUTO + 1; format <= LENSPROF_FORMAT_RADICAL_VIGNETTING; format++) {
+        const auto broken = std::make_unique<lensprof_profile>(*p);
+        broken->responses = 2000000000;
+        auto of_broken = export_options(format);
+        of_broken.width = 60, of_broken.height = 40;
+        const lensprof_profile *const pointer = broken.get();
+        lensprof_error error{};
+        size_t size = 0;
+        assert_int_not_equal(lensprof_export(&pointer, 1, &of_broken, nullptr, 0, &size, &error), LENSPROF_OK);
+        assert_true(*error.text);
+    }
     const Found both = import(exported({p.get(), q.get()}, export_options(LENSPROF_FORMAT_JSON)), nullptr);
     assert_int_equal(both.profiles.size(), 2);
 }
@@ -375,6 +397,7 @@ int main() {
     const CMUnitTest tests[] = {
         cmocka_unit_test(test_formats_are_known),
         cmocka_unit_test(test_content_comes_before_the_name),
+        cmocka_unit_test(test_words_of_other_formats_in_json),
         cmocka_unit_test(test_names_alone),
         cmocka_unit_test(test_each_is_read),
         cmocka_unit_test(test_same_as_by_hand),

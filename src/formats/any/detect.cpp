@@ -70,6 +70,11 @@ bool is_jpeg(std::string_view data) { return begins(data, "\xFF\xD8"); }
 // What the first bytes tell for sure; AUTO where they leave it to the name.
 uint32_t format_of_content(std::string_view head, std::string_view name) {
     if (begins(head, "LPRF")) return LENSPROF_FORMAT_BLOB;
+    if (begins(head, "\xEF\xBB\xBF")) head.remove_prefix(3);  // byte order mark of UTF-8
+    // Before words are looked for: a text within JSON may hold any of them.
+    const size_t first = head.find_first_not_of(" \t\r\n");
+    if (first != std::string_view::npos && head[first] == '{')
+        return has(head, "\"luminance_lut\"") || has(head, "\"rpi.") ? LENSPROF_FORMAT_ALSC : LENSPROF_FORMAT_JSON;
     if (has(head, "<lensdatabase")) return LENSPROF_FORMAT_LENSFUN;
     if (has(head, "CameraProfiles")) return LENSPROF_FORMAT_LCP;
     if (has(head, "VignettingModel")) return LENSPROF_FORMAT_RADICAL_VIGNETTING;
@@ -77,9 +82,6 @@ uint32_t format_of_content(std::string_view head, std::string_view name) {
     if (is_tiff(head)) return ending_of(name) == "dng" ? LENSPROF_FORMAT_DNG_OPCODES : LENSPROF_FORMAT_MAP;
     if (ending_of(name) == "lcp") return LENSPROF_FORMAT_LCP;
     if (is_jpeg(head) || has(head, "<x:xmpmeta") || has(head, "<?xpacket")) return LENSPROF_FORMAT_DRONE_XMP;
-    const size_t first = head.find_first_not_of(" \t\r\n");
-    if (first != std::string_view::npos && head[first] == '{')
-        return has(head, "luminance_lut") || has(head, "rpi.") ? LENSPROF_FORMAT_ALSC : LENSPROF_FORMAT_JSON;
     return has(head, "# name:") ? LENSPROF_FORMAT_CURVES : LENSPROF_FORMAT_AUTO;
 }
 

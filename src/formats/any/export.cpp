@@ -144,5 +144,12 @@ lensprof_status lensprof_export(const lensprof_profile *const *profiles, uint32_
         set_error(error, "lensprof_export: profile 0 is NULL; pass a profile");
         return LENSPROF_ERROR_ARGUMENT;
     }
+    const lensprof_status valid = lensprof_profile_validate(profiles[0]);
+    if (valid != LENSPROF_OK) {
+        const std::string text =
+            std::string("profile 0 is invalid (") + lensprof_status_name(valid) + "); see lensprof_profile_validate";
+        set_error(error, text.c_str());
+        return valid;
+    }
     return write_one(*profiles[0], own, out);
 }
