@@ -5,6 +5,7 @@ SHELL := /bin/bash
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
+WERROR ?= OFF
 # Made by profiles/tools; never formatted.
 TABLES := (emor|prior)_table\.
 
@@ -18,7 +19,7 @@ test-deps: deps ## install what only tests and benchmarks need (packages-test.tx
 	@cmake/install-packages.sh packages-test.txt
 
 build: ## build the library and the program build/lensprof
-	cmake --preset release
+	cmake --preset release -DLENSPROF_WERROR=$(WERROR)
 	cmake --build --preset release -j $(JOBS)
 
 profiles: build ## a database of the installed Lensfun data (liblensfun-data-v1): build/lensfun.db
@@ -38,12 +39,14 @@ demo: program ## calibrate and correct a rendered sequence, or yours: make demo 
 check: test-deps build ## the quick tests, a few minutes
 	ctest --preset check -j $(JOBS)
 
+# Warnings end the project's own test run, with GCC and, in the sanitizer build, with clang.
+test: WERROR := ON
 test: test-deps build ## all tests but the campaigns of `make soak`, and the same under sanitizers
 	ctest --preset all -j $(JOBS)
-	$(MAKE) sanitize
+	$(MAKE) sanitize WERROR=ON
 
-sanitize: ## build and run the C and C++ tests under address and undefined behaviour sanitizers
-	cmake --preset sanitize
+sanitize: test-deps ## build and run the C and C++ tests under address and undefined behaviour sanitizers
+	cmake --preset sanitize -DLENSPROF_WERROR=$(WERROR)
 	cmake --build --preset sanitize -j $(JOBS)
 	ctest --preset sanitize -j $(JOBS)
 

@@ -22,7 +22,11 @@ if(LENSPROF_SANITIZE)
   # C reads bytes in place and keeps all checks. In C++ these four are at every access through a pointer or reference and take
   # as much compile time as all the rest; the address sanitizer stops at a null pointer, too.
   target_compile_options(lensprof_settings INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
-    $<$<COMPILE_LANGUAGE:CXX>:-fno-sanitize=null,alignment,object-size,vptr>)
+    $<$<COMPILE_LANGUAGE:CXX>:-fno-sanitize=null,alignment,object-size,vptr>
+    # clang's check of calls through pointers needs its C++ runtime in C programs, too.
+    $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-fno-sanitize=function>)
+  # As GCC does: what measures memory asks for it.
+  target_compile_definitions(lensprof_settings INTERFACE $<$<C_COMPILER_ID:Clang>:__SANITIZE_ADDRESS__=1>)
   target_link_options(lensprof_settings INTERFACE -fsanitize=address,undefined)
 endif()
 # The build type of the preset `sanitize`. -O1: with -O2 the compiler takes three times as long, longer than all tests.

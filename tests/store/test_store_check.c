@@ -16,7 +16,7 @@ static lensprof_status collect(void *user, const lensprof_store_fault *fault) {
 
 static void check_at(const char *path, uint32_t profiles, faults *all) {
     lensprof_store *store = store_at(path, LENSPROF_STORE_READ);
-    lensprof_error error = {"x"};
+    lensprof_error error = {"x", {0, 0, 0, 0}};
     uint32_t read = 99, count = 99;
     memset(all, 0, sizeof *all);
     if (lensprof_store_check(store, collect, all, &read, &count, &error) != LENSPROF_OK) fail_msg("%s", error.text);

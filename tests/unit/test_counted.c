@@ -131,7 +131,7 @@ static void check_row(size_t row, size_t wanted, size_t capacity) {
     const size_t bytes = capacity * table[row].element;
     unsigned char *buffer = malloc(bytes);
     size_t count = 77;
-    lensprof_error error = {"?"};
+    lensprof_error error = {.text = "?"};
     memset(buffer, 0x55, bytes);
     const lensprof_status status = table[row].call(buffer, capacity, &count, &error);
     if (status != (capacity < wanted ? LENSPROF_ERROR_CAPACITY : LENSPROF_OK))
@@ -151,7 +151,7 @@ static void test_every_capacity(void **state) {
     (void)state;
     for (size_t row = 0; row < ROWS; row++) {
         size_t wanted = 0;
-        lensprof_error error = {"?"};
+        lensprof_error error = {.text = "?"};
         const lensprof_status status = table[row].call(NULL, 0, &wanted, &error);
         if (status != LENSPROF_OK) fail_msg("%s: %s %s", table[row].name, lensprof_status_name(status), error.text);
         if (wanted < 2) fail_msg("%s: count %zu", table[row].name, wanted);
@@ -174,7 +174,7 @@ static void test_buffer_is_needed(void **state) {
     (void)state;
     for (size_t row = 0; row < ROWS; row++) {
         size_t count = 0;
-        lensprof_error error = {""};
+        lensprof_error error = {.text = ""};
         if (table[row].call(NULL, 1, &count, &error) != LENSPROF_ERROR_ARGUMENT || !*error.text)
             fail_msg("%s: %s", table[row].name, error.text);
     }

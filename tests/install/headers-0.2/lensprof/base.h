@@ -6,17 +6,18 @@
  *    that names the offending item and the next step. There is no global or thread-local error state.
  *  - Bytes that are read are `const void *data, size_t size`; data may be NULL where size is 0.
  *  - Results of any length go to `buffer, capacity, *count`: in bytes where they are a file or a text, else in
- * elements. *count receives how many there are. Capacity 0 asks for that: OK, and nothing else is done; the buffer may
- * be NULL then. Another capacity that is too small is refused with CAPACITY; *count is set, and nothing is written. A
- * text's terminator is not counted; it is written where there is room for it, so give one byte more than *count where
- * you need it. count may be NULL where it counts bytes.
- *  - Structs that grow begin with `uint32_t struct_size`. Their `_init` function sets it to the size that the program
- * was compiled with, and every other member to its default; call it before anything else, for outputs too. New members
- *    come last. A library takes every size from that of the struct's first version up to its own: members that an older
- *    program does not have count as their defaults, and outputs are filled up to the program's size, whose struct_size
- *    stays. It refuses larger structs (the program is newer than the library) and smaller ones (_init was not called)
- *    with STRUCT_SIZE. Elements of an array have one struct_size, which is the step from one to the next. Never copy
- * such a struct between an address of the library and one of the program by assignment.
+ *    elements. *count receives how many there are. Capacity 0 asks for that: OK, and nothing else is done; the
+ *    buffer may be NULL then. Another capacity that is too small is refused with CAPACITY; *count is set, and
+ *    nothing is written. A text's terminator is not counted; it is written where there is room for it, so give one
+ *    byte more than *count where you need it. count may be NULL where it counts bytes.
+ *  - Structs that grow begin with `uint32_t struct_size`. Their `_init` function sets it to the size that the
+ *    program was compiled with, and every other member to its default; call it before anything else, for outputs
+ *    too. New members come last. A library takes every size from that of the struct's first version up to its own:
+ *    members that an older program does not have count as their defaults, and outputs are filled up to the
+ *    program's size, whose struct_size stays. It refuses larger structs (the program is newer than the library) and
+ *    smaller ones (_init was not called) with STRUCT_SIZE. Elements of an array have one struct_size, which is the
+ *    step from one to the next. Never copy such a struct between an address of the library and one of the program
+ *    by assignment.
  *  - lensprof_profile_key and lensprof_provenance, which lie within other structs, have fixed sizes and room for new
  *    members, which is 0. Structs that the library owns and only shows (lensprof_import_entry, lensprof_store_fault)
  *    get new members at their end. All other public structs are frozen values.
