@@ -122,6 +122,8 @@ void test_units(void **) {
         {{"--distance", "3mm"}, "'mm' is not the unit of a distance"},
         {{"--focal", "f/4"}, "f/4"},
         {{"--aperture", "f/"}, "f/"},
+        {{"--aperture", "1/2.8"}, "'/2.8' is not the unit of an aperture"},
+        {{"--focal", "1/60"}, "'/60' is not the unit of a focal length"},
         {{"--distance", "3 m m"}, "3 m m"},
         {{"--distance", "nan"}, "nan"},
     };

@@ -45,7 +45,8 @@ double number_of(const std::string &word, const Quantity &quantity) {
     if (quantity.unit == Unit::f_number && (*text == 'f' || *text == 'F')) text += text[1] == '/' ? 2 : 1;
     double value = 0.0, divisor = 1.0;
     bool good = take_number(text, value);
-    if (good && *text == '/') good = take_number(++text, divisor) && divisor > 0.0;
+    const bool may_be_fraction = quantity.unit == Unit::none || quantity.unit == Unit::time_s;
+    if (good && may_be_fraction && *text == '/') good = take_number(++text, divisor) && divisor > 0.0;
     while (*text == ' ') text++;
     const UnitRule rule = rule_of(quantity.unit);
     const std::string rest = text;
@@ -54,7 +55,7 @@ double number_of(const std::string &word, const Quantity &quantity) {
                                     + rule.forms);
     value /= divisor;
     if (!good || (!rest.empty() && rest != rule.unit) || !(value >= quantity.low && value <= quantity.high))
-        throw std::invalid_argument(word + range_text(quantity));
+        throw std::invalid_argument((word.empty() ? "an empty word" : word) + range_text(quantity));
     return value;
 }
 
