@@ -122,7 +122,7 @@ lensprof_status import_part(const Input &in, uint32_t holds, lensprof_import_vis
         set_import_provenance(profile, in.options.name, "");
         done = is_response ? read_response(in, profile, error) : read_falloff(in, *part, error);
         if (done != LENSPROF_OK) return;
-        if (!is_response && part->usable) doubt_rise(profile);
+        if (!is_response && part->usable && !profile.provenance.doubt[0]) doubt_rise(profile);
         const lensprof_import_entry entry = {&profile, part->usable, holds};
         done = visit(user, &entry);
     });
