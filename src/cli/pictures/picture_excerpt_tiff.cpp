@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "cli/pictures/picture_excerpt.hpp"
+#include "cli/pictures/tiff_directory.hpp"
 
 namespace lensprof {
 
@@ -17,83 +18,71 @@ constexpr uint64_t directory_max_bytes = uint64_t(64) << 20;
 // A strip in the excerpt: even, as Exiv2 aligns strips to words.
 constexpr uint32_t short_strip = 2;
 
-// Where the directory is in a file that libtiff wrote: behind all strips, its values behind it.
 constexpr uint32_t header_bytes = 8;
 
-struct Entry {
-    uint16_t tag, type;
-    uint32_t count;
-    size_t field;  // of the value, or of the offset to it
-    size_t bytes;  // of the value
-    bool inside() const { return bytes <= 4; }
+// Bytes of a TIFF that are changed in place. `origin`: where the first of them is in the file.
+struct TiffBytes {
+    std::vector<uint8_t> &bytes;
+    TiffByteOrder order;
+    uint64_t origin;
+
+    void put(uint64_t place, size_t size, uint32_t value) {
+        order.put(&bytes[static_cast<size_t>(place - origin)], size, value);
+    }
+    // One of an entry's values, the first of which is at `place`.
+    void put_value(const TiffEntry &entry, uint64_t place, uint32_t i, uint32_t value) {
+        const size_t size = tiff_type_bytes(entry.type);
+        put(place + i * size, size, value);
+    }
+    // Moves the offsets of values that are not in the directory itself, after `from` bytes were replaced by `to`.
+    void move_values(const TiffDirectory &directory, uint32_t from, uint32_t to) {
+        for (const TiffEntry &entry : directory.entries)
+            if (!entry.inside()) put(entry.field, 4, order.get(entry.value, 4) - from + to);
+    }
 };
 
-// Numbers of a TIFF in memory. `origin`: where its first byte is in the file that offsets are of.
-class TiffBytes {
-public:
-    TiffBytes(std::vector<uint8_t> &bytes, bool little_endian, uint32_t origin)
-        : bytes_(bytes), little_(little_endian), origin_(origin) {}
-
-    uint32_t get(size_t at, size_t size) const {
-        uint32_t value = 0;
-        for (size_t i = 0; i < size; ++i) value |= uint32_t(bytes_[at + (little_ ? i : size - 1 - i)]) << (8 * i);
-        return value;
-    }
-
-    void put(size_t at, size_t size, uint32_t value) {
-        for (size_t i = 0; i < size; ++i)
-            bytes_[at + (little_ ? i : size - 1 - i)] = static_cast<uint8_t>(value >> (8 * i));
-    }
-
-    // The entries of a directory that is the only one, all of whose values are here; empty when it is another.
-    std::vector<Entry> entries(size_t at) const;
-
-    size_t place(const Entry &entry) const {
-        return entry.inside() ? entry.field : get(entry.field, 4) - size_t(origin_);
-    }
-    uint32_t number(const Entry &entry, uint32_t i) const {
-        const size_t size = entry.bytes / entry.count;
-        return get(place(entry) + i * size, size);
-    }
-    void set_number(const Entry &entry, uint32_t i, uint32_t value) {
-        const size_t size = entry.bytes / entry.count;
-        put(place(entry) + i * size, size, value);
-    }
-
-private:
-    std::vector<uint8_t> &bytes_;
-    bool little_;
-    uint32_t origin_;
+// One number of each strip: an entry and its values.
+struct StripNumbers {
+    TiffEntry entry{};
+    uint64_t place = 0;
+    std::vector<uint32_t> values;
 };
 
-std::vector<Entry> TiffBytes::entries(size_t at) const {
-    static const size_t type_bytes[] = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8};
-    std::vector<Entry> entries;
-    if (at + 2 > bytes_.size()) return {};
-    const size_t count = get(at, 2), end = at + 2 + 12 * count;
-    if (end + 4 > bytes_.size() || get(end, 4) != 0) return {};
-    for (size_t field = at + 2; field < end; field += 12) {
-        const uint32_t type = get(field + 2, 2), values = get(field + 4, 4);
-        if (type == 0 || type > 12 || values == 0 || values > bytes_.size()) return {};
-        const Entry entry = {static_cast<uint16_t>(get(field, 2)), static_cast<uint16_t>(type), values, field + 8,
-                             values * type_bytes[type]};
-        const uint64_t start = entry.inside() ? 0 : get(entry.field, 4);
-        if (!entry.inside() && (start < origin_ || start - origin_ + entry.bytes > bytes_.size())) return {};
-        entries.push_back(entry);
+// A TIFF of one directory, which has strips.
+struct StripTiff {
+    TiffDirectory directory{};
+    StripNumbers starts, counts;
+
+    void put_strip(TiffBytes &bytes, uint32_t i, uint32_t start, uint32_t count) const {
+        bytes.put_value(starts.entry, starts.place, i, start);
+        bytes.put_value(counts.entry, counts.place, i, count);
     }
-    return entries;
+};
+
+// False where the tag is missing or is not of these types.
+bool find_numbers(TiffReader &reader, const TiffDirectory &directory, uint16_t tag,
+                  std::initializer_list<uint16_t> types, StripNumbers &found) {
+    const TiffEntry *entry = directory.find(tag);
+    if (!entry || std::find(types.begin(), types.end(), entry->type) == types.end()) return false;
+    found = {*entry, reader.place(*entry), reader.numbers(directory, tag)};
+    return true;
 }
 
-// NULL when there is none.
-const Entry *find(const std::vector<Entry> &entries, uint16_t tag) {
-    const auto found =
-        std::find_if(entries.begin(), entries.end(), [&](const Entry &entry) { return entry.tag == tag; });
-    return found == entries.end() ? nullptr : &*found;
+// False when it is of another kind.
+bool is_strip_tiff(TiffReader &reader, StripTiff &tiff) {
+    tiff.directory = reader.first();
+    if (tiff.directory.next != 0) return false;
+    for (const TiffEntry &entry : tiff.directory.entries)
+        if (entry.bytes() == 0 || entry.type == tiff_ifd) return false;
+    reader.check_values(tiff.directory);
+    return find_numbers(reader, tiff.directory, strip_offsets, {tiff_long}, tiff.starts)
+           && find_numbers(reader, tiff.directory, strip_byte_counts, {tiff_short, tiff_long}, tiff.counts)
+           && tiff.starts.values.size() == tiff.counts.values.size();
 }
 
-bool has_other_directories(const std::vector<Entry> &entries) {
+bool has_other_directories(const TiffDirectory &directory) {
     static const uint16_t tags[] = {330, 34665, 34853, 40965};
-    return std::any_of(std::begin(tags), std::end(tags), [&](uint16_t tag) { return find(entries, tag) != nullptr; });
+    return std::any_of(std::begin(tags), std::end(tags), [&](uint16_t tag) { return directory.find(tag) != nullptr; });
 }
 
 class TiffExcerpt final : public PictureExcerpt {
@@ -108,103 +97,95 @@ private:
         uint32_t start, bytes;
     };
 
-    bool find_strips(const TiffBytes &tiff, const std::vector<Entry> &entries);
-    bool replace_directory(std::vector<uint8_t> edited) const;
-    bool replace_all(std::vector<uint8_t> edited, uint32_t pixels) const;
+    bool is_of_strips_first(const TiffReader &reader, const StripTiff &tiff) const;
+    void replace_directory(std::vector<uint8_t> edited, const StripTiff &tiff) const;
+    bool replace_all(std::vector<uint8_t> edited, const StripTiff &tiff) const;
     uint32_t short_end() const { return header_bytes + short_strip * static_cast<uint32_t>(strips_.size()); }
 
-    bool little_ = true;
+    TiffByteOrder order_;
     uint32_t directory_ = 0;  // of the file
     std::vector<Strip> strips_;
 };
 
-// The strips of the file, all before the directory.
-bool TiffExcerpt::find_strips(const TiffBytes &tiff, const std::vector<Entry> &entries) {
-    const Entry *starts = find(entries, strip_offsets), *counts = find(entries, strip_byte_counts);
-    if (!starts || !counts || starts->type != 4 || (counts->type != 3 && counts->type != 4)
-        || starts->count != counts->count || has_other_directories(entries))
-        return false;
-    for (uint32_t i = 0; i < starts->count; ++i) {
-        const Strip strip = {tiff.number(*starts, i), tiff.number(*counts, i)};
-        if (strip.start < header_bytes || uint64_t(strip.start) + strip.bytes > directory_) return false;
-        strips_.push_back(strip);
-    }
-    return true;
+// As libtiff writes them: all strips before the directory, all values after it.
+bool TiffExcerpt::is_of_strips_first(const TiffReader &reader, const StripTiff &tiff) const {
+    for (size_t i = 0; i < tiff.starts.values.size(); ++i)
+        if (tiff.starts.values[i] < header_bytes
+            || uint64_t(tiff.starts.values[i]) + tiff.counts.values[i] > directory_)
+            return false;
+    for (const TiffEntry &entry : tiff.directory.entries)
+        if (reader.place(entry) < directory_) return false;
+    return !has_other_directories(tiff.directory);
 }
 
 bool TiffExcerpt::make() {
     const File file = open_for_reading(path_);
     const uint64_t size = file_bytes(file.get());
-    std::vector<uint8_t> header, directory;
-    if (!read_at(file.get(), 0, header_bytes, header)) return false;
-    little_ = header[0] == 'I';
-    TiffBytes start(header, little_, 0);
-    directory_ = start.get(4, 4);
-    if (start.get(2, 2) != 42 || directory_ < header_bytes || directory_ % 2 != 0 || directory_ >= size
-        || size - directory_ > directory_max_bytes
-        || !read_at(file.get(), directory_, static_cast<size_t>(size - directory_), directory))
+    std::vector<uint8_t> directory, piece;
+    TiffReader reader(size, [&](uint64_t offset, uint8_t *bytes, size_t count) {
+        if (!read_at(file.get(), offset, count, piece)) throw TiffDefect::cut_off;
+        std::copy(piece.begin(), piece.end(), bytes);
+    });
+    order_ = reader.order();
+    StripTiff tiff;
+    if (!is_strip_tiff(reader, tiff)) return false;
+    directory_ = static_cast<uint32_t>(tiff.directory.offset);
+    if (directory_ < header_bytes || directory_ % 2 != 0 || size - directory_ > directory_max_bytes
+        || !is_of_strips_first(reader, tiff)
+        || !read_at(file.get(), directory_, static_cast<size_t>(size - directory_), directory)
+        || !read_at(file.get(), 0, header_bytes, bytes_))
         return false;
-    TiffBytes tiff(directory, little_, directory_);
-    const std::vector<Entry> entries = tiff.entries(0);
-    if (!find_strips(tiff, entries)) return false;
-    for (uint32_t i = 0; i < strips_.size(); ++i) {
-        tiff.set_number(*find(entries, strip_offsets), i, header_bytes + short_strip * i);
-        tiff.set_number(*find(entries, strip_byte_counts), i, short_strip);
-    }
-    for (const Entry &entry : entries) {
-        if (!entry.inside()) tiff.put(entry.field, 4, tiff.get(entry.field, 4) - directory_ + short_end());
-    }
-    start.put(4, 4, short_end());
-    bytes_ = header;
+    for (size_t i = 0; i < tiff.starts.values.size(); ++i)
+        strips_.push_back({tiff.starts.values[i], tiff.counts.values[i]});
+    TiffBytes moved{directory, order_, directory_};
+    for (uint32_t i = 0; i < strips_.size(); ++i) tiff.put_strip(moved, i, header_bytes + short_strip * i, short_strip);
+    moved.move_values(tiff.directory, directory_, short_end());
+    TiffBytes{bytes_, order_, 0}.put(4, 4, short_end());
     bytes_.resize(short_end());
     bytes_.insert(bytes_.end(), directory.begin(), directory.end());
     return true;
 }
 
 bool TiffExcerpt::replace(const uint8_t *edited, size_t size) const {
-    std::vector<uint8_t> copy(edited, edited + size);
     if (size < header_bytes || !std::equal(edited, edited + 4, bytes_.begin())) return false;
-    const TiffBytes tiff(copy, little_, 0);
-    const std::vector<Entry> entries = tiff.entries(tiff.get(4, 4));
-    const Entry *starts = find(entries, strip_offsets), *counts = find(entries, strip_byte_counts);
-    if (!starts || !counts || starts->type != 4 || starts->count != strips_.size() || counts->count != strips_.size())
+    StripTiff tiff;
+    try {
+        TiffReader reader(
+            size, [&](uint64_t offset, uint8_t *bytes, size_t count) { std::copy_n(edited + offset, count, bytes); });
+        if (!is_strip_tiff(reader, tiff) || tiff.starts.values.size() != strips_.size()) return false;
+    } catch (TiffDefect) {
         return false;
-    const uint32_t pixels = tiff.number(*starts, 0);
-    for (uint32_t i = 0; i < strips_.size(); ++i) {
-        if (tiff.number(*starts, i) != pixels + short_strip * i || tiff.number(*counts, i) != short_strip) return false;
     }
-    if (size == bytes_.size() && pixels == header_bytes)
-        return tiff.get(4, 4) == short_end() && replace_directory(std::move(copy));
-    return uint64_t(pixels) + short_strip * strips_.size() == size && replace_all(std::move(copy), pixels);
+    const uint32_t pixels = tiff.starts.values[0];
+    for (uint32_t i = 0; i < strips_.size(); ++i)
+        if (tiff.starts.values[i] != pixels + short_strip * i || tiff.counts.values[i] != short_strip) return false;
+    std::vector<uint8_t> copy(edited, edited + size);
+    if (size != bytes_.size() || pixels != header_bytes)
+        return uint64_t(pixels) + short_strip * strips_.size() == size && replace_all(std::move(copy), tiff);
+    if (tiff.directory.offset != short_end()) return false;
+    replace_directory(std::move(copy), tiff);
+    return true;
 }
 
 // Exiv2 changed values where they were.
-bool TiffExcerpt::replace_directory(std::vector<uint8_t> edited) const {
-    TiffBytes tiff(edited, little_, 0);
-    const std::vector<Entry> entries = tiff.entries(short_end());
-    for (uint32_t i = 0; i < strips_.size(); ++i) {
-        tiff.set_number(*find(entries, strip_offsets), i, strips_[i].start);
-        tiff.set_number(*find(entries, strip_byte_counts), i, strips_[i].bytes);
-    }
-    for (const Entry &entry : entries) {
-        if (!entry.inside()) tiff.put(entry.field, 4, tiff.get(entry.field, 4) - short_end() + directory_);
-    }
+void TiffExcerpt::replace_directory(std::vector<uint8_t> edited, const StripTiff &tiff) const {
+    TiffBytes moved{edited, order_, 0};
+    for (uint32_t i = 0; i < strips_.size(); ++i) tiff.put_strip(moved, i, strips_[i].start, strips_[i].bytes);
+    moved.move_values(tiff.directory, short_end(), directory_);
     const File file = open_for_reading(path_);
     Replacement to(path_, file.get());
     to.copy(0, directory_);
     to.write(edited.data() + short_end(), edited.size() - short_end());
     to.commit();
-    return true;
 }
 
 // Exiv2 wrote all anew: directories first, then the strips, each at an even place.
-bool TiffExcerpt::replace_all(std::vector<uint8_t> edited, uint32_t pixels) const {
-    TiffBytes tiff(edited, little_, 0);
-    const std::vector<Entry> entries = tiff.entries(tiff.get(4, 4));
+bool TiffExcerpt::replace_all(std::vector<uint8_t> edited, const StripTiff &tiff) const {
+    const uint32_t pixels = tiff.starts.values[0];
+    TiffBytes moved{edited, order_, 0};
     uint64_t place = pixels;
     for (uint32_t i = 0; i < strips_.size(); ++i) {
-        tiff.set_number(*find(entries, strip_offsets), i, static_cast<uint32_t>(place));
-        tiff.set_number(*find(entries, strip_byte_counts), i, strips_[i].bytes);
+        tiff.put_strip(moved, i, static_cast<uint32_t>(place), strips_[i].bytes);
         place += strips_[i].bytes + strips_[i].bytes % 2;
     }
     if (place > UINT32_MAX) return false;
@@ -223,7 +204,11 @@ bool TiffExcerpt::replace_all(std::vector<uint8_t> edited, uint32_t pixels) cons
 
 std::unique_ptr<PictureExcerpt> excerpt_of_tiff(const std::string &path) {
     auto excerpt = std::make_unique<TiffExcerpt>(path);
-    return excerpt->make() ? std::move(excerpt) : nullptr;
+    try {
+        return excerpt->make() ? std::move(excerpt) : nullptr;
+    } catch (TiffDefect) {
+        return nullptr;
+    }
 }
 
 }  // namespace codec

@@ -1,0 +1,97 @@
+// The directories of a classic TIFF (revision 6.0, section 2), from a file or from memory. Every place and count that
+// a file declares is checked here, before it is used.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace lensprof {
+
+// What makes a TIFF unusable; thrown by TiffReader.
+enum class TiffDefect {
+    not_tiff,
+    big_tiff,
+    no_directory,
+    cut_off,         // it ends before a directory or a value
+    pixels_cut_off,  // it ends before the end of a strip or tile
+    circle,          // directories that lead to each other, or over 256 of them
+};
+
+constexpr uint16_t tiff_byte = 1, tiff_short = 3, tiff_long = 4, tiff_undefined = 7, tiff_ifd = 13;
+
+// Bytes of a value of a type; 0 for a type that TIFF does not define.
+uint32_t tiff_type_bytes(uint16_t type);
+
+struct TiffByteOrder {
+    bool big = false;
+    uint32_t get(const uint8_t *bytes, size_t size) const;  // of at most 4 bytes
+    void put(uint8_t *bytes, size_t size, uint32_t value) const;
+};
+
+struct TiffEntry {
+    uint16_t tag, type;
+    uint32_t count;
+    uint8_t value[4];  // as in the file: the values, or the offset of values of over 4 bytes
+    uint64_t field;    // place of `value` in the file
+
+    uint64_t bytes() const { return uint64_t(count) * tiff_type_bytes(type); }
+    bool inside() const { return bytes() <= 4; }
+};
+
+struct TiffDirectory {
+    uint64_t pointer;  // place in the file of the offset that leads here
+    uint64_t offset;
+    std::vector<TiffEntry> entries;
+    uint32_t next;  // offset of the next directory of the chain; 0 ends it
+
+    const TiffEntry *find(uint16_t tag) const;  // NULL where there is none
+    uint64_t next_pointer() const { return offset + 2 + 12 * entries.size(); }
+};
+
+class TiffReader {
+public:
+    // Reads `count` bytes from `offset` on, all of which are below the size that the reader was given. What it throws
+    // comes out of the reader.
+    using Read = std::function<void(uint64_t offset, uint8_t *bytes, size_t count)>;
+
+    // Reads the header of a file of `size` bytes.
+    TiffReader(uint64_t size, Read read);
+
+    const TiffByteOrder &order() const { return order_; }
+
+    // The directory that the offset at `pointer` leads to.
+    TiffDirectory directory(uint64_t pointer);
+    TiffDirectory first() { return directory(4); }
+
+    // Those that its SubIFDs tag names; none where it has no such tag.
+    std::vector<TiffDirectory> children(const TiffDirectory &directory);
+
+    // All values of a directory must be in the file; and the strips and tiles that it declares.
+    void check_values(const TiffDirectory &directory) const;
+    void check_blocks(const TiffDirectory &directory);
+
+    // Place in the file of an entry's values. They must all be in the file.
+    uint64_t place(const TiffEntry &entry) const;
+
+    // The first `most` numbers of a tag of bytes, shorts or longs; none where it is missing or of another type.
+    std::vector<uint32_t> numbers(const TiffDirectory &directory, uint16_t tag, uint32_t most = UINT32_MAX);
+    uint32_t number(const TiffDirectory &directory, uint16_t tag, uint32_t otherwise);
+
+    // The values as they are in the file.
+    std::vector<uint8_t> bytes(const TiffEntry &entry) { return first_bytes(entry, entry.bytes()); }
+
+private:
+    std::vector<uint8_t> read(uint64_t offset, uint64_t count);
+    std::vector<uint8_t> first_bytes(const TiffEntry &entry, uint64_t count);
+    void check_blocks(const TiffDirectory &directory, uint16_t offsets_tag, uint16_t bytes_tag);
+    bool has(uint64_t offset, uint64_t count) const { return offset <= size_ && count <= size_ - offset; }
+
+    uint64_t size_;
+    Read read_;
+    TiffByteOrder order_;
+    uint32_t directories_ = 0;  // read so far
+};
+
+}  // namespace lensprof
