@@ -6,11 +6,9 @@
 #include <string>
 
 #include "cli/program/progress.hpp"
+#include "threads/item_loop.hpp"
 
 namespace lensprof {
-
-// `wanted`, or for 0 the number of cores; at least 1.
-uint32_t thread_count(uint32_t wanted);
 
 // Calls work(i) for every i below count, several at once, and shows progress as `what`. After a failure or an interrupt
 // no new item is begun; the failure of the lowest item is thrown, so that the message does not depend on timing
