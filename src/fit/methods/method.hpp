@@ -1,11 +1,14 @@
 // What the methods that alternate between candidates have in common: the pairs or tracks in three parts, the prior of
-// the falloff curves, and how candidates are chosen by held-out error.
+// the falloff curves, the first short fits, and how candidates are chosen by held-out error.
 #pragma once
 
 #include <algorithm>
+#include <functional>
+#include <vector>
 
 #include "fit/prior/prior.hpp"
 #include "fit/solver/heldout.hpp"
+#include "fit/solver/solver.hpp"
 
 namespace lensprof {
 
@@ -20,6 +23,31 @@ protected:
         l.kind = options_.loss;
         l.huber = options_.huber_levels / 255.0;
         return l;
+    }
+
+    // The pairs or tracks of short first fits.
+    const std::vector<uint32_t> &few() const { return split_.few.empty() ? split_.all : split_.few; }
+
+    // The best of short fits from every start, all at one fixed noise level, so that their costs compare. A gauge that
+    // leaves gamma open suits them.
+    Estimate best_brief_fit(const Problem &problem, Gauge &gauge, const std::function<bool()> &cancelled,
+                            std::vector<Estimate> starts) const {
+        Control brief;
+        brief.max_iterations = std::min(static_cast<int>(options_.max_iterations), 10);
+        brief.rounds = 1;
+        brief.flat = 1.0;
+        brief.cancelled = cancelled;
+        size_t best = 0;
+        double lowest = 0.0;
+        for (size_t i = 0; i < starts.size(); i++) {
+            Loss used = loss();
+            used.noise = 3.0 / 255.0;
+            const double cost = solve(problem, prior_, gauge, used, false, brief, starts[i]).cost;
+            if (i > 0 && !(cost < lowest)) continue;
+            best = i;
+            lowest = cost;
+        }
+        return starts[best];
     }
 
     bool is_cancelled(double done) const {

@@ -107,28 +107,12 @@ private:
     Control control_;
 };
 
-// Short fits from every start at one fixed noise level, so that their costs compare; the best one, its gamma settled.
+// The best of short fits from every start, its gamma settled.
 Estimate Fit::best_start(int modes) {
-    Problem few = problem_(split_.few.empty() ? split_.all : split_.few);
-    few.vignettings = all_.vignettings;
-    Control brief = control_;
-    brief.max_iterations = std::min(control_.max_iterations, 10);
-    brief.rounds = 1;
-    brief.flat = 1.0;
+    Problem brief = problem_(few());
+    brief.vignettings = all_.vignettings;
     Gauge unheld = gauge_.unheld();
-    Estimate best;
-    double lowest = 0.0;
-    bool first = true;
-    for (Estimate &start : start_estimates(few, options_, modes)) {
-        Loss used = loss();
-        used.noise = 3.0 / 255.0;
-        Outcome outcome = solve(few, prior_, unheld, used, false, brief, start);
-        if (first || outcome.cost < lowest) {
-            best = start;
-            lowest = outcome.cost;
-            first = false;
-        }
-    }
+    Estimate best = best_brief_fit(brief, unheld, control_.cancelled, start_estimates(brief, options_, modes));
     start_exposures(all_, kRoughWidth, best);  // images that had few pairs here get theirs
     gauge_.settle(train_, best);
     return best;

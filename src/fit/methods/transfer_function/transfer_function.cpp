@@ -103,26 +103,14 @@ private:
 // From several responses, each held: the one under which falloff and exposures explain most. Without a falloff to look
 // for, the mean of the model.
 State Fit::start() {
-    Problem few = problem(split_.few.empty() ? split_.all : split_.few);
-    few.vignettings = all_.vignettings;
-    Control brief;
-    brief.max_iterations = std::min(static_cast<int>(options_.max_iterations), 10);
-    brief.rounds = 1;
-    brief.flat = 1.0;
+    Problem brief = problem(few());
+    brief.vignettings = all_.vignettings;
+    std::vector<Estimate> starts = start_estimates(has_falloff_ ? brief : train_, options_, is_free_ ? kFirstModes : 0);
+    for (Estimate &start : starts)
+        if (start.modes >= 0) set_fixed(start, table_response(start));
     Gauge unheld = gauge_.unheld();
     State best;
-    double lowest = 0.0;
-    bool first = true;
-    for (Estimate &start : start_estimates(has_falloff_ ? few : train_, options_, is_free_ ? kFirstModes : 0)) {
-        if (start.modes >= 0) set_fixed(start, table_response(start));
-        Loss used = loss();
-        used.noise = 3.0 / 255.0;
-        double cost = has_falloff_ ? solve(few, prior_, unheld, used, false, brief, start).cost : 0.0;
-        if (!first && cost >= lowest) continue;
-        best.estimate = start;
-        lowest = cost;
-        first = false;
-    }
+    best.estimate = has_falloff_ ? best_brief_fit(brief, unheld, nullptr, starts) : starts.front();
     start_exposures(train_, kRoughWidth, best.estimate);
     if (gauge_.is_open() && is_free_) gauge_.settle(train_, best.estimate);
     best.model.is_free = is_free_;
