@@ -82,13 +82,13 @@ typedef struct lensprof_lookup {
     double weight[LENSPROF_LOOKUP_ROWS]; /* of each; they add up to about 1, and may be below 0 */
     double distance;   /* from the setting to the nearest one; 0 = the same, refused beyond 0.5: two stops from wide
                           open, a factor 2 in focal length, 0.4 m focus against infinity */
-    double sigma;      /* standard error of M in the corner, a 68 % band; LENSPROF_UNKNOWN for an exact one without
-                          covariance */
+    double sigma;      /* standard error of M in the corner, a 68 % band, of the worst curve; LENSPROF_UNKNOWN for an
+                          exact one without covariance */
     double name_score; /* of the lens's name (of the camera's, where no lens was asked for): 1 the same but for case and
                           outer blanks, 0.9 but for signs and blanks, 0.8 but for a maker in front or its spelling, or
                           a camera's name in another country; 0.6 the same words in another order or form, all
                           numbers and generations the same, where nothing better is stored */
-    char reason[256];  /* what to mind; where nothing is found, why */
+    char reason[256];  /* what to mind, whole sentences as far as they fit; where nothing is found, why */
     uint32_t reason_code[LENSPROF_LOOKUP_REASONS]; /* lensprof_reason of each of its sentences, in their order; NONE
                                                       after the last. The numbers are the other members */
 } lensprof_lookup;

@@ -18,6 +18,17 @@ static inline uint32_t lp_covariance_index(uint32_t modes, uint32_t curve) { ret
  * not reach to k3, knows nothing of the three, or gives no variance (below 0, not finite). */
 double lp_falloff_variance(const double *covariance, uint32_t n, uint32_t first, double r2);
 
+/* What is known of M in the corner as one number: the largest variance of `curves` falloffs, the first of which has its
+ * k1 at `first`. LENSPROF_UNKNOWN where none is known. */
+static inline double lp_corner_variance(const double *covariance, uint32_t n, uint32_t first, uint32_t curves) {
+    double largest = LENSPROF_UNKNOWN;
+    for (uint32_t curve = 0; curve < curves; curve++) {
+        const double own = lp_falloff_variance(covariance, n, lp_covariance_index(first, curve), 1.0);
+        if (own > largest) largest = own;
+    }
+    return largest;
+}
+
 #ifdef __cplusplus
 }
 #endif

@@ -79,6 +79,17 @@ void test_a_wrong_item_is_named(void **) {
     other.s.fit_images[1].ev_of = 1;
     assert_ok(other.run());
     assert_int_equal(other.error.item.kind, LENSPROF_ITEM_NONE);
+
+    other.s.exposures[2].ev = NAN;
+    double rms = 0.0;
+    const lensprof_vignetting none[3] = {};
+    assert_int_equal(lensprof_transfer_rms(&other.s.response, none, other.s.fit_images.data(), other.s.exposures.data(),
+                                           static_cast<uint32_t>(other.s.fit_images.size()), other.s.pairs.data(),
+                                           static_cast<uint32_t>(other.s.pairs.size()), 3, &rms, nullptr, &other.error),
+                     LENSPROF_ERROR_EXPOSURE);
+    assert_string_equal(other.error.text, "image 2: its exposure is invalid; see lensprof_exposure_validate");
+    assert_int_equal(other.error.item.kind, LENSPROF_ITEM_IMAGE);
+    assert_int_equal(other.error.item.index, 2);
 }
 
 void test_refuses(void **) {

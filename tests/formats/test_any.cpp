@@ -349,6 +349,29 @@ void test_opcode_by_its_error(void **) {
     assert_int_equal(id_of(exported({smooth.get()}, options)), 9);
 }
 
+// A file of more than is read is not written into a buffer that would hold it.
+void test_export_too_large(void **) {
+    const auto p = lens();
+    p->responses = 3;
+    for (uint32_t c = 0; c < 3; c++) {
+        p->response[c].kind = LENSPROF_RESPONSE_TABLE;
+        for (uint32_t i = 0; i < LENSPROF_RESPONSE_SAMPLES; i++)
+            p->response[c].table[i] = sqrt(i / (LENSPROF_RESPONSE_SAMPLES - 1.0));
+    }
+    const auto options = export_options(LENSPROF_FORMAT_JSON);
+    const size_t one = exported({p.get()}, options).size();
+    const std::vector<const lensprof_profile *> many((size_t{64} << 20) / one + 20, p.get());
+    std::string buffer(size_t{80} << 20, '?');
+    lensprof_error error{};
+    size_t size = 7;
+    assert_int_equal(lensprof_export(many.data(), static_cast<uint32_t>(many.size()), &options, buffer.data(),
+                                     buffer.size(), &size, &error),
+                     LENSPROF_ERROR_SIZE);
+    assert_non_null(strstr(error.text, "64 MiB"));
+    assert_int_equal(size, 7);
+    assert_true(buffer.find_first_not_of('?') == std::string::npos);
+}
+
 void test_export_refuses(void **) {
     const auto p = lens(), q = lens("Acme 85mm");
     const auto refuses = [&](const std::vector<const lensprof_profile *> &profiles, lensprof_export_options options,
@@ -366,8 +389,16 @@ void test_export_refuses(void **) {
     refuses({p.get()}, export_options(99), LENSPROF_ERROR_ARGUMENT, "unknown format");
     refuses({p.get(), q.get()}, export_options(LENSPROF_FORMAT_BLOB), LENSPROF_ERROR_ARGUMENT, "holds one profile");
     refuses({}, export_options(LENSPROF_FORMAT_BLOB), LENSPROF_ERROR_ARGUMENT, "holds one profile");
-    refuses({nullptr}, export_options(LENSPROF_FORMAT_BLOB), LENSPROF_ERROR_ARGUMENT, "NULL");
-    refuses({nullptr}, export_options(LENSPROF_FORMAT_JSON), LENSPROF_ERROR_ARGUMENT, "");
+    for (const uint32_t format : {LENSPROF_FORMAT_BLOB, LENSPROF_FORMAT_JSON, LENSPROF_FORMAT_LCP}) {
+        const auto of_none = export_options(format);
+        refuses({nullptr}, of_none, LENSPROF_ERROR_ARGUMENT, "profile 0: is ");
+        const lensprof_profile *const none = nullptr;
+        lensprof_error error{};
+        size_t size = 0;
+        assert_int_equal(lensprof_export(&none, 1, &of_none, nullptr, 0, &size, &error), LENSPROF_ERROR_ARGUMENT);
+        assert_int_equal(error.item.kind, LENSPROF_ITEM_PROFILE);
+        assert_int_equal(error.item.text_bytes, strlen("profile 0"));
+    }
     auto options = export_options(LENSPROF_FORMAT_RADICAL_VIGNETTING);
     options.width = 0;
     refuses({p.get()}, options, LENSPROF_ERROR_SIZE, "");
@@ -409,6 +440,7 @@ int main() {
         cmocka_unit_test(test_visitors_answer),
         cmocka_unit_test(test_there_and_back),
         cmocka_unit_test(test_opcode_by_its_error),
+        cmocka_unit_test(test_export_too_large),
         cmocka_unit_test(test_export_refuses),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

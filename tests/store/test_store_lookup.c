@@ -2,6 +2,7 @@
 #include "store_fixture.h"
 
 #include "falloff/prediction.h"
+#include "store/lookup/lookup_choice.h"
 #include "store/names/names.h"
 
 static lensprof_profile shared; /* 50 kB */
@@ -416,6 +417,67 @@ static void test_covariance_of_three_responses(void **state) {
     assert_memory_equal(k[0], k[1], sizeof k[0]);
 }
 
+/* Of three curves that counts of which least is known, in answers and in what weighs the rows of a prediction. */
+static void test_covariance_of_three_curves(void **state) {
+    const place *here = *state;
+    double k[2];
+    for (uint32_t i = 0; i < 2; i++) {
+        lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+        for (int row = 0; row < 2; row++) {
+            lensprof_profile *p = zoom_profile(zoom, 50, row ? 2.8 : 2.0, INFINITY);
+            p->vignettings = 3;
+            for (int c = 0; c < 3; c++) true_falloff(50, p->key.aperture, p->vignetting[c].k);
+            p->covariance_size = 11;
+            const double last = row ? 0.004 : i ? 0.2 : 0.002;
+            for (uint32_t n = 0; n < 11; n++) p->covariance[12 * n] = (n / 3 == 2 ? last * last : 1e-6) / 3.0;
+            put_at(store, p);
+        }
+        assert_ok(ask(store, zoom, 50, 2.8, INFINITY));
+        assert_int_equal(how.exact, 1);
+        assert_close(how.sigma, 0.004, 1e-12);
+        assert_ok(ask(store, zoom, 50, 2.4, INFINITY));
+        k[i] = answered.vignetting[0].k[0];
+        lensprof_store_close(store);
+        unlink(here->path);
+    }
+    assert_true(fabs(k[0] - k[1]) > 1e-4);
+}
+
+/* Sentences for which the text has no room are left out whole; their codes stay. */
+static void test_reasons_are_whole(void **state) {
+    (void)state;
+    static const lensprof_reason codes[] = {
+        LENSPROF_REASON_LOOKUP_OTHER_LIGHT,      LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR,
+        LENSPROF_REASON_LOOKUP_BY_WORDS,         LENSPROF_REASON_LOOKUP_FOCAL_ROUNDED,
+        LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE, LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE};
+    enum {
+        COUNT = sizeof codes / sizeof *codes
+    };
+    char lens[128], expected[1000];
+    for (size_t length = 0; length < sizeof lens; length++) {
+        lensprof_lookup lookup;
+        lensprof_lookup_init(&lookup);
+        memset(lens, 'x', length), lens[length] = '\0';
+        expected[0] = '\0';
+        for (uint32_t i = 0; i < COUNT; i++) {
+            const char *name = codes[i] == LENSPROF_REASON_LOOKUP_BY_WORDS ? lens : NULL;
+            lp_mind(&lookup, codes[i], name);
+            assert_int_equal(lookup.reason_code[i], codes[i]);
+            const char *tails[] = {name, NULL};
+            for (int t = name ? 0 : 1; t < 2; t++) {
+                char longer[sizeof expected];
+                snprintf(longer, sizeof longer, "%s%s%s%s%s", expected, *expected ? "; " : "",
+                         lensprof_reason_text(codes[i]), tails[t] ? ": " : "", tails[t] ? tails[t] : "");
+                if (strlen(longer) >= sizeof lookup.reason) continue;
+                memcpy(expected, longer, sizeof expected);
+                break;
+            }
+        }
+        assert_string_equal(lookup.reason, expected);
+        assert_true(strlen(expected) > 150);
+    }
+}
+
 static void test_transactions(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -485,6 +547,8 @@ int main(void) {
         store_test(test_damaged_rows),
         store_test(test_covariance_counts),
         store_test(test_covariance_of_three_responses),
+        store_test(test_covariance_of_three_curves),
+        store_test(test_reasons_are_whole),
         store_test(test_transactions),
         store_test(test_arguments),
     };

@@ -319,7 +319,8 @@ lensprof_status check_model(const lensprof_response &response, const lensprof_vi
             return fail(status, error, "vignetting %u is invalid; see lensprof_vignetting_validate", c);
     for (uint32_t i = 0; i < image_count; i++)
         if ((status = lensprof_exposure_validate(&exposures[i])) != LENSPROF_OK)
-            return fail(status, error, "image %u: its exposure is invalid; see lensprof_exposure_validate", i);
+            return fail_at(LENSPROF_ITEM_IMAGE, i, status, error,
+                           "its exposure is invalid; see lensprof_exposure_validate");
     return LENSPROF_OK;
 }
 

@@ -78,13 +78,10 @@ Patterns split_residuals(const FlatFit &fit, const lensprof_gain_grid *gain, dou
 }
 
 double corner_sigma(const FlatFit &fit) {
-    double worst = 0.0;
-    const auto n = static_cast<uint32_t>(fit.covariance.rows());
-    for (int curve = 0; curve < fit.problem.model.curves; curve++) {
-        const auto first = static_cast<uint32_t>(fit.problem.model.k(curve));
-        worst = std::max(worst, lp_falloff_variance(fit.covariance.data(), n, first, 1.0));
-    }
-    return std::sqrt(worst);
+    const auto &model = fit.problem.model;
+    const double variance = lp_corner_variance(fit.covariance.data(), static_cast<uint32_t>(fit.covariance.rows()),
+                                               static_cast<uint32_t>(model.k(0)), static_cast<uint32_t>(model.curves));
+    return std::sqrt(std::max(variance, 0.0));
 }
 
 void describe_picture(const FlatFit &fit, const Shot &shot, uint32_t image, lensprof_flat_image_quality &q) {

@@ -1,4 +1,5 @@
 // Files of any format, written.
+#include <algorithm>
 #include <string>
 
 #include "core/sized.h"
@@ -76,7 +77,7 @@ lensprof_status write_many(const lensprof_profile *const *profiles, uint32_t pro
             return lensprof_lcp_write(profiles, profile_count, o.width, o.height, data, capacity, count, out.error);
         return lensprof_json_write(profiles, profile_count, data, capacity, count, out.error);
     };
-    const lensprof_status status = write(out.data, out.capacity, &size);
+    const lensprof_status status = write(out.data, std::min(out.capacity, kMostBytes), &size);
     if (status != LENSPROF_OK && status != LENSPROF_ERROR_CAPACITY) return status;
     if (size > kMostBytes) {
         set_error(out.error, "would be larger than the 64 MiB that are read; write fewer profiles");
@@ -111,6 +112,19 @@ lensprof_status check_output(uint32_t profile_count, lensprof_export_options &o,
     });
 }
 
+lensprof_status check_profile(const lensprof_profile *profile, lensprof_error *error) {
+    return at_boundary(error, [&] {
+        const auto fail = [](const std::string &text, lensprof_status status) {
+            throw failure_at(LENSPROF_ITEM_PROFILE, 0, text, status);
+        };
+        if (!profile) fail("is NULL; pass a profile", LENSPROF_ERROR_ARGUMENT);
+        const lensprof_status status = lensprof_profile_validate(profile);
+        if (status != LENSPROF_OK)
+            fail(std::string("is invalid (") + lensprof_status_name(status) + "); see lensprof_profile_validate",
+                 status);
+    });
+}
+
 }  // namespace
 }  // namespace lensprof
 
@@ -140,16 +154,7 @@ lensprof_status lensprof_export(const lensprof_profile *const *profiles, uint32_
     if (status != LENSPROF_OK) return status;
     const Output out = {data, capacity, count, error};
     if (lensprof_format_get_info(own.format)->is_many) return write_many(profiles, profile_count, own, out);
-    if (!profiles[0]) {
-        set_error(error, "lensprof_export: profile 0 is NULL; pass a profile");
-        return LENSPROF_ERROR_ARGUMENT;
-    }
-    const lensprof_status valid = lensprof_profile_validate(profiles[0]);
-    if (valid != LENSPROF_OK) {
-        const std::string text =
-            std::string("profile 0 is invalid (") + lensprof_status_name(valid) + "); see lensprof_profile_validate";
-        set_error(error, text.c_str());
-        return valid;
-    }
+    const lensprof_status valid = check_profile(profiles[0], error);
+    if (valid != LENSPROF_OK) return valid;
     return write_one(*profiles[0], own, out);
 }

@@ -1,5 +1,5 @@
-/* The profile for a setting that need not be stored: which rows of the lens are used, and what is made of them. */
-#include "store/lookup/lookup_candidates.h"
+/* The profile for a setting that need not be stored: what is made of the rows of the lens that count. */
+#include "store/lookup/lookup_choice.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,10 +8,6 @@
 
 #include "core/covariance.h"
 
-#define SAME_SENSOR 0.02    /* crop factors that differ by so much are of one sensor: EXIF rounds */
-#define CROP_TOLERANCE 0.96 /* a sensor may be larger by so much than the one that was measured */
-#define SAME_FOCAL 0.02     /* of a lens that cannot be changed */
-#define SAME_FOCAL_MM 0.1
 #define MOST_DISTANCES 8 /* stored focus distances that are tried where it is not known */
 
 #define FIRST_OPTIONS LP_END_OF(lensprof_lookup_options, any_processing)
@@ -27,74 +23,6 @@ void lensprof_lookup_init_sized(lensprof_lookup *lookup, size_t size) {
 
 _Static_assert(LP_NEIGHBOURS == LENSPROF_LOOKUP_ROWS, "a lookup names all that a prediction uses");
 
-/* ---- which of them ---- */
-
-static int is_sensor_covered(const lp_candidate *c, const lensprof_profile_key *key) {
-    return c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
-           || key->crop_factor / c->crop >= CROP_TOLERANCE;
-}
-
-/* Larger is better: unit, camera, then the sensor nearest to the key's; where that is not known, the smallest, whose
- * falloff is the weakest. */
-static double rank_of(const lp_candidate *c, const lensprof_profile_key *key) {
-    const int own = c->crop != LENSPROF_UNKNOWN, asked = key->crop_factor != LENSPROF_UNKNOWN;
-    const double sensor = !own ? 0.5 : asked ? fmin(c->crop / key->crop_factor, 1.0) : 1.0 - 1.0 / (1.0 + c->crop);
-    return 100.0 * c->of_unit + 10.0 * c->of_camera + sensor;
-}
-
-static int has_several_sensors(const lp_candidates *found) {
-    double low = INFINITY, high = 0.0;
-    for (uint32_t i = 0; i < found->count; i++) {
-        const double crop = found->all[i].crop;
-        if (crop != LENSPROF_UNKNOWN) low = fmin(low, crop), high = fmax(high, crop);
-    }
-    return high > low * (1.0 + SAME_SENSOR);
-}
-
-/* Keeps the best group; returns how many there are. */
-static uint32_t keep_best(lp_candidates *found, const lensprof_profile_key *key) {
-    double best = -1.0;
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < found->count; i++)
-        if (is_sensor_covered(&found->all[i], key)) best = fmax(best, rank_of(&found->all[i], key));
-    for (uint32_t i = 0; i < found->count; i++)
-        if (is_sensor_covered(&found->all[i], key) && rank_of(&found->all[i], key) >= best - SAME_SENSOR)
-            found->all[kept++] = found->all[i];
-    return found->count = kept;
-}
-
-/* Curves of pictures that were processed otherwise are others: where any will do, those of the newest profile, which is
- * the last. */
-static void keep_one_processing(lp_candidates *found) {
-    const uint32_t processing = found->all[found->count - 1].processing;
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < found->count; i++)
-        if (found->all[i].processing == processing) found->all[kept++] = found->all[i];
-    found->count = kept;
-}
-
-static double mired_of(double color_temperature_k) { return 1e6 / color_temperature_k; }
-
-/* Shading depends on the light: of the rows that have a colour temperature only those of the nearest one count (in
- * mired, 1e6/K), where the key has one. Returns whether that is the key's. */
-static bool keep_nearest_light(lp_candidates *found, const lensprof_profile_key *key) {
-    uint32_t kept = 0;
-    double nearest = INFINITY;
-    if (key->color_temperature_k == LENSPROF_UNKNOWN) return true;
-    const double asked = mired_of(key->color_temperature_k);
-    for (uint32_t i = 0; i < found->count; i++)
-        if (found->all[i].color_temperature_k != LENSPROF_UNKNOWN)
-            nearest = fmin(nearest, fabs(mired_of(found->all[i].color_temperature_k) - asked));
-    for (uint32_t i = 0; i < found->count; i++) {
-        const lp_candidate *c = &found->all[i];
-        if (c->color_temperature_k == LENSPROF_UNKNOWN
-            || fabs(mired_of(c->color_temperature_k) - asked) <= nearest * (1.0 + 1e-9))
-            found->all[kept++] = *c;
-    }
-    found->count = kept;
-    return nearest == INFINITY || nearest <= 1e-6 * asked;
-}
-
 /* k in half diagonals of the key's sensor: r there is r times the ratio here. */
 static void rescale(lp_candidate *c, const lensprof_profile_key *key) {
     if (c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN) return;
@@ -105,20 +33,9 @@ static void rescale(lp_candidate *c, const lensprof_profile_key *key) {
     }
 }
 
-/* ---- settings ---- */
-
-/* Focal length for 0, aperture for 1. */
-static double setting(const lp_falloff_node *node, int which) { return which ? node->aperture : node->focal_mm; }
-
-static void set(lp_falloff_node *node, int which, double value) {
-    *(which ? &node->aperture : &node->focal_mm) = value;
-}
-
-static int is_same(double a, double b) { return a == b || fabs(a - b) <= 1e-6 * fmin(a, b); }
-
 static int is_same_setting(const lp_falloff_node *a, const lp_falloff_node *b) {
-    return is_same(a->focal_mm, b->focal_mm) && is_same(a->aperture, b->aperture)
-           && is_same(a->distance_m, b->distance_m);
+    return lp_is_same(a->focal_mm, b->focal_mm) && lp_is_same(a->aperture, b->aperture)
+           && lp_is_same(a->distance_m, b->distance_m);
 }
 
 /* Of profiles of one setting the newest counts, as everywhere: it may hold the others, or have overruled them. They
@@ -131,49 +48,6 @@ static uint32_t keep_newest(lp_falloff_node *nodes, uint32_t count) {
         if (j == count) nodes[kept++] = nodes[i];
     }
     return kept;
-}
-
-/* Rows that lack a number which the key has are of no use; one that the key lacks must be the same in all rows. Returns
- * NONE, or what is wrong. */
-static lensprof_reason settle(lp_candidates *found, lp_falloff_node *at, int which) {
-    static const lensprof_reason missing[] = {LENSPROF_REASON_LOOKUP_FOCAL_MISSING,
-                                              LENSPROF_REASON_LOOKUP_APERTURE_MISSING};
-    static const lensprof_reason useless[] = {LENSPROF_REASON_LOOKUP_NO_FOCAL, LENSPROF_REASON_LOOKUP_NO_APERTURE};
-    uint32_t kept = 0;
-    if (setting(at, which) == LENSPROF_UNKNOWN) {
-        const double only = setting(&found->all[0].node, which);
-        for (uint32_t i = 1; i < found->count; i++)
-            if (!is_same(setting(&found->all[i].node, which), only)) return missing[which];
-        set(at, which, only != LENSPROF_UNKNOWN ? only : 1.0); /* where nobody knows it makes no difference */
-        for (uint32_t i = 0; i < found->count && only == LENSPROF_UNKNOWN; i++) set(&found->all[i].node, which, 1.0);
-        return LENSPROF_REASON_NONE;
-    }
-    for (uint32_t i = 0; i < found->count; i++)
-        if (setting(&found->all[i].node, which) != LENSPROF_UNKNOWN) found->all[kept++] = found->all[i];
-    found->count = kept;
-    return kept ? LENSPROF_REASON_NONE : useless[which];
-}
-
-/* 0 within the stored settings, 1 outside, 2 too far. Nothing is predicted more than one node beyond the last: the
- * outermost two nodes' spacing (in stops or octaves), or a twelfth of an octave in focal length and a third of a stop
- * where there is one node only. */
-static int place_of(const lp_candidates *found, const lp_falloff_node *at, int which) {
-    double low = INFINITY, high = 0.0, above_low = INFINITY, below_high = 0.0;
-    const double single = which ? 1.0 / 6.0 : 1.0 / 12.0; /* log2; of the f-number half a stop counts as 1/4 */
-    for (uint32_t i = 0; i < found->count; i++) {
-        const double value = log2(setting(&found->all[i].node, which));
-        low = fmin(low, value), high = fmax(high, value);
-    }
-    for (uint32_t i = 0; i < found->count; i++) {
-        const double value = log2(setting(&found->all[i].node, which));
-        if (value > low + 1e-6) above_low = fmin(above_low, value);
-        if (value < high - 1e-6) below_high = fmax(below_high, value);
-    }
-    const double asked = log2(setting(at, which)), least = 1e-6;
-    const double before = high - low > 1e-6 ? fmax(above_low - low, single) : single;
-    const double behind = high - low > 1e-6 ? fmax(high - below_high, single) : single;
-    if (asked < low - before - least || asked > high + behind + least) return 2;
-    return asked < low - least || asked > high + least;
 }
 
 /* ---- predictions ---- */
@@ -231,14 +105,15 @@ static lensprof_status refuse(lensprof_store *store, lensprof_lookup *lookup, le
     return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile for this setting", text, error);
 }
 
-/* Variance of M of the first curve in the corner, 0 = not known, without the rest of the profile, which takes longer to
+/* Variance of M in the corner, 0 = not known, without the rest of the profile, which takes longer to
  * read. */
 static lensprof_status read_variance(lensprof_store *store, int64_t id, double *variance, lensprof_error *error) {
     double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
     lensprof_status status = lp_store_prepare(
         store,
-        "SELECT covariance_size, covariance, CAST(total(emor_modes) AS INTEGER) AS emor_modes FROM profiles"
+        "SELECT covariance_size, covariance, vignetting_curves, CAST(total(emor_modes) AS INTEGER) AS emor_modes FROM"
+        " profiles"
         " JOIN responses ON profile_id = id WHERE id = ?1",
         &binder.statement, error);
     if (status != LENSPROF_OK) return status;
@@ -248,11 +123,12 @@ static lensprof_status read_variance(lensprof_store *store, int64_t id, double *
         lp_store_reader reader = {binder.statement, 0, NULL};
         const uint32_t size = (uint32_t)lp_read_integer(&reader, 1, LENSPROF_COVARIANCE_MAX);
         lp_read_doubles(&reader, covariance, size * size);
+        const uint32_t curves = (uint32_t)lp_read_integer(&reader, 1, 3);
         const uint32_t modes = (uint32_t)lp_read_integer(&reader, 0, 3 * LENSPROF_EMOR_MODES);
         if (reader.bad)
             status = lp_store_fail_profile(store, id, reader.bad, error);
         else
-            *variance = fmax(lp_falloff_variance(covariance, size, lp_covariance_index(modes, 0), 1.0), 0.0);
+            *variance = fmax(lp_corner_variance(covariance, size, modes, curves), 0.0);
     } else
         status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, binder.statement);
@@ -324,45 +200,6 @@ static lensprof_status predict(lensprof_store *store, const lensprof_profile_key
     return make_profile(store, key, &p, lookup, error);
 }
 
-/* Adds to what the caller has to mind; `name` (or NULL) follows the sentence. */
-static void mind(lensprof_lookup *lookup, lensprof_reason reason, const char *name) {
-    const size_t used = strlen(lookup->reason);
-    uint32_t which = 0;
-    while (which + 1 < LENSPROF_LOOKUP_REASONS && lookup->reason_code[which]) which++;
-    lookup->reason_code[which] = reason;
-    snprintf(lookup->reason + used, sizeof lookup->reason - used, "%s%s%s%s", used ? "; " : "",
-             lensprof_reason_text(reason), name ? ": " : "", name ? name : "");
-}
-
-/* Cameras with a fixed lens round its focal length as they like (4.25, 4.2, 4.3 mm): one that differs by no more than
- * that is the stored one. */
-static void round_focal(const lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup) {
-    double nearest = LENSPROF_UNKNOWN, off = fmax(SAME_FOCAL * at->focal_mm, SAME_FOCAL_MM);
-    for (uint32_t i = 0; i < found->count && at->focal_mm != LENSPROF_UNKNOWN; i++) {
-        const lp_candidate *c = &found->all[i];
-        const double d = fabs(c->node.focal_mm - at->focal_mm);
-        if (c->is_fixed && c->node.focal_mm != LENSPROF_UNKNOWN && d <= off + 1e-9 && (d < off || nearest < 0.0))
-            off = d, nearest = c->node.focal_mm;
-    }
-    if (nearest < 0.0 || is_same(nearest, at->focal_mm)) return;
-    at->focal_mm = nearest;
-    mind(lookup, LENSPROF_REASON_LOOKUP_FOCAL_ROUNDED, NULL);
-}
-
-/* The newest row that is at the setting, or -1. */
-static int64_t find_exact(const lp_candidates *found, const lp_falloff_node *at, const lensprof_profile_key *key) {
-    int64_t newest = -1;
-    for (uint32_t i = 0; i < found->count; i++) {
-        const lp_candidate *c = &found->all[i];
-        const int same_sensor = c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
-                                || fabs(c->crop / key->crop_factor - 1.0) <= SAME_SENSOR;
-        if (same_sensor && is_same(c->node.focal_mm, at->focal_mm) && is_same(c->node.aperture, at->aperture)
-            && is_same(c->node.distance_m, at->distance_m) && c->node.id > newest)
-            newest = c->node.id;
-    }
-    return newest;
-}
-
 /* No row: the lens or camera is not there at all, or only with what the options leave out. */
 static lensprof_status refuse_unknown(lensprof_store *store, const lensprof_profile_key *key,
                                       const lensprof_lookup_options *o, lensprof_lookup *lookup,
@@ -393,24 +230,13 @@ static lensprof_status answer_exact(lensprof_store *store, int64_t id, lensprof_
     lookup->exact = lookup->rows = 1;
     lookup->id[0] = id, lookup->weight[0] = 1.0;
     const lensprof_status status = lp_store_fetch(store, id, error);
-    if (status == LENSPROF_OK) lensprof_profile_corner_falloff(&store->scratch, 0, &lookup->sigma);
+    if (status != LENSPROF_OK) return status;
+    const lensprof_profile *profile = &store->scratch;
+    const double variance =
+        lp_corner_variance(profile->covariance, profile->covariance_size,
+                           lp_covariance_modes(profile->response, profile->responses), profile->vignettings);
+    lookup->sigma = variance >= 0.0 ? sqrt(variance) : LENSPROF_UNKNOWN;
     return status;
-}
-
-/* Focal length and aperture, where they are not given and the same everywhere. Returns NONE, or why not. */
-static lensprof_reason settle_all(lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup) {
-    static const lensprof_reason beyond[] = {LENSPROF_REASON_LOOKUP_FOCAL_BEYOND,
-                                             LENSPROF_REASON_LOOKUP_APERTURE_BEYOND};
-    static const lensprof_reason outside[] = {LENSPROF_REASON_LOOKUP_FOCAL_OUTSIDE,
-                                              LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE};
-    for (int which = 0; which < 2; which++) {
-        const lensprof_reason wrong = settle(found, at, which);
-        if (wrong) return wrong;
-        const int side = place_of(found, at, which);
-        if (side > 1) return beyond[which];
-        if (side > 0) mind(lookup, outside[which], NULL);
-    }
-    return LENSPROF_REASON_NONE;
 }
 
 /* What those that are used have in common, where the key leaves it open. */
@@ -422,43 +248,27 @@ static lensprof_profile_key complete_key(const lensprof_profile_key *key, const 
     return whole;
 }
 
-/* The candidates that count. Returns NONE, or why there are none. */
-static lensprof_reason choose(lp_candidates *found, const lensprof_profile_key *key, lensprof_lookup *lookup) {
-    const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
-    if (!keep_best(found, key)) return LENSPROF_REASON_LOOKUP_SMALLER_SENSOR;
-    keep_one_processing(found);
-    if (!keep_nearest_light(found, key)) mind(lookup, LENSPROF_REASON_LOOKUP_OTHER_LIGHT, NULL);
-    if (several) mind(lookup, LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR, NULL);
-    char lens[150]; /* leaves room for the other sentences */
-    snprintf(lens, sizeof lens, "%s", found->last.lens);
-    if (found->by_words)
-        mind(lookup, LENSPROF_REASON_LOOKUP_BY_WORDS, lens);
-    else if (found->by_camera)
-        mind(lookup, LENSPROF_REASON_LOOKUP_BUILT_IN, lens);
-    return LENSPROF_REASON_NONE;
-}
-
 static lensprof_status answer(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
                               lp_candidates *found, lensprof_lookup *lookup, lensprof_error *error) {
     lp_falloff_node at = {0, key->focal_mm, key->aperture, key->distance_m, {{0}}, 0.0};
     lookup->name_score = found->name_score;
     if (found->has_lenses) return refuse(store, lookup, LENSPROF_REASON_LOOKUP_SEVERAL_LENSES, error);
     if (!found->count) return refuse_unknown(store, key, o, lookup, error);
-    lensprof_reason wrong = choose(found, key, lookup);
+    lensprof_reason wrong = lp_choose_candidates(found, key, lookup);
     if (wrong) return refuse(store, lookup, wrong, error);
-    round_focal(found, &at, lookup);
-    int64_t same = find_exact(found, &at, key);
+    lp_round_focal(found, &at, lookup);
+    int64_t same = lp_find_exact(found, &at, key);
     if (same < 0) {
-        wrong = settle_all(found, &at, lookup);
+        wrong = lp_settle(found, &at, lookup);
         if (wrong) return refuse(store, lookup, wrong, error);
-        same = find_exact(found, &at, key);
+        same = lp_find_exact(found, &at, key);
     }
     if (same > 0) return answer_exact(store, same, lookup, error);
     if (at.distance_m == LENSPROF_UNKNOWN)
-        mind(lookup,
-             o->distance_rule == LENSPROF_DISTANCE_WEAKEST ? LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE
-                                                           : LENSPROF_REASON_LOOKUP_FARTHEST_DISTANCE,
-             NULL);
+        lp_mind(lookup,
+                o->distance_rule == LENSPROF_DISTANCE_WEAKEST ? LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE
+                                                              : LENSPROF_REASON_LOOKUP_FARTHEST_DISTANCE,
+                NULL);
     const lensprof_profile_key whole = complete_key(key, found);
     lensprof_status status = weigh(store, found, error);
     return status == LENSPROF_OK ? predict(store, &whole, o, found, at, lookup, error) : status;

@@ -1,0 +1,205 @@
+/* Which rows of the lens count, and at which setting they are asked. */
+#include "store/lookup/lookup_choice.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define SAME_SENSOR 0.02    /* crop factors that differ by so much are of one sensor: EXIF rounds */
+#define CROP_TOLERANCE 0.96 /* a sensor may be larger by so much than the one that was measured */
+#define SAME_FOCAL 0.02     /* of a lens that cannot be changed */
+#define SAME_FOCAL_MM 0.1
+
+int lp_is_same(double a, double b) { return a == b || fabs(a - b) <= 1e-6 * fmin(a, b); }
+
+/* A clause for which there is no room is left out as a whole, its name first. */
+void lp_mind(lensprof_lookup *lookup, lensprof_reason reason, const char *name) {
+    const char *text = lensprof_reason_text(reason);
+    const size_t used = strlen(lookup->reason), room = sizeof lookup->reason - used;
+    const size_t bytes = strlen(text) + (used ? 2 : 0);
+    uint32_t which = 0;
+    while (which + 1 < LENSPROF_LOOKUP_REASONS && lookup->reason_code[which]) which++;
+    lookup->reason_code[which] = reason;
+    if (bytes >= room) return;
+    if (name && bytes + 2 + strlen(name) >= room) name = NULL;
+    snprintf(lookup->reason + used, room, "%s%s%s%s", used ? "; " : "", text, name ? ": " : "", name ? name : "");
+}
+
+/* ---- which of them ---- */
+
+static int is_sensor_covered(const lp_candidate *c, const lensprof_profile_key *key) {
+    return c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
+           || key->crop_factor / c->crop >= CROP_TOLERANCE;
+}
+
+/* Larger is better: unit, camera, then the sensor nearest to the key's; where that is not known, the smallest, whose
+ * falloff is the weakest. */
+static double rank_of(const lp_candidate *c, const lensprof_profile_key *key) {
+    const int own = c->crop != LENSPROF_UNKNOWN, asked = key->crop_factor != LENSPROF_UNKNOWN;
+    const double sensor = !own ? 0.5 : asked ? fmin(c->crop / key->crop_factor, 1.0) : 1.0 - 1.0 / (1.0 + c->crop);
+    return 100.0 * c->of_unit + 10.0 * c->of_camera + sensor;
+}
+
+static int has_several_sensors(const lp_candidates *found) {
+    double low = INFINITY, high = 0.0;
+    for (uint32_t i = 0; i < found->count; i++) {
+        const double crop = found->all[i].crop;
+        if (crop != LENSPROF_UNKNOWN) low = fmin(low, crop), high = fmax(high, crop);
+    }
+    return high > low * (1.0 + SAME_SENSOR);
+}
+
+/* Keeps the best group; returns how many there are. */
+static uint32_t keep_best(lp_candidates *found, const lensprof_profile_key *key) {
+    double best = -1.0;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < found->count; i++)
+        if (is_sensor_covered(&found->all[i], key)) best = fmax(best, rank_of(&found->all[i], key));
+    for (uint32_t i = 0; i < found->count; i++)
+        if (is_sensor_covered(&found->all[i], key) && rank_of(&found->all[i], key) >= best - SAME_SENSOR)
+            found->all[kept++] = found->all[i];
+    return found->count = kept;
+}
+
+/* Curves of pictures that were processed otherwise are others: where any will do, those of the newest profile, which is
+ * the last. */
+static void keep_one_processing(lp_candidates *found) {
+    const uint32_t processing = found->all[found->count - 1].processing;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < found->count; i++)
+        if (found->all[i].processing == processing) found->all[kept++] = found->all[i];
+    found->count = kept;
+}
+
+static double mired_of(double color_temperature_k) { return 1e6 / color_temperature_k; }
+
+/* Shading depends on the light: of the rows that have a colour temperature only those of the nearest one count (in
+ * mired, 1e6/K), where the key has one. Returns whether that is the key's. */
+static bool keep_nearest_light(lp_candidates *found, const lensprof_profile_key *key) {
+    uint32_t kept = 0;
+    double nearest = INFINITY;
+    if (key->color_temperature_k == LENSPROF_UNKNOWN) return true;
+    const double asked = mired_of(key->color_temperature_k);
+    for (uint32_t i = 0; i < found->count; i++)
+        if (found->all[i].color_temperature_k != LENSPROF_UNKNOWN)
+            nearest = fmin(nearest, fabs(mired_of(found->all[i].color_temperature_k) - asked));
+    for (uint32_t i = 0; i < found->count; i++) {
+        const lp_candidate *c = &found->all[i];
+        if (c->color_temperature_k == LENSPROF_UNKNOWN
+            || fabs(mired_of(c->color_temperature_k) - asked) <= nearest * (1.0 + 1e-9))
+            found->all[kept++] = *c;
+    }
+    found->count = kept;
+    return nearest == INFINITY || nearest <= 1e-6 * asked;
+}
+
+/* The candidates that count. Returns NONE, or why there are none. */
+lensprof_reason lp_choose_candidates(lp_candidates *found, const lensprof_profile_key *key, lensprof_lookup *lookup) {
+    const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
+    if (!keep_best(found, key)) return LENSPROF_REASON_LOOKUP_SMALLER_SENSOR;
+    keep_one_processing(found);
+    if (!keep_nearest_light(found, key)) lp_mind(lookup, LENSPROF_REASON_LOOKUP_OTHER_LIGHT, NULL);
+    if (several) lp_mind(lookup, LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR, NULL);
+    if (found->by_words)
+        lp_mind(lookup, LENSPROF_REASON_LOOKUP_BY_WORDS, found->last.lens);
+    else if (found->by_camera)
+        lp_mind(lookup, LENSPROF_REASON_LOOKUP_BUILT_IN, found->last.lens);
+    return LENSPROF_REASON_NONE;
+}
+
+/* ---- at which setting ---- */
+
+/* Focal length for 0, aperture for 1. */
+static double setting(const lp_falloff_node *node, int which) { return which ? node->aperture : node->focal_mm; }
+
+static void set(lp_falloff_node *node, int which, double value) {
+    *(which ? &node->aperture : &node->focal_mm) = value;
+}
+
+/* Rows that lack a number which the key has are of no use; one that the key lacks must be the same in all rows. Returns
+ * NONE, or what is wrong. */
+static lensprof_reason settle(lp_candidates *found, lp_falloff_node *at, int which) {
+    static const lensprof_reason missing[] = {LENSPROF_REASON_LOOKUP_FOCAL_MISSING,
+                                              LENSPROF_REASON_LOOKUP_APERTURE_MISSING};
+    static const lensprof_reason useless[] = {LENSPROF_REASON_LOOKUP_NO_FOCAL, LENSPROF_REASON_LOOKUP_NO_APERTURE};
+    uint32_t kept = 0;
+    if (setting(at, which) == LENSPROF_UNKNOWN) {
+        const double only = setting(&found->all[0].node, which);
+        for (uint32_t i = 1; i < found->count; i++)
+            if (!lp_is_same(setting(&found->all[i].node, which), only)) return missing[which];
+        set(at, which, only != LENSPROF_UNKNOWN ? only : 1.0); /* where nobody knows it makes no difference */
+        for (uint32_t i = 0; i < found->count && only == LENSPROF_UNKNOWN; i++) set(&found->all[i].node, which, 1.0);
+        return LENSPROF_REASON_NONE;
+    }
+    for (uint32_t i = 0; i < found->count; i++)
+        if (setting(&found->all[i].node, which) != LENSPROF_UNKNOWN) found->all[kept++] = found->all[i];
+    found->count = kept;
+    return kept ? LENSPROF_REASON_NONE : useless[which];
+}
+
+/* 0 within the stored settings, 1 outside, 2 too far. Nothing is predicted more than one node beyond the last: the
+ * outermost two nodes' spacing (in stops or octaves), or a twelfth of an octave in focal length and a third of a stop
+ * where there is one node only. */
+static int place_of(const lp_candidates *found, const lp_falloff_node *at, int which) {
+    double low = INFINITY, high = 0.0, above_low = INFINITY, below_high = 0.0;
+    const double single = which ? 1.0 / 6.0 : 1.0 / 12.0; /* log2; of the f-number half a stop counts as 1/4 */
+    for (uint32_t i = 0; i < found->count; i++) {
+        const double value = log2(setting(&found->all[i].node, which));
+        low = fmin(low, value), high = fmax(high, value);
+    }
+    for (uint32_t i = 0; i < found->count; i++) {
+        const double value = log2(setting(&found->all[i].node, which));
+        if (value > low + 1e-6) above_low = fmin(above_low, value);
+        if (value < high - 1e-6) below_high = fmax(below_high, value);
+    }
+    const double asked = log2(setting(at, which)), least = 1e-6;
+    const double before = high - low > 1e-6 ? fmax(above_low - low, single) : single;
+    const double behind = high - low > 1e-6 ? fmax(high - below_high, single) : single;
+    if (asked < low - before - least || asked > high + behind + least) return 2;
+    return asked < low - least || asked > high + least;
+}
+
+/* Focal length and aperture, where they are not given and the same everywhere. Returns NONE, or why not. */
+lensprof_reason lp_settle(lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup) {
+    static const lensprof_reason beyond[] = {LENSPROF_REASON_LOOKUP_FOCAL_BEYOND,
+                                             LENSPROF_REASON_LOOKUP_APERTURE_BEYOND};
+    static const lensprof_reason outside[] = {LENSPROF_REASON_LOOKUP_FOCAL_OUTSIDE,
+                                              LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE};
+    for (int which = 0; which < 2; which++) {
+        const lensprof_reason wrong = settle(found, at, which);
+        if (wrong) return wrong;
+        const int side = place_of(found, at, which);
+        if (side > 1) return beyond[which];
+        if (side > 0) lp_mind(lookup, outside[which], NULL);
+    }
+    return LENSPROF_REASON_NONE;
+}
+
+/* Cameras with a fixed lens round its focal length as they like (4.25, 4.2, 4.3 mm): one that differs by no more than
+ * that is the stored one. */
+void lp_round_focal(const lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup) {
+    double nearest = LENSPROF_UNKNOWN, off = fmax(SAME_FOCAL * at->focal_mm, SAME_FOCAL_MM);
+    for (uint32_t i = 0; i < found->count && at->focal_mm != LENSPROF_UNKNOWN; i++) {
+        const lp_candidate *c = &found->all[i];
+        const double d = fabs(c->node.focal_mm - at->focal_mm);
+        if (c->is_fixed && c->node.focal_mm != LENSPROF_UNKNOWN && d <= off + 1e-9 && (d < off || nearest < 0.0))
+            off = d, nearest = c->node.focal_mm;
+    }
+    if (nearest < 0.0 || lp_is_same(nearest, at->focal_mm)) return;
+    at->focal_mm = nearest;
+    lp_mind(lookup, LENSPROF_REASON_LOOKUP_FOCAL_ROUNDED, NULL);
+}
+
+/* The newest row that is at the setting, or -1. */
+int64_t lp_find_exact(const lp_candidates *found, const lp_falloff_node *at, const lensprof_profile_key *key) {
+    int64_t newest = -1;
+    for (uint32_t i = 0; i < found->count; i++) {
+        const lp_candidate *c = &found->all[i];
+        const int same_sensor = c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
+                                || fabs(c->crop / key->crop_factor - 1.0) <= SAME_SENSOR;
+        if (same_sensor && lp_is_same(c->node.focal_mm, at->focal_mm) && lp_is_same(c->node.aperture, at->aperture)
+            && lp_is_same(c->node.distance_m, at->distance_m) && c->node.id > newest)
+            newest = c->node.id;
+    }
+    return newest;
+}
