@@ -163,19 +163,54 @@ void test_padded_bombs(void **) {
 }
 
 void test_tiff_bombs(void **) {
-    for (uint16_t compression : {COMPRESSION_NONE, COMPRESSION_PACKBITS, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE,
-                                 COMPRESSION_JPEG, COMPRESSION_LZMA, COMPRESSION_ZSTD}) {
+    for (uint16_t compression :
+         {COMPRESSION_NONE, COMPRESSION_PACKBITS, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PIXARLOG,
+          COMPRESSION_JPEG, COMPRESSION_OJPEG, COMPRESSION_LZMA, COMPRESSION_ZSTD}) {
         if (!TIFFIsCODECConfigured(compression)) continue;
         const bool jpeg = compression == COMPRESSION_JPEG;
         const TiffBomb tiles{1048576, 1300, uint16_t(jpeg ? 8 : 16), 3, PLANARCONFIG_SEPARATE, 16384, 16384, 0};
-        assert_harmless("tiles.tif", make_tiff_bomb(tiles, compression), beyond("1048576 x 1300 pixels", 0));
         const TiffBomb strip{30000, 30000, 8, 3, PLANARCONFIG_SEPARATE, 0, 0, 100};
-        assert_harmless("strip.tif", make_tiff_bomb(strip, compression), beyond("30000 x 30000 pixels", 100));
+        if (compression != COMPRESSION_OJPEG) {  // whose colour is YCbCr, which is refused before
+            assert_harmless("tiles.tif", make_tiff_bomb(tiles, compression), beyond("1048576 x 1300 pixels", 0));
+            assert_harmless("strip.tif", make_tiff_bomb(strip, compression), beyond("30000 x 30000 pixels", 100));
+        }
         const TiffBomb tile{32752, 32768, 8, 1, PLANARCONFIG_CONTIG, 32752, 32768, 100};
         assert_harmless("tile.tif", make_tiff_bomb(tile, compression), beyond("32752 x 32768 pixels", 100));
         if (compression == COMPRESSION_NONE) continue;  // has the bytes
         const TiffBomb one{8, 8, 8, 1, PLANARCONFIG_CONTIG, 32752, 32768, 100};
         assert_harmless("one.tif", make_tiff_bomb(one, compression), beyond("a tile of 32752 x 32768 pixels", 100));
+    }
+}
+
+// A few bytes may be a large block of one grey: blocks without any, larger than the compression or memory allows, or
+// that hold something else are refused.
+void test_tiff_bombs_without_ratio(void **) {
+    for (uint16_t compression : {COMPRESSION_WEBP, COMPRESSION_LERC}) {
+        if (!TIFFIsCODECConfigured(compression)) continue;
+        const bool webp = compression == COMPRESSION_WEBP;
+        const TiffBomb empty{1048576, 1300, 8, 3, PLANARCONFIG_CONTIG, 16000, 16000, 0};
+        assert_harmless("empty.tif", make_tiff_bomb(empty, compression), beyond("1048576 x 1300 pixels", 0));
+        if (webp) {
+            const TiffBomb few{16000, 16000, 8, 3, PLANARCONFIG_CONTIG, 16000, 16000, 19};
+            assert_harmless("few.tif", make_tiff_bomb(few, compression), beyond("16000 x 16000 pixels", 19));
+        }
+        const TiffBomb strip{30000, 30000, 8, 3, PLANARCONFIG_CONTIG, 0, 0, 100};
+        assert_harmless("strip.tif", make_tiff_bomb(strip, compression), "impossible size of a strip or tile");
+        const TiffBomb side{20000, 100, 8, 3, PLANARCONFIG_CONTIG, 0, 0, 100};
+        assert_harmless("side.tif", make_tiff_bomb(side, compression), webp ? "impossible size" : "");
+        const TiffBomb tile{16368, 16368, 8, 3, PLANARCONFIG_CONTIG, 16368, 16368, 100};
+        assert_harmless("tile.tif", make_tiff_bomb(tile, compression), "");
+    }
+}
+
+// Compressions of fewer bits a sample, and of other colours, than pictures here have.
+void test_tiff_of_no_use(void **) {
+    for (uint16_t compression : {COMPRESSION_CCITTRLE, COMPRESSION_CCITTFAX4, COMPRESSION_NEXT, COMPRESSION_THUNDERSCAN,
+                                 COMPRESSION_JBIG, COMPRESSION_SGILOG, COMPRESSION_JXL}) {
+        save(work("a.tif"), make_tiff_bomb({64, 64, 8, 3, PLANARCONFIG_CONTIG, 0, 0, 100}, compression));
+        assert_refused(unreadable, corrected_into("out", {work("a.tif")}),
+                       {"a.tif: cannot read: TIFF compression " + std::to_string(compression)
+                        + " is not supported; convert it first"});
     }
 }
 
@@ -223,9 +258,13 @@ void write_constant_tiff(const std::string &path, uint32_t side, uint16_t compre
     TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, side);
     TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, side);
     TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
-    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
-    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    const bool colour = compression == COMPRESSION_WEBP;
+    const uint32_t samples = colour ? 3 : 1;
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, samples);
+    TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, colour ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
     TIFFSetField(tiff, TIFFTAG_COMPRESSION, compression);
+    if (compression == COMPRESSION_WEBP) TIFFSetField(tiff, TIFFTAG_WEBP_LOSSLESS, 1);
     if (tiled) {
         TIFFSetField(tiff, TIFFTAG_TILEWIDTH, rows);
         TIFFSetField(tiff, TIFFTAG_TILELENGTH, rows);
@@ -233,10 +272,10 @@ void write_constant_tiff(const std::string &path, uint32_t side, uint16_t compre
         TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, rows);
     }
     if (compression == COMPRESSION_ADOBE_DEFLATE) TIFFSetField(tiff, TIFFTAG_ZIPQUALITY, 9);
-    Bytes block(size_t(tiled ? rows : side) * rows, 128);
+    Bytes block(size_t(tiled ? rows : side) * rows * samples, 128);
     const uint32_t blocks = tiled ? TIFFNumberOfTiles(tiff) : TIFFNumberOfStrips(tiff);
     for (uint32_t i = 0; i < blocks; ++i) {
-        const size_t count = tiled ? block.size() : size_t(side) * std::min(rows, side - i * rows);
+        const size_t count = tiled ? block.size() : size_t(side) * std::min(rows, side - i * rows) * samples;
         const tmsize_t size = static_cast<tmsize_t>(count);
         assert_true((tiled ? TIFFWriteEncodedTile(tiff, i, block.data(), size)
                            : TIFFWriteEncodedStrip(tiff, i, block.data(), size))
@@ -247,14 +286,16 @@ void write_constant_tiff(const std::string &path, uint32_t side, uint16_t compre
 }
 
 void test_constant_tiff(void **) {
-    constexpr uint32_t side = 8000;
     const std::map<uint16_t, double> least = {
-        {COMPRESSION_NONE, 0.9}, {COMPRESSION_PACKBITS, 62}, {COMPRESSION_LZW, 900},   {COMPRESSION_ADOBE_DEFLATE, 900},
-        {COMPRESSION_JPEG, 80},  {COMPRESSION_LZMA, 3000},   {COMPRESSION_ZSTD, 10000}};
+        {COMPRESSION_NONE, 0.9},          {COMPRESSION_PACKBITS, 62}, {COMPRESSION_LZW, 900},
+        {COMPRESSION_ADOBE_DEFLATE, 900}, {COMPRESSION_JPEG, 80},     {COMPRESSION_LZMA, 3000},
+        {COMPRESSION_ZSTD, 10000},        {COMPRESSION_WEBP, 8000},   {COMPRESSION_LERC, 40000}};
     for (const auto &kind : least) {
         if (!TIFFIsCODECConfigured(kind.first)) continue;
+        const bool slow = kind.first == COMPRESSION_WEBP;
+        const uint32_t side = slow ? 2000 : 8000, tile = slow ? 512 : 2048;
         for (bool tiled : {false, true}) {
-            const uint32_t rows = tiled ? 2048 : side;
+            const uint32_t rows = tiled ? tile : side;
             write_constant_tiff(work("a.tif"), side, kind.first, tiled, rows);
             const double whole = tiled ? 4.0 * rows : side;  // tiles are stored whole
             if (ratio("a.tif", whole * whole) < kind.second)
@@ -307,8 +348,10 @@ void test_constant_jpeg(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_png_bombs),     CLI_TEST(test_padded_bombs),  CLI_TEST(test_tiff_bombs),
-        CLI_TEST(test_constant_png),  CLI_TEST(test_constant_tiff), CLI_TEST(test_shared_strips),
+        CLI_TEST(test_png_bombs),      CLI_TEST(test_padded_bombs),
+        CLI_TEST(test_tiff_bombs),     CLI_TEST(test_tiff_bombs_without_ratio),
+        CLI_TEST(test_tiff_of_no_use), CLI_TEST(test_constant_png),
+        CLI_TEST(test_constant_tiff),  CLI_TEST(test_shared_strips),
         CLI_TEST(test_constant_jpeg),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

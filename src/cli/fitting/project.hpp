@@ -64,8 +64,9 @@ std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<Samp
 std::vector<lensprof_observation> sample_tracks(const Project &project, std::vector<SamplePicture> &pictures,
                                                 lensprof_sample_options options, Progress &progress);
 
-// What a point file holds of tracks: of every point its unsaturated observations, as pairs that follow each other. Black
-// ones are kept, unlike in the pairs of a fit: a fit by tracks, which joins such pairs again, takes them as bounds.
+// What a point file holds of tracks: of every point its unsaturated observations, as pairs that follow each other.
+// Black ones are kept, unlike in the pairs of a fit: a fit by tracks, which joins such pairs again, takes them as
+// bounds.
 std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observation> &observations);
 
 // The pairs of a point file, which must be of images of the project.

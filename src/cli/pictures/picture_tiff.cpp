@@ -86,30 +86,50 @@ public:
     TIFF *handle = nullptr;
 };
 
-// Most bytes that a compression makes of one; 0 = no limit is known.
-uint64_t expansion_of(uint16_t compression) {
+// What a strip or tile of a compression can hold.
+struct Limits {
+    uint64_t expansion;  // most bytes that it makes of one; 0 = any number, as a block of one grey has a few bytes
+    uint64_t least_bytes = 0;     // of a block
+    uint32_t most_side = 0;       // of a block, in pixels; 0 = any
+    bool decodes_blocks = false;  // has a whole block in memory, also where rows are read
+};
+
+// False for compressions that no picture here can have: those of one, two or four bits a sample and of other colours.
+bool limits_of(uint16_t compression, Limits &limits) {
+    constexpr uint64_t jpeg = 1366;  // a bit for 8 x 8 samples, 18 such blocks for 32 x 32 pixels of three
     switch (compression) {
-    case COMPRESSION_NONE: return 1;
-    case COMPRESSION_PACKBITS: return 64;  // 128 of two
-    case COMPRESSION_LZW: return 2731;     // a string is no longer than the table of 4096, its code then has 12 bits
+    case COMPRESSION_NONE: return limits = {1}, true;
+    case COMPRESSION_PACKBITS:
+        return limits = {64}, true;  // 128 of two
+    // A string is no longer than the table of 4096, its code then has 12 bits.
+    case COMPRESSION_LZW: return limits = {2731}, true;
     case COMPRESSION_ADOBE_DEFLATE:
-    case COMPRESSION_DEFLATE: return deflate_expansion;
-    case COMPRESSION_JPEG: return 1366;   // a bit for 8 x 8 samples, 18 such blocks for 32 x 32 pixels of three
-    case COMPRESSION_LZMA: return 8192;   // 273 of 14 binary decisions of 0.022 bits each
-    case COMPRESSION_ZSTD: return 32768;  // a block of 128 KiB of 4
-    default: return 0;
+    case COMPRESSION_DEFLATE: return limits = {deflate_expansion}, true;
+    case COMPRESSION_PIXARLOG: return limits = {2 * deflate_expansion}, true;  // floats of 16 bit codes
+    case COMPRESSION_JPEG:
+    case COMPRESSION_OJPEG: return limits = {jpeg}, true;
+    case COMPRESSION_LZMA: return limits = {8192}, true;  // 273 of 14 binary decisions of 0.022 bits each
+    case COMPRESSION_ZSTD:
+        return limits = {32768}, true;  // a block of 128 KiB of 4
+    // The headers of the file and of its only chunk; 14 bits of each side.
+    case COMPRESSION_WEBP: return limits = {0, 20, 16383, true}, true;
+    case COMPRESSION_LERC: return limits = {0, 1, 0, true}, true;  // its header, perhaps deflated
+    default: return false;
     }
 }
 
 // A picture that its strips or tiles cannot hold is refused. Their own sizes count, not the file's: they may share
 // data.
-void check_stored_frame(const Tiff &tiff, const std::string &path, const Picture &picture) {
+void check_stored_frame(const Tiff &tiff, const std::string &path, const Picture &picture, const Limits &limits) {
     const uint64_t needed = pixel_bytes(picture) * picture.frame_width * picture.frame_height;
-    const uint64_t expansion = expansion_of(picture.traits.compression);
     const uint32_t blocks = TIFFIsTiled(tiff.handle) ? TIFFNumberOfTiles(tiff.handle) : TIFFNumberOfStrips(tiff.handle);
+    const std::string declared = size_text(picture.frame_width, picture.frame_height);
     uint64_t stored = 0;
-    for (uint32_t i = 0; i < blocks && stored < needed; ++i) stored += tiff.stored(i);
-    check_stored(path, size_text(picture.frame_width, picture.frame_height), needed, stored, expansion);
+    for (uint32_t i = 0; i < blocks && stored < needed; ++i) {
+        if (tiff.stored(i) < limits.least_bytes) check_stored(path, declared, needed, tiff.stored(i), 1);
+        stored += tiff.stored(i);
+    }
+    check_stored(path, declared, needed, stored, limits.expansion);
 }
 
 [[noreturn]] void fail_kind(const ReadRequest &request, const std::string &kind) {
@@ -195,17 +215,19 @@ void invert_row(const Picture &picture, uint8_t *row) {
 // or the strips of all planes.
 class BandReader {
 public:
-    BandReader(const Tiff &tiff, const std::string &path, const Picture &picture);
+    BandReader(const Tiff &tiff, const std::string &path, const Picture &picture, const Limits &limits);
     void read(uint8_t *row);  // the next one
 
 private:
     void read_band(uint32_t y, uint32_t rows);
     void read_block(uint32_t x, uint32_t y, uint32_t rows, uint16_t plane);
+    void check_block(uint64_t bytes) const;
     [[noreturn]] void fail() const;
 
     const Tiff &tiff_;
     const std::string &path_;
     const Picture &picture_;
+    const Limits limits_;
     const bool tiled_, by_row_, inverted_;
     const size_t sample_bytes_, pixel_bytes_, row_bytes_;  // of the frame
     const uint16_t planes_;
@@ -216,10 +238,11 @@ private:
     size_t block_bytes_ = 0;
 };
 
-BandReader::BandReader(const Tiff &tiff, const std::string &path, const Picture &picture)
+BandReader::BandReader(const Tiff &tiff, const std::string &path, const Picture &picture, const Limits &limits)
     : tiff_(tiff),
       path_(path),
       picture_(picture),
+      limits_(limits),
       tiled_(TIFFIsTiled(tiff.handle) != 0),
       by_row_(!tiled_ && tiff.field<uint16_t>(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_CONTIG),
       inverted_(tiff.field<uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE),
@@ -230,20 +253,25 @@ BandReader::BandReader(const Tiff &tiff, const std::string &path, const Picture 
                   ? static_cast<uint16_t>(lensprof_layout_samples(picture.layout))
                   : uint16_t(1)),
       block_pixel_bytes_(planes_ > 1 ? sample_bytes_ : pixel_bytes_) {
-    if (by_row_) {
-        if (static_cast<uint64_t>(TIFFScanlineSize64(tiff.handle)) != row_bytes_) fail();
-        return;
-    }
     block_width_ = tiled_ ? tiff.field<uint32_t>(TIFFTAG_TILEWIDTH, 0) : picture.frame_width;
     block_height_ = tiled_ ? tiff.field<uint32_t>(TIFFTAG_TILELENGTH, 0)
                            : std::min(tiff.field<uint32_t>(TIFFTAG_ROWSPERSTRIP, UINT32_MAX), picture.frame_height);
     const uint64_t bytes = tiled_ ? TIFFTileSize64(tiff.handle) : TIFFVStripSize64(tiff.handle, block_height_);
-    if (block_width_ == 0 || block_height_ == 0 || bytes > block_max_bytes
-        || bytes != uint64_t(block_width_) * block_height_ * block_pixel_bytes_)
-        fail();
+    if (!by_row_ || limits_.decodes_blocks) check_block(bytes);
+    if (by_row_) {
+        if (static_cast<uint64_t>(TIFFScanlineSize64(tiff.handle)) != row_bytes_) fail();
+        return;
+    }
     block_bytes_ = static_cast<size_t>(bytes);
     block_.reset(new uint8_t[block_bytes_]);
     band_ = make_lazy_bytes(row_bytes_ * std::min(block_height_, picture.frame_height));
+}
+
+void BandReader::check_block(uint64_t bytes) const {
+    const uint32_t most = limits_.most_side ? limits_.most_side : UINT32_MAX;
+    if (block_width_ == 0 || block_height_ == 0 || block_width_ > most || block_height_ > most
+        || bytes > block_max_bytes || bytes != uint64_t(block_width_) * block_height_ * block_pixel_bytes_)
+        fail();
 }
 
 void BandReader::fail() const {
@@ -275,7 +303,7 @@ void BandReader::read_block(uint32_t x, uint32_t y, uint32_t rows, uint16_t plan
     const uint32_t number = tiled_ ? TIFFComputeTile(handle, x, y, 0, plane) : TIFFComputeStrip(handle, y, plane);
     check_stored(path_,
                  (tiled_ ? "a tile of " : "a strip of ") + size_text(block_width_, tiled_ ? block_height_ : rows),
-                 static_cast<uint64_t>(wanted), tiff_.stored(number), expansion_of(picture_.traits.compression));
+                 static_cast<uint64_t>(wanted), tiff_.stored(number), limits_.expansion);
     const tmsize_t count = tiled_ ? TIFFReadEncodedTile(handle, number, block_.get(), wanted)
                                   : TIFFReadEncodedStrip(handle, number, block_.get(), wanted);
     if (count != wanted || tiff_.failed()) fail();
@@ -297,13 +325,14 @@ public:
     explicit TiffSource(const ReadRequest &request);
 
     void read(uint8_t *row) override {
-        if (!reader_) reader_ = std::make_unique<BandReader>(tiff_, path_, header_);
+        if (!reader_) reader_ = std::make_unique<BandReader>(tiff_, path_, header_, limits_);
         reader_->read(row);
     }
 
 private:
     std::string path_;
     Tiff tiff_;
+    Limits limits_{};
     std::unique_ptr<BandReader> reader_;
 };
 
@@ -315,12 +344,12 @@ TiffSource::TiffSource(const ReadRequest &request) : path_(request.path), tiff_(
     read_sample(tiff_, request, header_);
     read_layout(tiff_, request, header_);
     read_traits(tiff_, header_);
-    if (!TIFFIsCODECConfigured(header_.traits.compression))
+    if (!limits_of(header_.traits.compression, limits_) || !TIFFIsCODECConfigured(header_.traits.compression))
         fail_unsupported(path_, "TIFF compression " + std::to_string(header_.traits.compression)
                                     + " is not supported; convert it first");
     set_frame(header_, tiff_.field<uint32_t>(TIFFTAG_IMAGEWIDTH, 0), tiff_.field<uint32_t>(TIFFTAG_IMAGELENGTH, 0),
               request);
-    check_stored_frame(tiff_, path_, header_);
+    check_stored_frame(tiff_, path_, header_, limits_);
 }
 
 // Lossless compressions are kept; recompressing with a lossy one would damage the pixels a second time.
