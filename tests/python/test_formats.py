@@ -1,6 +1,7 @@
 """Hugin projects and point files, Lensfun databases."""
 import gc
 import math
+import pathlib
 import unittest
 
 import numpy as np
@@ -223,6 +224,32 @@ class AnyFormat(unittest.TestCase):
             lp.export_profiles([self.profile()], "a.xmp")
         with self.assertRaisesRegex(lp.Error, "holds one profile"):
             lp.export_profiles([self.profile()] * 2, "a.csv")
+
+    def test_a_format_is_no_word(self):
+        for word, member in (("json", "JSON"), ("opcodes", "DNG_OPCODES"), ("crf", "RADICAL_RESPONSE")):
+            with self.assertRaisesRegex(ValueError, f"'{word}' is a format.*format=Format.{member}$"):
+                lp.export_profiles([self.profile()], word)
+        for word, member in (("json", "JSON"), ("lensfun", "LENSFUN"), ("xyz", "JSON")):
+            for call in (lambda: lp.export_profiles([self.profile()], format=word),
+                         lambda: lp.import_profiles(b"{}", format=word), lambda: lp.format_info(word)):
+                with self.assertRaisesRegex(TypeError, f"Format.{member}, and not '{word}'"):
+                    call()
+        self.assertIn(b"Acme", lp.export_profiles([self.profile()], "json", format=lp.Format.JSON))  # a file's name
+
+    def test_content_is_no_path(self):
+        readers = (lp.import_profiles, lp.detect_format, lp.lensfun_read, lp.json_read, lp.pcalib_read, lp.times_read,
+                   lp.curves_read, lp.lcp_read, lp.points_read, lp.Pto, lp.radical_response_read, lp.radical_vignetting_read,
+                   lambda data: lp.dng_opcodes_read(data, 6, 4), lambda data: lp.drone_xmp_read(data, 6, 4),
+                   lambda data: lp.alsc_read(data, (6, 4)))
+        for reader in readers:
+            for path in ("a.json", "/some where/my lens.XML", pathlib.Path("a.json"), pathlib.Path("none")):
+                with self.assertRaisesRegex(TypeError, r"the content of a file, and not its name; give Path\("):
+                    reader(path)
+            with self.assertRaisesRegex(TypeError, "bytes or str, and not int"):
+                reader(5)
+        text = lp.json_write([self.profile()])
+        for content in (text, text.replace("\n", " "), text.encode(), bytearray(text, "utf-8"), memoryview(text.encode())):
+            self.assertEqual(len(lp.import_profiles(content)), 1)
 
 
 class Lensfun(unittest.TestCase):

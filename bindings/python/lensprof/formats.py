@@ -1,6 +1,8 @@
 """Other tools' files, from and to memory; see lensprof/formats.h."""
 from __future__ import annotations
 
+import os
+import re
 from ctypes import POINTER, byref, c_double, c_float, c_size_t, c_uint32, cast, create_string_buffer, pointer
 from typing import Any, Callable, Iterable, NamedTuple, Optional, Sequence, Union
 
@@ -17,6 +19,28 @@ from .profile import Profile, ProfileKey
 
 def _bytes(text: Union[str, bytes]) -> bytes:
     return text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
+
+
+_FILE_NAME = re.compile(r"[^\n<{]{1,4095}\.[A-Za-z]\w{0,9}")  # a line that ends like a name: no file's content does
+
+
+def _content(data: Union[str, bytes], what: str = "data") -> bytes:
+    """The content of a file; a path in its place is refused."""
+    if isinstance(data, os.PathLike) or isinstance(data, str) and _FILE_NAME.fullmatch(data):
+        raise TypeError(f"{what} takes the content of a file, and not its name; give Path({os.fspath(data)!r}).read_bytes()")
+    if isinstance(data, str):
+        return _bytes(data)
+    try:
+        return bytes(memoryview(data))
+    except TypeError:
+        raise TypeError(f"{what} takes the content of a file as bytes or str, and not {type(data).__name__}") from None
+
+
+def _format(format: Format) -> int:
+    if isinstance(format, str):
+        member = format.upper() if format.upper() in Format.__members__ else "JSON"
+        raise TypeError(f"format takes a lensprof.Format, such as Format.{member}, and not {format!r}")
+    return int(Format(format))
 
 
 def _written(write: Callable[..., int], what: str) -> bytes:
@@ -57,7 +81,7 @@ class Pto(Handle):
 
     def __init__(self, text: Union[str, bytes]):
         """Parses a project, e.g. Path("pano.pto").read_bytes()."""
-        data, handle, error = _bytes(text), POINTER(_abi.Pto)(), _abi.ErrorText()
+        data, handle, error = _content(text, "text"), POINTER(_abi.Pto)(), _abi.ErrorText()
         check(lib.lensprof_pto_read(data, len(data), byref(handle), byref(error)), "the project cannot be read", error)
         super().__init__(handle, lib.lensprof_pto_destroy)
 
@@ -139,7 +163,7 @@ class Pto(Handle):
 
 def points_read(text: Union[str, bytes]) -> np.ndarray:
     """The pairs of a point file (vig_optimize -w, 16 numbers a line): an array of PAIR_DTYPE."""
-    data, found, error = _bytes(text), c_uint32(), _abi.ErrorText()
+    data, found, error = _content(text, "text"), c_uint32(), _abi.ErrorText()
     check(lib.lensprof_points_read(data, len(data), None, 0, byref(found), byref(error)),
           "points cannot be read", error)
     pairs = np.empty(found.value, dtype=_arrays.PAIR_DTYPE)
@@ -195,7 +219,7 @@ def lensfun_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profil
     False stands beside those that are no falloff, which cannot be stored or applied; provenance.doubt says why, and may
     warn of others. source: where the text is from, for provenance.source.
     """
-    data = _bytes(text)
+    data = _content(text, "text")
     return _imported(lambda *rest: lib.lensprof_lensfun_read(data, len(data), *rest), source,
                      "the database cannot be read")
 
@@ -211,7 +235,7 @@ def json_read(text: Union[str, bytes], source: str = "") -> list[Profile]:
 
     source: where the text is from, for provenance.source where the text has none.
     """
-    data = _bytes(text)
+    data = _content(text, "text")
     found = _imported(lambda *rest: lib.lensprof_json_read(data, len(data), *rest), source, "the profiles cannot be read")
     return [profile for profile, _ in found]
 
@@ -223,7 +247,7 @@ def json_write(profiles: Iterable[Profile]) -> str:
 
 def pcalib_read(text: Union[str, bytes]) -> Response:
     """The response of a pcalib.txt of TUM's tools, DSO and its kin: 256 (or 2 to 65536) increasing irradiances."""
-    data, response, error = _bytes(text), Response(), _abi.ErrorText()
+    data, response, error = _content(text, "text"), Response(), _abi.ErrorText()
     check(lib.lensprof_pcalib_read(data, len(data), byref(response), byref(error)), "pcalib cannot be read", error)
     return response
 
@@ -244,7 +268,7 @@ class FrameTime(Value, _abi.FrameTime):
 
 def times_read(text: Union[str, bytes]) -> list[FrameTime]:
     """The frames of a times.txt: name, time stamp and, if known, exposure time on each line."""
-    data, found, error = _bytes(text), c_uint32(), _abi.ErrorText()
+    data, found, error = _content(text, "text"), c_uint32(), _abi.ErrorText()
     check(lib.lensprof_times_read(data, len(data), None, 0, byref(found), byref(error)), "times cannot be read", error)
     frames = (_abi.FrameTime * found.value)()
     check(lib.lensprof_times_read(data, len(data), frames, len(frames), byref(found), byref(error)),
@@ -262,7 +286,7 @@ def times_write(frames: Iterable[FrameTime]) -> str:
 
 def curves_read(text: Union[str, bytes], kind: CurveKind = CurveKind.INVERSE) -> list[Response]:
     """One or three responses of a table of text (CSV, or .m of pfstools), of which nothing in it says what it holds."""
-    data, found, error = _bytes(text), c_uint32(), _abi.ErrorText()
+    data, found, error = _content(text, "text"), c_uint32(), _abi.ErrorText()
     responses = (_abi.Response * 3)()
     check(lib.lensprof_curves_read(data, len(data), int(CurveKind(kind)), responses, byref(found), byref(error)),
           "the table cannot be read", error)
@@ -321,8 +345,8 @@ def map_write(profile: Profile, frame: tuple[int, int], size: Optional[tuple[int
 
 def radical_response_read(data: bytes) -> list[Response]:
     """The responses of red, green and blue of a .crf file of radical."""
-    responses, error = (_abi.Response * 3)(), _abi.ErrorText()
-    check(lib.lensprof_radical_response_read(data, len(data), responses, byref(error)), "the file cannot be read", error)
+    given, responses, error = _content(data), (_abi.Response * 3)(), _abi.ErrorText()
+    check(lib.lensprof_radical_response_read(given, len(given), responses, byref(error)), "the file cannot be read", error)
     return [Response.from_buffer_copy(response) for response in responses]
 
 
@@ -336,7 +360,8 @@ def radical_response_write(responses: Union[Response, Iterable[Response]]) -> by
 
 def radical_vignetting_read(data: bytes, profile: Optional[Profile] = None) -> tuple[Profile, float]:
     """The falloff of a .vgn file of radical, and the largest relative error that is left; as map_read."""
-    return _refitted(lambda *out: lib.lensprof_radical_vignetting_read(data, len(data), *out), profile,
+    given = _content(data)
+    return _refitted(lambda *out: lib.lensprof_radical_vignetting_read(given, len(given), *out), profile,
                      "the file cannot be read")
 
 
@@ -354,7 +379,7 @@ def dng_opcodes_read(data: bytes, width: int, height: int, layout: Layout = Layo
     width, height: of the frame that the opcodes work on. layout: RGGB, GRBG, GBRG or BGGR for a mosaic (OpcodeList2),
     RGB for three planes (OpcodeList3), GREY for one. provenance.doubt names opcodes that are left out.
     """
-    given = bytes(data)
+    given = _content(data)
     (entry,) = _imported(
         lambda *rest: lib.lensprof_dng_opcodes_read(given, len(given), integer(width, "width"), integer(height, "height"),
                                                     integer(layout, "layout"), *rest),
@@ -376,7 +401,7 @@ def dng_opcodes_write(profile: Profile, width: int, height: int, layout: Layout 
 
 def lcp_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profile, bool]]:
     """The falloffs of an Adobe lens profile (.lcp), as lensfun_read gives those of a database."""
-    data = _bytes(text)
+    data = _content(text, "text")
     return _imported(lambda *rest: lib.lensprof_lcp_read(data, len(data), *rest), source,
                      "the lens profile cannot be read")
 
@@ -391,7 +416,7 @@ def lcp_write(profiles: Iterable[Profile], width: int = 0, height: int = 0) -> s
 def drone_xmp_read(text: Union[str, bytes], width: int, height: int, source: str = "") -> tuple[Profile, bool]:
     """The falloff that a MicaSense, Parrot Sequoia or DJI camera writes into the XMP packet of a picture of width x
     height pixels, and whether it is usable."""
-    data = _bytes(text)
+    data = _content(text, "text")
     (entry,) = _imported(
         lambda *rest: lib.lensprof_drone_xmp_read(data, len(data), integer(width, "width"), integer(height, "height"),
                                                   *rest),
@@ -406,7 +431,7 @@ def alsc_read(text: Union[str, bytes], frame: tuple[int, int], ct: float = _abi.
     frame: width and height of the sensor, px. ct: colour temperature, K; the file's own by default. size: columns and rows
     of other tables than 16 x 12 and 32 x 32. profile: as map_read.
     """
-    data, numbers = _bytes(text), [integer(n, "columns, rows, width or height") for n in (*size, *frame)]
+    data, numbers = _content(text, "text"), [integer(n, "columns, rows, width or height") for n in (*size, *frame)]
     return _refitted(lambda *out: lib.lensprof_alsc_read(data, len(data), ct, *numbers, *out), profile,
                      "the tables cannot be read")
 
@@ -431,7 +456,7 @@ class FormatInfo(NamedTuple):
 
 def format_info(format: Format) -> FormatInfo:
     """What is known of a format but AUTO."""
-    found = lib.lensprof_format_get_info(int(Format(format)))
+    found = lib.lensprof_format_get_info(_format(format))
     if not found:
         raise ValueError("AUTO is no format; pass another lensprof.Format")
     info = found.contents
@@ -440,7 +465,7 @@ def format_info(format: Format) -> FormatInfo:
 
 def detect_format(data: Union[str, bytes], name: str = "") -> Format:
     """The format of a file by its content, then by the ending of its name; Format.AUTO where neither tells."""
-    content = _bytes(data)
+    content = _content(data)
     return Format(lib.lensprof_format_detect(content, len(content), _bytes(name)))
 
 
@@ -448,14 +473,14 @@ def import_profiles(data: Union[str, bytes], name: str = "", *, format: Format =
                     key: Optional[ProfileKey] = None, frame: tuple[int, int] = (0, 0), tables: tuple[int, int] = (0, 0),
                     layout: Layout = Layout.RGB, curve: CurveKind = CurveKind.INVERSE,
                     color_temperature_k: float = _abi.UNKNOWN) -> list[tuple[Profile, bool]]:
-    """The profiles of a file of any format, as lensfun_read gives those of a database.
+    """The profiles of a file of any format, of which data is the content, as lensfun_read gives those of a database.
 
     A response or a falloff makes one profile with `key`. name: of the file, for detection and provenance.source. frame:
     width and height of the pictures, which opcodes, XMP and alsc do not say. tables: columns and rows, of alsc. The
     bytes are those of the format, and not of a picture around them: opcodes without their DNG, XMP without its JPEG.
     """
-    content, options = _bytes(data), initialised(_abi.ImportOptions)
-    options.format, options.layout, options.curve = int(Format(format)), int(Layout(layout)), int(CurveKind(curve))
+    content, options = _content(data), initialised(_abi.ImportOptions)
+    options.format, options.layout, options.curve = _format(format), int(Layout(layout)), int(CurveKind(curve))
     options.width, options.height = (integer(side, "frame") for side in frame)
     options.columns, options.rows = (integer(side, "tables") for side in tables)
     options.color_temperature_k = color_temperature_k
@@ -476,8 +501,11 @@ def export_profiles(profiles: Iterable[Profile], name: str = "", *, format: Form
     """A file of any format that is written, chosen by `format` or the ending of the name: of all the profiles where it
     holds several, else of one. frame, tables: as for import_profiles; rows of curves are tables[1]. form: of opcodes.
     covariance: of a blob."""
+    for other in Format:
+        if other and not format and format_info(other).name == name:
+            raise ValueError(f"{name!r} is a format and not the name of a file; give format=Format.{other.name}")
     options, text = initialised(_abi.ExportOptions), _bytes(name)
-    options.format, options.layout, options.curve = int(Format(format)), int(Layout(layout)), int(CurveKind(curve))
+    options.format, options.layout, options.curve = _format(format), int(Layout(layout)), int(CurveKind(curve))
     options.width, options.height = (integer(side, "frame") for side in frame)
     options.columns, options.rows = (integer(side, "tables") for side in tables)
     options.dng_form, options.pack = int(DngForm(form)), int(Pack.COVARIANCE) if covariance else 0
