@@ -1,10 +1,8 @@
 // Memory of the program while it corrects pictures: its peak as a process. A child begins with the peak of its
 // parent, so that this process must stay small: pictures are made by children.
-#include "batch_runs.hpp"
+#include "program_runs.hpp"
 
-#include <fcntl.h>
-
-using namespace batch_runs;
+using namespace program_runs;
 
 namespace {
 
@@ -16,21 +14,9 @@ constexpr bool keeps_freed_memory = false;
 
 // Peak memory of the program as a process, bytes.
 long peak_of(const Words &words) {
-    const pid_t child = fork();
-    if (child == 0) {
-        std::vector<char *> arguments = {const_cast<char *>(LENSPROF_PROGRAM)};
-        for (const std::string &word : words) arguments.push_back(const_cast<char *>(word.c_str()));
-        arguments.push_back(nullptr);
-        dup2(open("/dev/null", O_WRONLY), 1);
-        execv(LENSPROF_PROGRAM, arguments.data());
-        _exit(127);
-    }
-    int status = 0;
-    rusage used = {};
-    assert_int_equal(wait4(child, &status, 0, &used), child);
-    assert_true(WIFEXITED(status));
-    assert_int_equal(WEXITSTATUS(status), done);
-    return used.ru_maxrss * 1024;
+    const Ended ended = run_program(words);
+    if (ended.code != done) fail_msg("exit code %d, %s", ended.code, ended.err.c_str());
+    return ended.peak;
 }
 
 // Rows that are alike compress well, which keeps the test short.

@@ -1,10 +1,8 @@
 // Small files that declare large frames: refused before memory is used for them. Good files that compress as far as
 // their format allows: read.
-#include "batch_runs.hpp"
+#include "program_runs.hpp"
 
-#include <fcntl.h>
-
-using namespace batch_runs;
+using namespace program_runs;
 
 namespace {
 
@@ -85,36 +83,6 @@ Bytes make_tiff_bomb(const TiffBomb &bomb, uint16_t compression) {
     }
     put_little_endian(bytes, 0, 4);
     return bytes;
-}
-
-struct Ended {
-    int code;
-    long peak;
-    std::string err;
-};
-
-Ended run_program(const Words &words) {
-    int ends[2];
-    assert_int_equal(pipe(ends), 0);
-    const pid_t child = fork();
-    if (child == 0) {
-        std::vector<char *> arguments = {const_cast<char *>(LENSPROF_PROGRAM)};
-        for (const std::string &word : words) arguments.push_back(const_cast<char *>(word.c_str()));
-        arguments.push_back(nullptr);
-        dup2(open("/dev/null", O_WRONLY), 1);
-        dup2(ends[1], 2);
-        execv(LENSPROF_PROGRAM, arguments.data());
-        _exit(127);
-    }
-    close(ends[1]);
-    std::string err;
-    char buffer[4096];
-    for (ssize_t got; (got = read(ends[0], buffer, sizeof buffer)) > 0;) err.append(buffer, size_t(got));
-    close(ends[0]);
-    int status = 0;
-    rusage used = {};
-    assert_int_equal(wait4(child, &status, 0, &used), child);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), used.ru_maxrss * 1024, err};
 }
 
 // `apply` and `flat` refuse the file, whose text says `declared`.

@@ -56,18 +56,41 @@ static double worst_error(const model *m, uint32_t sample, uint64_t *random, dou
     return worst;
 }
 
-static void check_levels(uint32_t sample, double smallest_share) {
-    uint64_t random = 17;
-    double same = 0.0, worst = 0.0;
+/* Sets the samples and encodings of a model. */
+typedef void (*encoder)(model *m, uint64_t *random);
+
+static void as_drawn(model *m, uint64_t *random) {
+    m->options.input = lp_random(random) < 0.3;
+    m->options.output = lp_random(random) < 0.3;
+}
+
+static void linear(model *m, uint64_t *random) {
+    (void)random;
+    m->options.input = m->options.output = LENSPROF_ENCODING_LINEAR;
+}
+
+static void through_responses(model *m, uint64_t *random) {
+    (void)m;
+    (void)random;
+}
+
+/* The worst error over all profiles; *same receives the share of samples that are the same. */
+static double worst_of_profiles(uint32_t sample, uint64_t random, encoder encode, double *same) {
+    double count = 0.0, worst = 0.0;
     for (int n = 0; n < PROFILES; n++) {
         model m;
         random_model(&m, &random);
         m.options.source_sample = m.options.target_sample = sample;
-        m.options.input = lp_random(&random) < 0.3;
-        m.options.output = lp_random(&random) < 0.3;
-        worst = fmax(worst, worst_error(&m, sample, &random, &same));
+        encode(&m, &random);
+        worst = fmax(worst, worst_error(&m, sample, &random, &count));
     }
-    same /= 3.0 * PIXELS * PROFILES;
+    *same = count / (3.0 * PIXELS * PROFILES);
+    return worst;
+}
+
+static void check_levels(uint32_t sample, double smallest_share) {
+    double same;
+    const double worst = worst_of_profiles(sample, 17, as_drawn, &same);
     print_message("worst %.0f level, %.4f %% the same\n", worst, 100.0 * same);
     assert_true(worst <= 1.0);
     assert_true(same >= smallest_share);
@@ -85,29 +108,16 @@ static void test_16_bit(void **state) {
 
 static void test_linear_float(void **state) {
     (void)state;
-    uint64_t random = 29;
-    double same = 0.0, worst = 0.0;
-    for (int n = 0; n < PROFILES; n++) {
-        model m;
-        random_model(&m, &random);
-        m.options.source_sample = m.options.target_sample = LENSPROF_SAMPLE_F32;
-        m.options.input = m.options.output = LENSPROF_ENCODING_LINEAR;
-        worst = fmax(worst, worst_error(&m, LENSPROF_SAMPLE_F32, &random, &same));
-    }
+    double same;
+    const double worst = worst_of_profiles(LENSPROF_SAMPLE_F32, 29, linear, &same);
     print_message("worst %.2f units in the last place\n", worst);
     assert_true(worst <= 4.0);
 }
 
 static void test_float_through_responses(void **state) {
     (void)state;
-    uint64_t random = 31;
-    double same = 0.0, worst = 0.0;
-    for (int n = 0; n < PROFILES; n++) {
-        model m;
-        random_model(&m, &random);
-        m.options.source_sample = m.options.target_sample = LENSPROF_SAMPLE_F32;
-        worst = fmax(worst, worst_error(&m, LENSPROF_SAMPLE_F32, &random, &same));
-    }
+    double same;
+    const double worst = worst_of_profiles(LENSPROF_SAMPLE_F32, 31, through_responses, &same);
     print_message("worst %.3f levels of 16 bit\n", worst);
     assert_true(worst <= 0.05);
 }

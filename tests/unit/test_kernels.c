@@ -239,70 +239,72 @@ static void test_planes_are_the_same_picture(void **state) {
     }
 }
 
+enum {
+    SIDE = 8
+};
+
+/* A plan for planes of 8 bit; views 0..2 are the sources, 3..5 the targets, each of its own memory. */
+typedef struct planes {
+    uint8_t data[6][SIDE * SIDE];
+    lensprof_image views[6];
+    model m;
+    void *memory;
+    const lensprof_plan *plan;
+} planes;
+
+static void make_planes(planes *p) {
+    memset(p->data, 77, sizeof p->data);
+    for (int v = 0; v < 6; v++)
+        p->views[v] = (lensprof_image){p->data[v], SIDE, SIDE, SIDE, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY};
+    make_model(&p->m, 1);
+    p->m.options.source_layout = LENSPROF_LAYOUT_PLANAR;
+    p->m.options.source_sample = p->m.options.target_sample = LENSPROF_SAMPLE_U8;
+    p->memory = make_plan(&p->m, 0, &p->plan);
+}
+
+static void assert_untouched(const planes *p) {
+    for (int v = 0; v < 6; v++)
+        for (int i = 0; i < SIDE * SIDE; i++) assert_int_equal(p->data[v][i], 77);
+}
+
 static void test_planes_that_are_refused(void **state) {
     (void)state;
-    enum {
-        W = 20
-    };
-    static uint8_t data[6][W], before[6][W];
-    model m;
-    make_model(&m, 1);
-    m.options.source_layout = LENSPROF_LAYOUT_PLANAR;
-    m.options.source_sample = m.options.target_sample = LENSPROF_SAMPLE_U8;
-    const lensprof_plan *plan;
-    void *memory = make_plan(&m, 0, &plan);
-    lensprof_image source[3], target[3], wrong[3];
-    memset(data, 77, sizeof data);
-    memcpy(before, data, sizeof data);
-    for (int c = 0; c < 3; c++) {
-        source[c] = (lensprof_image){data[c], 0, W, 1, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY};
-        target[c] = source[c];
-        target[c].data = data[3 + c];
-    }
-    assert_int_equal(lensprof_apply(plan, source, target, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    static planes p;
+    make_planes(&p);
+    lensprof_image *source = p.views, *target = p.views + 3, wrong[3];
+    assert_int_equal(lensprof_apply(p.plan, source, target, 0, 0), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_apply_planar(NULL, source, target, 0, 0), LENSPROF_ERROR_ARGUMENT);
-    assert_int_equal(lensprof_apply_planar(plan, source, target, FRAME_W, 0), LENSPROF_ERROR_SIZE);
+    assert_int_equal(lensprof_apply_planar(p.plan, source, target, FRAME_W, 0), LENSPROF_ERROR_SIZE);
     memcpy(wrong, target, sizeof wrong);
-    wrong[2].data = data[3]; /* two targets in one place */
-    assert_int_equal(lensprof_apply_planar(plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
-    wrong[2].data = data[0]; /* another plane's source */
-    assert_int_equal(lensprof_apply_planar(plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    wrong[2].data = p.data[3]; /* two targets in one place */
+    assert_int_equal(lensprof_apply_planar(p.plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    wrong[2].data = p.data[0]; /* another plane's source */
+    assert_int_equal(lensprof_apply_planar(p.plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
     memcpy(wrong, source, sizeof wrong);
-    wrong[1].width = W - 1;
-    assert_int_equal(lensprof_apply_planar(plan, wrong, target, 0, 0), LENSPROF_ERROR_SIZE);
+    wrong[1].width = SIDE - 1;
+    assert_int_equal(lensprof_apply_planar(p.plan, wrong, target, 0, 0), LENSPROF_ERROR_SIZE);
     memcpy(wrong, target, sizeof wrong);
-    wrong[1].layout = LENSPROF_LAYOUT_RGB;
-    assert_int_equal(lensprof_apply_planar(plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
-    assert_memory_equal(data, before, sizeof data);
-    assert_ok(lensprof_apply_planar(plan, source, source, 0, 0)); /* each in its place */
-    free(memory);
+    wrong[1].layout = LENSPROF_LAYOUT_RGB, wrong[1].row_bytes = 3 * SIDE;
+    assert_int_equal(lensprof_apply_planar(p.plan, source, wrong, 0, 0), LENSPROF_ERROR_ARGUMENT);
+    assert_untouched(&p);
+    assert_ok(lensprof_apply_planar(p.plan, source, source, 0, 0)); /* each in its place */
+    free(p.memory);
 }
 
 /* All six views are checked before any two are compared: what a view holds must not be calculated with before. */
 static void test_planes_are_checked_before_they_are_compared(void **state) {
     (void)state;
-    enum {
-        W = 8,
-        H = 8
-    };
     static const ptrdiff_t strides[] = {PTRDIFF_MIN, PTRDIFF_MAX, PTRDIFF_MIN / 2};
-    static uint8_t data[6][W * H], before[6][W * H];
-    model m;
-    make_model(&m, 1);
-    m.options.source_layout = LENSPROF_LAYOUT_PLANAR;
-    m.options.source_sample = m.options.target_sample = LENSPROF_SAMPLE_U8;
-    const lensprof_plan *plan;
-    void *memory = make_plan(&m, 0, &plan);
+    static planes p;
+    make_planes(&p);
     for (int n = 0; n < 6; n++)
         for (size_t i = 0; i < sizeof strides / sizeof *strides; i++) {
-            lensprof_image views[6];
-            for (int v = 0; v < 6; v++)
-                views[v] = (lensprof_image){data[v], W, W, H, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_GREY};
-            views[n].row_bytes = strides[i];
-            assert_int_equal(lensprof_apply_planar(plan, views, views + 3, 0, 0), LENSPROF_ERROR_SIZE);
+            p.views[n].row_bytes = strides[i];
+            assert_int_equal(lensprof_apply_planar(p.plan, p.views, p.views + 3, 0, 0), LENSPROF_ERROR_SIZE);
+            p.views[n].row_bytes = SIDE;
         }
-    assert_memory_equal(data, before, sizeof data);
-    free(memory);
+    assert_untouched(&p);
+    free(p.memory);
 }
 
 /* Each site of a mosaic gets what its channel gets in a picture of that colour alone. */
