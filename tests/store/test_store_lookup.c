@@ -1,75 +1,7 @@
 /* Profiles for settings that are not stored: names, cameras, units, sensors, the falloff between settings, refusals. */
-#include "store_fixture.h"
+#include "lookup_fixture.h"
 
-#include "falloff/prediction.h"
-#include "store/lookup/lookup_choice.h"
 #include "store/names/names.h"
-
-static lensprof_profile shared; /* 50 kB */
-
-static lensprof_profile *zoom_profile(const char *lens, double focal, double aperture, double distance) {
-    lensprof_profile *p = &shared;
-    lensprof_profile_init(p);
-    snprintf(p->key.lens, sizeof p->key.lens, "%s", lens);
-    p->key.focal_mm = focal, p->key.aperture = aperture, p->key.distance_m = distance;
-    p->key.processing = LENSPROF_PROCESSING_RAW;
-    p->key.crop_factor = 1.0;
-    return p;
-}
-
-/* A lens that loses less the more it is stopped down, and the longer it is. */
-static void true_falloff(double focal, double aperture, double k[3]) {
-    const double open = 1.8 / aperture;
-    k[0] = -0.12 - 0.45 * open * open - 0.1 * log2(70.0 / focal) * open;
-    k[1] = 0.15 * open;
-    k[2] = -0.06 * open * open;
-}
-
-static int64_t put_falloff(lensprof_store *store, const char *lens, double focal, double aperture, double distance) {
-    lensprof_profile *p = zoom_profile(lens, focal, aperture, distance);
-    true_falloff(focal, aperture, p->vignetting[0].k);
-    return put_at(store, p);
-}
-
-static const char zoom[] = "Example EF 24-70mm f/1.8L USM";
-
-static lensprof_store *zoom_store(const place *here) {
-    static const double focals[] = {24, 35, 50, 70}, apertures[] = {1.8, 2.0, 2.8, 4.0, 5.6, 8.0};
-    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-    assert_ok(lensprof_store_begin(store, NULL));
-    for (int f = 0; f < 4; f++)
-        for (int a = 0; a < 6; a++) put_falloff(store, zoom, focals[f], apertures[a], INFINITY);
-    assert_ok(lensprof_store_commit(store, NULL));
-    return store;
-}
-
-static lensprof_profile answered = {.struct_size = sizeof answered};
-static lensprof_lookup how = {.struct_size = sizeof how};
-
-static lensprof_status ask_with(lensprof_store *store, const lensprof_profile_key *key,
-                                const lensprof_lookup_options *options) {
-    lensprof_error error;
-    lensprof_lookup_init(&how);
-    return lensprof_store_lookup(store, key, options, &answered, &how, &error);
-}
-
-static lensprof_status ask(lensprof_store *store, const char *lens, double focal, double aperture, double distance) {
-    lensprof_lookup_options options;
-    lensprof_lookup_options_init(&options);
-    const lensprof_profile_key key = zoom_profile(lens, focal, aperture, distance)->key;
-    return ask_with(store, &key, &options);
-}
-
-static double worst_error(double focal, double aperture) {
-    double k[3], worst = 0.0;
-    true_falloff(focal, aperture, k);
-    for (double r = 0.0; r <= 1.0; r += 0.05) {
-        const lensprof_vignetting truth = {{k[0], k[1], k[2]}, {0.0, 0.0}};
-        worst = fmax(worst, fabs(lensprof_vignetting_eval(&truth, r * r, NULL)
-                                 - lensprof_vignetting_eval(&answered.vignetting[0], r * r, NULL)));
-    }
-    return worst;
-}
 
 static void test_exact(void **state) {
     lensprof_store *store = zoom_store(*state);
@@ -372,112 +304,6 @@ static void test_damaged_rows(void **state) {
     }
 }
 
-static void test_covariance_counts(void **state) {
-    (void)state;
-    lp_falloff_node nodes[2] = {{1, 50, 2.0, INFINITY, {{-0.2}, {-0.2}, {-0.2}}, 0.0},
-                                {2, 50, 2.0, INFINITY, {{-0.4}, {-0.4}, {-0.4}}, 0.0}};
-    const lp_falloff_node at = {0, 50, 2.2, INFINITY, {{0}}, 0.0};
-    lp_falloff_prediction equal, unequal;
-    assert_int_equal(lp_predict_falloff(nodes, 2, &at, &equal), 1);
-    nodes[0].variance = 0.1;
-    assert_int_equal(lp_predict_falloff(nodes, 2, &at, &unequal), 1);
-    assert_true(unequal.k[0][0] < equal.k[0][0] - 0.03);
-}
-
-/* The same covariance of six coefficients and a falloff, after one response of six modes, or three of two. */
-static void put_uncertain(lensprof_store *store, uint32_t responses, double aperture, double sigma) {
-    static const double none[6] = {0.0};
-    lensprof_profile *p = zoom_profile(zoom, 50, aperture, INFINITY);
-    true_falloff(50, aperture, p->vignetting[0].k);
-    p->responses = responses;
-    for (uint32_t c = 0; c < responses; c++)
-        assert_ok(lensprof_response_set_emor(&p->response[c], none, 6 / responses));
-    p->covariance_size = 11;
-    for (uint32_t i = 0; i < 11; i++) p->covariance[12 * i] = i < 6 ? 0.1 : sigma * sigma / 3.0;
-    put_at(store, p);
-}
-
-static void test_covariance_of_three_responses(void **state) {
-    const place *here = *state;
-    double k[2][3];
-    for (uint32_t i = 0; i < 2; i++) {
-        lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-        put_uncertain(store, i ? 3 : 1, 2.0, 0.05);
-        put_uncertain(store, i ? 3 : 1, 2.8, 0.0017);
-        assert_ok(ask(store, zoom, 50, 2.8, INFINITY));
-        double sigma;
-        assert_close(how.sigma, 0.0017, 1e-12);
-        lensprof_profile_corner_falloff(&answered, 0, &sigma);
-        assert_close(sigma, how.sigma, 0.0);
-        assert_ok(ask(store, zoom, 50, 2.4, INFINITY)); /* the first one counts less */
-        memcpy(k[i], answered.vignetting[0].k, sizeof k[i]);
-        lensprof_store_close(store);
-        unlink(here->path);
-    }
-    assert_memory_equal(k[0], k[1], sizeof k[0]);
-}
-
-/* Of three curves that counts of which least is known, in answers and in what weighs the rows of a prediction. */
-static void test_covariance_of_three_curves(void **state) {
-    const place *here = *state;
-    double k[2];
-    for (uint32_t i = 0; i < 2; i++) {
-        lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
-        for (int row = 0; row < 2; row++) {
-            lensprof_profile *p = zoom_profile(zoom, 50, row ? 2.8 : 2.0, INFINITY);
-            p->vignettings = 3;
-            for (int c = 0; c < 3; c++) true_falloff(50, p->key.aperture, p->vignetting[c].k);
-            p->covariance_size = 11;
-            const double last = row ? 0.004 : i ? 0.2 : 0.002;
-            for (uint32_t n = 0; n < 11; n++) p->covariance[12 * n] = (n / 3 == 2 ? last * last : 1e-6) / 3.0;
-            put_at(store, p);
-        }
-        assert_ok(ask(store, zoom, 50, 2.8, INFINITY));
-        assert_int_equal(how.exact, 1);
-        assert_close(how.sigma, 0.004, 1e-12);
-        assert_ok(ask(store, zoom, 50, 2.4, INFINITY));
-        k[i] = answered.vignetting[0].k[0];
-        lensprof_store_close(store);
-        unlink(here->path);
-    }
-    assert_true(fabs(k[0] - k[1]) > 1e-4);
-}
-
-/* Sentences for which the text has no room are left out whole; their codes stay. */
-static void test_reasons_are_whole(void **state) {
-    (void)state;
-    static const lensprof_reason codes[] = {
-        LENSPROF_REASON_LOOKUP_OTHER_LIGHT,      LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR,
-        LENSPROF_REASON_LOOKUP_BY_WORDS,         LENSPROF_REASON_LOOKUP_FOCAL_ROUNDED,
-        LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE, LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE};
-    enum {
-        COUNT = sizeof codes / sizeof *codes
-    };
-    char lens[128], expected[1000];
-    for (size_t length = 0; length < sizeof lens; length++) {
-        lensprof_lookup lookup;
-        lensprof_lookup_init(&lookup);
-        memset(lens, 'x', length), lens[length] = '\0';
-        expected[0] = '\0';
-        for (uint32_t i = 0; i < COUNT; i++) {
-            const char *name = codes[i] == LENSPROF_REASON_LOOKUP_BY_WORDS ? lens : NULL;
-            lp_mind(&lookup, codes[i], name);
-            assert_int_equal(lookup.reason_code[i], codes[i]);
-            const char *tails[] = {name, NULL};
-            for (int t = name ? 0 : 1; t < 2; t++) {
-                char longer[sizeof expected];
-                snprintf(longer, sizeof longer, "%s%s%s%s%s", expected, *expected ? "; " : "",
-                         lensprof_reason_text(codes[i]), tails[t] ? ": " : "", tails[t] ? tails[t] : "");
-                if (strlen(longer) >= sizeof lookup.reason) continue;
-                memcpy(expected, longer, sizeof expected);
-                break;
-            }
-        }
-        assert_string_equal(lookup.reason, expected);
-        assert_true(strlen(expected) > 150);
-    }
-}
-
 static void test_transactions(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -545,10 +371,6 @@ int main(void) {
         store_test(test_unknown_distance),
         store_test(test_doubt_and_processing),
         store_test(test_damaged_rows),
-        store_test(test_covariance_counts),
-        store_test(test_covariance_of_three_responses),
-        store_test(test_covariance_of_three_curves),
-        store_test(test_reasons_are_whole),
         store_test(test_transactions),
         store_test(test_arguments),
     };

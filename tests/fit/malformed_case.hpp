@@ -1,0 +1,89 @@
+// A call of a fit that mutations change, and the numbers that they put into it.
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "simulated.hpp"
+
+namespace malformed {
+
+const double kNone = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
+
+struct Case {
+    uint64_t random;
+    Simulation s;
+    lensprof_response given;  // where options.response points to, if anywhere
+    lensprof_fit_options options;
+    std::vector<lensprof_exposure> exposures;
+    std::vector<lensprof_fit_image_quality> quality;
+    lensprof_fit_result result;
+    lensprof_error error;
+    bool null_options = false, null_images = false, null_pairs = false, null_exposures = false, null_result = false,
+         null_error = false;
+    int calls_left = -1;  // of progress before it cancels
+    std::string what;     // names of the mutations
+
+    explicit Case(uint32_t number);
+    double uniform() { return lp_random(&random); }
+    uint32_t below(uint32_t n) { return std::min(static_cast<uint32_t>(uniform() * n), n - 1); }
+    bool chance(double p) { return uniform() < p; }
+    lensprof_pair &any_pair() { return s.pairs[below(static_cast<uint32_t>(s.pairs.size()))]; }
+    lensprof_fit_image &any_image() { return s.fit_images[below(static_cast<uint32_t>(s.fit_images.size()))]; }
+    lensprof_status run();
+};
+
+inline Case::Case(uint32_t number) : random(0x9e3779b97f4a7c15ull * (number + 1)) {
+    static const lensprof_response srgb = srgb_response();
+    s.response = given = srgb;
+    s.images = 2 + below(5);
+    s.make(1 + below(60), 2.0 * uniform(), chance(0.3) ? 0.5 * uniform() : 0.0, 1.0, random);
+    lensprof_fit_options_init(&options);
+    options.modes = below(6);
+    options.max_iterations = 1 + below(6);
+    options.loss = below(3);
+    if (number % 200 == 7) options.method = LENSPROF_METHOD_TRANSFER_FUNCTION;
+    if (number % 20 == 9) {
+        options.method = LENSPROF_METHOD_DEBEVEC;
+        options.free = LENSPROF_FREE_RESPONSE;
+        for (auto &image : s.fit_images) image.known_ev = 4.0 * uniform(), image.known_ev_sigma = 0.1;
+    }
+    lensprof_fit_result_init(&result);
+}
+
+inline int count_down(double, void *user) {
+    int &left = *static_cast<int *>(user);
+    return left >= 0 && left-- == 0;
+}
+
+inline lensprof_status Case::run() {
+    if (calls_left >= 0) options.progress = count_down, options.progress_user = &calls_left;
+    exposures.resize(s.fit_images.size());  // exactly as many as are promised: a sanitizer sees one more
+    if (!exposures.empty())
+        std::memset(static_cast<void *>(exposures.data()), 0xFF, exposures.size() * sizeof exposures[0]);
+    quality.assign(s.fit_images.size(), lensprof_fit_image_quality{});
+    for (auto &q : quality) q.ev_sigma = q.median_residual = q.radius = kNone;
+    result.image_quality = chance(0.5) ? quality.data() : nullptr;
+    result.before_rms = result.noise_levels = result.inlier_share = result.seconds = kNone;
+    result.heldout_rms = result.heldout_median = result.vignetting[0].k[0] = result.response.table[7] = kNone;
+    std::strcpy(result.reason, "stale");
+    return lensprof_fit_overlap(null_options ? nullptr : &options, null_images ? nullptr : s.fit_images.data(),
+                                static_cast<uint32_t>(s.fit_images.size()), null_pairs ? nullptr : s.pairs.data(),
+                                static_cast<uint32_t>(s.pairs.size()), null_exposures ? nullptr : exposures.data(),
+                                null_result ? nullptr : &result, null_error ? nullptr : &error);
+}
+
+// Numbers at and beyond every edge.
+inline double odd_number(Case &c) {
+    static const double numbers[] = {kNone,     kInfinite, -kInfinite, 1e300, -1e300, 1e-320, -0.0, 0.0,  1.0,   -1.0,
+                                     1.0000001, -1e-9,     2.0,        1e9,   -1e9,   255.0,  1e6,  64.0, -64.0, 1e-6};
+    return numbers[c.below(sizeof numbers / sizeof *numbers)];
+}
+
+inline uint32_t odd_integer(Case &c) {
+    static const uint32_t numbers[] = {
+        0, 1, 2, 3, 4, 25, 26, 99, 255, 1u << 20, (1u << 20) + 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFE, 0xFFFFFFFF};
+    return numbers[c.below(sizeof numbers / sizeof *numbers)];
+}
+
+}  // namespace malformed
