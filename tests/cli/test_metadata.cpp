@@ -315,39 +315,6 @@ void test_copy_from_itself(void **) {
     }
 }
 
-size_t count_of(const Bytes &bytes, const std::string &part) {
-    size_t count = 0;
-    for (auto at = bytes.begin(); (at = std::search(at, bytes.end(), part.begin(), part.end())) != bytes.end(); ++at)
-        ++count;
-    return count;
-}
-
-// Once, in the standard chunk: after a first writing and after further ones.
-void test_png_chunk(void **) {
-    PictureMetadata metadata = unknown_metadata();
-    std::strcpy(metadata.key.camera_model, "Model");
-    write_picture(in_folder("a.png"), make_smooth(33, 20, LENSPROF_LAYOUT_RGB));
-    const Bytes without = load(in_folder("a.png"));
-    for (double iso : {100, 200, 300}) {
-        metadata.iso = iso;
-        assert_true(write_metadata(in_folder("a.png"), metadata));
-        const Bytes bytes = load(in_folder("a.png"));
-        assert_int_equal(count_of(bytes, "eXIf"), 1);
-        assert_int_equal(count_of(bytes, "Raw profile type exif"), 0);
-        assert_close(read_metadata(in_folder("a.png")).iso.value_or(0), iso, 0);
-    }
-    edit(in_folder("a.png"),
-         [](Exiv2::Image &image) { image.exifData()["Exif.Photo.FNumber"] = Exiv2::URational(4, 1); });
-    assert_int_equal(count_of(load(in_folder("a.png")), "Raw profile type exif"),
-                     1);  // of Exiv2: then read and replaced
-    assert_true(write_metadata(in_folder("a.png"), metadata));
-    assert_int_equal(count_of(load(in_folder("a.png")), "Raw profile type exif"), 0);
-    assert_close(read_metadata(in_folder("a.png")).f_number.value_or(0), 4, 0);
-    write_picture(in_folder("b.png"), make_smooth(33, 20, LENSPROF_LAYOUT_RGB));
-    assert_true(copy_metadata(in_folder("b.png"), in_folder("b.png")));  // nothing
-    assert_true(load(in_folder("b.png")) == without);
-}
-
 // ExifTool edits what was written and copied, without -m, and finds nothing wrong with it.
 void test_exiftool(void **) {
     if (system("exiftool -ver >/dev/null 2>&1") != 0) {
@@ -465,7 +432,6 @@ int main() {
         TEST(test_copy),
         TEST(test_copy_to_any_tiff),
         TEST(test_copy_from_itself),
-        TEST(test_png_chunk),
         TEST(test_exiftool),
         TEST(test_big_tiff_has_no_metadata),
         TEST(test_copy_fails),

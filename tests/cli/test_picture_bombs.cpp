@@ -144,6 +144,10 @@ void test_tiff_bombs(void **) {
         }
         const TiffBomb tile{32752, 32768, 8, 1, PLANARCONFIG_CONTIG, 32752, 32768, 100};
         assert_harmless("tile.tif", make_tiff_bomb(tile, compression), beyond("32752 x 32768 pixels", 100));
+        const TiffBomb chopped{40000, 40000, 8, 3, PLANARCONFIG_CONTIG, 0, 0, 100};  // into rows, by libtiff
+        const Bytes bytes = make_tiff_bomb(chopped, compression);
+        if (compression == COMPRESSION_NONE)
+            assert_harmless("rows.tif", bytes, beyond("40000 x 40000 pixels", bytes.size()));
         if (compression == COMPRESSION_NONE) continue;  // has the bytes
         const TiffBomb one{8, 8, 8, 1, PLANARCONFIG_CONTIG, 32752, 32768, 100};
         assert_harmless("one.tif", make_tiff_bomb(one, compression), beyond("a tile of 32752 x 32768 pixels", 100));

@@ -42,10 +42,10 @@ std::string size_text(uint64_t width, uint64_t height) {
 }
 
 void check_stored(const std::string &path, const std::string &declared, uint64_t needed, uint64_t stored,
-                  uint64_t expansion) {
+                  uint64_t expansion, uint64_t file_bytes) {
     if (expansion > 0 && stored < (needed + expansion - 1) / expansion)
-        fail_damaged(
-            path, "it declares " + declared + ", which its " + std::to_string(stored) + " bytes of data cannot hold");
+        fail_damaged(path, "it declares " + declared + ", which its " + std::to_string(std::min(stored, file_bytes))
+                               + " bytes of data cannot hold");
 }
 
 LazyBytes make_lazy_bytes(size_t count) {

@@ -91,9 +91,10 @@ constexpr uint64_t deflate_expansion = 1032;
 std::string size_text(uint64_t width, uint64_t height);
 
 // Fails when `needed` bytes of samples cannot come from `stored` bytes of a file, one of which becomes `expansion` at
-// most (0 = any number). `declared` names what needs them, as the header gives its size.
+// most (0 = any number). `declared` names what needs them, as the header gives its size. Parts of `file_bytes`, where
+// that is less, are counted several times.
 void check_stored(const std::string &path, const std::string &declared, uint64_t needed, uint64_t stored,
-                  uint64_t expansion);
+                  uint64_t expansion, uint64_t file_bytes = UINT64_MAX);
 
 // Zeros, whose pages the system provides when they are first written: a damaged header may declare much.
 using LazyBytes = std::unique_ptr<uint8_t[], void (*)(void *)>;

@@ -60,12 +60,18 @@ bool is_big_tiff(const std::string &path) {
            && (std::memcmp(start, "II+\0", 4) == 0 || std::memcmp(start, "MM\0+", 4) == 0);
 }
 
+// Exiv2 adds EXIF of a PNG's standard chunk to that of a text chunk before it.
+void read_once(Exiv2::Image &image) {
+    image.readMetadata();
+    if (image.mimeType() == "image/png") codec::keep_last(image.exifData());
+}
+
 ExivImage open_image(const std::string &path) {
     prepare_exiv2();
     codec::open_for_reading(path);  // for its errors, which say more than Exiv2's
     try {
         ExivImage image(Exiv2::ImageFactory::open(path).release());
-        image->readMetadata();
+        read_once(*image);
         return image;
     } catch (const std::exception &error) {
         fail_reading(path, error);
@@ -95,11 +101,13 @@ std::string clean_text(const std::string &raw) {
     return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
+// Cuts what is too long for the field, and notes it.
 template <size_t size>
-void store_text(const std::string &text, char (&field)[size]) {
+void store_text(const std::string &text, char (&field)[size], const char *option, PictureMetadata &metadata) {
     const size_t length = utf8_cut(text, size - 1);
     std::memcpy(field, text.data(), length);
     std::memset(field + length, 0, size - length);
+    if (length < text.size()) metadata.cut.emplace_back(option);
 }
 
 std::string read_text(const Exiv2::ExifData &exif, const char *key) {
@@ -236,7 +244,7 @@ bool edit_excerpt(const std::string &path, const codec::PictureExcerpt &excerpt,
     try {
         image.reset(
             Exiv2::ImageFactory::open(excerpt.bytes().data(), static_cast<long>(excerpt.bytes().size())).release());
-        image->readMetadata();
+        read_once(*image);
     } catch (const std::exception &error) {
         fail_reading(path, error);
     }
@@ -369,9 +377,9 @@ PictureMetadata read_metadata(const std::string &path) {
     const ExivImage image = open_image(path);
     const Exiv2::ExifData &exif = image->exifData();
     try {
-        store_text(read_text(exif, "Exif.Image.Make"), metadata.key.camera_maker);
-        store_text(read_text(exif, "Exif.Image.Model"), metadata.key.camera_model);
-        store_text(read_lens(exif), metadata.key.lens);
+        store_text(read_text(exif, "Exif.Image.Make"), metadata.key.camera_maker, "--maker", metadata);
+        store_text(read_text(exif, "Exif.Image.Model"), metadata.key.camera_model, "--camera", metadata);
+        store_text(read_lens(exif), metadata.key.lens, "--lens", metadata);
         metadata.f_number = read_f_number(exif);
         metadata.exposure_time_s = read_exposure_time(exif);
         metadata.iso = read_iso(exif);
@@ -380,7 +388,7 @@ PictureMetadata read_metadata(const std::string &path) {
                                     .value_or(LENSPROF_UNKNOWN);
         metadata.key.distance_m = read_distance(exif);
         metadata.key.crop_factor = read_crop_factor(exif, metadata.key.focal_mm);
-        store_text(read_unit(exif), metadata.key.unit);
+        store_text(read_unit(exif), metadata.key.unit, "--unit", metadata);
         if (image->mimeType() == "image/tiff" && read_number(exif, {"Exif.Image.SampleFormat"}) == 3)
             metadata.key.processing = LENSPROF_PROCESSING_RAW;
     } catch (const std::exception &error) {

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <lensprof/profile.h>
 
@@ -15,6 +16,9 @@ struct PictureMetadata {
     // Processing is JPEG (a rendered picture, whatever the file's format), but RAW for float TIFF, which by custom
     // holds values proportional to light.
     lensprof_profile_key key;
+
+    std::vector<std::string>
+        cut;  // options in place of what was longer than its field: --maker, --camera, --lens, --unit
 
     std::optional<double> exposure_time_s;
     std::optional<double> iso;

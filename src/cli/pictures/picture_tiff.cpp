@@ -129,7 +129,7 @@ void check_stored_frame(const Tiff &tiff, const std::string &path, const Picture
         if (tiff.stored(i) < limits.least_bytes) check_stored(path, declared, needed, tiff.stored(i), 1);
         stored += tiff.stored(i);
     }
-    check_stored(path, declared, needed, stored, limits.expansion);
+    check_stored(path, declared, needed, stored, limits.expansion, tiff.file_bytes());
 }
 
 [[noreturn]] void fail_kind(const ReadRequest &request, const std::string &kind) {

@@ -1,6 +1,8 @@
 #include "cli/pictures/png_exif.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include <exiv2/exiv2.hpp>
 
@@ -36,6 +38,18 @@ std::vector<uint8_t> make_chunk(const std::vector<uint8_t> &exif) {
 }
 
 }  // namespace
+
+void keep_last(Exiv2::ExifData &exif) {
+    std::set<std::string> seen;
+    std::vector<const Exiv2::Exifdatum *> last;
+    for (const Exiv2::Exifdatum &datum : exif) last.push_back(&datum);
+    const auto is_earlier = [&](const Exiv2::Exifdatum *datum) { return !seen.insert(datum->key()).second; };
+    last.erase(last.begin(), std::remove_if(last.rbegin(), last.rend(), is_earlier).base());
+    if (last.size() == static_cast<size_t>(exif.count())) return;
+    Exiv2::ExifData kept;
+    for (const Exiv2::Exifdatum *datum : last) kept.add(*datum);
+    exif = kept;
+}
 
 std::vector<uint8_t> take_exif(Exiv2::Image &image) {
     Exiv2::Blob exif;

@@ -7,12 +7,16 @@
 #include <vector>
 
 namespace Exiv2 {
+class ExifData;
 class Image;
-}
+}  // namespace Exiv2
 
 namespace lensprof {
 
 namespace codec {
+
+// Of several values of one key the last remains: where EXIF stands in a text chunk as well, that of eXIf.
+void keep_last(Exiv2::ExifData &exif);
 
 // The image's EXIF as a TIFF structure, which it then is without; empty where it has none. Throws Exiv2's exceptions.
 std::vector<uint8_t> take_exif(Exiv2::Image &image);
