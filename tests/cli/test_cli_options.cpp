@@ -82,12 +82,115 @@ void test_the_nearest_is_named(void **) {
         {{"help", "profile", "exprot"}, "profile exprot: no such verb; did you mean export?"},
         {{"biuld"}, "biuld: no such command; did you mean build?"},
         {{"help", "qurey"}, "qurey: no such command; did you mean query?"},
+        {{"apply", "--out", "x"}, "--out: no such option; did you mean --output?"},
+        {{"apply", "--CONTACT-sheet", "x"}, "--CONTACT-sheet: no such option; did you mean --contact-sheet?"},
+        {{"BUILD"}, "BUILD: no such command; did you mean build?"},
+        {{"profile", "Exp"}, "profile Exp: no such verb; did you mean export?"},
     };
     for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
     const Words far = {"query", "--zzzzzz", "1"};
     assert_refused(usage, far, {"--zzzzzz: no such option; see"});
     assert_refused(usage, {"profile"}, {"name one of its verbs", "list", "stats"});
-    assert_refused(usage, {"profile", "check", "more"}, {"more"});
+    assert_refused(usage, {"profile", "check", "more"}, {"more: is more than this command takes"});
+    assert_refused(usage, {"help", "profile", "export", "more"}, {"has no verbs", "`lensprof help profile export`"});
+}
+
+// What begins with "-" is an option: no value of the one before it, but for numbers and what stands behind "=".
+void test_options_are_no_values(void **) {
+    const struct {
+        Words words;
+        const char *said;
+    } cases[] = {
+        {{"query", "--db", "--json", "--camera", "X"}, "--db: needs a value, and --json looks like an option"},
+        {{"apply", "-o", "--linear", "x.png"}, "--output: needs a value, and --linear looks like an option"},
+        {{"query", "--camera", "-X"}, "--camera: needs a value, and -X looks like an option"},
+        {{"query", "--camera"}, "--camera: needs a value; give --camera TEXT"},
+        {{"query", "--camera", "--", "X"}, "--camera: needs a value"},
+        {{"query", "--db", "a", "--db", "b"}, "--db: is given more than once; give it once"},
+        {{"query", "--json=maybe"}, "--json: takes no value, and maybe is one; give --json alone"},
+        {{"apply", "x.png"}, "--output: is needed; give --output FILE"},
+        {{"build"}, "PROJECT: is needed; give PROJECT"},
+        {{"build", "a.pto", "b.pto"}, "b.pto: is more than this command takes"},
+    };
+    for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
+    assert_refused(unreadable, {"bracket", "-", scene("img000.png"), "--no-store", "--ev", "-1.5,-.5"}, {"-: cannot"});
+    assert_refused(not_found, {"query", "--db=-x.db", "--camera=-X", "--json=false"}, {"-x.db: no such file"});
+}
+
+// "--" ends the options wherever it stands.
+void test_two_dashes_end_options(void **) {
+    const std::string copy = copy_of("scene");
+    must_exit(done, Words{"build", copy + "/pano.pto", "--db", work("p.db")} + quick);
+    const Words query = {"query", "--camera", "Simulated Camera", "--db", work("p.db")};
+    const std::string plain = must_exit(done, query);
+    assert_string_equal(must_exit(done, query + Words{"--"}).c_str(), plain.c_str());
+    assert_refused(usage, query + Words{"--", "more"}, {"more: is more than this command takes"});
+    assert_refused(usage, query + Words{"--", "--help"}, {"--help: is more than this command takes"});
+    const Words apply = {"apply", "--profile", "1", "--db", work("p.db"), copy + "/img000.png"};
+    for (const char *name : {"-x.png", "--", "--json"})
+        assert_refused(unreadable, apply + Words{"--output", work("out"), "--", name},
+                       {std::string(name) + ": cannot"});
+    assert_refused(usage, apply + Words{"--", "--output", work("out")}, {"--output: is needed"});
+}
+
+void test_version(void **) {
+    const std::string version = must_exit(done, {"version"});
+    for (const Words &words : {Words{"--version"}, Words{"--version", "query"}, Words{"--version", "--bogus"}})
+        assert_string_equal(must_exit(done, words).c_str(), version.c_str());
+    assert_refused(usage, {"query", "--version"}, {"--version: no such option"});
+}
+
+// Only what may be left out is said to be.
+void test_empty_values_that_are_needed(void **) {
+    const struct {
+        Words words;
+        const char *said;
+    } cases[] = {
+        {{"apply", "-o", ""}, "--output: names no file; give one\n"},
+        {{"build", ""}, "PROJECT: names no file; give one\n"},
+        {{"build", "--db", ""}, "--db: names no file; give one, or leave it out\n"},
+        {{"query", "--camera="}, "--camera: its value is empty; give one, or leave it out\n"},
+    };
+    for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
+    const Words bracket = {"bracket", scene("img000.png"), scene("img001.png"), "--no-store", "--times"};
+    for (const char *list : {"1,,2", ",1", "1,", ","})
+        assert_refused(usage, bracket + Words{list}, {std::string("--times: ") + list + ": a comma has no value"});
+    assert_refused(usage, {"build", "x.pto", "--free", "ev,"}, {"--free: ev,: a comma has no value"});
+}
+
+// Whatever is echoed, a message is a line that can be read.
+void test_long_and_odd_words(void **) {
+    const std::string word(100000, 'x'), db = work("none.db");
+    const std::pair<int, Words> cases[] = {
+        {usage, {word}},
+        {usage, {"query", "--" + word}},
+        {usage, {"query", word}},
+        {usage, {"query", "--focal", word}},
+        {usage, {"query", "--processing", word}},
+        {store_failed, {"query", "--camera", "X", "--db", word}},
+        {unreadable, {"apply", "--pto", word, "-o", work("out")}},
+    };
+    for (const auto &one : cases) {
+        const Outcome outcome = run_words(one.second);
+        if (outcome.err.size() > 2000)
+            fail_msg("%s: %zu bytes", one.second[0].substr(0, 9).c_str(), outcome.err.size());
+        if (one.first != outcome.code)
+            fail_msg("%d, not %d: %s", outcome.code, one.first, outcome.err.substr(0, 400).c_str());
+    }
+    assert_string_equal(run_words({"\x1b[31mred\n\x7f"}).err.c_str(),
+                        "lensprof: \\x1b[31mred\\x0a\\x7f: no such command; `lensprof help` lists them\n");
+}
+
+// Ids are as large as SQLite's.
+void test_largest_ids(void **) {
+    must_exit(done, Words{"build", scene("pano.pto"), "--db", work("p.db")} + quick);
+    const Words db = {"--db", work("p.db")};
+    for (const Words &verb : {Words{"show"}, Words{"remove"}, Words{"export", "-o", work("x.json")}}) {
+        const Words words = Words{"profile"} + verb + db;
+        assert_refused(not_found, words + Words{"9223372036854775807"}, {"no profile 9223372036854775807"});
+        for (const char *id : {"9223372036854775808", "99999999999999999999999", "0", "1x"})
+            assert_refused(usage, words + Words{id}, {std::string(id) + " is no number of a profile"});
+    }
 }
 
 void test_help_of_a_verb(void **) {
@@ -126,6 +229,9 @@ void test_units(void **) {
         {{"--focal", "1/60"}, "'/60' is not the unit of a focal length"},
         {{"--distance", "3 m m"}, "3 m m"},
         {{"--distance", "nan"}, "nan"},
+        {{"--focal", "0x18"}, "0x18 is not a number"},
+        {{"--focal", "-0X1p3"}, "-0X1p3 is not a number"},
+        {{"--focal", "inf"}, "inf is not a number"},
     };
     for (const auto &one : wrong)
         assert_refused(usage, Words{"query", "--camera", "X", "--db", work("p.db")} + one.words,
@@ -158,6 +264,12 @@ int main() {
         CLI_TEST(test_all_commands_are_walked),
         CLI_TEST(test_no_value_may_be_empty),
         CLI_TEST(test_the_nearest_is_named),
+        CLI_TEST(test_options_are_no_values),
+        CLI_TEST(test_two_dashes_end_options),
+        CLI_TEST(test_version),
+        CLI_TEST(test_empty_values_that_are_needed),
+        CLI_TEST(test_long_and_odd_words),
+        CLI_TEST(test_largest_ids),
         CLI_TEST(test_help_of_a_verb),
         CLI_TEST(test_units),
         CLI_TEST(test_times_with_units),

@@ -20,14 +20,34 @@ size_t distance(const std::string &a, const std::string &b) {
     return d[a.size()][b.size()];
 }
 
+std::string in_small_letters(std::string word) {
+    for (char &c : word)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return word;
+}
+
+// The shortest of `words` that begins with `start`, which has at least two letters behind its dashes; else empty.
+std::string longer_word(const std::string &start, const std::vector<std::string> &words) {
+    const size_t dashes = std::min(start.find_first_not_of('-'), start.size());
+    std::string shortest;
+    for (const std::string &word : words) {
+        const bool begins = start.size() >= dashes + 2 && in_small_letters(word).rfind(start, 0) == 0;
+        if (begins && (shortest.empty() || word.size() < shortest.size())) shortest = word;
+    }
+    return shortest;
+}
+
 }  // namespace
 
 std::string nearest_of(const std::string &word, const std::vector<std::string> &words) {
     constexpr size_t longest = 100;
+    if (word.size() > longest) return {};
+    const std::string small = in_small_letters(word), whole = longer_word(small, words);
+    if (!whole.empty()) return whole;
     std::string nearest;
     size_t fewest = std::max<size_t>(1, word.size() / 3) + 1;
     for (const std::string &other : words) {
-        const size_t changes = word.size() <= longest ? distance(word, other) : fewest;
+        const size_t changes = distance(small, in_small_letters(other));
         if (changes < fewest) fewest = changes, nearest = other;
     }
     return nearest;

@@ -6,8 +6,9 @@
 
 namespace lensprof {
 
-// The one of `words` with the fewest letters changed, left out, added or swapped with their neighbour (optimal string
-// alignment), the first of several; empty where all differ in more than a third of the letters.
+// The shortest of `words` that begins with `word`; else the one with the fewest letters changed, left out, added or
+// swapped with their neighbour (optimal string alignment), the first of several; empty where all differ in more than a
+// third of the letters. Capital and small letters are the same.
 std::string nearest_of(const std::string &word, const std::vector<std::string> &words);
 
 // "; did you mean NEAREST?", or empty.

@@ -29,8 +29,10 @@ std::string range_text(const Quantity &quantity) {
     return text.str();
 }
 
-// The number at the start of `text`, of which it leaves the rest; false where there is none.
+// The decimal number, or infinity, at the start of `text`, of which it leaves the rest; false where there is none.
 bool take_number(const char *&text, double &value) {
+    const char *digits = text + (*text == '-' || *text == '+');
+    if (digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X')) return false;  // strtod would take it
     char *end = nullptr;
     value = std::strtod(text, &end);
     const bool found = end != text;
@@ -75,6 +77,15 @@ std::vector<std::string> split(const std::string &list, char separator) {
             words.emplace_back();
         else
             words.back() += c;
+    return words;
+}
+
+std::vector<std::string> elements(const std::string &list) {
+    const std::vector<std::string> words = split(list);
+    for (const std::string &word : words)
+        if (word.empty())
+            throw std::invalid_argument(list + ": a comma has no value before or behind it; give values with one comma "
+                                               "between two of them");
     return words;
 }
 

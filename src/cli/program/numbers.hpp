@@ -38,6 +38,9 @@ uint32_t count_of(const std::string &word, uint32_t low, uint32_t high);
 // The words of a list with commas.
 std::vector<std::string> split(const std::string &list, char separator = ',');
 
+// The same, where none may be empty. std::invalid_argument as above.
+std::vector<std::string> elements(const std::string &list);
+
 // Failure (usage) that names the option where a list does not have one number for each of `count` `things`
 // ("pictures").
 void demand_count(const std::vector<double> &values, const std::string &option, size_t count, const char *things);

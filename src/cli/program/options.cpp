@@ -1,6 +1,8 @@
 #include "cli/program/options.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -32,6 +34,12 @@ std::vector<std::string> names_of_commands(const CLI::App &app) {
     std::vector<std::string> names;
     for (const CLI::App *command : app.get_subcommands({})) names.push_back(command->get_name());
     return names;
+}
+
+// The command or verb of that name; null where there is none.
+const CLI::App *command_of(const CLI::App &app, const std::string &name) {
+    const auto found = app.get_subcommands([&](const CLI::App *command) { return command->get_name() == name; });
+    return found.empty() ? nullptr : found.front();
 }
 
 std::vector<std::string> names_of_options(const CLI::App &app) {
@@ -71,42 +79,143 @@ std::string advice(const std::string &word, const std::vector<std::string> &word
     return nearest.empty() ? "; " + otherwise : nearest;
 }
 
+// Not a command, or not a verb of one.
 [[noreturn]] void fail_no_command(const CLI::App &app, const std::string &word) {
-    const std::string path = path_of(app), parent = app.get_parent() ? path.substr(path.find(' ') + 1) + " " : "";
-    throw Failure(ExitCode::usage,
-                  parent + word + (parent.empty() ? ": no such command" : ": no such verb")
-                      + advice(word, names_of_commands(app),
-                               "`lensprof help" + (parent.empty() ? "" : " " + app.get_name()) + "` lists them"));
+    const std::string path = path_of(app), own = app.get_parent() ? path.substr(path.find(' ') + 1) : "";
+    const std::string help = "`lensprof help" + (own.empty() ? "" : " " + own) + "`";
+    const std::vector<std::string> names = names_of_commands(app);
+    if (names.empty()) throw Failure(ExitCode::usage, own + " " + word + ": `" + path + "` has no verbs; see " + help);
+    throw Failure(ExitCode::usage, (own.empty() ? (word.empty() ? "''" : word) : own + " " + word)
+                                       + (own.empty() ? ": no such command" : ": no such verb")
+                                       + advice(word, names, help + " lists them"));
 }
 
-// Failure for the first word that no command on the way knows; it matters more than what is missing.
-void check_unknown(const CLI::App &app) {
-    for (const std::string &word : app.remaining()) {
-        if (word == "--") continue;
-        const bool is_option = word.size() > 1 && word[0] == '-';
-        if (!is_option && !app.get_subcommands({}).empty()) fail_no_command(app, word);
-        const std::string name = word.substr(0, word.find('=')), see = "see `" + path_of(app) + " --help`";
-        if (is_option)
-            throw Failure(ExitCode::usage, name + ": no such option" + advice(name, names_of_options(app), see));
-        throw Failure(ExitCode::usage, word + ": is more than this command takes; " + see);
+// What a shell makes of a variable that is not set.
+std::string empty_text(const CLI::Option &option) {
+    const bool is_file = option.get_type_name() == "FILE";
+    return std::string(is_file ? "names no file; give one" : "its value is empty; give one")
+           + (option.get_required() ? "" : ", or leave it out");
+}
+
+bool is_flag(const CLI::Option &option) { return option.get_items_expected_max() == 0; }
+
+// "-o" and "--output"; neither "-", a file by custom, nor "-1.5".
+bool looks_like_option(const std::string &word) {
+    return word.size() > 1 && word[0] == '-' && std::string("0123456789.").find(word[1]) == std::string::npos;
+}
+
+// Brings the words of a command line into the order in which CLI11 takes them as they are meant: the commands, options
+// with their values, "--", positionals. Else it takes an option for the value of the one before it, and "--" behind a
+// positional for the end of the command. Failure (usage) for the first word that fits nowhere.
+class SortedWords {
+public:
+    SortedWords(const CLI::App &root, const std::vector<std::string> &words) : app_(&root), words_(words) {
+        const auto end = std::find(words.begin(), words.end(), "--");
+        wants_help_ =
+            std::any_of(words.begin(), end, [](const auto &word) { return word == "-h" || word == "--help"; });
+        bool only_positionals = false;
+        while (at_ < words_.size() && !is_done_) {
+            const std::string &word = words_[at_++];
+            const bool is_option = !only_positionals && word.size() > 1 && word[0] == '-';
+            if (is_option && word == "--")
+                only_positionals = true;
+            else if (!is_option)
+                take_plain(word);
+            else if (!wants_help_)
+                take_option(word);
+        }
     }
-    for (const CLI::App *command : app.get_subcommands()) check_unknown(*command);
-}
 
-// "--seed=" names no value either; the library would take the next word.
-void check_empty(const std::vector<std::string> &words) {
-    for (const std::string &word : words) {
-        if (word == "--") return;
-        if (word.size() > 3 && word.rfind("--", 0) == 0 && word.find('=') == word.size() - 1)
+    const CLI::App &command() const { return *app_; }
+    bool wants_help() const { return wants_help_; }
+
+    // From the last to the first, as CLI11 wants them.
+    std::vector<std::string> reversed() const {
+        std::vector<std::string> all = commands_;
+        all.insert(all.end(), options_.begin(), options_.end());
+        if (!positionals_.empty()) all.emplace_back("--");
+        all.insert(all.end(), positionals_.begin(), positionals_.end());
+        return {all.rbegin(), all.rend()};
+    }
+
+private:
+    // A command, one of its verbs, or a positional.
+    void take_plain(const std::string &word) {
+        if (!app_->get_subcommands({}).empty()) {
+            const CLI::App *command = command_of(*app_, word);
+            if (!command) fail_no_command(*app_, word);
+            app_ = command;
+            commands_.push_back(word);
+            return;
+        }
+        if (wants_help_) return;
+        size_t room = 0;
+        for (const CLI::Option *option : app_->get_options())
+            if (option->get_positional()) room += static_cast<size_t>(option->get_items_expected_max());
+        if (positionals_.size() == room)
+            throw Failure(ExitCode::usage, word + ": is more than this command takes; see " + own_help());
+        positionals_.push_back(word);
+    }
+
+    void take_option(const std::string &word) {
+        const bool is_long = word[1] == '-';
+        const size_t equal = word.find('=');
+        const std::string name = word.substr(0, equal);
+        const CLI::Option *option = app_->get_option_no_throw(is_long ? name : word.substr(0, 2));
+        if (!option || (!is_long && is_flag(*option) && word.size() > 2))
             throw Failure(ExitCode::usage,
-                          word.substr(0, word.size() - 1) + ": its value is empty; give one, or leave the option out");
+                          name + ": no such option" + advice(name, names_of_options(*app_), "see " + own_help()));
+        if (is_flag(*option)) return take_flag(*option, equal == std::string::npos ? "true" : word.substr(equal + 1));
+        const bool has_value = is_long ? equal != std::string::npos : word.size() > 2;
+        const std::string value = has_value ? word.substr(is_long ? equal + 1 : 2) : next_value(*option);
+        if (counts_[option]++ > 0 && option->get_items_expected_max() == 1)
+            throw Failure(ExitCode::usage, option->get_name() + ": is given more than once; give it once");
+        options_.push_back(option->get_name());
+        options_.push_back(value);
     }
-}
 
-const CLI::App &named_command(const CLI::App &root) {
-    const CLI::App *app = &root;
-    while (!app->get_subcommands().empty()) app = app->get_subcommands().back();
-    return *app;
+    // An option of the program itself, as --version, is all that is done.
+    void take_flag(const CLI::Option &flag, const std::string &value) {
+        const std::string &name = flag.get_name();
+        if (value.empty()) throw Failure(ExitCode::usage, name + ": its value is empty; give " + name + " alone");
+        try {
+            CLI::detail::to_flag_value(value);
+        } catch (const std::exception &) {
+            throw Failure(ExitCode::usage, name + ": takes no value, and " + value + " is one; give " + name
+                                               + " alone, or leave it out");
+        }
+        options_.push_back(name + "=" + value);
+        is_done_ = !app_->get_parent();
+    }
+
+    std::string next_value(const CLI::Option &option) {
+        const std::string name = option.get_name(), give = "; give " + name + " " + option.get_type_name();
+        if (at_ == words_.size()) throw Failure(ExitCode::usage, name + ": needs a value" + give);
+        const std::string &word = words_[at_++];
+        if (!looks_like_option(word)) return word;
+        throw Failure(ExitCode::usage, name + ": needs a value, and " + word + " looks like an option" + give + ", or "
+                                           + name + "=" + word + " if that is the value");
+    }
+
+    std::string own_help() const { return "`" + path_of(*app_) + " --help`"; }
+
+    const CLI::App *app_;
+    const std::vector<std::string> &words_;
+    size_t at_ = 0;
+    bool wants_help_ = false, is_done_ = false;
+    std::map<const CLI::Option *, uint32_t> counts_;
+    std::vector<std::string> commands_, options_, positionals_;
+};
+
+// Failure (usage) that names what the command cannot do without.
+void check_required(const CLI::App &command) {
+    for (const CLI::Option *option : command.get_options()) {
+        if (!option->get_required() || option->count()) continue;
+        const std::string name = option->get_name(),
+                          type = option->get_positional() ? "" : " " + option->get_type_name();
+        throw Failure(ExitCode::usage,
+                      name + ": is needed; give " + name + type + ", see `" + path_of(command) + " --help`");
+    }
 }
 
 }  // namespace
@@ -121,11 +230,9 @@ void Command::run(std::function<int(Streams &)> action) { program_->actions_->of
 CLI::Option *Command::add_option(const char *names, const std::string &type, const Read &read,
                                  const std::string &about) {
     const std::string all = names, name = all.substr(all.rfind(',') + 1);
-    const auto take = [name, read, is_file = type == "FILE"](const std::vector<std::string> &words) {
+    const auto take = [app = app_, name, read](const std::vector<std::string> &words) {
         for (const std::string &word : words) try {
-                if (word.empty())
-                    throw std::invalid_argument(is_file ? "names no file; give one, or leave it out"
-                                                        : "its value is empty; give one, or leave it out");
+                if (word.empty()) throw std::invalid_argument(empty_text(*app->get_option(name)));
                 read(word);
             } catch (const std::invalid_argument &wrong) {
                 throw Failure(ExitCode::usage, name + ": " + wrong.what());
@@ -181,7 +288,7 @@ void Command::numbers(const char *names, std::vector<double> &values, const Quan
                       const std::string &about) {
     const auto read = [&values, quantity](const std::string &list) {
         values.clear();
-        for (const std::string &word : split(list)) values.push_back(number_of(word, quantity));
+        for (const std::string &word : elements(list)) values.push_back(number_of(word, quantity));
     };
     add_option(names, "NUMBER,...", read, about);
 }
@@ -190,7 +297,7 @@ void Command::counts(const char *names, std::vector<uint32_t> &values, uint32_t 
                      const std::string &about) {
     const auto read = [&values, low, high](const std::string &list) {
         values.clear();
-        for (const std::string &word : split(list)) values.push_back(count_of(word, low, high));
+        for (const std::string &word : elements(list)) values.push_back(count_of(word, low, high));
     };
     add_option(names, "COUNT,...", read, about);
 }
@@ -209,10 +316,12 @@ void Command::size(const char *names, uint32_t &width, uint32_t &height, std::pa
 namespace {
 
 int64_t id_of(const std::string &word) {
-    const bool digits = word.size() < 19 && word.find_first_not_of("0123456789") == std::string::npos;
-    if (!digits || word.find_first_not_of('0') == std::string::npos)
+    const bool digits = word.find_first_not_of("0123456789") == std::string::npos;
+    errno = 0;
+    const unsigned long long id = digits ? std::strtoull(word.c_str(), nullptr, 10) : 0;
+    if (id == 0 || errno != 0 || id > INT64_MAX)
         throw std::invalid_argument(word + " is no number of a profile; `lensprof profile list` shows them");
-    return std::stoll(word);
+    return static_cast<int64_t>(id);
 }
 
 }  // namespace
@@ -263,7 +372,7 @@ void Command::list_of(const char *names, const std::vector<std::string> &words, 
                       const std::function<void(size_t)> &choose, const std::string &about) {
     const auto read = [words, clear, choose](const std::string &list) {
         clear();
-        for (const std::string &word : split(list)) choose(index_of(word, words));
+        for (const std::string &word : elements(list)) choose(index_of(word, words));
     };
     add_option(names, type_of(words) + ",...", read, about);
 }
@@ -286,31 +395,27 @@ Command Program::root() { return {*app_, *this}; }
 std::string Program::help(const std::vector<std::string> &words) const {
     const CLI::App *app = app_.get();
     for (const std::string &word : words) {
-        const auto commands =
-            app->get_subcommands([&](const CLI::App *command) { return command->get_name() == word; });
-        if (commands.empty()) fail_no_command(*app, word);
-        app = commands.front();
+        const CLI::App *command = command_of(*app, word);
+        if (!command) fail_no_command(*app, word);
+        app = command;
     }
     return help_of(*app);
 }
 
 int Program::run(const std::vector<std::string> &words, Streams &streams) {
-    check_empty(words);
-    std::vector<std::string> reversed(words.rbegin(), words.rend());
-    try {
-        app_->parse(reversed);
-    } catch (const CLI::CallForHelp &) {
-        for (const std::string &word : app_->remaining()) fail_no_command(*app_, word);
-        streams.out << help_of(named_command(*app_));
+    const SortedWords sorted(*app_, words);
+    const CLI::App &command = sorted.command();
+    if (sorted.wants_help()) {
+        streams.out << help_of(command);
         return static_cast<int>(ExitCode::done);
-    } catch (const Failure &) {
-        check_unknown(*app_);  // its value may have been taken for something else
-        throw;
-    } catch (const CLI::ParseError &e) {
-        check_unknown(*app_);
-        throw Failure(ExitCode::usage, std::string(e.what()) + "; see `" + path_of(named_command(*app_)) + " --help`");
     }
-    const CLI::App &command = named_command(*app_);
+    try {
+        std::vector<std::string> reversed = sorted.reversed();
+        app_->parse(reversed);
+    } catch (const CLI::ParseError &e) {
+        check_required(command);
+        throw Failure(ExitCode::usage, std::string(e.what()) + "; see `" + path_of(command) + " --help`");
+    }
     const auto action = actions_->of.find(&command);
     if (action == actions_->of.end())
         throw Failure(ExitCode::usage,

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cli/program/format.hpp"
+#include "cli/program/utf8.hpp"
 
 namespace lensprof {
 namespace {
@@ -58,7 +59,7 @@ void Progress::say(const std::string &line) {
 void Progress::warn(const std::string &line) {
     std::lock_guard<std::mutex> lock(mutex_);
     clear_line();
-    err_ << "lensprof: warning: " << line << std::endl;
+    err_ << "lensprof: warning: " << one_line(line) << std::endl;
 }
 
 Throughput::Throughput(Progress &progress, const std::string &what, uint32_t pictures, uint64_t pixels)

@@ -6,6 +6,7 @@
 
 #include "cli/program/commands.hpp"
 #include "cli/program/error.hpp"
+#include "cli/program/utf8.hpp"
 
 namespace lensprof {
 namespace {
@@ -61,7 +62,7 @@ int run(const std::vector<std::string> &words, Streams &streams) {
         declare_all(program.root(), program);
         return program.run(words, streams);
     } catch (const Failure &failure) {
-        streams.err << "lensprof: " << failure.what() << "\n";
+        streams.err << "lensprof: " << one_line(failure.what()) << "\n";
         return static_cast<int>(failure.code);
     } catch (const std::bad_alloc &) {
         streams.err << "lensprof: out of memory\n";

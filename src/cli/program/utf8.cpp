@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cli/program/format.hpp"
+
 namespace lensprof {
 
 size_t utf8_length(const std::string &text, size_t at) {
@@ -32,6 +34,23 @@ size_t utf8_cut(const std::string &text, size_t bytes) {
     size_t length = std::min(text.size(), bytes);
     while (length > 0 && length < text.size() && (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) length--;
     return length;
+}
+
+std::string one_line(const std::string &text) {
+    constexpr size_t most = 2000, start = 400, end = 800;
+    if (text.size() > most) {
+        size_t tail = text.size() - end;
+        while (tail < text.size() && (static_cast<unsigned char>(text[tail]) & 0xc0) == 0x80) tail++;
+        const size_t head = utf8_cut(text, start);
+        return one_line(text.substr(0, head)) + "... (" + std::to_string(tail - head) + " bytes) ..."
+               + one_line(text.substr(tail));
+    }
+    std::string line;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        line += byte < 0x20 || byte == 0x7f ? format("\\x%02x", byte) : std::string(1, c);
+    }
+    return line;
 }
 
 }  // namespace lensprof
