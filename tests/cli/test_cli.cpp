@@ -314,8 +314,14 @@ void test_store_query_show_remove(void **) {
                      2);
     for (const Words &other :
          {Words{"--camera", "Simulated"}, Words{"--camera", "Simulated Camera", "--aperture", "32"},
-          Words{"--camera", "Simulated Camera", "--processing", "raw"}})
-        assert_refused(not_found, query + other, {"no profile for", work("profiles.db")});
+          Words{"--camera", "Simulated Camera", "--processing", "raw"}}) {
+        const Json none = json_of(query + other, not_found);
+        assert_true(none["id"].is_null() && !none["found"].get<bool>() && !none["reason_codes"].empty());
+        const Outcome outcome = run_words(query + other);
+        assert_true(contains(outcome.err, "lensprof: no profile for") && contains(outcome.err, work("profiles.db")));
+        assert_true(contains(outcome.err, none["reason"].get<std::string>()));
+    }
+    assert_true(json_of(query + Words{"--camera", "Simulated Camera"})["found"].get<bool>());
 
     const Json list = json_of(Words{"profile", "list", "--json"} + db);
     assert_int_equal(list["profiles"].size(), 3);
@@ -365,6 +371,9 @@ void test_forced(void **) {
     assert_true(json["reason_values"] == Json({3.0}));
     assert_true(json["profile"].is_null());
     assert_false(fs::exists(db));
+    save_text(copy + "/one.pto", replaced(text_of(copy + "/pano.pto"), "\n(i [^\n]*img00[123]|v E)[^\n]*", ""));
+    const Json one = json_of({"build", copy + "/one.pto", "--no-store", "--json"}, not_usable);
+    assert_string_equal(one["reason_code"].get<std::string>().c_str(), "few_pairs");
     assert_int_equal(json_of(words + Words{"--force"}, not_usable)["profile"].get<int>(), 1);
     assert_int_equal(json_of({"profile", "list", "--db", db, "--json"})["profiles"].size(), 1);
 }

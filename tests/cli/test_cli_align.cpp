@@ -159,8 +159,8 @@ void test_refusals(void **) {
     refuse(usage, two + out + Words{"--gamma-from", "known"}, "--gamma-from");
     refuse(usage, two + out + Words{"--max-side", "32"}, "--max-side");
     refuse(unreadable, Words{"--project", work("in/none.pto")} + out, "none.pto");
-    refuse(failed, two + Words{"-o", work("in/text.png")}, "text.png is not a folder");
-    refuse(failed, two + Words{"-o", work("in/text.png/deeper")}, "text.png is not a folder");
+    refuse(usage, two + Words{"-o", work("in/text.png")}, "text.png is not a folder");
+    refuse(usage, two + Words{"-o", work("in/text.png/deeper")}, "text.png is not a folder");
 }
 
 // No picture of the call may be written over, however its name is written.

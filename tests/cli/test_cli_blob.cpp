@@ -132,7 +132,7 @@ void test_export_refuses(void **) {
                    {work("text.db")});
     assert_refused(failed, export_of(work("none/camera.blob")), {work("none/camera.blob")});
     fs::create_directory(work("folder"));
-    assert_refused(failed, export_of(work("folder")), {work("folder")});
+    assert_refused(usage, export_of(work("folder")), {work("folder")});
     assert_refused(usage, export_of(work("p.db")), {work("p.db"), "is the profile database"});
     fs::create_symlink(work("p.db"), work("link.blob"));
     assert_refused(usage, export_of(work("link.blob")), {work("link.blob"), "is the profile database"});

@@ -146,6 +146,10 @@ void test_refused_options(void **) {
                                Words{"--camera-kind", "phone"}, Words{"--gamma-from", "exif", "--exif-sigma", "0"},
                                Words{"--falloff-curves", "2"}, Words{"--falloff-curves", "4"}})
         assert_refused(usage, build(path, words), {words[0]});
+    assert_refused(usage, build(path, {"--force"}), {"--no-store and --force", "leave one out"});
+    assert_refused(usage, {"bracket", path + "/img000.tif", path + "/img001.tif", "--no-store", "--force"},
+                   {"--force"});
+    must_exit(done, build(path, {"--force", "--pto-out", work("out.pto")}));
 }
 
 }  // namespace

@@ -177,6 +177,9 @@ void test_refused(void **) {
     assert_refused(unreadable, export_to(work("none.dng")), {"none.dng"});
     assert_refused(unreadable, export_to(work("one.json"), {"--format", "opcodes"}), {"one.json"});
     assert_refused(failed, export_to(work("none/a.json")), {"none/a.json"});
+    assert_refused(usage, export_to("/dev/full", {"--format", "blob"}), {"/dev/full: ", "give the name of a file"});
+    assert_refused(usage, export_to(work("v.vgn"), {"--frame", "1000000x2"}), {"--frame: 1000000 is not"});
+    assert_refused(usage, export_to(work("v.vgn"), {"--blob", work("b")}), {"-o and --blob both name"});
 }
 
 }  // namespace

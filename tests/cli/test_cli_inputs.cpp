@@ -1,4 +1,6 @@
 // Inputs that are no ordinary files, too long, too many, or whose names are not UTF-8.
+#include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
+
 #include "cli_runs.hpp"
 
 #include <fcntl.h>
@@ -126,6 +128,77 @@ void test_pictures_are_checked_first(void **) {
                    {pto, "2000 pictures need 16.8 GiB of memory", "--max-side"});
 }
 
+// A file is known again among thousands, under whatever name.
+void test_many_files(void **) {
+    constexpr uint32_t count = 3000;
+    write_picture(work("0.png"), make_smooth(20, 10, LENSPROF_LAYOUT_GREY));
+    const Bytes bytes = load(work("0.png"));
+    Words frames = {"align", "-o", work("out"), work("0.png")};
+    std::string text = "p f2 w3000 h1500 v360\n";
+    for (uint32_t i = 0; i < count; i++) {
+        const std::string name = std::to_string(i) + ".png";
+        text += "i w20 h10 f0 v" + std::string(i ? "=0" : "50") + " Eev0 r0 p0 y0 Va-0.1 n\"" + name + "\"\n";
+        if (i) save(work(name), bytes), frames.push_back(work(name));
+    }
+    save_text(work("many.pto"), text);
+    fs::create_hard_link(work("7.png"), work("same.png"));
+    fs::create_symlink("8.png", work("link.png"));
+    const double start = seconds_now();
+    for (const char *name : {"0.png", "same.png", "link.png", "./9.png"}) {
+        const Outcome outcome = run_words(frames + Words{work(name)});
+        assert_int_equal(outcome.code, usage);
+        assert_true(contains(outcome.err, std::string(name) + ": is given twice"));
+    }
+    write_picture(work("other.png"), make_smooth(20, 10, LENSPROF_LAYOUT_GREY));
+    const Outcome apply =
+        run_words({"apply", "--pto", work("many.pto"), "-o", work("out"), work(""), work("other.png")});
+    assert_int_equal(apply.code, usage);
+    assert_true(contains(apply.err, "other.png: is not a picture of"));
+    assert_true(seconds_now() - start < 20.0);  // all pairs of them take minutes
+}
+
+void test_image_without_a_name(void **) {
+    const std::string pto = copy_of("scene") + "/pano.pto";
+    edit(pto, "n\"img001.png\"", "n\"\"");
+    for (const Words &words : {build(pto), Words{"apply", "--pto", pto, "-o", work("out")}})
+        assert_refused(unreadable, words, {pto + ": image 1 names no file", "correct the project"});
+}
+
+void test_files_in_place_of_folders(void **) {
+    const std::string pto = scene("pano.pto"), file = scene("img000.png");
+    must_exit(done, Words{"build", pto, "--db", work("p.db")} + quick);
+    for (const std::string &name : {file, file + "/deeper"})
+        for (const Words &words :
+             {Words{"simulate", "-o", name}, Words{"apply", "--profile", "1", "--db", work("p.db"), file, "-o", name},
+              Words{"align", "--project", pto, "-o", name}})
+            assert_refused(usage, words, {name + ": " + file + " is not a folder; give another name"});
+    for (const std::string &name : {std::string("/dev/full"), scene("")})
+        assert_refused(usage, build(pto, {"--points-out", name}), {name + ": ", "give the name of a file"});
+}
+
+// What a profile cannot hold is not cut in silence.
+void test_names_that_are_too_long(void **) {
+    const std::string camera(63, 'c'), lens(127, 'l'), db = work("p.db"), copy = copy_of("scene");
+    const Words words = Words{"build", copy + "/pano.pto", "--db", db} + quick;
+    assert_refused(usage, words + Words{"--camera", camera + "c"}, {"--camera: is 64 bytes long", "at most 63"});
+    assert_refused(usage, words + Words{"--lens", lens + "l"}, {"--lens: is 128 bytes long", "at most 127"});
+    save_text(work("pcalib.txt"), "0 1 2 3\n");
+    assert_refused(usage, {"profile", "import", work("pcalib.txt"), "--camera", camera + "c", "--db", db},
+                   {"--camera: "});
+    must_exit(done, words + Words{"--camera", camera, "--lens", lens});
+    {
+        auto image = Exiv2::ImageFactory::open(copy + "/img000.png");
+        image->readMetadata();
+        image->exifData()["Exif.Photo.LensModel"] = lens + "xyz";
+        image->writeMetadata();
+    }
+    const Outcome cut = run_words(words + Words{"--camera", "C"});
+    assert_int_equal(cut.code, done);
+    assert_true(contains(cut.err, "img000.png: EXIF's text for --lens is longer than what is stored, and is cut"));
+    for (const Words &quiet : {words + Words{"--lens", "L"}, Words{"build", copy + "/pano.pto", "--no-store"} + quick})
+        assert_false(contains(run_words(quiet).err, "--lens"));
+}
+
 // What people and scripts get of a name that is not UTF-8.
 void test_names_that_are_not_utf8(void **) {
     const std::string copy = copy_of("scene"), name = "b\xe9\xed\xa0\x80.png", db = work("p.db");
@@ -153,6 +226,10 @@ int main() {
         CLI_TEST(test_what_is_no_file),
         CLI_TEST(test_files_that_are_too_large),
         CLI_TEST(test_pictures_are_checked_first),
+        CLI_TEST(test_many_files),
+        CLI_TEST(test_image_without_a_name),
+        CLI_TEST(test_files_in_place_of_folders),
+        CLI_TEST(test_names_that_are_too_long),
         CLI_TEST(test_names_that_are_not_utf8),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);

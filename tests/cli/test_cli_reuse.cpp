@@ -90,7 +90,7 @@ void test_merged_profiles_count_once(void **) {
     assert_true(alone["provenance"]["prior_id"].is_null());
     assert_int_equal(alone["provenance"]["images"], 4);
     const std::string said = must_exit(done, {"profile", "import", work("one.json"), "--db", work("one.db")});
-    assert_true(contains(said, "1 were there already"));
+    assert_true(contains(said, "1 was there already"));
 }
 
 void test_wrong_profile_is_overruled(void **) {

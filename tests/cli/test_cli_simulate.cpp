@@ -245,6 +245,10 @@ void test_refused_options(void **) {
                                Words{"--exif-rounding", "-1", "--exif"}})
         assert_refused(usage, simulate("s", words), {words[0]});
     assert_refused(usage, simulate("s", {"--exif", "--no-images"}), {"--exif", "--no-images"});
+    assert_refused(usage, simulate("s", {"--center", "1e9,0"}), {"--center: the falloff must stay positive"});
+    assert_refused(usage, simulate("s", {"--vignetting=-5,0,0"}), {"--vignetting: the falloff must stay positive"});
+    assert_refused(usage, {"simulate", "-o", work("s"), "--response", "emor:1,,2"},
+                   {"--response: ", "a comma has no value"});
 }
 
 }  // namespace

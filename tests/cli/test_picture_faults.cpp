@@ -295,7 +295,7 @@ void test_unwritable_targets(void **) {
     assert_failure(ExitCode::failed, "no/a.png: cannot write: No such file",
                    [&] { write_picture(in_folder("no/a.png"), picture); });
     fs::create_directory(in_folder("b.png"));
-    assert_failure(ExitCode::failed, "b.png: cannot write: is not a regular file",
+    assert_failure(ExitCode::usage, "b.png: cannot write: is not a regular file",
                    [&] { write_picture(in_folder("b.png"), picture); });
     assert_failure(ExitCode::failed, "/proc/a.png: cannot write: ", [&] { write_picture("/proc/a.png", picture); });
     if (geteuid() != 0) {  // root may write everywhere

@@ -84,14 +84,8 @@ std::vector<uint32_t> frames_of(const Options &o, const Project &project) {
     std::vector<uint32_t> frames;
     for (uint32_t i = 0; i < project.files.size() && (o.files.empty() || o.pto.empty()); i++) frames.push_back(i);
     if (!frames.empty()) return frames;
-    for (const std::string &file : o.files) {
-        auto same = [&](const std::string &other) { return is_same_file(file, other); };
-        auto found = std::find_if(project.files.begin(), project.files.end(), same);
-        if (found == project.files.end())
-            throw Failure(ExitCode::usage,
-                          file + ": is not a picture of " + project.path + "; leave it out or leave --project out");
-        frames.push_back(static_cast<uint32_t>(found - project.files.begin()));
-    }
+    const ImagesByFile images(project);
+    for (const std::string &file : o.files) frames.push_back(images.at(file, "--project"));
     return frames;
 }
 
@@ -166,7 +160,7 @@ int align(const Options &o, Streams &streams) {
     std::vector<uint32_t> frames = frames_of(o, project);
     std::vector<Correction> jobs = make_jobs(o, project, frames);
     check_pictures(project, o.max_side);
-    check_folder(o.output, o.output, ExitCode::failed);
+    check_output_folder(o.output);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     std::vector<double> white_shares;  // of the project's pictures
     Fitted fitted = fit_sequence(o, project, white_shares, progress, streams);

@@ -13,6 +13,7 @@
 #include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/options.hpp"
+#include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 
@@ -60,7 +61,7 @@ void declare(Command &command, Options &o) {
                  "ordered 8 x 8 dither in place of rounding, in pictures of 8 bit: no bands in skies");
     command.file("-o,--output", o.output, "folder for the pictures");
     command.require("--output");
-    command.file("--contact-sheet", o.sheet, "write an overview, before above after (PNG)");
+    command.file("--contact-sheet", o.sheet, "write an overview, before above after, as .png, .tif or .jpg");
     declare_threads(command, o.kind.threads);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
@@ -79,14 +80,6 @@ std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
           &error);
     profile->vignetting[0] = project.images[project.reference].vignetting;
     return profile;
-}
-
-// The image of the project that a picture is: the same file.
-uint32_t image_of_file(const Project &project, const std::string &file) {
-    for (uint32_t i = 0; i < project.files.size(); i++)
-        if (is_same_file(project.files[i], file)) return i;
-    throw Failure(ExitCode::usage,
-                  file + ": is not a picture of " + project.path + "; leave it out or leave --pto out");
 }
 
 void look_up(lensprof_store *store, const Options &o, Correction &job) {
@@ -181,12 +174,13 @@ std::vector<Correction> make_jobs(const Options &o, lensprof_exposure &mean) {
     std::vector<std::string> files = o.files.empty() && project ? project->files : expand_folders(o.files);
     if (files.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
     Store store = from_store ? open_store(o.db, LENSPROF_STORE_READ) : Store();
+    const auto images = project ? std::make_unique<ImagesByFile>(*project) : nullptr;
     std::vector<Correction> jobs;
     for (const std::string &file : files) {
         Correction job{file, target_name(o, file), model, {}, {}, 0, nullptr, 0};
         lensprof_exposure_init(&job.own);
         if (project) {
-            uint32_t image = image_of_file(*project, file);
+            uint32_t image = images->at(file, "--pto");
             check_shape(*project, image, file);
             job.own = exposures[image];
         }

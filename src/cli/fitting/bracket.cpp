@@ -62,7 +62,9 @@ std::vector<double> given_exposures(const Options &o) {
 }
 
 // A response belongs to the camera, whatever lens, aperture and focus the pictures were taken with.
-lensprof_profile_key camera_key(const Options &o, const PictureMetadata &metadata, const std::string &file) {
+lensprof_profile_key camera_key(const Options &o, PictureMetadata metadata, const std::string &file, Streams &streams) {
+    metadata.cut.erase(std::remove(metadata.cut.begin(), metadata.cut.end(), "--lens"), metadata.cut.end());
+    warn_of_cut(metadata, o.store, file, streams);
     lensprof_profile_key key = metadata.key, unknown;
     lensprof_profile_key_init(&unknown);
     set_text(key.lens, sizeof key.lens, "");
@@ -248,7 +250,7 @@ int bracket_and_store(const Options &o, Streams &streams) {
     check_pictures(project, o.max_side);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
-    lensprof_profile_key key = camera_key(o, metadata[0], project.files[0]);
+    lensprof_profile_key key = camera_key(o, metadata[0], project.files[0], streams);
     check_store(o.store);
     BuildReport report = fit_bracket(o, project, metadata, ev, streams);
     return finish_fit(
@@ -269,7 +271,7 @@ int run(const Options &o, Streams &streams) {
         return bracket_and_store(o, streams);
     } catch (const Failure &failure) {
         if (o.json && failure.code == ExitCode::not_usable) {
-            BuildReport report = no_fit(o.files, failure.what());
+            BuildReport report = no_fit(o.files, failure);
             report.has_falloff = false;
             print_json(build_json(report), streams.out);
         }

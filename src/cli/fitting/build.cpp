@@ -113,6 +113,7 @@ std::vector<PictureMetadata> picture_metadata(const Options &o, const Project &p
 lensprof_profile_key profile_key(const Options &o, const Project &project, const std::vector<PictureMetadata> &metadata,
                                  Streams &streams) {
     const std::string &file = project.files[project.reference];
+    warn_of_cut(metadata[project.reference], o.store, file, streams);
     lensprof_profile_key key = override_key(metadata[project.reference].key, o.store, file);
     for (size_t i = 0; i < project.files.size() && o.store.aperture == LENSPROF_UNKNOWN && o.points.empty(); i++) {
         const lensprof_profile_key &other = metadata[i].key;
@@ -249,7 +250,8 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     Project project = read_project(o.pto, o.one_lens);
     names = project.names;
     if (project.images.size() < 2)
-        throw Failure(ExitCode::not_usable, o.pto + ": has one image; at least two overlapping ones are needed");
+        throw Failure(ExitCode::not_usable, o.pto + ": has one image; at least two overlapping ones are needed",
+                      LENSPROF_REASON_FEW_PAIRS);
     check_outputs(o, project);
     const uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>());
     for (auto &image : project.images) image.free = free ? free : image.free;
@@ -275,14 +277,13 @@ int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
     if (o.json && !o.compare.empty())
         throw Failure(ExitCode::usage, "--compare prints a table, which --json leaves out; give one of the two");
-    if (!o.fit.stored_prior) check_store_options(o.store);
+    check_store_options(o.store, o.fit.stored_prior, !o.pto_out.empty());
 
     std::vector<std::string> names;
     try {
         return build_and_store(o, names, streams);
     } catch (const Failure &failure) {
-        if (o.json && failure.code == ExitCode::not_usable)
-            print_json(build_json(no_fit(names, failure.what())), streams.out);
+        if (o.json && failure.code == ExitCode::not_usable) print_json(build_json(no_fit(names, failure)), streams.out);
         throw;
     }
 }

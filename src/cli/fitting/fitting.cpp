@@ -165,7 +165,7 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
     return fitted;
 }
 
-BuildReport no_fit(const std::vector<std::string> &names, const std::string &reason) {
+BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure) {
     BuildReport report;
     report.names = names;
     report.exposures.resize(names.size());
@@ -176,7 +176,8 @@ BuildReport no_fit(const std::vector<std::string> &names, const std::string &rea
     report.fit.gamma_sigma = LENSPROF_UNKNOWN;
     report.fit.vignettings = 1;
     report.quality.resize(names.size());
-    report.verdict.text = reason;
+    report.verdict.text = failure.what();
+    report.verdict.code = failure.reason;
     return report;
 }
 

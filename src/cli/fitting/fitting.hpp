@@ -68,7 +68,7 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
            std::vector<lensprof_fit_image_quality> *quality);
 
 // What is reported where no fit could be made: the same object, neutral, with the reason.
-BuildReport no_fit(const std::vector<std::string> &names, const std::string &reason);
+BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure);
 
 // Where a result goes.
 struct Finish {

@@ -132,7 +132,7 @@ int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &re
 
 int run(const FlatCommand &o, Streams &streams) {
     check_flat_options(o);
-    FlatInput input = prepare_flat(o);
+    FlatInput input = prepare_flat(o, streams);
     check_store(o.store);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     FlatReport report = measure(o, input, progress, streams);

@@ -45,7 +45,7 @@ struct FlatInput {
 void check_flat_options(const FlatCommand &o);
 
 // What can be known before pixels are read: shots, exposures, turns, response and key. Failure for what is missing.
-FlatInput prepare_flat(const FlatCommand &o);
+FlatInput prepare_flat(const FlatCommand &o, Streams &streams);
 
 // Reads the pictures; afterwards images and options are complete.
 void read_flat(const FlatCommand &o, Progress &progress, FlatInput &input);

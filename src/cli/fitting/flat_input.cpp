@@ -142,7 +142,7 @@ void check_flat_options(const FlatCommand &o) {
                                            + " pictures; give one for all, or one for each");
 }
 
-FlatInput prepare_flat(const FlatCommand &o) {
+FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
     FlatInput input;
     lensprof_flat_options_init(&input.options);
     std::vector<PictureMetadata> metadata;
@@ -162,6 +162,7 @@ FlatInput prepare_flat(const FlatCommand &o) {
     }
     input.response = response_of(o);
     if (o.linear) metadata.front().key.processing = LENSPROF_PROCESSING_RAW;
+    warn_of_cut(metadata.front(), o.store, o.files.front(), streams);
     input.key = override_key(metadata.front().key, o.store, o.files.front());
     auto &options = input.options;
     options.vignettings = o.falloff_curves;

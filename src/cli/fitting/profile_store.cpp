@@ -34,8 +34,39 @@ void declare_store(Command &command, StoreOptions &o) {
                    "raw, jpeg or corrected (falloff corrected in camera)");
 }
 
-void check_store_options(const StoreOptions &o) {
-    if (o.no_store && !o.db.empty()) throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
+namespace {
+
+// Failure (usage) for what would be cut when it is stored.
+void check_names(const StoreOptions &o) {
+    using Key = lensprof_profile_key;
+    demand_room("--maker", o.maker, sizeof Key::camera_maker);
+    demand_room("--camera", o.camera, sizeof Key::camera_model);
+    demand_room("--lens", o.lens, sizeof Key::lens);
+    demand_room("--unit", o.unit, sizeof Key::unit);
+}
+
+}  // namespace
+
+void check_store_options(const StoreOptions &o, bool reads_db, bool writes_else) {
+    check_names(o);
+    if (o.no_store && o.force && !writes_else)
+        throw Failure(ExitCode::usage,
+                      "--no-store and --force, which stores a result that is not usable, contradict each "
+                      "other; leave one out");
+    if (o.no_store && !reads_db && !o.db.empty())
+        throw Failure(ExitCode::usage, "--db and --no-store contradict each other");
+}
+
+void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const std::string &file, Streams &streams) {
+    const std::pair<const char *, bool> used[] = {{"--maker", o.maker.empty()},
+                                                  {"--camera", o.camera.empty()},
+                                                  {"--lens", o.lens.empty()},
+                                                  {"--unit", o.unit == "exif"}};
+    for (const std::string &option : metadata.cut)
+        for (const auto &one : used)
+            if (option == one.first && one.second && !o.no_store)
+                streams.err << "lensprof: warning: " << file << ": EXIF's text for " << option
+                            << " is longer than what is stored, and is cut; give a shorter one with " << option << "\n";
 }
 
 lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &o, const std::string &file) {
@@ -65,7 +96,8 @@ void check_store(const StoreOptions &o) {
         return;
     }
     demand_folder(o.db);
-    check_folder(std::filesystem::path(absolute_path(file)).parent_path().string(), file, ExitCode::store);
+    check_folder(std::filesystem::path(absolute_path(file)).parent_path().string(), file, ExitCode::store,
+                 ExitCode::store);
 }
 
 void remove_empty_store(const std::string &file) {

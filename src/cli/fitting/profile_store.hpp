@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/pictures/metadata.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
 
@@ -24,8 +25,12 @@ void declare_store(Command &command, StoreOptions &o);
 // The words of --processing.
 Choices<std::optional<uint32_t>> processing_choices();
 
-// Failure (usage) for options that contradict each other.
-void check_store_options(const StoreOptions &o);
+// Failure (usage) for options that contradict each other: --no-store leaves --db to a command that reads it, too, and
+// --force to one that writes other files of the result.
+void check_store_options(const StoreOptions &o, bool reads_db = false, bool writes_else = false);
+
+// Warns of names in the EXIF of `file` that are too long to be stored, where they are.
+void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const std::string &file, Streams &streams);
 
 // The key of a profile: that of a picture's EXIF, then what the command line says. Failure (usage) that names `file`
 // when nothing says what camera it was and the profile is to be stored.

@@ -47,6 +47,9 @@ void check_size(const Project &project, uint32_t i, const Picture &header) {
 
 // No file has such a name: the project is damaged.
 void check_name(const Project &project, uint32_t i) {
+    if (project.names[i].empty())
+        throw Failure(ExitCode::unreadable, project.path + ": image " + std::to_string(i)
+                                                + " names no file (its n is empty or missing); correct the project");
     if (is_too_long(project.files[i]))
         throw Failure(ExitCode::unreadable, project.path + ": image " + std::to_string(i) + ": its name "
                                                 + short_name(project.names[i])
@@ -128,6 +131,17 @@ uint32_t image_of_word(const Project &project, const std::string &word) {
     for (uint32_t i = 0; i < project.names.size(); i++)
         if (word == project.names[i] || word == std::to_string(i)) return i;
     throw Failure(ExitCode::usage, word + ": no such image in " + project.path + "; give its number or name");
+}
+
+ImagesByFile::ImagesByFile(const Project &project) : project_(&project) {
+    for (uint32_t i = 0; i < project.files.size(); i++) images_.emplace(file_identity(project.files[i]), i);
+}
+
+uint32_t ImagesByFile::at(const std::string &file, const std::string &option) const {
+    const auto found = images_.find(file_identity(file));
+    if (found != images_.end()) return found->second;
+    throw Failure(ExitCode::usage,
+                  file + ": is not a picture of " + project_->path + "; leave it out or leave " + option + " out");
 }
 
 void check_pictures(const Project &project, uint32_t max_side) {

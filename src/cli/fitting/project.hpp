@@ -1,6 +1,7 @@
 // A Hugin project and its pictures, as the fit wants them.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,19 @@ Project read_project(const std::string &path, bool one_lens);
 
 // The image that a user means by a number or a file name of the project.
 uint32_t image_of_word(const Project &project, const std::string &word);
+
+// The images of a project by what their files are, whatever their names.
+class ImagesByFile {
+public:
+    explicit ImagesByFile(const Project &project);
+
+    // Failure (usage) for a file that is none of them, which says to leave `option` out.
+    uint32_t at(const std::string &file, const std::string &option) const;
+
+private:
+    const Project *project_;
+    std::map<std::string, uint32_t> images_;  // by file_identity
+};
 
 // A picture reduced for sampling, with the mask of the project; no mask where nothing is excluded.
 struct SamplePicture {

@@ -1,6 +1,7 @@
 #include "cli/fitting/static_camera.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "cli/program/paths.hpp"
 
@@ -51,9 +52,9 @@ Project static_project(const std::vector<std::string> &files, bool free_balance)
     project.path = files[0];
     project.names = project.files = files;
     const uint32_t balance = free_balance ? LENSPROF_FREE_RED | LENSPROF_FREE_BLUE : 0;
+    std::set<std::string> seen;
     for (uint32_t i = 0; i < files.size(); i++) {
-        for (uint32_t j = 0; j < i; j++)
-            if (is_same_file(files[i], files[j])) throw Failure(ExitCode::usage, files[i] + ": is given twice");
+        if (!seen.insert(file_identity(files[i])).second) throw Failure(ExitCode::usage, files[i] + ": is given twice");
         PictureSize size = read_size(files[i]);
         project.images.push_back(still_image(size, i, LENSPROF_FREE_RESPONSE | LENSPROF_FREE_EV | balance));
         const auto &first = project.images[0].camera;

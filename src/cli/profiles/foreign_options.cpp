@@ -3,7 +3,7 @@
 namespace lensprof {
 
 void declare_foreign(Command &command, ForeignOptions &o, bool written) {
-    constexpr std::pair<uint32_t, uint32_t> sides = {2, 1000000};
+    constexpr std::pair<uint32_t, uint32_t> sides = {2, 65536};
     command.size("--frame", o.width, o.height, sides,
                  "size of the pictures, px, for formats that depend on it and do not say it");
     command.size("--grid", o.columns, o.rows, sides,

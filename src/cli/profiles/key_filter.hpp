@@ -18,6 +18,9 @@ public:
     void add_options(Command &command);
 
     bool is_empty() const;
+
+    // Failure (usage) for names that would be cut where they are stored.
+    void check_names() const;
     bool has_camera_or_lens() const { return !camera_.empty() || !lens_.empty(); }
 
     // What was given, the rest unknown; `processing` where none was given.

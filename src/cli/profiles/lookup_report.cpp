@@ -5,21 +5,28 @@
 
 namespace lensprof {
 
-Json lookup_json(const lensprof_lookup &how) {
-    Json rows = Json::array();
-    for (uint32_t i = 0; i < how.rows; i++) rows.push_back({{"id", how.id[i]}, {"weight", how.weight[i]}});
+Json reason_codes_json(const lensprof_lookup &how) {
     Json codes = Json::array();
     for (uint32_t code : how.reason_code)
         if (code != LENSPROF_REASON_NONE) codes.push_back(lensprof_reason_name(code));
-    return {{"exact", how.exact != 0},      {"rows", rows},
-            {"distance", how.distance},     {"sigma", how.sigma == LENSPROF_UNKNOWN ? Json() : Json(how.sigma)},
-            {"name_score", how.name_score}, {"reason", how.reason},
-            {"reason_codes", codes}};
+    return codes;
+}
+
+Json lookup_json(const lensprof_lookup &how) {
+    Json rows = Json::array();
+    for (uint32_t i = 0; i < how.rows; i++) rows.push_back({{"id", how.id[i]}, {"weight", how.weight[i]}});
+    return {{"exact", how.exact != 0},
+            {"rows", rows},
+            {"distance", how.distance},
+            {"sigma", how.sigma == LENSPROF_UNKNOWN ? Json() : Json(how.sigma)},
+            {"name_score", how.name_score},
+            {"reason", how.reason},
+            {"reason_codes", reason_codes_json(how)}};
 }
 
 std::string describe_prediction(const lensprof_lookup &how) {
-    return format("predicted from %u profiles of this lens, the nearest (%lld) at %.2f of the 0.5 that are allowed",
-                  how.rows, static_cast<long long>(how.id[0]), how.distance);
+    return format("predicted from %s of this lens, the nearest (%lld) at %.2f of the 0.5 that are allowed",
+                  counted(how.rows, "profile").c_str(), static_cast<long long>(how.id[0]), how.distance);
 }
 
 void print_lookup(const lensprof_lookup &how, std::ostream &out) {

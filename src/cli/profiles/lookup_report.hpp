@@ -9,6 +9,7 @@ namespace lensprof {
 
 // docs/json.md, `lookup`.
 Json lookup_json(const lensprof_lookup &how);
+Json reason_codes_json(const lensprof_lookup &how);
 
 // "predicted from 6 profiles of this lens, ..."
 std::string describe_prediction(const lensprof_lookup &how);

@@ -220,7 +220,7 @@ void declare_remove(Command &profile) {
 }  // namespace
 
 void declare_profile(Command &program) {
-    Command profile = program.add("profile", "list, show, remove, export, import, merge or check profiles");
+    Command profile = program.add("profile", "list, show, remove, export, import, merge, check or count profiles");
     declare_list(profile);
     declare_show(profile);
     declare_remove(profile);

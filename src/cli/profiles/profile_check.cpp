@@ -86,8 +86,8 @@ Json stats_json(const std::string &file, const lensprof_store_stats &s) {
 
 void print_stats(const std::string &file, const lensprof_store_stats &s, std::ostream &out) {
     out << format("database     %s: layout %u, %lld bytes\n", file.c_str(), s.layout, static_cast<long long>(s.bytes));
-    out << format("profiles     %u of %u cameras, %u lenses, %u single units\n", s.profiles, s.cameras, s.lenses,
-                  s.units);
+    out << format("profiles     %u of %s, %s, %s\n", s.profiles, counted(s.cameras, "camera").c_str(),
+                  counted(s.lenses, "lens", "lenses").c_str(), counted(s.units, "single unit").c_str());
     out << format("processing   %u raw, %u jpeg, %u corrected in camera\n", s.processing[0], s.processing[1],
                   s.processing[2]);
     out << format("with         %u a covariance, %u a gain grid, %u a doubt\n", s.with_covariance, s.with_grid,
@@ -114,8 +114,8 @@ int run_check(const Options &o, Streams &streams) {
         for (const Fault &fault : faults)
             streams.out << (fault.id ? "profile " + std::to_string(fault.id) : std::string("file")) << ": "
                         << fault.reason << "\n";
-        streams.out << format("%s: %u profiles read, %zu fault%s\n", file.c_str(), profiles, faults.size(),
-                              faults.size() == 1 ? "" : "s");
+        streams.out << file << ": " << counted(profiles, "profile") << " read, " << counted(faults.size(), "fault")
+                    << "\n";
         if (!faults.empty())
             streams.out
                 << "`lensprof profile remove` takes a damaged profile out; for the rest restore the file from a copy, "

@@ -47,7 +47,12 @@ void declare(Command &command, Options &o) {
 }
 
 void check_options(Options &o) {
-    if (o.blob.empty() == o.output.empty())
+    if (!o.blob.empty() && !o.output.empty())
+        throw Failure(
+            ExitCode::usage,
+            "profile export: -o and --blob both name the file to be written; give one of them (-o FILE --format "
+            "blob says the same as --blob FILE)");
+    if (o.blob.empty() && o.output.empty())
         throw Failure(ExitCode::usage, "profile export: name the file to be written with -o (or --blob)");
     if (!o.blob.empty() && !o.format.empty() && o.format != "blob")
         throw Failure(ExitCode::usage, "profile export: --blob and --format contradict each other; use -o");

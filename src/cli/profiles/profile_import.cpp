@@ -154,9 +154,10 @@ void store_all(Import &import, const std::vector<Input> &inputs, const lensprof_
 void print_import(const Import &import, size_t files, Streams &streams) {
     const size_t refused = static_cast<size_t>(
         std::count_if(import.flagged.begin(), import.flagged.end(), [](const Json &one) { return !one["stored"]; }));
-    streams.out << format("imported %u profiles of %zu lenses from %zu file%s into %s\n", import.stored,
-                          import.lenses.size(), files, files == 1 ? "" : "s", store_path(import.db).c_str());
-    if (import.known) streams.out << format("%u were there already\n", import.known);
+    streams.out << "imported " << counted(import.stored, "profile") << " of "
+                << counted(import.lenses.size(), "lens", "lenses") << " from " << counted(files, "file") << " into "
+                << store_path(import.db) << "\n";
+    if (import.known) streams.out << format("%u %s there already\n", import.known, import.known == 1 ? "was" : "were");
     if (!import.flagged.empty())
         streams.out << format(
             "%zu are doubtful: %zu of them, which no lens has, were left out, the others stored with the "
@@ -165,6 +166,7 @@ void print_import(const Import &import, size_t files, Streams &streams) {
 }
 
 int run(const Options &o, Streams &streams) {
+    o.key.check_names();
     std::vector<Input> inputs;
     std::set<std::string> seen;
     for (const std::string &file : o.files)

@@ -63,8 +63,8 @@ int run(const Options &o, Streams &streams) {
     for (const Other &other : others) {
         merged.push_back({{"file", other.file}, {"added", other.added}, {"known", other.known}});
         if (!o.json)
-            streams.out << format("%s: %u profiles added to %s, %u were there\n", other.file.c_str(), other.added,
-                                  store_path(o.db).c_str(), other.known);
+            streams.out << other.file << ": " << counted(other.added, "profile") << " added to " << store_path(o.db)
+                        << ", " << other.known << (other.known == 1 ? " was" : " were") << " there\n";
     }
     if (o.json) print_json(Json{{"schema", 1}, {"merged", merged}}, streams.out);
     return 0;

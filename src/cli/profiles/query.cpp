@@ -63,6 +63,7 @@ void answer_stored(const Options &o, lensprof_store *store, const std::vector<le
     check(lensprof_store_get(store, newest, profile.get(), &error), store_path(o.db), &error);
     if (o.json) {
         Json object = profile_json(newest, *profile);
+        object["found"] = true;
         object["matches"] = rows.size();
         print_json(object, streams.out);
         return;
@@ -79,7 +80,7 @@ bool is_open(const lensprof_profile_key &key) {
 
 // The profile for the setting: stored, or between what is stored. False where the setting leaves open which of `rows`.
 bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows,
-                   Streams &streams) {
+                   lensprof_lookup &how, Streams &streams) {
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
     options.distance_rule = o.distance_rule;
@@ -87,8 +88,6 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
     options.any_processing = !o.filter.has_processing();
     lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
     key.crop_factor = o.crop_factor;
-    lensprof_lookup how;
-    lensprof_lookup_init(&how);
     lensprof_error error{};
     auto profile = new_profile();
     const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
@@ -98,6 +97,7 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
     check(status, store_path(o.db), &error);
     if (o.json) {
         Json object = profile_json(how.exact ? how.id[0] : 0, *profile);
+        object["found"] = true;
         object["matches"] = rows.size();
         object["lookup"] = lookup_json(how);
         print_json(object, streams.out);
@@ -108,13 +108,31 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
     return true;
 }
 
-int run(const Options &o, Streams &streams) {
-    if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
+void answer(const Options &o, lensprof_lookup &how, Streams &streams) {
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     auto rows = o.filter.rows(store.get(), o.db);
     if (o.crop_factor != LENSPROF_UNKNOWN) keep_sensor(o.crop_factor, rows);
     if (!o.doubtful) leave_out_doubtful(rows);
-    if (rows.size() == 1 || !answer_lookup(o, store.get(), rows, streams)) answer_stored(o, store.get(), rows, streams);
+    if (rows.size() == 1 || !answer_lookup(o, store.get(), rows, how, streams))
+        answer_stored(o, store.get(), rows, streams);
+}
+
+int run(const Options &o, Streams &streams) {
+    if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
+    lensprof_lookup how;
+    lensprof_lookup_init(&how);
+    try {
+        answer(o, how, streams);
+    } catch (const Failure &failure) {
+        if (o.json && failure.code == ExitCode::not_found)
+            print_json(Json{{"schema", 1},
+                            {"id", nullptr},
+                            {"found", false},
+                            {"reason", failure.what()},
+                            {"reason_codes", reason_codes_json(how)}},
+                       streams.out);
+        throw;
+    }
     return 0;
 }
 

@@ -1,8 +1,11 @@
 // The one exception of the command line program.
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+
+#include <lensprof/reason.h>
 
 namespace lensprof {
 
@@ -20,9 +23,11 @@ enum class ExitCode : int {
 
 // what() is a complete line for the user: it names the item and the next step.
 struct Failure : std::runtime_error {
-    Failure(ExitCode exit_code, const std::string &text) : std::runtime_error(text), code(exit_code) {}
+    Failure(ExitCode exit_code, const std::string &text, uint32_t why = LENSPROF_REASON_NONE)
+        : std::runtime_error(text), code(exit_code), reason(why) {}
 
     ExitCode code;
+    uint32_t reason;  // lensprof_reason of what is not usable
 };
 
 }  // namespace lensprof

@@ -16,4 +16,8 @@ std::string format(const char *pattern, ...) {
     return text;
 }
 
+std::string counted(size_t count, const std::string &thing, const std::string &things) {
+    return std::to_string(count) + " " + (count == 1 ? thing : things.empty() ? thing + "s" : things);
+}
+
 }  // namespace lensprof

@@ -37,6 +37,13 @@ ExitCode exit_code(lensprof_status status) {
     }
 }
 
+// Why a fit could not even be tried.
+uint32_t reason_of(lensprof_status status) {
+    return status == LENSPROF_ERROR_NO_OVERLAP   ? LENSPROF_REASON_IMAGE_GROUPS
+           : status == LENSPROF_ERROR_NO_SAMPLES ? LENSPROF_REASON_FEW_PAIRS
+                                                 : LENSPROF_REASON_NONE;
+}
+
 }  // namespace
 
 void check(lensprof_status status, const std::string &item, const lensprof_error *error) {
@@ -56,7 +63,7 @@ void check_named(lensprof_status status, const std::string &item, const lensprof
     if (error.item.kind == static_cast<uint32_t>(kind) && error.item.index < names.size())
         text = with_name(text, error.item, names[error.item.index]);
     const bool is_named = item.empty() || text.rfind(item, 0) == 0;
-    throw Failure(exit_code(status), is_named ? text : item + ": " + text);
+    throw Failure(exit_code(status), is_named ? text : item + ": " + text, reason_of(status));
 }
 
 std::string store_path(const std::string &path) {
@@ -110,6 +117,13 @@ std::string pto_text(const lensprof_pto &pto) {
     return written("project", [&](void *text, size_t capacity, size_t *count, lensprof_error *error) {
         return lensprof_pto_write(&pto, text, capacity, count, error);
     });
+}
+
+void demand_room(const char *option, const std::string &text, size_t size) {
+    if (text.size() >= size)
+        throw Failure(ExitCode::usage, std::string(option) + ": is " + std::to_string(text.size())
+                                           + " bytes long, and a profile holds at most " + std::to_string(size - 1)
+                                           + "; give a shorter text");
 }
 
 void set_text(char *field, size_t size, const std::string &text) {

@@ -81,14 +81,25 @@ int open_nameless(const std::string &beside) {
     return file;
 }
 
-void check_folder(const std::string &folder, const std::string &item, ExitCode code) {
+void check_folder(const std::string &folder, const std::string &item, ExitCode no_folder, ExitCode no_writing) {
     std::filesystem::path place = absolute_path(folder);
     while (!path_exists(place.string()) && place.has_relative_path()) place = place.parent_path();
     if (!is_folder(place.string()))
-        throw Failure(code, item + ": " + place.string() + " is not a folder; give another name");
+        throw Failure(no_folder, item + ": " + place.string() + " is not a folder; give another name");
     if (access(place.c_str(), W_OK | X_OK) != 0)
-        throw Failure(code, item + ": cannot write in " + place.string() + ": " + system_text(errno)
-                                + "; check its permissions, or give another folder");
+        throw Failure(no_writing, item + ": cannot write in " + place.string() + ": " + system_text(errno)
+                                      + "; check its permissions, or give another folder");
+}
+
+void check_output_folder(const std::string &folder) { check_folder(folder, folder, ExitCode::usage, ExitCode::failed); }
+
+void make_folder(const std::string &folder) {
+    if (!is_folder(folder)) check_output_folder(folder);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+        throw Failure(ExitCode::failed,
+                      folder + ": cannot be made: " + system_text(error.value()) + "; give another name");
 }
 
 std::string system_text(int error_number) { return std::generic_category().message(error_number); }
@@ -97,7 +108,7 @@ OutputFile::OutputFile(const std::string &path) : path_(path), target_(follow_li
     struct stat status = {};
     const bool exists = stat(target_.c_str(), &status) == 0;
     if (exists && !S_ISREG(status.st_mode))
-        throw Failure(ExitCode::failed, path_ + ": cannot write: is not a regular file; give the name of a file");
+        throw Failure(ExitCode::usage, path_ + ": cannot write: is not a regular file; give the name of a file");
     const int file = create_beside(target_, 0666, temporary_);
     if (file < 0) fail(path_, errno);
     // Best effort: a file system without permissions refuses, and the picture matters more.

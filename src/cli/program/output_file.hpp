@@ -13,7 +13,8 @@ namespace lensprof {
 // A file that is being written. The bytes go to a temporary file in the same folder (a rename is atomic only within
 // one file system), which commit() makes durable and renames to the wanted path. Without commit() nothing is left
 // and an older file of that name is as it was. A symbolic link is followed; the permissions of an older file are
-// kept. Everything here throws Failure (ExitCode::failed) with the path in its text.
+// kept. Everything here throws Failure with the path in its text: ExitCode::usage where the path names what is no
+// ordinary file, else ExitCode::failed.
 // Threads: different objects may be used by different threads.
 class OutputFile {
 public:
@@ -59,9 +60,13 @@ void write_file(const std::string &path, const void *data, size_t bytes);
 // and errno where there is none to be had.
 int open_nameless(const std::string &beside);
 
-// Failure, with this code and about `item`, where `folder` neither is one that can be written to nor can be made: to be
-// known before work that takes long.
-void check_folder(const std::string &folder, const std::string &item, ExitCode code);
+// Failure about `item` where `folder` neither is one that can be written to nor can be made: with the code `no_folder`
+// where a file is in its place, else `no_writing`. To be known before work that takes long.
+void check_folder(const std::string &folder, const std::string &item, ExitCode no_folder, ExitCode no_writing);
+
+// The folder for what a command writes, made where there is none. Failure (usage, or failed) names it.
+void check_output_folder(const std::string &folder);
+void make_folder(const std::string &folder);
 
 // "No space left on device" for ENOSPC, and so on; the same text in every locale of the C++ library.
 std::string system_text(int error_number);

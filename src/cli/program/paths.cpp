@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "cli/program/error.hpp"
+#include <sys/stat.h>
+
 #include "cli/program/utf8.hpp"
 
 namespace lensprof {
@@ -49,10 +50,10 @@ bool is_same_file(const std::string &a, const std::string &b) {
     return absolute_path(a) == absolute_path(b) || fs::equivalent(a, b, none);
 }
 
-void make_folder(const std::string &folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw Failure(ExitCode::failed, short_name(folder) + ": cannot be made: " + error.message());
+std::string file_identity(const std::string &path) {
+    struct stat status = {};
+    if (stat(path.c_str(), &status) != 0) return absolute_path(path);
+    return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
 }
 
 std::string short_name(const std::string &name) {

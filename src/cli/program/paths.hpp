@@ -22,8 +22,8 @@ std::string one_name(const std::string &path);
 // True when two paths name one file, which may not exist yet.
 bool is_same_file(const std::string &a, const std::string &b);
 
-// The folder, made where there is none; Failure names it.
-void make_folder(const std::string &folder);
+// The same text for such paths, and another for others: to find them among many.
+std::string file_identity(const std::string &path);
 
 // For texts: a name as it is, or where it is longer than a line its start and its length.
 std::string short_name(const std::string &name);

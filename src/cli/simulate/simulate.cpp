@@ -72,7 +72,7 @@ lensprof_response response_of(const std::string &name) {
         status = lensprof_response_set_gamma(&response, number_of(parts[1], any_number));
     } else if (parts.size() == 2 && parts[0] == "emor") {
         std::vector<double> emor;
-        for (const auto &word : split(parts[1])) emor.push_back(number_of(word, any_number));
+        for (const auto &word : elements(parts[1])) emor.push_back(number_of(word, any_number));
         status = lensprof_response_set_emor(&response, emor.data(), static_cast<uint32_t>(emor.size()));
     } else {
         throw std::invalid_argument(name + ": use linear, srgb, film, gamma:G or emor:a,b,...");
@@ -177,6 +177,18 @@ void place_cameras(const Options &o, Random &random, Truth &truth) {
     }
 }
 
+// Failure (usage) that names the option to blame: the curve, or where only it is off the middle the centre.
+void check_falloff(lensprof_vignetting falloff) {
+    if (lensprof_vignetting_validate(&falloff) == LENSPROF_OK) return;
+    falloff.center[0] = falloff.center[1] = 0.0;
+    if (lensprof_vignetting_validate(&falloff) != LENSPROF_OK)
+        throw Failure(ExitCode::usage,
+                      "--vignetting: the falloff must stay positive to the corner; give smaller numbers");
+    throw Failure(ExitCode::usage,
+                  "--center: the falloff must stay positive to the corner farthest from its centre; give "
+                  "a centre nearer to 0,0");
+}
+
 Truth make_truth(const Options &o) {
     Truth truth;
     truth.seed = o.seed;
@@ -191,8 +203,7 @@ Truth make_truth(const Options &o) {
         for (uint32_t n = 0; n < 3; n++)
             truth.vignetting[c].k[n] = o.vignetting[(truth.vignettings == 3 ? 3 * c : 0) + n];
         for (uint32_t d = 0; d < 2; d++) truth.vignetting[c].center[d] = o.center[d];
-        if (lensprof_vignetting_validate(&truth.vignetting[c]) != LENSPROF_OK)
-            throw Failure(ExitCode::usage, "--vignetting: the falloff must stay positive to the corner");
+        check_falloff(truth.vignetting[c]);
     }
     Random random(o.seed);
     place_cameras(o, random, truth);
