@@ -110,6 +110,7 @@ void test_options_are_no_values(void **) {
         {{"query", "--json=maybe"}, "--json: takes no value, and maybe is one; give --json alone"},
         {{"apply", "x.png"}, "--output: is needed; give --output FILE"},
         {{"build"}, "PROJECT: is needed; give PROJECT"},
+        {{"apply", "-x.png"}, "-x.png: no such option; see `lensprof apply --help`, or put -- before names"},
         {{"build", "a.pto", "b.pto"}, "b.pto: is more than this command takes"},
     };
     for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
@@ -127,7 +128,7 @@ void test_two_dashes_end_options(void **) {
     assert_refused(usage, query + Words{"--", "more"}, {"more: is more than this command takes"});
     assert_refused(usage, query + Words{"--", "--help"}, {"--help: is more than this command takes"});
     const Words apply = {"apply", "--profile", "1", "--db", work("p.db"), copy + "/img000.png"};
-    for (const char *name : {"-x.png", "--", "--json"})
+    for (const char *name : {"-x.png", "--", "--json", "[a,b]"})
         assert_refused(unreadable, apply + Words{"--output", work("out"), "--", name},
                        {std::string(name) + ": cannot"});
     assert_refused(usage, apply + Words{"--", "--output", work("out")}, {"--output: is needed"});

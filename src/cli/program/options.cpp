@@ -149,12 +149,11 @@ private:
             return;
         }
         if (wants_help_) return;
-        size_t room = 0;
-        for (const CLI::Option *option : app_->get_options())
-            if (option->get_positional()) room += static_cast<size_t>(option->get_items_expected_max());
-        if (positionals_.size() == room)
+        if (positionals_.size() == room())
             throw Failure(ExitCode::usage, word + ": is more than this command takes; see " + own_help());
-        positionals_.push_back(word);
+        // A folder, say; CLI11 would take what is within brackets for a list.
+        const bool is_list = word.size() > 1 && word.front() == '[' && word.back() == ']';
+        positionals_.push_back((is_list ? "./" : "") + word);
     }
 
     void take_option(const std::string &word) {
@@ -163,8 +162,11 @@ private:
         const std::string name = word.substr(0, equal);
         const CLI::Option *option = app_->get_option_no_throw(is_long ? name : word.substr(0, 2));
         if (!option || (!is_long && is_flag(*option) && word.size() > 2))
-            throw Failure(ExitCode::usage,
-                          name + ": no such option" + advice(name, names_of_options(*app_), "see " + own_help()));
+            throw Failure(
+                ExitCode::usage,
+                name + ": no such option"
+                    + advice(name, names_of_options(*app_),
+                             "see " + own_help() + (room() ? ", or put -- before names that begin with -" : "")));
         if (is_flag(*option)) return take_flag(*option, equal == std::string::npos ? "true" : word.substr(equal + 1));
         const bool has_value = is_long ? equal != std::string::npos : word.size() > 2;
         const std::string value = has_value ? word.substr(is_long ? equal + 1 : 2) : next_value(*option);
@@ -195,6 +197,14 @@ private:
         if (!looks_like_option(word)) return word;
         throw Failure(ExitCode::usage, name + ": needs a value, and " + word + " looks like an option" + give + ", or "
                                            + name + "=" + word + " if that is the value");
+    }
+
+    // How many positionals the command takes.
+    size_t room() const {
+        size_t room = 0;
+        for (const CLI::Option *option : app_->get_options())
+            if (option->get_positional()) room += static_cast<size_t>(option->get_items_expected_max());
+        return room;
     }
 
     std::string own_help() const { return "`" + path_of(*app_) + " --help`"; }
@@ -424,7 +434,8 @@ int Program::run(const std::vector<std::string> &words, Streams &streams) {
 }
 
 void declare_db(Command &command, std::string &path, const std::string &more) {
-    command.file("--db", path, "profile database" + more + "; default the user's own");
+    command.file("--db", path,
+                 "profile database" + more + "; default lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share");
 }
 
 void declare_json(Command &command, bool &json) { command.flag("--json", json, "print one JSON object"); }
