@@ -66,7 +66,7 @@ static void prepare_gain(lensprof_plan *plan, const lensprof_apply_options *o, c
 
 /* Channels that differ by their factors alone share one division a pixel, where what that rounds is not seen. */
 static void share_gains(lensprof_plan *plan) {
-    if (plan->gains == 1 || plan->target_sample == LENSPROF_SAMPLE_F32) return;
+    if (plan->gains == 1 || (plan->target_sample == LENSPROF_SAMPLE_F32 && plan->encode < LP_CURVE_TABLE)) return;
     for (uint32_t c = 1; c < LP_CHANNELS; c++)
         if (memcmp(plan->k[c], plan->k[0], sizeof plan->k[0]) || plan->nodes[c] != plan->nodes[0]) return;
     for (uint32_t c = 0; c < LP_CHANNELS; c++) {
