@@ -172,6 +172,40 @@ static void test_every_lane_count_gives_the_same_bytes(void **state) {
     free(wanted);
 }
 
+/* Rows long enough for the places of values to be guessed: smooth responses, where guesses are right, and ones with
+ * kinks, where many are not. */
+static void test_long_rows_of_values(void **state) {
+    (void)state;
+    enum {
+        W = 701
+    };
+    static float source[3 * W], wanted[3 * W], target[3 * W];
+    const uint32_t lanes[] = {1, 4, 8, 0};
+    for (uint64_t seed = 0; seed < 120; seed++) {
+        uint64_t random = seed;
+        model m;
+        make_model(&m, seed);
+        m.options.source_layout = LENSPROF_LAYOUT_RGB;
+        m.options.source_sample = m.options.target_sample = LENSPROF_SAMPLE_F32;
+        m.options.input = m.options.output = LENSPROF_ENCODING_RESPONSE;
+        m.options.responses = 1;
+        random_response(&m.response[0], seed % 3 ? LENSPROF_RESPONSE_EMOR : LENSPROF_RESPONSE_TABLE, &random);
+        fill_samples((uint8_t *)source, sizeof source, LENSPROF_SAMPLE_F32, seed);
+        const float rare[] = {0.0f, -0.0f, 1.0f, INFINITY, -INFINITY, 1e-42f, -1e30f, 1e30f, 0.99999994f};
+        for (size_t i = 0; i < 500; i++)
+            source[(size_t)(3 * W * lp_random(&random))] = rare[i % (sizeof rare / sizeof *rare)];
+        lensprof_image from = {source, 0, W, 1, LENSPROF_SAMPLE_F32, LENSPROF_LAYOUT_RGB}, to = from;
+        for (int n = 0; n < 4; n++) {
+            const lensprof_plan *plan;
+            void *memory = make_plan(&m, lanes[n], &plan);
+            to.data = n ? target : wanted;
+            assert_ok(lensprof_apply(plan, &from, &to, 5, 100));
+            if (n) assert_memory_equal(target, wanted, sizeof wanted);
+            free(memory);
+        }
+    }
+}
+
 /* A row in pieces, at any place, is the row. */
 static void test_pieces_give_the_row(void **state) {
     (void)state;
@@ -399,6 +433,7 @@ static void test_half_floats(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_lane_count_gives_the_same_bytes),
+        cmocka_unit_test(test_long_rows_of_values),
         cmocka_unit_test(test_pieces_give_the_row),
         cmocka_unit_test(test_planes_are_the_same_picture),
         cmocka_unit_test(test_planes_that_are_refused),

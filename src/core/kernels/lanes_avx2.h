@@ -23,11 +23,18 @@ static inline lane_f f_div(lane_f a, lane_f b) { return _mm256_div_ps(a, b); }
 static inline lane_f f_max(lane_f a, lane_f b) { return _mm256_max_ps(a, b); }
 static inline lane_f f_min(lane_f a, lane_f b) { return _mm256_min_ps(a, b); }
 static inline lane_b f_less(lane_f a, lane_f b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
+static inline lane_b f_less_equal(lane_f a, lane_f b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
+static inline lane_b f_not_less(lane_f a, lane_f b) { return _mm256_cmp_ps(a, b, _CMP_NLT_UQ); }
+static inline lane_b f_not_less_equal(lane_f a, lane_f b) { return _mm256_cmp_ps(a, b, _CMP_NLE_UQ); }
 static inline lane_b f_is_number(lane_f a) { return _mm256_cmp_ps(a, a, _CMP_EQ_OQ); }
 static inline lane_f f_pick(lane_b is, lane_f yes, lane_f no) { return _mm256_blendv_ps(no, yes, is); }
 static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) {
     return _mm256_blendv_epi8(no, yes, _mm256_castps_si256(is));
 }
+
+static inline lane_b b_or(lane_b a, lane_b b) { return _mm256_or_ps(a, b); }
+static inline lane_b b_and(lane_b a, lane_b b) { return _mm256_and_ps(a, b); }
+static inline int b_all(lane_b b) { return _mm256_movemask_ps(b) == 0xff; }
 
 static inline lane_i i_set(int32_t v) { return _mm256_set1_epi32(v); }
 static inline lane_i i_load(const int32_t *p) { return _mm256_loadu_si256((const __m256i *)(const void *)p); }
@@ -36,6 +43,7 @@ static inline lane_i i_add(lane_i a, lane_i b) { return _mm256_add_epi32(a, b); 
 static inline lane_i i_sub(lane_i a, lane_i b) { return _mm256_sub_epi32(a, b); }
 static inline lane_i i_and(lane_i a, lane_i b) { return _mm256_and_si256(a, b); }
 static inline lane_i i_min(lane_i a, lane_i b) { return _mm256_min_epi32(a, b); }
+static inline lane_i i_least(lane_i a, lane_i b) { return _mm256_min_epu32(a, b); }
 #define i_left(a, n) _mm256_slli_epi32((a), (n))
 #define i_right(a, n) _mm256_srli_epi32((a), (n))
 
@@ -83,29 +91,54 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
     *second = _mm256_castpd_ps(_mm256_permute4x64_pd(b, 0xd8));
 }
 
-/* Loads of single elements are faster than gathers where the places are in memory. */
-static inline __m128 two_pairs(const float *base, int32_t a, int32_t b) {
-    const __m128 low = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + a));
-    return _mm_loadh_pi(low, (const __m64 *)(const void *)(base + b));
+/* Loads of single elements are faster than gathers where the places are in memory, and two places come with one load.
+ */
+typedef struct two_places {
+    uint64_t a, b;
+} two_places;
+static inline two_places places_at(const int32_t *at) {
+    uint64_t both;
+    memcpy(&both, at, sizeof both);
+    return (two_places){(uint32_t)both, both >> 32};
+}
+static inline __m128 two_pairs(const float *base, const int32_t *at) {
+    const two_places p = places_at(at);
+    const __m128 low = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + p.a));
+    return _mm_loadh_pi(low, (const __m64 *)(const void *)(base + p.b));
 }
 static inline __m256 join(__m128 low, __m128 high) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
 }
 static inline void f_pairs(const float *base, const int32_t *at, lane_f *first, lane_f *second) {
-    const __m256 a = join(two_pairs(base, at[0], at[1]), two_pairs(base, at[4], at[5]));
-    const __m256 b = join(two_pairs(base, at[2], at[3]), two_pairs(base, at[6], at[7]));
+    const __m256 a = join(two_pairs(base, at), two_pairs(base, at + 4));
+    const __m256 b = join(two_pairs(base, at + 2), two_pairs(base, at + 6));
     *first = _mm256_shuffle_ps(a, b, 0x88);
     *second = _mm256_shuffle_ps(a, b, 0xdd);
 }
 static inline void f_fours(const float *base, const int32_t *at, lane_f four[4]) {
     __m256 row[4];
-    for (int i = 0; i < 4; i++) row[i] = join(_mm_loadu_ps(base + at[i]), _mm_loadu_ps(base + at[4 + i]));
+    for (int i = 0; i < 4; i += 2) {
+        const two_places p = places_at(at + i), q = places_at(at + 4 + i);
+        row[i] = join(_mm_loadu_ps(base + p.a), _mm_loadu_ps(base + q.a));
+        row[i + 1] = join(_mm_loadu_ps(base + p.b), _mm_loadu_ps(base + q.b));
+    }
     const __m256 ab = _mm256_unpacklo_ps(row[0], row[1]), cd = _mm256_unpacklo_ps(row[2], row[3]);
     const __m256 ab_high = _mm256_unpackhi_ps(row[0], row[1]), cd_high = _mm256_unpackhi_ps(row[2], row[3]);
     four[0] = _mm256_shuffle_ps(ab, cd, 0x44);
     four[1] = _mm256_shuffle_ps(ab, cd, 0xee);
     four[2] = _mm256_shuffle_ps(ab_high, cd_high, 0x44);
     four[3] = _mm256_shuffle_ps(ab_high, cd_high, 0xee);
+}
+
+/* Numbers in registers, picked by the lowest four bits of an index. */
+#define IN_TABLE 16
+typedef struct lane_table {
+    __m256 low, high;
+} lane_table;
+static inline lane_table table_load(const float *p) { return (lane_table){f_load(p), f_load(p + 8)}; }
+static inline lane_f table_pick(lane_table t, lane_i i) {
+    const __m256 is_high = _mm256_castsi256_ps(_mm256_slli_epi32(i, 28)); /* by its sign */
+    return _mm256_blendv_ps(_mm256_permutevar8x32_ps(t.low, i), _mm256_permutevar8x32_ps(t.high, i), is_high);
 }
 
 static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define LANES 16
-#define STRIP 256
+#define STRIP 128
 
 typedef __m512 lane_f;
 typedef __m512i lane_i;
@@ -19,18 +19,20 @@ static inline void f_store(float *p, lane_f v) { _mm512_storeu_ps(p, v); }
 static inline lane_f f_add(lane_f a, lane_f b) { return _mm512_add_ps(a, b); }
 static inline lane_f f_sub(lane_f a, lane_f b) { return _mm512_sub_ps(a, b); }
 static inline lane_f f_mul(lane_f a, lane_f b) { return _mm512_mul_ps(a, b); }
-static inline lane_f f_div(lane_f a, lane_f b) /* two halves are faster than one whole */
-{
-    __m256 low = _mm256_div_ps(_mm512_castps512_ps256(a), _mm512_castps512_ps256(b));
-    __m256 high = _mm256_div_ps(_mm512_extractf32x8_ps(a, 1), _mm512_extractf32x8_ps(b, 1));
-    return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
-}
+static inline lane_f f_div(lane_f a, lane_f b) { return _mm512_div_ps(a, b); }
 static inline lane_f f_max(lane_f a, lane_f b) { return _mm512_max_ps(a, b); }
 static inline lane_f f_min(lane_f a, lane_f b) { return _mm512_min_ps(a, b); }
 static inline lane_b f_less(lane_f a, lane_f b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+static inline lane_b f_less_equal(lane_f a, lane_f b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
+static inline lane_b f_not_less(lane_f a, lane_f b) { return _mm512_cmp_ps_mask(a, b, _CMP_NLT_UQ); }
+static inline lane_b f_not_less_equal(lane_f a, lane_f b) { return _mm512_cmp_ps_mask(a, b, _CMP_NLE_UQ); }
 static inline lane_b f_is_number(lane_f a) { return _mm512_cmp_ps_mask(a, a, _CMP_EQ_OQ); }
 static inline lane_f f_pick(lane_b is, lane_f yes, lane_f no) { return _mm512_mask_blend_ps(is, no, yes); }
 static inline lane_i i_pick(lane_b is, lane_i yes, lane_i no) { return _mm512_mask_blend_epi32(is, no, yes); }
+
+static inline lane_b b_or(lane_b a, lane_b b) { return (lane_b)(a | b); }
+static inline lane_b b_and(lane_b a, lane_b b) { return (lane_b)(a & b); }
+static inline int b_all(lane_b b) { return b == 0xffff; }
 
 static inline lane_i i_set(int32_t v) { return _mm512_set1_epi32(v); }
 static inline lane_i i_load(const int32_t *p) { return _mm512_loadu_si512(p); }
@@ -39,6 +41,7 @@ static inline lane_i i_add(lane_i a, lane_i b) { return _mm512_add_epi32(a, b); 
 static inline lane_i i_sub(lane_i a, lane_i b) { return _mm512_sub_epi32(a, b); }
 static inline lane_i i_and(lane_i a, lane_i b) { return _mm512_and_si512(a, b); }
 static inline lane_i i_min(lane_i a, lane_i b) { return _mm512_min_epi32(a, b); }
+static inline lane_i i_least(lane_i a, lane_i b) { return _mm512_min_epu32(a, b); }
 #define i_left(a, n) _mm512_slli_epi32((a), (n))
 #define i_right(a, n) _mm512_srli_epi32((a), (n))
 
@@ -79,10 +82,20 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
     *second = _mm512_permutex2var_ps(low, _mm512_add_epi32(even, _mm512_set1_epi32(1)), high);
 }
 
-/* Loads of single elements are faster than gathers where the places are in memory. */
-static inline __m128 two_pairs(const float *base, int32_t a, int32_t b) {
-    const __m128 low = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + a));
-    return _mm_loadh_pi(low, (const __m64 *)(const void *)(base + b));
+/* Loads of single elements are faster than gathers where the places are in memory, and two places come with one load.
+ */
+typedef struct two_places {
+    uint64_t a, b;
+} two_places;
+static inline two_places places_at(const int32_t *at) {
+    uint64_t both;
+    memcpy(&both, at, sizeof both);
+    return (two_places){(uint32_t)both, both >> 32};
+}
+static inline __m128 two_pairs(const float *base, const int32_t *at) {
+    const two_places p = places_at(at);
+    const __m128 low = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + p.a));
+    return _mm_loadh_pi(low, (const __m64 *)(const void *)(base + p.b));
 }
 static inline __m512 join(__m128 a, __m128 b, __m128 c, __m128 d) {
     const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(a), b, 1);
@@ -90,18 +103,23 @@ static inline __m512 join(__m128 a, __m128 b, __m128 c, __m128 d) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
 }
 static inline void f_pairs(const float *base, const int32_t *at, lane_f *first, lane_f *second) {
-    const __m512 a = join(two_pairs(base, at[0], at[1]), two_pairs(base, at[4], at[5]), two_pairs(base, at[8], at[9]),
-                          two_pairs(base, at[12], at[13]));
-    const __m512 b = join(two_pairs(base, at[2], at[3]), two_pairs(base, at[6], at[7]), two_pairs(base, at[10], at[11]),
-                          two_pairs(base, at[14], at[15]));
+    const __m512 a =
+        join(two_pairs(base, at), two_pairs(base, at + 4), two_pairs(base, at + 8), two_pairs(base, at + 12));
+    const __m512 b =
+        join(two_pairs(base, at + 2), two_pairs(base, at + 6), two_pairs(base, at + 10), two_pairs(base, at + 14));
     *first = _mm512_shuffle_ps(a, b, 0x88);
     *second = _mm512_shuffle_ps(a, b, 0xdd);
 }
 static inline void f_fours(const float *base, const int32_t *at, lane_f four[4]) {
     __m512 row[4];
-    for (int i = 0; i < 4; i++)
-        row[i] = join(_mm_loadu_ps(base + at[i]), _mm_loadu_ps(base + at[4 + i]), _mm_loadu_ps(base + at[8 + i]),
-                      _mm_loadu_ps(base + at[12 + i]));
+    for (int i = 0; i < 4; i += 2) {
+        const two_places p = places_at(at + i), q = places_at(at + 4 + i), r = places_at(at + 8 + i),
+                         t = places_at(at + 12 + i);
+        row[i] = join(_mm_loadu_ps(base + p.a), _mm_loadu_ps(base + q.a), _mm_loadu_ps(base + r.a),
+                      _mm_loadu_ps(base + t.a));
+        row[i + 1] = join(_mm_loadu_ps(base + p.b), _mm_loadu_ps(base + q.b), _mm_loadu_ps(base + r.b),
+                          _mm_loadu_ps(base + t.b));
+    }
     const __m512 ab = _mm512_unpacklo_ps(row[0], row[1]), cd = _mm512_unpacklo_ps(row[2], row[3]);
     const __m512 ab_high = _mm512_unpackhi_ps(row[0], row[1]), cd_high = _mm512_unpackhi_ps(row[2], row[3]);
     four[0] = _mm512_shuffle_ps(ab, cd, 0x44);
@@ -109,6 +127,14 @@ static inline void f_fours(const float *base, const int32_t *at, lane_f four[4])
     four[2] = _mm512_shuffle_ps(ab_high, cd_high, 0x44);
     four[3] = _mm512_shuffle_ps(ab_high, cd_high, 0xee);
 }
+
+/* Numbers in registers, picked by the lowest five bits of an index. */
+#define IN_TABLE 32
+typedef struct lane_table {
+    __m512 low, high;
+} lane_table;
+static inline lane_table table_load(const float *p) { return (lane_table){f_load(p), f_load(p + 16)}; }
+static inline lane_f table_pick(lane_table t, lane_i i) { return _mm512_permutex2var_ps(t.low, i, t.high); }
 
 static inline void f_store3(float *p, lane_f a, lane_f b, lane_f c) {
     const __m512i first = _mm512_setr_epi32(0, 16, 0, 1, 17, 0, 2, 18, 0, 3, 19, 0, 4, 20, 0, 5),

@@ -34,6 +34,9 @@ static inline lane_i i_add(lane_i a, lane_i b) { return vaddq_s32(a, b); }
 static inline lane_i i_sub(lane_i a, lane_i b) { return vsubq_s32(a, b); }
 static inline lane_i i_and(lane_i a, lane_i b) { return vandq_s32(a, b); }
 static inline lane_i i_min(lane_i a, lane_i b) { return vminq_s32(a, b); }
+static inline lane_i i_least(lane_i a, lane_i b) {
+    return vreinterpretq_s32_u32(vminq_u32(vreinterpretq_u32_s32(a), vreinterpretq_u32_s32(b)));
+}
 #define i_left(a, n) vshlq_n_s32((a), (n))
 #define i_right(a, n) vreinterpretq_s32_u32(vshrq_n_u32(vreinterpretq_u32_s32(a), (n)))
 

@@ -35,6 +35,8 @@ static inline lane_i i_add(lane_i a, lane_i b) { return a + b; }
 static inline lane_i i_sub(lane_i a, lane_i b) { return a - b; }
 static inline lane_i i_and(lane_i a, lane_i b) { return a & b; }
 static inline lane_i i_min(lane_i a, lane_i b) { return a < b ? a : b; }
+/* of unsigned numbers */
+static inline lane_i i_least(lane_i a, lane_i b) { return (uint32_t)a < (uint32_t)b ? a : b; }
 #define i_left(a, n) ((lane_i)((uint32_t)(a) << (n)))
 #define i_right(a, n) ((lane_i)((uint32_t)(a) >> (n))) /* zeros come in */
 

@@ -34,6 +34,7 @@ static inline lane_i i_add(lane_i a, lane_i b) { return _mm_add_epi32(a, b); }
 static inline lane_i i_sub(lane_i a, lane_i b) { return _mm_sub_epi32(a, b); }
 static inline lane_i i_and(lane_i a, lane_i b) { return _mm_and_si128(a, b); }
 static inline lane_i i_min(lane_i a, lane_i b) { return _mm_min_epi32(a, b); }
+static inline lane_i i_least(lane_i a, lane_i b) { return _mm_min_epu32(a, b); }
 #define i_left(a, n) _mm_slli_epi32((a), (n))
 #define i_right(a, n) _mm_srli_epi32((a), (n))
 

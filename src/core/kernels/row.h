@@ -5,6 +5,9 @@
 #include "core/kernels/curves.h"
 #include "core/kernels/gains.h"
 #include "core/kernels/samples.h"
+#if LANES > 1
+#include "core/kernels/tables.h"
+#endif
 
 /* ---- towards white ---- */
 
@@ -50,13 +53,6 @@ static void find_rounding(const lensprof_plan *plan, uint32_t x, uint32_t y, str
             s->rounding[plane * (STRIP + LANES) + i] =
                 ((float)dither_matrix[y & 7][(x + i / plan->samples) & 7] + 0.5f) * (1.0f / 64.0f);
 }
-
-/* Samples that lie one behind the other, in memory and on the strip. */
-typedef struct run {
-    const uint8_t *from;
-    uint8_t *to;
-    uint32_t at, count;
-} run;
 
 static void decode(const lensprof_plan *plan, const run *r, strip *s) {
     switch (plan->decode) {
@@ -133,87 +129,6 @@ ALWAYS_INLINE void one_pass(const lensprof_plan *shared, const run *r, const str
         memcpy(in, r->from + i * bytes, (r->count - i) * bytes);
         store_vector(plan, sample, is_inside, s, r->at + i, through(plan, s, sample, curve, r->at + i, in), out);
         memcpy(r->to + i * bytes, out, (r->count - i) * bytes);
-    }
-}
-
-/* Places in tables go through memory, a whole run at a time: loads by them then wait for nothing. */
-
-/* Codes to light. */
-ALWAYS_INLINE void codes_by_table(const lensprof_plan *plan, const run *r, strip *s, uint32_t sample) {
-    const uint16_t *codes = (const uint16_t *)(const void *)r->from;
-    const float *inverse = plan->inverse;
-    float *light = s->light + r->at;
-    for (uint32_t i = 0; i < r->count; i++) light[i] = inverse[sample == LENSPROF_SAMPLE_U8 ? r->from[i] : codes[i]];
-    for (uint32_t i = r->count; i % LANES; i++) light[i] = 0.0f;
-}
-
-/* One by one: compilers' vectors of such loads are slower. */
-static void look_up(const uint16_t *restrict table, int32_t *restrict place, uint32_t count) {
-    for (uint32_t i = 0; i < count; i++) {
-        place[i] = table[place[i]];
-#if defined(__GNUC__)
-        __asm__ volatile("");
-#endif
-    }
-}
-
-/* Values to light, no steps being needed. */
-static void values_by_table(const lensprof_plan *plan, const run *r, strip *s) {
-    const uint16_t *start = plan->start;
-    const float *samples = plan->forward;
-    float *light = s->light + r->at;
-    int32_t *place = s->place + r->at;
-    load_codes(LENSPROF_SAMPLE_F32, r->from, r->count, light);
-    for (uint32_t i = 0; i < r->count; i += LANES)
-        i_store(place + i, cell_of(cut(f_load(light + i), 0, 1.0f), i_set(0)));
-    look_up(start, place, (r->count + LANES - 1) / LANES * LANES);
-    for (uint32_t i = 0; i < r->count; i += LANES) {
-        const lane_f value = f_load(light + i);
-        lane_f four[4];
-        f_fours(samples, place + i, four);
-        const lane_f x = between_four(four, i_load(place + i), cut(value, 0, 1.0f));
-        f_store(light + i, f_pick(f_is_number(value), x, value));
-    }
-}
-
-/* Light times gain to samples. */
-ALWAYS_INLINE void light_by_table(const lensprof_plan *shared, const run *r, strip *s, uint32_t sample) {
-    lensprof_plan own = *shared; /* which no store can change */
-    const lensprof_plan *plan = &own;
-    const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
-    const int is_light = sample != LENSPROF_SAMPLE_F32; /* codes are */
-    float *light = s->light + r->at, last[LANES];
-    int32_t *place = s->place + r->at;
-    own.dither = 0, own.encode = LP_CURVE_TABLE;
-    for (uint32_t i = 0; i < r->count; i += LANES) {
-        const lane_f x = f_mul(f_load(light + i), f_load(s->factor + r->at + i));
-        f_store(light + i, x);
-        i_store(place + i, i_of_f(cut(x, is_light, (float)LAST)));
-    }
-    for (uint32_t i = 0; i < r->count; i += LANES) {
-        const lane_f x = f_load(light + i), position = cut(x, is_light, (float)LAST);
-        lane_f low, high;
-        f_pairs(plan->forward, place + i, &low, &high);
-        lane_f y = f_add(low, f_mul(f_sub(position, f_of_i(i_load(place + i))), f_sub(high, low)));
-        if (!is_light) y = f_pick(f_is_number(x), y, x);
-        uint8_t *to = i + LANES <= r->count ? r->to + i * bytes : (uint8_t *)last;
-        store_vector(plan, sample, is_light, s, r->at + i, y, to);
-    }
-    const uint32_t rest = r->count % LANES;
-    memcpy(r->to + (r->count - rest) * bytes, last, rest * bytes);
-}
-
-static void through_tables(const lensprof_plan *plan, const run *r, strip *s) {
-    switch (plan->source_sample) {
-    case LENSPROF_SAMPLE_U8:
-        codes_by_table(plan, r, s, LENSPROF_SAMPLE_U8);
-        light_by_table(plan, r, s, LENSPROF_SAMPLE_U8);
-        break;
-    case LENSPROF_SAMPLE_U16:
-        codes_by_table(plan, r, s, LENSPROF_SAMPLE_U16);
-        light_by_table(plan, r, s, LENSPROF_SAMPLE_U16);
-        break;
-    default: values_by_table(plan, r, s); light_by_table(plan, r, s, LENSPROF_SAMPLE_F32);
     }
 }
 
@@ -305,7 +220,7 @@ static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes
     for (uint32_t p = 0; p < planes; p++) {
         run r = runs[p];
 #if CAN_STREAM
-        uint8_t room[4 * MOST_SAMPLES];
+        ALIGNED_TO_VECTORS uint8_t room[4 * MOST_SAMPLES];
         if (stream) r.to = room;
 #endif
         do_run(plan, &r, near_white, s);
@@ -317,30 +232,23 @@ static void do_strip(const lensprof_plan *plan, const run *runs, uint32_t planes
     if (has_alpha) give_alpha(plan, s, runs[0].to, count);
 }
 
-/* Asks for the next strip's samples while this one is worked on. */
-static inline void fetch_ahead(const uint8_t *from, uint32_t bytes) {
-#if LANES > 1 && defined(__GNUC__)
-    for (uint32_t i = 0; i < bytes; i += 64) __builtin_prefetch(from + i);
-#else
-    (void)from, (void)bytes;
-#endif
-}
-
 void ROW_KERNEL(const lensprof_plan *plan, const uint8_t *const source[3], uint8_t *const target[3], uint32_t x,
                 uint32_t y, uint32_t count, int stream) {
     const uint32_t planes = plan->layout == LENSPROF_LAYOUT_PLANAR ? 3 : 1;
     const uint32_t from_step = plan->samples * lensprof_sample_type_bytes(plan->source_sample);
     const uint32_t to_step = plan->samples * lensprof_sample_type_bytes(plan->target_sample);
     const float dy = (float)((int32_t)y - plan->center_px[1]) - plan->center_part[1];
-    strip s;
+    ALIGNED_TO_VECTORS strip s;
     if (plan->columns) blend_rows(plan, y, &s);
     if (plan->curves == 3) find_channels(plan, x, y, &s);
     if (plan->dither) find_rounding(plan, x, y, &s);
+#ifdef IN_TABLE
+    s.is_guessed = count >= LEAST_GUESSED && is_guessable(plan);
+    if (s.is_guessed) find_guess(plan, &s);
+#endif
     for (uint32_t done = 0; done < count; done += STRIP) {
         const uint32_t n = count - done < STRIP ? count - done : STRIP;
         run runs[3];
-        for (uint32_t p = 0; p < planes && count - done >= 2 * STRIP; p++)
-            fetch_ahead(source[p] + (size_t)(done + STRIP) * from_step, STRIP * from_step);
         for (uint32_t c = 0; c < plan->gains; c++) gains_of_channel(plan, c, x + done, dy, n, &s);
         spread_gains(plan, x + done, y, n, &s);
         for (uint32_t p = 0; p < planes; p++)

@@ -7,11 +7,19 @@
 #define ALWAYS_INLINE static inline
 #endif
 
+#if defined(__GNUC__)
+#define NEVER_INLINE __attribute__((noinline))
+#else
+#define NEVER_INLINE
+#endif
+
 /* Of one lane, which microcontrollers run, the code is to be small. */
 #if LANES > 1
 #define ONCE_IN_SCALAR ALWAYS_INLINE
+#define ALIGNED_TO_VECTORS _Alignas(4 * LANES)
 #else
 #define ONCE_IN_SCALAR static
+#define ALIGNED_TO_VECTORS
 #endif
 
 #define LAST (LENSPROF_RESPONSE_SAMPLES - 1)
@@ -31,4 +39,15 @@ typedef struct strip {
     float rounding[ROOM]; /* added before a code is cut to an integer, with dither */
     uint8_t alpha[STRIP][4];
     float grid[LP_CHANNELS][LENSPROF_GRID_SIDE + 1];
+#ifdef IN_TABLE
+    float guess[3][IN_TABLE]; /* of places in the response's samples: see guess.h */
+    int is_guessed;
+#endif
 } strip;
+
+/* Samples that lie one behind the other, in memory and on the strip. */
+typedef struct run {
+    const uint8_t *from;
+    uint8_t *to;
+    uint32_t at, count;
+} run;
