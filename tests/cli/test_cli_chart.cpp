@@ -298,7 +298,7 @@ void test_refused_files(void **) {
     assert_refused(not_found, {"profile", "show", "1", "--chart", "--db", work("none.db")}, {work("none.db")});
     assert_refused(failed, {"profile", "show", "1", "--chart-out", work("none/a.svg"), "--db", db}, {"none/a.svg"});
     fs::create_directories(work("folder.png"));
-    assert_refused(failed, {"profile", "show", "1", "--chart-out", work("folder.png"), "--db", db}, {"folder.png"});
+    assert_refused(usage, {"profile", "show", "1", "--chart-out", work("folder.png"), "--db", db}, {"folder.png"});
     // The database itself, by another name that looks like a picture's.
     fs::create_symlink(db, work("link.svg"));
     assert_refused(usage, {"profile", "show", "1", "--chart-out", work("link.svg"), "--db", db}, {"link.svg"});
