@@ -1,7 +1,7 @@
 /* lensprof/reason.h - why a result is not usable, or what is doubtful about it, as a number.
  *
  * Fits, flat fields and lookups state their verdict as data: a code, the image or shot that it concerns, and its
- * numbers. The sentence beside it (`reason`) is made of these, for people. docs/reasons.md has a cure for every code.
+ * numbers. The sentence next to it (`reason`) is made of these, for people. docs/reasons.md has a cure for every code.
  */
 #ifndef LENSPROF_REASON_H
 #define LENSPROF_REASON_H

@@ -1150,7 +1150,7 @@ FUNCTIONS = {
                                   POINTER(ErrorText)]),
     "lensprof_profile_from_flat": (c_int, [POINTER(Profile), POINTER(FlatResult), POINTER(FlatOptions), c_uint32,
                                            POINTER(ErrorText)]),
-    # formats.h
+    # hugin.h
     "lensprof_pto_image_init_sized": (None, [POINTER(PtoImage), c_size_t]),
     "lensprof_pto_read": (c_int, [c_void_p, c_size_t, POINTER(POINTER(Pto)), POINTER(ErrorText)]),
     "lensprof_pto_destroy": (None, [POINTER(Pto)]),
@@ -1169,6 +1169,7 @@ FUNCTIONS = {
                                      POINTER(ErrorText)]),
     "lensprof_points_write": (c_int, [POINTER(Pair), c_uint32, POINTER(Camera), c_uint32, c_void_p, c_size_t,
                                       POINTER(c_size_t), POINTER(ErrorText)]),
+    # formats.h
     "lensprof_lensfun_read": (c_int, [c_void_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
     "lensprof_lensfun_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_void_p, c_size_t, POINTER(c_size_t),
                                        POINTER(ErrorText)]),

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <lensprof/formats.h>
+#include <lensprof/hugin.h>
 
 #include "formats/text/text.hpp"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <lensprof/formats.h>
+#include <lensprof/hugin.h>
 
 namespace lensprof {
 

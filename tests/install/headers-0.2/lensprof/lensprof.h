@@ -9,6 +9,7 @@
 #include "flat.h"
 #include "formats.h"
 #include "geometry.h"
+#include "hugin.h"
 #include "model.h"
 #include "profile.h"
 #include "reason.h"

@@ -88,7 +88,7 @@ typedef struct lensprof_lookup {
                           outer blanks, 0.9 but for signs and blanks, 0.8 but for a maker in front or its spelling, or
                           a camera's name in another country; 0.6 the same words in another order or form, all
                           numbers and generations the same, where nothing better is stored */
-    char reason[256];  /* what to mind, whole sentences as far as they fit; where nothing is found, why */
+    char reason[256];  /* cautions, whole sentences as far as they fit; where nothing is found, why */
     uint32_t reason_code[LENSPROF_LOOKUP_REASONS]; /* lensprof_reason of each of its sentences, in their order; NONE
                                                       after the last. The numbers are the other members */
 } lensprof_lookup;
