@@ -161,6 +161,5 @@ lensprof_status lp_options_validate(const lensprof_apply_options *given, lenspro
     if (status != LENSPROF_OK) return status;
     status = lp_options_model(own, model);
     if (status == LENSPROF_OK) return status;
-    return lp_fail(error, status,
-                   own->blob ? "the blob is invalid, or beside other curves" : "the gain grid is invalid");
+    return lp_fail(error, status, own->blob ? "the blob is invalid, or with other curves" : "the gain grid is invalid");
 }

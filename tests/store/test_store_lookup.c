@@ -234,7 +234,7 @@ static void test_left_out_is_said(void **state) {
     lensprof_profile_key key = zoom_profile("Lens 50mm", 50, 2.0, INFINITY)->key;
     key.processing = LENSPROF_PROCESSING_JPEG;
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_PROCESSING, "processed otherwise"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_PROCESSING, "processed differently"));
     assert_int_equal(ask(store, "Lens 35mm", 35, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_DOUBTFUL, "doubtful"));
     assert_int_equal(ask(store, "Lens 85mm", 85, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);

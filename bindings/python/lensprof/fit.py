@@ -81,7 +81,7 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
 class FitResult(Struct, _abi.FitResult):
     """What a fit found. Arrays are views on this object.
 
-    usable: False with the `reason` in words; a usable result may have a reason to mind. reason_code: what it states, a
+    usable: False with the `reason` in words; a usable result may have one as a caution. reason_code: what it states, a
     Reason; reason_item: the image that it names; reason_value: its numbers. response: of all images.
     vignetting: tuple of 1 (all channels) or 3. exposures: what every image got relative to the reference,
     EXPOSURE_DTYPE; image_quality: how well each is determined, IMAGE_QUALITY_DTYPE. pairs: used. components: connected

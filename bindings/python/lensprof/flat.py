@@ -80,7 +80,7 @@ class FlatOptions(WithProgress, Struct, _abi.FlatOptions):
 class FlatResult(Struct, _abi.FlatResult):
     """What a flat field fit found; shares are of the light.
 
-    usable: False with the `reason` in words; a usable result may have a reason to mind. reason_code: what it states, a
+    usable: False with the `reason` in words; a usable result may have one as a caution. reason_code: what it states, a
     Reason; reason_item: the image or shot that it names; reason_value: its numbers. vignetting: tuple of 1 (all channels)
     or 3. separated: the pictures tell the light's gradient from the centre. spot: dust, FLAT_SPOT_DTYPE.
     radius: largest r of a cell used. noise, residual, texture, frame_residual, shot_residual, grid_residual: of a cell.

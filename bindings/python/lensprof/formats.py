@@ -464,7 +464,7 @@ def format_info(format: Format) -> FormatInfo:
 
 
 def detect_format(data: Union[str, bytes], name: str = "") -> Format:
-    """The format of a file by its content, then by the ending of its name; Format.AUTO where neither tells."""
+    """The format of a file by its content, then by the ending of its name; Format.AUTO where neither decides."""
     content = _content(data)
     return Format(lib.lensprof_format_detect(content, len(content), _bytes(name)))
 

@@ -35,7 +35,7 @@ class LookupOptions(Struct, _abi.LookupOptions):
 
 class Lookup(Value, _abi.Lookup):
     """How Store.lookup came to its answer: id[:rows] and weight[:rows] of the profiles used, nearest first; exact when it
-    is one of them as it is; distance to the nearest; sigma of M in the corner; name_score; reason: what to mind, whose
+    is one of them as it is; distance to the nearest; sigma of M in the corner; name_score; reason: cautions, whose
     sentences are `reasons`."""
 
     exact: int

@@ -70,7 +70,7 @@ void declare(Command &command, Options &o) {
         "Pictures keep format, depth, metadata and colour profile. Several are corrected at once, in strips of rows;\n"
         "interlaced PNG and progressive JPEG alone are held in memory as a whole. All are opened first: when one\n"
         "cannot be, nothing is written. When one turns out to be damaged later, those before it are written, it and\n"
-        "those behind it are not. A picture that was corrected already is not known as such: it is corrected again.");
+        "those after it are not. A picture that was corrected already is not known as such: it is corrected again.");
 }
 
 std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {

@@ -68,7 +68,7 @@ void declare(Command &command, Options &o) {
     command.count("--max-side", o.max_side, 0, UINT32_MAX,
                   "sample pictures reduced to no less than this many pixels (800); 0 = full size");
     declare_store(command, o.store);
-    command.file("--compare", o.compare, "truth.json of `simulate`: print recovered beside true values");
+    command.file("--compare", o.compare, "truth.json of `simulate`: print recovered next to true values");
     declare_json(command, o.json);
     declare_progress(command, o.progress);
 }

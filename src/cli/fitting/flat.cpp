@@ -160,7 +160,7 @@ int run(const FlatCommand &o, Streams &streams) {
 void declare_flat(Command &program) {
     Command command = program.add(
         "flat", "pictures of a white card or another even light -> a lens profile in the database",
-        "Measures the falloff on pictures of a white card or another even light; docs/flat.md tells how to take them.");
+        "Measures the falloff on pictures of a white card or another even light; docs/flat.md explains how to take them.");
     auto o = std::make_shared<FlatCommand>();
     declare(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });

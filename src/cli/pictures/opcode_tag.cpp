@@ -23,7 +23,7 @@ constexpr uint32_t most_opcode_bytes = 64u << 20;
 
 const char *text_of(TiffDefect defect) {
     switch (defect) {
-    case TiffDefect::not_tiff: return "is not a TIFF or DNG file; give one, since opcodes belong into these only";
+    case TiffDefect::not_tiff: return "is not a TIFF or DNG file; give one, since opcodes belong in these only";
     case TiffDefect::big_tiff: return "is a BigTIFF, which has no opcodes in lensprof; convert it to classic TIFF";
     case TiffDefect::no_directory: return "has no directory; give a complete file";
     case TiffDefect::cut_off: return "ends before what its directory has; give the complete file";

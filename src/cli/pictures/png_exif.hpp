@@ -21,7 +21,7 @@ void keep_last(Exiv2::ExifData &exif);
 // The image's EXIF as a TIFF structure, which it then is without; empty where it has none. Throws Exiv2's exceptions.
 std::vector<uint8_t> take_exif(Exiv2::Image &image);
 
-// A PNG file with EXIF in a chunk behind its header; as it is where `exif` is empty.
+// A PNG file with EXIF in a chunk after its header; as it is where `exif` is empty.
 std::vector<uint8_t> with_exif(const uint8_t *png, size_t size, const std::vector<uint8_t> &exif);
 
 }  // namespace codec

@@ -68,13 +68,14 @@ const ForeignRule &format_to_read(const std::string &path, const std::string &wa
     if (!format) format = lensprof_format_detect(head.data(), head.size(), path.c_str());
     if (format) return rule_of(format);
     read_text(path, 1 << 16);  // a missing file is said to be missing
-    throw Failure(ExitCode::usage, path + ": neither its content nor its name tells its format; name it with --format");
+    throw Failure(ExitCode::usage,
+                  path + ": neither its content nor its name identifies its format; name it with --format");
 }
 
 const ForeignRule &format_to_write(const std::string &path, const std::string &wanted) {
     const uint32_t named = lensprof_format_detect(nullptr, 0, path.c_str());
     if (wanted.empty() && !named)
-        throw Failure(ExitCode::usage, path + ": its name does not tell a format; name it with --format");
+        throw Failure(ExitCode::usage, path + ": its name does not identify a format; name it with --format");
     const ForeignRule *rule = wanted.empty() ? &rule_of(named) : &rule_of_word(wanted);
     if (extension_of(path) == "m" && rule->format == LENSPROF_FORMAT_CURVES)
         throw Failure(ExitCode::usage, path + ": pfstools' tables are read only; give it the ending .csv");

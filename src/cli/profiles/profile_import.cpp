@@ -203,7 +203,7 @@ int run(const Options &o, Streams &streams) {
 void declare_profile_import(Command &profile) {
     Command command = profile.add(
         "import", "store what files of other programs hold",
-        "Stores what other programs' files hold, all of them or none. Their content, else their name, tells the "
+        "Stores what other programs' files hold, all of them or none. Their content, else their name, decides the "
         "format.");
     auto o = std::make_shared<Options>();
     command.files("FILES", o->files,

@@ -8,7 +8,7 @@
 
 namespace lensprof {
 
-// What a number measures: the units that may stand behind it.
+// What a number measures: the units that may follow it.
 enum class Unit {
     none,
     focal_mm,    // 24, 24mm

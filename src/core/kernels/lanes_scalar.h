@@ -69,13 +69,13 @@ static inline void i_store_u16(uint8_t *p, lane_i v) {
 }
 
 static inline lane_f f_gather(const float *base, lane_i index) { return base[index]; }
-/* base[index] and the element behind it */
+/* base[index] and the element after it */
 static inline void f_gather_pair(const float *base, lane_i index, lane_f *first, lane_f *second) {
     *first = base[index];
     *second = base[index + 1];
 }
 
-/* Of every place at[0], at[1], ...: base[place] and the element behind it; the four elements from there. */
+/* Of every place at[0], at[1], ...: base[place] and the element after it; the four elements from there. */
 static inline void f_pairs(const float *base, const int32_t *at, lane_f *first, lane_f *second) {
     *first = base[*at];
     *second = base[*at + 1];

@@ -183,7 +183,7 @@ lensprof_status check_debevec(const lensprof_fit_options &o, const lensprof_fit_
     for (uint32_t i = 0; i < image_count; i++)
         if (!(images[i].known_ev_sigma > 0.0))
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
-                           "the method debevec wants the known exposures of all images (known_ev, and a "
+                           "the method debevec needs the known exposures of all images (known_ev, and a "
                            "known_ev_sigma above 0); give it, or use the method transfer");
     for (uint32_t i = 0; i < image_count; i++)
         if (!(std::abs(known_exposure(images, o.reference, i)) <= 64.0))

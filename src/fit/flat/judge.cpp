@@ -1,4 +1,4 @@
-// The verdict on a flat field: why it is not usable, or what to mind about it.
+// The verdict on a flat field: why it is not usable, or the caution about it.
 #include <algorithm>
 #include <cmath>
 
@@ -129,7 +129,7 @@ bool is_undetermined(const FlatFit &fit, lensprof_flat_result &r) {
     return false;
 }
 
-// What to mind about the card and the pictures, the weightiest alone.
+// The weightiest caution about the card and the pictures.
 bool warns_of_card(const FlatFit &fit, lensprof_flat_result &r) {
     Worst wrong = wrong_exposure(fit, r), white = beyond(fit, CellState::white), black = beyond(fit, CellState::black);
     if (r.radius < kWholeRadius) return warn(r, {LENSPROF_REASON_FLAT_EXTRAPOLATED, {r.radius}});

@@ -1,4 +1,4 @@
-// The verdict: why a result is not usable, or what to mind about it.
+// The verdict: why a result is not usable, or the caution about it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -261,7 +261,7 @@ bool minds_known_exposures(const Problem &problem, const Estimate &estimate, len
     return is_unfollowed && warn(r, {LENSPROF_REASON_GAMMA_UNFOLLOWED, {1.0 / known.slope}});
 }
 
-// What to mind about a usable result, the weightiest alone.
+// The weightiest caution about a usable result.
 bool warns_of_images(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     const int odd = odd_image(problem, r), contradicting = contradicting_image(problem, r);
     if (odd >= 0) {

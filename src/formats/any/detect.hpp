@@ -10,7 +10,7 @@ namespace lensprof {
 // By the ending of a name; AUTO where that is of none.
 uint32_t format_of_name(std::string_view name);
 
-// By content, then by name; AUTO where neither tells.
+// By content, then by name; AUTO where neither decides.
 uint32_t detect_format(std::string_view data, std::string_view name);
 
 // A picture, in which other bytes may stand: PNG, JPEG or TIFF.

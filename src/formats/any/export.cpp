@@ -97,7 +97,7 @@ lensprof_status check_output(uint32_t profile_count, lensprof_export_options &o,
                 throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED, "pfstools' tables are read only; write .csv"};
         }
         if (!o.format)
-            throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED, "its name does not tell a format; name the format"};
+            throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED, "its name does not identify a format; name the format"};
         const lensprof_format_info *info = lensprof_format_get_info(o.format);
         if (!info) throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "an unknown format; pass a lensprof_format"};
         const std::string format = info->name;

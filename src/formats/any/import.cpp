@@ -188,7 +188,7 @@ lensprof_status check_input(Input &in, lensprof_error *error) {
         if (!format) format = detect_format(data, in.options.name ? in.options.name : "");
         if (!format)
             throw FormatFailure{LENSPROF_ERROR_UNSUPPORTED,
-                                "neither its content nor its name tells its format; name the format"};
+                                "neither its content nor its name identifies its format; name the format"};
         if (!lensprof_format_get_info(format))
             throw FormatFailure{LENSPROF_ERROR_ARGUMENT, "an unknown format; pass a lensprof_format"};
         if (const char *container = container_of(format, data))

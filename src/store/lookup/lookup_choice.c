@@ -61,8 +61,8 @@ static uint32_t keep_best(lp_candidates *found, const lensprof_profile_key *key)
     return found->count = kept;
 }
 
-/* Curves of pictures that were processed otherwise are others: where any will do, those of the newest profile, which is
- * the last. */
+/* Curves of pictures that were processed differently are others: where any will do, those of the newest profile, which
+ * is the last. */
 static void keep_one_processing(lp_candidates *found) {
     const uint32_t processing = found->all[found->count - 1].processing;
     uint32_t kept = 0;
@@ -154,8 +154,8 @@ static int place_of(const lp_candidates *found, const lp_falloff_node *at, int w
     }
     const double asked = log2(setting(at, which)), least = 1e-6;
     const double before = high - low > 1e-6 ? fmax(above_low - low, single) : single;
-    const double behind = high - low > 1e-6 ? fmax(high - below_high, single) : single;
-    if (asked < low - before - least || asked > high + behind + least) return 2;
+    const double after = high - low > 1e-6 ? fmax(high - below_high, single) : single;
+    if (asked < low - before - least || asked > high + after + least) return 2;
     return asked < low - least || asked > high + least;
 }
 

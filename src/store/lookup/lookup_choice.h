@@ -6,7 +6,7 @@
 
 #include "store/lookup/lookup_candidates.h"
 
-/* Adds to what the caller has to mind; `name` (or NULL) follows the sentence. */
+/* Adds a caution for the caller; `name` (or NULL) follows the sentence. */
 void lp_mind(lensprof_lookup *lookup, lensprof_reason reason, const char *name);
 
 /* Two numbers of settings. */
