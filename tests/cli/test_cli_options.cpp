@@ -258,6 +258,85 @@ void test_times_with_units(void **) {
     assert_string_equal(exposures("1/60 s,0.5").c_str(), plain.c_str());
 }
 
+void test_bad_options(void **) {
+    const std::string pto = scene("pano.pto"), png = scene("img000.png");
+    const Words cases[] = {
+        {"build"},
+        {"build", pto, pto},
+        {"build", pto, "--frobnicate"},
+        {"build", pto, "--modes", "26"},
+        {"build", pto, "--modes", "-1"},
+        {"build", pto, "--modes", "3x"},
+        {"build", pto, "--modes"},
+        {"build", pto, "--loss", "l1"},
+        {"build", pto, "--huber", "0"},
+        {"build", pto, "--prior", "-1"},
+        {"build", pto, "--free", "everything"},
+        {"build", pto, "--reference", "4"},
+        {"build", pto, "--reference", "img009.png"},
+        {"build", pto, "--pairs", "-1"},
+        {"build", pto, "--pairs", "99999999"},
+        {"build", pto, "--seed", "-1"},
+        {"build", pto, "--seed", "x"},
+        {"build", pto, "--max-side", "-5"},
+        {"build", pto, "--focal", "0"},
+        {"build", pto, "--aperture", "-2"},
+        {"build", pto, "--focal", "1e999"},
+        {"build", pto, "--processing", "cooked"},
+        {"build", pto, "--method", "magic"},
+        {"build", pto, "--sampling", "x"},
+        {"build", pto, "--no-store", "--db", work("p.db")},
+        {"apply"},
+        {"apply", png},
+        {"apply", "-o", work("out"), png},
+        {"apply", "--profile", "0", "-o", work("out"), png},
+        {"apply", "--profile", "x", "-o", work("out"), png},
+        {"apply", "--profile", "1", "--from-db", "-o", work("out"), png},
+        {"apply", "--profile", "1", "-o", work("out")},
+        {"apply", "--pto", pto, "-o", work("out"), "--output-exposure", "bright"},
+        {"query"},
+        {"query", "--focal", "50"},
+        {"query", "--camera", "x", "--focal", "-1"},
+        {"query", "x"},
+        {"profile"},
+        {"profile", "frob"},
+        {"profile", "show"},
+        {"profile", "remove"},
+        {"profile", "show", "x"},
+        {"profile", "show", "0"},
+        {"profile", "show", "-1"},
+        {"profile", "remove", "1", "2"},
+        {"simulate"},
+        {"simulate", "-o"},
+        {"simulate", "-o", work("s"), "--images", "1"},
+        {"simulate", "-o", work("s"), "--size", "10"},
+        {"simulate", "-o", work("s"), "--size", "10x10"},
+        {"simulate", "-o", work("s"), "--size", "axb"},
+        {"simulate", "-o", work("s"), "--hfov", "0"},
+        {"simulate", "-o", work("s"), "--hfov", "160"},
+        {"simulate", "-o", work("s"), "--response", "magic"},
+        {"simulate", "-o", work("s"), "--response", "gamma:0"},
+        {"simulate", "-o", work("s"), "--response", "emor:99"},
+        {"simulate", "-o", work("s"), "--vignetting", "1,2"},
+        {"simulate", "-o", work("s"), "--vignetting", "-5,0,0"},
+        {"simulate", "-o", work("s"), "--center", "1"},
+        {"simulate", "-o", work("s"), "--format", "bmp"},
+        {"simulate", "-o", work("s"), "--seed", "x"},
+        {"simulate", "-o", work("s"), "--overlap", "1"},
+    };
+    for (const Words &words : cases) assert_refused(usage, words, {});
+}
+
+void test_options_that_are_no_numbers(void **) {
+    const std::string pto = scene("pano.pto"), out = work("s");
+    for (const char *option : {"--huber", "--prior", "--focal", "--aperture", "--distance"})
+        assert_refused(usage, Words{"build", pto, "--db", work("new.db"), option, "nan"} + quick, {option});
+    assert_refused(usage, {"query", "--camera", "x", "--focal", "nan", "--db", work("p.db")}, {"--focal"});
+    for (const char *option :
+         {"--hfov", "--overlap", "--jitter", "--misalign", "--ev", "--wb", "--noise", "--outliers"})
+        assert_refused(usage, {"simulate", "-o", out, "--images", "2", "--size", "40x30", option, "nan"}, {option});
+}
+
 }  // namespace
 
 int main() {
@@ -274,6 +353,8 @@ int main() {
         CLI_TEST(test_help_of_a_verb),
         CLI_TEST(test_units),
         CLI_TEST(test_times_with_units),
+        CLI_TEST(test_bad_options),
+        CLI_TEST(test_options_that_are_no_numbers),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }
