@@ -4,11 +4,12 @@
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 cd "$root"
-for package in lensfun opencv4; do
-    pkg-config --exists "$package" || { echo "apply.sh: $package is missing; make bench-apply installs it" >&2; exit 1; }
-done
+opencv=/usr/include/opencv4 # of libopencv-core-dev, which has no file for pkg-config
+pkg-config --exists opencv4 && opencv=$(pkg-config --variable=includedir opencv4)
+pkg-config --exists lensfun || { echo "apply.sh: lensfun is missing; make bench-apply installs it" >&2; exit 1; }
+[ -e "$opencv/opencv2/core.hpp" ] || { echo "apply.sh: opencv4 is missing; make bench-apply installs it" >&2; exit 1; }
 mkdir -p build/bench
 ${CXX:-g++} -std=c++17 -O3 -march=native -o build/bench/apply tests/bench/apply.cpp -Iinclude \
-    $(pkg-config --cflags --libs lensfun) -I"$(pkg-config --variable=includedir opencv4)" -lopencv_core \
+    $(pkg-config --cflags --libs lensfun) -I"$opencv" -lopencv_core \
     -Lbuild -llensprof -Wl,-rpath,"$root/build"
 build/bench/apply | tee build/bench/apply.md
