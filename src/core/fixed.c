@@ -22,7 +22,7 @@ static int32_t log2_of(uint32_t v) {
     return (int32_t)((place << LP_LOG_SHIFT) + lp_log2_table[i] + (rise * (mantissa >> 7 & 0xffff) >> 16));
 }
 
-/* 2^f in 2^-30, of the part of a logarithm behind the point. */
+/* 2^f in 2^-30, of the part of a logarithm after the point. */
 static uint32_t exp2_of(uint32_t f) {
     const uint32_t i = f >> (LP_LOG_SHIFT - 8), rest = f & (FRACTION >> 8); /* 14 bits */
     const uint32_t rise = lp_exp2_table[i + 1] - lp_exp2_table[i];          /* 23 bits */

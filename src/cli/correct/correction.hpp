@@ -66,7 +66,7 @@ std::vector<std::string> expand_folders(const std::vector<std::string> &names);
 // on at once, one a thread, each in strips of rows; where there are at least twice as many threads as pictures, a
 // picture is encoded on a thread of its own. Whatever the number of threads, what is written and said is as if it had
 // been done one after another: the failure of the first picture that has one is thrown, those before it are written,
-// it and those behind are not.
+// it and those after it are not.
 Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
                           Progress &progress);
 

@@ -245,7 +245,7 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     return report;
 }
 
-// The command behind its options; `names` receives the images as soon as they are known.
+// The command once its options are read; `names` receives the images as soon as they are known.
 int build_and_store(const Options &o, std::vector<std::string> &names, Streams &streams) {
     Project project = read_project(o.pto, o.one_lens);
     names = project.names;

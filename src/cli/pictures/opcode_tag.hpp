@@ -1,6 +1,6 @@
 // DNG opcode lists in TIFF and DNG files.
 //
-// A list is put in by appending: its bytes and a copy of the raw image's directory with the tag go behind the end of
+// A list is put in by appending: its bytes and a copy of the raw image's directory with the tag go after the end of
 // the file, and the one offset that led to the old directory leads to the copy. Every other byte stays where and as it
 // is, so that nothing that this program does not know is lost. Exiv2 writes such files anew, and libtiff does not
 // rewrite a SubIFD.

@@ -84,7 +84,7 @@ std::vector<std::string> elements(const std::string &list) {
     const std::vector<std::string> words = split(list);
     for (const std::string &word : words)
         if (word.empty())
-            throw std::invalid_argument(list + ": a comma has no value before or behind it; give values with one comma "
+            throw std::invalid_argument(list + ": a value is missing before or after a comma; give values with one comma "
                                                "between two of them");
     return words;
 }

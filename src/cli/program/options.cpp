@@ -105,7 +105,7 @@ bool looks_like_option(const std::string &word) {
 }
 
 // Brings the words of a command line into the order in which CLI11 takes them as they are meant: the commands, options
-// with their values, "--", positionals. Else it takes an option for the value of the one before it, and "--" behind a
+// with their values, "--", positionals. Else it takes an option for the value of the one before it, and "--" after a
 // positional for the end of the command. Failure (usage) for the first word that fits nowhere.
 class SortedWords {
 public:

@@ -18,7 +18,7 @@ struct KnownExposures {
     double slope = 1.0;  // of the found exposures on them
     // none: they agree within their errors. order: they do not follow the pictures at all.
     Explanation explanation = Explanation::none;
-    uint32_t image = 0;  // one: that is wrong; step: the first behind it
+    uint32_t image = 0;  // one: that is wrong; step: the first after it
     double off_ev =
         0.0;  // by how much it is wrong, the step, or the largest distance of any; order: how the pictures differ
 };

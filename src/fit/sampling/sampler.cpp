@@ -48,7 +48,7 @@ int overlap_of(const lensprof_camera &first, const lensprof_camera &second) {
     return seen;
 }
 
-// Moves the lists, in order, behind each other.
+// Moves the lists, in order, one after the other.
 template <class T>
 void append(std::vector<std::vector<T>> &lists, std::vector<T> &all) {
     for (auto &list : lists) {

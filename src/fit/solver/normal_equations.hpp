@@ -56,7 +56,7 @@ protected:
 
     NormalEquations(const Problem &problem, const Estimate &estimate);
 
-    // Derivatives by the lens, behind those by the modes, from those by k and centre of a falloff curve.
+    // Derivatives by the lens, after those by the modes, from those by k and centre of a falloff curve.
     void by_lens(const double by_k[3], const double by_center[2], int curve, double *by) const;
 
     void complete(const Sums &sums, const Prior &prior, const Estimate &estimate);

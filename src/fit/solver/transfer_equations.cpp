@@ -62,7 +62,7 @@ void TransferEquations::add_edge(const Edge &edge, const Loss &loss, const Noise
     auto emor = static_cast<Eigen::Index>(modes_);
     part.links.push_back({{edge.image[0], edge.image[1]}, {0.0, 0.0, 0.0}});
     PairTransfer t;
-    double lens[3][kMaxShared];  // d delta / d shared, behind the modes, of each falloff curve
+    double lens[3][kMaxShared];  // d delta / d shared, after the modes, of each falloff curve
     for (size_t p = edge.first; p < edge.last; p++) {
         evaluate_pair(problem_, estimate, problem_.pairs[p], ratio.data(), t);
         PairResiduals factor, residuals = weighted_residuals(t, problem_.channels, weights[p]);

@@ -64,7 +64,7 @@ struct PtoToken {
     size_t begin;  // of the value in the line
 };
 
-// Splits a line behind its record letter.
+// Splits a line after its record letter.
 std::vector<PtoToken> split_pto_line(std::string_view line, size_t number);
 
 // The first text in quotes of that name, without them; empty when the line has none.

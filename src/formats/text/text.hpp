@@ -64,7 +64,7 @@ private:
 
 inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
-// Next word between blanks; moves `line` behind it. Empty at the end of the line.
+// Next word between blanks; moves `line` past it. Empty at the end of the line.
 std::string_view next_word(std::string_view &line);
 
 // The whole of `text` as a finite number, whatever the process locale.

@@ -33,7 +33,7 @@ static int add_word(words *all, const char *word) {
     return 1;
 }
 
-/* The number at `text`, without zeros that say nothing: 24.0 is 24; and not the 1 of "1:2.8". Returns what is behind.
+/* The number at `text`, without zeros that say nothing: 24.0 is 24; and not the 1 of "1:2.8". Returns what follows.
  */
 static const char *take_number(words *all, const char *text, int *fits) {
     char word[WORD_BYTES] = "";
