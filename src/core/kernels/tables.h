@@ -60,7 +60,7 @@ ALWAYS_INLINE void light_by_table(const lensprof_plan *shared, const run *r, str
     const uint32_t bytes = sample == LENSPROF_SAMPLE_U8 ? 1 : sample == LENSPROF_SAMPLE_U16 ? 2 : 4;
     const int is_light = sample != LENSPROF_SAMPLE_F32; /* codes are */
     const lane_f most = f_set((float)LAST);
-    float *light = s->light + r->at, last[LANES];
+    float *light = s->light + r->at, last[LANES] = {0.0f};
     int32_t *place = s->place + r->at;
     own.dither = 0, own.encode = LP_CURVE_TABLE;
     for (uint32_t i = 0; i < r->count; i += LANES) {
