@@ -89,8 +89,9 @@ typedef struct lensprof_lookup {
                           a camera's name in another country; 0.6 the same words in another order or form, all
                           numbers and generations the same, where nothing better is stored */
     char reason[256];  /* cautions, whole sentences as far as they fit; where nothing is found, why */
-    uint32_t reason_code[LENSPROF_LOOKUP_REASONS]; /* lensprof_reason of each of its sentences, in their order; NONE
-                                                      after the last. The numbers are the other members */
+    uint32_t reason_code[LENSPROF_LOOKUP_REASONS]; /* lensprof_reason of each sentence, in their order, also of those
+                                                      that `reason` has no room for; NONE after the last. The numbers
+                                                      are the other members */
 } lensprof_lookup;
 
 /* All zero. */

@@ -30,9 +30,10 @@ void run_on_threads(uint32_t threads, const Run &run) {
     for (auto &thread : others) thread.join();
 }
 
-// Calls work(item, thread) for every item below `count`, on at most `threads` threads; thread 0 is the calling one. No
-// item is begun after a call has returned false or thrown. Returns whether all calls returned true; throws what the
-// lowest of the items that failed has thrown.
+// Calls work(item, thread) for every item below `count`, on at most `threads` threads; thread 0 is the calling one.
+// Items are taken by rising number, and none after a call has returned false or thrown: all items below one that was
+// begun are begun, too. Returns whether all calls returned true; throws what the lowest of the items that failed has
+// thrown.
 template <class Work>
 bool for_each_item(uint32_t count, uint32_t threads, const Work &work) {
     std::atomic<uint32_t> next{0};
@@ -41,7 +42,9 @@ bool for_each_item(uint32_t count, uint32_t threads, const Work &work) {
     std::exception_ptr failure;
     uint32_t failed = count;
     run_on_threads(std::min(threads, count), [&](uint32_t thread) {
-        for (uint32_t item = next++; item < count && !ended; item = next++) {
+        while (!ended) {  // looked at before an item is taken: one that is taken is begun
+            const uint32_t item = next++;
+            if (item >= count) break;
             try {
                 if (!work(item, thread)) ended = true;
             } catch (...) {

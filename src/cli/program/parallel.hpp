@@ -11,8 +11,7 @@
 namespace lensprof {
 
 // Calls work(i) for every i below count, several at once, and shows progress as `what`. After a failure or an interrupt
-// no new item is begun; the failure of the lowest item is thrown, so that the message does not depend on timing
-// alone.
+// no new item is begun; the failure of the lowest item is thrown, whatever the timing.
 void for_each_parallel(uint32_t count, const std::string &what, Progress &progress,
                        const std::function<void(uint32_t)> &work);
 
