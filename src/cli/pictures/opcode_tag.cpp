@@ -44,8 +44,8 @@ public:
             reader_ = std::make_unique<TiffReader>(
                 size_, [&](uint64_t offset, uint8_t *bytes, size_t count) { read(offset, bytes, count); });
             find_image();
-        } catch (TiffDefect defect) {
-            fail(text_of(defect));
+        } catch (const UnusableTiff &unusable) {
+            fail(text_of(unusable.defect));
         }
     }
 
@@ -96,23 +96,26 @@ private:
         reader_->check_blocks(image_);
     }
 
-    // Sets raw_, too.
+    // Sets raw_, too. Holds a few directories at a time, however many there are.
     TiffDirectory choose() {
-        std::optional<TiffDirectory> preview, first;
-        for (uint64_t pointer = 4; pointer;) {
+        std::optional<TiffDirectory> first, preview, image;
+        const auto look_at = [&](TiffDirectory directory) {
+            if (image || !has_raw(directory)) return;
+            raw_ = true;
+            if (reader_->number(directory, tag_subfile_type, 0) == 0)
+                image = std::move(directory);
+            else if (!preview)
+                preview = std::move(directory);
+        };
+        for (uint64_t pointer = 4; pointer && !image;) {
             TiffDirectory directory = reader_->directory(pointer);
-            std::vector<TiffDirectory> family = reader_->children(directory);
+            const std::vector<uint64_t> children = reader_->children(directory);
             pointer = directory.next ? directory.next_pointer() : 0;
-            family.insert(family.begin(), std::move(directory));
-            if (!first) first = family.front();
-            for (TiffDirectory &one : family) {
-                if (!has_raw(one)) continue;
-                raw_ = true;
-                if (reader_->number(one, tag_subfile_type, 0) == 0) return std::move(one);
-                if (!preview) preview = std::move(one);
-            }
+            if (!first) first = directory;
+            look_at(std::move(directory));
+            for (uint64_t child : children) look_at(reader_->directory(child));
         }
-        return preview ? *preview : *first;
+        return image ? *image : preview ? *preview : *first;
     }
 
     bool has_raw(const TiffDirectory &directory) {

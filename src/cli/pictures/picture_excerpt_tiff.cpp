@@ -123,7 +123,7 @@ bool TiffExcerpt::make() {
     const uint64_t size = file_bytes(file.get());
     std::vector<uint8_t> directory, piece;
     TiffReader reader(size, [&](uint64_t offset, uint8_t *bytes, size_t count) {
-        if (!read_at(file.get(), offset, count, piece)) throw TiffDefect::cut_off;
+        if (!read_at(file.get(), offset, count, piece)) throw UnusableTiff(TiffDefect::cut_off);
         std::copy(piece.begin(), piece.end(), bytes);
     });
     order_ = reader.order();
@@ -153,7 +153,7 @@ bool TiffExcerpt::replace(const uint8_t *edited, size_t size) const {
         TiffReader reader(
             size, [&](uint64_t offset, uint8_t *bytes, size_t count) { std::copy_n(edited + offset, count, bytes); });
         if (!is_strip_tiff(reader, tiff) || tiff.starts.values.size() != strips_.size()) return false;
-    } catch (TiffDefect) {
+    } catch (const UnusableTiff &) {
         return false;
     }
     const uint32_t pixels = tiff.starts.values[0];
@@ -206,7 +206,7 @@ std::unique_ptr<PictureExcerpt> excerpt_of_tiff(const std::string &path) {
     auto excerpt = std::make_unique<TiffExcerpt>(path);
     try {
         return excerpt->make() ? std::move(excerpt) : nullptr;
-    } catch (TiffDefect) {
+    } catch (const UnusableTiff &) {
         return nullptr;
     }
 }

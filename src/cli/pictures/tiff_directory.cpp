@@ -36,25 +36,25 @@ const TiffEntry *TiffDirectory::find(uint16_t tag) const {
 }
 
 TiffReader::TiffReader(uint64_t size, Read read) : size_(size), read_(std::move(read)) {
-    if (size_ < header_bytes) throw TiffDefect::not_tiff;
+    if (size_ < header_bytes) throw UnusableTiff(TiffDefect::not_tiff);
     const std::vector<uint8_t> head = this->read(0, header_bytes);
     order_.big = head[0] == 'M';
     const uint32_t version = order_.get(&head[2], 2);
     if (head[0] != head[1] || (head[0] != 'I' && head[0] != 'M') || (version != 42 && version != 43))
-        throw TiffDefect::not_tiff;
-    if (version == 43) throw TiffDefect::big_tiff;
-    if (order_.get(&head[4], 4) == 0) throw TiffDefect::no_directory;
+        throw UnusableTiff(TiffDefect::not_tiff);
+    if (version == 43) throw UnusableTiff(TiffDefect::big_tiff);
+    if (order_.get(&head[4], 4) == 0) throw UnusableTiff(TiffDefect::no_directory);
 }
 
 std::vector<uint8_t> TiffReader::read(uint64_t offset, uint64_t count) {
-    if (!has(offset, count)) throw TiffDefect::cut_off;
+    if (!has(offset, count)) throw UnusableTiff(TiffDefect::cut_off);
     std::vector<uint8_t> bytes(static_cast<size_t>(count));
     if (count) read_(offset, bytes.data(), bytes.size());
     return bytes;
 }
 
 TiffDirectory TiffReader::directory(uint64_t pointer) {
-    if (++directories_ > most_directories) throw TiffDefect::circle;
+    if (++directories_ > most_directories) throw UnusableTiff(TiffDefect::circle);
     const uint64_t offset = order_.get(read(pointer, 4).data(), 4);
     const uint32_t count = order_.get(read(offset, 2).data(), 2);
     const std::vector<uint8_t> bytes = read(offset + 2, count * entry_bytes + 4);
@@ -71,19 +71,19 @@ TiffDirectory TiffReader::directory(uint64_t pointer) {
     return directory;
 }
 
-std::vector<TiffDirectory> TiffReader::children(const TiffDirectory &directory) {
-    std::vector<TiffDirectory> children;
+std::vector<uint64_t> TiffReader::children(const TiffDirectory &directory) const {
+    std::vector<uint64_t> children;
     const TiffEntry *entry = directory.find(tag_sub_ifds);
     if (!entry || (entry->type != tiff_long && entry->type != tiff_ifd)) return children;
-    if (entry->count > most_directories) throw TiffDefect::circle;
+    if (entry->count > most_directories) throw UnusableTiff(TiffDefect::circle);
     const uint64_t first = place(*entry);
-    for (uint32_t i = 0; i < entry->count; ++i) children.push_back(this->directory(first + 4 * uint64_t(i)));
+    for (uint32_t i = 0; i < entry->count; ++i) children.push_back(first + 4 * uint64_t(i));
     return children;
 }
 
 uint64_t TiffReader::place(const TiffEntry &entry) const {
     const uint64_t at = entry.inside() ? entry.field : order_.get(entry.value, 4);
-    if (!has(at, entry.bytes())) throw TiffDefect::cut_off;
+    if (!has(at, entry.bytes())) throw UnusableTiff(TiffDefect::cut_off);
     return at;
 }
 
@@ -110,7 +110,7 @@ uint32_t TiffReader::number(const TiffDirectory &directory, uint16_t tag, uint32
 void TiffReader::check_blocks(const TiffDirectory &directory, uint16_t offsets_tag, uint16_t bytes_tag) {
     const std::vector<uint32_t> offsets = numbers(directory, offsets_tag), bytes = numbers(directory, bytes_tag);
     for (size_t i = 0; i < std::min(offsets.size(), bytes.size()); ++i)
-        if (!has(offsets[i], bytes[i])) throw TiffDefect::pixels_cut_off;
+        if (!has(offsets[i], bytes[i])) throw UnusableTiff(TiffDefect::pixels_cut_off);
 }
 
 void TiffReader::check_values(const TiffDirectory &directory) const {

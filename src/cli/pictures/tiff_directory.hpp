@@ -4,12 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <vector>
 
 namespace lensprof {
 
-// What makes a TIFF unusable; thrown by TiffReader.
+// What makes a TIFF unusable.
 enum class TiffDefect {
     not_tiff,
     big_tiff,
@@ -17,6 +18,14 @@ enum class TiffDefect {
     cut_off,         // it ends before a directory or a value
     pixels_cut_off,  // it ends before the end of a strip or tile
     circle,          // directories that lead to each other, or over 256 of them
+};
+
+// Thrown by TiffReader.
+struct UnusableTiff : std::exception {
+    explicit UnusableTiff(TiffDefect why) : defect(why) {}
+    const char *what() const noexcept override { return "the TIFF file is unusable"; }
+
+    TiffDefect defect;
 };
 
 constexpr uint16_t tiff_byte = 1, tiff_short = 3, tiff_long = 4, tiff_undefined = 7, tiff_ifd = 13;
@@ -65,8 +74,9 @@ public:
     TiffDirectory directory(uint64_t pointer);
     TiffDirectory first() { return directory(4); }
 
-    // Those that its SubIFDs tag names; none where it has no such tag.
-    std::vector<TiffDirectory> children(const TiffDirectory &directory);
+    // Pointers to the directories that its SubIFDs tag names; none where it has no such tag. A directory may have 65535
+    // entries, so a caller reads one after the other.
+    std::vector<uint64_t> children(const TiffDirectory &directory) const;
 
     // All values of a directory must be in the file; and the strips and tiles that it declares.
     void check_values(const TiffDirectory &directory) const;
