@@ -104,6 +104,8 @@ void test_options_are_no_values(void **) {
         {{"query", "--db", "--json", "--camera", "X"}, "--db: needs a value, and --json looks like an option"},
         {{"apply", "-o", "--linear", "x.png"}, "--output: needs a value, and --linear looks like an option"},
         {{"query", "--camera", "-X"}, "--camera: needs a value, and -X looks like an option"},
+        {{"query", "--camera", "X", "--db", "-1.db"}, "--db: needs a value, and -1.db looks like an option"},
+        {{"query", "--db=a", "--camera", "X", "--focal", "-1e-3"}, "--focal: -1e-3 is not a number"},
         {{"query", "--camera"}, "--camera: needs a value; give --camera TEXT"},
         {{"query", "--camera", "--", "X"}, "--camera: needs a value"},
         {{"query", "--db", "a", "--db", "b"}, "--db: is given more than once; give it once"},
@@ -111,11 +113,35 @@ void test_options_are_no_values(void **) {
         {{"apply", "x.png"}, "--output: is needed; give --output FILE"},
         {{"build"}, "PROJECT: is needed; give PROJECT"},
         {{"apply", "-x.png"}, "-x.png: no such option; see `lensprof apply --help`, or put -- before names"},
+        {{"apply", "-y"}, "-y: no such option; did you mean -h? Else put -- before names that begin with -\n"},
+        {{"apply", "--jsn"}, "--jsn: no such option; did you mean --json?\n"},
+        {{"query", "-y"}, "-y: no such option; did you mean -h?\n"},
         {{"build", "a.pto", "b.pto"}, "b.pto: is more than this command takes"},
     };
     for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
     assert_refused(unreadable, {"bracket", "-", scene("img000.png"), "--no-store", "--ev", "-1.5,-.5"}, {"-: cannot"});
     assert_refused(not_found, {"query", "--db=-x.db", "--camera=-X", "--json=false"}, {"-x.db: no such file"});
+}
+
+// A word within brackets is no list, and is told as it was given.
+void test_words_within_brackets(void **) {
+    assert_refused(usage, {"profile", "show", "[1]"}, {": [1] is no number of a profile"});
+    assert_refused(usage, {"help", "[x]"}, {"lensprof: [x]: no such command"});
+    assert_refused(not_found, {"query", "--camera", "[X,Y]", "--db", work("[p.db]")}, {work("[p.db]")});
+    const std::string copy = copy_of("scene"), before = fs::current_path().string();
+    fs::rename(copy + "/img000.png", copy + "/[x]");
+    fs::current_path(copy);
+    const Outcome outcome = run_words({"bracket", "[x]", "img001.png", "--no-store", "--json", "--pairs", "300"});
+    fs::current_path(before);
+    if (!contains(outcome.out, "\"file\":\"[x]\"")) fail_msg("%s%s", outcome.out.c_str(), outcome.err.c_str());
+}
+
+// As "--output=FILE" and "-oFILE".
+void test_a_short_option_with_an_equals_sign(void **) {
+    const std::string out = work("out");
+    must_exit(done, {"simulate", "-o=" + out, "--images", "2", "--size", "40x30"});
+    assert_true(fs::exists(out + "/pano.pto"));
+    assert_refused(usage, {"simulate", "-o="}, {"--output: names no file; give one"});
 }
 
 // "--" ends the options wherever it stands.
@@ -232,15 +258,17 @@ void test_units(void **) {
         {{"--distance", "nan"}, "nan"},
         {{"--focal", "0x18"}, "0x18 is not a number"},
         {{"--focal", "-0X1p3"}, "-0X1p3 is not a number"},
+        {{"--focal", " 0x18"}, " 0x18 is not a number"},
+        {{"--focal", " 24"}, " 24 is not a number"},
         {{"--focal", "inf"}, "inf is not a number"},
     };
     for (const auto &one : wrong)
         assert_refused(usage, Words{"query", "--camera", "X", "--db", work("p.db")} + one.words,
                        {one.words[0] + ": ", one.said});
     const Words bracket = {"bracket", scene("img000.png"), scene("img001.png"), "--no-store", "--times"};
-    for (const char *times : {"1/60ms,1/30", "1/0,1", "1/60,", ",1", "1/60s,1m"})
+    for (const char *times : {"1/60ms,1/30", "1/0,1", "1/60,", ",1", "1/60s,1m", "1/ 0x2,1", "1/60, 1"})
         assert_refused(usage, bracket + Words{times}, {"--times: "});
-    assert_refused(usage, bracket + Words{"1/60"}, {"--times: 1 values for 2 pictures"});
+    assert_refused(usage, bracket + Words{"1/60"}, {"--times: 1 value for 2 pictures"});
 }
 
 // Times with and without units are the same exposures.
@@ -316,6 +344,7 @@ void test_bad_options(void **) {
         {"simulate", "-o", work("s"), "--hfov", "160"},
         {"simulate", "-o", work("s"), "--response", "magic"},
         {"simulate", "-o", work("s"), "--response", "gamma:0"},
+        {"simulate", "-o", work("s"), "--response", "gamma: 0x2"},
         {"simulate", "-o", work("s"), "--response", "emor:99"},
         {"simulate", "-o", work("s"), "--vignetting", "1,2"},
         {"simulate", "-o", work("s"), "--vignetting", "-5,0,0"},
@@ -345,6 +374,8 @@ int main() {
         CLI_TEST(test_no_value_may_be_empty),
         CLI_TEST(test_the_nearest_is_named),
         CLI_TEST(test_options_are_no_values),
+        CLI_TEST(test_words_within_brackets),
+        CLI_TEST(test_a_short_option_with_an_equals_sign),
         CLI_TEST(test_two_dashes_end_options),
         CLI_TEST(test_version),
         CLI_TEST(test_empty_values_that_are_needed),

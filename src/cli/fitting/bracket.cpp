@@ -53,9 +53,9 @@ void declare(Command &command, Options &o) {
 
 // The exposures of the command line, EV; empty when it says nothing.
 std::vector<double> given_exposures(const Options &o) {
-    if (!o.ev.empty()) demand_count(o.ev, "--ev", o.files.size(), "pictures");
+    if (!o.ev.empty()) demand_count(o.ev.size(), "--ev", o.files.size(), "picture");
     if (!o.ev.empty() || o.times_s.empty()) return o.ev;
-    demand_count(o.times_s, "--times", o.files.size(), "pictures");
+    demand_count(o.times_s.size(), "--times", o.files.size(), "picture");
     std::vector<double> ev;
     for (const double time_s : o.times_s) ev.push_back(std::log2(time_s));
     return ev;

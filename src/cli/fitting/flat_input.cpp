@@ -22,10 +22,7 @@ std::vector<uint32_t> shots_of(const FlatCommand &o) {
         for (uint32_t i = 0; i < o.files.size(); i++) shots.push_back(i + 1);
         return shots;
     }
-    if (o.shots.size() != o.files.size())
-        throw Failure(ExitCode::usage, "--shots: " + std::to_string(o.shots.size()) + " values for "
-                                           + std::to_string(o.files.size())
-                                           + " pictures; give one for each, in their order");
+    demand_count(o.shots.size(), "--shots", o.files.size(), "picture");
     return o.shots;
 }
 
@@ -36,7 +33,7 @@ std::vector<double> turns_of(const FlatCommand &o, const std::vector<uint32_t> &
         if (std::find(order.begin(), order.end(), shot) == order.end()) order.push_back(shot);
     std::vector<double> turns(shots.size(), 0.0);
     if (o.turned_deg.empty()) return turns;
-    demand_count(o.turned_deg, "--turned", order.size(), "shots");
+    demand_count(o.turned_deg.size(), "--turned", order.size(), "shot");
     for (size_t i = 0; i < shots.size(); i++)
         turns[i] = o.turned_deg[static_cast<size_t>(std::find(order.begin(), order.end(), shots[i]) - order.begin())];
     return turns;
@@ -50,7 +47,7 @@ bool needs_ev(const FlatCommand &o, const std::vector<uint32_t> &shots, size_t i
 std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_t> &shots,
                                  const std::vector<PictureMetadata> &metadata) {
     std::vector<double> ev(shots.size(), 0.0);
-    if (!o.ev.empty()) demand_count(o.ev, "--ev", o.files.size(), "pictures");
+    if (!o.ev.empty()) demand_count(o.ev.size(), "--ev", o.files.size(), "picture");
     if (!o.ev.empty()) ev = o.ev;
     for (size_t i = 0; i < ev.size(); i++) {
         if (o.ev.empty() && needs_ev(o, shots, i)) {
@@ -138,8 +135,9 @@ void check_flat_options(const FlatCommand &o) {
         throw Failure(ExitCode::usage, "--several: a card of one brightness has even light; leave out --light");
     if (o.find_card && !o.cards.empty()) throw Failure(ExitCode::usage, "--card and --find-card contradict each other");
     if (o.cards.size() > 1 && o.cards.size() != o.files.size())
-        throw Failure(ExitCode::usage, std::to_string(o.cards.size()) + " --card for " + std::to_string(o.files.size())
-                                           + " pictures; give one for all, or one for each");
+        throw Failure(ExitCode::usage, std::to_string(o.cards.size()) + " --card for "
+                                           + counted(o.files.size(), "picture")
+                                           + "; give one for all, or one for each");
 }
 
 FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {

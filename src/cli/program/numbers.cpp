@@ -1,10 +1,12 @@
 #include "cli/program/numbers.hpp"
 
+#include <cctype>
 #include <cstdlib>
 #include <sstream>
 #include <stdexcept>
 
 #include "cli/program/error.hpp"
+#include "cli/program/format.hpp"
 
 namespace lensprof {
 namespace {
@@ -30,9 +32,11 @@ std::string range_text(const Quantity &quantity) {
 }
 
 // The decimal number, or infinity, at the start of `text`, of which it leaves the rest; false where there is none.
+// strtod would also take hexadecimal digits, and a number behind blanks.
 bool take_number(const char *&text, double &value) {
     const char *digits = text + (*text == '-' || *text == '+');
-    if (digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X')) return false;  // strtod would take it
+    const bool is_hexadecimal = digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X');
+    if (is_hexadecimal || std::isspace(static_cast<unsigned char>(*text))) return false;
     char *end = nullptr;
     value = std::strtod(text, &end);
     const bool found = end != text;
@@ -89,10 +93,9 @@ std::vector<std::string> elements(const std::string &list) {
     return words;
 }
 
-void demand_count(const std::vector<double> &values, const std::string &option, size_t count, const char *things) {
-    if (values.size() != count)
-        throw Failure(ExitCode::usage, option + ": " + std::to_string(values.size()) + " values for "
-                                           + std::to_string(count) + " " + things
+void demand_count(size_t values, const std::string &option, size_t count, const std::string &thing) {
+    if (values != count)
+        throw Failure(ExitCode::usage, option + ": " + counted(values, "value") + " for " + counted(count, thing)
                                            + "; give one for each, in their order");
 }
 

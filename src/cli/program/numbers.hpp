@@ -41,8 +41,8 @@ std::vector<std::string> split(const std::string &list, char separator = ',');
 // The same, where none may be empty. std::invalid_argument as above.
 std::vector<std::string> elements(const std::string &list);
 
-// Failure (usage) that names the option where a list does not have one number for each of `count` `things`
-// ("pictures").
-void demand_count(const std::vector<double> &values, const std::string &option, size_t count, const char *things);
+// Failure (usage) that names the option where a list of so many `values` does not have one for each of `count` things
+// ("picture").
+void demand_count(size_t values, const std::string &option, size_t count, const std::string &thing);
 
 }  // namespace lensprof

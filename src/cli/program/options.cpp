@@ -99,10 +99,18 @@ std::string empty_text(const CLI::Option &option) {
 
 bool is_flag(const CLI::Option &option) { return option.get_items_expected_max() == 0; }
 
-// "-o" and "--output"; neither "-", a file by custom, nor "-1.5".
-bool looks_like_option(const std::string &word) {
-    return word.size() > 1 && word[0] == '-' && std::string("0123456789.").find(word[1]) == std::string::npos;
+// "-o", "--output" and "-1.db"; neither "-", a file by custom, nor numbers: "-1.5", "-1/8,1e-3". An option of numbers
+// says itself what is wrong with "-3x".
+bool looks_like_option(const std::string &word, const CLI::Option &option) {
+    if (word.size() < 2 || word[0] != '-') return false;
+    if (std::string("0123456789.").find(word[1]) == std::string::npos) return true;
+    const std::string type = option.get_type_name();
+    const bool takes_numbers = type.rfind("NUMBER", 0) == 0 || type.rfind("COUNT", 0) == 0;
+    return !takes_numbers && word.find_first_not_of("0123456789.,/eE+-", 1) != std::string::npos;
 }
+
+// CLI11 takes a value within brackets for a list, and one behind this character for text.
+constexpr char text_mark = '=';
 
 // Brings the words of a command line into the order in which CLI11 takes them as they are meant: the commands, options
 // with their values, "--", positionals. Else it takes an option for the value of the one before it, and "--" after a
@@ -151,9 +159,7 @@ private:
         if (wants_help_) return;
         if (positionals_.size() == room())
             throw Failure(ExitCode::usage, word + ": is more than this command takes; see " + own_help());
-        // A folder, say; CLI11 would take what is within brackets for a list.
-        const bool is_list = word.size() > 1 && word.front() == '[' && word.back() == ']';
-        positionals_.push_back((is_list ? "./" : "") + word);
+        positionals_.push_back(text_mark + word);
     }
 
     void take_option(const std::string &word) {
@@ -161,19 +167,25 @@ private:
         const size_t equal = word.find('=');
         const std::string name = word.substr(0, equal);
         const CLI::Option *option = app_->get_option_no_throw(is_long ? name : word.substr(0, 2));
-        if (!option || (!is_long && is_flag(*option) && word.size() > 2))
-            throw Failure(
-                ExitCode::usage,
-                name + ": no such option"
-                    + advice(name, names_of_options(*app_),
-                             "see " + own_help() + (room() ? ", or put -- before names that begin with -" : "")));
+        if (!option || (!is_long && is_flag(*option) && word.size() > 2)) fail_no_option(name, is_long);
         if (is_flag(*option)) return take_flag(*option, equal == std::string::npos ? "true" : word.substr(equal + 1));
         const bool has_value = is_long ? equal != std::string::npos : word.size() > 2;
-        const std::string value = has_value ? word.substr(is_long ? equal + 1 : 2) : next_value(*option);
+        const size_t value_at = is_long || equal == 2 ? equal + 1 : 2;  // of --output=FILE, -o=FILE and -oFILE
+        const std::string value = has_value ? word.substr(value_at) : next_value(*option);
         if (counts_[option]++ > 0 && option->get_items_expected_max() == 1)
             throw Failure(ExitCode::usage, option->get_name() + ": is given more than once; give it once");
         options_.push_back(option->get_name());
-        options_.push_back(value);
+        options_.push_back(text_mark + value);
+    }
+
+    // A word with one dash may be the name of a file, whatever option is near.
+    [[noreturn]] void fail_no_option(const std::string &name, bool is_long) const {
+        const std::string nearest = did_you_mean(name, names_of_options(*app_)),
+                          hint = "put -- before names that begin with -";
+        throw Failure(ExitCode::usage, name + ": no such option"
+                                           + (nearest.empty() ? "; see " + own_help() + (room() ? ", or " + hint : "")
+                                              : room() && !is_long ? nearest + " Else " + hint
+                                                                   : nearest));
     }
 
     // An option of the program itself, as --version, is all that is done.
@@ -194,7 +206,7 @@ private:
         const std::string name = option.get_name(), give = "; give " + name + " " + option.get_type_name();
         if (at_ == words_.size()) throw Failure(ExitCode::usage, name + ": needs a value" + give);
         const std::string &word = words_[at_++];
-        if (!looks_like_option(word)) return word;
+        if (!looks_like_option(word, option)) return word;
         throw Failure(ExitCode::usage, name + ": needs a value, and " + word + " looks like an option" + give + ", or "
                                            + name + "=" + word + " if that is the value");
     }
@@ -241,7 +253,8 @@ CLI::Option *Command::add_option(const char *names, const std::string &type, con
                                  const std::string &about) {
     const std::string all = names, name = all.substr(all.rfind(',') + 1);
     const auto take = [app = app_, name, read](const std::vector<std::string> &words) {
-        for (const std::string &word : words) try {
+        for (const std::string &marked : words) try {
+                const std::string word = marked.substr(1);  // without text_mark
                 if (word.empty()) throw std::invalid_argument(empty_text(*app->get_option(name)));
                 read(word);
             } catch (const std::invalid_argument &wrong) {
