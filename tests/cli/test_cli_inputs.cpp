@@ -164,6 +164,15 @@ void test_image_without_a_name(void **) {
         assert_refused(unreadable, words, {pto + ": image 1 names no file", "correct the project"});
 }
 
+// Warnings, too, are lines for a terminal: of names, control characters of one and of two bytes are spelt.
+void test_names_with_control_characters(void **) {
+    const std::string name = work("a\x1b[31m\xc2\x9b\xc2\xa0.jpg");
+    fs::copy_file(mixed("img005.jpg"), name);
+    const std::string err = run_words({"flat", name, "--linear", "--no-store"}).err;
+    assert_true(contains(err, "warning: " + work("a\\x1b[31m\\xc2\\x9b\xc2\xa0.jpg") + ": JPEG rounds"));
+    assert_false(contains(err, "\x1b") || contains(err, "\xc2\x9b"));
+}
+
 void test_files_in_place_of_folders(void **) {
     const std::string pto = scene("pano.pto"), file = scene("img000.png");
     must_exit(done, Words{"build", pto, "--db", work("p.db")} + quick);
@@ -228,6 +237,7 @@ int main() {
         CLI_TEST(test_pictures_are_checked_first),
         CLI_TEST(test_many_files),
         CLI_TEST(test_image_without_a_name),
+        CLI_TEST(test_names_with_control_characters),
         CLI_TEST(test_files_in_place_of_folders),
         CLI_TEST(test_names_that_are_too_long),
         CLI_TEST(test_names_that_are_not_utf8),

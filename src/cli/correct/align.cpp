@@ -12,6 +12,7 @@
 #include "cli/fitting/static_camera.hpp"
 #include "cli/pictures/clipping.hpp"
 #include "cli/program/commands.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/report/falloff.hpp"
@@ -185,9 +186,12 @@ int align(const Options &o, Streams &streams) {
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;
     if (!fitted.result.usable && o.pto.empty()) verdict.text += "; frames of a camera that moved need --project";
-    if (!verdict.text.empty())
-        streams.err << "lensprof: " << (fitted.result.usable ? "warning: " + item + ": " : item + ": not usable: ")
-                    << verdict.text << (fitted.result.usable ? "" : "; nothing was written") << "\n";
+    if (!verdict.text.empty()) {
+        if (fitted.result.usable)
+            warn(streams, item + ": " + verdict.text);
+        else
+            tell(streams, item + ": not usable: " + verdict.text + "; nothing was written");
+    }
     if (o.json) print_json(report(o, fitted, verdict, exposures, written), streams.out);
     for (const auto &entry : written.pictures)
         if (!o.json) streams.out << entry["output"].get<std::string>() << "\n";

@@ -12,6 +12,7 @@
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
@@ -204,7 +205,7 @@ void say_predicted(const std::vector<Correction> &jobs, Streams &streams) {
         std::string text =
             "falloff " + describe_prediction(how) + format(", standard error %.3f of M in the corner", how.sigma);
         if (*how.reason) text += std::string("; ") + how.reason;
-        if (said.insert(text).second) streams.err << "lensprof: note: " << job.source << ": " << text << "\n";
+        if (said.insert(text).second) note(streams, job.source + ": " + text);
     }
 }
 

@@ -10,6 +10,7 @@
 #include "cli/fitting/static_camera.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/numbers.hpp"
 #include "cli/program/options.hpp"
 
@@ -147,9 +148,8 @@ void report_members(const std::vector<uint32_t> &members, const std::vector<lens
             bool known = images[i].known_ev_sigma > 0.0 && zero.known_ev_sigma > 0.0;
             exposure.ev = known ? images[i].known_ev - zero.known_ev : NAN;
             quality[i].component = i;
-            streams.err
-                << "lensprof: warning: " << report.names[i]
-                << ": shows hardly anything between black and white that another picture shows, too; left out\n";
+            warn(streams, report.names[i] + ": shows hardly anything between black and white that another picture "
+                          "shows, too; left out");
         }
         report.exposures.push_back(exposure);
     }
@@ -192,7 +192,7 @@ void check_exposures_known(const Options &o, const std::vector<lensprof_fit_imag
     for (size_t i = 0; i < images.size() && is_debevec(o); i++)
         if (!(images[i].known_ev_sigma > 0.0))
             throw Failure(ExitCode::usage, o.files[i] + ": --method debevec wants known exposures of all pictures, and "
-                                                        "EXIF does not tell this one; give --ev or --times, or use "
+                                                        "EXIF does not give that of this one; give --ev or --times, or use "
                                                         "--method transfer");
 }
 

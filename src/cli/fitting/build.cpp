@@ -11,6 +11,7 @@
 #include "cli/fitting/project.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
@@ -120,8 +121,8 @@ lensprof_profile_key profile_key(const Options &o, const Project &project, const
         auto differ = [](double a, double b) { return a != b && a != LENSPROF_UNKNOWN && b != LENSPROF_UNKNOWN; };
         if (path_exists(project.files[i])
             && (differ(other.aperture, key.aperture) || differ(other.focal_mm, key.focal_mm)))
-            streams.err << "lensprof: warning: " << project.files[i] << ": aperture or focal length differ from "
-                        << file << "; one falloff is estimated for both\n";
+            warn(streams, project.files[i] + ": aperture or focal length differ from " + file
+                              + "; one falloff is estimated for both");
     }
     return key;
 }
@@ -239,9 +240,9 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     }
     progress.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
-        streams.err << "lensprof: warning: " << o.pto
-                    << (o.points.empty() ? ": no EXIF exposures that differ" : ": EXIF is not read beside --points")
-                    << ": gamma rests on the prior\n";
+        warn(streams, o.pto
+                          + (o.points.empty() ? ": no EXIF exposures that differ" : ": EXIF is not read with --points")
+                          + ": gamma rests on the prior");
     return report;
 }
 
@@ -268,7 +269,7 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     int code = finish_fit(report, key, o.store, {method_name(o.fit.method), o.pto, o.json, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     if (!report.fit.usable && !o.pto_out.empty() && !o.store.force)
-        streams.err << "lensprof: " << o.pto_out << ": not written (--force writes it all the same)\n";
+        tell(streams, o.pto_out + ": not written (--force writes it all the same)");
     return code;
 }
 

@@ -8,6 +8,7 @@
 
 #include "cli/fitting/project.hpp"
 #include "cli/program/interrupt.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/report/falloff.hpp"
 
@@ -127,8 +128,7 @@ void add_known_exposures(const FitOptions &o, const std::vector<std::string> &fi
     for (size_t i = 0; i < images.size() && o.exif_sigma > 0.0; i++) {
         if (!metadata[i].exif_ev) continue;
         if (!(std::fabs(*metadata[i].exif_ev) < farthest)) {
-            streams.err << "lensprof: warning: " << files[i]
-                        << ": time, aperture and ISO in its EXIF cannot be true and are not used\n";
+            warn(streams, files[i] + ": time, aperture and ISO in its EXIF cannot be true and are not used");
             continue;
         }
         images[i].known_ev = *metadata[i].exif_ev;
@@ -181,6 +181,11 @@ BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure
     return report;
 }
 
+std::string not_usable_text(const std::string &source, const Verdict &verdict, const StoreOptions &store) {
+    return source + ": not usable: " + verdict.text
+           + (store.force || store.no_store ? "" : "; nothing was stored (--force stores it all the same)");
+}
+
 int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,
                Streams &streams) {
     bool good = report.fit.usable || store.force;
@@ -204,11 +209,8 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
     if (report.profile_id && !finish.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(store.db) << ": "
                     << describe_key(key) << "\n";
-    if (report.fit.usable && !report.verdict.text.empty())
-        streams.err << "lensprof: warning: " << finish.source << ": " << report.verdict.text << "\n";
-    if (!report.fit.usable)
-        streams.err << "lensprof: " << finish.source << ": not usable: " << report.verdict.text
-                    << (good || store.no_store ? "" : "; nothing was stored (--force stores it all the same)") << "\n";
+    if (report.fit.usable && !report.verdict.text.empty()) warn(streams, finish.source + ": " + report.verdict.text);
+    if (!report.fit.usable) tell(streams, not_usable_text(finish.source, report.verdict, store));
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }
 

@@ -79,6 +79,9 @@ struct Finish {
     const EarlierProfile *prior = nullptr;  // that the fit was given; or NULL
 };
 
+// What is said about a result that is not usable: of what, why, and that it was not stored where it could be.
+std::string not_usable_text(const std::string &source, const Verdict &verdict, const StoreOptions &store);
+
 // Stores a result that is usable or forced, prints it, says on standard error what is wrong with it. Returns the exit
 // code.
 int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,

@@ -9,6 +9,7 @@
 #include "cli/fitting/fitting.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/falloff.hpp"
@@ -82,10 +83,10 @@ void mind_jpeg(const FlatCommand &o, FlatInput &input, Streams &streams) {
     for (size_t i = 0; i < input.pictures.size(); i++) {
         if (input.pictures[i].traits.format != FileFormat::jpeg) continue;
         if (o.falloff_curves == 0) input.options.vignettings = 1;
-        streams.err
-            << "lensprof: warning: " << o.files[i]
-            << ": JPEG rounds grey values and colours over blocks of pixels, so that the falloff may be farther off "
-               "than stated (by half a level of the card's grey); RAW, or TIFF or PNG of 16 bit, is better\n";
+        warn(
+            streams,
+            o.files[i] + ": JPEG rounds grey values and colours over blocks of pixels, so that the falloff may be farther off "
+               "than stated (by half a level of the card's grey); RAW, or TIFF or PNG of 16 bit, is better");
         return;
     }
 }
@@ -146,12 +147,8 @@ int run(const FlatCommand &o, Streams &streams) {
     if (report.profile_id && !o.json)
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
                     << describe_key(input.key) << "\n";
-    if (report.fit.usable && !report.verdict.text.empty())
-        streams.err << "lensprof: warning: " << o.files.front() << ": " << report.verdict.text << "\n";
-    if (!report.fit.usable)
-        streams.err << "lensprof: " << o.files.front() << ": not usable: " << report.verdict.text
-                    << (good || o.store.no_store ? "" : "; nothing was stored (--force stores it all the same)")
-                    << "\n";
+    if (report.fit.usable && !report.verdict.text.empty()) warn(streams, o.files.front() + ": " + report.verdict.text);
+    if (!report.fit.usable) tell(streams, not_usable_text(o.files.front(), report.verdict, o.store));
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }
 

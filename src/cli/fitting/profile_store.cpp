@@ -3,6 +3,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
@@ -65,8 +66,8 @@ void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const s
     for (const std::string &option : metadata.cut)
         for (const auto &one : used)
             if (option == one.first && one.second && !o.no_store)
-                streams.err << "lensprof: warning: " << file << ": EXIF's text for " << option
-                            << " is longer than what is stored, and is cut; give a shorter one with " << option << "\n";
+                warn(streams, file + ": EXIF's text for " + option
+                                  + " is longer than what is stored, and is cut; give a shorter one with " + option);
 }
 
 lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &o, const std::string &file) {

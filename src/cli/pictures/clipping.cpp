@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "cli/program/format.hpp"
+#include "cli/program/message.hpp"
 
 namespace lensprof {
 namespace {
@@ -39,16 +40,13 @@ void warn_of_limits(const std::string &file, double own_ev, double wanted_ev, do
     constexpr double darker = -0.1, much_brighter = 3.0, worth_a_word = 0.002;  // EV; share
     const double change = wanted_ev - own_ev;
     if (change < darker && white > worth_a_word)
-        streams.err << "lensprof: warning: " << file
-                    << format(
-                           ": %.1f %% of it is white in some channel and becomes grey or coloured, %.1f EV darker; "
-                           "--to brightest keeps white",
-                           100.0 * white, -change)
-                    << "\n";
+        warn(streams,
+             file
+                 + format(": %.1f %% of it is white in some channel and becomes grey or coloured, %.1f EV darker; "
+                          "--to brightest keeps white",
+                          100.0 * white, -change));
     if (change > much_brighter)
-        streams.err << "lensprof: warning: " << file
-                    << format(": becomes %.1f EV brighter, and so does the noise of what is dark in it", change)
-                    << "\n";
+        warn(streams, file + format(": becomes %.1f EV brighter, and so does the noise of what is dark in it", change));
 }
 
 }  // namespace lensprof

@@ -9,6 +9,7 @@
 #include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
@@ -30,7 +31,7 @@ int report_damaged(lensprof_store *store, const std::vector<lensprof_store_row> 
     for (const auto &row : rows) {
         lensprof_error error{};
         if (!row.damaged || lensprof_store_get(store, row.id, profile.get(), &error) == LENSPROF_OK) continue;
-        streams.err << "lensprof: warning: " << error.text << "\n";
+        warn(streams, error.text);
         code = ExitCode::store;
     }
     return static_cast<int>(code);

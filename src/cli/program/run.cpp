@@ -6,7 +6,7 @@
 
 #include "cli/program/commands.hpp"
 #include "cli/program/error.hpp"
-#include "cli/program/utf8.hpp"
+#include "cli/program/message.hpp"
 
 namespace lensprof {
 namespace {
@@ -62,12 +62,12 @@ int run(const std::vector<std::string> &words, Streams &streams) {
         declare_all(program.root(), program);
         return program.run(words, streams);
     } catch (const Failure &failure) {
-        streams.err << "lensprof: " << one_line(failure.what()) << "\n";
+        tell(streams, failure.what());
         return static_cast<int>(failure.code);
     } catch (const std::bad_alloc &) {
-        streams.err << "lensprof: out of memory\n";
+        tell(streams, "out of memory");
     } catch (const std::exception &e) {
-        streams.err << "lensprof: " << e.what() << "\n";
+        tell(streams, e.what());
     }
     return static_cast<int>(ExitCode::failed);
 }

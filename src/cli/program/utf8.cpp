@@ -46,9 +46,13 @@ std::string one_line(const std::string &text) {
                + one_line(text.substr(tail));
     }
     std::string line;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        line += byte < 0x20 || byte == 0x7f ? format("\\x%02x", byte) : std::string(1, c);
+    for (size_t at = 0; at < text.size(); at++) {
+        const auto byte = static_cast<unsigned char>(text[at]);
+        const unsigned next = byte == 0xc2 && at + 1 < text.size() ? static_cast<unsigned char>(text[at + 1]) : 0u;
+        if (next >= 0x80 && next < 0xa0)
+            line += format("\\x%02x\\x%02x", byte, next), at++;
+        else
+            line += byte < 0x20 || byte == 0x7f ? format("\\x%02x", byte) : std::string(1, text[at]);
     }
     return line;
 }

@@ -14,7 +14,8 @@ bool is_utf8(const std::string &text);
 // The longest start of `text`, of at most `bytes` bytes, that does not cut a UTF-8 character.
 size_t utf8_cut(const std::string &text, size_t bytes);
 
-// A line for a terminal: control characters as \xNN, and of more than 2000 bytes the start and the end.
+// A line for a terminal: control characters, those of two bytes (U+0080 to U+009F) among them, as \xNN, and of more
+// than 2000 bytes the start and the end.
 std::string one_line(const std::string &text);
 
 }  // namespace lensprof

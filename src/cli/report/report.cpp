@@ -440,7 +440,7 @@ void print_comparison(const BuildReport &report, const TrueValues &truth, std::o
     }
     double gamma = square > 1e-6 && cross > 0 ? cross / square : 1.0;
     double ev_error = 0, ev_aligned = 0, m_error = 0, m_aligned = 0;
-    out << "\nrecovered beside true (aligned: with the exponent " << format("%.3f", gamma)
+    out << "\nrecovered next to true (aligned: with the exponent " << format("%.3f", gamma)
         << " that pictures alone leave open taken out)\n";
     out << "image      EV  recovered     true  aligned\n";
     for (size_t i = 0; i < n; i++) {

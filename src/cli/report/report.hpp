@@ -55,7 +55,7 @@ struct TrueValues {
 // Reads the truth.json of `simulate`; Failure (unreadable) when it is something else or of another number of images.
 TrueValues read_truth(const std::string &path, size_t images);
 
-// Recovered beside true values, raw and with the exponent gamma aligned (what pictures alone cannot tell).
+// Recovered next to true values, raw and with the exponent gamma aligned (what pictures alone cannot tell).
 void print_comparison(const BuildReport &report, const TrueValues &truth, std::ostream &out);
 
 // Parts of such objects, and of tables.

@@ -1,0 +1,16 @@
+// What people are told on standard error while a command runs.
+#pragma once
+
+#include <string>
+
+#include "cli/program/run.hpp"
+
+namespace lensprof {
+
+// One line that begins with "lensprof: ", with "lensprof: warning: " and "lensprof: note: ". Names of files and EXIF
+// may hold anything: control characters do not reach the terminal.
+void tell(Streams &streams, const std::string &text);
+void warn(Streams &streams, const std::string &text);
+void note(Streams &streams, const std::string &text);
+
+}  // namespace lensprof
