@@ -143,6 +143,21 @@ void test_several_profiles(void **) {
                    {"None"});
 }
 
+// A map's values are those of all channels: 27 million pixels of three channels are too many.
+void test_too_large_maps(void **) {
+    save_text(
+        work("three.json"),
+        R"({"schema":1,"key":{"camera_model":"C","lens":"L","focal_mm":35,"processing":"jpeg"},"vignetting":)"
+        R"({"k":[[-0.4,0.1,-0.1],[-0.3,0.1,-0.1],[-0.4,0.1,-0.1]],"center":[0,0]},"response":{"kind":"linear"}})");
+    must_exit(done, {"profile", "import", work("three.json"), "--db", work("three.db")});
+    for (const char *grid : {"5000x6000", "30000x889"})
+        assert_refused(usage,
+                       {"profile", "export", "1", "--db", work("three.db"), "-o", work("large.tif"), "--frame",
+                        "6000x4000", "--grid", grid},
+                       {"large.tif", "over 80 million values", "give a smaller --grid"});
+    assert_false(fs::exists(work("large.tif")));
+}
+
 // Nothing is stored or written by what is refused.
 void test_refused(void **) {
     make_db();
@@ -191,6 +206,7 @@ int main() {
                                 CLI_TEST(test_opcodes_of_others_stay),
                                 CLI_TEST(test_wrong_sense_is_doubted),
                                 CLI_TEST(test_several_profiles),
+                                CLI_TEST(test_too_large_maps),
                                 CLI_TEST(test_refused)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

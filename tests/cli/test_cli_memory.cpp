@@ -84,12 +84,26 @@ void test_memory_does_not_grow_with_pictures(void **) {
     if (many - few > 6 << 20) fail_msg("%ld KiB for two pictures, %ld KiB for 16", few / 1024, many / 1024);
 }
 
+// Of each value of a map the program holds 12 bytes at most, which is what its limit of 80 million values is for.
+void test_memory_of_a_map(void **) {
+    if (keeps_freed_memory) skip();
+    save_text(
+        work("three.json"),
+        R"({"schema":1,"key":{"camera_model":"C","lens":"L","focal_mm":35,"processing":"jpeg"},"vignetting":)"
+        R"({"k":[[-0.4,0.1,-0.1],[-0.3,0.1,-0.1],[-0.4,0.1,-0.1]],"center":[0,0]},"response":{"kind":"linear"}})");
+    assert_int_equal(run_program({"profile", "import", work("three.json"), "--db", work("map.db")}).code, done);
+    const Words words = {"profile", "export", "1", "--db", work("map.db"), "-o", work("map.tif"), "--frame", "800x800"};
+    const long few = peak_of(words + Words{"--grid", "2x2"}), many = peak_of(words);
+    assert_in_range(many - few, 0, 14 * 3 * 800 * 800);
+}
+
 }  // namespace
 
 int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_memory_does_not_grow_with_height),
         CLI_TEST(test_memory_does_not_grow_with_pictures),
+        CLI_TEST(test_memory_of_a_map),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

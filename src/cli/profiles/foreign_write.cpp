@@ -11,7 +11,7 @@
 namespace lensprof {
 namespace {
 
-constexpr uint64_t most_map_values = 100000000;
+constexpr uint64_t most_map_values = 80000000;  // of all channels; each takes 12 bytes of memory
 
 void demand_frame(const std::string &path, const ForeignRule &rule, const ForeignOptions &o) {
     if (!o.width || !o.height)
@@ -31,8 +31,8 @@ void write_map(const std::string &path, const ForeignOptions &o, const lensprof_
     const bool has_channels = profile.vignettings == 3 || profile.grid.channels == 3;
     const uint32_t channels = is_tiff && has_channels ? 3 : 1;
     const uint32_t columns = o.columns ? o.columns : o.width, rows = o.rows ? o.rows : o.height;
-    if (uint64_t(columns) * rows > most_map_values)
-        throw Failure(ExitCode::usage, path + ": a map of over 100 million values; give a smaller --grid");
+    if (uint64_t(columns) * rows * channels > most_map_values)
+        throw Failure(ExitCode::usage, path + ": a map of over 80 million values; give a smaller --grid");
     std::vector<float> values(size_t(columns) * rows * channels);
     lensprof_error error{};
     check(lensprof_map_write(&profile, o.width, o.height, columns, rows, channels,

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "formats/text/text.hpp"
 
@@ -105,7 +106,7 @@ std::vector<double> attenuations_of(const lensprof_profile &profile, uint32_t wi
             }
     const double largest = *std::max_element(all.begin(), all.end());
     for (double &value : all) value /= largest;
-    return all;
+    return std::move(map.attenuation);
 }
 
 }  // namespace lensprof
