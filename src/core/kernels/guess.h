@@ -2,14 +2,19 @@
  * a table in registers holds, and g is a parabola in each. Samples are loaded about the guess; where they do not hold
  * the value after all, it is looked for as everywhere. So a guess changes no result. */
 
-#define CELLS (IN_TABLE * (1.0f - 1.2e-7f)) /* so that 1 lies in the last one */
-#define LEAST_GUESSED 512                   /* pixels of a row: for fewer, parabolas do not pay */
+#define GUESS_CELLS (IN_TABLE * (1.0f - 1.2e-7f)) /* so that 1 lies in the last one */
+#define LEAST_GUESSED 512                         /* pixels of a row: for fewer, parabolas do not pay */
 
-static inline void fetch_ahead(const float *values) {
+#ifndef COUNT_LOST
+#define COUNT_LOST(lost, count) ((void)0) /* tests count how many of a run's values are not found */
+#endif
+
+/* The address may be past the end of the row, where no pointer may be. */
+static inline void fetch_ahead(const float *values, uint32_t ahead) {
 #if defined(__GNUC__)
-    __builtin_prefetch(values);
+    __builtin_prefetch((const void *)((uintptr_t)values + ahead * sizeof *values));
 #else
-    (void)values;
+    (void)values, (void)ahead;
 #endif
 }
 
@@ -20,14 +25,14 @@ static int is_guessable(const lensprof_plan *plan) {
 }
 
 /* Parabolas through g at both ends and in the middle of every cell: place = guess[0] + t (guess[1] + t guess[2]) for
- * t = b CELLS, to the sample half a sample before g or the one before that. */
+ * t = b GUESS_CELLS, to the sample half a sample before g or the one before that. */
 static void find_guess(const lensprof_plan *plan, strip *s) {
     const lane_f half = f_set(0.5f), last = f_set((float)LAST);
     for (uint32_t i = 0; i < IN_TABLE; i += LANES) {
         const lane_f t = f_of_i(i_add(i_count(), i_set((int32_t)i)));
         lane_f x[3];
         for (int n = 0; n < 3; n++) {
-            const lane_f b = f_mul(f_add(t, f_mul(f_set((float)n), half)), f_set(1.0f / CELLS));
+            const lane_f b = f_mul(f_add(t, f_mul(f_set((float)n), half)), f_set(1.0f / GUESS_CELLS));
             x[n] = f_mul(last, table_inverse(plan, f_min(b, f_set(1.0f)), i_set(0)));
         }
         const lane_f ends = f_add(x[0], x[2]), bend = f_sub(f_add(ends, ends), f_mul(f_set(4.0f), x[1]));
@@ -40,7 +45,7 @@ static void find_guess(const lensprof_plan *plan, strip *s) {
 
 /* The guessed place of values; any place of what is not within 0..1 or no number. */
 ALWAYS_INLINE lane_i guess_place(const lane_table guess[3], lane_f value) {
-    const lane_f t = f_mul(f_min(value, f_set(1.0f)), f_set(CELLS));
+    const lane_f t = f_mul(f_min(value, f_set(1.0f)), f_set(GUESS_CELLS));
     const lane_i cell = i_of_f(t);
     const lane_f slope = f_add(table_pick(guess[1], cell), f_mul(t, table_pick(guess[2], cell)));
     return i_least(i_of_f(f_add(table_pick(guess[0], cell), f_mul(t, slope))), i_set(LAST - 3));
@@ -80,7 +85,7 @@ static void values_by_guess(const lensprof_plan *plan, const run *r, strip *s) {
         values = light;
     }
     for (uint32_t i = 0; i < count; i += LANES) {
-        fetch_ahead(values + i + 3 * STRIP); /* of the next strip: here the least is loaded */
+        fetch_ahead(values, i + 3 * STRIP); /* of the next strip: here the least is loaded */
         i_store(place + i, guess_place(guess, f_load(values + i)));
     }
     for (uint32_t i = 0; i < count; i += LANES) {
@@ -90,5 +95,6 @@ static void values_by_guess(const lensprof_plan *plan, const run *r, strip *s) {
         if (!is_found) x = inverse_by_steps(plan, value), lost += LANES;
         f_store(light + i, x);
     }
+    COUNT_LOST(lost, count);
     s->is_guessed = lost <= count / 4;
 }

@@ -4,7 +4,8 @@
 
 #include <immintrin.h>
 #include <stdint.h>
-#include <string.h>
+
+#include "core/kernels/places.h"
 
 #define LANES 8
 #define STRIP 256
@@ -91,21 +92,6 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
     *second = _mm256_castpd_ps(_mm256_permute4x64_pd(b, 0xd8));
 }
 
-/* Loads of single elements are faster than gathers where the places are in memory, and two places come with one load.
- */
-typedef struct two_places {
-    uint64_t a, b;
-} two_places;
-static inline two_places places_at(const int32_t *at) {
-    uint64_t both;
-    memcpy(&both, at, sizeof both);
-    return (two_places){(uint32_t)both, both >> 32};
-}
-static inline __m128 two_pairs(const float *base, const int32_t *at) {
-    const two_places p = places_at(at);
-    const __m128 low = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + p.a));
-    return _mm_loadh_pi(low, (const __m64 *)(const void *)(base + p.b));
-}
 static inline __m256 join(__m128 low, __m128 high) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
 }

@@ -4,7 +4,8 @@
 
 #include <immintrin.h>
 #include <stdint.h>
-#include <string.h>
+
+#include "core/kernels/places.h"
 
 #define LANES 16
 #define STRIP 128
@@ -82,21 +83,6 @@ static inline void f_gather_pair(const float *base, lane_i index, lane_f *first,
     *second = _mm512_permutex2var_ps(low, _mm512_add_epi32(even, _mm512_set1_epi32(1)), high);
 }
 
-/* Loads of single elements are faster than gathers where the places are in memory, and two places come with one load.
- */
-typedef struct two_places {
-    uint64_t a, b;
-} two_places;
-static inline two_places places_at(const int32_t *at) {
-    uint64_t both;
-    memcpy(&both, at, sizeof both);
-    return (two_places){(uint32_t)both, both >> 32};
-}
-static inline __m128 two_pairs(const float *base, const int32_t *at) {
-    const two_places p = places_at(at);
-    const __m128 low = _mm_loadl_pi(_mm_setzero_ps(), (const __m64 *)(const void *)(base + p.a));
-    return _mm_loadh_pi(low, (const __m64 *)(const void *)(base + p.b));
-}
 static inline __m512 join(__m128 a, __m128 b, __m128 c, __m128 d) {
     const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(a), b, 1);
     const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(c), d, 1);

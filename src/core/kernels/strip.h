@@ -33,9 +33,10 @@ typedef struct strip {
         int32_t channel[ROOM]; /* of the samples, where the channels have curves of their own */
         int32_t place[ROOM];   /* of the samples in a table, where they have one curve */
     };
-    float
-        light[ROOM]; /* in this order: arrays lie a little more than 4 KiB apart, and processors take a load for one */
-    float factor[ROOM];   /* of what was just stored exactly 4 KiB before; of the samples */
+    /* In this order: the vector beyond each array's samples keeps one index of two arrays from lying exactly 4 KiB
+     * apart, where processors take a load for one of what was just stored. */
+    float light[ROOM];
+    float factor[ROOM];   /* of the samples */
     float rounding[ROOM]; /* added before a code is cut to an integer, with dither */
     uint8_t alpha[STRIP][4];
     float grid[LP_CHANNELS][LENSPROF_GRID_SIDE + 1];
