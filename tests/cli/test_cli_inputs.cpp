@@ -88,14 +88,25 @@ std::string sparse(const std::string &name, uint64_t bytes) {
 }
 
 void test_files_that_are_too_large(void **) {
-    const std::string pto = sparse(work("65.pto"), uint64_t(65) << 20),
-                      points = sparse(work("points.txt"), uint64_t(5) << 30);
-    for (const Words &words : {build(pto), build(scene("pano.pto"), {"--points", points}),
-                               build(scene("pano.pto"), {"--compare", pto}), Words{"profile", "import", pto}}) {
+    const std::string pto = sparse(work("65.pto"), uint64_t(65) << 20), json = work("65.json");
+    fs::copy(pto, json);
+    for (const Words &words :
+         {build(pto), build(scene("pano.pto"), {"--compare", pto}), Words{"profile", "import", json}}) {
         const Outcome outcome = run_child(words);
         assert_int_equal(outcome.code, unreadable);
         assert_true(contains(outcome.err, "is larger than such a file can be"));
     }
+    const Outcome unknown = run_child({"profile", "import", pto});
+    assert_int_equal(unknown.code, usage);
+    assert_true(contains(unknown.err, "name it with --format"));
+}
+
+// Point files may be large: the first lines show what is none.
+void test_large_files_of_no_points(void **) {
+    const std::string points = sparse(work("points.txt"), uint64_t(3) << 30), line = work("line.txt");
+    save_text(line, std::string(100000, '1'));
+    for (const std::string &file : {points, line})
+        assert_refused_in_bounds(build(scene("pano.pto"), {"--points", file}), "line 1");
     fs::remove(points);
 }
 
@@ -234,6 +245,7 @@ int main() {
         CLI_TEST(test_long_names),
         CLI_TEST(test_what_is_no_file),
         CLI_TEST(test_files_that_are_too_large),
+        CLI_TEST(test_large_files_of_no_points),
         CLI_TEST(test_pictures_are_checked_first),
         CLI_TEST(test_many_files),
         CLI_TEST(test_image_without_a_name),

@@ -177,6 +177,17 @@ void test_stated_errors(void **) {
     assert_true(square / count < 1.4 * 1.4 && square / count > 0.6 * 0.6);
 }
 
+// A curve that is white long before its end rises all the same, and ends at 1: it is one that the library takes.
+void test_table_of_early_white(void **) {
+    std::array<double, LENSPROF_RESPONSE_SAMPLES> curve;
+    for (size_t j = 0; j < curve.size(); j++) curve[j] = std::min(1.0, 4.0 * double(j) / double(curve.size() - 1));
+    Estimate estimate;
+    set_table(estimate, curve.data());
+    assert_int_equal(lensprof_response_validate(&estimate.fixed), LENSPROF_OK);
+    assert_true(estimate.fixed.table[curve.size() - 1] == 1.0);
+    for (size_t j = 1; j < curve.size(); j++) assert_true(estimate.fixed.table[j] > estimate.fixed.table[j - 1]);
+}
+
 }  // namespace
 
 // Quick tests, or with an argument the slow ones.
@@ -186,6 +197,7 @@ int main(int argc, char **) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_refines_what_modes_cannot_follow),
         cmocka_unit_test(test_does_no_harm_where_modes_follow),
+        cmocka_unit_test(test_table_of_early_white),
         cmocka_unit_test(test_known_exposures_settle_gamma),
         cmocka_unit_test(test_any_number_of_threads_gives_the_same),
         cmocka_unit_test(test_prediction_by_corrections_and_exposures),

@@ -260,11 +260,24 @@ void check_point(const std::string &path, const Project &project, const lensprof
                                                 + project.names[image] + "; give the points of this project");
 }
 
+// Point files may have gigabytes: what is none is refused by its first lines.
+void check_first_points(const std::string &path) {
+    constexpr size_t most_bytes = 1 << 16;
+    const std::string head = read_head(path, most_bytes);
+    const size_t end = head.size() < most_bytes ? head.size() : head.rfind('\n') + 1;  // 0 where there is no line's end
+    if (end == 0 && !head.empty())
+        throw Failure(ExitCode::unreadable, path + ": line 1 is longer than lines of a point file; check the name");
+    lensprof_error error{};
+    uint32_t found = 0;
+    check(lensprof_points_read(head.data(), end, nullptr, 0, &found, &error), path, &error);
+}
+
 }  // namespace
 
 std::vector<lensprof_pair> read_points(const std::string &path, const Project &project) {
     // As many pairs as --pairs allows, with 17 digits.
     constexpr uint64_t largest_points = uint64_t(1 << 24) * 256;
+    check_first_points(path);
     std::string text = read_text(path, largest_points);
     lensprof_error error{};
     uint32_t found = 0;

@@ -1,8 +1,6 @@
 #include "cli/profiles/foreign_file.hpp"
 
-#include <algorithm>
 #include <cctype>
-#include <fstream>
 
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/opcode_tag.hpp"
@@ -31,15 +29,6 @@ const ForeignRule &rule_of_word(const std::string &word) {
     throw Failure(ExitCode::usage, "--format " + word + ": is none; `lensprof profile import --help` lists them");
 }
 
-// The beginning of a file; empty where it cannot be read, which its reader will say.
-std::string head_of(const std::string &path) {
-    std::string head(8192, 0);
-    std::ifstream file(path, std::ios::binary);
-    file.read(head.data(), static_cast<std::streamsize>(head.size()));
-    head.resize(static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-    return head;
-}
-
 // A TIFF or DNG is what its tags say: opcodes, or XMP of a drone's camera; AUTO where there are neither.
 uint32_t format_of_tags(const std::string &path, const std::string &head) {
     const std::string magic = head.substr(0, 4);
@@ -63,11 +52,10 @@ std::string about_foreign(bool written_only) {
 const ForeignRule &format_to_read(const std::string &path, const std::string &wanted) {
     demand_ordinary(path);
     if (!wanted.empty()) return rule_of_word(wanted);
-    const std::string head = head_of(path);
+    const std::string head = read_head(path, 8192);
     uint32_t format = format_of_tags(path, head);
     if (!format) format = lensprof_format_detect(head.data(), head.size(), path.c_str());
     if (format) return rule_of(format);
-    read_text(path, 1 << 16);  // a missing file is said to be missing
     throw Failure(ExitCode::usage,
                   path + ": neither its content nor its name identifies its format; name it with --format");
 }

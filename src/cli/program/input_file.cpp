@@ -16,6 +16,17 @@ namespace {
                                             + std::to_string(most_bytes >> 10) + " KiB); check the name");
 }
 
+std::ifstream opened(const std::string &path) {
+    const std::string name = short_name(path);
+    demand_ordinary(path);
+    if (is_folder(path)) throw Failure(ExitCode::unreadable, name + ": is a folder; name a file");
+    errno = 0;
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        throw Failure(ExitCode::unreadable, name + ": cannot be opened: " + system_text(errno) + "; check the name");
+    return file;
+}
+
 }  // namespace
 
 void demand_ordinary(const std::string &path) {
@@ -25,12 +36,7 @@ void demand_ordinary(const std::string &path) {
 
 std::string read_text(const std::string &path, uint64_t most_bytes) {
     const std::string name = short_name(path);
-    demand_ordinary(path);
-    if (is_folder(path)) throw Failure(ExitCode::unreadable, name + ": is a folder; name a file");
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-        throw Failure(ExitCode::unreadable, name + ": cannot be opened: " + system_text(errno) + "; check the name");
+    std::ifstream file = opened(path);
     const uint64_t bytes = file_bytes(path);
     if (bytes > most_bytes) fail_too_large(name, most_bytes);
     std::string text;
@@ -41,6 +47,14 @@ std::string read_text(const std::string &path, uint64_t most_bytes) {
     if (file.bad()) throw Failure(ExitCode::unreadable, name + ": cannot be read to its end; copy it again");
     if (text.size() > most_bytes) fail_too_large(name, most_bytes);  // it grows while it is read
     return text;
+}
+
+std::string read_head(const std::string &path, size_t most_bytes) {
+    std::ifstream file = opened(path);
+    std::string head(most_bytes, 0);
+    file.read(head.data(), static_cast<std::streamsize>(most_bytes));
+    head.resize(static_cast<size_t>(file.gcount()));
+    return head;
 }
 
 }  // namespace lensprof

@@ -16,4 +16,7 @@ void demand_ordinary(const std::string &path);
 // The whole file, of at most `most_bytes`; Failure (unreadable) names it. A larger one is refused before it is read.
 std::string read_text(const std::string &path, uint64_t most_bytes);
 
+// The first `most_bytes` of a file, or all of a smaller one; Failure (unreadable) names it.
+std::string read_head(const std::string &path, size_t most_bytes);
+
 }  // namespace lensprof

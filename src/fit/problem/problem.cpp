@@ -212,6 +212,7 @@ void set_table(Estimate &estimate, const double *curve) {
     std::copy(curve, curve + f.size(), f.begin());
     f.front() = 0.0, f.back() = 1.0;
     for (size_t j = 1; j < f.size(); j++) f[j] = std::max(f[j], f[j - 1] + kSmallestRise);
+    f.back() = 1.0;  // a curve that reached 1 before its end was lifted above it
     for (size_t j = f.size() - 1; j-- > 1;) f[j] = std::min(f[j], f[j + 1] - kSmallestRise);
     set_fixed(estimate, table_response(estimate));
     estimate.is_refined = true;
