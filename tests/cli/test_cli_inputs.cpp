@@ -192,6 +192,8 @@ void test_files_in_place_of_folders(void **) {
              {Words{"simulate", "-o", name}, Words{"apply", "--profile", "1", "--db", work("p.db"), file, "-o", name},
               Words{"align", "--project", pto, "-o", name}})
             assert_refused(usage, words, {name + ": " + file + " is not a folder; give another name"});
+    for (const std::string &name : {file + "/x.db", file + "/deeper/x.db"})
+        assert_refused(store_failed, {"build", pto, "--db", name}, {name + ": " + file + " is not a folder"});
     for (const std::string &name : {std::string("/dev/full"), scene("")})
         assert_refused(usage, build(pto, {"--points-out", name}), {name + ": ", "give the name of a file"});
 }

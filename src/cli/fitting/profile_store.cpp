@@ -35,21 +35,8 @@ void declare_store(Command &command, StoreOptions &o) {
                    "raw, jpeg or corrected (falloff corrected in camera)");
 }
 
-namespace {
-
-// Failure (usage) for what would be cut when it is stored.
-void check_names(const StoreOptions &o) {
-    using Key = lensprof_profile_key;
-    demand_room("--maker", o.maker, sizeof Key::camera_maker);
-    demand_room("--camera", o.camera, sizeof Key::camera_model);
-    demand_room("--lens", o.lens, sizeof Key::lens);
-    demand_room("--unit", o.unit, sizeof Key::unit);
-}
-
-}  // namespace
-
 void check_store_options(const StoreOptions &o, bool reads_db, bool writes_else) {
-    check_names(o);
+    demand_room(o.maker, o.camera, o.lens, o.unit);
     if (o.no_store && o.force && !writes_else)
         throw Failure(ExitCode::usage,
                       "--no-store and --force, which stores a result that is not usable, contradict each "

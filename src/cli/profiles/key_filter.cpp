@@ -28,13 +28,7 @@ bool KeyFilter::is_empty() const {
            && aperture_ == LENSPROF_UNKNOWN && distance_ == LENSPROF_UNKNOWN;
 }
 
-void KeyFilter::check_names() const {
-    using Key = lensprof_profile_key;
-    demand_room("--maker", maker_, sizeof Key::camera_maker);
-    demand_room("--camera", camera_, sizeof Key::camera_model);
-    demand_room("--lens", lens_, sizeof Key::lens);
-    demand_room("--unit", unit_, sizeof Key::unit);
-}
+void KeyFilter::check_names() const { demand_room(maker_, camera_, lens_, unit_); }
 
 lensprof_profile_key KeyFilter::key(uint32_t processing) const {
     lensprof_profile_key key;

@@ -76,8 +76,10 @@ std::string store_path(const std::string &path) {
 
 void demand_folder(const std::string &path) {
     const std::string folder = std::filesystem::path(absolute_path(store_path(path))).parent_path().string();
-    if (!path.empty() && !is_folder(folder))
-        throw Failure(ExitCode::store, path + ": there is no folder " + folder + " for the database; make it first");
+    if (path.empty() || is_folder(folder)) return;
+    const std::string place = existing_part(folder);
+    if (!is_folder(place)) throw Failure(ExitCode::store, path + ": " + place + " is not a folder; give another name");
+    throw Failure(ExitCode::store, path + ": there is no folder " + folder + " for the database; make it first");
 }
 
 std::unique_ptr<lensprof_profile> new_profile() {
@@ -119,11 +121,22 @@ std::string pto_text(const lensprof_pto &pto) {
     });
 }
 
-void demand_room(const char *option, const std::string &text, size_t size) {
-    if (text.size() >= size)
-        throw Failure(ExitCode::usage, std::string(option) + ": is " + std::to_string(text.size())
-                                           + " bytes long, and a profile holds at most " + std::to_string(size - 1)
-                                           + "; give a shorter text");
+void demand_room(const std::string &maker, const std::string &camera, const std::string &lens,
+                 const std::string &unit) {
+    using Key = lensprof_profile_key;
+    const struct {
+        const char *option;
+        const std::string &text;
+        size_t size;
+    } fields[] = {{"--maker", maker, sizeof Key::camera_maker},
+                  {"--camera", camera, sizeof Key::camera_model},
+                  {"--lens", lens, sizeof Key::lens},
+                  {"--unit", unit, sizeof Key::unit}};
+    for (const auto &field : fields)
+        if (field.text.size() >= field.size)
+            throw Failure(ExitCode::usage, std::string(field.option) + ": is " + std::to_string(field.text.size())
+                                               + " bytes long, and a profile holds at most "
+                                               + std::to_string(field.size - 1) + "; give a shorter text");
 }
 
 void set_text(char *field, size_t size, const std::string &text) {

@@ -68,7 +68,7 @@ std::string pto_text(const lensprof_pto &pto);
 // characters become blanks, and in a text that is not UTF-8 all bytes beyond ASCII question marks.
 void set_text(char *field, size_t size, const std::string &text);
 
-// Failure (usage) where the text of an option would be cut by a field of `size` bytes.
-void demand_room(const char *option, const std::string &text, size_t size);
+// Failure (usage) for the option --maker, --camera, --lens or --unit whose text a key's field would cut.
+void demand_room(const std::string &maker, const std::string &camera, const std::string &lens, const std::string &unit);
 
 }  // namespace lensprof

@@ -82,12 +82,10 @@ int open_nameless(const std::string &beside) {
 }
 
 void check_folder(const std::string &folder, const std::string &item, ExitCode no_folder, ExitCode no_writing) {
-    std::filesystem::path place = absolute_path(folder);
-    while (!path_exists(place.string()) && place.has_relative_path()) place = place.parent_path();
-    if (!is_folder(place.string()))
-        throw Failure(no_folder, item + ": " + place.string() + " is not a folder; give another name");
+    const std::string place = existing_part(absolute_path(folder));
+    if (!is_folder(place)) throw Failure(no_folder, item + ": " + place + " is not a folder; give another name");
     if (access(place.c_str(), W_OK | X_OK) != 0)
-        throw Failure(no_writing, item + ": cannot write in " + place.string() + ": " + system_text(errno)
+        throw Failure(no_writing, item + ": cannot write in " + place + ": " + system_text(errno)
                                       + "; check its permissions, or give another folder");
 }
 

@@ -32,6 +32,12 @@ uint64_t file_bytes(const std::string &path) {
     return error ? 0 : bytes;
 }
 
+std::string existing_part(const std::string &path) {
+    fs::path place = path;
+    while (!path_exists(place.string()) && place.has_relative_path()) place = place.parent_path();
+    return place.string();
+}
+
 std::string absolute_path(const std::string &path) {
     std::error_code error;
     const fs::path absolute = fs::absolute(path, error);

@@ -13,6 +13,9 @@ bool is_folder(const std::string &path);
 bool is_regular_file(const std::string &path);
 uint64_t file_bytes(const std::string &path);  // 0 where there is no regular file
 
+// The longest start of an absolute path that there is.
+std::string existing_part(const std::string &path);
+
 // From the root on, without "." and "..", symbolic links as they are.
 std::string absolute_path(const std::string &path);
 
