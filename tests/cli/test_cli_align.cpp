@@ -163,6 +163,19 @@ void test_refusals(void **) {
     refuse(usage, two + Words{"-o", work("in/text.png/deeper")}, "text.png is not a folder");
 }
 
+// Where no fit could be made --json prints the object all the same, with the reason.
+void test_object_without_a_fit(void **) {
+    Picture white = make_noise(width, height, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
+    std::fill(white.pixels.begin(), white.pixels.end(), uint8_t(255));
+    for (const char *name : {"a.png", "b.png"}) write_picture(work(name), white);
+    const Json json = json_of({"align", work("a.png"), work("b.png"), "-o", work("out"), "--json"}, not_usable);
+    assert_false(json["usable"].get<bool>());
+    assert_string_equal(json["reason_code"].get<std::string>().c_str(), "few_pairs");
+    assert_true(contains(json["reason"].get<std::string>(), "black"));
+    assert_true(json["frames"] == Json::array() && json["residual"]["heldout_rms"].is_null());
+    assert_false(fs::exists(work("out")));
+}
+
 // No picture of the call may be written over, however its name is written.
 void test_inputs_stay(void **) {
     const Words frames = make_frames();
@@ -199,13 +212,10 @@ void test_build_by_transfer_functions(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_static_sequence),
-        CLI_TEST(test_mean_and_json),
-        CLI_TEST(test_moving_camera),
-        CLI_TEST(test_limits_are_said),
-        CLI_TEST(test_refusals),
-        CLI_TEST(test_inputs_stay),
-        CLI_TEST(test_build_by_transfer_functions),
+        CLI_TEST(test_static_sequence), CLI_TEST(test_mean_and_json),
+        CLI_TEST(test_moving_camera),   CLI_TEST(test_limits_are_said),
+        CLI_TEST(test_refusals),        CLI_TEST(test_object_without_a_fit),
+        CLI_TEST(test_inputs_stay),     CLI_TEST(test_build_by_transfer_functions),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -217,7 +217,15 @@ void test_refused(void **) {
         {store_failed, {path, "--linear", "--camera", "Box", "--db", in_folder("no/such.db")}, {"no/such.db"}},
         {store_failed, {path, "--linear", "--camera", "Box", "--db", "/proc/lensprof/p.db"}, {"/proc/lensprof"}},
     };
-    for (const Case &one : cases) assert_refused(one.code, flat(one.words), one.named);
+    for (const Case &one : cases) {
+        assert_refused(one.code, flat(one.words), one.named);
+        if (one.code != not_usable) continue;
+        const Json json = json_of(flat(one.words) + Words{"--json"}, not_usable);
+        assert_false(json["usable"].get<bool>());
+        assert_string_equal(json["reason_code"].get<std::string>().c_str(), "flat_few_cells");
+        assert_true(json["images"][0]["file"] == one.words[0] && json["profile"].is_null());
+        assert_true(json["vignetting"]["k"] == Json({{0.0, 0.0, 0.0}}) && json["corner_sigma"].is_null());
+    }
 }
 
 }  // namespace

@@ -68,8 +68,10 @@ constexpr uint32_t lens_flags =
 Project sequence(const Options &o) {
     Project project = o.pto.empty() ? static_project(o.files, true) : read_project(o.pto, true);
     if (project.images.size() < 2)
-        throw Failure(ExitCode::not_usable, (o.pto.empty() ? project.files[0] : o.pto)
-                                                + ": one frame alone has nothing to be aligned to; give at least two");
+        throw Failure(ExitCode::not_usable,
+                      (o.pto.empty() ? project.files[0] : o.pto)
+                          + ": one frame alone has nothing to be aligned to; give at least two",
+                      LENSPROF_REASON_FEW_PAIRS);
     project.reference = 0;
     for (uint32_t i = 0; i < project.images.size(); i++) {
         auto &image = project.images[i];
@@ -132,9 +134,8 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
     return jobs;
 }
 
-Json report(const Options &o, const Fitted &fitted, const Verdict &verdict,
+Json report(const Options &o, const lensprof_fit_result &r, const Verdict &verdict,
             const std::vector<lensprof_exposure> &exposures, const Corrected &corrected) {
-    const lensprof_fit_result &r = fitted.result;
     Json written = corrected.pictures;
     for (size_t i = 0; i < written.size(); i++) {
         const auto &w = exposures[i].white_balance;
@@ -192,7 +193,7 @@ int align(const Options &o, Streams &streams) {
         else
             tell(streams, item + ": not usable: " + verdict.text + "; nothing was written");
     }
-    if (o.json) print_json(report(o, fitted, verdict, exposures, written), streams.out);
+    if (o.json) print_json(report(o, fitted.result, verdict, exposures, written), streams.out);
     for (const auto &entry : written.pictures)
         if (!o.json) streams.out << entry["output"].get<std::string>() << "\n";
     return static_cast<int>(fitted.result.usable ? ExitCode::done : ExitCode::not_usable);
@@ -202,7 +203,15 @@ int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
     check_max_side(o.max_side);
     if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no frames to align; name them");
-    return align(o, streams);
+    try {
+        return align(o, streams);
+    } catch (const Failure &failure) {
+        if (o.json && failure.code == ExitCode::not_usable) {
+            const BuildReport none = no_fit({}, failure);
+            print_json(report(o, none.fit, none.verdict, {}, {}), streams.out);
+        }
+        throw;
+    }
 }
 
 }  // namespace

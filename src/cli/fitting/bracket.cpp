@@ -231,7 +231,7 @@ BuildReport fit_bracket(const Options &o, Project &project, const std::vector<Pi
     if (place == members.end() && !o.reference.empty())
         throw Failure(ExitCode::not_usable,
                       project.names[report.reference] + ": shows hardly anything between black and white that another picture "
-                                                        "shows, too; choose another reference");
+                                                        "shows, too; choose another reference", LENSPROF_REASON_IMAGE_GROUPS);
     if (place == members.end()) place = members.begin();
     report.reference = *place;
     keep_only(members, input);

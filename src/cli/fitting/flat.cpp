@@ -2,6 +2,7 @@
 #include "cli/fitting/flat.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -91,14 +92,9 @@ void mind_jpeg(const FlatCommand &o, FlatInput &input, Streams &streams) {
     }
 }
 
-FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, Streams &streams) {
-    auto clock = std::chrono::steady_clock::now();
-    read_flat(o, progress, input);
-    progress.clear();
-    mind_jpeg(o, input, streams);
-    stop_if_interrupted();
+// What is known before the fit.
+FlatReport begin_report(const FlatInput &input) {
     FlatReport report;
-    report.load_s = lap(clock);
     report.names = input.names;
     report.response = input.response;
     for (const auto &image : input.images) {
@@ -108,6 +104,27 @@ FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, S
     }
     report.quality.resize(input.images.size());
     lensprof_flat_result_init(&report.fit);
+    return report;
+}
+
+// What is reported where no fit could be made.
+FlatReport no_flat(const FlatInput &input, const Failure &failure) {
+    FlatReport report = begin_report(input);
+    report.fit.vignettings = 1;
+    report.fit.corner_sigma = NAN;
+    report.verdict.text = failure.what();
+    report.verdict.code = LENSPROF_REASON_FLAT_FEW_CELLS;
+    return report;
+}
+
+FlatReport measure(const FlatCommand &o, FlatInput &input, Progress &progress, Streams &streams) {
+    auto clock = std::chrono::steady_clock::now();
+    read_flat(o, progress, input);
+    progress.clear();
+    mind_jpeg(o, input, streams);
+    stop_if_interrupted();
+    FlatReport report = begin_report(input);
+    report.load_s = lap(clock);
     report.fit.image_quality = report.quality.data();
     input.options.progress = on_progress;
     input.options.progress_user = &progress;
@@ -131,12 +148,21 @@ int64_t store(const FlatCommand &o, const FlatInput &input, const FlatReport &re
     return store_profile(o.store, *profile, {"flat", o.files.front(), fit.usable != 0});
 }
 
+FlatReport measure_or_say_why_not(const FlatCommand &o, FlatInput &input, Streams &streams) {
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    try {
+        return measure(o, input, progress, streams);
+    } catch (const Failure &failure) {
+        if (o.json && failure.code == ExitCode::not_usable) print_json(flat_json(no_flat(input, failure)), streams.out);
+        throw;
+    }
+}
+
 int run(const FlatCommand &o, Streams &streams) {
     check_flat_options(o);
     FlatInput input = prepare_flat(o, streams);
     check_store(o.store);
-    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
-    FlatReport report = measure(o, input, progress, streams);
+    FlatReport report = measure_or_say_why_not(o, input, streams);
     const bool good = report.fit.usable || o.store.force;
     stop_if_interrupted();
     if (good && !o.store.no_store) report.profile_id = store(o, input, report);

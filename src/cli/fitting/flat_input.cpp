@@ -109,7 +109,8 @@ uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictu
         if (lensprof_layout_channels(p.layout) != channels)
             throw Failure(ExitCode::usage, o.files[i] + ": colour and grey pictures do not go together");
         if (std::max(p.width, p.height) < smallest_side)
-            throw Failure(ExitCode::not_usable, o.files[i] + ": less than 64 px are too few cells of light");
+            throw Failure(ExitCode::not_usable, o.files[i] + ": less than 64 px are too few cells of light",
+                          LENSPROF_REASON_FLAT_FEW_CELLS);
     }
     return channels;
 }
