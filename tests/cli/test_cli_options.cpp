@@ -181,8 +181,10 @@ void test_empty_values_that_are_needed(void **) {
     for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
     const Words bracket = {"bracket", scene("img000.png"), scene("img001.png"), "--no-store", "--times"};
     for (const char *list : {"1,,2", ",1", "1,", ","})
-        assert_refused(usage, bracket + Words{list}, {std::string("--times: ") + list + ": a comma has no value"});
-    assert_refused(usage, {"build", "x.pto", "--free", "ev,"}, {"--free: ev,: a comma has no value"});
+        assert_refused(usage, bracket + Words{list},
+                       {std::string("--times: ") + list + ": a value is missing before or after a comma"});
+    assert_refused(usage, {"build", "x.pto", "--free", "ev,"},
+                   {"--free: ev,: a value is missing before or after a comma"});
 }
 
 // Whatever is echoed, a message is a line that can be read.

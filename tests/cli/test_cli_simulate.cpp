@@ -248,7 +248,7 @@ void test_refused_options(void **) {
     assert_refused(usage, simulate("s", {"--center", "1e9,0"}), {"--center: the falloff must stay positive"});
     assert_refused(usage, simulate("s", {"--vignetting=-5,0,0"}), {"--vignetting: the falloff must stay positive"});
     assert_refused(usage, {"simulate", "-o", work("s"), "--response", "emor:1,,2"},
-                   {"--response: ", "a comma has no value"});
+                   {"--response: ", "a value is missing before or after a comma"});
 }
 
 }  // namespace
