@@ -1,6 +1,7 @@
 #include "cli/pictures/contact_sheet.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lensprof {
 namespace {
@@ -56,7 +57,7 @@ void Thumbnail::end_boxes() {
         for (uint32_t c = 0; c < 3; c++) {
             uint32_t count = high * (std::min(picture_width_, (x + 1) * step_) - x * step_);
             double mean = std::clamp(sums_[x * size_t(3) + c] / count, 0.0, 1.0);
-            rgb[(static_cast<size_t>(y) * width + x) * 3 + c] = static_cast<uint8_t>(mean * 255.0 + 0.5);
+            rgb[(static_cast<size_t>(y) * width + x) * 3 + c] = static_cast<uint8_t>(std::lround(mean * 255.0));
         }
     std::fill(sums_.begin(), sums_.end(), 0.0);
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <new>
 #include <optional>
+#include <string_view>
 
 #include "cli/pictures/codec.hpp"
 #include "cli/pictures/row_reducer.hpp"
@@ -20,14 +21,15 @@ FileFormat format_of_content(const std::string &path) {
     const codec::File file = codec::open_for_reading(path);
     unsigned char start[12] = {};
     const size_t count = std::fread(start, 1, sizeof start, file.get());
-    const auto begins = [&](const char *bytes, size_t length) {
-        return count >= length && std::memcmp(start, bytes, length) == 0;
+    const auto begins = [&](std::string_view bytes) {
+        return count >= bytes.size() && std::memcmp(start, bytes.data(), bytes.size()) == 0;
     };
-    if (begins("\x89PNG\r\n\x1a\n", 8)) return FileFormat::png;
-    if (begins("\xff\xd8\xff", 3)) return FileFormat::jpeg;
-    if (count >= 10 && (start[8] == 'C' && start[9] == 'R') && begins("II*", 3))
+    if (begins("\x89PNG\r\n\x1a\n")) return FileFormat::png;
+    if (begins("\xff\xd8\xff")) return FileFormat::jpeg;
+    if (count >= 10 && (start[8] == 'C' && start[9] == 'R') && begins("II*"))
         codec::fail_unsupported(path, "camera raw file; develop it to TIFF first");
-    if (begins("II*\0", 4) || begins("MM\0*", 4) || begins("II+\0", 4) || begins("MM\0+", 4)) return FileFormat::tiff;
+    using namespace std::string_view_literals;
+    if (begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv)) return FileFormat::tiff;
     if (count < 8) codec::fail_damaged(path, count == 0 ? "it is empty" : "it has " + std::to_string(count) + " bytes");
     codec::fail_unsupported(path, "is not a PNG, TIFF or JPEG picture; convert it first");
 }

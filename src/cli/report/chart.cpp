@@ -148,7 +148,10 @@ Chart make_chart(const std::vector<StoredProfile> &profiles, int channel) {
             chart.curves.push_back(sample_curve(profiles[i], c));
             ChartCurve &curve = chart.curves.back();
             curve.label = printable(labels[i]);
-            if (curve.channel >= 0) curve.label += (curve.label.empty() ? "" : ", ") + std::string(channel_names[c]);
+            if (curve.channel >= 0) {
+                const std::string name = channel_names[curve.channel];
+                curve.label += (curve.label.empty() ? "" : ", ") + name;
+            }
             if (curve.label.empty()) curve.label = curve.id ? "profile " + std::to_string(curve.id) : "blob";
         }
     chart.title = printable(chart.title);

@@ -294,9 +294,9 @@ void digitise(const Truth &truth, uint32_t i, uint32_t sample, Picture &picture)
                 value = std::clamp(value, 0.0, 1.0);
                 uint32_t s = 3 * x + c;
                 if (sample == LENSPROF_SAMPLE_U8) {
-                    out[s] = static_cast<uint8_t>(value * 255.0 + 0.5);
+                    out[s] = static_cast<uint8_t>(std::lround(value * 255.0));
                 } else if (sample == LENSPROF_SAMPLE_U16) {
-                    auto code = static_cast<uint16_t>(value * 65535.0 + 0.5);
+                    auto code = static_cast<uint16_t>(std::lround(value * 65535.0));
                     std::memcpy(out + 2 * s, &code, 2);
                 } else {
                     auto code = static_cast<float>(value);
