@@ -208,7 +208,7 @@ void lp_fit_falloff(const double *values, double k[3]) {
 
 int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
                        lp_falloff_prediction *prediction) {
-    std::memset(prediction, 0, sizeof *prediction);
+    *prediction = {};
     prediction->nearest = INFINITY;
     const std::unique_ptr<Point[]> points(new (std::nothrow) Point[count]);
     if (!points) return -1;

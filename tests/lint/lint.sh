@@ -14,8 +14,10 @@ step() {
 checked() {
     local common=(--quiet --enable=warning,performance,portability --inline-suppr --error-exitcode=1
                   --suppressions-list=tests/lint/cppcheck.txt -Iinclude -Isrc)
-    cppcheck "${common[@]}" --std=c11 --language=c src/core src/store &&
-        cppcheck "${common[@]}" --std=c++17 --language=c++ src/falloff src/fit src/formats src/cli
+    local failed=0
+    cppcheck "${common[@]}" --std=c11 --language=c src/core src/store || failed=1
+    cppcheck "${common[@]}" --std=c++17 --language=c++ src/falloff src/fit src/formats src/cli || failed=1
+    return $failed
 }
 
 # The commands of the build without what only GCC knows; each file alone, by all cores.

@@ -46,7 +46,7 @@ lensprof_fit_options fit_options(const FitOptions &o);
 // What is fitted.
 struct FitInput {
     lensprof_fit_options options;
-    lensprof_response fixed;
+    lensprof_response fixed{};
     std::vector<lensprof_fit_image> images;
     std::vector<lensprof_pair> pairs;                // what is fitted where there are no observations
     std::vector<lensprof_observation> observations;  // tracks, for the method radiance
