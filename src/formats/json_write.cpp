@@ -1,4 +1,5 @@
 // Profiles to JSON.
+#include <algorithm>
 #include <cmath>
 
 #include <lensprof/formats.h>
@@ -89,14 +90,33 @@ void write_kind(JsonWriter &json, const lensprof_response &response) {
     }
 }
 
-void write_response(JsonWriter &json, const lensprof_profile &profile) {
-    json.name("response");
-    json.open('{');
-    write_kind(json, profile.response[0]);
+// Whether a curve's kind and numbers give its samples to the last bit, which those of a blob are rounded from.
+bool is_implied(const lensprof_response &given) {
+    lensprof_response made;
+    lensprof_status status = LENSPROF_OK;
+    switch (given.kind) {
+    case LENSPROF_RESPONSE_LINEAR: lensprof_response_set_linear(&made); break;
+    case LENSPROF_RESPONSE_GAMMA: status = lensprof_response_set_gamma(&made, given.gamma); break;
+    case LENSPROF_RESPONSE_EMOR: status = lensprof_response_set_emor(&made, given.emor, given.modes); break;
+    default: return false;
+    }
+    return status == LENSPROF_OK && std::equal(given.table, given.table + LENSPROF_RESPONSE_SAMPLES, made.table);
+}
+
+// Samples of all curves, or, where they are implied, of none, which makes a profile 0.7 instead of 20 kB.
+void write_samples(JsonWriter &json, const lensprof_profile &profile) {
+    if (std::all_of(profile.response, profile.response + profile.responses, is_implied)) return;
     json.name("values");
     json.open('[');
     for (uint32_t c = 0; c < profile.responses; c++) json.numbers(profile.response[c].table, LENSPROF_RESPONSE_SAMPLES);
     json.close(']');
+}
+
+void write_response(JsonWriter &json, const lensprof_profile &profile) {
+    json.name("response");
+    json.open('{');
+    write_kind(json, profile.response[0]);
+    write_samples(json, profile);
     if (profile.responses > 1) {
         json.name("curves");
         json.open('[');

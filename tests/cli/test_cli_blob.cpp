@@ -68,7 +68,7 @@ void test_export_is_what_the_library_packs(void **) {
             for (const std::string &part : {work("camera.blob"), "profile " + std::string(id),
                                             std::to_string(bytes) + " bytes", crc_of(expected)})
                 assert_true(contains(text, part));
-            assert_int_equal(contains(text, "covariance is not known"), with_covariance && *id == '2');
+            assert_int_equal(contains(text, "no covariance stored"), with_covariance && *id == '2');
             const Json json = json_of(words + Words{"--json"});
             assert_int_equal(json["profile"].get<int>(), *id - '0');
             assert_int_equal(json["blob"]["bytes"].get<size_t>(), bytes);

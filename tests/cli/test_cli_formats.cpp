@@ -1,4 +1,5 @@
 // `lensprof profile export` and `import` of other programs' files: written by name, read by content.
+#include "cli/pictures/metadata.hpp"
 #include "cli/pictures/opcode_tag.hpp"
 #include "cli_runs.hpp"
 
@@ -106,6 +107,26 @@ void test_opcodes(void **) {
     }
 }
 
+// Camera, lens and setting of a falloff are those of the picture's EXIF where the command line leaves them open.
+void test_opcodes_name_their_camera(void **) {
+    make_db();
+    write_picture(work("raw.tif"), make_smooth(300, 200, LENSPROF_LAYOUT_RGB));
+    PictureMetadata metadata = unknown_metadata();
+    std::strcpy(metadata.key.camera_maker, "Canon");
+    std::strcpy(metadata.key.camera_model, "Canon EOS 6D");
+    std::strcpy(metadata.key.lens, "EF35mm f/2 IS USM");
+    metadata.key.focal_mm = 35, metadata.key.aperture = 2;
+    assert_true(write_metadata(work("raw.tif"), metadata));
+    must_exit(done, export_to(work("raw.tif"), {"--format", "opcodes"}));
+    must_exit(done, {"profile", "import", work("raw.tif"), "--aperture", "2.8", "--db", work("q.db")});
+    const Json key = show("q.db")["key"];
+    assert_true(key["camera_maker"] == "Canon" && key["camera_model"] == "Canon EOS 6D");
+    assert_true(key["lens"] == "EF35mm f/2 IS USM" && key["processing"] == "raw");
+    assert_close(key["focal_mm"].get<double>(), 35, 0);
+    assert_close(key["aperture"].get<double>(), 2.8, 0);
+    assert_true(key["distance_m"].is_null());
+}
+
 // What a picture's lists do beside is not lost, and no falloff corrected twice.
 void test_opcodes_of_others_stay(void **) {
     make_db();
@@ -203,6 +224,7 @@ int main() {
     const CMUnitTest tests[] = {CLI_TEST(test_round_trips),
                                 CLI_TEST(test_two_files_one_profile),
                                 CLI_TEST(test_opcodes),
+                                CLI_TEST(test_opcodes_name_their_camera),
                                 CLI_TEST(test_opcodes_of_others_stay),
                                 CLI_TEST(test_wrong_sense_is_doubted),
                                 CLI_TEST(test_several_profiles),

@@ -38,6 +38,10 @@ void read_profiles(const ForeignRule &rule, const std::string &path, lensprof_im
 void read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,
                lensprof_profile &profile);
 
+// The bytes of a file that would hold these profiles. Failure (usage) for what needs a picture: maps and opcodes.
+std::string foreign_bytes(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,
+                          const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names);
+
 // Writes the profiles, one where the format holds one. Complete or not at all; opcodes go into the TIFF or DNG that is
 // there. Failure names the file and, by its name in `names`, the profile, and says what the format cannot hold.
 void write_foreign(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,

@@ -115,9 +115,13 @@ std::string opcodes_of(const std::string &path, lensprof_import_options &options
     return {list.begin(), list.end()};
 }
 
+bool is_packet_alone(const std::string &path) {
+    return path.size() > 4 && path.compare(path.size() - 4, 4, ".xmp") == 0;
+}
+
 // The packet of a picture, or a packet alone.
 std::string packet_of(const std::string &path, const ForeignOptions &o, lensprof_import_options &options) {
-    const bool is_packet = path.size() > 4 && path.compare(path.size() - 4, 4, ".xmp") == 0;
+    const bool is_packet = is_packet_alone(path);
     if (is_packet) demand_frame(path, o);
     const std::string packet = is_packet ? read_text(path, largest_text) : read_xmp_packet(path);
     if (packet.empty())
@@ -126,6 +130,24 @@ std::string packet_of(const std::string &path, const ForeignOptions &o, lensprof
     const PictureSize size = read_size(path);
     options.width = size.width, options.height = size.height;
     return packet;
+}
+
+// What the command line leaves open of camera, lens and setting, by the picture's EXIF. A packet alone has none.
+void complete_key(lensprof_profile_key &key, const std::string &path) {
+    const lensprof_profile_key exif = read_metadata(path).key;
+    const auto take_text = [](auto &own, const auto &other) {
+        if (!*own) std::copy(std::begin(other), std::end(other), own);
+    };
+    const auto take = [](double &own, double other) {
+        if (own == LENSPROF_UNKNOWN) own = other;
+    };
+    if (!*key.camera_model) take_text(key.camera_maker, exif.camera_maker);
+    take_text(key.camera_model, exif.camera_model);
+    take_text(key.lens, exif.lens);
+    take(key.crop_factor, exif.crop_factor);
+    take(key.focal_mm, exif.focal_mm);
+    take(key.aperture, exif.aperture);
+    take(key.distance_m, exif.distance_m);
 }
 
 }  // namespace
@@ -139,7 +161,10 @@ void read_profiles(const ForeignRule &rule, const std::string &path, lensprof_im
 
 void read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &o, lensprof_profile &profile) {
     lensprof_import_options options = options_of(rule, o);
-    const lensprof_profile_key key = profile.key;
+    lensprof_profile_key key = profile.key;
+    const bool is_picture = rule.format == LENSPROF_FORMAT_DNG_OPCODES
+                            || (rule.format == LENSPROF_FORMAT_DRONE_XMP && !is_packet_alone(path));
+    if (is_picture) complete_key(key, path);
     options.key = &key;
     if (rule.format == LENSPROF_FORMAT_MAP) return read_map(path, o, options, profile);
     if (rule.format == LENSPROF_FORMAT_ALSC) demand_frame(path, o);

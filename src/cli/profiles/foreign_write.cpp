@@ -13,6 +13,12 @@ namespace {
 
 constexpr uint64_t most_map_values = 80000000;  // of all channels; each takes 12 bytes of memory
 
+void demand_one(const std::string &path, const ForeignRule &rule, size_t profiles) {
+    if (profiles != 1)
+        throw Failure(ExitCode::usage, path + ": " + rule.name + " holds one profile, and " + std::to_string(profiles)
+                                           + " were chosen; give one id");
+}
+
 void demand_frame(const std::string &path, const ForeignRule &rule, const ForeignOptions &o) {
     if (!o.width || !o.height)
         throw Failure(ExitCode::usage,
@@ -115,17 +121,27 @@ void write_opcodes(const std::string &path, lensprof_export_options options, con
 
 }  // namespace
 
+std::string foreign_bytes(const ForeignRule &rule, const std::string &path, const ForeignOptions &o,
+                          const std::vector<const lensprof_profile *> &profiles,
+                          const std::vector<std::string> &names) {
+    const uint32_t format = rule.format;
+    if (format == LENSPROF_FORMAT_MAP || format == LENSPROF_FORMAT_DNG_OPCODES)
+        throw Failure(ExitCode::usage,
+                      path + ": " + rule.name + " is written to a picture; export one profile with -o FILE");
+    if (!rule.is_many) demand_one(path, rule, profiles.size());
+    if (format == LENSPROF_FORMAT_RADICAL_VIGNETTING || format == LENSPROF_FORMAT_ALSC) demand_frame(path, rule, o);
+    return bytes_of(path, options_of(rule, o), profiles, names);
+}
+
 void write_foreign(const ForeignRule &rule, const std::string &path, const ForeignOptions &o,
                    const std::vector<const lensprof_profile *> &profiles, const std::vector<std::string> &names) {
-    if (!rule.is_many && profiles.size() != 1)
-        throw Failure(ExitCode::usage, path + ": " + rule.name + " holds one profile, and "
-                                           + std::to_string(profiles.size()) + " were chosen; give one id");
-    const uint32_t format = rule.format;
-    if (format == LENSPROF_FORMAT_MAP || format == LENSPROF_FORMAT_RADICAL_VIGNETTING || format == LENSPROF_FORMAT_ALSC)
-        demand_frame(path, rule, o);
-    if (format == LENSPROF_FORMAT_MAP) return write_map(path, o, *profiles[0]);
-    if (format == LENSPROF_FORMAT_DNG_OPCODES) return write_opcodes(path, options_of(rule, o), *profiles[0]);
-    const std::string text = bytes_of(path, options_of(rule, o), profiles, names);
+    const bool is_map = rule.format == LENSPROF_FORMAT_MAP;
+    if (is_map || rule.format == LENSPROF_FORMAT_DNG_OPCODES) {
+        demand_one(path, rule, profiles.size());
+        if (is_map) demand_frame(path, rule, o);
+        return is_map ? write_map(path, o, *profiles[0]) : write_opcodes(path, options_of(rule, o), *profiles[0]);
+    }
+    const std::string text = foreign_bytes(rule, path, o, profiles, names);
     write_file(path, text.data(), text.size());
 }
 

@@ -8,6 +8,7 @@
 #include "cli/profiles/foreign_options.hpp"
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/profile_blob.hpp"
+#include "cli/profiles/profile_split.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
@@ -25,7 +26,7 @@ struct Options {
     ForeignOptions foreign;
     std::string db, output, blob, format;
     double crop_factor = LENSPROF_UNKNOWN;
-    bool covariance = false, all = false, json = false;
+    bool covariance = false, all = false, json = false, split = false;
 };
 
 void declare(Command &command, Options &o) {
@@ -36,6 +37,9 @@ void declare(Command &command, Options &o) {
     command.file("--blob", o.blob, "the same as --format blob -o FILE: for firmware to read in place (docs/blob.md)");
     command.flag("--covariance", o.covariance, "blob: the covariance as well, which a camera has no use for");
     command.flag("--all", o.all, "all profiles of the database");
+    command.flag("--split", o.split,
+                 "-o is a folder, and --format gives the format: a file for each lens, or, where a file holds one "
+                 "profile, for each profile");
     declare_foreign(command, o.foreign, true);
     command.number("--crop-factor", o.crop_factor, crop_factors,
                    "43.27 mm over the sensor's diagonal, for profiles that do not know it; lensfun and lcp need it");
@@ -61,6 +65,14 @@ void check_options(Options &o) {
         throw Failure(ExitCode::usage,
                       "profile export: give either ids that `lensprof profile list` shows, or --camera, "
                       "--lens and the like, or --all");
+    if (o.split && o.format.empty())
+        throw Failure(ExitCode::usage, "profile export: --split needs --format, since -o names a folder");
+    if (o.split && o.covariance)
+        throw Failure(ExitCode::usage, "profile export: --covariance is for one blob; leave --split out");
+    if (o.split && !o.blob.empty())
+        throw Failure(ExitCode::usage, "profile export: --split and --blob contradict each other; use --format blob");
+    if (o.split && path_exists(o.output) && !is_folder(o.output))
+        throw Failure(ExitCode::usage, o.output + ": is a file; --split needs a folder");
     if (is_same_file(o.output, store_path(o.db)))
         throw Failure(ExitCode::usage, o.output + ": is the profile database; give the output another name");
 }
@@ -79,7 +91,7 @@ void export_blob(const Options &o, const StoredProfile &stored, Streams &streams
     }
     streams.out << format("wrote %s: profile %lld, %zu bytes, CRC-32 %s\n", o.output.c_str(),
                           static_cast<long long>(stored.id), stamp.bytes, stamp.crc32.c_str());
-    if (o.covariance && !profile.covariance_size) streams.out << "its covariance is not known: there is none in it\n";
+    if (o.covariance && !profile.covariance_size) streams.out << "no covariance stored; exported without it\n";
 }
 
 // What a format cannot hold and is not refused.
@@ -94,11 +106,8 @@ void warn_of_means(const ForeignRule &rule, const Options &o, const std::vector<
                         << " holds the mean\n";
 }
 
-void export_foreign(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
-                    Streams &streams) {
-    std::vector<const lensprof_profile *> profiles;
-    std::vector<std::string> names;
-    Json ids = Json::array();
+// Formats that need a crop factor take that of the command line where the profile has none.
+void complete_crop_factors(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen) {
     const bool needs_crop = rule.format == LENSPROF_FORMAT_LENSFUN || rule.format == LENSPROF_FORMAT_LCP;
     for (const StoredProfile &one : chosen) {
         double &crop = one.profile->key.crop_factor;
@@ -106,6 +115,35 @@ void export_foreign(const Options &o, const ForeignRule &rule, const std::vector
         if (needs_crop && crop == LENSPROF_UNKNOWN)
             throw Failure(ExitCode::usage, o.output + ": the crop factor of profile " + std::to_string(one.id)
                                                + " is not known; give --crop-factor");
+    }
+}
+
+void export_split(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
+                  Streams &streams) {
+    complete_crop_factors(o, rule, chosen);
+    const std::vector<SplitFile> files = write_split(rule, o.output, o.foreign, chosen);
+    warn_of_means(rule, o, chosen, streams);
+    if (!o.json) {
+        for (const SplitFile &file : files)
+            streams.out << file.path << ": " << counted(file.profiles.size(), "profile") << "\n";
+        return;
+    }
+    Json list = Json::array();
+    for (const SplitFile &file : files) {
+        Json ids = Json::array();
+        for (const StoredProfile *one : file.profiles) ids.push_back(one->id);
+        list.push_back({{"file", file.path}, {"profiles", ids}});
+    }
+    print_json(Json{{"schema", 1}, {"format", rule.name}, {"folder", o.output}, {"files", list}}, streams.out);
+}
+
+void export_foreign(const Options &o, const ForeignRule &rule, const std::vector<StoredProfile> &chosen,
+                    Streams &streams) {
+    std::vector<const lensprof_profile *> profiles;
+    std::vector<std::string> names;
+    Json ids = Json::array();
+    complete_crop_factors(o, rule, chosen);
+    for (const StoredProfile &one : chosen) {
         profiles.push_back(one.profile.get()), ids.push_back(one.id);
         names.push_back("profile " + std::to_string(one.id));
     }
@@ -124,6 +162,10 @@ int run(Options &o, Streams &streams) {
     if (o.covariance && rule.format != LENSPROF_FORMAT_BLOB)
         throw Failure(ExitCode::usage, "profile export: --covariance belongs to --format blob");
     const std::vector<StoredProfile> chosen = o.filter.profiles(o.db, o.ids);
+    if (o.split) {
+        export_split(o, rule, chosen, streams);
+        return 0;
+    }
     if (rule.format != LENSPROF_FORMAT_BLOB) {
         export_foreign(o, rule, chosen, streams);
         return 0;

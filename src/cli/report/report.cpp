@@ -27,16 +27,22 @@ Json covariance_json(const double *values, uint32_t n) {
     return rows;
 }
 
-Json response_json(const lensprof_response *responses, uint32_t count) {
-    static const char *const kinds[] = {"linear", "gamma", "emor", "table"};
-    Json json, values = Json::array();
+// What a program plots: the curves' samples, whatever their kind.
+static Json samples_json(const lensprof_response *responses, uint32_t count) {
+    Json values = Json::array();
     for (uint32_t c = 0; c < count; c++)
         values.push_back(std::vector<double>(responses[c].table, responses[c].table + LENSPROF_RESPONSE_SAMPLES));
+    return values;
+}
+
+Json response_json(const lensprof_response *responses, uint32_t count) {
+    static const char *const kinds[] = {"linear", "gamma", "emor", "table"};
+    Json json;
     json["kind"] = kinds[responses[0].kind];
     if (responses[0].kind == LENSPROF_RESPONSE_EMOR)
         json["emor"] = std::vector<double>(responses[0].emor, responses[0].emor + responses[0].modes);
     if (responses[0].kind == LENSPROF_RESPONSE_GAMMA) json["gamma"] = responses[0].gamma;
-    json["values"] = values;
+    json["values"] = samples_json(responses, count);
     return json;
 }
 
@@ -353,6 +359,7 @@ Json profile_json(int64_t id, const lensprof_profile &profile) {
         return lensprof_json_write(&pointer, 1, text, capacity, count, error);
     };
     Json json = Json::parse(written("profile as JSON", write));
+    json["response"]["values"] = samples_json(profile.response, profile.responses);
     if (id) json["id"] = id;
     return json;
 }

@@ -1,0 +1,106 @@
+#include "cli/profiles/profile_split.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "cli/program/format.hpp"
+#include "cli/program/output_file.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr size_t longest_name = 200;  // bytes, without the ending: file systems take 255
+
+// Without what file systems of other systems refuse. Bytes of UTF-8 stay.
+std::string file_name_of(const std::string &text) {
+    std::string name;
+    for (const char c : text) name += c < 0 || (c >= ' ' && !std::strchr("/\\:*?\"<>|\x7f", c)) ? c : '-';
+    while (name.size() > longest_name || (!name.empty() && (name.back() == '.' || name.back() == ' '))) {
+        while (name.size() > 1 && (name.back() & 0xC0) == 0x80) name.pop_back();  // the rest of a character
+        name.pop_back();
+    }
+    return name.empty() || name[0] == '.' ? "_" + name : name;
+}
+
+const char *ending_of(const ForeignRule &rule) {
+    switch (rule.format) {
+    case LENSPROF_FORMAT_LENSFUN: return "xml";
+    case LENSPROF_FORMAT_ALSC: return "json";
+    case LENSPROF_FORMAT_PCALIB: return "txt";
+    case LENSPROF_FORMAT_CURVES: return "csv";
+    default: return rule.name;
+    }
+}
+
+// Of the lens, else of the camera that has it built in.
+std::string lens_name_of(const lensprof_profile_key &key) {
+    if (*key.lens) return key.lens;
+    return *key.camera_model ? std::string(key.camera_maker) + (*key.camera_maker ? " " : "") + key.camera_model
+                             : "unknown lens";
+}
+
+// What the profiles of one file share: the lens, and where a file is of one camera and sensor, these too.
+std::string group_of(const ForeignRule &rule, const lensprof_profile_key &key) {
+    std::string group = lens_name_of(key);
+    if (rule.format == LENSPROF_FORMAT_LCP) {
+        if (*key.camera_model && *key.lens) group += std::string(" on ") + key.camera_model;
+        if (key.crop_factor != LENSPROF_UNKNOWN) group += format(", crop %.4g", key.crop_factor);
+        if (key.processing != LENSPROF_PROCESSING_RAW) group += std::string(", ") + processing_name(key.processing);
+    }
+    return group;
+}
+
+// As file systems that ignore case see it.
+std::string folded(std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return name;
+}
+
+}  // namespace
+
+std::vector<SplitFile> write_split(const ForeignRule &rule, const std::string &folder, const ForeignOptions &options,
+                                   const std::vector<StoredProfile> &profiles) {
+    std::vector<SplitFile> files;
+    std::map<std::string, size_t> file_of_group;
+    std::set<std::string> taken;
+    const auto add_file = [&](const std::string &name) {
+        const std::string wanted = file_name_of(name);
+        std::string unused = wanted;
+        for (int i = 2; !taken.insert(folded(unused)).second; i++) unused = wanted + " (" + std::to_string(i) + ")";
+        files.push_back({(std::filesystem::path(folder) / (unused + "." + ending_of(rule))).string(), {}});
+        return files.size() - 1;
+    };
+    for (const StoredProfile &one : profiles) {
+        const std::string group = group_of(rule, one.profile->key);
+        if (rule.is_many) {
+            const bool is_exact = rule.format == LENSPROF_FORMAT_LCP;  // which tells names apart by case
+            const auto [place, is_new] = file_of_group.try_emplace(is_exact ? group : folded(group), 0);
+            if (is_new) place->second = add_file(group);
+            files[place->second].profiles.push_back(&one);
+        } else {
+            files[add_file(group + " " + std::to_string(one.id))].profiles.push_back(&one);
+        }
+    }
+    std::vector<std::string> texts;  // before a folder is made
+    for (const SplitFile &file : files) {
+        std::vector<const lensprof_profile *> content;
+        std::vector<std::string> names;
+        for (const StoredProfile *one : file.profiles) {
+            content.push_back(one->profile.get());
+            names.push_back("profile " + std::to_string(one->id));
+        }
+        texts.push_back(foreign_bytes(rule, file.path, options, content, names));
+    }
+    make_folder(folder);
+    OutputFiles outputs;
+    for (size_t i = 0; i < files.size(); i++) outputs.add(files[i].path, texts[i]);
+    outputs.commit();
+    return files;
+}
+
+}  // namespace lensprof
