@@ -7,7 +7,7 @@ JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
 WERROR ?= OFF
 # Made by profiles/tools; never formatted.
-TABLES := (emor|prior)_table\.
+TABLES := (emor|prior|typical)_table\.
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 20

@@ -65,6 +65,25 @@ LENSPROF_API double lensprof_response_eval(const lensprof_response *response, do
  * dg/db = 1/f'(g(b)), taken in the grid interval that holds b (0 outside [0,1] and where f is flat). */
 LENSPROF_API double lensprof_response_invert(const lensprof_response *response, double b, double *slope);
 
+/* Kinds of cameras, by how they render: whose measured responses stand for one that is not known. */
+typedef enum lensprof_camera_kind {
+    LENSPROF_CAMERA_ANY = 0,     /* nothing is known: a mixture of all below, and of gamma curves */
+    LENSPROF_CAMERA_FILM = 1,    /* scanned film: 154 curves of the DoRF database */
+    LENSPROF_CAMERA_DIGITAL = 2, /* digital and video cameras of the 1990s with a tone curve: 29 curves of DoRF */
+    LENSPROF_CAMERA_CAMERA = 3,  /* JPEG of today's digital cameras: 20 curves of 19 cameras */
+    LENSPROF_CAMERA_PHONE = 4,   /* JPEG of phones: 5 curves of 4 phones */
+    LENSPROF_CAMERA_LINEAR = 5   /* sensor data and what is developed linearly */
+} lensprof_camera_kind;
+
+/* The typical response of a kind: the mean of its measured cameras, an EMoR response of all modes, and what a camera of
+ * the kind is away from it. covariance[LENSPROF_EMOR_MODES * LENSPROF_EMOR_MODES], row major, or NULL: of the
+ * coefficients, scatter of the shape and error of gamma together. *log_gamma_sigma, or NULL: standard error of ln
+ * gamma, the exponent by which response, falloff and exposures go together; 68 % of cameras that the mean does not know
+ * are nearer. LINEAR: the linear response, and zeros. Error: ARGUMENT. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_response_set_typical(lensprof_response *response,
+                                                                             uint32_t camera_kind, double *covariance,
+                                                                             double *log_gamma_sigma);
+
 /* The EMoR tables: mean curve f0 for mode 0, h_l for mode l = 1..25; NULL beyond. 1024 samples, static. */
 LENSPROF_API const double *lensprof_emor_table(uint32_t mode);
 

@@ -43,6 +43,11 @@ LENSPROF_API void lensprof_profile_key_init(lensprof_profile_key *key);
 /* LENSPROF_OK when the texts are terminated and free of control characters and the numbers in range. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key);
 
+/* The kind of camera (lensprof_camera_kind) whose typical response pictures of this key have while none of its own is
+ * known: LINEAR for processing RAW; PHONE where maker, model or lens is a phone's; ANY for film scanners and where no
+ * camera is named; CAMERA for every other. The key is valid; NULL is ANY. */
+LENSPROF_API uint32_t lensprof_camera_kind_of(const lensprof_profile_key *key);
+
 /* Order of the estimated parameters, which are the rows and columns of a covariance:
  *  1. the EMoR coefficients of response 0 (`modes` of them), then, where there are three responses, those of response 1
  *     and of response 2, each by its own `modes`; responses of other kinds have no parameters;

@@ -46,6 +46,17 @@ class Responses(unittest.TestCase):
         with refused(self, lp.Status.ERROR_ARGUMENT):
             lp.emor_table(26)
 
+    def test_typical(self):
+        response, covariance, sigma = lp.Response.typical(lp.CameraKind.CAMERA)
+        self.assertEqual((response.kind, covariance.shape), (lp.ResponseKind.EMOR, (25, 25)))
+        self.assertTrue(np.linalg.eigvalsh(covariance).min() > 0 and 0.05 < sigma < 0.1)
+        q = np.log(np.log(response.invert(208 / 255) / response.invert(48 / 255)))
+        self.assertAlmostEqual(q, 0.882, delta=0.002)
+        response, covariance, sigma = lp.Response.typical(lp.CameraKind.LINEAR)
+        self.assertEqual((response, covariance.any(), sigma), (lp.Response.linear(), False, 0))
+        with self.assertRaises(ValueError):
+            lp.Response.typical(6)
+
     def test_table(self):
         response = lp.Response.from_table([0, 0.75, 1])
         np.testing.assert_allclose(response.eval([0.25, 0.5, 0.75]), [0.375, 0.75, 0.875], atol=1e-3)

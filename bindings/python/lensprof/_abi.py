@@ -76,6 +76,16 @@ class ResponseKind(IntEnum):
     TABLE = 3
 
 
+class CameraKind(IntEnum):
+    """lensprof_camera_kind; see lensprof/model.h."""
+    ANY = 0
+    FILM = 1
+    DIGITAL = 2
+    CAMERA = 3
+    PHONE = 4
+    LINEAR = 5
+
+
 class Processing(IntEnum):
     """lensprof_processing; see lensprof/profile.h."""
     RAW = 0
@@ -263,13 +273,6 @@ class GammaFrom(IntEnum):
     KNOWN = 3
     NONE = 4
     PROFILE = 5
-
-
-class CameraKind(IntEnum):
-    """lensprof_camera_kind; see lensprof/fit.h."""
-    ANY = 0
-    FILM = 1
-    DIGITAL = 2
 
 
 class ProfilePrior(IntEnum):
@@ -957,6 +960,7 @@ ENUMS = {
     "LENSPROF_": Status,
     "LENSPROF_ITEM_": ItemKind,
     "LENSPROF_RESPONSE_": ResponseKind,
+    "LENSPROF_CAMERA_": CameraKind,
     "LENSPROF_PROCESSING_": Processing,
     "LENSPROF_PACK_": Pack,
     "LENSPROF_SAMPLE_": SampleType,
@@ -970,7 +974,6 @@ ENUMS = {
     "LENSPROF_METHOD_": Method,
     "LENSPROF_LOSS_": Loss,
     "LENSPROF_GAMMA_": GammaFrom,
-    "LENSPROF_CAMERA_": CameraKind,
     "LENSPROF_PROFILE_PRIOR_": ProfilePrior,
     "LENSPROF_FLAT_LIGHT_": FlatLight,
     "LENSPROF_FLAT_GRID_": FlatGrid,
@@ -1073,6 +1076,7 @@ FUNCTIONS = {
     "lensprof_response_validate": (c_int, [POINTER(Response)]),
     "lensprof_response_eval": (c_double, [POINTER(Response), c_double, POINTER(c_double)]),
     "lensprof_response_invert": (c_double, [POINTER(Response), c_double, POINTER(c_double)]),
+    "lensprof_response_set_typical": (c_int, [POINTER(Response), c_uint32, POINTER(c_double), POINTER(c_double)]),
     "lensprof_emor_table": (POINTER(c_double), [c_uint32]),
     "lensprof_half_diagonal": (c_double, [c_uint32, c_uint32]),
     "lensprof_vignetting_eval": (c_double, [POINTER(Vignetting), c_double, POINTER(c_double)]),
@@ -1088,6 +1092,7 @@ FUNCTIONS = {
     # profile.h
     "lensprof_profile_key_init": (None, [POINTER(ProfileKey)]),
     "lensprof_profile_key_validate": (c_int, [POINTER(ProfileKey)]),
+    "lensprof_camera_kind_of": (c_uint32, [POINTER(ProfileKey)]),
     "lensprof_profile_init_sized": (None, [POINTER(Profile), c_size_t]),
     "lensprof_profile_copy": (c_int, [POINTER(Profile), POINTER(Profile)]),
     "lensprof_profile_validate": (c_int, [POINTER(Profile)]),

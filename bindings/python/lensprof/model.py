@@ -5,13 +5,13 @@ points; for pictures there is lensprof.Plan.
 """
 from __future__ import annotations
 
-from ctypes import byref, c_double
+from ctypes import POINTER, byref, c_double
 from typing import Any, Callable, Iterable, Union
 
 import numpy as np
 
 from . import _abi
-from ._abi import ResponseKind, Status
+from ._abi import CameraKind, ResponseKind, Status
 from ._library import Error, check, lib
 from ._struct import Enumerated, Value, Vector, _Field, integer
 
@@ -88,6 +88,15 @@ class Response(Value, _abi.Response):
         check(lib.lensprof_response_set_table(byref(response), numbers, len(numbers)),
               f"table of {len(numbers)} values: give 2..1048576 finite ones that rise from 0 to 1")
         return response
+
+    @classmethod
+    def typical(cls, kind: CameraKind = CameraKind.ANY) -> tuple[Response, np.ndarray, float]:
+        """The mean of a kind of cameras, the 25 x 25 covariance of its EMoR coefficients, and the error of ln gamma."""
+        response, covariance, sigma = cls(), np.empty((_abi.EMOR_MODES, _abi.EMOR_MODES)), c_double()
+        check(lib.lensprof_response_set_typical(byref(response), CameraKind(kind),
+                                                covariance.ctypes.data_as(POINTER(c_double)), byref(sigma)),
+              f"camera kind {kind}")
+        return response, covariance, sigma.value
 
     def validate(self) -> None:
         """Raises lensprof.Error unless this is a response."""

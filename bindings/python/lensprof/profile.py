@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from . import _abi
-from ._abi import Pack, Processing
+from ._abi import CameraKind, Pack, Processing
 from ._library import check, lib
 from ._struct import Curves, Enumerated, Nested, Text, Value, integer
 from .model import GainGrid, Response, Vignetting
@@ -36,6 +36,12 @@ class ProfileKey(Value, _abi.ProfileKey):
         """Raises lensprof.Error unless the numbers are in range and the texts without control characters."""
         check(lib.lensprof_profile_key_validate(byref(self)),
               f"{self}: numbers must be above 0 or UNKNOWN, texts without control characters")
+
+    @property
+    def camera_kind(self) -> CameraKind:
+        """Whose typical response pictures of this key have while none of its own is known; see Response.typical."""
+        self.validate()
+        return CameraKind(lib.lensprof_camera_kind_of(byref(self)))
 
 
 class Provenance(Value, _abi.Provenance):

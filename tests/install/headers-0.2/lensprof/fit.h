@@ -71,13 +71,6 @@ typedef enum lensprof_gamma_from {
     LENSPROF_GAMMA_PROFILE = 5    /* results only: the profile that the options give as the prior */
 } lensprof_gamma_from;
 
-/* The measured responses behind the prior (DoRF database). */
-typedef enum lensprof_camera_kind {
-    LENSPROF_CAMERA_ANY = 0,    /* all 201 curves */
-    LENSPROF_CAMERA_FILM = 1,   /* scanned film: 154 curves */
-    LENSPROF_CAMERA_DIGITAL = 2 /* digital and video cameras with a tone curve: 29 curves */
-} lensprof_camera_kind;
-
 /* One image of the fit. */
 typedef struct lensprof_fit_image {
     uint32_t struct_size;
@@ -119,7 +112,7 @@ typedef struct lensprof_fit_options {
     uint32_t max_iterations;
     uint32_t vignettings; /* falloff curves: 1 for all channels, 3, or 0 = chosen by held-out error */
     uint32_t gamma_from;  /* lensprof_gamma_from */
-    uint32_t camera_kind; /* lensprof_camera_kind */
+    uint32_t camera_kind; /* lensprof_camera_kind: ANY, FILM or DIGITAL */
     uint32_t threads;     /* at most so many, the caller's included; 0 = one a core. The result does not depend on it */
     uint32_t method;      /* lensprof_fit_method */
     uint32_t refine;      /* 1: the response is freed of the EMoR modes at every grey level, and becomes a TABLE, where
