@@ -219,6 +219,38 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_get_stats(lensprof
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_remove(lensprof_store *store, int64_t id,
                                                                      lensprof_error *error);
 
+/* Gives the stored profile with an id another key; what it holds, its provenance and its id stay. Errors: NOT_FOUND;
+ * ARGUMENT for a key that is not valid. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_set_key(lensprof_store *store, int64_t id,
+                                                                      const lensprof_profile_key *key,
+                                                                      lensprof_error *error);
+
+/* A lens or a camera, and what is stored of it. Frozen value struct. */
+typedef struct lensprof_store_summary {
+    char camera_maker[64]; /* empty in a list of lenses */
+    char camera_model[64];
+    char lens[128];         /* empty in a list of cameras */
+    uint32_t profiles;      /* of it */
+    uint32_t others;        /* different cameras that are named with a lens, or lenses with a camera */
+    uint32_t processing[3]; /* profiles, by lensprof_processing */
+    uint32_t reserved;      /* 0 */
+    double focal_mm[2];     /* smallest and largest that is known; LENSPROF_UNKNOWN where none is */
+    double aperture[2];
+    double distance_m[2];
+} lensprof_store_summary;
+
+/* The lenses, or the cameras, of the stored profiles, in the order of their names. `part` (NULL or blanks: all) is a
+ * name as lookups take it; where no name is that, the words of `part`, each anywhere in the maker and name, without
+ * ASCII case, blanks and signs. rows[capacity] and *count as in base.h. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list_lenses(lensprof_store *store, const char *part,
+                                                                          lensprof_store_summary *rows,
+                                                                          uint32_t capacity, uint32_t *count,
+                                                                          lensprof_error *error);
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list_cameras(lensprof_store *store, const char *part,
+                                                                           lensprof_store_summary *rows,
+                                                                           uint32_t capacity, uint32_t *count,
+                                                                           lensprof_error *error);
+
 #ifdef __cplusplus
 }
 #endif

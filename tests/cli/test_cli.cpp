@@ -326,7 +326,7 @@ void test_store_query_show_remove(void **) {
     const Json list = json_of(Words{"profile", "list", "--json"} + db);
     assert_int_equal(list["profiles"].size(), 3);
     assert_true(contains(must_exit(done, Words{"profile", "list"} + db), "Simulated Camera"));
-    assert_int_equal(json_of(Words{"profile", "remove", "3", "--json"} + db)["removed"].get<int>(), 3);
+    assert_int_equal(json_of(Words{"profile", "remove", "3", "--json"} + db)["removed"][0].get<int>(), 3);
     assert_int_equal(json_of(query + Words{"--lens", "Simulated Lens", "--aperture", "2.8"})["id"].get<int>(), 1);
     assert_refused(not_found, Words{"profile", "show", "3"} + db, {work("profiles.db"), "3"});
     assert_refused(not_found, Words{"profile", "remove", "3"} + db, {work("profiles.db"), "3"});

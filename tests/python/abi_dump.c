@@ -421,6 +421,17 @@ static void print_structs(void) {
     FIELD(lensprof_store_stats, method);
     FIELD(lensprof_store_stats, source);
     FIELD(lensprof_store_stats, bytes);
+    STRUCT(lensprof_store_summary);
+    FIELD(lensprof_store_summary, camera_maker);
+    FIELD(lensprof_store_summary, camera_model);
+    FIELD(lensprof_store_summary, lens);
+    FIELD(lensprof_store_summary, profiles);
+    FIELD(lensprof_store_summary, others);
+    FIELD(lensprof_store_summary, processing);
+    FIELD(lensprof_store_summary, reserved);
+    FIELD(lensprof_store_summary, focal_mm);
+    FIELD(lensprof_store_summary, aperture);
+    FIELD(lensprof_store_summary, distance_m);
 }
 
 static void print_values(void) {

@@ -98,6 +98,23 @@ class Stores(unittest.TestCase):
             with refused(self, lp.Status.ERROR_NOT_FOUND):
                 store.remove(numbers[0])
 
+    def test_lenses_cameras_and_keys(self):
+        self.make(sample_profile(), sample_profile(), sample_profile("Planar 50 mm"))
+        with lp.Store(self.path, lp.StoreMode.WRITE) as store:
+            self.assertEqual([(row.lens, row.profiles, row.others) for row in store.lenses()],
+                             [("Distagon 28 mm", 2, 1), ("Planar 50 mm", 1, 1)])
+            self.assertEqual([row.lens for row in store.lenses("50 planar")], ["Planar 50 mm"])
+            self.assertEqual([(row.camera_model, row.others) for row in store.cameras()], [("Model \u00e9", 2)])
+            self.assertEqual(store.cameras("nothing"), [])
+            key = store.get(2).key
+            key.lens, key.aperture = "Sonnar", 4
+            store.set_key(2, key)
+            self.assertEqual(store.get(2).key.lens, "Sonnar")
+            self.assertEqual(store.lenses("sonnar")[0].aperture.tolist(), [4, 4])
+            with refused(self, lp.Status.ERROR_NOT_FOUND):
+                store.set_key(9, key)
+            self.assertRaises(ValueError, store.lenses, "a\0b")
+
     def test_merge(self):
         self.make(sample_profile("a"), sample_profile("b"))
         with lp.Store(self.path.with_name("all.db"), lp.StoreMode.CREATE) as store, lp.Store(self.path) as other:

@@ -27,7 +27,7 @@ from .model import Exposure, GainGrid, Response, Vignetting, emor_table, half_di
 from .profile import Profile, ProfileKey, Provenance
 from .reason import Item, reason_name, reason_text
 from .sample import SampleImage, SampleOptions, sample_overlap, sample_tracks
-from .store import Lookup, LookupOptions, Store, StoreFault, StoreRow, StoreStats
+from .store import Lookup, LookupOptions, Store, StoreFault, StoreRow, StoreStats, StoreSummary
 
 __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CurveKind", "Direction",
@@ -38,8 +38,8 @@ __all__ = [
     "LookupOptions", "Loss", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
     "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage",
     "RESPONSE_SAMPLES", "Reason", "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType",
-    "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreRow", "StoreStats", "UNKNOWN",
-    "Vignetting", "alsc_read", "alsc_write", "correct", "curves_read", "curves_write", "detect_format",
+    "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreRow", "StoreStats",
+    "StoreSummary", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct", "curves_read", "curves_write", "detect_format",
     "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table", "export_profiles", "fit_flat",
     "fit_overlap", "fit_radiance", "format_info", "half_diagonal", "import_profiles", "json_read", "json_write",
     "layout_channels", "layout_samples", "lcp_read", "lcp_write", "lensfun_read", "lensfun_write", "map_read",

@@ -955,6 +955,21 @@ class StoreStats(Structure):
     ]
 
 
+class StoreSummary(Structure):
+    _fields_ = [
+        ("camera_maker", c_char * 64),
+        ("camera_model", c_char * 64),
+        ("lens", c_char * 128),
+        ("profiles", c_uint32),
+        ("others", c_uint32),
+        ("processing", c_uint32 * 3),
+        ("reserved", c_uint32),
+        ("focal_mm", c_double * 2),
+        ("aperture", c_double * 2),
+        ("distance_m", c_double * 2),
+    ]
+
+
 # Prefix in C of the members of each enumeration.
 ENUMS = {
     "LENSPROF_": Status,
@@ -1026,6 +1041,7 @@ STRUCTS = {
     "lensprof_store_fault": StoreFault,
     "lensprof_store_group": StoreGroup,
     "lensprof_store_stats": StoreStats,
+    "lensprof_store_summary": StoreSummary,
 }
 
 OPAQUE = {
@@ -1247,4 +1263,9 @@ FUNCTIONS = {
     "lensprof_store_stats_init_sized": (None, [POINTER(StoreStats), c_size_t]),
     "lensprof_store_get_stats": (c_int, [POINTER(Store), POINTER(StoreStats), POINTER(ErrorText)]),
     "lensprof_store_remove": (c_int, [POINTER(Store), c_int64, POINTER(ErrorText)]),
+    "lensprof_store_set_key": (c_int, [POINTER(Store), c_int64, POINTER(ProfileKey), POINTER(ErrorText)]),
+    "lensprof_store_list_lenses": (c_int, [POINTER(Store), c_char_p, POINTER(StoreSummary), c_uint32, POINTER(c_uint32),
+                                           POINTER(ErrorText)]),
+    "lensprof_store_list_cameras": (c_int, [POINTER(Store), c_char_p, POINTER(StoreSummary), c_uint32,
+                                            POINTER(c_uint32), POINTER(ErrorText)]),
 }

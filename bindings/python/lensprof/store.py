@@ -59,6 +59,28 @@ class StoreFault(Value, _abi.StoreFault):
     reason = Text()
 
 
+class StoreSummary(Value, _abi.StoreSummary):
+    """A lens, or a camera, and what is stored of it: how many profiles, also by Processing, how many different cameras or
+    lenses are named with it (others), and (smallest, largest) of focal_mm, aperture and distance_m."""
+
+    camera_maker = Text()
+    camera_model = Text()
+    lens = Text()
+    profiles: int
+    others: int
+    processing = Vector(writable=False)
+    focal_mm = Vector(writable=False)
+    aperture = Vector(writable=False)
+    distance_m = Vector(writable=False)
+
+
+def _bytes_of(text: Optional[str]) -> Optional[bytes]:
+    """A text for C, which ends at a zero byte."""
+    if text is not None and "\0" in text:
+        raise ValueError(f"{text!r}: a name holds no zero bytes")
+    return None if text is None else text.encode("utf-8", "surrogateescape")
+
+
 class StoreStats(Value, _abi.StoreStats):
     """What is in a database: counts, (smallest, largest) of focal_mm, aperture and distance_m, bytes, layout; method and
     source, the groups with the most profiles, as a dictionary of their counts."""
@@ -207,16 +229,31 @@ class Store(Handle):
 
         filter: where it has a text or a known number, only equal ones.
         """
-        key = None if filter is None else byref(filter)
-        rows, found = (_abi.StoreRow * 0)(), c_uint32()
+        return self._list(StoreRow, _abi.StoreRow, lib.lensprof_store_list, None if filter is None else byref(filter))
+
+    def lenses(self, part: Optional[str] = None) -> List[StoreSummary]:
+        """The lenses of the stored profiles by name; with `part` those of that name, or that have all its words."""
+        return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_lenses, _bytes_of(part))
+
+    def cameras(self, part: Optional[str] = None) -> List[StoreSummary]:
+        """The cameras of the stored profiles, as lenses()."""
+        return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_cameras, _bytes_of(part))
+
+    def set_key(self, id: int, key: ProfileKey) -> None:
+        """Gives the profile with an id another key; all else stays."""
+        self._call(lib.lensprof_store_set_key, integer(id, "id", c_int64), byref(key))
+
+    def _list(self, row: Any, raw: Any, function: Any, *arguments: Any) -> List[Any]:
+        """All rows that function(store, *arguments, rows, capacity, count, error) has."""
+        rows, found = (raw * 0)(), c_uint32()
         while True:  # until they fit: another process may add rows between two calls
             try:
-                self._call(lib.lensprof_store_list, key, rows, len(rows), byref(found))
+                self._call(function, *arguments, rows, len(rows), byref(found))
                 if found.value <= len(rows):
                     break
             except Error as error:
                 if error.status != Status.ERROR_CAPACITY:
                     raise
-            rows = (_abi.StoreRow * found.value)()
-        size = ctypes.sizeof(_abi.StoreRow)
-        return [StoreRow.from_buffer(rows, i * size) for i in range(found.value)]
+            rows = (raw * found.value)()
+        size = ctypes.sizeof(raw)
+        return [row.from_buffer(rows, i * size) for i in range(found.value)]

@@ -11,6 +11,19 @@
 #include "cli/report/report.hpp"
 
 namespace lensprof {
+namespace {
+
+// The lenses or cameras that a name or a part of one is of; without a name one that any profile has.
+std::vector<lensprof_store_summary> named(lensprof_store *store, const std::string &db, const std::string &name,
+                                          decltype(&lensprof_store_list_lenses) list) {
+    if (name.empty()) return std::vector<lensprof_store_summary>(1);
+    return listed<lensprof_store_summary>(
+        db, [&](lensprof_store_summary *buffer, uint32_t capacity, uint32_t *count, lensprof_error *error) {
+            return list(store, name.c_str(), buffer, capacity, count, error);
+        });
+}
+
+}  // namespace
 
 void KeyFilter::add_options(Command &command) {
     command.text("--camera", camera_, "camera model");
@@ -44,32 +57,54 @@ lensprof_profile_key KeyFilter::key(uint32_t processing) const {
     return key;
 }
 
-std::vector<lensprof_store_row> KeyFilter::rows(lensprof_store *store, const std::string &db) const {
-    const lensprof_profile_key filter = key(LENSPROF_PROCESSING_JPEG);
-    lensprof_error error{};
-    uint32_t found = 0;
-    check(lensprof_store_list(store, &filter, nullptr, 0, &found, &error), store_path(db), &error);
-    std::vector<lensprof_store_row> rows;
-    lensprof_status status = LENSPROF_OK;
-    do {  // again where others add profiles meanwhile
-        rows.resize(found);
-        status = lensprof_store_list(store, &filter, rows.data(), found, &found, &error);
-    } while (status == LENSPROF_ERROR_CAPACITY);
-    check(status, store_path(db), &error);
-    rows.resize(std::min<size_t>(rows.size(), found));
-    if (!processing_) return rows;
-    const uint32_t processing = *processing_;
-    rows.erase(
-        std::remove_if(rows.begin(), rows.end(),
-                       [=](const lensprof_store_row &row) { return !row.damaged && row.key.processing != processing; }),
-        rows.end());
+void KeyFilter::put_into(lensprof_profile_key &key) const {
+    if (!maker_.empty()) set_text(key.camera_maker, sizeof key.camera_maker, maker_);
+    if (!camera_.empty()) set_text(key.camera_model, sizeof key.camera_model, camera_);
+    if (!lens_.empty()) set_text(key.lens, sizeof key.lens, lens_);
+    if (!unit_.empty()) set_text(key.unit, sizeof key.unit, unit_);
+    if (focal_ != LENSPROF_UNKNOWN) key.focal_mm = focal_;
+    if (aperture_ != LENSPROF_UNKNOWN) key.aperture = aperture_;
+    if (distance_ != LENSPROF_UNKNOWN) key.distance_m = distance_;
+    if (processing_) key.processing = *processing_;
+}
+
+std::vector<lensprof_store_row> KeyFilter::rows_of(lensprof_store *store, const std::string &db,
+                                                   const lensprof_profile_key &filter) const {
+    auto rows = listed<lensprof_store_row>(
+        db, [&](lensprof_store_row *buffer, uint32_t capacity, uint32_t *count, lensprof_error *error) {
+            return lensprof_store_list(store, &filter, buffer, capacity, count, error);
+        });
+    const auto is_other = [&](const lensprof_store_row &row) {
+        return processing_ && !row.damaged && row.key.processing != *processing_;
+    };
+    rows.erase(std::remove_if(rows.begin(), rows.end(), is_other), rows.end());
     return rows;
+}
+
+std::vector<lensprof_store_row> KeyFilter::rows(lensprof_store *store, const std::string &db) const {
+    return rows_of(store, db, key(LENSPROF_PROCESSING_JPEG));
+}
+
+std::vector<lensprof_store_row> KeyFilter::matching_rows(lensprof_store *store, const std::string &db) const {
+    std::vector<lensprof_store_row> all;
+    lensprof_profile_key filter = key(LENSPROF_PROCESSING_JPEG);
+    const auto cameras = named(store, db, camera_, lensprof_store_list_cameras);
+    const auto lenses = named(store, db, lens_, lensprof_store_list_lenses);
+    for (const lensprof_store_summary &camera : cameras)
+        for (const lensprof_store_summary &lens : lenses) {
+            if (maker_.empty()) std::copy_n(camera.camera_maker, sizeof filter.camera_maker, filter.camera_maker);
+            std::copy_n(camera.camera_model, sizeof filter.camera_model, filter.camera_model);
+            std::copy_n(lens.lens, sizeof filter.lens, filter.lens);
+            const auto rows = rows_of(store, db, filter);
+            all.insert(all.end(), rows.begin(), rows.end());
+        }
+    return all;
 }
 
 std::vector<StoredProfile> KeyFilter::profiles(const std::string &db, std::vector<int64_t> ids) const {
     Store store = open_store(db, LENSPROF_STORE_READ);
     if (ids.empty())
-        for (const auto &row : rows(store.get(), db)) ids.push_back(row.id);
+        for (const auto &row : matching_rows(store.get(), db)) ids.push_back(row.id);
     if (ids.empty()) throw Failure(ExitCode::not_found, nothing_found(db));
     std::vector<StoredProfile> profiles;
     for (int64_t id : ids) {

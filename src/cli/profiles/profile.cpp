@@ -1,4 +1,4 @@
-// `lensprof profile list | show | remove`, and the verbs that have files of their own.
+// `lensprof profile list | show`, and the verbs that have files of their own.
 #include <algorithm>
 #include <optional>
 
@@ -39,7 +39,7 @@ int report_damaged(lensprof_store *store, const std::vector<lensprof_store_row> 
 
 int list(const std::string &db, const KeyFilter &filter, bool json, Streams &streams) {
     Store store = open_store(db, LENSPROF_STORE_READ);
-    const std::vector<lensprof_store_row> rows = filter.rows(store.get(), db);
+    const std::vector<lensprof_store_row> rows = filter.matching_rows(store.get(), db);
     if (json) {
         Json profiles = Json::array();
         Json damaged = Json::array();
@@ -63,6 +63,7 @@ int list(const std::string &db, const KeyFilter &filter, bool json, Streams &str
                               number_or(k.distance_m, "%g").c_str(), processing_name(k.processing),
                               *k.unit ? ", unit " : "", k.unit);
     }
+    if (rows.empty()) streams.out << "0 profiles\n";
     return report_damaged(store.get(), rows, streams);
 }
 
@@ -157,17 +158,6 @@ int show(const ShowOptions &o, Streams &streams) {
     return 0;
 }
 
-int remove(const std::string &db, int64_t id, bool json, Streams &streams) {
-    Store store = open_store(db, LENSPROF_STORE_WRITE);
-    lensprof_error error{};
-    check(lensprof_store_remove(store.get(), id, &error), store_path(db), &error);
-    if (json)
-        print_json(Json{{"schema", 1}, {"removed", id}}, streams.out);
-    else
-        streams.out << "removed profile " << id << "\n";
-    return 0;
-}
-
 void declare_list(Command &profile) {
     struct Options {
         std::string db;
@@ -200,31 +190,15 @@ void declare_show(Command &profile) {
     command.run([o](Streams &streams) { return show(*o, streams); });
 }
 
-void declare_remove(Command &profile) {
-    struct Options {
-        std::vector<int64_t> ids;
-        std::string db;
-        bool json = false;
-    };
-    Command command = profile.add("remove", "take a profile out of the database");
-    auto o = std::make_shared<Options>();
-    command.profile_ids("ID", o->ids, "the profile, one, as `lensprof profile list` shows it");
-    declare_db(command, o->db);
-    declare_json(command, o->json);
-    command.run([o](Streams &streams) {
-        if (o->ids.size() != 1)
-            throw Failure(ExitCode::usage, "profile remove: give the id, one, that `lensprof profile list` shows");
-        return remove(o->db, o->ids[0], o->json, streams);
-    });
-}
-
 }  // namespace
 
 void declare_profile(Command &program) {
-    Command profile = program.add("profile", "list, show, remove, export, import, merge, check or count profiles");
+    Command profile =
+        program.add("profile", "list, show, change, remove, export, import, merge, check or count profiles");
     declare_list(profile);
     declare_show(profile);
-    declare_remove(profile);
+    declare_profile_names(profile);
+    declare_profile_edit(profile);
     declare_profile_export(profile);
     declare_profile_import(profile);
     declare_profile_merge(profile);

@@ -39,8 +39,7 @@ const char *ending_of(const ForeignRule &rule) {
 // Of the lens, else of the camera that has it built in.
 std::string lens_name_of(const lensprof_profile_key &key) {
     if (*key.lens) return key.lens;
-    return *key.camera_model ? std::string(key.camera_maker) + (*key.camera_maker ? " " : "") + key.camera_model
-                             : "unknown lens";
+    return *key.camera_model ? camera_name(key.camera_maker, key.camera_model) : "unknown lens";
 }
 
 // What the profiles of one file share: the lens, and where a file is of one camera and sensor, these too.

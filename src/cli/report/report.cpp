@@ -364,9 +364,21 @@ Json profile_json(int64_t id, const lensprof_profile &profile) {
     return json;
 }
 
+std::string camera_name(const std::string &maker, const std::string &model) {
+    if (maker.empty() || model.empty()) return maker + model;
+    const std::string word = maker.substr(0, maker.find(' '));
+    const auto is_same = [](char a, char b) {
+        const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+        return lower(a) == lower(b);
+    };
+    const bool names_maker = model.size() >= word.size() && std::equal(word.begin(), word.end(), model.begin(), is_same)
+                             && (model.size() == word.size() || model[word.size()] == ' ');
+    return names_maker ? model : maker + " " + model;
+}
+
 KeyParts key_parts(const lensprof_profile_key &key) {
     KeyParts parts;
-    parts[0] = std::string(key.camera_maker) + (*key.camera_maker && *key.camera_model ? " " : "") + key.camera_model;
+    parts[0] = camera_name(key.camera_maker, key.camera_model);
     parts[1] = key.lens;
     if (key.focal_mm != LENSPROF_UNKNOWN) parts[2] = format("%g mm", key.focal_mm);
     if (key.aperture != LENSPROF_UNKNOWN) parts[3] = format("f/%g", key.aperture);

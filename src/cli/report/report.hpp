@@ -72,6 +72,9 @@ Json provenance_json(const lensprof_provenance &provenance);
 Json profile_json(int64_t id, const lensprof_profile &profile);
 void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &out);
 
+// Maker and model, the maker once: "Canon EOS 6D" of "Canon" and "Canon EOS 6D".
+std::string camera_name(const std::string &maker, const std::string &model);
+
 // Camera, lens, focal length, aperture, focus and processing in words; empty where not known.
 using KeyParts = std::array<std::string, 6>;
 KeyParts key_parts(const lensprof_profile_key &key);

@@ -7,6 +7,9 @@
 /* read.c: the profile with an id, within a transaction, into store->scratch. */
 lensprof_status lp_store_fetch(lensprof_store *store, int64_t id, lensprof_error *error);
 
+/* read.c: the nine columns of a key before its processing, from the maker on. */
+void lp_store_bind_key(lp_store_binder *binder, const lensprof_profile_key *key);
+
 /* write.c: a profile known to be valid, within a transaction; and its columns, in the order of that INSERT. */
 lensprof_status lp_store_insert(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
                                 lensprof_error *error);

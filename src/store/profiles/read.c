@@ -23,7 +23,7 @@ const char *const lp_store_processings[LP_STORE_PROCESSINGS] = {"raw", "jpeg", "
 #define ANY_TEXT(column, value) "(trim(" value ") = '' OR " SAME_TEXT(column, value) ")"
 #define ANY_NUMBER(column, value) "(" value " IS NULL OR " SAME_NUMBER(column, value) ")"
 
-static void bind_key(lp_store_binder *binder, const lensprof_profile_key *key) {
+void lp_store_bind_key(lp_store_binder *binder, const lensprof_profile_key *key) {
     lp_bind_text(binder, key->camera_maker);
     lp_bind_text(binder, key->camera_model);
     lp_bind_text(binder, key->lens);
@@ -122,7 +122,7 @@ static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *
     lensprof_status status = lp_store_prepare(store, sql, &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     if (key) {
-        bind_key(&binder, key);
+        lp_store_bind_key(&binder, key);
         lp_bind_text(&binder, lp_store_processings[key->processing]);
     } else
         lp_bind_integer(&binder, *id);
@@ -227,7 +227,7 @@ static lensprof_status list_rows(lensprof_store *store, const lensprof_profile_k
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
     lensprof_status status = lp_store_prepare(store, lp_store_of_layout(store, list_sql), &binder.statement, error);
     if (status != LENSPROF_OK) return status;
-    bind_key(&binder, filter);
+    lp_store_bind_key(&binder, filter);
     lensprof_profile_init(&store->scratch);
     int rc = binder.rc;
     if (rc == SQLITE_OK) rc = sqlite3_step(binder.statement);

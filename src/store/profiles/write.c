@@ -156,3 +156,37 @@ lensprof_status lensprof_store_remove(lensprof_store *store, int64_t id, lenspro
     lp_store_rollback(store);
     return status;
 }
+
+static lensprof_status set_key(lensprof_store *store, int64_t id, const lensprof_profile_key *key,
+                               lensprof_error *error) {
+    char lens_name[LP_NAME_BYTES]; /* bound as it is: until the statement has run */
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    lensprof_status status = lp_store_prepare(
+        store,
+        "UPDATE profiles SET camera_maker = ?, camera_model = ?, lens = ?, unit = ?, crop_factor = ?, focal_mm = ?,"
+        " aperture = ?, distance_m = ?, color_temperature_k = ?, processing = ?, lens_name = ? WHERE id = ?",
+        &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_store_bind_key(&binder, key);
+    lp_bind_text(&binder, lp_store_processings[key->processing]);
+    lp_squeeze(key->lens, lens_name);
+    lp_bind_text(&binder, lens_name);
+    lp_bind_integer(&binder, id);
+    status = lp_store_run(store, &binder, error);
+    if (status != LENSPROF_OK) return status;
+    return sqlite3_changes(store->db) ? LENSPROF_OK : lp_store_fail_missing(store, id, error);
+}
+
+lensprof_status lensprof_store_set_key(lensprof_store *store, int64_t id, const lensprof_profile_key *key,
+                                       lensprof_error *error) {
+    lp_store_clear(error);
+    if (!store || !key) return lp_store_fail_argument("store or key is NULL", error);
+    if (lensprof_profile_key_validate(key) != LENSPROF_OK)
+        return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
+    lensprof_status status = lp_store_begin(store, true, error);
+    if (status != LENSPROF_OK) return status;
+    status = set_key(store, id, key, error);
+    if (status == LENSPROF_OK) return lp_store_commit(store, error);
+    lp_store_rollback(store);
+    return status;
+}

@@ -1,0 +1,135 @@
+// `lensprof profile set | remove`: profiles get another key, or are taken out. All of them or none.
+#include <nlohmann/json.hpp>
+
+#include "cli/profiles/key_filter.hpp"
+#include "cli/program/commands.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/options.hpp"
+#include "cli/program/run.hpp"
+#include "cli/report/report.hpp"
+
+namespace lensprof {
+namespace {
+
+// Calls change(store, id, &error) for every id, in one transaction.
+template <typename Change>
+void change_all(const std::string &db, lensprof_store *store, const std::vector<int64_t> &ids, const Change &change) {
+    lensprof_error error{};
+    const std::string file = store_path(db);
+    check(lensprof_store_begin(store, &error), file, &error);
+    for (const int64_t id : ids) check(change(store, id, &error), file, &error);  // closing the store rolls back
+    check(lensprof_store_commit(store, &error), file, &error);
+}
+
+void print_changed(const std::vector<int64_t> &ids, const char *what, bool json, Streams &streams) {
+    if (json)
+        print_json(Json{{"schema", 1}, {what, ids}}, streams.out);
+    else if (ids.size() == 1)
+        streams.out << what << " profile " << ids[0] << "\n";
+    else
+        streams.out << what << " " << counted(ids.size(), "profile") << "\n";
+}
+
+// ---- remove ----
+
+struct RemoveOptions {
+    std::vector<int64_t> ids;
+    KeyFilter filter;
+    std::string db;
+    bool yes = false, json = false;
+};
+
+int remove(RemoveOptions &o, Streams &streams) {
+    if (o.ids.empty() == o.filter.is_empty())
+        throw Failure(ExitCode::usage,
+                      "profile remove: give either ids that `lensprof profile list` shows, or --camera, "
+                      "--lens and the like with --yes");
+    const Store store = open_store(o.db, LENSPROF_STORE_WRITE);
+    if (o.ids.empty()) {
+        for (const auto &row : o.filter.matching_rows(store.get(), o.db)) o.ids.push_back(row.id);
+        if (o.ids.empty()) throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db));
+        if (!o.yes)
+            throw Failure(ExitCode::usage,
+                          "profile remove: would remove " + counted(o.ids.size(), "profile") + " of " + store_path(o.db)
+                              + "; look at them with `lensprof profile list` and the same options, then add --yes");
+    }
+    change_all(o.db, store.get(), o.ids, lensprof_store_remove);
+    print_changed(o.ids, "removed", o.json, streams);
+    return 0;
+}
+
+void declare_remove(Command &profile) {
+    Command command = profile.add("remove", "take profiles out of the database");
+    auto o = std::make_shared<RemoveOptions>();
+    command.profile_ids("ID", o->ids, "profiles, as `lensprof profile list` shows them");
+    command.flag("--yes", o->yes, "remove all that match; without it the command counts them and removes none");
+    declare_db(command, o->db);
+    declare_json(command, o->json);
+    command.group("Which profiles, instead of ids");
+    o->filter.add_options(command);
+    command.run([o](Streams &streams) { return remove(*o, streams); });
+}
+
+// ---- set ----
+
+struct SetOptions {
+    std::vector<int64_t> ids;
+    KeyFilter key;
+    double crop_factor = LENSPROF_UNKNOWN;
+    std::vector<double lensprof_profile_key::*> unknown;
+    bool any_unit = false;
+    std::string db;
+    bool json = false;
+};
+
+int set(const SetOptions &o, Streams &streams) {
+    if (o.ids.empty())
+        throw Failure(ExitCode::usage, "profile set: give the ids of profiles that `lensprof profile list` shows");
+    if (o.key.is_empty() && o.crop_factor == LENSPROF_UNKNOWN && o.unknown.empty() && !o.any_unit)
+        throw Failure(ExitCode::usage, "profile set: give what is to change, as --lens NAME or --clear distance");
+    o.key.check_names();
+    const Store store = open_store(o.db, LENSPROF_STORE_WRITE);
+    const auto profile = new_profile();
+    change_all(o.db, store.get(), o.ids, [&](lensprof_store *db, int64_t id, lensprof_error *error) {
+        const lensprof_status status = lensprof_store_get(db, id, profile.get(), error);
+        if (status != LENSPROF_OK) return status;
+        lensprof_profile_key key = profile->key;
+        for (double lensprof_profile_key::*number : o.unknown) key.*number = LENSPROF_UNKNOWN;
+        if (o.any_unit) set_text(key.unit, sizeof key.unit, "");
+        if (o.crop_factor != LENSPROF_UNKNOWN) key.crop_factor = o.crop_factor;
+        o.key.put_into(key);
+        return lensprof_store_set_key(db, id, &key, error);
+    });
+    print_changed(o.ids, "changed", o.json, streams);
+    return 0;
+}
+
+void declare_set(Command &profile) {
+    Command command = profile.add("set", "change camera, lens or setting of stored profiles",
+                                  "Changes what stored profiles are for; what they hold stays.");
+    auto o = std::make_shared<SetOptions>();
+    command.profile_ids("ID", o->ids, "profiles, as `lensprof profile list` shows them");
+    declare_db(command, o->db);
+    declare_json(command, o->json);
+    command.group("What they are for; the rest stays");
+    o->key.add_options(command);
+    command.number("--crop-factor", o->crop_factor, crop_factors, "43.27 mm over the diagonal of the camera's sensor");
+    command.list("--clear", o->unknown,
+                 {{"crop-factor", &lensprof_profile_key::crop_factor},
+                  {"focal", &lensprof_profile_key::focal_mm},
+                  {"aperture", &lensprof_profile_key::aperture},
+                  {"distance", &lensprof_profile_key::distance_m}},
+                 "numbers that are not known, with commas: crop-factor, focal, aperture, distance");
+    command.flag("--any-unit", o->any_unit, "of any camera and lens of the model, no longer of a single one");
+    command.run([o](Streams &streams) { return set(*o, streams); });
+}
+
+}  // namespace
+
+void declare_profile_edit(Command &profile) {
+    declare_set(profile);
+    declare_remove(profile);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,100 @@
+// `lensprof profile lenses | cameras | set`, `list` and `remove` of what matches.
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+
+namespace {
+
+Words db_words() { return {"--db", work("p.db")}; }
+
+Json one_of(const char *camera, const char *lens, double focal_mm, double aperture) {
+    return {{"key",
+             {{"camera_maker", *camera ? "Canon" : ""},
+              {"camera_model", camera},
+              {"lens", lens},
+              {"focal_mm", focal_mm},
+              {"aperture", aperture},
+              {"processing", "raw"}}},
+            {"vignetting", {{"k", {{-0.3, 0, 0}}}}}};
+}
+
+void make_db() {
+    const Json all = {
+        one_of("Canon EOS 6D", "EF24-70mm f/2.8L USM", 24, 2.8), one_of("Canon EOS 6D", "EF24-70mm f/2.8L USM", 70, 8),
+        one_of("", "Sony FE 24-70mm f/2.8 GM", 24, 4), one_of("Canon EOS R6", "RF50mm F1.8 STM", 50, 1.8)};
+    save_text(work("all.json"), Json{{"schema", 1}, {"profiles", all}}.dump());
+    must_exit(done, Words{"profile", "import", work("all.json")} + db_words());
+}
+
+size_t listed(const Words &filter) {
+    return json_of(Words{"profile", "list", "--json"} + filter + db_words())["profiles"].size();
+}
+
+void test_lenses_and_cameras(void **) {
+    make_db();
+    const Json lenses = json_of(Words{"profile", "lenses", "24-70", "--json"} + db_words())["lenses"];
+    assert_int_equal(lenses.size(), 2);
+    assert_true(lenses[0]
+                == Json::parse(R"({"lens":"EF24-70mm f/2.8L USM","profiles":2,"cameras":1,"raw":2,"jpeg":0,)"
+                               R"("corrected":0,"focal_mm":[24,70],"aperture":[2.8,8],"distance_m":null})"));
+    const std::string text = must_exit(done, Words{"profile", "lenses", "FE", "24-70"} + db_words());
+    assert_true(contains(text, "Sony FE 24-70mm f/2.8 GM") && contains(text, "1 lens\n"));
+    const std::string cameras = must_exit(done, Words{"profile", "cameras"} + db_words());
+    assert_true(contains(cameras, "  Canon EOS 6D\n") && contains(cameras, "2 cameras\n"));
+    assert_false(contains(cameras, "Canon Canon"));
+    assert_int_equal(json_of(Words{"profile", "cameras", "nikon", "--json"} + db_words())["cameras"].size(), 0);
+    assert_refused(not_found, {"profile", "lenses", "--db", work("none.db")}, {work("none.db")});
+}
+
+void test_filters_take_parts_of_names(void **) {
+    make_db();
+    assert_int_equal(listed({"--lens", "24-70"}), 3);
+    assert_int_equal(listed({"--lens", "canon ef 24-70MM f/2.8l usm"}), 2);
+    assert_int_equal(listed({"--lens", "24-70", "--aperture", "4"}), 1);
+    assert_int_equal(listed({"--camera", "r6"}), 1);
+    assert_int_equal(listed({"--camera", "6d", "--lens", "sony"}), 0);
+    assert_true(contains(must_exit(done, Words{"profile", "list", "--lens", "85mm"} + db_words()), "0 profiles"));
+    assert_refused(not_found, Words{"profile", "show", "--lens", "85mm"} + db_words(), {"85mm"});
+}
+
+void test_remove_what_matches(void **) {
+    make_db();
+    const Words remove = Words{"profile", "remove"} + db_words();
+    assert_refused(usage, remove + Words{"--lens", "24-70"}, {"would remove 3 profiles", work("p.db"), "--yes"});
+    assert_refused(usage, remove + Words{"--yes"}, {"either ids"});
+    assert_refused(not_found, remove + Words{"--lens", "85mm", "--yes"}, {"85mm"});
+    assert_refused(not_found, remove + Words{"1", "9"}, {"9"});
+    assert_int_equal(listed({}), 4);  // none, for one that is not there
+    assert_true(json_of(remove + Words{"1", "4", "--json"})["removed"] == Json({1, 4}));
+    assert_true(contains(must_exit(done, remove + Words{"--lens", "24-70", "--yes"}), "removed 2 profiles"));
+    assert_int_equal(listed({}), 0);
+}
+
+void test_set(void **) {
+    make_db();
+    const Words set = Words{"profile", "set"} + db_words();
+    assert_true(contains(must_exit(done, set
+                                             + Words{"1", "2", "--lens", "My Lens", "--distance", "3m", "--crop-factor",
+                                                     "1.5", "--clear", "aperture"}),
+                         "changed 2 profiles"));
+    const Json key = json_of(Words{"profile", "show", "2", "--json"} + db_words())["key"];
+    assert_true(key["lens"] == "My Lens" && key["camera_model"] == "Canon EOS 6D" && key["aperture"].is_null());
+    assert_true(key["distance_m"] == 3 && key["crop_factor"] == 1.5 && key["focal_mm"] == 70);
+    assert_int_equal(listed({"--lens", "my lens"}), 2);
+    const Bytes before = load(work("p.db"));
+    assert_refused(usage, set, {"ids"});
+    assert_refused(usage, set + Words{"1"}, {"--lens"});
+    assert_refused(usage, set + Words{"1", "--clear", "lens"}, {"--clear"});
+    assert_refused(usage, set + Words{"1", "--lens", std::string(200, 'x')}, {"--lens"});
+    assert_refused(not_found, set + Words{"1", "77", "--aperture", "4"}, {"77"});
+    assert_true(json_of(Words{"profile", "show", "1", "--json"} + db_words())["key"]["aperture"].is_null());
+    assert_true(load(work("p.db")) == before);
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {CLI_TEST(test_lenses_and_cameras), CLI_TEST(test_filters_take_parts_of_names),
+                                CLI_TEST(test_remove_what_matches), CLI_TEST(test_set)};
+    return cmocka_run_group_tests(tests, make_scene, remove_folder);
+}
