@@ -37,7 +37,7 @@ struct lensprof_fixed_plan {
 /* log2(1 + i/256) in 2^-22 and 2^(i/256) in 2^-30, i = 0..256. */
 extern const uint32_t lp_log2_table[257], lp_exp2_table[257];
 
-/* CRC-32 of the bytes behind `check`, tables included. fixed_open.c */
+/* CRC-32 of the bytes after `check`, tables included. fixed_open.c */
 uint32_t lp_fixed_check(const lensprof_fixed_plan *plan);
 
 #endif

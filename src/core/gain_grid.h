@@ -10,7 +10,7 @@ static inline int lp_is_grid_side(uint32_t nodes) { return nodes >= 2 && nodes <
 /* Also false for NaN. */
 static inline int lp_is_attenuation(float value) { return value >= 0.001f && value <= 1000.0f; }
 
-/* The node before a position on one axis, with a node behind it, and how far towards that one, 0..1. */
+/* The node before a position on one axis, with a node after it, and how far towards that one, 0..1. */
 typedef struct lp_grid_cell {
     uint32_t node;
     double fraction;

@@ -301,7 +301,7 @@ long peak_memory() {
 // 255 SubIFDs that are one directory of as many entries as there can be: 400 MB if all were held.
 void test_shared_directory(void **) {
 #if defined(__SANITIZE_ADDRESS__)
-    skip();  // which keeps freed memory
+    skip();  // the address sanitizer keeps freed memory
 #endif
     constexpr uint32_t children = 255, entries = 65535, list = 62, child = list + 4 * children;
     Bytes bytes = {'I', 'I', 42, 0, 8, 0, 0, 0};

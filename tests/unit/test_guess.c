@@ -54,13 +54,13 @@ static void check_guesses(lp_row_kernel *row) {
 
 static void test_values_are_found_with_avx2(void **state) {
     (void)state;
-    if (lp_row_best(8) != lp_row_avx2) skip();
+    if (lp_row_best(8) != lp_row_avx2) skip(); /* this processor has no AVX2 */
     check_guesses(guessed_row_avx2);
 }
 
 static void test_values_are_found_with_avx512(void **state) {
     (void)state;
-    if (lp_row_best(16) != lp_row_avx512) skip();
+    if (lp_row_best(16) != lp_row_avx512) skip(); /* this processor has no AVX-512 */
     check_guesses(guessed_row_avx512);
 }
 

@@ -94,27 +94,27 @@ struct Limits {
     bool decodes_blocks = false;  // has a whole block in memory, also where rows are read
 };
 
-// False for compressions that no picture here can have: those of one, two or four bits a sample and of other colours.
-bool limits_of(uint16_t compression, Limits &limits) {
+// Nothing for compressions that no picture here can have: those of one, two or four bits a sample and of other colours.
+std::optional<Limits> limits_of(uint16_t compression) {
     constexpr uint64_t jpeg = 1366;  // a bit for 8 x 8 samples, 18 such blocks for 32 x 32 pixels of three
     switch (compression) {
-    case COMPRESSION_NONE: return limits = {1}, true;
+    case COMPRESSION_NONE: return Limits{1};
     case COMPRESSION_PACKBITS:
-        return limits = {64}, true;  // 128 of two
+        return Limits{64};  // 128 of two
     // A string is no longer than the table of 4096, its code then has 12 bits.
-    case COMPRESSION_LZW: return limits = {2731}, true;
+    case COMPRESSION_LZW: return Limits{2731};
     case COMPRESSION_ADOBE_DEFLATE:
-    case COMPRESSION_DEFLATE: return limits = {deflate_expansion}, true;
-    case COMPRESSION_PIXARLOG: return limits = {2 * deflate_expansion}, true;  // floats of 16 bit codes
+    case COMPRESSION_DEFLATE: return Limits{deflate_expansion};
+    case COMPRESSION_PIXARLOG: return Limits{2 * deflate_expansion};  // floats of 16 bit codes
     case COMPRESSION_JPEG:
-    case COMPRESSION_OJPEG: return limits = {jpeg}, true;
-    case COMPRESSION_LZMA: return limits = {8192}, true;  // 273 of 14 binary decisions of 0.022 bits each
+    case COMPRESSION_OJPEG: return Limits{jpeg};
+    case COMPRESSION_LZMA: return Limits{8192};  // 273 of 14 binary decisions of 0.022 bits each
     case COMPRESSION_ZSTD:
-        return limits = {32768}, true;  // a block of 128 KiB of 4
+        return Limits{32768};  // a block of 128 KiB of 4
     // The headers of the file and of its only chunk; 14 bits of each side.
-    case COMPRESSION_WEBP: return limits = {0, 20, 16383, true}, true;
-    case COMPRESSION_LERC: return limits = {0, 1, 0, true}, true;  // its header, perhaps deflated
-    default: return false;
+    case COMPRESSION_WEBP: return Limits{0, 20, 16383, true};
+    case COMPRESSION_LERC: return Limits{0, 1, 0, true};  // its header, perhaps deflated
+    default: return std::nullopt;
     }
 }
 
@@ -344,9 +344,11 @@ TiffSource::TiffSource(const ReadRequest &request) : path_(request.path), tiff_(
     read_sample(tiff_, request, header_);
     read_layout(tiff_, request, header_);
     read_traits(tiff_, header_);
-    if (!limits_of(header_.traits.compression, limits_) || !TIFFIsCODECConfigured(header_.traits.compression))
+    const std::optional<Limits> limits = limits_of(header_.traits.compression);
+    if (!limits || !TIFFIsCODECConfigured(header_.traits.compression))
         fail_unsupported(path_, "TIFF compression " + std::to_string(header_.traits.compression)
                                     + " is not supported; convert it first");
+    limits_ = *limits;
     set_frame(header_, tiff_.field<uint32_t>(TIFFTAG_IMAGEWIDTH, 0), tiff_.field<uint32_t>(TIFFTAG_IMAGELENGTH, 0),
               request);
     check_stored_frame(tiff_, path_, header_, limits_);

@@ -34,10 +34,10 @@ void declare(Command command, int (*run)(const Options &, Streams &)) {
     command.run([o, run](Streams &streams) { return run(*o, streams); });
 }
 
-std::string range(const double *ends, const char *front, const char *behind) {
+std::string range(const double *ends, const char *front, const char *end) {
     if (ends[0] == LENSPROF_UNKNOWN) return "not known of any";
-    const std::string one = format("%s%g%s", front, ends[0], behind);
-    return ends[0] == ends[1] ? one : one + " to " + format("%s%g%s", front, ends[1], behind);
+    const std::string one = format("%s%g%s", front, ends[0], end);
+    return ends[0] == ends[1] ? one : one + " to " + format("%s%g%s", front, ends[1], end);
 }
 
 Json range_json(const double *ends) {

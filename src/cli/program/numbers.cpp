@@ -32,7 +32,7 @@ std::string range_text(const Quantity &quantity) {
 }
 
 // The decimal number, or infinity, at the start of `text`, of which it leaves the rest; false where there is none.
-// strtod would also take hexadecimal digits, and a number behind blanks.
+// strtod would also take hexadecimal digits, and a number after blanks.
 bool take_number(const char *&text, double &value) {
     const char *digits = text + (*text == '-' || *text == '+');
     const bool is_hexadecimal = digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X');

@@ -109,7 +109,7 @@ bool looks_like_option(const std::string &word, const CLI::Option &option) {
     return !takes_numbers && word.find_first_not_of("0123456789.,/eE+-", 1) != std::string::npos;
 }
 
-// CLI11 takes a value within brackets for a list, and one behind this character for text.
+// CLI11 takes a value within brackets for a list, and one that begins with this character for text.
 constexpr char text_mark = '=';
 
 // Brings the words of a command line into the order in which CLI11 takes them as they are meant: the commands, options

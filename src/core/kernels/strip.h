@@ -46,7 +46,7 @@ typedef struct strip {
 #endif
 } strip;
 
-/* Samples that lie one behind the other, in memory and on the strip. */
+/* Contiguous samples, in memory and on the strip. */
 typedef struct run {
     const uint8_t *from;
     uint8_t *to;

@@ -68,7 +68,7 @@ typedef enum lp_store_file {
 lensprof_status lp_store_probe(const char *path, lp_store_file *file, char **full, lensprof_error *error);
 
 /* log.c: the write-ahead log. */
-int lp_store_settle_journal(lensprof_store *store); /* behind a commit: result code, of no matter to that */
+int lp_store_settle_journal(lensprof_store *store); /* after a commit, which its result code does not change */
 void lp_store_clear_log(const char *full);          /* files of a log that could not be begun; never one in use */
 
 /* connection.c: a new connection, configured for the store's mode; result code. */
