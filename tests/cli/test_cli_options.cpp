@@ -42,7 +42,7 @@ Words options_with_values(const std::string &help) {
 
 void test_all_commands_are_walked(void **) {
     const std::vector<Words> commands = all_commands();
-    assert_int_equal(commands.size(), 9 + 8);
+    assert_int_equal(commands.size(), 9 + 11);
     size_t options = 0;
     for (const Words &command : commands)
         options += options_with_values(must_exit(done, Words{"help"} + command)).size();
@@ -335,7 +335,7 @@ void test_bad_options(void **) {
         {"profile", "show", "x"},
         {"profile", "show", "0"},
         {"profile", "show", "-1"},
-        {"profile", "remove", "1", "2"},
+        {"profile", "remove", "1", "--lens", "x"},
         {"simulate"},
         {"simulate", "-o"},
         {"simulate", "-o", work("s"), "--images", "1"},
