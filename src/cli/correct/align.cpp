@@ -35,7 +35,8 @@ struct Options {
     FitOptions fit;
     Target to = Target::mean;
     std::string output = "aligned", pto;
-    uint32_t seed = 1, pairs = 0, max_side = 800, threads = 0;
+    CorrectionKind kind;
+    uint32_t seed = 1, pairs = 0, max_side = 800;
     bool json = false, progress = false;
     std::vector<std::string> files;
 };
@@ -54,7 +55,7 @@ void declare(Command &command, Options &o) {
     command.count("--seed", o.seed, 0, UINT32_MAX, "of the sampling");
     command.count("--max-side", o.max_side, 0, UINT32_MAX,
                   "sample frames reduced to no less than this many pixels (800); 0 = full size");
-    declare_threads(command, o.threads);
+    declare_writing(command, o.kind);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
 }
@@ -128,9 +129,18 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
     std::vector<Correction> jobs;
     for (uint32_t i : frames) {
         std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
-        jobs.push_back({project.files[i], (std::filesystem::path(o.output) / name).string(), nullptr, {}, {}, 0, 0});
+        jobs.push_back({project.files[i],
+                        (std::filesystem::path(o.output) / name).string(),
+                        nullptr,
+                        {},
+                        {},
+                        0,
+                        nullptr,
+                        0,
+                        "frames of " + std::filesystem::path(project.files[0]).filename().string() + " on"});
     }
     check_targets(jobs, project.files, "");
+    check_older_outputs(jobs, o.kind);
     return jobs;
 }
 
@@ -180,9 +190,7 @@ int align(const Options &o, Streams &streams) {
             warn_of_limits(jobs[i].source, jobs[i].own.ev, jobs[i].wanted.ev, white_shares[frames[i]], streams);
         }
         make_folder(o.output);
-        CorrectionKind kind;
-        kind.threads = o.threads;
-        written = write_corrected(jobs, kind, nullptr, progress);
+        written = write_corrected(jobs, o.kind, nullptr, progress);
     }
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;

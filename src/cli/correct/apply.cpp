@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/correct/correction.hpp"
+#include "cli/correct/named_pictures.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
@@ -34,8 +35,24 @@ struct Options {
     Exposure exposure = Exposure::by_default;
     int64_t profile = 0;
     CorrectionKind kind;
-    bool from_db = false, json = false, progress = false;
+    bool from_db = false, skip = false, again = false, json = false, progress = false;
     std::vector<std::string> files;
+};
+
+// Why one picture is not corrected, which is no reason not to correct the others.
+struct NotThisOne : Failure {
+    NotThisOne(ExitCode exit_code, const std::string &text) : Failure(exit_code, text) {}
+};
+
+struct LeftOut {
+    std::string file, reason;
+    ExitCode code;  // not_found where there is no profile of it; else it was corrected before
+};
+
+struct Work {
+    std::vector<Correction> jobs;
+    std::vector<LeftOut> left_out;
+    lensprof_exposure mean{};  // what --output-exposure mean makes the pictures like
 };
 
 void declare_model(Command &command, Options &o) {
@@ -60,18 +77,26 @@ void declare(Command &command, Options &o) {
                    "corners get at most so many times their light, 1 or more, so that noise stays low; default no cap");
     command.flag("--dither", o.kind.dither,
                  "ordered 8 x 8 dither in place of rounding, in pictures of 8 bit: no bands in skies");
-    command.file("-o,--output", o.output, "folder for the pictures");
+    command.flag(
+        "--skip", o.skip,
+        "leave out pictures without a profile and those corrected already, and list them at the end, as is done "
+        "with those of folders; without it none is corrected where one that is named cannot be");
+    command.flag("--again", o.again, "also correct pictures that lensprof has corrected already");
+    command.file("-o,--output", o.output, "folder for the pictures; those of subfolders go to subfolders");
     command.require("--output");
     command.file("--contact-sheet", o.sheet, "write an overview, before above after, as .png, .tif or .jpg");
-    declare_threads(command, o.kind.threads);
+    declare_writing(command, o.kind);
     declare_json(command, o.json);
     declare_progress(command, o.progress);
-    command.files("FILES", o.files, "pictures, or folders of them; with --pto default all of the project");
+    command.files("FILES", o.files,
+                  "pictures, or folders of them with their subfolders; with --pto default all of the project");
     command.footer(
-        "Pictures keep format, depth, metadata and colour profile. Several are corrected at once, in strips of rows;\n"
-        "interlaced PNG and progressive JPEG alone are held in memory as a whole. All are opened first: when one\n"
-        "cannot be, nothing is written. When one turns out to be damaged later, those before it are written, it and\n"
-        "those after it are not. A picture that was corrected already is not known as such: it is corrected again.");
+        "Pictures keep format, depth, metadata and colour profile; a mark in their XMP says that lensprof corrected\n"
+        "them. Several are corrected at once, in strips of rows; interlaced PNG and progressive JPEG alone are held in\n"
+        "memory as a whole. All are opened first: when one cannot be, nothing is written. When one turns out to be\n"
+        "damaged later, those before it are written, it and those after it are not. Exit code 5: pictures of folders, or\n"
+        "with --skip, had no profile and were left out. An output is replaced where it was made of the same picture, or\n"
+        "not by lensprof.");
 }
 
 std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
@@ -83,23 +108,23 @@ std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
     return profile;
 }
 
-void look_up(lensprof_store *store, const Options &o, Correction &job) {
+void look_up(lensprof_store *store, const Options &o, const lensprof_profile_key &key, Correction &job) {
     auto profile = std::shared_ptr<lensprof_profile>(new_profile());
     lensprof_error error{};
     job.profile_id = o.profile;
     if (o.profile) {
         check(lensprof_store_get(store, o.profile, profile.get(), &error), store_path(o.db), &error);
     } else {
-        const lensprof_profile_key key = read_metadata(job.source).key;
         lensprof_lookup_options options;
         lensprof_lookup_options_init(&options);
         lensprof_lookup how;
         lensprof_lookup_init(&how);
         const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
         if (status == LENSPROF_ERROR_NOT_FOUND)
-            throw Failure(ExitCode::not_found, job.source + ": no profile for " + describe_key(key) + " in "
-                                                   + store_path(o.db) + " (" + how.reason
-                                                   + "); make one with `lensprof build` or name one with --profile");
+            throw NotThisOne(
+                ExitCode::not_found,
+                job.source + ": no profile for " + describe_key(key) + " in " + store_path(o.db) + " (" + how.reason
+                    + "); make one with `lensprof build` or name one with --profile, or leave the picture out with --skip");
         check(status, store_path(o.db), &error);
         if (how.exact)
             job.profile_id = how.id[0];
@@ -107,12 +132,13 @@ void look_up(lensprof_store *store, const Options &o, Correction &job) {
             job.lookup = std::make_shared<lensprof_lookup>(how);
     }
     job.model = profile;
+    job.model_name = describe_key(profile->key);
 }
 
-std::string target_name(const Options &o, const std::string &source) {
-    std::filesystem::path name = std::filesystem::path(source).filename();
+std::string target_name(const Options &o, const NamedPicture &picture) {
+    std::filesystem::path name = std::filesystem::path(picture.file).filename();
     if (o.kind.linear) name.replace_extension(".tif");
-    return (std::filesystem::path(o.output) / name).string();
+    return (std::filesystem::path(o.output) / picture.subfolder / name).string();
 }
 
 // A picture of another shape is not the one the project was made with; another size of the same shape will do.
@@ -153,47 +179,114 @@ void check_has_result(const Project &project) {
         project.path + ": holds no response and no falloff; give the project that `lensprof build --pto-out` wrote");
 }
 
-// The pictures, and in `mean` what --output-exposure mean makes them like.
-std::vector<Correction> make_jobs(const Options &o, lensprof_exposure &mean) {
-    if (o.profile && o.from_db) throw Failure(ExitCode::usage, "--profile and --from-db contradict each other");
-    bool from_store = o.profile || o.from_db;
-    if (!from_store && o.pto.empty())
-        throw Failure(ExitCode::usage, "say what to correct with: --profile ID, --from-db or --pto FILE");
+// The project, and where neither --profile nor --from-db is given the model in it.
+struct Source {
     std::unique_ptr<Project> project;
+    std::unique_ptr<ImagesByFile> images;
     std::vector<lensprof_exposure> exposures;
     std::shared_ptr<const lensprof_profile> model;
+    Store store;
+};
+
+Source open_source(const Options &o) {
+    if (o.profile && o.from_db) throw Failure(ExitCode::usage, "--profile and --from-db contradict each other");
+    const bool from_store = o.profile || o.from_db;
+    if (!from_store && o.pto.empty())
+        throw Failure(ExitCode::usage, "say what to correct with: --profile ID, --from-db or --pto FILE");
+    Source source;
     if (!o.pto.empty()) {
-        project = std::make_unique<Project>(read_project(o.pto, true));
-        exposures = project_exposures(*project);
-        if (!from_store) model = model_of_project(*project);
-        mean = mean_exposure(exposures);
+        source.project = std::make_unique<Project>(read_project(o.pto, true));
+        source.images = std::make_unique<ImagesByFile>(*source.project);
+        source.exposures = project_exposures(*source.project);
+        if (!from_store) source.model = model_of_project(*source.project);
     } else if (o.exposure == Exposure::mean || o.exposure == Exposure::reference) {
         throw Failure(ExitCode::usage, std::string("--output-exposure ")
                                            + (o.exposure == Exposure::mean ? "mean" : "reference")
                                            + " needs the exposures of a project; give it with --pto");
     }
-    std::vector<std::string> files = o.files.empty() && project ? project->files : expand_folders(o.files);
-    if (files.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
-    Store store = from_store ? open_store(o.db, LENSPROF_STORE_READ) : Store();
-    const auto images = project ? std::make_unique<ImagesByFile>(*project) : nullptr;
-    std::vector<Correction> jobs;
-    for (const std::string &file : files) {
-        Correction job{file, target_name(o, file), model, {}, {}, 0, nullptr, 0};
-        lensprof_exposure_init(&job.own);
-        if (project) {
-            uint32_t image = images->at(file, "--pto");
-            check_shape(*project, image, file);
-            job.own = exposures[image];
+    if (o.files.empty() && !source.project) throw Failure(ExitCode::usage, "no pictures to correct; name them");
+    if (from_store) source.store = open_store(o.db, LENSPROF_STORE_READ);
+    return source;
+}
+
+// Where no profile is to be found by them, metadata that cannot be read are those of a picture that cannot be, which is
+// said of its pixels.
+PictureMetadata metadata_of(const Options &o, const std::string &file) {
+    try {
+        return read_metadata(file);
+    } catch (const Failure &) {
+        if (o.from_db) throw;
+        return unknown_metadata();
+    }
+}
+
+// NotThisOne for a picture that was corrected already.
+void check_mark(const Options &o, const std::string &file, const PictureMetadata &metadata) {
+    const auto &mark = metadata.mark;
+    if (o.again || o.kind.simulate || !mark || mark->falloff != CorrectionMark::Falloff::removed) return;
+    throw NotThisOne(ExitCode::usage, file + ": is corrected already, by " + mark->software + " from " + mark->source
+                                          + "; correct that picture, or this one --again");
+}
+
+Correction make_job(const Options &o, const Source &source, const NamedPicture &picture) {
+    Correction job{picture.file, target_name(o, picture), source.model, {}, {}, 0, nullptr, 0, {}};
+    lensprof_exposure_init(&job.own);
+    if (source.project) {
+        const uint32_t image = source.images->at(picture.file, "--pto");
+        check_shape(*source.project, image, picture.file);
+        job.own = source.exposures[image];
+        job.model_name = std::filesystem::path(o.pto).filename().string();
+    }
+    const PictureMetadata metadata = metadata_of(o, picture.file);
+    check_mark(o, picture.file, metadata);
+    if (source.store) look_up(source.store.get(), o, metadata.key, job);
+    return job;
+}
+
+Work plan_work(const Options &o) {
+    const Source source = open_source(o);
+    std::vector<NamedPicture> pictures;
+    if (o.files.empty() && source.project)
+        for (const std::string &file : source.project->files) pictures.push_back({file, "", false});
+    else
+        pictures = named_pictures(o.files, o.output);
+    if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
+    Work work;
+    lensprof_exposure_init(&work.mean);
+    if (source.project) work.mean = mean_exposure(source.exposures);
+    std::vector<std::string> inputs = source.project ? source.project->files : std::vector<std::string>();
+    for (const NamedPicture &picture : pictures) {
+        inputs.push_back(picture.file);
+        try {
+            work.jobs.push_back(make_job(o, source, picture));
+        } catch (const NotThisOne &failure) {
+            if (!o.skip && !picture.in_folder) throw;
+            work.left_out.push_back({picture.file, failure.what(), failure.code});
         }
-        if (from_store) look_up(store.get(), o, job);
-        jobs.push_back(job);
     }
-    check_targets(jobs, project ? project->files : files, o.sheet);
-    if (model) {
-        check_has_result(*project);
-        check_one_result(*project);
+    check_targets(work.jobs, inputs, o.sheet);
+    check_older_outputs(work.jobs, o.kind);
+    if (source.model) {
+        check_has_result(*source.project);
+        check_one_result(*source.project);
     }
-    return jobs;
+    return work;
+}
+
+void list_left_out(const Work &work, Streams &streams) {
+    if (work.left_out.empty()) return;
+    tell(streams, std::to_string(work.left_out.size()) + " of "
+                      + counted(work.jobs.size() + work.left_out.size(), "picture") + " left out:");
+    for (const LeftOut &picture : work.left_out) tell(streams, "  " + picture.reason);
+}
+
+Json left_out_json(const Work &work) {
+    Json list = Json::array();
+    for (const LeftOut &picture : work.left_out)
+        list.push_back({{"file", picture.file},
+                        {"reason", picture.reason},
+                        {"corrected_already", picture.code != ExitCode::not_found}});
+    return list;
 }
 
 // Once for every kind of prediction, with its first picture.
@@ -209,33 +302,40 @@ void say_predicted(const std::vector<Correction> &jobs, Streams &streams) {
     }
 }
 
-int run(const Options &o, Streams &streams) {
-    lensprof_exposure mean, reference;
-    lensprof_exposure_init(&mean);
+Corrected correct(const Options &o, Work &work, Streams &streams) {
+    if (work.jobs.empty()) return {};
+    lensprof_exposure reference;
     lensprof_exposure_init(&reference);
-    std::vector<Correction> jobs = make_jobs(o, mean);
     const Exposure chosen = o.exposure != Exposure::by_default ? o.exposure
                             : o.pto.empty()                    ? Exposure::keep
                                                                : Exposure::mean;
+    for (Correction &job : work.jobs)
+        job.wanted = chosen == Exposure::keep ? job.own : chosen == Exposure::mean ? work.mean : reference;
     make_folder(o.output);
-
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;
-    for (Correction &job : jobs)
-        job.wanted = chosen == Exposure::keep ? job.own : chosen == Exposure::mean ? mean : reference;
-    say_predicted(jobs, streams);
-    Corrected written = write_corrected(jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);
+    say_predicted(work.jobs, streams);
+    Corrected written = write_corrected(work.jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);
     progress.clear();
     if (!o.sheet.empty()) sheet.write(o.sheet);
+    return written;
+}
+
+int run(const Options &o, Streams &streams) {
+    Work work = plan_work(o);
+    const Corrected written = correct(o, work, streams);
     if (o.json) {
-        Json json = {{"schema", 1}, {"pictures", written.pictures}};
+        Json json = {{"schema", 1}, {"pictures", written.pictures}, {"left_out", left_out_json(work)}};
         add_speed(written, json);
         print_json(json, streams.out);
     } else {
         for (const auto &entry : written.pictures) streams.out << entry["output"].get<std::string>() << "\n";
-        if (!o.sheet.empty()) streams.out << o.sheet << "\n";
+        if (!o.sheet.empty() && !work.jobs.empty()) streams.out << o.sheet << "\n";
     }
-    return 0;
+    list_left_out(work, streams);
+    const bool all_known = std::none_of(work.left_out.begin(), work.left_out.end(),
+                                        [](const LeftOut &one) { return one.code == ExitCode::not_found; });
+    return static_cast<int>(all_known ? ExitCode::done : ExitCode::not_found);
 }
 
 }  // namespace

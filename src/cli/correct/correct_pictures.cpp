@@ -1,5 +1,7 @@
 // Pictures corrected in strips of rows, several at once.
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
 #include <memory>
 
 #include "cli/correct/correction.hpp"
@@ -8,7 +10,9 @@
 #include "cli/pictures/picture.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/interrupt.hpp"
+#include "cli/program/output_file.hpp"
 #include "cli/program/parallel.hpp"
+#include "cli/program/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -92,9 +96,30 @@ private:
     uint32_t strip_rows_, next_row_ = 0;
 };
 
-WriteOptions with_metadata_of(const std::string &source) {
+bool has_falloff(const lensprof_profile &model) {
+    const auto is_curved = [](const lensprof_vignetting &v) {
+        return std::any_of(std::begin(v.k), std::end(v.k), [](double k) { return k != 0.0; });
+    };
+    return model.grid.columns != 0 || std::any_of(model.vignetting, model.vignetting + model.vignettings, is_curved);
+}
+
+CorrectionMark mark_of(const Correction &job, const CorrectionKind &kind) {
+    using Falloff = CorrectionMark::Falloff;
+    CorrectionMark mark;
+    if (has_falloff(*job.model) && kind.strength > 0.0)
+        mark.falloff = kind.simulate ? Falloff::added : Falloff::removed;
+    mark.linear = kind.linear;
+    mark.software = std::string("lensprof ") + lensprof_version();
+    mark.model = job.model_name;
+    mark.source = std::filesystem::path(job.source).filename().string();
+    mark.digest = digest_of(job.source);
+    return mark;
+}
+
+WriteOptions write_options(const Correction &job, const CorrectionKind &kind) {
     WriteOptions options;
-    options.metadata_from = source;
+    options.metadata_from = job.source;
+    options.mark = mark_of(job, kind);
     return options;
 }
 
@@ -104,7 +129,7 @@ PictureCorrection::PictureCorrection(const Correction &job, const CorrectionKind
       options_(options_of(reader_.header(), job, kind)),
       plan_(options_, job.source),
       result_(header_of_result(reader_.header(), options_.target_sample)),
-      writer_(std::make_unique<PictureWriter>(job.target, result_, with_metadata_of(job.source))),
+      writer_(std::make_unique<PictureWriter>(job.target, result_, write_options(job, kind))),
       thumbnails_(thumbnails),
       strip_rows_(kind.strip_rows) {
     const Picture &source = reader_.header();
@@ -165,6 +190,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
     if (sheet) sheet->reserve(count);
     std::vector<Finished> finished(count);
     auto work = [&](uint32_t i) {
+        make_folder(std::filesystem::path(absolute_path(jobs[i].target)).parent_path().string());
         PictureCorrection picture(jobs[i], kind, sheet != nullptr);
         finished[i] = picture.run(threads / 2 >= count, throughput);
         if (sheet) sheet->put(i, std::move(picture.before), std::move(picture.after));

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/pictures/metadata.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/paths.hpp"
@@ -46,29 +47,24 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
         throw Failure(ExitCode::usage, sheet + ": the contact sheet would overwrite a picture; give it another name");
 }
 
-std::vector<std::string> expand_folders(const std::vector<std::string> &names) {
-    namespace fs = std::filesystem;
-    std::vector<std::string> files;
-    std::error_code error;
-    for (const std::string &name : names) {
-        if (name.empty()) throw Failure(ExitCode::usage, "FILES: a name is empty; name a picture or a folder");
-        if (!is_folder(name)) {
-            files.push_back(name);
-            continue;
-        }
-        std::vector<std::string> found;
-        for (fs::directory_iterator entry(name, error), end; !error && entry != end; entry.increment(error)) {
-            const std::string file = entry->path().filename().string();
-            if (file[0] != '.' && is_picture_name(file) && !is_folder(entry->path().string()))
-                found.push_back(entry->path().string());
-        }
-        if (error) throw Failure(ExitCode::unreadable, name + ": cannot be listed: " + error.message());
-        if (found.empty())
-            throw Failure(ExitCode::usage, name + ": is a folder without pictures (.jpg, .png, .tif); name another");
-        std::sort(found.begin(), found.end());
-        files.insert(files.end(), found.begin(), found.end());
+// What is no picture, or has no mark, is overwritten as any file of that name.
+static std::optional<CorrectionMark> mark_of_older(const std::string &file) {
+    if (!is_regular_file(file)) return std::nullopt;
+    try {
+        return read_metadata(file).mark;
+    } catch (const Failure &) {
+        return std::nullopt;
     }
-    return files;
+}
+
+void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKind &kind) {
+    for (const Correction &job : jobs) {
+        if (kind.overwrite) return;
+        const auto mark = mark_of_older(job.target);
+        if (!mark || mark->digest.empty() || mark->digest == digest_of(job.source)) continue;
+        throw Failure(ExitCode::usage, job.target + ": is there already and was made of another picture ("
+                                           + mark->source + "); give another folder with -o, or --overwrite");
+    }
 }
 
 void add_speed(const Corrected &corrected, Json &json) {
@@ -77,8 +73,9 @@ void add_speed(const Corrected &corrected, Json &json) {
         corrected.megapixels > 0.0 ? Json(corrected.megapixels / std::max(corrected.seconds, 1e-6)) : Json();
 }
 
-void declare_threads(Command &command, uint32_t &threads) {
-    command.count("--threads", threads, 0, 1024, "threads that correct pictures; 0 = all cores (default)");
+void declare_writing(Command &command, CorrectionKind &kind) {
+    command.flag("--overwrite", kind.overwrite, "replace outputs that were made of other pictures, too");
+    command.count("--threads", kind.threads, 0, 1024, "threads that correct pictures; 0 = all cores (default)");
 }
 
 }  // namespace lensprof

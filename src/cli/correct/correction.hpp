@@ -24,6 +24,7 @@ struct Correction {
     int64_t profile_id = 0;                         // 0 = the model is of no profile
     std::shared_ptr<const lensprof_lookup> lookup;  // how the model was predicted; NULL = it was not
     uint64_t pixels = 0;                            // of the source
+    std::string model_name;                         // for the output's mark
 };
 
 struct CorrectionKind {
@@ -32,6 +33,7 @@ struct CorrectionKind {
     double strength = 1.0;  // of the falloff's correction; as lensprof_apply_options
     double gain_cap = 0.0;
     bool dither = false;
+    bool overwrite = false;   // outputs of other pictures, too
     uint32_t threads = 0;     // 0 = all cores
     uint32_t strip_rows = 0;  // rows of a picture that are worked on at once; 0 = about strip_bytes of them
 };
@@ -47,8 +49,8 @@ struct Corrected {
 // Adds `seconds` and `megapixels_per_second` (null when nothing was written) to a command's object.
 void add_speed(const Corrected &corrected, Json &json);
 
-// The option --threads.
-void declare_threads(Command &command, uint32_t &threads);
+// The options --threads and --overwrite.
+void declare_writing(Command &command, CorrectionKind &kind);
 
 // Geometric mean of exposures and white balances: Goldman & Chen 2005, equation 15.
 lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures);
@@ -58,15 +60,14 @@ lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures)
 // before anything is written. Sets the jobs' numbers of pixels.
 void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet);
 
-// Names as they are, and in the place of a folder's its pictures by their names' ends (.jpg, .jpeg, .png, .tif, .tiff),
-// in the order of the alphabet, without hidden ones. Failure (usage) for a folder without.
-std::vector<std::string> expand_folders(const std::vector<std::string> &names);
+// Failure (usage) for an output that is there and was made of another picture, as its mark says.
+void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKind &kind);
 
 // Corrects and writes all pictures; `sheet` (NULL = none) receives them before and after. Several pictures are worked
 // on at once, one a thread, each in strips of rows; where there are at least twice as many threads as pictures, a
 // picture is encoded on a thread of its own. Whatever the number of threads, what is written and said is as if it had
 // been done one after another: the failure of the first picture that has one is thrown, those before it are written,
-// it and those after it are not.
+// it and those after it are not. Outputs are marked (CorrectionMark), and their folders made where there are none.
 Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionKind &kind, ContactSheet *sheet,
                           Progress &progress);
 

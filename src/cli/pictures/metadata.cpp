@@ -15,6 +15,7 @@
 #include <exiv2/exiv2.hpp>
 
 #include "cli/pictures/codec.hpp"
+#include "cli/pictures/correction_mark.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
 #include "cli/pictures/png_exif.hpp"
 #include "cli/program/error.hpp"
@@ -38,6 +39,7 @@ void prepare_exiv2() {
                 take ? m->lock() : m->unlock();
             },
             &mutex);
+        register_correction_mark();
     });
 }
 
@@ -391,6 +393,9 @@ PictureMetadata read_metadata(const std::string &path) {
         store_text(read_unit(exif), metadata.key.unit, "--unit", metadata);
         if (image->mimeType() == "image/tiff" && read_number(exif, {"Exif.Image.SampleFormat"}) == 3)
             metadata.key.processing = LENSPROF_PROCESSING_RAW;
+        metadata.mark = correction_mark_of(image->xmpData());
+        if (metadata.mark && metadata.mark->falloff == CorrectionMark::Falloff::removed)
+            metadata.key.processing = LENSPROF_PROCESSING_CORRECTED;
     } catch (const std::exception &error) {
         fail_reading(path, error);
     }
@@ -404,7 +409,7 @@ std::string read_xmp_packet(const std::string &path) {
     return is_big_tiff(path) ? std::string() : open_image(path)->xmpPacket();
 }
 
-bool copy_metadata(const std::string &source, const std::string &target) {
+bool copy_metadata(const std::string &source, const std::string &target, const CorrectionMark *mark) {
     if (is_big_tiff(source) || is_big_tiff(target)) return false;
     const ExivImage from = open_image(source);
     edit_metadata(target, [&](Exiv2::Image &to) {
@@ -414,6 +419,7 @@ bool copy_metadata(const std::string &source, const std::string &target) {
         set_sizes(exif, xmp, static_cast<uint32_t>(to.pixelWidth()), static_cast<uint32_t>(to.pixelHeight()));
         const auto mime_type = xmp.findKey(Exiv2::XmpKey("Xmp.dc.format"));
         if (mime_type != xmp.end()) mime_type->setValue(to.mimeType());
+        if (mark) set_correction_mark(*mark, xmp);
         to.setExifData(exif);
         to.setXmpData(xmp);
         to.setIptcData(from->iptcData());

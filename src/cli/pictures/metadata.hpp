@@ -9,13 +9,17 @@
 
 #include <lensprof/profile.h>
 
+#include "cli/pictures/correction_mark.hpp"
+
 namespace lensprof {
 
 struct PictureMetadata {
     // Unknown what the file does not say. Texts without surrounding blanks, in valid UTF-8, cut to the fields' sizes.
     // Processing is JPEG (a rendered picture, whatever the file's format), but RAW for float TIFF, which by custom
-    // holds values proportional to light.
+    // holds values proportional to light, and CORRECTED where the mark says that the falloff was removed.
     lensprof_profile_key key;
+
+    std::optional<CorrectionMark> mark;  // what lensprof did to the picture, if it did
 
     std::vector<std::string>
         cut;  // options in place of what was longer than its field: --maker, --camera, --lens, --unit
@@ -42,8 +46,9 @@ std::string read_xmp_packet(const std::string &path);
 // Copies EXIF, maker notes, IPTC, XMP and comment of one picture to another (JPEG, PNG or TIFF) and replaces that
 // file, complete or not at all. Left out is what would no longer be true: the thumbnail, sizes of the old file, and in
 // TIFF all tags that describe how pixels are stored. Pixels, colour profile and resolution of the target stay.
-// False when nothing could be done because one of the files is a BigTIFF, which Exiv2 does not know. Throws Failure.
-bool copy_metadata(const std::string &source, const std::string &target);
+// With `mark`, the target gets it. False when nothing could be done because one of the files is a BigTIFF, which Exiv2
+// does not know. Throws Failure.
+bool copy_metadata(const std::string &source, const std::string &target, const CorrectionMark *mark = nullptr);
 
 // Writes what is known as EXIF into a picture file, replacing these fields only (aperture from the key). False when
 // nothing could be done because the file is a BigTIFF. Throws Failure.

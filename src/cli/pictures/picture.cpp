@@ -170,7 +170,8 @@ bool PictureWriter::finish() {
         const std::string &file = output_->temporary();
         sink_->finish();
         sink_.reset();
-        const bool copied = options_.metadata_from.empty() || copy_metadata(options_.metadata_from, file);
+        const bool copied = options_.metadata_from.empty()
+                            || copy_metadata(options_.metadata_from, file, options_.mark ? &*options_.mark : nullptr);
         const bool written = !options_.metadata || write_metadata(file, *options_.metadata);
         output_->sync();
         return copied && written;

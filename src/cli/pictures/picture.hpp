@@ -88,6 +88,7 @@ struct ReadOptions {
 
 struct WriteOptions {
     std::string metadata_from;  // EXIF, IPTC and XMP are copied from this file, which may be the one written over
+    std::optional<CorrectionMark> mark;         // put in with that copy
     const PictureMetadata *metadata = nullptr;  // written as EXIF (after the copy)
     int jpeg_quality = 0;                       // 1..100; 0 = the tables the picture was read with, else 95
 };

@@ -1,0 +1,76 @@
+#include "cli/correct/named_pictures.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <filesystem>
+#include <set>
+
+#include "cli/pictures/picture.hpp"
+#include "cli/program/error.hpp"
+#include "cli/program/paths.hpp"
+
+namespace lensprof {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The pictures of a folder and its subfolders.
+class FolderWalk {
+public:
+    FolderWalk(const std::string &root, const std::string &output) : root_(root) {
+        if (one_name(root) != one_name(output)) entered_.insert(file_identity(output));
+        folders_.push_back("");
+        while (!folders_.empty() || !links_.empty()) {
+            auto &next = folders_.empty() ? links_ : folders_;  // a folder's own name before links to it
+            const std::string subfolder = next.front();
+            next.pop_front();
+            enter(subfolder);
+        }
+        std::sort(found_.begin(), found_.end(),
+                  [](const NamedPicture &a, const NamedPicture &b) { return a.file < b.file; });
+    }
+
+    const std::vector<NamedPicture> &found() const { return found_; }
+
+private:
+    void enter(const std::string &subfolder) {
+        const std::string folder = subfolder.empty() ? root_ : (fs::path(root_) / subfolder).string();
+        if (!entered_.insert(file_identity(folder)).second) return;
+        std::error_code error;
+        for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+            const std::string path = entry->path().string(), name = entry->path().filename().string();
+            std::error_code none;
+            if (name[0] == '.') continue;
+            if (is_folder(path))
+                (entry->is_symlink(none) ? links_ : folders_).push_back((fs::path(subfolder) / name).string());
+            else if (is_picture_name(name))
+                found_.push_back({path, subfolder, true});
+        }
+        if (error) throw Failure(ExitCode::unreadable, folder + ": cannot be listed: " + error.message());
+    }
+
+    const std::string root_;
+    std::deque<std::string> folders_, links_;  // subfolders that are to be entered
+    std::set<std::string> entered_;            // by file_identity
+    std::vector<NamedPicture> found_;
+};
+
+}  // namespace
+
+std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, const std::string &output) {
+    std::vector<NamedPicture> pictures;
+    for (const std::string &name : names) {
+        if (name.empty()) throw Failure(ExitCode::usage, "FILES: a name is empty; name a picture or a folder");
+        if (!is_folder(name)) {
+            pictures.push_back({name, "", false});
+            continue;
+        }
+        const FolderWalk walk(name, output);
+        if (walk.found().empty())
+            throw Failure(ExitCode::usage, name + ": is a folder without pictures (.jpg, .png, .tif); name another");
+        pictures.insert(pictures.end(), walk.found().begin(), walk.found().end());
+    }
+    return pictures;
+}
+
+}  // namespace lensprof
