@@ -34,7 +34,8 @@ typedef struct lensprof_profile_key {
     double distance_m;          /* focus distance, > 0 (INFINITY allowed) or LENSPROF_UNKNOWN */
     double color_temperature_k; /* of the light, where the falloff depends on it, > 0 or LENSPROF_UNKNOWN */
     uint32_t processing;        /* lensprof_processing */
-    uint32_t reserved[37];      /* 0 */
+    char style[64];             /* picture style of a rendering, as the camera calls it; empty = any, or not known */
+    uint32_t reserved[21];      /* 0 */
 } lensprof_profile_key;
 
 /* Empty texts, unknown numbers, processing JPEG. */
@@ -47,6 +48,28 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_key_validate(con
  * known: LINEAR for processing RAW; PHONE where maker, model or lens is a phone's; ANY for film scanners and where no
  * camera is named; CAMERA for every other. The key is valid; NULL is ANY. */
 LENSPROF_API uint32_t lensprof_camera_kind_of(const lensprof_profile_key *key);
+
+/* What is known of a camera, whatever its lens: an entry of a table of cameras (store.h). Texts are UTF-8, terminated;
+ * empty = not known. 1024 bytes for ever: new members take the reserved ones. */
+typedef struct lensprof_camera_model {
+    char maker[64]; /* as its EXIF has it, as has the model */
+    char model[64];
+    char other_maker[64]; /* as people call it: "Alpha 7 III"; empty where that is the same */
+    char other_model[64];
+    char variant[64]; /* which one, where several cameras or picture formats have one name */
+    char mount[64];
+    char lens[128];        /* the lens that it has built in, as profiles name it */
+    char source[256];      /* file or database it is from */
+    double crop_factor;    /* 43.27 mm over the diagonal of the sensor, > 0 or LENSPROF_UNKNOWN */
+    uint32_t fixed_lens;   /* 1: the lens cannot be changed */
+    uint32_t reserved[61]; /* 0 */
+} lensprof_camera_model;
+
+/* Empty texts, unknown numbers, a lens that can be changed. */
+LENSPROF_API void lensprof_camera_model_init(lensprof_camera_model *camera);
+
+/* LENSPROF_OK when it has a model, the texts are terminated and free of control characters and the numbers in range. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_camera_model_validate(const lensprof_camera_model *camera);
 
 /* Order of the estimated parameters, which are the rows and columns of a covariance:
  *  1. the EMoR coefficients of response 0 (`modes` of them), then, where there are three responses, those of response 1
@@ -72,7 +95,8 @@ typedef struct lensprof_provenance {
     uint32_t forced;        /* 1: stored although the fit was not usable; else 0 */
     uint32_t not_usable;    /* 1: of a fit whose result is not usable; lensprof_store_put wants `forced` then, and does
                                not store this member */
-    uint32_t reserved[84];  /* 0 */
+    double gamma_sigma;     /* standard error of ln gamma, the common exponent of response and falloff; 0 = not known */
+    uint32_t reserved[82];  /* 0 */
 } lensprof_provenance;
 
 /* About 50 kB: keep it off small stacks. It grows: lensprof_profile_copy, and not an assignment, copies a profile that
@@ -126,11 +150,11 @@ typedef enum lensprof_pack {
 } lensprof_pack;
 
 /* The profile as a blob (docs/blob.md): little-endian, with a version and a CRC-32, for lensprof_plan_init (apply.h) to
- * read in place. It holds the key but its unit, crop factor and colour temperature, the responses (samples in single
- * precision), vignettings, gain grid, and of the provenance all but source, doubt, prior and forced: 132 bytes and the
- * texts for a linear response, 4 kB more for each curve of samples. The same profile gives the same bytes on every
- * machine. `flags`: lensprof_pack, 0 = none. data[capacity] and *count (bytes) as in base.h. Errors: what
- * lensprof_profile_validate says; ARGUMENT for unknown flags. */
+ * read in place. It holds the key but its unit, crop factor, colour temperature and style, the responses (samples in
+ * single precision), vignettings, gain grid, and of the provenance all but source, doubt, prior, forced and
+ * gamma_sigma: 132 bytes and the texts for a linear response, 4 kB more for each curve of samples. The same profile
+ * gives the same bytes on every machine. `flags`: lensprof_pack, 0 = none. data[capacity] and *count (bytes) as in
+ * base.h. Errors: what lensprof_profile_validate says; ARGUMENT for unknown flags. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_pack(const lensprof_profile *profile, uint32_t flags,
                                                                      void *data, size_t capacity, size_t *count);
 

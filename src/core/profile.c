@@ -4,7 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-_Static_assert(sizeof(lensprof_profile_key) == 512 && sizeof(lensprof_provenance) == 768, "fixed for ever");
+_Static_assert(sizeof(lensprof_profile_key) == 512 && sizeof(lensprof_provenance) == 768
+                   && sizeof(lensprof_camera_model) == 1024,
+               "fixed for ever");
 
 void lensprof_profile_key_init(lensprof_profile_key *key) {
     memset(key, 0, sizeof *key);
@@ -43,12 +45,33 @@ lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key) {
         || !is_empty(key->reserved, sizeof key->reserved / sizeof *key->reserved))
         return LENSPROF_ERROR_ARGUMENT;
     if (!is_text(key->camera_maker, sizeof key->camera_maker) || !is_text(key->camera_model, sizeof key->camera_model)
-        || !is_text(key->lens, sizeof key->lens) || !is_text(key->unit, sizeof key->unit))
+        || !is_text(key->lens, sizeof key->lens) || !is_text(key->unit, sizeof key->unit)
+        || !is_text(key->style, sizeof key->style))
         return LENSPROF_ERROR_ARGUMENT;
     if (!is_known_or_unknown(key->crop_factor, 1e4) || !lp_is_setting(key->focal_mm, key->aperture, key->distance_m)
         || !is_known_or_unknown(key->color_temperature_k, 1e6))
         return LENSPROF_ERROR_ARGUMENT;
     return LENSPROF_OK;
+}
+
+void lensprof_camera_model_init(lensprof_camera_model *camera) {
+    memset(camera, 0, sizeof *camera);
+    camera->crop_factor = LENSPROF_UNKNOWN;
+}
+
+lensprof_status lensprof_camera_model_validate(const lensprof_camera_model *camera) {
+    if (!camera || camera->fixed_lens > 1 || !is_known_or_unknown(camera->crop_factor, 1e4)
+        || !is_empty(camera->reserved, sizeof camera->reserved / sizeof *camera->reserved))
+        return LENSPROF_ERROR_ARGUMENT;
+    const char *const texts[] = {camera->maker,       camera->model,   camera->other_maker,
+                                 camera->other_model, camera->variant, camera->mount};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        if (!is_text(texts[i], sizeof camera->maker)) return LENSPROF_ERROR_ARGUMENT;
+    const char *model = camera->model;
+    while (*model == ' ') model++;
+    return *model && is_text(camera->lens, sizeof camera->lens) && is_text(camera->source, sizeof camera->source)
+               ? LENSPROF_OK
+               : LENSPROF_ERROR_ARGUMENT;
 }
 
 void lensprof_profile_init_sized(lensprof_profile *profile, size_t size) {
@@ -80,7 +103,7 @@ static lensprof_status validate_provenance(const lensprof_provenance *p) {
         || !is_text(p->source, sizeof p->source) || !is_text(p->doubt, sizeof p->doubt))
         return LENSPROF_ERROR_ARGUMENT;
     if (!is_empty(p->reserved, sizeof p->reserved / sizeof *p->reserved) || p->prior_id < 0 || p->forced > 1
-        || p->not_usable > 1)
+        || p->not_usable > 1 || !(p->gamma_sigma >= 0.0) || !isfinite(p->gamma_sigma))
         return LENSPROF_ERROR_ARGUMENT;
     return lp_is_quality(p->heldout_rms, p->inlier_share) ? LENSPROF_OK : LENSPROF_ERROR_ARGUMENT;
 }

@@ -67,6 +67,7 @@ void read_key(const JsonValue &object, lensprof_profile_key &key) {
         key.distance_m = read_known(object, "distance_m");
     key.color_temperature_k = read_known(object, "color_temperature_k");
     key.processing = read_word(object.required("processing"), kJsonProcessings);
+    read_text(object, "style", key.style);
     check(lensprof_profile_key_validate(&key), object, "no valid key");
 }
 
@@ -198,6 +199,7 @@ void read_provenance(const JsonValue &object, const char *source, lensprof_prove
     if (const JsonValue pairs = object["pairs"]) provenance.pairs = static_cast<uint32_t>(pairs.whole(0, UINT32_MAX));
     if (const JsonValue rms = object["heldout_rms"]) provenance.heldout_rms = rms.number_within(0.0, 255.0);
     if (const JsonValue share = object["inlier_share"]) provenance.inlier_share = share.number_within(0.0, 1.0);
+    if (const JsonValue sigma = object["gamma_sigma"]) provenance.gamma_sigma = sigma.number_within(0.0, 1e9);
     if (!object.has("prior_id") && !object.has("forced")) return split_method(provenance);
     if (const JsonValue prior = object["prior_id"]) provenance.prior_id = prior.whole(1, INT64_MAX);
     if (const JsonValue forced = object["forced"]) provenance.forced = forced.boolean();

@@ -38,6 +38,7 @@ void write_key(JsonWriter &json, const lensprof_profile_key &key) {
         write_known(json, "distance_m", key.distance_m);
     write_known(json, "color_temperature_k", key.color_temperature_k);
     write_text(json, "processing", kJsonProcessings[key.processing]);
+    write_text(json, "style", key.style);
     json.close('}');
 }
 
@@ -160,6 +161,7 @@ void write_provenance(JsonWriter &json, const lensprof_provenance &provenance) {
         json.word("null");
     json.name("forced");
     json.word(provenance.forced ? "true" : "false");
+    write_known(json, "gamma_sigma", provenance.gamma_sigma > 0.0 ? provenance.gamma_sigma : LENSPROF_UNKNOWN);
     json.close('}');
 }
 

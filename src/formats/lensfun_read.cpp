@@ -19,39 +19,18 @@
 namespace lensprof {
 namespace {
 
-constexpr const char *kLicence = "Lensfun database, CC BY-SA 3.0";
-
 struct Camera {
     std::string maker, model;
     uint32_t count = 0;  // cameras with this mount
 };
-
-// Text of the child with this name: that without a language, else the English one, else the first.
-std::string child_text(const pugi::xml_node &parent, const char *name) {
-    pugi::xml_node best;
-    int best_rank = 0;
-    for (pugi::xml_node child : parent.children(name)) {
-        const std::string_view lang = child.attribute("lang").value();
-        const int rank = lang.empty() ? 3 : lang == "en" ? 2 : 1;
-        if (rank > best_rank) best = child, best_rank = rank;
-    }
-    return one_line(best.child_value());
-}
-
-bool begins_with(const std::string &text, const std::string &prefix) {
-    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-    const auto same = [&](char a, char b) { return lower(a) == lower(b); };
-    return text.size() >= prefix.size() && std::equal(prefix.begin(), prefix.end(), text.begin(), same)
-           && (text.size() == prefix.size() || text[prefix.size()] == ' ' || prefix.empty());
-}
 
 class LensfunReader {
 public:
     LensfunReader(std::string_view text, const char *source)
         : xml_(text, {"lensdatabase"}), profile_(new lensprof_profile) {
         lensprof_profile_init(profile_.get());
-        set_import_provenance(*profile_, source, text.find(kLensfunRemark) == text.npos ? kLicence : "");
-        check_version();
+        set_import_provenance(*profile_, source, lensfun_origin(text));
+        check_lensfun_version(xml_);
         for (pugi::xml_node camera : xml_.root().children("camera")) add_camera(camera);
     }
 
@@ -65,7 +44,6 @@ private:
         fail_at_line(xml_.line_of(node), label_ + text, status);
     }
 
-    void check_version() const;
     void add_camera(const pugi::xml_node &camera);
     void check_text(const pugi::xml_node &node, const std::string &text, size_t capacity) const;
     double number(const pugi::xml_node &node, std::string_view text, const char *what, double low, double high) const;
@@ -83,22 +61,11 @@ private:
     std::string label_;                                   // of the lens, for error texts
 };
 
-void LensfunReader::check_version() const {
-    const pugi::xml_attribute version = xml_.root().attribute("version");
-    if (!version) return;  // the oldest databases have none
-    double value = 0.0;
-    if (!read_whole(version.value(), 0, 1e9, value))
-        fail(xml_.root(), "the version is " + in_quotes(version.value()) + ", not a number; correct the file");
-    if (value > 2)
-        fail(xml_.root(), "a database of version " + in_quotes(version.value()) + "; lensprof reads versions up to 2",
-             LENSPROF_ERROR_UNSUPPORTED);
-}
-
 void LensfunReader::add_camera(const pugi::xml_node &camera) {
-    Camera &entry = cameras_[child_text(camera, "mount")];
+    Camera &entry = cameras_[lensfun_text(camera, "mount")];
     if (entry.count++) return;
-    entry.maker = child_text(camera, "maker");
-    entry.model = child_text(camera, "model");
+    entry.maker = lensfun_text(camera, "maker");
+    entry.model = lensfun_text(camera, "model");
 }
 
 void LensfunReader::check_text(const pugi::xml_node &node, const std::string &text, size_t capacity) const {
@@ -134,9 +101,8 @@ double LensfunReader::aspect_ratio(const pugi::xml_node &node, std::string_view 
 
 void LensfunReader::begin_lens(const pugi::xml_node &lens) {
     label_.clear();
-    const std::string maker = child_text(lens, "maker"), model = child_text(lens, "model");
-    if (model.empty()) fail(lens, "a <lens> without a <model>; add it");
-    const std::string name = maker.empty() || begins_with(model, maker) ? model : maker + " " + model;
+    const std::string name = lensfun_lens_name(lens);
+    if (name.empty()) fail(lens, "a <lens> without a <model>; add it");
     lensprof_profile_key &key = profile_->key;
     lensprof_profile_key_init(&key);
     key.processing = LENSPROF_PROCESSING_RAW;
@@ -146,10 +112,9 @@ void LensfunReader::begin_lens(const pugi::xml_node &lens) {
 
     const auto mounts = lens.children("mount");
     if (std::distance(mounts.begin(), mounts.end()) != 1) return;
-    const std::string mount = child_text(lens, "mount");
+    const std::string mount = lensfun_text(lens, "mount");
     const auto found = cameras_.find(mount);
-    const bool fixed = !mount.empty() && mount[0] >= 'a' && mount[0] <= 'z';
-    if (!fixed || found == cameras_.end() || found->second.count != 1) return;
+    if (!is_fixed_mount(mount) || found == cameras_.end() || found->second.count != 1) return;
     check_text(lens, found->second.maker, sizeof key.camera_maker);
     check_text(lens, found->second.model, sizeof key.camera_model);
     put_text(key.camera_maker, sizeof key.camera_maker, found->second.maker);

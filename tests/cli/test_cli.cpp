@@ -339,13 +339,13 @@ void test_key_from_the_command_line(void **) {
     const Words words = Words{"build", scene("pano.pto"), "--db", work("p.db")} + quick;
     must_exit(done, words
                         + Words{"--maker", "Maker", "--camera", "C\xc3\xa4mera", "--lens", "Lens", "--focal", "24",
-                                "--aperture", "1.4", "--distance", "2.5", "--processing", "raw"});
+                                "--aperture", "1.4", "--distance", "2.5", "--processing", "raw", "--style", "Velvia"});
     const Json key = json_of({"profile", "show", "1", "--json", "--db", work("p.db")})["key"];
     assert_true(
         key
         == Json::parse(
             R"({"camera_maker":"Maker","camera_model":"Cämera","lens":"Lens","unit":"","crop_factor":null,"focal_mm":24.0,"aperture":1.4,)"
-            R"("distance_m":2.5,"color_temperature_k":null,"processing":"raw"})"));
+            R"("distance_m":2.5,"color_temperature_k":null,"processing":"raw","style":"Velvia"})"));
 }
 
 void test_own_database(void **) {

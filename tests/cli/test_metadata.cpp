@@ -142,6 +142,16 @@ void test_lens_of_maker_note(void **) {
     assert_true(olympus.key.lens[0] == '\0' || std::strstr(olympus.key.lens, "14-54mm"));
 }
 
+// Picture styles as the makers' notes have them.
+void test_style(void **) {
+    assert_string_equal(read_exif({{"Exif.Image.Make", "Canon"}, {"Exif.CanonPr.PictureStyle", "130"}}).key.style,
+                        "Portrait");
+    assert_string_equal(read_exif({{"Exif.Image.Make", "FUJIFILM"}, {"Exif.Fujifilm.FilmMode", "512"}}).key.style,
+                        "F2/Fujichrome (Velvia)");
+    assert_string_equal(read_exif({{"Exif.Image.Make", "Canon"}}).key.style, "");
+    assert_string_equal(read_exif({{"Exif.Image.Make", "Canon"}, {"Exif.CanonPr.PictureStyle", "9999"}}).key.style, "");
+}
+
 void test_exposure(void **) {
     PictureMetadata metadata =
         read_exif({{"Exif.Photo.ShutterSpeedValue", "7/1"}, {"Exif.Photo.ApertureValue", "6/1"}});
@@ -427,6 +437,7 @@ int main() {
         TEST(test_texts),
         TEST(test_unit_and_sensor),
         TEST(test_lens_of_maker_note),
+        TEST(test_style),
         TEST(test_exposure),
         TEST(test_distance),
         TEST(test_copy),

@@ -32,14 +32,11 @@ inline Profile full_profile() {
     snprintf(p->key.unit, sizeof p->key.unit, "123/456");
     p->key.crop_factor = 1.0 / 3.0, p->key.focal_mm = 50, p->key.aperture = 1.1 * 3, p->key.distance_m = INFINITY;
     p->key.processing = LENSPROF_PROCESSING_CORRECTED;
-    p->provenance = {"flat",      "lensprof 9.9.9",
-                     "a source",  1700000000123456789,
-                     4000000000u, 7,
-                     0.1 + 0.2,   1.0 / 7,
-                     "a doubt",   12,
-                     1,           0,
-                     {}};
+    p->provenance = {
+        "flat", "lensprof 9.9.9", "a source", 1700000000123456789, 4000000000u, 7, 0.1 + 0.2, 1.0 / 7, "a doubt", 12, 1,
+        0,      0.1 / 3,          {}};
     p->key.color_temperature_k = 4321.5;
+    strcpy(p->key.style, "PROVIA (Standard)");
     p->responses = p->vignettings = 3;
     const double emor[3] = {0.1 + 0.2, -1.0 / 7, 0.0};
     assert_ok(lensprof_response_set_emor(&p->response[0], emor, 3));

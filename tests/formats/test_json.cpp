@@ -147,6 +147,8 @@ void test_refused(void **) {
         {with(one, "\"prior_id\":12", "\"prior_id\":0"), LENSPROF_ERROR_SYNTAX, "provenance.prior_id is 0"},
         {with(one, "\"prior_id\":12", "\"prior_id\":\"12\""), LENSPROF_ERROR_SYNTAX,
          "provenance.prior_id is no whole number"},
+        {with(one, "\"gamma_sigma\":0.0", "\"gamma_sigma\":-0.0"), LENSPROF_ERROR_SYNTAX, "provenance.gamma_sigma is "},
+        {with(one, "\"style\":\"PROVIA", "\"style\":7,\"a\":\"PROVIA"), LENSPROF_ERROR_SYNTAX, "key.style is no text"},
         {with(one, "\"color_temperature_k\":4321.5", "\"color_temperature_k\":-1"), LENSPROF_ERROR_SYNTAX,
          "key.color_temperature_k is not above 0"},
         {with(one, "\"values\":[[0.0,", "\"values\":[[0.5,"), LENSPROF_ERROR_SYNTAX,

@@ -75,6 +75,88 @@ void test_golden(void **) {
 }
 
 // Half the diagonal of 36 x 24 is 21.633 = 6/10 of 36.0555, so r in focal lengths is 0.6 in the corner.
+// Fixed lenses: one of a mount; of several the one without a converter; where that is not clear, none.
+const std::string kCameras = R"(<lensdatabase version="2">
+    <camera><maker>Canon Inc.</maker><maker lang="en">Canon</maker><model>Canon  PowerShot X</model>
+        <model lang="en">PowerShot X</model><mount>canonX</mount><cropfactor> 4.843 </cropfactor></camera>
+    <camera><maker>Casio</maker><model>One</model><variant>4:3</variant><mount>casioTwo</mount></camera>
+    <camera><maker>Fujifilm</maker><model>X100V</model><mount>fujiX</mount><cropfactor>1.5</cropfactor></camera>
+    <camera><maker>Sony</maker><model>ILCE-7M3</model><model lang="en">Alpha 7 III</model><mount>Sony E</mount>
+        <cropfactor>1</cropfactor></camera>
+    <camera><maker>Ricoh</maker><model>GR</model><mount>gr</mount><cropfactor>1.5</cropfactor></camera>
+    <camera><maker>nobody</maker><mount>none</mount></camera>
+    <lens><maker>Canon</maker><model>X (Standard)</model><mount>canonX</mount></lens>
+    <lens><maker>Canon</maker><model>X, with W</model><mount>canonX</mount></lens>
+    <lens><maker>Casio</maker><model>Lens</model><mount>casioTwo</mount></lens>
+    <lens><model>a</model><mount>fujiX</mount></lens>
+    <lens><model>b</model><mount>fujiX</mount></lens>
+    <lens><model>GR &amp; compatibles</model><mount>gr</mount></lens>
+    <lens><model>GR &amp; compatibles, with GW</model><mount>gr</mount></lens>
+    <lens><maker>Sony</maker><model>FE 50</model><mount>Sony E</mount></lens>
+</lensdatabase>)";
+
+using Cameras = std::vector<lensprof_camera_model>;
+
+lensprof_status keep_camera(void *user, const lensprof_camera_model *camera) {
+    static_cast<Cameras *>(user)->push_back(*camera);
+    return camera->model[0] == '!' ? LENSPROF_ERROR_CANCELLED : LENSPROF_OK;
+}
+
+lensprof_status read_cameras(const std::string &text, Cameras &cameras, lensprof_error &error) {
+    cameras.clear();
+    return lensprof_lensfun_read_cameras(text.data(), text.size(), "a.xml", keep_camera, &cameras, &error);
+}
+
+void test_cameras(void **) {
+    Cameras all;
+    lensprof_error error{};
+    assert_ok(read_cameras(kCameras, all, error));
+    assert_int_equal(all.size(), 5);
+    for (const auto &camera : all) assert_ok(lensprof_camera_model_validate(&camera));
+    assert_string_equal(all[0].maker, "Canon Inc.");
+    assert_string_equal(all[0].other_maker, "Canon");
+    assert_string_equal(all[0].model, "Canon PowerShot X");
+    assert_string_equal(all[0].other_model, "PowerShot X");
+    assert_string_equal(all[0].mount, "canonX");
+    assert_string_equal(all[0].lens, "Canon X (Standard)");
+    assert_string_equal(all[0].source, "a.xml; Lensfun database, CC BY-SA 3.0");
+    assert_close(all[0].crop_factor, 4.843, 0);
+    assert_int_equal(all[0].fixed_lens, 1);
+    assert_string_equal(all[1].variant, "4:3");
+    assert_string_equal(all[1].lens, "Casio Lens");
+    assert_string_equal(all[1].other_model, "");
+    assert_close(all[1].crop_factor, LENSPROF_UNKNOWN, 0);
+    assert_string_equal(all[2].lens, "");
+    assert_int_equal(all[2].fixed_lens, 1);
+    assert_string_equal(all[3].lens, "");
+    assert_int_equal(all[3].fixed_lens, 0);
+    assert_string_equal(all[4].lens, "GR & compatibles");
+}
+
+void test_wrong_cameras(void **) {
+    Cameras all;
+    lensprof_error error{};
+    const std::string start = "<lensdatabase><camera><maker>a</maker><model>!</model></camera>\n<camera><model>",
+                      end = "</cropfactor></camera></lensdatabase>";
+    const std::pair<std::string, const char *> wrong[] = {
+        {start + "B</model><cropfactor>x" + end, "line 2: camera \"B\": cropfactor is \"x\", not a number above 0"},
+        {start + "B</model><cropfactor>0" + end, "cropfactor is \"0\""},
+        {start + "B</model><cropfactor>inf" + end, "cropfactor is \"inf\""},
+        {start + std::string(64, 'B') + "</model><cropfactor>1" + end, "longer than 63 bytes"},
+        {"<lensdatabase version=\"3\"/>", "version \"3\""},
+        {"<lensdatabase><camera>", "line 1"}};
+    for (const auto &one : wrong) {
+        assert_true(read_cameras(one.first, all, error) != LENSPROF_OK);
+        if (!strstr(error.text, one.second)) fail_msg("%s", error.text);
+        assert_true(all.empty());  // all is checked first
+    }
+    assert_int_equal(read_cameras("<lensdatabase><camera><model>!</model></camera></lensdatabase>", all, error),
+                     LENSPROF_ERROR_CANCELLED);
+    assert_int_equal(lensprof_lensfun_read_cameras(nullptr, 1, nullptr, keep_camera, &all, &error),
+                     LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_lensfun_read_cameras("", 0, nullptr, nullptr, &all, &error), LENSPROF_ERROR_ARGUMENT);
+}
+
 void test_radius_conventions(void **) {
     const std::vector<Falloff> all = read_lensfun(kGolden).entries;
     assert_int_equal(all.size(), 9);
@@ -472,6 +554,8 @@ void test_installed_database(void **) {
 int main() {
     const CMUnitTest tests[] = {
         cmocka_unit_test(test_golden),
+        cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_wrong_cameras),
         cmocka_unit_test(test_radius_conventions),
         cmocka_unit_test(test_fixed_lenses_and_doubts),
         cmocka_unit_test(test_source),

@@ -47,7 +47,20 @@ static void print_structs(void) {
     FIELD(lensprof_profile_key, distance_m);
     FIELD(lensprof_profile_key, color_temperature_k);
     FIELD(lensprof_profile_key, processing);
+    FIELD(lensprof_profile_key, style);
     FIELD(lensprof_profile_key, reserved);
+    STRUCT(lensprof_camera_model);
+    FIELD(lensprof_camera_model, maker);
+    FIELD(lensprof_camera_model, model);
+    FIELD(lensprof_camera_model, other_maker);
+    FIELD(lensprof_camera_model, other_model);
+    FIELD(lensprof_camera_model, variant);
+    FIELD(lensprof_camera_model, mount);
+    FIELD(lensprof_camera_model, lens);
+    FIELD(lensprof_camera_model, source);
+    FIELD(lensprof_camera_model, crop_factor);
+    FIELD(lensprof_camera_model, fixed_lens);
+    FIELD(lensprof_camera_model, reserved);
     STRUCT(lensprof_provenance);
     FIELD(lensprof_provenance, method);
     FIELD(lensprof_provenance, software);
@@ -61,6 +74,7 @@ static void print_structs(void) {
     FIELD(lensprof_provenance, prior_id);
     FIELD(lensprof_provenance, forced);
     FIELD(lensprof_provenance, not_usable);
+    FIELD(lensprof_provenance, gamma_sigma);
     FIELD(lensprof_provenance, reserved);
     STRUCT(lensprof_profile);
     FIELD(lensprof_profile, struct_size);
@@ -432,6 +446,9 @@ static void print_structs(void) {
     FIELD(lensprof_store_summary, focal_mm);
     FIELD(lensprof_store_summary, aperture);
     FIELD(lensprof_store_summary, distance_m);
+    STRUCT(lensprof_store_name);
+    FIELD(lensprof_store_name, lens);
+    FIELD(lensprof_store_name, score);
 }
 
 static void print_values(void) {

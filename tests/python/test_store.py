@@ -115,6 +115,22 @@ class Stores(unittest.TestCase):
                 store.set_key(9, key)
             self.assertRaises(ValueError, store.lenses, "a\0b")
 
+    def test_camera_models_and_nearest_lenses(self):
+        self.make(sample_profile(), sample_profile("Planar 50 mm"))
+        camera = lp.CameraModel(maker="Sony", model="ILCE-7M3", other_model="Alpha 7 III", mount="Sony E", crop_factor=1.0)
+        with lp.Store(self.path, lp.StoreMode.WRITE) as store:
+            self.assertEqual(store.camera_models(), [])
+            store.put_camera(camera)
+            self.assertEqual(store.find_camera("SONY", "alpha 7 iii"), camera)
+            self.assertEqual(store.camera_models(), [camera])
+            with refused(self, lp.Status.ERROR_NOT_FOUND):
+                store.find_camera("Nikon", "ILCE-7M3")
+            with refused(self, lp.Status.ERROR_ARGUMENT):
+                store.put_camera(lp.CameraModel(maker="Sony"))
+            names = store.nearest_lenses(lp.ProfileKey(lens="Planar 1.4/50"))
+            self.assertEqual(names[0].lens, "Planar 50 mm")
+            self.assertTrue(0 < names[0].score < 1)
+
     def test_merge(self):
         self.make(sample_profile("a"), sample_profile("b"))
         with lp.Store(self.path.with_name("all.db"), lp.StoreMode.CREATE) as store, lp.Store(self.path) as other:
@@ -167,7 +183,7 @@ class Stores(unittest.TestCase):
             stats = store.stats()
             self.assertEqual((stats.profiles, stats.cameras, stats.lenses, stats.units), (3, 1, 2, 1))
             self.assertEqual(list(stats.processing), [3, 0, 0])
-            self.assertEqual((stats.with_covariance, stats.with_grid, stats.with_doubt, stats.layout), (3, 3, 0, 4))
+            self.assertEqual((stats.with_covariance, stats.with_grid, stats.with_doubt, stats.layout), (3, 3, 0, 5))
             self.assertEqual((list(stats.focal_mm), list(stats.distance_m)), ([28, 28], [math.inf, math.inf]))
             self.assertEqual((stats.method, stats.source), ({"transfer": 3}, {"/tmp/a.pto": 3}))
             self.assertEqual(stats.bytes, self.path.stat().st_size)

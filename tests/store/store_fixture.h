@@ -157,8 +157,12 @@ static inline void assert_file(const char *path, const void *expected, size_t si
 /* A file of an older layout, as the lensprof of its time made it, with these profiles but what it cannot hold: up to
  * layout 3 prior_id and forced stand at the end of the method. */
 static inline void make_layout(const char *path, int layout, const lensprof_profile *profiles, size_t count) {
-    static const char *const schemas[] = {lp_schema_0001, lp_schema_0002, lp_schema_0003},
-                             *const added[] = {"", ", gain_grids", ", gain_grids, unit, crop_factor, doubt, lens_name"};
+    static const char *const schemas[] = {lp_schema_0001, lp_schema_0002, lp_schema_0003, lp_schema_0004},
+                             *const added[] = {"", ", gain_grids", ", gain_grids, unit, crop_factor, doubt, lens_name",
+                                               ", gain_grids, unit, crop_factor, doubt, lens_name, color_temperature_k,"
+                                               " prior_id, forced"};
+    const char *method =
+        layout < 4 ? "method || ifnull('+' || prior_id, '') || iif(forced, ' (forced)', '')" : "method";
     char newer[400], sql[2000];
     snprintf(newer, sizeof newer, "%s.newer", path);
     lensprof_store *store = store_at(newer, LENSPROF_STORE_CREATE);
@@ -168,15 +172,21 @@ static inline void make_layout(const char *path, int layout, const lensprof_prof
     snprintf(
         sql, sizeof sql,
         "ATTACH '%s' AS newer; BEGIN; INSERT INTO main.profiles SELECT id, camera_maker, camera_model, lens, focal_mm,"
-        " aperture, distance_m, processing, method || ifnull('+' || prior_id, '') || iif(forced, ' (forced)', ''),"
-        " software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, response_curves,"
+        " aperture, distance_m, processing, %s, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, response_curves,"
         " vignetting_curves, covariance_size, covariance%s FROM newer.profiles;"
         " INSERT INTO main.responses SELECT * FROM newer.responses;"
         " INSERT INTO main.emor_coefficients SELECT * FROM newer.emor_coefficients;"
         " INSERT INTO main.vignettings SELECT * FROM newer.vignettings; %s; COMMIT",
-        newer, added[layout - 1], layout < 2 ? "" : "INSERT INTO main.gain_grids SELECT * FROM newer.gain_grids");
+        newer, method, added[layout - 1],
+        layout < 2 ? "" : "INSERT INTO main.gain_grids SELECT * FROM newer.gain_grids");
     run_sql(path, sql);
     unlink(newer);
+}
+
+/* Takes out of a profile what no layout before the newest can hold. */
+static inline void lose_newest(lensprof_profile *profile) {
+    memset(profile->key.style, 0, sizeof profile->key.style);
+    profile->provenance.gamma_sigma = 0.0;
 }
 
 static inline uint32_t count_at(lensprof_store *store) {
@@ -217,6 +227,7 @@ static inline void fill_profile(lensprof_profile *profile) {
     profile->key.aperture = 2.8;
     profile->key.distance_m = 3.3;
     profile->key.color_temperature_k = 4321.5;
+    strcpy(profile->key.style, "Fine Detail");
     strcpy(profile->provenance.method, "transfer");
     strcpy(profile->provenance.software, "lensprof 0.1.0");
     strcpy(profile->provenance.source, "/data/pano \xe2\x82\xac/IMG_1.JPG");
@@ -226,6 +237,7 @@ static inline void fill_profile(lensprof_profile *profile) {
     profile->provenance.heldout_rms = 2.1;
     profile->provenance.inlier_share = 0.93;
     profile->provenance.forced = 1;
+    profile->provenance.gamma_sigma = 0.1 / 3.0;
     assert_ok(lensprof_response_set_emor(&profile->response[0], coefficients, 5));
     profile->vignetting[0] = (lensprof_vignetting){{-0.3, 0.1, -0.1 / 3.0}, {0.01, -0.02}};
     fill_grid(&profile->grid, 5, 4, 1);

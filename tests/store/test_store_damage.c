@@ -85,6 +85,10 @@ static void test_impossible_keys_and_provenance(void **state) {
         {"prior_id = 0", "prior_id"}, /* none is NULL */
         {"prior_id = -7", "prior_id"},
         {"forced = 2", "forced"},
+        {"style = printf('%.64c', 'x')", "style"},
+        {"style = char(10)", "LENSPROF_ERROR_ARGUMENT"},
+        {"gamma_sigma = -1", "LENSPROF_ERROR_ARGUMENT"},
+        {"gamma_sigma = 9e999", "gamma_sigma"},
         {"distance_m = -3", "distance_m"},
         {"processing = 'Raw'", "processing"},
         {"processing = ''", "processing"},

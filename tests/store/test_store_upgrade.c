@@ -17,7 +17,8 @@ static void make_old(const char *path) {
             old[i].key.crop_factor = 1.53;
             strcpy(old[i].provenance.doubt, "a doubt");
         }
-        old[i].key.color_temperature_k = LENSPROF_UNKNOWN;
+        if (from < 4) old[i].key.color_temperature_k = LENSPROF_UNKNOWN;
+        lose_newest(&old[i]);
         old[i].provenance.prior_id = i;
         old[i].provenance.forced = (uint32_t)i;
     }
@@ -257,11 +258,14 @@ static void test_methods(void **state) {
 /* Somebody's own table of that name, or a column: the write fails, reading goes on. */
 static void test_names_that_are_taken(void **state) {
     const place *here = *state;
-    static const char *const taken[] = {
-        "ALTER TABLE profiles ADD COLUMN forced INTEGER", "ALTER TABLE profiles ADD COLUMN prior_id INTEGER",
-        "CREATE TABLE gain_grids (a)", "ALTER TABLE profiles ADD COLUMN gain_grids INTEGER"};
+    static const char *const taken[] = {"ALTER TABLE profiles ADD COLUMN style TEXT",
+                                        "CREATE TABLE cameras (a)",
+                                        "ALTER TABLE profiles ADD COLUMN forced INTEGER",
+                                        "ALTER TABLE profiles ADD COLUMN prior_id INTEGER",
+                                        "CREATE TABLE gain_grids (a)",
+                                        "ALTER TABLE profiles ADD COLUMN gain_grids INTEGER"};
     lensprof_error error;
-    for (int i = 0; i < (from < 2 ? 4 : 2); i++) {
+    for (int i = 0; i < (from < 2 ? 6 : from < 4 ? 4 : 2); i++) {
         size_t size;
         unlink(here->path);
         make_old(here->path);
@@ -279,11 +283,13 @@ static void test_names_that_are_taken(void **state) {
 
 static int setup_1(void **state) { return from = 1, place_setup(state); }
 static int setup_2(void **state) { return from = 2, place_setup(state); }
+static int setup_4(void **state) { return from = 4, place_setup(state); }
 static int setup_3(void **state) { return from = 3, place_setup(state); }
 
 #define FROM(layout, function) \
     { #function " from layout " #layout, function, setup_##layout, place_teardown, NULL }
-#define FROM_EACH(function) FROM(1, function), FROM(2, function), FROM(3, function)
+#define FROM_OLD(function) FROM(1, function), FROM(2, function), FROM(3, function)
+#define FROM_EACH(function) FROM_OLD(function), FROM(4, function)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
@@ -293,7 +299,7 @@ int main(void) {
         FROM_EACH(test_failed_write_leaves_the_layout),
         FROM_EACH(test_old_and_new_files_become_the_same),
         FROM_EACH(test_several_processes),
-        FROM_EACH(test_methods),
+        FROM_OLD(test_methods),
         FROM_EACH(test_names_that_are_taken),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -19,18 +19,18 @@ from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
 from .formats import (FormatInfo, FrameTime, Pto, PtoImage, alsc_read, alsc_write, curves_read, curves_write,
                       detect_format, dng_opcodes_read, dng_opcodes_write, drone_xmp_read, export_profiles,
                       format_info, import_profiles, json_read, json_write, lcp_read, lcp_write, lensfun_read,
-                      lensfun_write, map_read, map_write, pcalib_read, pcalib_write, points_read, points_write,
+                      lensfun_read_cameras, lensfun_write, map_read, map_write, pcalib_read, pcalib_write, points_read, points_write,
                       radical_response_read, radical_response_write, radical_vignetting_read,
                       radical_vignetting_write, times_read, times_write)
 from .geometry import Camera
 from .model import Exposure, GainGrid, Response, Vignetting, emor_table, half_diagonal
-from .profile import Profile, ProfileKey, Provenance
+from .profile import CameraModel, Profile, ProfileKey, Provenance
 from .reason import Item, reason_name, reason_text
 from .sample import SampleImage, SampleOptions, sample_overlap, sample_tracks
-from .store import Lookup, LookupOptions, Store, StoreFault, StoreRow, StoreStats, StoreSummary
+from .store import Lookup, LookupOptions, Store, StoreFault, StoreName, StoreRow, StoreStats, StoreSummary
 
 __all__ = [
-    "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CurveKind", "Direction",
+    "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel", "CurveKind", "Direction",
     "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES",
     "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResult", "FixedPlan",
     "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime", "Free",
@@ -38,11 +38,11 @@ __all__ = [
     "LookupOptions", "Loss", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
     "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage",
     "RESPONSE_SAMPLES", "Reason", "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType",
-    "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreRow", "StoreStats",
+    "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreName", "StoreRow", "StoreStats",
     "StoreSummary", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct", "curves_read", "curves_write", "detect_format",
     "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table", "export_profiles", "fit_flat",
     "fit_overlap", "fit_radiance", "format_info", "half_diagonal", "import_profiles", "json_read", "json_write",
-    "layout_channels", "layout_samples", "lcp_read", "lcp_write", "lensfun_read", "lensfun_write", "map_read",
+    "layout_channels", "layout_samples", "lcp_read", "lcp_write", "lensfun_read", "lensfun_read_cameras", "lensfun_write", "map_read",
     "map_write", "pcalib_read", "pcalib_write", "points_read", "points_write", "radical_response_read",
     "radical_response_write", "radical_vignetting_read", "radical_vignetting_write", "reason_name", "reason_text",
     "sample_overlap", "sample_tracks", "sample_type_bytes", "simulate", "status_name", "times_read", "times_write",

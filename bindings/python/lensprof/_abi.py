@@ -432,7 +432,24 @@ class ProfileKey(Structure):
         ("distance_m", c_double),
         ("color_temperature_k", c_double),
         ("processing", c_uint32),
-        ("reserved", c_uint32 * 37),
+        ("style", c_char * 64),
+        ("reserved", c_uint32 * 21),
+    ]
+
+
+class CameraModel(Structure):
+    _fields_ = [
+        ("maker", c_char * 64),
+        ("model", c_char * 64),
+        ("other_maker", c_char * 64),
+        ("other_model", c_char * 64),
+        ("variant", c_char * 64),
+        ("mount", c_char * 64),
+        ("lens", c_char * 128),
+        ("source", c_char * 256),
+        ("crop_factor", c_double),
+        ("fixed_lens", c_uint32),
+        ("reserved", c_uint32 * 61),
     ]
 
 
@@ -450,7 +467,8 @@ class Provenance(Structure):
         ("prior_id", c_int64),
         ("forced", c_uint32),
         ("not_usable", c_uint32),
-        ("reserved", c_uint32 * 84),
+        ("gamma_sigma", c_double),
+        ("reserved", c_uint32 * 82),
     ]
 
 
@@ -812,6 +830,9 @@ class ImportEntry(Structure):
 ImportVisitor = CFUNCTYPE(c_int, c_void_p, POINTER(ImportEntry))
 
 
+CameraVisitor = CFUNCTYPE(c_int, c_void_p, POINTER(CameraModel))
+
+
 class FrameTime(Structure):
     _fields_ = [
         ("id", c_char * 64),
@@ -970,6 +991,13 @@ class StoreSummary(Structure):
     ]
 
 
+class StoreName(Structure):
+    _fields_ = [
+        ("lens", c_char * 128),
+        ("score", c_double),
+    ]
+
+
 # Prefix in C of the members of each enumeration.
 ENUMS = {
     "LENSPROF_": Status,
@@ -1010,6 +1038,7 @@ STRUCTS = {
     "lensprof_gain_grid": GainGrid,
     "lensprof_exposure": Exposure,
     "lensprof_profile_key": ProfileKey,
+    "lensprof_camera_model": CameraModel,
     "lensprof_provenance": Provenance,
     "lensprof_profile": Profile,
     "lensprof_image": Image,
@@ -1042,6 +1071,7 @@ STRUCTS = {
     "lensprof_store_group": StoreGroup,
     "lensprof_store_stats": StoreStats,
     "lensprof_store_summary": StoreSummary,
+    "lensprof_store_name": StoreName,
 }
 
 OPAQUE = {
@@ -1054,6 +1084,7 @@ OPAQUE = {
 CALLBACKS = {
     "lensprof_progress": Progress,
     "lensprof_import_visitor": ImportVisitor,
+    "lensprof_camera_visitor": CameraVisitor,
     "lensprof_fault_visitor": FaultVisitor,
 }
 
@@ -1062,6 +1093,7 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     GainGrid: ("lensprof_gain_grid_init", []),
     Exposure: ("lensprof_exposure_init", []),
     ProfileKey: ("lensprof_profile_key_init", []),
+    CameraModel: ("lensprof_camera_model_init", []),
     Profile: ("lensprof_profile_init_sized", [Profile]),
     ApplyOptions: ("lensprof_apply_options_init_sized", [ApplyOptions]),
     SampleImage: ("lensprof_sample_image_init_sized", [SampleImage]),
@@ -1109,6 +1141,8 @@ FUNCTIONS = {
     "lensprof_profile_key_init": (None, [POINTER(ProfileKey)]),
     "lensprof_profile_key_validate": (c_int, [POINTER(ProfileKey)]),
     "lensprof_camera_kind_of": (c_uint32, [POINTER(ProfileKey)]),
+    "lensprof_camera_model_init": (None, [POINTER(CameraModel)]),
+    "lensprof_camera_model_validate": (c_int, [POINTER(CameraModel)]),
     "lensprof_profile_init_sized": (None, [POINTER(Profile), c_size_t]),
     "lensprof_profile_copy": (c_int, [POINTER(Profile), POINTER(Profile)]),
     "lensprof_profile_validate": (c_int, [POINTER(Profile)]),
@@ -1192,6 +1226,8 @@ FUNCTIONS = {
                                       POINTER(c_size_t), POINTER(ErrorText)]),
     # formats.h
     "lensprof_lensfun_read": (c_int, [c_void_p, c_size_t, c_char_p, ImportVisitor, c_void_p, POINTER(ErrorText)]),
+    "lensprof_lensfun_read_cameras": (c_int, [c_void_p, c_size_t, c_char_p, CameraVisitor, c_void_p,
+                                              POINTER(ErrorText)]),
     "lensprof_lensfun_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_void_p, c_size_t, POINTER(c_size_t),
                                        POINTER(ErrorText)]),
     "lensprof_json_write": (c_int, [POINTER(POINTER(Profile)), c_uint32, c_void_p, c_size_t, POINTER(c_size_t),
@@ -1258,6 +1294,11 @@ FUNCTIONS = {
     "lensprof_store_find_same": (c_int, [POINTER(Store), POINTER(Profile), POINTER(c_int64), POINTER(ErrorText)]),
     "lensprof_store_merge": (c_int, [POINTER(Store), POINTER(Store), POINTER(c_uint32), POINTER(c_uint32),
                                      POINTER(ErrorText)]),
+    "lensprof_store_put_camera": (c_int, [POINTER(Store), POINTER(CameraModel), POINTER(ErrorText)]),
+    "lensprof_store_find_camera": (c_int, [POINTER(Store), c_char_p, c_char_p, POINTER(CameraModel),
+                                           POINTER(ErrorText)]),
+    "lensprof_store_list_camera_models": (c_int, [POINTER(Store), POINTER(CameraModel), c_uint32, POINTER(c_uint32),
+                                                  POINTER(ErrorText)]),
     "lensprof_store_check": (c_int, [POINTER(Store), FaultVisitor, c_void_p, POINTER(c_uint32), POINTER(c_uint32),
                                      POINTER(ErrorText)]),
     "lensprof_store_stats_init_sized": (None, [POINTER(StoreStats), c_size_t]),
@@ -1268,4 +1309,6 @@ FUNCTIONS = {
                                            POINTER(ErrorText)]),
     "lensprof_store_list_cameras": (c_int, [POINTER(Store), c_char_p, POINTER(StoreSummary), c_uint32,
                                             POINTER(c_uint32), POINTER(ErrorText)]),
+    "lensprof_store_nearest_lenses": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(StoreName), c_uint32,
+                                              POINTER(c_uint32), POINTER(ErrorText)]),
 }

@@ -14,7 +14,7 @@ from ._library import Handle, check, initialised, lib
 from ._struct import Enumerated, Flag, Nested, Text, Value, Vector, integer, one_or_three
 from .geometry import Camera
 from .model import Exposure, Response, Vignetting
-from .profile import Profile, ProfileKey
+from .profile import CameraModel, Profile, ProfileKey
 
 
 def _bytes(text: Union[str, bytes]) -> bytes:
@@ -222,6 +222,27 @@ def lensfun_read(text: Union[str, bytes], source: str = "") -> list[tuple[Profil
     data = _content(text, "text")
     return _imported(lambda *rest: lib.lensprof_lensfun_read(data, len(data), *rest), source,
                      "the database cannot be read")
+
+
+def lensfun_read_cameras(text: Union[str, bytes], source: str = "") -> list[CameraModel]:
+    """The cameras of a Lensfun database (.xml), for Store.put_camera()."""
+    data, error, name = _content(text, "text"), _abi.ErrorText(), _bytes(source)
+    found: list[CameraModel] = []
+    raised: list[BaseException] = []
+
+    def visit(_user: Any, camera: Any) -> int:
+        try:
+            found.append(CameraModel.from_buffer_copy(camera.contents))
+            return Status.OK
+        except BaseException as exception:  # must not cross C
+            raised.append(exception)
+            return Status.ERROR_CANCELLED
+
+    status = lib.lensprof_lensfun_read_cameras(data, len(data), name, _abi.CameraVisitor(visit), None, byref(error))
+    if raised:
+        raise raised[0]
+    check(status, "the database cannot be read", error)
+    return found
 
 
 def lensfun_write(profiles: Iterable[Profile]) -> str:

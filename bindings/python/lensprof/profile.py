@@ -18,7 +18,7 @@ class ProfileKey(Value, _abi.ProfileKey):
 
     unit: serial numbers, where a profile is of one camera and lens. crop_factor, focal_mm, aperture (f-number),
     distance_m (may be infinite) and color_temperature_k (of the light, where the falloff depends on it) are above 0, or
-    UNKNOWN.
+    UNKNOWN. style: the picture style of a rendering, as the camera calls it.
     """
 
     camera_maker = Text()
@@ -31,6 +31,7 @@ class ProfileKey(Value, _abi.ProfileKey):
     distance_m: float
     color_temperature_k: float
     processing = Enumerated(Processing)
+    style = Text()
 
     def validate(self) -> None:
         """Raises lensprof.Error unless the numbers are in range and the texts without control characters."""
@@ -51,7 +52,7 @@ class Provenance(Value, _abi.Provenance):
     of 255, or UNKNOWN. inlier_share: 0..1, or UNKNOWN. doubt: why it may be wrong, as found when it was imported.
     prior_id: the profile of the same database that was the prior of its fit, 0 = none. forced: 1 = stored although the
     fit was not usable. not_usable: 1 = of a fit that was not usable, which Store.put refuses unless it is forced; it is
-    not stored.
+    not stored. gamma_sigma: standard error of ln gamma, the common exponent of response and falloff; 0 = not known.
     """
 
     method = Text()
@@ -66,9 +67,34 @@ class Provenance(Value, _abi.Provenance):
     prior_id: int
     forced: int
     not_usable: int
+    gamma_sigma: float
 
     def _set_defaults(self) -> None:
         self.heldout_rms = self.inlier_share = _abi.UNKNOWN
+
+
+class CameraModel(Value, _abi.CameraModel):
+    """A camera, whatever its lens. maker, model: as its EXIF has them; other_maker, other_model: as people call it, empty
+    where that is the same; variant: which one, where several have one name. lens: that which is built in, as profiles
+    name it. crop_factor: 43.27 mm over the sensor's diagonal, or UNKNOWN. fixed_lens: 1 = it cannot be changed."""
+
+    maker = Text()
+    model = Text()
+    other_maker = Text()
+    other_model = Text()
+    variant = Text()
+    mount = Text()
+    lens = Text()
+    source = Text()
+    crop_factor: float
+    fixed_lens: int
+
+    def _set_defaults(self) -> None:
+        lib.lensprof_camera_model_init(byref(self))
+
+    def validate(self) -> None:
+        """Raises lensprof.Error unless it has a model, numbers in range and texts without control characters."""
+        check(lib.lensprof_camera_model_validate(byref(self)), f"{self}: no valid camera")
 
 
 def channel_number(channel: int) -> int:

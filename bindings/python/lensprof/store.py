@@ -11,7 +11,7 @@ from . import _abi
 from ._abi import DistanceRule, Reason, Status, StoreMode
 from ._library import Error, Handle, check, lib
 from ._struct import Enumerated, Flag, Nested, Struct, Text, Value, Vector, integer
-from .profile import Profile, ProfileKey, Provenance
+from .profile import CameraModel, Profile, ProfileKey, Provenance
 
 
 class StoreRow(Value, _abi.StoreRow):
@@ -72,6 +72,13 @@ class StoreSummary(Value, _abi.StoreSummary):
     focal_mm = Vector(writable=False)
     aperture = Vector(writable=False)
     distance_m = Vector(writable=False)
+
+
+class StoreName(Value, _abi.StoreName):
+    """The name of a stored lens, and how near (0..1) it is to one that was asked for."""
+
+    lens = Text()
+    score: float
 
 
 def _bytes_of(text: Optional[str]) -> Optional[bytes]:
@@ -238,6 +245,29 @@ class Store(Handle):
     def cameras(self, part: Optional[str] = None) -> List[StoreSummary]:
         """The cameras of the stored profiles, as lenses()."""
         return self._list(StoreSummary, _abi.StoreSummary, lib.lensprof_store_list_cameras, _bytes_of(part))
+
+    def nearest_lenses(self, key: ProfileKey, count: int = 3) -> List[StoreName]:
+        """The stored lenses whose names are nearest to that of the key, nearest first: for a lens that lookup() did not
+        find."""
+        rows, found = (_abi.StoreName * integer(count, "count"))(), c_uint32()
+        self._call(lib.lensprof_store_nearest_lenses, byref(key), rows, len(rows), byref(found))
+        size = ctypes.sizeof(_abi.StoreName)
+        return [StoreName.from_buffer(rows, i * size) for i in range(found.value)]
+
+    def put_camera(self, camera: CameraModel) -> None:
+        """Stores a camera, in place of the one with the same maker, model and variant."""
+        self._call(lib.lensprof_store_put_camera, byref(camera))
+
+    def find_camera(self, maker: str, model: str) -> CameraModel:
+        """The camera of a name, as EXIF has it or as people call it; maker may be empty. What several of one name do not
+        agree on is unknown. Raises lensprof.Error (NOT_FOUND)."""
+        camera = CameraModel()
+        self._call(lib.lensprof_store_find_camera, _bytes_of(maker), _bytes_of(model), byref(camera))
+        return camera
+
+    def camera_models(self) -> List[CameraModel]:
+        """The whole table of cameras, by maker, model and variant."""
+        return self._list(CameraModel, _abi.CameraModel, lib.lensprof_store_list_camera_models)
 
     def set_key(self, id: int, key: ProfileKey) -> None:
         """Gives the profile with an id another key; all else stays."""

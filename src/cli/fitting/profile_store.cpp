@@ -33,10 +33,11 @@ void declare_store(Command &command, StoreOptions &o) {
     command.number("--distance", o.distance, distances, "focus distance, m, as 3 or 3m");
     command.choice("--processing", o.processing, processing_choices(),
                    "raw, jpeg or corrected (falloff corrected in camera)");
+    command.text("--style", o.style, "picture style, as the camera calls it");
 }
 
 void check_store_options(const StoreOptions &o, bool reads_db, bool writes_else) {
-    demand_room(o.maker, o.camera, o.lens, o.unit);
+    demand_room(o.maker, o.camera, o.lens, o.unit, o.style);
     if (o.no_store && o.force && !writes_else)
         throw Failure(ExitCode::usage,
                       "--no-store and --force, which stores a result that is not usable, contradict each "
@@ -49,7 +50,8 @@ void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const s
     const std::pair<const char *, bool> used[] = {{"--maker", o.maker.empty()},
                                                   {"--camera", o.camera.empty()},
                                                   {"--lens", o.lens.empty()},
-                                                  {"--unit", o.unit == "exif"}};
+                                                  {"--unit", o.unit == "exif"},
+                                                  {"--style", o.style.empty()}};
     for (const std::string &option : metadata.cut)
         for (const auto &one : used)
             if (option == one.first && one.second && !o.no_store)
@@ -69,6 +71,7 @@ lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &
     if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;
     if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;
     if (o.processing) key.processing = *o.processing;
+    if (!o.style.empty()) set_text(key.style, sizeof key.style, o.style);
     if (!*key.camera_model && !*key.lens && !o.no_store)
         throw Failure(ExitCode::usage,
                       file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");

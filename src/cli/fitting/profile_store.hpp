@@ -13,7 +13,7 @@ namespace lensprof {
 
 // The options of every command that stores a profile.
 struct StoreOptions {
-    std::string db, maker, camera, lens, unit;
+    std::string db, maker, camera, lens, unit, style;
     std::optional<uint32_t> processing;  // LENSPROF_PROCESSING_...
     double crop_factor = LENSPROF_UNKNOWN, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN,
            distance = LENSPROF_UNKNOWN;

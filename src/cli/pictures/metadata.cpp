@@ -123,8 +123,8 @@ bool begins_with_one(const std::string &text, const char *const (&starts)[count]
                        [&](const char *start) { return text.compare(0, std::strlen(start), start) == 0; });
 }
 
-// What cameras write when they do not know the lens, and Exiv2 when it knows only the number.
-bool is_lens_name(const std::string &text) {
+// Not what cameras write when they do not know the lens, nor what Exiv2 says when it knows only the number.
+bool is_name(const std::string &text) {
     static const char *const nothing[] = {"n/a",     "N/A",     "None",    "none",   "Unknown",
                                           "unknown", "NO-LENS", "No lens", "0.0 mm", "0 mm"};
     if (text.find_first_not_of("-0. ()") == std::string::npos) return false;
@@ -135,10 +135,24 @@ bool is_lens_name(const std::string &text) {
 
 std::string read_lens(const Exiv2::ExifData &exif) {
     const std::string model = read_text(exif, "Exif.Photo.LensModel");
-    if (is_lens_name(model)) return model;
+    if (is_name(model)) return model;
     const auto datum = Exiv2::lensName(exif);
     const std::string name = datum == exif.end() ? std::string() : clean_text(datum->print(&exif));
-    return is_lens_name(name) ? name : std::string();
+    return is_name(name) ? name : std::string();
+}
+
+// The rendering's name, as the makers' notes have it: in words where Exiv2 knows them.
+std::string read_style(const Exiv2::ExifData &exif) {
+    for (const char *key :
+         {"Exif.CanonPr.PictureStyle", "Exif.NikonPc.Name", "Exif.Fujifilm.FilmMode", "Exif.Sony1.ColorReproduction",
+          "Exif.Sony2.ColorReproduction", "Exif.OlympusCs.PictureMode", "Exif.Panasonic.PhotoStyle",
+          "Exif.Pentax.ImageTone", "Exif.PentaxDng.ImageTone"}) {
+        const auto datum = exif.findKey(Exiv2::ExifKey(key));
+        if (datum == exif.end() || datum->count() == 0) continue;
+        const std::string name = clean_text(datum->print(&exif));
+        if (is_name(name)) return name;
+    }
+    return {};
 }
 
 // Serial numbers of camera and lens, as far as they are known: "BODY", "BODY/LENS" or "/LENS".
@@ -391,6 +405,7 @@ PictureMetadata read_metadata(const std::string &path) {
         metadata.key.distance_m = read_distance(exif);
         metadata.key.crop_factor = read_crop_factor(exif, metadata.key.focal_mm);
         store_text(read_unit(exif), metadata.key.unit, "--unit", metadata);
+        store_text(read_style(exif), metadata.key.style, "--style", metadata);
         if (image->mimeType() == "image/tiff" && read_number(exif, {"Exif.Image.SampleFormat"}) == 3)
             metadata.key.processing = LENSPROF_PROCESSING_RAW;
         metadata.mark = correction_mark_of(image->xmpData());

@@ -22,7 +22,7 @@ struct PictureMetadata {
     std::optional<CorrectionMark> mark;  // what lensprof did to the picture, if it did
 
     std::vector<std::string>
-        cut;  // options in place of what was longer than its field: --maker, --camera, --lens, --unit
+        cut;  // options in place of what was longer than its field: --maker, --camera, --lens, --unit, --style
 
     std::optional<double> exposure_time_s;
     std::optional<double> iso;

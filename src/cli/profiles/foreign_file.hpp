@@ -34,6 +34,9 @@ const ForeignRule &format_to_write(const std::string &path, const std::string &w
 // Calls visit for every profile of a file of profiles. Failure (unreadable) names the file.
 void read_profiles(const ForeignRule &rule, const std::string &path, lensprof_import_visitor visit, void *user);
 
+// Calls visit for every camera of a Lensfun database. Failure (unreadable) names the file.
+void read_cameras(const std::string &path, lensprof_camera_visitor visit, void *user);
+
 // Puts the response, or the falloff with doubt and what is known of the key, of a file into a profile.
 void read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &options,
                lensprof_profile &profile);

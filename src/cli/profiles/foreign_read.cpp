@@ -159,6 +159,13 @@ void read_profiles(const ForeignRule &rule, const std::string &path, lensprof_im
     import(path, text, options, visit, user);
 }
 
+void read_cameras(const std::string &path, lensprof_camera_visitor visit, void *user) {
+    lensprof_error error{};
+    const std::string text = read_text(path, largest_text);
+    check(lensprof_lensfun_read_cameras(text.data(), text.size(), name_of(path).c_str(), visit, user, &error), path,
+          &error);
+}
+
 void read_part(const ForeignRule &rule, const std::string &path, const ForeignOptions &o, lensprof_profile &profile) {
     lensprof_import_options options = options_of(rule, o);
     lensprof_profile_key key = profile.key;

@@ -34,14 +34,15 @@ void KeyFilter::add_options(Command &command) {
     command.number("--aperture", aperture_, f_numbers, "f-number, as 4 or f/4");
     command.number("--distance", distance_, distances, "focus distance, m, as 3 or 3m");
     command.choice("--processing", processing_, processing_choices(), "raw, jpeg or corrected");
+    command.text("--style", style_, "picture style, as the camera calls it");
 }
 
 bool KeyFilter::is_empty() const {
-    return maker_.empty() && !has_camera_or_lens() && unit_.empty() && !processing_ && focal_ == LENSPROF_UNKNOWN
-           && aperture_ == LENSPROF_UNKNOWN && distance_ == LENSPROF_UNKNOWN;
+    return maker_.empty() && !has_camera_or_lens() && unit_.empty() && style_.empty() && !processing_
+           && focal_ == LENSPROF_UNKNOWN && aperture_ == LENSPROF_UNKNOWN && distance_ == LENSPROF_UNKNOWN;
 }
 
-void KeyFilter::check_names() const { demand_room(maker_, camera_, lens_, unit_); }
+void KeyFilter::check_names() const { demand_room(maker_, camera_, lens_, unit_, style_); }
 
 lensprof_profile_key KeyFilter::key(uint32_t processing) const {
     lensprof_profile_key key;
@@ -50,6 +51,7 @@ lensprof_profile_key KeyFilter::key(uint32_t processing) const {
     set_text(key.camera_model, sizeof key.camera_model, camera_);
     set_text(key.lens, sizeof key.lens, lens_);
     set_text(key.unit, sizeof key.unit, unit_);
+    set_text(key.style, sizeof key.style, style_);
     key.focal_mm = focal_;
     key.aperture = aperture_;
     key.distance_m = distance_;

@@ -66,7 +66,7 @@ private:
     std::vector<lensprof_store_row> rows_of(lensprof_store *store, const std::string &db,
                                             const lensprof_profile_key &filter) const;
 
-    std::string maker_, camera_, lens_, unit_;
+    std::string maker_, camera_, lens_, unit_, style_;
     std::optional<uint32_t> processing_;
     double focal_ = LENSPROF_UNKNOWN, aperture_ = LENSPROF_UNKNOWN, distance_ = LENSPROF_UNKNOWN;
 };

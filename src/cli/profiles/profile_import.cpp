@@ -40,7 +40,7 @@ struct Input {
 struct Import {
     lensprof_store *store = nullptr;
     std::string db, file;
-    uint32_t stored = 0, known = 0;
+    uint32_t stored = 0, known = 0, cameras = 0;
     std::set<std::string> lenses;
     Json flagged = Json::array();                // file, key, doubt, stored
     lensprof_status store_status = LENSPROF_OK;  // of the last call, and its text
@@ -120,7 +120,15 @@ std::unique_ptr<lensprof_profile> read_parts(const Options &o, const std::vector
     return profile;
 }
 
-// Every profile of every file.
+// A camera of a table, in place of the one that is there.
+lensprof_status take_camera(void *user, const lensprof_camera_model *camera) {
+    Import &import = *static_cast<Import *>(user);
+    import.cameras++;
+    if (import.store) import.store_status = lensprof_store_put_camera(import.store, camera, &import.error);
+    return import.store_status;
+}
+
+// Every profile of every file, and the cameras.
 void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_profile *of_parts,
                lensprof_import_visitor visit) {
     for (const Input &input : inputs) {
@@ -128,6 +136,7 @@ void visit_all(Import &import, const std::vector<Input> &inputs, const lensprof_
         import.file = input.file;
         try {
             read_profiles(*input.rule, input.file, visit, &import);
+            if (input.rule->format == LENSPROF_FORMAT_LENSFUN) read_cameras(input.file, take_camera, &import);
         } catch (const Failure &) {
             stop_if_interrupted();
             check(import.store_status, store_path(import.db),
@@ -146,6 +155,7 @@ void store_all(Import &import, const std::vector<Input> &inputs, const lensprof_
     const std::string db = store_path(import.db);
     Store store = open_store(import.db, LENSPROF_STORE_CREATE);
     import.store = store.get();
+    import.cameras = 0;
     check(lensprof_store_begin(store.get(), &import.error), db, &import.error);
     visit_all(import, inputs, of_parts, take);
     check(lensprof_store_commit(store.get(), &import.error), db, &import.error);
@@ -157,6 +167,8 @@ void print_import(const Import &import, size_t files, Streams &streams) {
     streams.out << "imported " << counted(import.stored, "profile") << " of "
                 << counted(import.lenses.size(), "lens", "lenses") << " from " << counted(files, "file") << " into "
                 << store_path(import.db) << "\n";
+    if (import.cameras)
+        streams.out << "with " << counted(import.cameras, "camera") << ": sensor sizes and built-in lenses\n";
     if (import.known) streams.out << format("%u %s there already\n", import.known, import.known == 1 ? "was" : "were");
     if (!import.flagged.empty())
         streams.out << format(
@@ -191,6 +203,7 @@ int run(const Options &o, Streams &streams) {
                         {"stored", import.stored},
                         {"known", import.known},
                         {"lenses", import.lenses.size()},
+                        {"cameras", import.cameras},
                         {"flagged", import.flagged}},
                    streams.out);
     else

@@ -121,8 +121,8 @@ std::string pto_text(const lensprof_pto &pto) {
     });
 }
 
-void demand_room(const std::string &maker, const std::string &camera, const std::string &lens,
-                 const std::string &unit) {
+void demand_room(const std::string &maker, const std::string &camera, const std::string &lens, const std::string &unit,
+                 const std::string &style) {
     using Key = lensprof_profile_key;
     const struct {
         const char *option;
@@ -131,7 +131,8 @@ void demand_room(const std::string &maker, const std::string &camera, const std:
     } fields[] = {{"--maker", maker, sizeof Key::camera_maker},
                   {"--camera", camera, sizeof Key::camera_model},
                   {"--lens", lens, sizeof Key::lens},
-                  {"--unit", unit, sizeof Key::unit}};
+                  {"--unit", unit, sizeof Key::unit},
+                  {"--style", style, sizeof Key::style}};
     for (const auto &field : fields)
         if (field.text.size() >= field.size)
             throw Failure(ExitCode::usage, std::string(field.option) + ": is " + std::to_string(field.text.size())

@@ -68,7 +68,8 @@ std::string pto_text(const lensprof_pto &pto);
 // characters become blanks, and in a text that is not UTF-8 all bytes beyond ASCII question marks.
 void set_text(char *field, size_t size, const std::string &text);
 
-// Failure (usage) for the option --maker, --camera, --lens or --unit whose text a key's field would cut.
-void demand_room(const std::string &maker, const std::string &camera, const std::string &lens, const std::string &unit);
+// Failure (usage) for the option --maker, --camera, --lens, --unit or --style whose text a key's field would cut.
+void demand_room(const std::string &maker, const std::string &camera, const std::string &lens, const std::string &unit,
+                 const std::string &style);
 
 }  // namespace lensprof

@@ -336,7 +336,8 @@ Json key_json(const lensprof_profile_key &key) {
             {"aperture", number_or_null(key.aperture)},
             {"distance_m", distance_json(key.distance_m)},
             {"color_temperature_k", number_or_null(key.color_temperature_k)},
-            {"processing", processing_name(key.processing)}};
+            {"processing", processing_name(key.processing)},
+            {"style", key.style}};
 }
 
 Json provenance_json(const lensprof_provenance &p) {
@@ -350,7 +351,8 @@ Json provenance_json(const lensprof_provenance &p) {
             {"inlier_share", number_or_null(p.inlier_share)},
             {"doubt", p.doubt},
             {"prior_id", p.prior_id ? Json(p.prior_id) : Json()},
-            {"forced", p.forced != 0}};
+            {"forced", p.forced != 0},
+            {"gamma_sigma", p.gamma_sigma > 0.0 ? Json(p.gamma_sigma) : Json()}};
 }
 
 Json profile_json(int64_t id, const lensprof_profile &profile) {
@@ -408,6 +410,7 @@ void print_profile(int64_t id, const lensprof_profile &profile, std::ostream &ou
     if (*profile.key.unit) out << "unit      " << profile.key.unit << ", and no other\n";
     if (profile.key.color_temperature_k != LENSPROF_UNKNOWN)
         out << format("light     %g K\n", profile.key.color_temperature_k);
+    if (*profile.key.style) out << "style     " << profile.key.style << "\n";
     print_vignettings(profile, out);
     print_gain_grid(profile.grid, out);
     for (uint32_t c = 0; c < profile.responses; c++) print_response(profile.response[c], out);

@@ -64,7 +64,7 @@ static const struct spelling {
 #define SPELLINGS (sizeof spellings / sizeof *spellings)
 
 /* One camera under three names, without its maker: Europe, America, Japan. */
-static const char *const cameras[][3] = {
+static const char *const cameras[][LP_CAMERA_NAMES] = {
     {"eos300ddigital", "eosdigitalrebel", "eoskissdigital"},
     {"eos350ddigital", "eosdigitalrebelxt", "eoskissdigitaln"},
     {"eos400ddigital", "eosdigitalrebelxti", "eoskissdigitalx"},
@@ -153,6 +153,27 @@ double lp_name_score(const char *a, const char *b) {
     const char *bare_x = without_maker(x, &maker_x), *bare_y = without_maker(y, &maker_y);
     if (maker_x && maker_y && strcmp(maker_x, maker_y)) return 0.0;
     return !strcmp(bare_x, bare_y) || is_same_camera(bare_x, bare_y) ? 0.8 : 0.0;
+}
+
+int lp_is_same_maker(const char *a, const char *b) {
+    char x[LP_NAME_BYTES], y[LP_NAME_BYTES];
+    lp_squeeze(a, x);
+    lp_squeeze(b, y);
+    const struct spelling *of_x = spelling_in_front(x), *of_y = spelling_in_front(y);
+    if (of_x && of_y) return !strcmp(of_x->maker, of_y->maker);
+    return !strncmp(x, y, strlen(x) < strlen(y) ? strlen(x) : strlen(y));
+}
+
+uint32_t lp_camera_names(const char *squeezed, const char *names[LP_CAMERA_NAMES]) {
+    uint32_t count = 0;
+    for (size_t i = 0; i < sizeof cameras / sizeof *cameras && !count; i++)
+        for (int own = 0; own < LP_CAMERA_NAMES; own++) {
+            if (strcmp(cameras[i][own], squeezed)) continue;
+            for (int n = 0; n < LP_CAMERA_NAMES; n++) names[count++] = cameras[i][n];
+            break;
+        }
+    if (!count) names[count++] = squeezed;
+    return count;
 }
 
 static void add(lp_names *names, const char *front, const char *name) {

@@ -13,6 +13,16 @@ void lp_squeeze(const char *name, char *text);
  * spelling ("NIKON CORPORATION"), or a camera's name elsewhere ("EOS REBEL T3i", "EOS 600D"); else 0. */
 double lp_name_score(const char *a, const char *b);
 
+/* Whether two makers may be the same: in one spelling for all, or the one a shorter form of the other; unknown ones
+ * may.
+ */
+int lp_is_same_maker(const char *a, const char *b);
+
+/* A camera's squeezed name without its maker, and those that it has in other countries, to names[]; returns how many.
+ */
+#define LP_CAMERA_NAMES 3
+uint32_t lp_camera_names(const char *squeezed, const char *names[LP_CAMERA_NAMES]);
+
 /* Behind the maker's name in front of a squeezed one, or the whole. */
 const char *lp_without_maker(const char *squeezed);
 
@@ -24,6 +34,10 @@ const char *lp_maker_in_front(const char *squeezed);
  * same maker where both name one, and of that of the camera (empty = any) where one does; all numbers (focal lengths,
  * f-numbers) and generations (II, III) agree. Else 0. */
 double lp_words_score(const char *a, const char *b, const char *camera_maker);
+
+/* How much two names share, 0..1: the share of their words that both have, numbers (focal lengths, f-numbers) counting
+ * three times; half of it for lenses of different makers. */
+double lp_words_likeness(const char *a, const char *b, const char *camera_maker);
 
 /* The squeezed names under which a lens may be stored: its own, without a maker in front, with the camera's maker, with
  * other spellings of its own. */

@@ -92,3 +92,25 @@ double lp_words_score(const char *a, const char *b, const char *camera_maker) {
         if (strcmp(x.word[i], y.word[i])) return 0.0;
     return 0.6;
 }
+
+static double weight(const char *word) { return is_digit(*word) ? 3.0 : 1.0; }
+
+double lp_words_likeness(const char *a, const char *b, const char *camera_maker) {
+    char camera[LP_NAME_BYTES];
+    words x, y;
+    if (!split(a, &x) || !split(b, &y)) return 0.0;
+    double common = 0.0, all = 0.0;
+    uint32_t i = 0, j = 0;
+    while (i < x.count || j < y.count) {
+        const int order = i == x.count ? 1 : j == y.count ? -1 : strcmp(x.word[i], y.word[j]);
+        const double w = weight(order <= 0 ? x.word[i] : y.word[j]);
+        all += w;
+        if (!order) common += w;
+        i += order <= 0, j += order >= 0;
+    }
+    lp_squeeze(camera_maker, camera);
+    const char *own = x.maker ? x.maker : lp_maker_in_front(camera),
+               *other = y.maker ? y.maker : lp_maker_in_front(camera);
+    const double share = all > 0.0 ? common / all : 0.0;
+    return own && other && strcmp(own, other) ? 0.5 * share : share;
+}

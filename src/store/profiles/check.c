@@ -140,6 +140,19 @@ static lensprof_status check_profiles(inspection *all, lensprof_error *error) {
     return status;
 }
 
+static lensprof_status report_camera(void *user, int64_t id, const char *wrong) {
+    char reason[200];
+    snprintf(reason, sizeof reason, "camera %lld: impossible %s", (long long)id, wrong);
+    return report(user, 0, reason);
+}
+
+static lensprof_status check_cameras(inspection *all, lensprof_error *error) {
+    const lensprof_status status = lp_store_check_cameras(all->store, report_camera, all, error);
+    if (status != LENSPROF_ERROR_CORRUPT) return status;
+    lp_store_clear(error);
+    return report(all, 0, "cameras cannot be read to their end");
+}
+
 lensprof_status lensprof_store_check(lensprof_store *store, lensprof_fault_visitor visit, void *user,
                                      uint32_t *profiles, uint32_t *faults, lensprof_error *error) {
     inspection all = {store, visit, user, 0, 0};
@@ -151,6 +164,7 @@ lensprof_status lensprof_store_check(lensprof_store *store, lensprof_fault_visit
     for (size_t i = 0; i < sizeof orphans / sizeof *orphans && status == LENSPROF_OK; i++)
         if (store->layout >= orphans[i].layout) status = check_orphans(&all, &orphans[i], error);
     if (status == LENSPROF_OK) status = check_profiles(&all, error);
+    if (status == LENSPROF_OK) status = check_cameras(&all, error);
     lp_store_rollback(store);
     if (status == LENSPROF_OK && profiles) *profiles = all.profiles;
     if (status == LENSPROF_OK && faults) *faults = all.faults;

@@ -15,14 +15,21 @@
 #define LP_PLUS_3 LP_WITHOUT_DIGITS(LP_NAMED_3)                              /* "transfer+" */
 #define LP_HAS_PRIOR_3 LP_PLUS_3 " LIKE '%+' AND " LP_PLUS_3 " <> " LP_NAMED_3
 
+#define LP_STYLE_4 "'' AS style, NULL AS gamma_sigma" /* what layout 5 adds */
+#define LP_SINCE_1 \
+    "id, camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing, software, source," \
+    " created_unix_s, images, pairs, heldout_rms, inlier_share, response_curves, vignetting_curves, covariance_size," \
+    " covariance, "
+#define LP_UNITS_3 "gain_grids, unit, crop_factor, doubt, lens_name"
+#define LP_WITH_PROFILES(columns) "WITH profiles AS NOT MATERIALIZED (SELECT " columns " FROM main.profiles) "
 #define LP_PROFILES_3(columns) \
-    "WITH profiles AS NOT MATERIALIZED (SELECT id, camera_maker, camera_model, lens, focal_mm, aperture, distance_m," \
-    " processing, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, response_curves," \
-    " vignetting_curves, covariance_size, covariance, NULL AS color_temperature_k," \
+    LP_WITH_PROFILES(LP_SINCE_1 "NULL AS color_temperature_k, " \
     " CASE WHEN " LP_HAS_PRIOR_3 " THEN substr(" LP_PLUS_3 ", 1, length(" LP_PLUS_3 ") - 1)" \
     " ELSE " LP_NAMED_3 " END AS method," \
     " CASE WHEN " LP_HAS_PRIOR_3 " THEN nullif(CAST(substr(" LP_NAMED_3 ", length(" LP_PLUS_3 ") + 1) AS INTEGER), 0)" \
-    " END AS prior_id, " LP_FORCED_3 " AS forced, " columns " FROM main.profiles) "
+    " END AS prior_id, " LP_FORCED_3 " AS forced, " LP_STYLE_4 ", " columns)
+#define LP_PROFILES_4 \
+    LP_WITH_PROFILES(LP_SINCE_1 "method, color_temperature_k, prior_id, forced, " LP_STYLE_4 ", " LP_UNITS_3)
 #define LP_UNITS_2 /* as 0003_units.sql makes lens_name */ \
     "'' AS unit, NULL AS crop_factor, '' AS doubt, lower(replace(replace(replace(replace(replace(replace(lens," \
     " ' ', ''), '-', ''), '/', ''), '.', ''), '(', ''), ')', '')) AS lens_name"
@@ -31,7 +38,7 @@
  * newest `profiles`. */
 #define LP_BY_LAYOUT(sql) \
     {LP_PROFILES_3("0 AS gain_grids, " LP_UNITS_2) sql, LP_PROFILES_3("gain_grids, " LP_UNITS_2) sql, \
-     LP_PROFILES_3("gain_grids, unit, crop_factor, doubt, lens_name") sql, sql}
+     LP_PROFILES_3(LP_UNITS_3) sql, LP_PROFILES_4 sql, sql}
 
 /* clang-format on */
 #endif

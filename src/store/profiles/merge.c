@@ -107,6 +107,7 @@ lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *othe
     merging m = {store, other, NULL, 0, 0, 0, 0};
     if (status == LENSPROF_OK) {
         status = take_all(&m, error);
+        if (status == LENSPROF_OK) status = lp_store_merge_cameras(store, other, error);
         lp_store_rollback(other);
         free(m.all);
     }

@@ -7,7 +7,7 @@
 /* read.c: the profile with an id, within a transaction, into store->scratch. */
 lensprof_status lp_store_fetch(lensprof_store *store, int64_t id, lensprof_error *error);
 
-/* read.c: the nine columns of a key before its processing, from the maker on. */
+/* read.c: the ten columns of a key but its processing, from the maker on. */
 void lp_store_bind_key(lp_store_binder *binder, const lensprof_profile_key *key);
 
 /* write.c: a profile known to be valid, within a transaction; and its columns, in the order of that INSERT. */
@@ -18,6 +18,15 @@ void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *prof
 /* same.c: the id of the same valid profile, 0 where there is none; within a transaction that writes. */
 lensprof_status lp_store_find_same(lensprof_store *store, const lensprof_profile *profile, int64_t *id,
                                    lensprof_error *error);
+
+/* cameras.c, within a transaction: the camera of a name, as lensprof_store_find_camera finds it; cameras of another
+ * database that are not here by maker, model and variant; and what is wrong with a camera, told with its number. */
+lensprof_status lp_store_find_camera(lensprof_store *store, const char *maker, const char *model,
+                                     lensprof_camera_model *camera, bool *found, lensprof_error *error);
+lensprof_status lp_store_merge_cameras(lensprof_store *store, lensprof_store *other, lensprof_error *error);
+typedef lensprof_status (*lp_camera_fault)(void *user, int64_t id, const char *wrong);
+lensprof_status lp_store_check_cameras(lensprof_store *store, lp_camera_fault report, void *user,
+                                       lensprof_error *error);
 
 /* Words of the database for enum values; the position is the value. They are part of the layout. */
 #define LP_STORE_PROCESSINGS 3

@@ -11,8 +11,8 @@ const char *const lp_store_processings[LP_STORE_PROCESSINGS] = {"raw", "jpeg", "
 /* clang-format off */
 #define ROW_COLUMNS \
     "id, camera_maker, camera_model, lens, unit, crop_factor, focal_mm, aperture, distance_m, color_temperature_k," \
-    " processing, method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, doubt, prior_id," \
-    " forced"
+    " style, processing, method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share, doubt, prior_id," \
+    " forced, gamma_sigma"
 /* clang-format on */
 
 /* Texts are equal without ASCII case and outer blanks. */
@@ -33,6 +33,7 @@ void lp_store_bind_key(lp_store_binder *binder, const lensprof_profile_key *key)
     lp_bind_known(binder, key->aperture);
     lp_bind_known(binder, key->distance_m);
     lp_bind_known(binder, key->color_temperature_k);
+    lp_bind_text(binder, key->style);
 }
 
 /* Columns ROW_COLUMNS. Texts are zero-filled. The caller validates key and provenance. */
@@ -51,6 +52,7 @@ static void read_row(lp_store_reader *reader, lensprof_store_row *row) {
     key->aperture = lp_read_known(reader);
     key->distance_m = lp_read_known(reader);
     key->color_temperature_k = lp_read_known(reader);
+    lp_read_text(reader, key->style, sizeof key->style);
     key->processing = lp_read_name(reader, lp_store_processings, LP_STORE_PROCESSINGS);
     lp_read_text(reader, provenance->method, sizeof provenance->method);
     lp_read_text(reader, provenance->software, sizeof provenance->software);
@@ -63,6 +65,7 @@ static void read_row(lp_store_reader *reader, lensprof_store_row *row) {
     lp_read_text(reader, provenance->doubt, sizeof provenance->doubt);
     if (!lp_read_null(reader)) provenance->prior_id = lp_read_integer(reader, 1, INT64_MAX);
     provenance->forced = (uint32_t)lp_read_integer(reader, 0, 1);
+    if (!lp_read_null(reader)) provenance->gamma_sigma = lp_read_real(reader);
 }
 
 /* From the row at which `statement` stands, and its curves, into store->scratch. */
@@ -99,13 +102,13 @@ static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *stateme
     SAME_TEXT("camera_maker", "?1") " AND " SAME_TEXT("camera_model", "?2") " AND " SAME_TEXT("lens", "?3") " AND " \
     SAME_TEXT("unit", "?4") " AND " SAME_NUMBER("crop_factor", "?5") " AND " SAME_NUMBER("focal_mm", "?6") " AND " \
     SAME_NUMBER("aperture", "?7") " AND " SAME_NUMBER("distance_m", "?8") " AND " \
-    SAME_NUMBER("color_temperature_k", "?9") " AND processing = ?10 ORDER BY id DESC LIMIT 1"
+    SAME_NUMBER("color_temperature_k", "?9") " AND " SAME_TEXT("style", "?10") " AND processing = ?11 ORDER BY id DESC LIMIT 1"
 #define LIST /* one order for all: that of the index profiles_by_key */ \
     "SELECT " ROW_COLUMNS " FROM profiles WHERE " \
     ANY_TEXT("camera_maker", "?1") " AND " ANY_TEXT("camera_model", "?2") " AND " ANY_TEXT("lens", "?3") " AND " \
     ANY_TEXT("unit", "?4") " AND " ANY_NUMBER("crop_factor", "?5") " AND " ANY_NUMBER("focal_mm", "?6") " AND " \
     ANY_NUMBER("aperture", "?7") " AND " ANY_NUMBER("distance_m", "?8") " AND " \
-    ANY_NUMBER("color_temperature_k", "?9") \
+    ANY_NUMBER("color_temperature_k", "?9") " AND " ANY_TEXT("style", "?10") \
     " ORDER BY trim(camera_maker) COLLATE NOCASE, trim(camera_model) COLLATE NOCASE, trim(lens) COLLATE NOCASE," \
     " focal_mm, aperture, distance_m, id"
 /* clang-format on */

@@ -16,8 +16,8 @@ static const char equal_rows[] =
     " AND source = ?10 AND created_unix_s IS ?11 AND images = ?12 AND pairs = ?13 AND heldout_rms IS ?14"
     " AND inlier_share IS ?15 AND response_curves = ?16 AND vignetting_curves = ?17 AND covariance_size = ?18"
     " AND covariance IS ?19 AND gain_grids = ?20 AND unit = ?21 AND crop_factor IS ?22 AND doubt = ?23 AND lens_name = ?24"
-    " AND color_temperature_k IS ?25"
-    " AND EXISTS (SELECT 1 FROM vignettings WHERE profile_id = id AND curve = 0 AND k1 = ?28 AND k2 = ?29 AND k3 = ?30)";
+    " AND color_temperature_k IS ?25 AND style = ?28 AND gamma_sigma IS ?29"
+    " AND EXISTS (SELECT 1 FROM vignettings WHERE profile_id = id AND curve = 0 AND k1 = ?30 AND k2 = ?31 AND k3 = ?32)";
 
 /* Values, not bits: a database has no -0. */
 static bool are_equal(const double *a, const double *b, uint32_t count) {

@@ -76,6 +76,11 @@ void lp_store_bind_profile(lp_store_binder *binder, const lensprof_profile *prof
     else
         lp_bind_null(binder);
     lp_bind_integer(binder, provenance->forced);
+    lp_bind_text(binder, key->style);
+    if (provenance->gamma_sigma > 0.0)
+        lp_bind_real(binder, provenance->gamma_sigma);
+    else
+        lp_bind_null(binder);
 }
 
 /* With AUTOINCREMENT no id is used twice: where a row has or had the last one, no row can follow, and an INSERT would
@@ -100,8 +105,8 @@ static lensprof_status put_profile(lensprof_store *store, const lensprof_profile
         "INSERT INTO profiles (camera_maker, camera_model, lens, focal_mm, aperture, distance_m, processing,"
         " method, software, source, created_unix_s, images, pairs, heldout_rms, inlier_share,"
         " response_curves, vignetting_curves, covariance_size, covariance, gain_grids, unit, crop_factor, doubt, lens_name,"
-        " color_temperature_k, prior_id, forced)"
-        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        " color_temperature_k, prior_id, forced, style, gamma_sigma)"
+        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
         &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     char lens_name[LP_NAME_BYTES]; /* bound as it is: until the statement has run */
@@ -164,7 +169,7 @@ static lensprof_status set_key(lensprof_store *store, int64_t id, const lensprof
     lensprof_status status = lp_store_prepare(
         store,
         "UPDATE profiles SET camera_maker = ?, camera_model = ?, lens = ?, unit = ?, crop_factor = ?, focal_mm = ?,"
-        " aperture = ?, distance_m = ?, color_temperature_k = ?, processing = ?, lens_name = ? WHERE id = ?",
+        " aperture = ?, distance_m = ?, color_temperature_k = ?, style = ?, processing = ?, lens_name = ? WHERE id = ?",
         &binder.statement, error);
     if (status != LENSPROF_OK) return status;
     lp_store_bind_key(&binder, key);

@@ -53,6 +53,18 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_read(const void 
                                                                      lensprof_import_visitor visit, void *user,
                                                                      lensprof_error *error);
 
+/* Receives the cameras of a file. Anything but OK ends the call and is what it returns. */
+typedef lensprof_status (*lensprof_camera_visitor)(void *user, const lensprof_camera_model *camera);
+
+/* The <camera> entries of a Lensfun database: maker and model as EXIF has them and in the other language that there is,
+ * mount, crop factor, and for a camera whose lens cannot be changed the lens of its mount in the same file, as profiles
+ * of lensprof_lensfun_read call it: of several that without a converter, none where that is not clear. All entries are
+ * checked before the first visit. Errors: as lensprof_lensfun_read. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lensfun_read_cameras(const void *data, size_t size,
+                                                                             const char *source,
+                                                                             lensprof_camera_visitor visit, void *user,
+                                                                             lensprof_error *error);
+
 /* The falloffs of profiles as a database of version 1, which every Lensfun reads: model "pa", one <lens> for each lens
  * and crop factor. Output as in base.h. Doubles are written so that they read back the same.
  *  - <maker> is the first word of key.lens, <model> all of it; the mount is Lensfun's "Generic".

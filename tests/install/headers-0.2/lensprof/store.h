@@ -153,11 +153,32 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find_same(lensprof
  * with its provenance as it is; but prior_id becomes the id that the prior has here, 0 where it is not here. A known
  * profile keeps its provenance, but gets a prior_id from the other database where it has none. All or none, and never
  * twice: merged again, nothing is added. *added and *known (may be NULL) receive how many were and how many were there.
+ * Cameras that are not there by maker, model and variant are added, too; they do not count.
  * `other` is only read, whatever its layout. Errors: ARGUMENT for the database itself; what lensprof_store_put and, of
  * `other`, lensprof_store_get say: the text names the file and the damaged profile. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_merge(lensprof_store *store, lensprof_store *other,
                                                                     uint32_t *added, uint32_t *known,
                                                                     lensprof_error *error);
+
+/* Stores a camera, in place of the one with the same maker, model and variant (to the letter) where there is one.
+ * Errors: ARGUMENT for what lensprof_camera_model_validate refuses; the store's. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_put_camera(lensprof_store *store,
+                                                                         const lensprof_camera_model *camera,
+                                                                         lensprof_error *error);
+
+/* The camera of a name, as EXIF has it or as people call it: case, signs, a maker in front, the spelling of the maker
+ * and names in other countries do not matter; the maker may be empty. Where several have the name, what they do not
+ * agree on is unknown. NOT_FOUND, with *camera untouched, where there is none. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find_camera(lensprof_store *store, const char *maker,
+                                                                          const char *model,
+                                                                          lensprof_camera_model *camera,
+                                                                          lensprof_error *error);
+
+/* Lists the whole table of cameras by maker, model and variant. cameras[capacity] and *count as in base.h. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list_camera_models(lensprof_store *store,
+                                                                                 lensprof_camera_model *cameras,
+                                                                                 uint32_t capacity, uint32_t *count,
+                                                                                 lensprof_error *error);
 
 /* Something that is wrong in a database. */
 typedef struct lensprof_store_fault {
@@ -250,6 +271,21 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_list_cameras(lensp
                                                                            lensprof_store_summary *rows,
                                                                            uint32_t capacity, uint32_t *count,
                                                                            lensprof_error *error);
+
+/* The name of a lens, and how near it is to one that was asked for. Frozen value struct. */
+typedef struct lensprof_store_name {
+    char lens[128]; /* as it is stored */
+    double score;   /* 0..1: share of the words that both names have, focal lengths and f-numbers counting most */
+} lensprof_store_name;
+
+/* The stored lenses whose names are nearest to key->lens (key->camera_maker counts as the lens's maker where it names
+ * none), nearest first: for a lens that a lookup did not find. names[capacity]; *count receives how many were written,
+ * fewer than capacity where no more are near at all. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_nearest_lenses(lensprof_store *store,
+                                                                             const lensprof_profile_key *key,
+                                                                             lensprof_store_name *names,
+                                                                             uint32_t capacity, uint32_t *count,
+                                                                             lensprof_error *error);
 
 #ifdef __cplusplus
 }
