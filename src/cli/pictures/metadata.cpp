@@ -14,6 +14,7 @@
 
 #include <exiv2/exiv2.hpp>
 
+#include "cli/pictures/camera_correction.hpp"
 #include "cli/pictures/codec.hpp"
 #include "cli/pictures/correction_mark.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
@@ -379,6 +380,15 @@ void set_rational(Exiv2::ExifData &exif, const char *key, double value) {
     if (value > 0 && value < 4e9) exif[key] = to_rational(value);
 }
 
+// What lensprof did is the last that was done.
+void set_corrected(const std::string &by_others, PictureMetadata &metadata) {
+    const auto &mark = metadata.mark;
+    const bool is_marked = mark && mark->falloff != CorrectionMark::Falloff::kept;
+    if (is_marked && mark->falloff == CorrectionMark::Falloff::added) return;
+    metadata.corrected_by = is_marked ? "by " + mark->software + ", from " + mark->source : by_others;
+    if (!metadata.corrected_by.empty()) metadata.key.processing = LENSPROF_PROCESSING_CORRECTED;
+}
+
 }  // namespace
 
 PictureMetadata unknown_metadata() {
@@ -409,8 +419,7 @@ PictureMetadata read_metadata(const std::string &path) {
         if (image->mimeType() == "image/tiff" && read_number(exif, {"Exif.Image.SampleFormat"}) == 3)
             metadata.key.processing = LENSPROF_PROCESSING_RAW;
         metadata.mark = correction_mark_of(image->xmpData());
-        if (metadata.mark && metadata.mark->falloff == CorrectionMark::Falloff::removed)
-            metadata.key.processing = LENSPROF_PROCESSING_CORRECTED;
+        set_corrected(falloff_corrected_by(*image, metadata.key), metadata);
     } catch (const std::exception &error) {
         fail_reading(path, error);
     }

@@ -16,10 +16,13 @@ namespace lensprof {
 struct PictureMetadata {
     // Unknown what the file does not say. Texts without surrounding blanks, in valid UTF-8, cut to the fields' sizes.
     // Processing is JPEG (a rendered picture, whatever the file's format), but RAW for float TIFF, which by custom
-    // holds values proportional to light, and CORRECTED where the mark says that the falloff was removed.
+    // holds values proportional to light, and CORRECTED where corrected_by is not empty.
     lensprof_profile_key key;
 
     std::optional<CorrectionMark> mark;  // what lensprof did to the picture, if it did
+
+    // Who took the falloff out before, "in camera (Sony: vignetting correction)"; empty = nothing says so.
+    std::string corrected_by;
 
     std::vector<std::string>
         cut;  // options in place of what was longer than its field: --maker, --camera, --lens, --unit, --style

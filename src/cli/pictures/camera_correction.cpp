@@ -1,0 +1,137 @@
+#include "cli/pictures/camera_correction.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+#include <exiv2/exiv2.hpp>
+
+namespace lensprof {
+namespace {
+
+std::optional<long> read_integer(const Exiv2::ExifData &exif, const char *key) {
+    const auto datum = exif.findKey(Exiv2::ExifKey(key));
+    if (datum == exif.end() || datum->count() == 0) return std::nullopt;
+    return datum->toLong();
+}
+
+// A datum as the bytes of the file, whatever type they are said to have.
+class Block {
+public:
+    Block(const Exiv2::Image &image, const char *key) : little_(image.byteOrder() == Exiv2::littleEndian) {
+        const auto datum = image.exifData().findKey(Exiv2::ExifKey(key));
+        if (datum == image.exifData().end() || datum->size() <= 0) return;
+        bytes_.resize(static_cast<size_t>(datum->size()));
+        datum->copy(bytes_.data(), little_ ? Exiv2::littleEndian : Exiv2::bigEndian);
+    }
+
+    size_t size() const { return bytes_.size(); }
+
+    // Unsigned, `count` bytes from `at` on; 0 behind the end.
+    uint32_t at(size_t at, size_t count) const {
+        uint32_t value = 0;
+        if (at + count > bytes_.size()) return 0;
+        for (size_t i = 0; i < count; i++) value = value << 8 | bytes_[little_ ? at + count - 1 - i : at + i];
+        return value;
+    }
+
+private:
+    bool little_;
+    std::vector<uint8_t> bytes_;
+};
+
+// Tags 0x4015 (what was done: version 0 has a size in its second word and the switch in its third), else 0x4016 and
+// 0x4018 (what the menu said, the sixth and the second word of four bytes), as ExifTool documents them.
+bool canon_corrects(const Exiv2::Image &image) {
+    const Block done(image, "Exif.Canon.0x4015");
+    if (done.size() >= 6 && done.at(0, 1) == 0 && done.at(0, 4) != 0) return done.at(4, 2) == 1;
+    return Block(image, "Exif.Canon.0x4016").at(20, 4) == 1 || Block(image, "Exif.Canon.0x4018").at(4, 4) == 1;
+}
+
+std::string maker_notes(const Exiv2::Image &image) {
+    const Exiv2::ExifData &exif = image.exifData();
+    static const struct {
+        const char *key;
+        std::vector<long> on;
+        const char *name;
+    } switches[] = {
+        {"Exif.Sony1.0x2011", {2}, "Sony: vignetting correction"},
+        {"Exif.Sony2.0x2011", {2}, "Sony: vignetting correction"},
+        {"Exif.OlympusIp.ShadingCompensation", {1}, "Olympus: shading compensation"},
+        {"Exif.OlympusCs.ShadingCompensation", {1}, "Olympus: shading compensation"},
+        {"Exif.Panasonic.ShadingCompensation", {1}, "Panasonic: shading compensation"},
+        {"Exif.Nikon3.VignetteControl", {1, 3, 5}, "Nikon: vignette control"},
+    };
+    for (const auto &one : switches) {
+        const auto value = read_integer(exif, one.key);
+        if (value && std::count(one.on.begin(), one.on.end(), *value)) return one.name;
+    }
+    if (canon_corrects(image)) return "Canon: peripheral illumination correction";
+    if (Block(image, "Exif.Pentax.0x007d").at(2, 1) == 1) return "Pentax: peripheral illumination correction";
+    return {};
+}
+
+// Programs that make JPEGs of raw files without regard to the camera's switches, and copy its notes. Those of the
+// makers follow the switches.
+bool is_of_converter(const Exiv2::Image &image) {
+    static const char *const names[] = {"darktable",  "rawtherapee", "ufraw", "dcraw", "libraw",  "lightroom",
+                                        "camera raw", "capture one", "dxo",   "on1 ",  "luminar", "rawstudio"};
+    if (image.xmpData().findKey(Exiv2::XmpKey("Xmp.crs.RawFileName")) != image.xmpData().end()) return true;
+    const auto datum = image.exifData().findKey(Exiv2::ExifKey("Exif.Image.Software"));
+    if (datum == image.exifData().end()) return false;
+    std::string software = datum->toString();
+    for (char &c : software) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return std::any_of(std::begin(names), std::end(names),
+                       [&](const char *name) { return software.find(name) != std::string::npos; });
+}
+
+// Adobe's raw converters write their settings, and whether the pixels have them.
+bool has_adobe_profile(const Exiv2::XmpData &xmp) {
+    const auto is = [&](const char *key, const char *value) {
+        const auto datum = xmp.findKey(Exiv2::XmpKey(key));
+        return datum != xmp.end() && datum->toString() == value;
+    };
+    return is("Xmp.crs.LensProfileEnable", "1") && is("Xmp.crs.AlreadyApplied", "True");
+}
+
+// DNG 1.7, "Opcode Lists": a count, then id, version, flags and size of each, big endian. 3 is FixVignetteRadial, 9
+// GainMap. A rendered picture that still has the list went through it.
+bool has_falloff_opcodes(const Exiv2::ExifData &exif) {
+    for (const char *key : {"Exif.Image.OpcodeList2", "Exif.Image.OpcodeList3"}) {
+        const auto datum = exif.findKey(Exiv2::ExifKey(key));
+        if (datum == exif.end() || datum->size() < 4) continue;
+        std::vector<uint8_t> bytes(static_cast<size_t>(datum->size()));
+        datum->copy(bytes.data(), Exiv2::bigEndian);
+        const auto word = [&](size_t at) {
+            return uint32_t(bytes[at]) << 24 | uint32_t(bytes[at + 1]) << 16 | uint32_t(bytes[at + 2]) << 8
+                   | bytes[at + 3];
+        };
+        size_t at = 4;
+        for (uint32_t i = 0; i < word(0) && at + 16 <= bytes.size(); i++) {
+            if (word(at) == 3 || word(at) == 9) return true;
+            at += size_t(16) + word(at + 12);
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+std::string falloff_corrected_by(const Exiv2::Image &image, const lensprof_profile_key &key) {
+    const Exiv2::ExifData &exif = image.exifData();
+    if (has_adobe_profile(image.xmpData())) return "by the raw converter (Adobe: lens profile)";
+    const bool is_dng = exif.findKey(Exiv2::ExifKey("Exif.Image.DNGVersion")) != exif.end();
+    if (!is_dng && has_falloff_opcodes(exif)) return "by the raw converter (opcodes of DNG)";
+    if (image.mimeType() != "image/jpeg" || is_of_converter(image)) return {};
+    const std::string note = maker_notes(image);
+    if (!note.empty()) return "in camera (" + note + ")";
+    lensprof_profile_key jpeg = key;
+    jpeg.processing = LENSPROF_PROCESSING_JPEG;
+    return lensprof_camera_kind_of(&jpeg) == LENSPROF_CAMERA_PHONE ? "in camera (a phone)" : std::string();
+}
+
+}  // namespace lensprof
