@@ -246,7 +246,8 @@ void test_pictures_keep_their_nature(void **) {
     }
     const Disk before = disk();
     must_exit(done, Words{"build", copy + "/pano.pto", "--db", work("p.db")} + quick);
-    must_exit(done, {"apply", "--pto", copy + "/pano.pto", "--profile", "1", "--db", work("p.db"), "-o", work("out")});
+    must_exit(done, {"apply", "--pto", copy + "/pano.pto", "--profile", "1", "--processing", "jpeg", "--db",
+                     work("p.db"), "-o", work("out")});
     for (const char *name : mixed_names) {
         check_kept(copy + "/" + name, work("out/") + name);
         assert_true(load(copy + "/" + name) != load(work("out/") + name));

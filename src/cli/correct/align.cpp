@@ -137,7 +137,8 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
                         0,
                         nullptr,
                         0,
-                        "frames of " + std::filesystem::path(project.files[0]).filename().string() + " on"});
+                        "frames of " + std::filesystem::path(project.files[0]).filename().string() + " on",
+                        {}});
     }
     check_targets(jobs, project.files, "");
     check_older_outputs(jobs, o.kind);

@@ -9,6 +9,7 @@
 
 #include "cli/correct/correction.hpp"
 #include "cli/correct/named_pictures.hpp"
+#include "cli/correct/picture_model.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
@@ -31,22 +32,17 @@ enum class Exposure {
 };
 
 struct Options {
-    std::string db, pto, output, sheet;
+    ModelOptions model;
+    std::string pto, output, sheet;
     Exposure exposure = Exposure::by_default;
-    int64_t profile = 0;
     CorrectionKind kind;
-    bool from_db = false, skip = false, again = false, json = false, progress = false;
+    bool skip = false, json = false, progress = false;
     std::vector<std::string> files;
-};
-
-// Why one picture is not corrected, which is no reason not to correct the others.
-struct NotThisOne : Failure {
-    NotThisOne(ExitCode exit_code, const std::string &text) : Failure(exit_code, text) {}
 };
 
 struct LeftOut {
     std::string file, reason;
-    ExitCode code;  // not_found where there is no profile of it; else it was corrected before
+    bool corrected_already;
 };
 
 struct Work {
@@ -55,13 +51,8 @@ struct Work {
     lensprof_exposure mean{};  // what --output-exposure mean makes the pictures like
 };
 
-void declare_model(Command &command, Options &o) {
-    command.profile_id("--profile", o.profile, "id of the profile to use");
-    command.flag("--from-db", o.from_db,
-                 "look each picture's profile up by its EXIF; between the settings that are stored its falloff is "
-                 "predicted, as by `lensprof query`");
+void declare_exposure(Command &command, Options &o) {
     command.file("--pto", o.pto, "take exposures (and, without --profile or --from-db, the curves) from this project");
-    declare_db(command, o.db);
     command.choice("--output-exposure", o.exposure,
                    {{"mean", Exposure::mean}, {"reference", Exposure::reference}, {"keep", Exposure::keep}},
                    "mean: all like the geometric mean of the project (default with --pto); reference: like its 0 EV; "
@@ -69,7 +60,8 @@ void declare_model(Command &command, Options &o) {
 }
 
 void declare(Command &command, Options &o) {
-    declare_model(command, o);
+    o.model.add_options(command);
+    declare_exposure(command, o);
     command.flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
     command.flag("--simulate", o.kind.simulate, "put the falloff in instead of taking it out");
     command.number("--strength", o.kind.strength, {0.0, 1.0}, "share of the falloff to take out, 0 to 1; default 1");
@@ -81,7 +73,6 @@ void declare(Command &command, Options &o) {
         "--skip", o.skip,
         "leave out pictures without a profile and those corrected already, and list them at the end, as is done "
         "with those of folders; without it none is corrected where one that is named cannot be");
-    command.flag("--again", o.again, "also correct pictures that lensprof has corrected already");
     command.file("-o,--output", o.output, "folder for the pictures; those of subfolders go to subfolders");
     command.require("--output");
     command.file("--contact-sheet", o.sheet, "write an overview, before above after, as .png, .tif or .jpg");
@@ -106,33 +97,6 @@ std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
           &error);
     profile->vignetting[0] = project.images[project.reference].vignetting;
     return profile;
-}
-
-void look_up(lensprof_store *store, const Options &o, const lensprof_profile_key &key, Correction &job) {
-    auto profile = std::shared_ptr<lensprof_profile>(new_profile());
-    lensprof_error error{};
-    job.profile_id = o.profile;
-    if (o.profile) {
-        check(lensprof_store_get(store, o.profile, profile.get(), &error), store_path(o.db), &error);
-    } else {
-        lensprof_lookup_options options;
-        lensprof_lookup_options_init(&options);
-        lensprof_lookup how;
-        lensprof_lookup_init(&how);
-        const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
-        if (status == LENSPROF_ERROR_NOT_FOUND)
-            throw NotThisOne(
-                ExitCode::not_found,
-                job.source + ": no profile for " + describe_key(key) + " in " + store_path(o.db) + " (" + how.reason
-                    + "); make one with `lensprof build` or name one with --profile, or leave the picture out with --skip");
-        check(status, store_path(o.db), &error);
-        if (how.exact)
-            job.profile_id = how.id[0];
-        else
-            job.lookup = std::make_shared<lensprof_lookup>(how);
-    }
-    job.model = profile;
-    job.model_name = describe_key(profile->key);
 }
 
 std::string target_name(const Options &o, const NamedPicture &picture) {
@@ -185,15 +149,18 @@ struct Source {
     std::unique_ptr<ImagesByFile> images;
     std::vector<lensprof_exposure> exposures;
     std::shared_ptr<const lensprof_profile> model;
-    Store store;
+    std::unique_ptr<PictureModels> models;
 };
 
 Source open_source(const Options &o) {
-    if (o.profile && o.from_db) throw Failure(ExitCode::usage, "--profile and --from-db contradict each other");
-    const bool from_store = o.profile || o.from_db;
-    if (!from_store && o.pto.empty())
-        throw Failure(ExitCode::usage, "say what to correct with: --profile ID, --from-db or --pto FILE");
     Source source;
+    if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
+    source.models = std::make_unique<PictureModels>(o.model, o.pto.empty());
+    const bool from_store = source.models->are_used();
+    if (!from_store && o.pto.empty())
+        throw Failure(ExitCode::usage,
+                      "say what to correct with: --profile ID, --from-db or --pto FILE; there is no "
+                      "database of your own yet");
     if (!o.pto.empty()) {
         source.project = std::make_unique<Project>(read_project(o.pto, true));
         source.images = std::make_unique<ImagesByFile>(*source.project);
@@ -204,8 +171,6 @@ Source open_source(const Options &o) {
                                            + (o.exposure == Exposure::mean ? "mean" : "reference")
                                            + " needs the exposures of a project; give it with --pto");
     }
-    if (o.files.empty() && !source.project) throw Failure(ExitCode::usage, "no pictures to correct; name them");
-    if (from_store) source.store = open_store(o.db, LENSPROF_STORE_READ);
     return source;
 }
 
@@ -215,21 +180,23 @@ PictureMetadata metadata_of(const Options &o, const std::string &file) {
     try {
         return read_metadata(file);
     } catch (const Failure &) {
-        if (o.from_db) throw;
+        if (!o.model.profile && o.pto.empty()) throw;
         return unknown_metadata();
     }
 }
 
-// NotThisOne for a picture that was corrected already.
+// NotThisOne for a picture that lensprof has corrected.
 void check_mark(const Options &o, const std::string &file, const PictureMetadata &metadata) {
     const auto &mark = metadata.mark;
-    if (o.again || o.kind.simulate || !mark || mark->falloff != CorrectionMark::Falloff::removed) return;
-    throw NotThisOne(ExitCode::usage, file + ": is corrected already, by " + mark->software + " from " + mark->source
-                                          + "; correct that picture, or this one --again");
+    if (o.model.force_falloff || o.kind.simulate || !mark || mark->falloff != CorrectionMark::Falloff::removed) return;
+    throw NotThisOne(ExitCode::usage,
+                     file + ": is corrected already, " + metadata.corrected_by
+                         + "; correct that picture, or this one once more with --force-falloff",
+                     true);
 }
 
 Correction make_job(const Options &o, const Source &source, const NamedPicture &picture) {
-    Correction job{picture.file, target_name(o, picture), source.model, {}, {}, 0, nullptr, 0, {}};
+    Correction job{picture.file, target_name(o, picture), source.model, {}, {}, 0, nullptr, 0, {}, {}};
     lensprof_exposure_init(&job.own);
     if (source.project) {
         const uint32_t image = source.images->at(picture.file, "--pto");
@@ -239,7 +206,7 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
     }
     const PictureMetadata metadata = metadata_of(o, picture.file);
     check_mark(o, picture.file, metadata);
-    if (source.store) look_up(source.store.get(), o, metadata.key, job);
+    if (source.models->are_used()) source.models->choose(metadata, job);
     return job;
 }
 
@@ -261,7 +228,7 @@ Work plan_work(const Options &o) {
             work.jobs.push_back(make_job(o, source, picture));
         } catch (const NotThisOne &failure) {
             if (!o.skip && !picture.in_folder) throw;
-            work.left_out.push_back({picture.file, failure.what(), failure.code});
+            work.left_out.push_back({picture.file, failure.what(), failure.corrected_already});
         }
     }
     check_targets(work.jobs, inputs, o.sheet);
@@ -283,22 +250,27 @@ void list_left_out(const Work &work, Streams &streams) {
 Json left_out_json(const Work &work) {
     Json list = Json::array();
     for (const LeftOut &picture : work.left_out)
-        list.push_back({{"file", picture.file},
-                        {"reason", picture.reason},
-                        {"corrected_already", picture.code != ExitCode::not_found}});
+        list.push_back(
+            {{"file", picture.file}, {"reason", picture.reason}, {"corrected_already", picture.corrected_already}});
     return list;
 }
 
-// Once for every kind of prediction, with its first picture.
-void say_predicted(const std::vector<Correction> &jobs, Streams &streams) {
+std::string describe_lookup(const lensprof_lookup &how) {
+    std::string text =
+        "falloff " + describe_prediction(how) + format(", standard error %.3f of M in the corner", how.sigma);
+    if (*how.reason) text += std::string("; ") + how.reason;
+    return text;
+}
+
+// Everything once, with the first picture of which it is true.
+void say_notes(const std::vector<Correction> &jobs, Streams &streams) {
     std::set<std::string> said;
+    const auto say = [&](const Correction &job, const std::string &text) {
+        if (!text.empty() && said.insert(text).second) note(streams, job.source + ": " + text);
+    };
     for (const Correction &job : jobs) {
-        if (!job.lookup) continue;
-        const lensprof_lookup &how = *job.lookup;
-        std::string text =
-            "falloff " + describe_prediction(how) + format(", standard error %.3f of M in the corner", how.sigma);
-        if (*how.reason) text += std::string("; ") + how.reason;
-        if (said.insert(text).second) note(streams, job.source + ": " + text);
+        if (job.lookup) say(job, describe_lookup(*job.lookup));
+        say(job, job.note);
     }
 }
 
@@ -314,14 +286,15 @@ Corrected correct(const Options &o, Work &work, Streams &streams) {
     make_folder(o.output);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;
-    say_predicted(work.jobs, streams);
+    say_notes(work.jobs, streams);
     Corrected written = write_corrected(work.jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);
     progress.clear();
     if (!o.sheet.empty()) sheet.write(o.sheet);
     return written;
 }
 
-int run(const Options &o, Streams &streams) {
+int run(Options &o, Streams &streams) {
+    o.model.puts_in = o.kind.simulate;
     Work work = plan_work(o);
     const Corrected written = correct(o, work, streams);
     if (o.json) {
@@ -333,9 +306,9 @@ int run(const Options &o, Streams &streams) {
         if (!o.sheet.empty() && !work.jobs.empty()) streams.out << o.sheet << "\n";
     }
     list_left_out(work, streams);
-    const bool all_known = std::none_of(work.left_out.begin(), work.left_out.end(),
-                                        [](const LeftOut &one) { return one.code == ExitCode::not_found; });
-    return static_cast<int>(all_known ? ExitCode::done : ExitCode::not_found);
+    const bool all_done = std::all_of(work.left_out.begin(), work.left_out.end(),
+                                      [](const LeftOut &one) { return one.corrected_already; });
+    return static_cast<int>(all_done ? ExitCode::done : ExitCode::not_found);
 }
 
 }  // namespace

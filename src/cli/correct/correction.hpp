@@ -25,6 +25,7 @@ struct Correction {
     std::shared_ptr<const lensprof_lookup> lookup;  // how the model was predicted; NULL = it was not
     uint64_t pixels = 0;                            // of the source
     std::string model_name;                         // for the output's mark
+    std::string note;                               // what is to be said of it; empty = nothing
 };
 
 struct CorrectionKind {

@@ -28,10 +28,16 @@ namespace {
 
 using ExivImage = std::unique_ptr<Exiv2::Image>;  // 0.27 of Exiv2 has std::auto_ptr
 
+// Exiv2 takes its XMP namespaces away and puts them in again whenever it reads or writes XMP: what another thread writes
+// meanwhile loses its XMP without a word. One thread at a time reads or writes metadata.
+std::recursive_mutex &exiv2_mutex() {
+    static std::recursive_mutex mutex;
+    return mutex;
+}
+
 // Exiv2 logs to stderr, and its XMP parser shares state between threads unless it is given a lock.
 void prepare_exiv2() {
     static std::once_flag once;
-    static std::recursive_mutex mutex;
     std::call_once(once, [] {
         Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
         Exiv2::XmpParser::initialize(
@@ -39,7 +45,7 @@ void prepare_exiv2() {
                 std::recursive_mutex *m = static_cast<std::recursive_mutex *>(lock);
                 take ? m->lock() : m->unlock();
             },
-            &mutex);
+            &exiv2_mutex());
         register_correction_mark();
     });
 }
@@ -65,6 +71,7 @@ bool is_big_tiff(const std::string &path) {
 
 // Exiv2 adds EXIF of a PNG's standard chunk to that of a text chunk before it.
 void read_once(Exiv2::Image &image) {
+    const std::lock_guard<std::recursive_mutex> alone(exiv2_mutex());
     image.readMetadata();
     if (image.mimeType() == "image/png") codec::keep_last(image.exifData());
 }
@@ -270,6 +277,7 @@ bool edit_excerpt(const std::string &path, const codec::PictureExcerpt &excerpt,
     const Exiv2::byte *data = nullptr;
     std::vector<uint8_t> exif;
     try {
+        const std::lock_guard<std::recursive_mutex> alone(exiv2_mutex());
         change(*image);
         if (png) exif = codec::take_exif(*image);
         image->writeMetadata();
@@ -382,6 +390,7 @@ void set_rational(Exiv2::ExifData &exif, const char *key, double value) {
 
 // What lensprof did is the last that was done.
 void set_corrected(const std::string &by_others, PictureMetadata &metadata) {
+    metadata.processing_before = metadata.key.processing;
     const auto &mark = metadata.mark;
     const bool is_marked = mark && mark->falloff != CorrectionMark::Falloff::kept;
     if (is_marked && mark->falloff == CorrectionMark::Falloff::added) return;

@@ -23,6 +23,7 @@ struct PictureMetadata {
 
     // Who took the falloff out before, "in camera (Sony: vignetting correction)"; empty = nothing says so.
     std::string corrected_by;
+    uint32_t processing_before = LENSPROF_PROCESSING_JPEG;  // the key's, had it not been corrected
 
     std::vector<std::string>
         cut;  // options in place of what was longer than its field: --maker, --camera, --lens, --unit, --style

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/lookup_options.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/library.hpp"
@@ -17,20 +18,14 @@ namespace {
 
 struct Options {
     std::string db;
-    uint32_t distance_rule = LENSPROF_DISTANCE_WEAKEST;
     KeyFilter filter;
-    double crop_factor = LENSPROF_UNKNOWN;
-    bool doubtful = false, json = false;
+    LookupOptions lookup;
+    bool json = false;
 };
 
 void declare(Command &command, Options &o) {
     o.filter.add_options(command);
-    command.number("--crop-factor", o.crop_factor, crop_factors, "43.27 mm over the diagonal of the camera's sensor");
-    command.choice("--unknown-distance", o.distance_rule,
-                   {{"weakest", LENSPROF_DISTANCE_WEAKEST}, {"farthest", LENSPROF_DISTANCE_FARTHEST}},
-                   "without --distance: weakest, the weakest falloff of all stored distances, which never corrects too "
-                   "much (default), or farthest");
-    command.flag("--doubtful", o.doubtful, "predict also from profiles that were imported with a doubt");
+    o.lookup.add_options(command);
     declare_db(command, o.db);
     declare_json(command, o.json);
     command.footer(
@@ -81,13 +76,10 @@ bool is_open(const lensprof_profile_key &key) {
 // The profile for the setting: stored, or between what is stored. False where the setting leaves open which of `rows`.
 bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows,
                    lensprof_lookup &how, Streams &streams) {
-    lensprof_lookup_options options;
-    lensprof_lookup_options_init(&options);
-    options.distance_rule = o.distance_rule;
-    options.with_doubt = o.doubtful;
+    lensprof_lookup_options options = o.lookup.options();
     options.any_processing = !o.filter.has_processing();
     lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
-    key.crop_factor = o.crop_factor;
+    key.crop_factor = o.lookup.crop_factor;
     lensprof_error error{};
     auto profile = new_profile();
     const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
@@ -111,8 +103,8 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
 void answer(const Options &o, lensprof_lookup &how, Streams &streams) {
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     auto rows = o.filter.rows(store.get(), o.db);
-    if (o.crop_factor != LENSPROF_UNKNOWN) keep_sensor(o.crop_factor, rows);
-    if (!o.doubtful) leave_out_doubtful(rows);
+    if (o.lookup.crop_factor != LENSPROF_UNKNOWN) keep_sensor(o.lookup.crop_factor, rows);
+    if (!o.lookup.doubtful) leave_out_doubtful(rows);
     if (rows.size() == 1 || !answer_lookup(o, store.get(), rows, how, streams))
         answer_stored(o, store.get(), rows, streams);
 }

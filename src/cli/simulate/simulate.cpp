@@ -19,6 +19,7 @@
 #include "cli/program/parallel.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/progress.hpp"
+#include "cli/program/response_words.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/report.hpp"
 
@@ -48,48 +49,15 @@ struct Options {
     bool no_images = false, exif = false;
 };
 
-double srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055; }
-
-// A film-like S: toe and shoulder (Naka-Rushton), with f(0) = 0 and f(1) = 1.
-double film(double x) {
-    const double p = 0.95, s = std::pow(0.28, p), at_one = 1.0 / (1.0 + s),
-                 y = std::pow(x, p) / (std::pow(x, p) + s) / at_one;
-    return y - 0.04 * std::sin(6.283185307179586 * y);
-}
-
-lensprof_response response_of(const std::string &name) {
-    lensprof_response response;
-    const std::vector<std::string> parts = split(name, ':');
-    lensprof_status status = LENSPROF_OK;
-    if (name == "linear") {
-        lensprof_response_set_linear(&response);
-    } else if (name == "srgb" || name == "film") {
-        std::vector<double> table;
-        for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++)
-            table.push_back(name == "srgb" ? srgb(j / 1023.0) : film(j / 1023.0));
-        status = lensprof_response_set_table(&response, table.data(), static_cast<uint32_t>(table.size()));
-    } else if (parts.size() == 2 && parts[0] == "gamma") {
-        status = lensprof_response_set_gamma(&response, number_of(parts[1], any_number));
-    } else if (parts.size() == 2 && parts[0] == "emor") {
-        std::vector<double> emor;
-        for (const auto &word : elements(parts[1])) emor.push_back(number_of(word, any_number));
-        status = lensprof_response_set_emor(&response, emor.data(), static_cast<uint32_t>(emor.size()));
-    } else {
-        throw std::invalid_argument(name + ": use linear, srgb, film, gamma:G or emor:a,b,...");
-    }
-    if (status != LENSPROF_OK) throw std::invalid_argument(name + ": is not a monotone response");
-    return response;
-}
-
 void declare_camera(Command &command, Options &o) {
-    o.response = response_of("srgb");
+    o.response = response_of_word("srgb");
     command.size("--size", o.width, o.height, {16, 32768}, "of the pictures, px");
     command.number("--hfov", o.hfov, {1.0, 150.0}, "horizontal field of view, degrees");
     command.number("--overlap", o.overlap, {0.0, 0.99}, "share of a picture that the next one sees too");
     command.number("--jitter", o.jitter, {0.0, 20.0}, "sigma of yaw, pitch and roll, degrees");
     command.number("--misalign", o.misalign, {0.0, 1e3}, "sigma of the error of the project's yaw and pitch, px");
     command.word(
-        "--response", "RESPONSE", [&o](const std::string &word) { o.response = response_of(word); },
+        "--response", "RESPONSE", [&o](const std::string &word) { o.response = response_of_word(word); },
         "linear, srgb, gamma:G, film, or emor:a,b,... (EMoR coefficients)");
     command.numbers("--vignetting", o.vignetting, any_number, "k1,k2,k3, or nine numbers for red, green, blue");
     command.numbers("--center", o.center, any_number, "x,y of the falloff's centre, half diagonals");

@@ -1,0 +1,115 @@
+#include "cli/correct/picture_model.hpp"
+
+#include <stdexcept>
+
+#include "cli/program/paths.hpp"
+#include "cli/program/response_words.hpp"
+
+namespace lensprof {
+
+void ModelOptions::add_options(Command &command) {
+    command.profile_id("--profile", profile, "id of the profile to use");
+    command.flag("--from-db", from_db,
+                 "look each picture's profile up by its EXIF (default where nothing else is given and there is a "
+                 "database); between the settings that are stored its falloff is predicted, as by `lensprof query`");
+    declare_db(command, db);
+    command.group("What takes the place of EXIF");
+    key.add_options(command);
+    lookup.add_options(command);
+    command.group("The picture's curve");
+    command.word(
+        "--response", "RESPONSE",
+        [this](const std::string &word) {
+            response.reset();
+            if (word != "auto") response = response_of_word(word);
+        },
+        "auto, the profile's (default), srgb, gamma:G, linear, film, or emor:a,b,... (EMoR coefficients)");
+    command.flag(
+        "--force-falloff", force_falloff,
+        "take out a falloff that, by what the picture says, was taken out before: by lensprof (the mark in its XMP), the "
+        "camera (maker notes; phones), or a raw converter");
+    command.group("Options");
+}
+
+PictureModels::PictureModels(const ModelOptions &options, bool by_default) : options_(options) {
+    options.key.check_names();
+    if (options.profile && options.from_db)
+        throw Failure(ExitCode::usage, "--profile and --from-db contradict each other");
+    const bool has_database = by_default && (!options.db.empty() || path_exists(store_path("")));
+    if (options.profile || options.from_db || has_database) store_ = open_store(options.db, LENSPROF_STORE_READ);
+}
+
+// What EXIF says, then what the command line says.
+lensprof_profile_key PictureModels::key_of(const PictureMetadata &metadata) const {
+    lensprof_profile_key key = metadata.key;
+    if (options_.force_falloff || options_.puts_in) key.processing = metadata.processing_before;
+    options_.key.put_into(key);
+    if (options_.lookup.crop_factor != LENSPROF_UNKNOWN) key.crop_factor = options_.lookup.crop_factor;
+    return key;
+}
+
+[[noreturn]] static void fail_corrected(const std::string &file, const PictureMetadata &metadata) {
+    throw NotThisOne(ExitCode::usage,
+                     file + ": its falloff was corrected before, " + metadata.corrected_by
+                         + "; correct it all the same with --force-falloff, or leave the picture out with --skip",
+                     true);
+}
+
+static bool is_corrected(const lensprof_profile_key &key, const PictureMetadata &metadata) {
+    return key.processing == LENSPROF_PROCESSING_CORRECTED && !metadata.corrected_by.empty();
+}
+
+// A profile of another processing has another response, or what is left of a falloff.
+void PictureModels::take_profile(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const {
+    lensprof_error error{};
+    check(lensprof_store_get(store_.get(), options_.profile, &profile, &error), store_path(options_.db), &error);
+    job.profile_id = options_.profile;
+    const lensprof_profile_key key = key_of(metadata);
+    const uint32_t own = key.processing, its = profile.key.processing;
+    if (own == its) return;
+    if (is_corrected(key, metadata)) fail_corrected(job.source, metadata);
+    if (options_.response && own != LENSPROF_PROCESSING_CORRECTED && its != LENSPROF_PROCESSING_CORRECTED) return;
+    const std::string is = processing_name(own), of = processing_name(its);
+    throw NotThisOne(ExitCode::usage, job.source + ": is taken as " + is + ", and profile "
+                                          + std::to_string(options_.profile) + " is of " + of
+                                          + " pictures; give --processing " + of + " where this one is " + of
+                                          + ", or its curve, as --response srgb");
+}
+
+void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const {
+    const lensprof_profile_key key = key_of(metadata);
+    lensprof_lookup_options options = options_.lookup.options();
+    options.any_processing = options_.response && !is_corrected(key, metadata);
+    lensprof_lookup how;
+    lensprof_lookup_init(&how);
+    lensprof_error error{};
+    const lensprof_status status = lensprof_store_lookup(store_.get(), &key, &options, &profile, &how, &error);
+    if (status == LENSPROF_ERROR_NOT_FOUND && is_corrected(key, metadata)) fail_corrected(job.source, metadata);
+    if (status == LENSPROF_ERROR_NOT_FOUND)
+        throw NotThisOne(ExitCode::not_found,
+                         job.source + ": no profile for " + describe_key(key) + " in " + store_path(options_.db) + " ("
+                             + how.reason
+                             + "); make one with `lensprof build`, name the lens with --lens or a profile with "
+                               "--profile, or leave the picture out with --skip");
+    check(status, store_path(options_.db), &error);
+    if (how.exact)
+        job.profile_id = how.id[0];
+    else
+        job.lookup = std::make_shared<lensprof_lookup>(how);
+}
+
+void PictureModels::choose(const PictureMetadata &metadata, Correction &job) const {
+    auto profile = std::shared_ptr<lensprof_profile>(new_profile());
+    options_.profile ? take_profile(metadata, job, *profile) : look_up(metadata, job, *profile);
+    if (options_.response) {
+        profile->responses = 1;
+        profile->response[0] = *options_.response;
+        profile->covariance_size = 0;  // of a response that is not there
+    }
+    if (options_.force_falloff && !options_.puts_in && !metadata.corrected_by.empty())
+        job.note = "its falloff was corrected before, " + metadata.corrected_by + ", and is once more";
+    job.model = profile;
+    job.model_name = describe_key(profile->key);
+}
+
+}  // namespace lensprof

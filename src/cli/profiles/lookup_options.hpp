@@ -1,0 +1,19 @@
+// Options of lookups in databases, beside what is looked up.
+#pragma once
+
+#include <lensprof/lensprof.h>
+
+#include "cli/program/options.hpp"
+
+namespace lensprof {
+
+struct LookupOptions {
+    uint32_t distance_rule = LENSPROF_DISTANCE_WEAKEST;
+    double crop_factor = LENSPROF_UNKNOWN;
+    bool doubtful = false;
+
+    void add_options(Command &command);
+    lensprof_lookup_options options() const;
+};
+
+}  // namespace lensprof

@@ -1,0 +1,188 @@
+// Which profile `lensprof apply` corrects a picture with: by EXIF and what is said in its place, by number, and what it
+// refuses.
+#include <sstream>
+
+#include <exiv2/exiv2.hpp>  // before cmocka, which makes a macro of `fail`
+
+#include "cli_runs.hpp"
+
+#include <lensprof/store.h>
+
+using namespace cli_runs;
+
+namespace {
+
+constexpr uint32_t width = 64, height = 48;
+constexpr uint8_t grey = 60;
+
+// Even grey, with EXIF of camera and lens where they are given.
+std::string make_picture(const std::string &name, const char *camera = "", const char *lens = "",
+                         uint32_t sample = LENSPROF_SAMPLE_U8) {
+    Picture picture = make_noise(width, height, sample, LENSPROF_LAYOUT_RGB);
+    if (sample == LENSPROF_SAMPLE_U8)
+        std::fill(picture.pixels.begin(), picture.pixels.end(), grey);
+    else
+        std::fill_n(reinterpret_cast<float *>(picture.pixels.data()), width * height * 3, float(grey) / 255.0f);
+    PictureMetadata metadata = unknown_metadata();
+    std::strcpy(metadata.key.camera_model, camera);
+    std::strcpy(metadata.key.lens, lens);
+    metadata.key.focal_mm = 50;
+    metadata.key.aperture = 2;
+    WriteOptions options;
+    options.metadata = &metadata;
+    fs::create_directories(fs::path(work(name)).parent_path());
+    write_picture(work(name), picture, options);
+    return work(name);
+}
+
+// By what its camera says; the switch is Panasonic's.
+std::string make_corrected(const std::string &name) {
+    const std::string file = make_picture(name, "Camera", "Lens 50mm");
+    auto image = Exiv2::ImageFactory::open(file);
+    image->readMetadata();
+    image->exifData()["Exif.Image.Make"] = std::string("Panasonic");
+    image->exifData()["Exif.Panasonic.ShadingCompensation"] = uint16_t(1);
+    image->writeMetadata();
+    return file;
+}
+
+double corner_falloff(double k1) {
+    const double r2 =
+        ((width - 1) * (width - 1) + (height - 1) * (height - 1)) / double(width * width + height * height);
+    return 1 + k1 * r2;
+}
+
+// Profiles 1 (raw, linear, k1 -0.4) of `lens`, 2 (jpeg, gamma 2, k1 -0.2) of "JPEG 35mm", in the user's own database.
+std::string make_database(const char *lens = "Lens 50mm") {
+    const std::string path = work("data/lensprof/profiles.db");
+    fs::create_directories(fs::path(path).parent_path());
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(path.c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    for (const uint32_t processing : {LENSPROF_PROCESSING_RAW, LENSPROF_PROCESSING_JPEG}) {
+        const bool raw = processing == LENSPROF_PROCESSING_RAW;
+        auto p = std::make_unique<lensprof_profile>();
+        lensprof_profile_init(p.get());
+        std::strcpy(p->key.camera_model, "Camera");
+        std::strcpy(p->key.lens, raw ? lens : "JPEG 35mm");
+        p->key.focal_mm = 50;
+        p->key.aperture = 2;
+        p->key.processing = processing;
+        p->vignetting[0].k[0] = raw ? -0.4 : -0.2;
+        if (!raw) assert_ok(lensprof_response_set_gamma(p->response, 2));
+        assert_ok(lensprof_store_put(store, p.get(), nullptr, nullptr));
+    }
+    lensprof_store_close(store);
+    return path;
+}
+
+void assert_corner(const std::string &file, double wanted) {
+    const Picture picture = read_picture(file);
+    const double got = picture.sample == LENSPROF_SAMPLE_U8
+                           ? picture.pixels[0]
+                           : 255 * double(reinterpret_cast<const float *>(picture.pixels.data())[0]);
+    if (std::fabs(got - wanted) > (picture.traits.format == FileFormat::jpeg ? 1.6 : 0.6))
+        fail_msg("%s: %.2f in the corner, not %.2f", file.c_str(), got, wanted);
+}
+
+const double by_gamma_2 = grey / std::sqrt(corner_falloff(-0.2)), by_linear = grey / corner_falloff(-0.4);
+
+// The first command: nothing is said but where to.
+void test_database_by_default(void **) {
+    const std::string file = make_picture("a.png", "Camera", "JPEG 35mm");
+    assert_refused(usage, {"apply", "-o", work("out"), file}, {"say what to correct with", "no database"});
+    make_database();
+    must_exit(done, {"apply", "-o", work("out"), file});
+    assert_corner(work("out/a.png"), by_gamma_2);
+    fs::rename(work("data/lensprof/profiles.db"), work("p.db"));
+    must_exit(done, {"apply", "-o", work("db"), "--db", work("p.db"), file});
+    assert_corner(work("db/a.png"), by_gamma_2);
+}
+
+void test_words_in_place_of_exif(void **) {
+    make_database();
+    const std::string file = make_picture("a.png");
+    assert_refused(not_found, {"apply", "-o", work("out"), file}, {"camera unknown", "--lens"});
+    must_exit(done, {"apply", "-o", work("out"), "--camera", "Camera", "--lens", "JPEG 35mm", "--aperture", "2", file});
+    assert_corner(work("out/a.png"), by_gamma_2);
+    assert_refused(not_found,
+                   {"apply", "-o", work("none"), "--camera", "Camera", "--lens", "JPEG 35mm", "--aperture", "11", file},
+                   {"f/11"});
+    const std::string raw = make_picture("b.tif", "Camera", "Lens 50mm", LENSPROF_SAMPLE_F32);
+    must_exit(done, {"apply", "-o", work("out"), raw});
+    assert_corner(work("out/b.tif"), by_linear);
+    must_exit(done,
+              {"apply", "-o", work("word"), "--processing", "raw", "--camera", "Camera", "--lens", "Lens 50mm", file});
+    assert_corner(work("word/a.png"), by_linear);
+}
+
+// A falloff measured on raw files serves other pictures once their curve is known.
+void test_response_in_place_of_the_profiles(void **) {
+    make_database();
+    const std::string file = make_picture("a.png", "Camera", "Lens 50mm");
+    for (const Words &how : {Words{}, Words{"--profile", "1"}}) {
+        must_exit(done, Words{"apply", "--response", "gamma:2", "-o", work("gamma"), file} + how);
+        assert_corner(work("gamma/a.png"), grey / std::sqrt(corner_falloff(-0.4)));
+        must_exit(done, Words{"apply", "--response", "linear", "-o", work("linear"), file} + how);
+        assert_corner(work("linear/a.png"), by_linear);
+        const double light = std::pow((grey / 255.0 + 0.055) / 1.055, 2.4) / corner_falloff(-0.4);
+        must_exit(done, Words{"apply", "--response", "srgb", "-o", work("srgb"), file} + how);
+        assert_corner(work("srgb/a.png"), 255 * (1.055 * std::pow(light, 1 / 2.4) - 0.055));
+    }
+    must_exit(done, {"apply", "--response", "auto", "--profile", "2", "-o", work("auto"), file});
+    assert_corner(work("auto/a.png"), by_gamma_2);
+    assert_refused(usage, {"apply", "--response", "log", "-o", work("none"), file}, {"--response", "srgb"});
+}
+
+void test_profile_of_another_processing(void **) {
+    make_database();
+    const std::string file = make_picture("a.png", "Camera", "Lens 50mm"),
+                      raw = make_picture("b.tif", "Camera", "Lens 50mm", LENSPROF_SAMPLE_F32);
+    assert_refused(usage, {"apply", "--profile", "1", "-o", work("out"), file},
+                   {file, "is taken as jpeg", "profile 1 is of raw", "--processing raw", "--response"});
+    assert_refused(usage, {"apply", "--profile", "2", "-o", work("out"), raw}, {raw, "is taken as raw", "of jpeg"});
+    must_exit(done, {"apply", "--profile", "1", "--processing", "raw", "-o", work("out"), file});
+    assert_corner(work("out/a.png"), by_linear);
+    must_exit(done, {"apply", "--profile", "2", "--processing", "jpeg", "-o", work("out"), raw});
+    assert_corner(work("out/b.tif"), by_gamma_2);
+}
+
+// What the camera has corrected is not corrected twice.
+void test_corrected_in_camera(void **) {
+    make_database("Lens 35mm");
+    const std::string file = make_corrected("in/a.jpg");
+    const Words words = {"apply", "--lens", "JPEG 35mm"};
+    const char *by = "its falloff was corrected before, in camera (Panasonic: shading compensation)";
+    assert_refused(usage, words + Words{"-o", work("out"), file}, {file, by, "--force-falloff", "--skip"});
+    assert_refused(usage, {"apply", "--profile", "2", "-o", work("out"), file}, {by});
+    assert_refused(usage, words + Words{"--response", "srgb", "-o", work("out"), file}, {by});
+    for (const Words &how : {Words{"--lens", "JPEG 35mm"}, Words{"--profile", "2"}}) {
+        const Outcome forced = run_words(Words{"apply", "--force-falloff", "-o", work("forced"), file} + how);
+        assert_int_equal(forced.code, done);
+        assert_true(contains(forced.err, std::string("note: ") + file + ": " + by + ", and is once more"));
+        assert_corner(work("forced/a.jpg"), by_gamma_2);
+    }
+    must_exit(done, words + Words{"--processing", "jpeg", "-o", work("said"), file});
+    assert_corner(work("said/a.jpg"), by_gamma_2);
+    must_exit(done, words + Words{"--simulate", "-o", work("simulated"), file});
+    assert_corner(work("simulated/a.jpg"), grey * std::sqrt(corner_falloff(-0.2)));
+    make_picture("in/b.jpg", "Camera", "JPEG 35mm");
+    const Json json = json_of({"apply", "--json", "-o", work("folder"), work("in")});  // left out, and no failure
+    assert_int_equal(json["pictures"].size(), 1);
+    assert_true(json["left_out"][0]["corrected_already"].get<bool>());
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_database_by_default),
+        CLI_TEST(test_words_in_place_of_exif),
+        CLI_TEST(test_response_in_place_of_the_profiles),
+        CLI_TEST(test_profile_of_another_processing),
+        CLI_TEST(test_corrected_in_camera),
+    };
+    const auto start = [](void **state) {
+        return make_folder(state) + setenv("XDG_DATA_HOME", in_folder("work/data").c_str(), 1);
+    };
+    return cmocka_run_group_tests(tests, start, remove_folder);
+}
