@@ -145,7 +145,8 @@ void test_corrected_once(void **) {
         assert_string_equal(metadata.mark->digest.c_str(), digest_of(file).c_str());
         assert_int_equal(metadata.key.processing, LENSPROF_PROCESSING_CORRECTED);
         assert_string_equal(metadata.key.lens, "Good 35mm");
-        assert_refused(usage, corrected_into("twice", {once}), {once, "is corrected already, by lensprof", "--force-falloff"});
+        assert_refused(usage, corrected_into("twice", {once}),
+                       {once, "is corrected already, by lensprof", "--force-falloff"});
         must_exit(done, corrected_into("twice", {"--force-falloff", once}));
     }
     // Of a folder they are left out, which is no failure.
@@ -171,7 +172,8 @@ void test_kept_falloff(void **) {
     must_exit(done, corrected_into("none", {"--strength", "0", file}));
     assert_true(read_metadata(work("none/a.png")).mark->falloff == CorrectionMark::Falloff::kept);
     must_exit(done, corrected_into("removed", {work("none/a.png")}));
-    must_exit(done, corrected_into("linear", {"--force-falloff", "--strength", "0", "--linear", work("removed/a.png")}));
+    must_exit(done,
+              corrected_into("linear", {"--force-falloff", "--strength", "0", "--linear", work("removed/a.png")}));
     const auto mark = read_metadata(work("linear/a.tif")).mark;
     assert_true(mark->falloff == CorrectionMark::Falloff::removed && mark->linear);
 }

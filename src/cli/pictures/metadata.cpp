@@ -28,8 +28,8 @@ namespace {
 
 using ExivImage = std::unique_ptr<Exiv2::Image>;  // 0.27 of Exiv2 has std::auto_ptr
 
-// Exiv2 takes its XMP namespaces away and puts them in again whenever it reads or writes XMP: what another thread writes
-// meanwhile loses its XMP without a word. One thread at a time reads or writes metadata.
+// Exiv2 takes its XMP namespaces away and puts them in again whenever it reads or writes XMP: what another thread
+// writes meanwhile loses its XMP without a word. One thread at a time reads or writes metadata.
 std::recursive_mutex &exiv2_mutex() {
     static std::recursive_mutex mutex;
     return mutex;
