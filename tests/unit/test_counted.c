@@ -55,6 +55,9 @@ BYTES(profile_pack, (snprintf(error->text, sizeof error->text, "-"),
 ELEMENTS(points_read, lensprof_points_read(point_lines, sizeof point_lines - 1, b, capacity, count, error))
 ELEMENTS(times_read, lensprof_times_read(time_lines, sizeof time_lines - 1, b, capacity, count, error))
 ELEMENTS(store_list, lensprof_store_list(store, NULL, b, capacity, count, error))
+ELEMENTS(store_list_lenses, lensprof_store_list_lenses(store, NULL, b, capacity, count, error))
+ELEMENTS(store_list_cameras, lensprof_store_list_cameras(store, NULL, b, capacity, count, error))
+ELEMENTS(store_list_camera_models, lensprof_store_list_camera_models(store, b, capacity, count, error))
 ELEMENTS(sample_overlap, lensprof_sample_overlap(&here.sample, here.samples, 2, b, capacity, count, error))
 ELEMENTS(sample_tracks, lensprof_sample_tracks(&here.sample, here.samples, 2, b, capacity, count, error))
 
@@ -89,6 +92,9 @@ static const struct {
     ROW(points_read, sizeof(lensprof_pair), OTHERS),
     ROW(times_read, sizeof(lensprof_frame_time), OTHERS),
     ROW(store_list, sizeof(lensprof_store_row), OTHERS),
+    ROW(store_list_lenses, sizeof(lensprof_store_summary), OTHERS),
+    ROW(store_list_cameras, sizeof(lensprof_store_summary), OTHERS),
+    ROW(store_list_camera_models, sizeof(lensprof_camera_model), OTHERS),
     ROW(sample_overlap, sizeof(lensprof_pair), UP_TO),
     ROW(sample_tracks, sizeof(lensprof_observation), UP_TO),
 };
@@ -98,6 +104,8 @@ static int setup(void **state) {
     static char directory[] = "/tmp/lensprof-counted-XXXXXX", path[64];
     (void)state;
     lensprof_error error;
+    lensprof_camera_model camera;
+    lensprof_camera_model_init(&camera);
     if (!mkdtemp(directory)) return -1;
     snprintf(path, sizeof path, "%s/profiles.db", directory);
     store_path = path;
@@ -107,12 +115,17 @@ static int setup(void **state) {
     here.sample.pairs = 50;
     here.sample.threads = 1;
     here.profile.key.crop_factor = 1.5, here.profile.key.focal_mm = 50.0, here.profile.key.aperture = 2.8;
-    snprintf(here.profile.key.lens, sizeof here.profile.key.lens, "Maker 50mm f/1.8");
     if (lensprof_pto_read(project, sizeof project - 1, &pto, &error) != LENSPROF_OK
         || lensprof_store_open(path, LENSPROF_STORE_CREATE, &store, &error) != LENSPROF_OK)
         return -1;
-    for (int i = 0; i < 3; i++)
-        if (lensprof_store_put(store, &here.profile, NULL, &error) != LENSPROF_OK) return -1;
+    for (int i = 0; i < 3; i++) {
+        snprintf(here.profile.key.lens, sizeof here.profile.key.lens, "Maker %dmm f/1.8", 50 - 10 * i);
+        snprintf(here.profile.key.camera_model, sizeof here.profile.key.camera_model, "Camera %d", i);
+        snprintf(camera.model, sizeof camera.model, "Camera %d", i);
+        if (lensprof_store_put(store, &here.profile, NULL, &error) != LENSPROF_OK
+            || lensprof_store_put_camera(store, &camera, &error) != LENSPROF_OK)
+            return -1;
+    }
     return 0;
 }
 

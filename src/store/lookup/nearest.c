@@ -8,14 +8,14 @@
 #define LEAST_SCORE 0.2 /* of a name that is near at all */
 
 /* Keeps names[count] in the order of their scores; returns how many there are then. */
-static uint32_t keep(lensprof_store_name *names, uint32_t count, uint32_t capacity, const char *lens, double score) {
+static uint32_t keep(lensprof_store_name *names, uint32_t count, uint32_t most, const char *lens, double score) {
     uint32_t at = count;
     for (uint32_t i = 0; i < count; i++) {
         if (!strcmp(names[i].lens, lens)) return count;
         if (score > names[i].score && at == count) at = i;
     }
-    if (at == capacity) return count;
-    const uint32_t last = count < capacity ? count : capacity - 1;
+    if (at == most) return count;
+    const uint32_t last = count < most ? count : most - 1;
     memmove(&names[at + 1], &names[at], (last - at) * sizeof *names);
     memset(&names[at], 0, sizeof *names);
     strcpy(names[at].lens, lens);
@@ -24,7 +24,7 @@ static uint32_t keep(lensprof_store_name *names, uint32_t count, uint32_t capaci
 }
 
 static lensprof_status search(lensprof_store *store, const lensprof_profile_key *key, lensprof_store_name *names,
-                              uint32_t capacity, uint32_t *count, lensprof_error *error) {
+                              uint32_t most, uint32_t *count, lensprof_error *error) {
     lp_store_reader reader = {NULL, 0, NULL};
     lensprof_status status =
         lp_store_prepare(store, "SELECT DISTINCT trim(lens) FROM profiles ORDER BY 1", &reader.statement, error);
@@ -36,7 +36,7 @@ static lensprof_status search(lensprof_store *store, const lensprof_profile_key 
         lp_read_text(&reader, lens, sizeof lens);
         if (reader.bad) continue;
         const double score = lp_words_likeness(lens, key->lens, key->camera_maker);
-        if (score >= LEAST_SCORE) *count = keep(names, *count, capacity, lens, score);
+        if (score >= LEAST_SCORE) *count = keep(names, *count, most, lens, score);
     }
     if (rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, reader.statement);
@@ -44,18 +44,18 @@ static lensprof_status search(lensprof_store *store, const lensprof_profile_key 
 }
 
 lensprof_status lensprof_store_nearest_lenses(lensprof_store *store, const lensprof_profile_key *key,
-                                              lensprof_store_name *names, uint32_t capacity, uint32_t *count,
+                                              lensprof_store_name *names, uint32_t most, uint32_t *count,
                                               lensprof_error *error) {
     uint32_t found = 0;
     lp_store_clear(error);
-    if (!store || !key || !count || (capacity && !names))
+    if (!store || !key || !count || (most && !names))
         return lp_store_fail_argument("store, key, names or count is NULL", error);
     if (lensprof_profile_key_validate(key) != LENSPROF_OK)
         return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
-    lensprof_store_name *nearest = malloc((capacity ? capacity : 1) * sizeof *nearest);
+    lensprof_store_name *nearest = malloc((most ? most : 1) * sizeof *nearest);
     if (!nearest) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
     lensprof_status status = lp_store_begin(store, false, error);
-    if (status == LENSPROF_OK && capacity) status = search(store, key, nearest, capacity, &found, error);
+    if (status == LENSPROF_OK && most) status = search(store, key, nearest, most, &found, error);
     if (status == LENSPROF_OK || sqlite3_get_autocommit(store->db) == 0) lp_store_rollback(store);
     if (status == LENSPROF_OK) {
         if (found) memcpy(names, nearest, found * sizeof *nearest);

@@ -279,13 +279,12 @@ typedef struct lensprof_store_name {
 } lensprof_store_name;
 
 /* The stored lenses whose names are nearest to key->lens (key->camera_maker counts as the lens's maker where it names
- * none), nearest first: for a lens that a lookup did not find. names[capacity]; *count receives how many were written,
- * fewer than capacity where no more are near at all. */
+ * none), nearest first: for a lens that a lookup did not find. names[most]; *count receives how many were written,
+ * fewer where no more are near at all. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_nearest_lenses(lensprof_store *store,
                                                                              const lensprof_profile_key *key,
-                                                                             lensprof_store_name *names,
-                                                                             uint32_t capacity, uint32_t *count,
-                                                                             lensprof_error *error);
+                                                                             lensprof_store_name *names, uint32_t most,
+                                                                             uint32_t *count, lensprof_error *error);
 
 #ifdef __cplusplus
 }
