@@ -75,6 +75,22 @@ static void test_names(void **state) {
     lensprof_store_close(store);
 }
 
+static void test_last_word(void **state) {
+    const place *here = *state;
+    lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
+    lensprof_camera_model found, mavic = camera("DJI", "Mavic Pro FC220", "", 5.6);
+    fill(store);
+    put_camera(store, &mavic);
+    assert_ok(lensprof_store_find_camera(store, "DJI", "FC220", &found, NULL));
+    assert_string_equal(found.model, "Mavic Pro FC220");
+    static const char *const others[][2] = {{"DJI", "C220"},    {"DJI", "220"}, {"DJI", "Air FC220"}, {"DJI", "Pro"},
+                                            {"Canon", "FC220"}, {"", "FC220"},  {"DJI", "XFC220"}};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (lensprof_store_find_camera(store, others[i][0], others[i][1], &found, NULL) != LENSPROF_ERROR_NOT_FOUND)
+            fail_msg("%s is found as %s", others[i][1], found.model);
+    lensprof_store_close(store);
+}
+
 static void test_every_member(void **state) {
     const place *here = *state;
     lensprof_store *store = store_at(here->path, LENSPROF_STORE_CREATE);
@@ -216,13 +232,10 @@ static void test_refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        store_test(test_names),
-        store_test(test_every_member),
-        store_test(test_what_several_do_not_agree_on_is_unknown),
-        store_test(test_list),
-        store_test(test_merge),
-        store_test(test_older_layouts),
-        store_test(test_damage),
+        store_test(test_names),         store_test(test_last_word),
+        store_test(test_every_member),  store_test(test_what_several_do_not_agree_on_is_unknown),
+        store_test(test_list),          store_test(test_merge),
+        store_test(test_older_layouts), store_test(test_damage),
         store_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

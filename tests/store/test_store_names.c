@@ -56,6 +56,19 @@ static void test_words(void **state) {
         {"Kit lens", "lens Kit", "", 0}, /* without a number anything could be meant */
         {"50 20 mm", "502 0 mm", "", 0},
         {"", "", "", 0},
+        {"50mm f/1.8", "50mm f/1.8", "", 0}, /* anybody's */
+        {"LUMIX G 20/F1.7", "Panasonic Lumix G 20mm f/1.7", "Panasonic", 1},
+        {"Summicron TL 1:2 23 ASPH.", "Summicron-TL 1:2/23 ASPH.", "LEICA CAMERA AG", 1},
+        {"ZEISS Batis 2/25", "Zeiss Batis 25mm f/2", "SONY", 1},
+        {"Tamron 14-150mm Di III", "Tamron 14-150mm DiIII", "", 1},
+        {"8mm Fisheye", "8mm Fish-Eye", "", 1},
+        {"SIGMA 18-35mm F1.8 DC HSM | A", "Sigma 18-35mm f/1.8 DC HSM [Art]", "Canon", 1},
+        {"35mm F1.2 DG DN", "Sigma 35mm f/1.2 DG DN", "SONY", 1}, /* for others' cameras */
+        {"AF 35mm f/2.8", "Samyang AF 35mm f/2.8", "SONY", 0},
+        {"EF 35mm f/2 IS", "Canon EF 35mm f/2 IS", "SONY", 0},
+        {"Tamron E 28-75mm F2.8-2.8", "Tamron E 28-75mm F2.8", "", 0},
+        {"Canon EF 200mm f/2.8 + 1.4x", "Canon EF 200mm f/2.8", "", 0},
+        {"Canon EF 200mm f/2.8 + 2x II", "Canon EF 200mm f/2.8 II + 2x", "", 0},
     };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
@@ -69,7 +82,52 @@ static void test_words(void **state) {
     for (size_t i = 0; i + 1 < sizeof longest; i++) longest[i] = i % 2 ? '7' : 'x'; /* more words than are looked at */
     assert_close(lp_words_score(longest, longest, ""), 0.0, 0.0);
     memset(longest, '7', sizeof longest - 1);
+    assert_close(lp_words_score(longest, longest, longest), 0.0, 0.0); /* a number alone */
+    memcpy(longest, "ef ", 3);
     assert_close(lp_words_score(longest, longest, longest), 0.6, 0.0);
+}
+
+static void test_words_that_may_be_missing(void **state) {
+    static const struct {
+        const char *a, *b, *camera_maker;
+        uint32_t apart; /* 0 = not the same */
+    } cases[] = {
+        {"OLYMPUS M.25mm F1.8", "Olympus M.Zuiko Digital 25mm f/1.8", "OLYMPUS CORPORATION", 2},
+        {"OLYMPUS M.12-100mm F4.0", "Olympus M.Zuiko Digital ED 12-100mm f/4.0 IS Pro", "OLYMPUS CORPORATION", 5},
+        {"OLYMPUS M.9-18mm F4.0-5.6", "Olympus Zuiko Digital ED 9-18mm f/4.0-5.6", "OLYMPUS CORPORATION", 0},
+        {"LUMIX G VARIO 12-32/F3.5-5.6", "Lumix G Vario 12-32mm f/3.5-5.6 Asph. Mega OIS", "Panasonic", 3},
+        {"LUMIX G VARIO 14-42/F3.5-5.6II", "Lumix G Vario 14-42mm f/3.5-5.6 II Asph.", "Panasonic", 1},
+        {"LUMIX G VARIO 14-42/F3.5-5.6", "Lumix G Vario 14-42mm f/3.5-5.6 II Asph.", "Panasonic", 0},
+        {"XF18-55mmF2.8-4", "XF18-55mmF2.8-4 R LM OIS", "FUJIFILM", 0}, /* of others OIS says which */
+        {"LEICA DG ELMARIT 12-60/F2.8-4.0", "Leica DG 12-60mm f/2.8-4.0", "Panasonic", 1},
+        {"LEICA DG ELMARIT 45/F2.8", "Leica DG SUMMILUX 45mm f/2.8", "Panasonic", 0},
+        {"AF-S NIKKOR 24-70mm f/2.8G ED", "Nikon AF-S Zoom-Nikkor 24-70mm f/2.8G", "NIKON CORPORATION", 2},
+        {"AF Nikkor 28mm f/2.8D", "Nikon AF Nikkor 28mm f/2.8D 62", "NIKON CORPORATION", 1},
+        {"Nikon AF Nikkor 28mm f/2.8D 61", "Nikon AF Nikkor 28mm f/2.8D 62", "", 0},
+        {"DT 18-55mm F3.5-5.6 SAM", "Sony DT 18-55mm f/3.5-5.6 SAM (SAL1855)", "SONY", 1},
+        {"E 20mm F2.8 F050", "Sony E 20mm F2.8", "SONY", 0}, /* a code of somebody else */
+        {"TAMRON SP 35mm F/1.4 Di USD F045", "Tamron 35mm f/1.4 Di USD", "Canon", 2},
+        {"TAMRON SP 15-30mm F/2.8 Di VC USD A012", "Tamron SP 15-30mm f/2.8 Di VC USD (A041)", "Canon", 0},
+        {"TAMRON SP 15-30mm F/2.8 Di VC USD", "Tamron SP 15-30mm f/2.8 Di VC USD G2", "Canon", 0},
+        {"Tamron SP 60mm f/2 Macro 1:1", "Tamron 60mm f/2 Macro", "", 1},
+        {"30mm F1.4 DC DN | Contemporary 016", "Sigma 30mm f/1.4 DC DN | C", "SONY", 1},
+        {"150-600mm F5-6.3 DG OS HSM | Sports 014", "Sigma 150-600mm f/5-6.3 DG OS HSM | C", "Canon", 0},
+        {"smc PENTAX-DA 18-55mm F3.5-5.6 AL WR", "smc Pentax-DA 18-55mm f/3.5-5.6 AL II/L/WR", "PENTAX", 3},
+        {"smc PENTAX-DA 18-55mm F3.5-5.6 AL II", "smc Pentax-DA 18-55mm f/3.5-5.6 AL II L WR", "PENTAX", 3},
+        {"smc PENTAX-DA 18-55mm F3.5-5.6 AL", "smc Pentax-DA 18-55mm f/3.5-5.6 AL II L WR", "PENTAX", 0},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        for (int turned = 0; turned < 2; turned++) {
+            const char *asked = turned ? cases[i].b : cases[i].a, *stored = turned ? cases[i].a : cases[i].b;
+            lp_words words;
+            uint32_t apart;
+            assert_true(lp_split_words(asked, &words));
+            const double score = lp_words_match(&words, stored, cases[i].camera_maker, &apart);
+            if (score != (cases[i].apart ? 0.5 : 0.0) || (score > 0.0 && apart != cases[i].apart))
+                fail_msg("%s, %s: %g, %u apart", asked, stored, score, apart);
+            if (score > 0.0) assert_true(lp_may_match(&words, stored));
+        }
 }
 
 static lensprof_profile profile = {.struct_size = sizeof profile};
@@ -163,12 +221,70 @@ static void test_fixed_lenses(void **state) {
     lensprof_store_close(store);
 }
 
+static void put_camera(lensprof_store *store, const char *model, const char *lens, uint32_t fixed) {
+    lensprof_camera_model camera;
+    lensprof_camera_model_init(&camera);
+    strcpy(camera.maker, "Sony");
+    strcpy(camera.model, model);
+    strcpy(camera.lens, lens);
+    camera.fixed_lens = fixed;
+    assert_ok(lensprof_store_put_camera(store, &camera, NULL));
+}
+
+static void test_fixed_lenses_by_the_table_of_cameras(void **state) {
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    const int64_t id = put(store, "", "", "Sony DSC-RX100 III & compatibles", 8.8, 1.8);
+    put(store, "", "", "Sony E 35mm f/1.8 OSS", 35, 1.8);
+    put_camera(store, "DSC-RX100M4", "Sony DSC-RX100 III & compatibles", 1);
+    put_camera(store, "DSC-RX9", "Sony gone", 1);
+    put_camera(store, "ILCE-6000", "Sony E 35mm f/1.8 OSS", 0); /* a lens, but it can be changed */
+    assert_ok(ask(store, "SONY", "DSC-RX100M4", "24-70mm F1.8-2.8", 8.8, 1.8));
+    assert_int_equal(how.id[0], id);
+    assert_close(how.name_score, 0.6, 0.0);
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_BUILT_IN, "built in"));
+    assert_ok(ask(store, "SONY", "DSC-RX100M4", "", 8.8, 1.8));
+    assert_int_equal(how.id[0], id);
+    assert_int_equal(ask(store, "SONY", "DSC-RX100M3", "24-70mm F1.8-2.8", 8.8, 1.8), LENSPROF_ERROR_NOT_FOUND);
+    assert_int_equal(ask(store, "SONY", "DSC-RX9", "", 8.8, 1.8), LENSPROF_ERROR_NOT_FOUND);
+    assert_int_equal(ask(store, "SONY", "ILCE-6000", "E 35mm F1.4", 35, 1.8), LENSPROF_ERROR_NOT_FOUND);
+    assert_int_equal(ask(store, "SONY", "ILCE-6000", "", 35, 1.8), LENSPROF_ERROR_NOT_FOUND);
+    lensprof_store_close(store);
+}
+
+static void test_standard_of_several(void **state) {
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    put(store, "Fujifilm", "X100V", "Fujifilm X100V & compatibles, with TCL-X100", 23, 2);
+    const int64_t id = put(store, "Fujifilm", "X100V", "Fujifilm X100V & compatibles (Standard)", 23, 2);
+    put(store, "Fujifilm", "X100V", "Fujifilm X100V & compatibles, with WCL-X100", 23, 2);
+    assert_ok(ask(store, "FUJIFILM", "X100V", "", 23, 2));
+    assert_int_equal(how.id[0], id);
+    lensprof_store_close(store);
+}
+
+static void test_the_nearest_of_several(void **state) {
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    put(store, "", "", "Tamron 17-50mm f/2.8 XR Di II LD", 17, 2.8);
+    const int64_t id = put(store, "", "", "Tamron SP AF 17-50mm f/2.8 XR Di II LD Aspherical (IF)", 17, 2.8);
+    put(store, "", "", "Tamron 90mm f/2.8 Di (A)", 90, 2.8);
+    put(store, "", "", "Tamron 90mm f/2.8 Di (B)", 90, 2.8);
+    assert_ok(ask(store, "Canon", "", "TAMRON SP AF 17-50mm F/2.8 Di II LD Aspherical (IF)", 17, 2.8));
+    assert_int_equal(how.id[0], id); /* has more in common */
+    assert_close(how.name_score, 0.5, 0.0);
+    assert_int_equal(ask(store, "Canon", "", "TAMRON 90mm F/2.8 Di", 90, 2.8), LENSPROF_ERROR_NOT_FOUND); /* either */
+    assert_ok(ask(store, "Canon", "", "TAMRON 90mm F/2.8 Di (B)", 90, 2.8));
+    lensprof_store_close(store);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_scores),
         cmocka_unit_test(test_words),
+        cmocka_unit_test(test_words_that_may_be_missing),
         store_test(test_lenses_found_by_other_names),
         store_test(test_fixed_lenses),
+        store_test(test_fixed_lenses_by_the_table_of_cameras),
+        store_test(test_standard_of_several),
+        store_test(test_the_nearest_of_several),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

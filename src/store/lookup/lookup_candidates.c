@@ -88,7 +88,8 @@ static bool take_row(const row *r, const lensprof_profile_key *key, lp_candidate
     lp_candidate *one = found->count ? &found->all[found->count - 1] : NULL;
     if (!one || one->node.id != r->id) {
         compare_names(r, key, found);
-        const int unit = found->any_unit ? 0 : fits(r->key.unit, key->unit), camera = found->last_camera;
+        const int unit = found->any_unit ? 0 : fits(r->key.unit, key->unit);
+        const int camera = found->by_table ? 1 : found->last_camera; /* as the table says */
         if (unit < 0 || (camera < 0 && *key->camera_model) || r->curve != 0) return true;
         if ((!lp_is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
         if (!(one = add(found))) return false;
@@ -138,23 +139,44 @@ static const char *const lenses_sql[2] = {
     " SELECT (SELECT min(lens_name) FROM profiles WHERE lens_name > name) FROM names WHERE name IS NOT NULL)"
     " SELECT (SELECT lens FROM profiles WHERE lens_name = name LIMIT 1) FROM names WHERE name IS NOT NULL"};
 
-/* The squeezed name of the first lens that has the same words; empty where there is none. */
+/* The best of the names so far, and whether another one is as good. */
+typedef struct best_name {
+    char name[LP_NAME_BYTES]; /* squeezed */
+    uint32_t apart;
+    bool is_tied;
+} best_name;
+
+static void keep_better(best_name *best, const char *lens, uint32_t apart) {
+    char name[LP_NAME_BYTES];
+    lp_squeeze(lens, name);
+    if (*best->name && (apart > best->apart || !strcmp(name, best->name))) return;
+    best->is_tied = *best->name && apart == best->apart;
+    best->apart = apart;
+    memcpy(best->name, name, sizeof name);
+}
+
+/* The squeezed name of the lens that has the same words, or the most in common; empty where there is none, or where
+ * several are as good. */
 static lensprof_status find_by_words(lensprof_store *store, const lensprof_profile_key *key, char *name,
                                      lensprof_error *error) {
     sqlite3_stmt *statement;
+    best_name best = {"", 0, false};
+    lp_words asked;
     *name = 0;
+    if (!lp_split_words(key->lens, &asked)) return LENSPROF_OK;
     lensprof_status status = lp_store_prepare(store, lenses_sql[store->layout >= 3], &statement, error);
     if (status != LENSPROF_OK) return status;
     int rc = sqlite3_step(statement);
     for (; rc == SQLITE_ROW; rc = sqlite3_step(statement)) {
+        uint32_t apart;
         const char *stored = (const char *)sqlite3_column_text(statement, 0);
         if (!stored || (size_t)sqlite3_column_bytes(statement, 0) >= sizeof((lensprof_profile_key *)0)->lens) continue;
-        if (lp_words_score(stored, key->lens, key->camera_maker) <= 0.0) continue;
-        lp_squeeze(stored, name);
-        break;
+        if (lp_may_match(&asked, stored) && lp_words_match(&asked, stored, key->camera_maker, &apart) > 0.0)
+            keep_better(&best, stored, apart);
     }
     if (rc != SQLITE_ROW && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, statement);
+    if (status == LENSPROF_OK && !best.is_tied) memcpy(name, best.name, sizeof best.name);
     return status;
 }
 
@@ -188,9 +210,23 @@ static lensprof_status find_only_lens(lensprof_store *store, const lensprof_prof
         if (*lenses && !strcmp(name, squeezed)) continue; /* of a camera by another of its names */
         memcpy(name, squeezed, sizeof squeezed);
         ++*lenses;
+        if (!lp_is_standard(lens)) continue;
+        *lenses = 1; /* the others are it with something in front */
+        break;
     }
     if (rc != SQLITE_DONE && rc != SQLITE_ROW) status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, reader.statement);
+    return status;
+}
+
+/* The squeezed name of the lens that the table of cameras says is built in; else empty. */
+static lensprof_status find_fixed_lens(lensprof_store *store, const lensprof_profile_key *key, char *name,
+                                       lensprof_error *error) {
+    lensprof_camera_model camera;
+    bool found;
+    *name = 0;
+    lensprof_status status = lp_store_find_camera(store, key->camera_maker, key->camera_model, &camera, &found, error);
+    if (status == LENSPROF_OK && found && camera.fixed_lens) lp_squeeze(camera.lens, name);
     return status;
 }
 
@@ -199,6 +235,13 @@ static lensprof_status find_camera(lensprof_store *store, const lensprof_profile
     char name[LP_NAME_BYTES] = "";
     int lenses = 0;
     lensprof_status status = lp_is_known(key->lens) ? LENSPROF_OK : read_rows(store, "", key, o, found, error);
+    if (status != LENSPROF_OK || found->count) return status;
+    status = find_fixed_lens(store, key, name, error);
+    if (status == LENSPROF_OK && *name) {
+        found->by_camera = found->by_table = true;
+        status = read_rows(store, name, key, o, found, error);
+        if (status == LENSPROF_OK && !found->count) found->by_camera = found->by_table = false;
+    }
     if (status != LENSPROF_OK || found->count) return status;
     status = find_only_lens(store, key, name, &lenses, error);
     found->has_lenses = lenses > 1 && !lp_is_known(key->lens);

@@ -23,6 +23,7 @@ typedef struct lp_candidates {
     double last_score;
     int last_camera;
     bool by_words;   /* the lens was found by the words of its name */
+    bool by_table;   /* by_camera, as the table of cameras has it, whatever the profiles' cameras are called */
     bool by_camera;  /* no lens has the name: it is that which the camera has built in */
     bool any_unit;   /* asked for: profiles of single units, whatever the key's */
     bool has_lenses; /* nothing was found, since the camera has several lenses and none was asked for */

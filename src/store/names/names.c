@@ -55,6 +55,7 @@ static const struct spelling {
     {"rokinon", "samyang"},
     {"voigtlander", "voigtlander"},
     {"laowa", "laowa"},
+    {"venus", "laowa"},
     {"viltrox", "viltrox"},
     {"apple", "apple"},
     {"google", "google"},
@@ -101,8 +102,16 @@ static const struct spelling *spelling_in_front(const char *squeezed) {
 
 const char *lp_maker_of(const char *word) {
     for (size_t i = 0; i < SPELLINGS; i++)
-        if (!strcmp(word, spellings[i].text)) return spellings[i].maker;
+        if (*word == *spellings[i].text && !strcmp(word, spellings[i].text)) return spellings[i].maker;
     return NULL;
+}
+
+bool lp_makes_lenses_alone(const char *maker) {
+    static const char *const alone[] = {"sigma", "tamron",      "tokina", "samyang",
+                                        "zeiss", "voigtlander", "laowa",  "viltrox"};
+    for (size_t i = 0; i < sizeof alone / sizeof *alone; i++)
+        if (!strcmp(maker, alone[i])) return true;
+    return false;
 }
 
 const char *lp_maker_in_front(const char *squeezed) {
@@ -154,6 +163,8 @@ double lp_name_score(const char *a, const char *b) {
     if (maker_x && maker_y && strcmp(maker_x, maker_y)) return 0.0;
     return !strcmp(bare_x, bare_y) || is_same_camera(bare_x, bare_y) ? 0.8 : 0.0;
 }
+
+bool lp_is_standard(const char *lens) { return strstr(lens, "(Standard)") != NULL; }
 
 int lp_is_same_maker(const char *a, const char *b) {
     char x[LP_NAME_BYTES], y[LP_NAME_BYTES];

@@ -2,7 +2,10 @@
 #ifndef LENSPROF_STORE_NAMES_H
 #define LENSPROF_STORE_NAMES_H
 
+#include <stdbool.h>
 #include <stdint.h>
+
+#include "store/names/words.h"
 
 #define LP_NAME_BYTES 256
 
@@ -30,10 +33,22 @@ const char *lp_without_maker(const char *squeezed);
 const char *lp_maker_of(const char *word);
 const char *lp_maker_in_front(const char *squeezed);
 
-/* 0.6: the same words in another order, but for what says nothing of the lens ("lens", "mm", "for Canon EF"), of the
- * same maker where both name one, and of that of the camera (empty = any) where one does; all numbers (focal lengths,
- * f-numbers) and generations (II, III) agree. Else 0. */
+/* Whether a maker, in that spelling, makes lenses for others' cameras and none for its own. */
+bool lp_makes_lenses_alone(const char *maker);
+
+/* False where the numbers of the names differ, in most cases: a quick look before lp_words_match. */
+bool lp_may_match(const lp_words *asked, const char *stored);
+
+/* 0.6: the same words in another order, but for what says nothing of the lens ("lens", "mm", "for Canon EF"); 0.5: some
+ * that may be missing are in one of the names alone (glass and advertising: "ED", "M.Zuiko Digital" and "M.", "(IF)";
+ * the maker's code, "A032"), *apart is how many. All numbers (focal lengths, f-numbers) agree, and all other words, as
+ * generations (II, III), mounts, motors and stabilisers, tell lenses apart. Makers that are both named are the same;
+ * one that is named in one of them is the camera's (empty = any), or makes lenses for others'. Else 0. */
+double lp_words_match(const lp_words *asked, const char *stored, const char *camera_maker, uint32_t *apart);
 double lp_words_score(const char *a, const char *b, const char *camera_maker);
+
+/* Whether the lens is that of several variants which is meant where none is named: "... (Standard)". */
+bool lp_is_standard(const char *lens);
 
 /* How much two names share, 0..1: the share of their words that both have, numbers (focal lengths, f-numbers) counting
  * three times; half of it for lenses of different makers. */

@@ -1,116 +1,252 @@
-/* Names of lenses compared word by word, where nothing else finds one. */
-#include "store/names/names.h"
+/* Names of lenses read word by word. */
+#include "store/names/words.h"
 
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
-#define MOST_WORDS 32
-#define WORD_BYTES 24
+#include "store/names/names.h"
 
-/* Letters and numbers apart: "EF24-70mm f/2.8L II" has ef 24 70 l ii 2.8. */
-typedef struct words {
-    uint32_t count, numbers;
-    char word[MOST_WORDS][WORD_BYTES];
-    const char *maker; /* NULL = none is named */
-} words;
+#define SHORTEST_CODE 2 /* digits */
 
-static int is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c & 0x80); }
-static int is_digit(char c) { return c >= '0' && c <= '9'; }
+static bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c & 0x80); }
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
 
-static int says_nothing(const char *word) {
-    static const char *const idle[] = {"lens", "mm", "f", "mark", "mk", "carl"};
-    for (size_t i = 0; i < sizeof idle / sizeof *idle; i++)
-        if (!strcmp(word, idle[i])) return 1;
-    return 0;
+static bool is_one_of(const char *word, const char *const *list, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (!strcmp(word, list[i])) return true;
+    return false;
+}
+#define IS_ONE_OF(word, list) is_one_of(word, list, sizeof(list) / sizeof *(list))
+
+static bool says_nothing(const char *word) {
+    static const char *const idle[] = {"lens", "mm", "f", "mark", "mk", "carl", "compatibles"};
+    return IS_ONE_OF(word, idle);
 }
 
-static int add_word(words *all, const char *word) {
-    const char *maker = lp_maker_of(word);
-    if (maker && !all->maker) all->maker = maker;
-    if (maker || says_nothing(word)) return 1;
-    if (all->count == MOST_WORDS) return 0;
-    memcpy(all->word[all->count++], word, WORD_BYTES);
-    return 1;
+static bool is_generation(const char *word) {
+    static const char *const generations[] = {"ii", "iii", "iv"};
+    return IS_ONE_OF(word, generations);
 }
 
-/* The number at `text`, without zeros that say nothing: 24.0 is 24; and not the 1 of "1:2.8". Returns what follows.
- */
-static const char *take_number(words *all, const char *text, int *fits) {
-    char word[WORD_BYTES] = "";
+bool lp_is_common_word(const char *word) {
+    static const char *const common[] = {"af", "mf", "mc", "macro", "micro", "fisheye", "pro"};
+    return is_generation(word) || IS_ONE_OF(word, common);
+}
+
+/* Where a name is being read. */
+typedef struct reading {
+    lp_words *words;
+    const char *text;
+    char bracket;         /* that is open, or 0 */
+    bool is_behind_bar;   /* "| Contemporary 016" */
+    bool is_behind_plus;  /* "+ 1.4x": words of what is attached, which are never the lens's */
+    bool is_behind_macro; /* "Macro 1:2" */
+    uint32_t numbers;
+} reading;
+
+static bool add(reading *r, const char *text, lp_word_kind kind) {
+    lp_words *w = r->words;
+    if (w->count == LP_MOST_WORDS) return false;
+    lp_word *word = &w->word[w->count++];
+    memset(word, 0, sizeof *word);
+    word->kind = r->is_behind_plus ? LP_WORD_IDENTITY : kind;
+    snprintf(word->text, sizeof word->text, "%s%.*s", r->is_behind_plus ? "+" : "", LP_WORD_BYTES - 2, text);
+    r->numbers += kind == LP_WORD_NUMBER;
+    return true;
+}
+
+/* The letters at the text, in small ones; returns what follows. */
+static const char *take_letters(const char *text, char *word) {
     size_t n = 0;
-    int has_point = 0;
-    while (*text == '0' && is_digit(text[1])) text++;
-    for (; is_digit(*text) || (*text == '.' && is_digit(text[1]) && !has_point); text++) {
-        has_point |= *text == '.';
-        if (n + 1 < sizeof word) word[n++] = *text;
-    }
-    if (!strcmp(word, "1") && *text == ':') return text;
-    while (has_point && n && word[n - 1] == '0') word[--n] = 0;
-    if (has_point && n && word[n - 1] == '.') word[--n] = 0;
-    all->numbers++;
-    *fits &= add_word(all, word);
+    for (; is_letter(*text); text++)
+        if (n + 1 < LP_WORD_BYTES) word[n++] = lower(*text);
+    word[n] = 0;
     return text;
 }
 
-static int compare(const void *a, const void *b) { return strcmp(a, b); }
+/* Sigma's lines, which have one letter behind a bar or in brackets. */
+static const char *line_of(const reading *r, const char *word) {
+    if (!r->is_behind_bar && r->bracket != '[') return word;
+    return !strcmp(word, "a") ? "art" : !strcmp(word, "c") ? "contemporary" : !strcmp(word, "s") ? "sports" : word;
+}
 
-/* False for a name of too many words. */
-static int split(const char *name, words *all) {
-    int fits = 1;
-    memset(all, 0, sizeof *all);
-    while (*name && fits) {
-        char word[WORD_BYTES] = "";
-        size_t n = 0;
-        if (is_digit(*name)) {
-            name = take_number(all, name, &fits);
-            continue;
-        }
-        if (!is_letter(*name)) {
-            name++;
-            continue;
-        }
-        for (; is_letter(*name); name++)
-            if (n + 1 < sizeof word) word[n++] = *name >= 'A' && *name <= 'Z' ? (char)(*name - 'A' + 'a') : *name;
-        if (!strcmp(word, "for") && all->count) break; /* the mount */
-        const size_t mark = !strncmp(word, "mkii", 4) ? 2 : !strncmp(word, "markii", 6) ? 4 : 0;
-        memmove(word, word + mark, sizeof word - mark); /* the generation alone */
-        fits = add_word(all, word);
+/* "diii" is di and ii, "mkii" and "markii" ii; returns the second part, after *first, or NULL. */
+static const char *generation_in(char *word, const char **first) {
+    *first = NULL;
+    const size_t mark = !strncmp(word, "mk", 2) ? 2 : !strncmp(word, "mark", 4) ? 4 : !strncmp(word, "di", 2) ? 2 : 0;
+    if (!mark || !is_generation(word + mark)) return NULL;
+    if (*word == 'd') *first = "di";
+    return word + mark;
+}
+
+static bool add_letters(reading *r, char *word) {
+    const char *maker = lp_maker_of(word), *first;
+    if (maker) {
+        if (r->words->makers < LP_MOST_MAKERS) r->words->maker[r->words->makers++] = maker;
+        return true;
     }
-    qsort(all->word, all->count, WORD_BYTES, compare);
+    if (says_nothing(word)) return true;
+    const char *generation = generation_in(word, &first);
+    if (generation) return (!first || add(r, first, LP_WORD_IDENTITY)) && add(r, generation, LP_WORD_IDENTITY);
+    if (!strcmp(word, "eye")) return true; /* "fish-eye" */
+    if (!strcmp(word, "fish")) return add(r, "fisheye", LP_WORD_IDENTITY);
+    const char *line = line_of(r, word);
+    return add(r, line, r->bracket == '(' ? LP_WORD_OPTIONAL : LP_WORD_IDENTITY);
+}
+
+/* Length of a code at the text, 0 for none: letters with two digits or more behind them and nothing else, "A032"; in
+ * round brackets also with more letters. "F4" and "F16" are none, but "F045" is. */
+static size_t code_at(const reading *r) {
+    const char *text = r->text;
+    size_t letters = 0, digits = 0;
+    while (is_letter(text[letters])) letters++;
+    while (is_digit(text[letters + digits])) digits++;
+    if (digits < SHORTEST_CODE || (letters == 1 && lower(*text) == 'f' && !(text[1] == '0' && digits > 2))) return 0;
+    size_t n = letters + digits;
+    if (r->bracket == '(') {
+        while (is_letter(text[n]) || is_digit(text[n])) n++;
+        return letters ? n : 0;
+    }
+    if (!letters && !(*text == '0' && digits == 3)) return 0;
+    return is_letter(text[n]) || (text[n] && strchr("-./", text[n]) && is_digit(text[n + 1])) ? 0 : n;
+}
+
+static bool take_code(reading *r, size_t length) {
+    char word[LP_WORD_BYTES] = "";
+    for (size_t i = 0; i < length && i + 1 < sizeof word; i++) word[i] = lower(r->text[i]);
+    r->text += length;
+    return add(r, word, LP_WORD_CODE);
+}
+
+/* At the end of a name that has its numbers already: "AF Nikkor 35mm f/2D 66", Nikon's number of the lens. */
+static bool is_trailing_code(const reading *r, const char *end) {
+    return r->numbers >= 2 && end - r->text >= SHORTEST_CODE && !strchr(r->text, '.') && !end[strspn(end, " ")]
+           && r->text[-1] == ' ';
+}
+
+/* The number at the text, without zeros that say nothing: 24.0 is 24; and not the 1 of "1:2.8". */
+static bool take_number(reading *r) {
+    char word[LP_WORD_BYTES] = "";
+    size_t n = 0;
+    bool has_point = false;
+    const char *end = r->text;
+    while (*end == '0' && is_digit(end[1])) end++;
+    for (; is_digit(*end) || (*end == '.' && is_digit(end[1]) && !has_point); end++) {
+        has_point |= *end == '.';
+        if (n + 1 < sizeof word) word[n++] = *end;
+    }
+    const bool is_ratio = !strcmp(word, "1") && *end == ':';
+    if (is_ratio && r->is_behind_macro && r->numbers >= 2) { /* a scale */
+        r->text = end + 1 + strspn(end + 1, "0123456789.");
+        return true;
+    }
+    while (has_point && n && word[n - 1] == '0') word[--n] = 0;
+    if (has_point && n && word[n - 1] == '.') word[--n] = 0;
+    const bool is_times = lower(*end) == 'x' && !is_letter(end[1]) && n + 1 < sizeof word;
+    if (is_times) word[n] = 'x';
+    const lp_word_kind kind = is_times ? LP_WORD_IDENTITY : is_trailing_code(r, end) ? LP_WORD_CODE : LP_WORD_NUMBER;
+    r->text = end + is_times;
+    return is_ratio || add(r, word, kind);
+}
+
+/* Words that follow one another with slashes between, as "II/L/WR", or as "II L WR", where file names allow none. */
+static void mark_variants(lp_words *words, uint32_t first, uint32_t count) {
+    for (uint32_t i = first; i < first + count; i++) words->word[i].kind = LP_WORD_VARIANT;
+}
+
+static void find_versions(lp_words *words) {
+    static const char *const versions[] = {"ii", "iii", "l", "wr"};
+    for (uint32_t i = 0, run = 0; i < words->count; i++) {
+        run = IS_ONE_OF(words->word[i].text, versions) ? run + 1 : 0;
+        if (run >= 3) mark_variants(words, i + 1 - run, run);
+    }
+}
+
+/* Letters that are no code; false where the name is full. Sets *done at "for Canon EF". */
+static bool take_word(reading *r, bool *done) {
+    char word[LP_WORD_BYTES];
+    const uint32_t before = r->words->count;
+    const bool is_after_slash = before > 0 && r->text[-1] == '/' && is_letter(r->text[-2]);
+    r->text = take_letters(r->text, word);
+    *done = !strcmp(word, "for") && before;
+    if (*done) return true;
+    if (!strcmp(word, "g") && is_digit(*r->text) && !is_digit(r->text[1]) && !is_letter(r->text[1])) { /* "G2" */
+        word[1] = *r->text++, word[2] = 0;
+        return add(r, word, LP_WORD_IDENTITY);
+    }
+    if (!add_letters(r, word)) return false;
+    r->is_behind_macro = !strcmp(word, "macro");
+    if (is_after_slash && r->words->count == before + 1) mark_variants(r->words, before - 1, 2);
+    return true;
+}
+
+/* A sign, which may change what the words behind it are. */
+static void take_sign(reading *r) {
+    const char c = *r->text++;
+    if (c == '(' || c == '[') r->bracket = c;
+    if (c == ')' || c == ']') r->bracket = 0;
+    if (c == '|') r->is_behind_bar = true;
+    if (c == '+') r->is_behind_plus = true;
+}
+
+bool lp_split_words(const char *name, lp_words *words) {
+    reading r = {words, name, 0, false, false, false, 0};
+    bool fits = true, done = false;
+    words->count = words->makers = 0;
+    while (*r.text && fits && !done) {
+        const size_t code = is_letter(*r.text) || is_digit(*r.text) ? code_at(&r) : 0;
+        if (code)
+            fits = take_code(&r, code);
+        else if (is_digit(*r.text))
+            fits = take_number(&r);
+        else if (is_letter(*r.text))
+            fits = take_word(&r, &done);
+        else
+            take_sign(&r);
+    }
+    find_versions(words);
     return fits;
 }
 
-double lp_words_score(const char *a, const char *b, const char *camera_maker) {
-    char camera[LP_NAME_BYTES];
-    words x, y;
-    if (!split(a, &x) || !split(b, &y) || !x.numbers || x.count != y.count) return 0.0;
-    if (x.maker && y.maker && strcmp(x.maker, y.maker)) return 0.0;
-    lp_squeeze(camera_maker, camera);
-    const char *own = lp_maker_in_front(camera), *named = x.maker ? x.maker : y.maker;
-    if (!x.maker != !y.maker && *camera && (!own || strcmp(own, named))) return 0.0;
-    for (uint32_t i = 0; i < x.count; i++)
-        if (strcmp(x.word[i], y.word[i])) return 0.0;
-    return 0.6;
+/* Words that names have or have not, as one likes; of the lenses of one maker, or (NULL) of any. */
+static const struct optional {
+    const char *word, *maker;
+    lp_word_kind kind;
+} optional[] = {
+    {"asph", NULL, LP_WORD_OPTIONAL},        {"aspherical", NULL, LP_WORD_OPTIONAL},
+    {"ed", NULL, LP_WORD_OPTIONAL},          {"if", NULL, LP_WORD_OPTIONAL},
+    {"ld", NULL, LP_WORD_OPTIONAL},          {"zoom", NULL, LP_WORD_OPTIONAL},
+    {"art", NULL, LP_WORD_OPTIONAL},         {"dual", "apple", LP_WORD_OPTIONAL},
+    {"triple", "apple", LP_WORD_OPTIONAL},   {"fx", "nikon", LP_WORD_OPTIONAL},
+    {"zuiko", "olympus", LP_WORD_OPTIONAL},  {"digital", "olympus", LP_WORD_OPTIONAL},
+    {"pro", "olympus", LP_WORD_OPTIONAL},    {"is", "olympus", LP_WORD_OPTIONAL},
+    {"g", "panasonic", LP_WORD_OPTIONAL},    {"x", "panasonic", LP_WORD_OPTIONAL},
+    {"hd", "panasonic", LP_WORD_OPTIONAL},   {"vario", "panasonic", LP_WORD_OPTIONAL},
+    {"mega", "panasonic", LP_WORD_OPTIONAL}, {"power", "panasonic", LP_WORD_OPTIONAL},
+    {"ois", "panasonic", LP_WORD_OPTIONAL},  {"vario", "leica", LP_WORD_OPTIONAL},
+    {"power", "leica", LP_WORD_OPTIONAL},    {"ois", "leica", LP_WORD_OPTIONAL},
+    {"al", "pentax", LP_WORD_OPTIONAL},      {"af", "tamron", LP_WORD_OPTIONAL},
+    {"sp", "tamron", LP_WORD_OPTIONAL},      {"xr", "tamron", LP_WORD_OPTIONAL},
+    {"model", "tamron", LP_WORD_OPTIONAL},   {"t", "zeiss", LP_WORD_OPTIONAL},
+    {"t", "sony", LP_WORD_OPTIONAL},         {"summilux", NULL, LP_WORD_DESIGN},
+    {"summicron", NULL, LP_WORD_DESIGN},     {"summarit", NULL, LP_WORD_DESIGN},
+    {"elmarit", NULL, LP_WORD_DESIGN},       {"elmar", NULL, LP_WORD_DESIGN},
+    {"noctilux", NULL, LP_WORD_DESIGN},      {"nocticron", NULL, LP_WORD_DESIGN},
+    {"planar", NULL, LP_WORD_DESIGN},        {"sonnar", NULL, LP_WORD_DESIGN},
+    {"distagon", NULL, LP_WORD_DESIGN},      {"tessar", NULL, LP_WORD_DESIGN},
+    {"biogon", NULL, LP_WORD_DESIGN},
+};
+
+static lp_word_kind kind_of(const char *word, const char *const *makers, uint32_t count) {
+    for (size_t i = 0; i < sizeof optional / sizeof *optional; i++) {
+        if (strcmp(word, optional[i].word)) continue;
+        if (!optional[i].maker || is_one_of(optional[i].maker, makers, count)) return optional[i].kind;
+    }
+    return LP_WORD_IDENTITY;
 }
 
-static double weight(const char *word) { return is_digit(*word) ? 3.0 : 1.0; }
-
-double lp_words_likeness(const char *a, const char *b, const char *camera_maker) {
-    char camera[LP_NAME_BYTES];
-    words x, y;
-    if (!split(a, &x) || !split(b, &y)) return 0.0;
-    double common = 0.0, all = 0.0;
-    uint32_t i = 0, j = 0;
-    while (i < x.count || j < y.count) {
-        const int order = i == x.count ? 1 : j == y.count ? -1 : strcmp(x.word[i], y.word[j]);
-        const double w = weight(order <= 0 ? x.word[i] : y.word[j]);
-        all += w;
-        if (!order) common += w;
-        i += order <= 0, j += order >= 0;
-    }
-    lp_squeeze(camera_maker, camera);
-    const char *own = x.maker ? x.maker : lp_maker_in_front(camera),
-               *other = y.maker ? y.maker : lp_maker_in_front(camera);
-    const double share = all > 0.0 ? common / all : 0.0;
-    return own && other && strcmp(own, other) ? 0.5 * share : share;
+void lp_weigh_words(lp_words *words, const char *const *makers, uint32_t count) {
+    for (uint32_t i = 0; i < words->count; i++)
+        if (words->word[i].kind == LP_WORD_IDENTITY) words->word[i].kind = kind_of(words->word[i].text, makers, count);
 }

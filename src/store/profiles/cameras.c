@@ -8,6 +8,7 @@
 #include "store/profiles/profiles.h"
 
 #define FIRST_LAYOUT 5  /* with such a table */
+#define SHORTEST_WORD 4 /* of a name that is its camera's alone */
 #define SAME_CROP 0.005 /* of it: what the makers' figures are rounded to */
 
 /* clang-format off */
@@ -122,6 +123,7 @@ typedef struct search {
     const lensprof_store *store;
     const char *maker, *names[LP_CAMERA_NAMES];
     uint32_t count;
+    bool by_last_word;
     int rank; /* of the name that was found: 2 EXIF's, 1 another; 0 = none */
     lensprof_camera_model found;
 } search;
@@ -132,6 +134,12 @@ static int has_name(const search *s, const char *model) {
     for (uint32_t i = 0; i < s->count; i++)
         if (!strcmp(name, s->names[i])) return 1;
     return 0;
+}
+
+/* "Mavic Pro FC220" is the FC220. */
+static bool has_last_word(const search *s, const char *model) {
+    const char *blank = strrchr(model, ' ');
+    return blank && has_name(s, blank + 1);
 }
 
 static void keep_agreement(lensprof_camera_model *found, const lensprof_camera_model *other) {
@@ -149,6 +157,7 @@ static lensprof_status compare(void *user, int64_t id, const lensprof_camera_mod
     if (!lp_is_same_maker(camera->maker, s->maker)
         && !(*camera->other_maker && lp_is_same_maker(camera->other_maker, s->maker)))
         return LENSPROF_OK;
+    if (s->by_last_word && !has_last_word(s, camera->model)) return LENSPROF_OK;
     const int rank = has_name(s, camera->model) ? 2 : 1;
     if (rank > s->rank)
         s->found = *camera;
@@ -158,11 +167,28 @@ static lensprof_status compare(void *user, int64_t id, const lensprof_camera_mod
     return LENSPROF_OK;
 }
 
+static const char by_name[] = "SELECT id, " COLUMNS " FROM cameras WHERE name = ?1 OR other_name = ?1";
+static const char by_end[] = "SELECT id, " COLUMNS " FROM cameras WHERE substr(name, -length(?1)) = ?1";
+
+static lensprof_status search_for(lensprof_store *store, const char *sql, const char *name, search *s,
+                                  lensprof_error *error) {
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    const lensprof_status status = lp_store_prepare(store, sql, &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_bind_text(&binder, name);
+    return visit_rows(store, &binder, compare, s, error);
+}
+
+/* One word of letters and digits, by a maker. */
+static bool may_be_last_word(const search *s, const char *model, const char *name) {
+    return *s->maker && !strchr(model, ' ') && strlen(name) >= SHORTEST_WORD && strpbrk(name, "0123456789")
+           && strpbrk(name, "abcdefghijklmnopqrstuvwxyz");
+}
+
 lensprof_status lp_store_find_camera(lensprof_store *store, const char *maker, const char *model,
                                      lensprof_camera_model *camera, bool *found, lensprof_error *error) {
     search s;
     char name[LP_NAME_BYTES], squeezed[LP_NAME_BYTES];
-    lp_store_binder binder = {NULL, 0, SQLITE_OK};
     memset(&s, 0, sizeof s);
     *found = false;
     if (store->layout < FIRST_LAYOUT) return LENSPROF_OK;
@@ -173,14 +199,10 @@ lensprof_status lp_store_find_camera(lensprof_store *store, const char *maker, c
     name_of(model, name);
     s.count = *name ? lp_camera_names(name, s.names) : 0;
     lensprof_status status = LENSPROF_OK;
-    for (uint32_t i = 0; i < s.count && status == LENSPROF_OK; i++) {
-        status = lp_store_prepare(store, "SELECT id, " COLUMNS " FROM cameras WHERE name = ?1 OR other_name = ?1",
-                                  &binder.statement, error);
-        if (status != LENSPROF_OK) break;
-        binder.column = 0;
-        lp_bind_text(&binder, s.names[i]);
-        status = visit_rows(store, &binder, compare, &s, error);
-    }
+    for (uint32_t i = 0; i < s.count && status == LENSPROF_OK; i++)
+        status = search_for(store, by_name, s.names[i], &s, error);
+    s.by_last_word = status == LENSPROF_OK && !s.rank && may_be_last_word(&s, model, name);
+    if (s.by_last_word) status = search_for(store, by_end, name, &s, error);
     *found = status == LENSPROF_OK && s.rank > 0;
     if (*found) *camera = s.found;
     return status;

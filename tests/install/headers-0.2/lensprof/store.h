@@ -87,7 +87,8 @@ typedef struct lensprof_lookup {
     double name_score; /* of the lens's name (of the camera's, where no lens was asked for): 1 the same but for case and
                           outer blanks, 0.9 but for signs and blanks, 0.8 but for a maker in front or its spelling, or
                           a camera's name in another country; 0.6 the same words in another order or form, all
-                          numbers and generations the same, where nothing better is stored */
+                          numbers and generations the same, where nothing better is stored; 0.5 and words that say
+                          nothing of the lens are missing in one */
     char reason[256];  /* cautions, whole sentences as far as they fit; where nothing is found, why */
     uint32_t reason_code[LENSPROF_LOOKUP_REASONS]; /* lensprof_reason of each sentence, in their order, also of those
                                                       that `reason` has no room for; NONE after the last. The numbers
