@@ -30,3 +30,8 @@ CREATE TABLE cameras (
 ) STRICT;
 CREATE INDEX cameras_by_name ON cameras (name);
 CREATE INDEX cameras_by_other_name ON cameras (other_name);
+
+-- The way to a camera's responses: its name without ASCII case, blanks and signs, as lens_name is made of a lens's.
+CREATE INDEX profiles_by_rendering ON profiles (
+    lower(replace(replace(replace(replace(replace(replace(camera_model, ' ', ''), '-', ''), '/', ''), '.', ''), '(', ''), ')', '')),
+    id) WHERE processing <> 'raw';

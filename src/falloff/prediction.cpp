@@ -206,6 +206,13 @@ void lp_fit_falloff(const double *values, double k[3]) {
     std::copy_n(terms.data(), 3, k);
 }
 
+void lp_falloff_covariance(double sigma, double covariance[9]) {
+    constexpr double kScatter[9] = {0.1298, -0.1369, 0.0682, -0.1369, 0.3262, -0.2656, 0.0682, -0.2656, 0.4005};
+    double corner_variance = 0.0;
+    for (double value : kScatter) corner_variance += value;
+    for (int i = 0; i < 9; i++) covariance[i] = kScatter[i] / corner_variance * sigma * sigma;
+}
+
 int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
                        lp_falloff_prediction *prediction) {
     *prediction = {};

@@ -303,9 +303,13 @@ void test_store_query_show_remove(void **) {
     must_exit(done, Words{"build", scene("pano.pto"), "--aperture", "8"} + quick + db);
     must_exit(done, Words{"build", scene("pano.pto"), "--seed", "2"} + quick + db);
     const Words query = Words{"query", "--json"} + db;
-    const Json newest = json_of(query + Words{"--camera", "simulated camera"});
+    const Json open = json_of(query + Words{"--camera", "simulated camera"});  // of two apertures: neither is meant
+    assert_true(open["id"].is_null() && open["found"].get<bool>());
+    assert_int_equal(open["matches"].get<int>(), 3);
+    assert_true(open["range"]["aperture"] == Json::array({2.8, 8.0}));
+    const Json newest = json_of(query + Words{"--camera", "simulated camera", "--aperture", "2.8"});
     assert_int_equal(newest["id"].get<int>(), 3);
-    assert_int_equal(newest["matches"].get<int>(), 3);
+    assert_int_equal(newest["matches"].get<int>(), 2);
     assert_int_equal(json_of(query + Words{"--lens", "Simulated Lens", "--aperture", "8"})["id"].get<int>(), 2);
     assert_int_equal(json_of(query
                              + Words{"--lens", "Simulated Lens", "--aperture", "2.8", "--focal", "38.6", "--maker",
@@ -314,14 +318,16 @@ void test_store_query_show_remove(void **) {
                      2);
     for (const Words &other :
          {Words{"--camera", "Simulated"}, Words{"--camera", "Simulated Camera", "--aperture", "32"},
-          Words{"--camera", "Simulated Camera", "--processing", "raw"}}) {
+          Words{"--camera", "Simulated Camera", "--processing", "corrected"}}) {
         const Json none = json_of(query + other, not_found);
         assert_true(none["id"].is_null() && !none["found"].get<bool>() && !none["reason_codes"].empty());
         const Outcome outcome = run_words(query + other);
         assert_true(contains(outcome.err, "lensprof: no profile for") && contains(outcome.err, work("profiles.db")));
         assert_true(contains(outcome.err, none["reason"].get<std::string>()));
     }
-    assert_true(json_of(query + Words{"--camera", "Simulated Camera"})["found"].get<bool>());
+    const Json raw = json_of(query + Words{"--camera", "Simulated Camera", "--aperture", "2.8", "--processing", "raw"});
+    assert_true(raw["id"].is_null() && raw["lookup"]["response"]["from"] == "raw");  // its falloff, of other pictures
+    assert_true(raw["response"]["kind"] == "linear");
 
     const Json list = json_of(Words{"profile", "list", "--json"} + db);
     assert_int_equal(list["profiles"].size(), 3);

@@ -391,6 +391,7 @@ static void print_structs(void) {
     FIELD(lensprof_lookup_options, distance_rule);
     FIELD(lensprof_lookup_options, with_doubt);
     FIELD(lensprof_lookup_options, any_processing);
+    FIELD(lensprof_lookup_options, force_falloff);
     STRUCT(lensprof_lookup);
     FIELD(lensprof_lookup, struct_size);
     FIELD(lensprof_lookup, exact);
@@ -403,6 +404,18 @@ static void print_structs(void) {
     FIELD(lensprof_lookup, name_score);
     FIELD(lensprof_lookup, reason);
     FIELD(lensprof_lookup, reason_code);
+    FIELD(lensprof_lookup, falloff_sigma);
+    FIELD(lensprof_lookup, distance_sigma);
+    FIELD(lensprof_lookup, sensor_sigma);
+    FIELD(lensprof_lookup, response_sigma);
+    FIELD(lensprof_lookup, response_from);
+    FIELD(lensprof_lookup, camera_kind);
+    FIELD(lensprof_lookup, falloff_store);
+    FIELD(lensprof_lookup, response_store);
+    FIELD(lensprof_lookup, response_rows);
+    FIELD(lensprof_lookup, reserved2);
+    FIELD(lensprof_lookup, response_id);
+    FIELD(lensprof_lookup, response_weight);
     STRUCT(lensprof_store_row);
     FIELD(lensprof_store_row, id);
     FIELD(lensprof_store_row, damaged);
@@ -466,6 +479,7 @@ static void print_values(void) {
     VALUE(LENSPROF_FLAT_SPOTS);
     VALUE(LENSPROF_LOOKUP_ROWS);
     VALUE(LENSPROF_LOOKUP_REASONS);
+    VALUE(LENSPROF_LOOKUP_RESPONSES);
     VALUE(LENSPROF_STATS_GROUPS);
     VALUE(LENSPROF_OK);
     VALUE(LENSPROF_ERROR_ARGUMENT);
@@ -613,6 +627,7 @@ static void print_values(void) {
     VALUE(LENSPROF_REASON_LOOKUP_APERTURE_BEYOND);
     VALUE(LENSPROF_REASON_LOOKUP_TOO_FAR);
     VALUE(LENSPROF_REASON_LOOKUP_CONTRADICTION);
+    VALUE(LENSPROF_REASON_LOOKUP_CORRECTED);
     VALUE(LENSPROF_REASON_LOOKUP_FOCAL_ROUNDED);
     VALUE(LENSPROF_REASON_LOOKUP_FOCAL_OUTSIDE);
     VALUE(LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE);
@@ -622,6 +637,11 @@ static void print_values(void) {
     VALUE(LENSPROF_REASON_LOOKUP_BUILT_IN);
     VALUE(LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE);
     VALUE(LENSPROF_REASON_LOOKUP_FARTHEST_DISTANCE);
+    VALUE(LENSPROF_REASON_LOOKUP_USUAL_DISTANCE);
+    VALUE(LENSPROF_REASON_LOOKUP_UNKNOWN_SENSOR);
+    VALUE(LENSPROF_REASON_LOOKUP_ON_OTHER_CAMERA);
+    VALUE(LENSPROF_REASON_LOOKUP_TYPICAL_RESPONSE);
+    VALUE(LENSPROF_REASON_LOOKUP_OTHER_STYLE);
     VALUE(LENSPROF_REASON_PRIOR_OVERRULED);
     VALUE(LENSPROF_PROJECTION_RECTILINEAR);
     VALUE(LENSPROF_PROJECTION_CYLINDRICAL);
@@ -688,6 +708,11 @@ static void print_values(void) {
     VALUE(LENSPROF_STORE_CREATE);
     VALUE(LENSPROF_DISTANCE_WEAKEST);
     VALUE(LENSPROF_DISTANCE_FARTHEST);
+    VALUE(LENSPROF_DISTANCE_USUAL);
+    VALUE(LENSPROF_RESPONSE_FROM_PROFILE);
+    VALUE(LENSPROF_RESPONSE_FROM_CAMERA);
+    VALUE(LENSPROF_RESPONSE_FROM_KIND);
+    VALUE(LENSPROF_RESPONSE_FROM_RAW);
     VALUE(LENSPROF_FREE_RESPONSE);
     VALUE(LENSPROF_FREE_K1);
     VALUE(LENSPROF_FREE_K2);

@@ -61,10 +61,12 @@ class Reasons(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             with lp.Store(pathlib.Path(folder) / "p.db", lp.StoreMode.CREATE) as store:
                 for aperture, distance in ((2.0, 1.0), (4.0, 1.0), (2.0, 9.0), (4.0, 9.0)):
-                    key = lp.ProfileKey(lens="Lens 50mm", focal_mm=50, aperture=aperture, distance_m=distance)
+                    key = lp.ProfileKey(lens="Lens 50mm", focal_mm=50, aperture=aperture, distance_m=distance,
+                                        crop_factor=1.5)
                     store.put(lp.Profile(key=key, vignetting=lp.Vignetting(k=(-0.4 / aperture, 0, 0))))
-                how = store.lookup(lp.ProfileKey(lens="Lens 50mm", focal_mm=50, aperture=5.0))[1]
-                self.assertEqual(how.reasons, (lp.Reason.LOOKUP_APERTURE_OUTSIDE, lp.Reason.LOOKUP_WEAKEST_DISTANCE))
+                how = store.lookup(lp.ProfileKey(lens="Lens 50mm", focal_mm=50, aperture=5.0, crop_factor=1.5))[1]
+                self.assertEqual(how.reasons, (lp.Reason.LOOKUP_APERTURE_OUTSIDE, lp.Reason.LOOKUP_USUAL_DISTANCE,
+                                               lp.Reason.LOOKUP_TYPICAL_RESPONSE))
                 self.assertEqual(how.reason, "; ".join(map(lp.reason_text, how.reasons)))
                 with self.assertRaises(lp.Error) as caught:
                     store.lookup(lp.ProfileKey(lens="Another", focal_mm=50, aperture=2.0))

@@ -275,6 +275,28 @@ class Stores(unittest.TestCase):
             with refused(self, lp.Status.ERROR_NOT_FOUND):
                 store.lookup(key)
 
+    def test_lookup_in_several_databases(self):
+        with lp.Store(self.path, lp.StoreMode.CREATE) as lenses, \
+                lp.Store(str(self.path) + "-2", lp.StoreMode.CREATE) as cameras:
+            key = lp.ProfileKey(lens="Lens 50 mm", focal_mm=50, aperture=2.8, distance_m=math.inf, crop_factor=1.0,
+                                processing=lp.Processing.RAW)
+            lenses.put(lp.Profile(key=key, vignetting=lp.Vignetting(k=(-0.3, 0, 0))))
+            body = lp.ProfileKey(camera_model="Body", lens="Another lens", processing=lp.Processing.JPEG)
+            number = cameras.put(lp.Profile(key=body, response=lp.Response.from_gamma(2.0)))
+            key.camera_model, key.processing = "Body", lp.Processing.JPEG
+            profile, how = lp.lookup_in([lenses, cameras], key)
+            self.assertEqual((how.exact, how.falloff_store, how.response_store), (0, 0, 1))
+            self.assertEqual((how.response_from, how.response_rows), (lp.ResponseFrom.CAMERA, 1))
+            self.assertEqual(how.response_id[0], number)
+            self.assertAlmostEqual(profile.response[0].eval(0.25), 0.5, places=3)
+            self.assertAlmostEqual(profile.vignetting[0].k[0], -0.3, places=3)
+            profile, how = lenses.lookup(key)
+            self.assertEqual((how.response_from, how.camera_kind), (lp.ResponseFrom.KIND, lp.CameraKind.CAMERA))
+            with refused(self, lp.Status.ERROR_NOT_FOUND):
+                lp.lookup_in([cameras, cameras][:1], key)
+            with refused(self, lp.Status.ERROR_ARGUMENT):
+                lp.lookup_in([], key)
+
 
 if __name__ == "__main__":
     unittest.main()

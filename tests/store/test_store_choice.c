@@ -43,7 +43,7 @@ static lensprof_status ask(lensprof_store *store, const char *camera, const char
 #define RAW LENSPROF_PROCESSING_RAW
 #define JPEG LENSPROF_PROCESSING_JPEG
 
-/* Never a mean of raw pictures and those that a camera has corrected: the state of the newest, which the answer names.
+/* At one setting profiles of the key's processing count alone; where any will do, the newest, which the answer names.
  */
 static void test_one_processing(void **state) {
     static const entry entries[] = {{"", "A 50mm", "", 2.0, 1.5, -0.5, RAW},
@@ -78,8 +78,8 @@ static void test_newest_of_a_setting(void **state) {
     lensprof_store_close(store);
 }
 
-/* Rows of a camera serve who asks for the lens alone; of another camera, or a single unit, they are said to be there.
- */
+/* Rows of a camera serve who asks for the lens alone or with another camera, which is said; those of a single unit are
+ * said to be there. */
 static void test_lens_of_cameras(void **state) {
     static const entry entries[] = {{"EOS 5D", "A 50mm", "", 2.0, 1, -0.5, RAW},
                                     {"EOS 5D", "A 50mm", "", 4.0, 1, -0.3, RAW},
@@ -88,8 +88,11 @@ static void test_lens_of_cameras(void **state) {
     assert_ok(ask(store, "", "A 50mm", 50, 2.8, 0));
     assert_int_equal(how.rows, 2);
     assert_ok(ask(store, "EOS 5D", "A 50mm", 50, 2.8, 0));
-    assert_int_equal(ask(store, "EOS 6D", "A 50mm", 50, 2.8, 0), LENSPROF_ERROR_NOT_FOUND);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_CAMERA, "of other cameras"));
+    assert_int_equal(how.reason_code[0], LENSPROF_REASON_NONE);
+    assert_ok(ask(store, "EOS 6D", "A 50mm", 50, 2.8, 0));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_ON_OTHER_CAMERA, "on other cameras"));
+    assert_ok(ask(store, "EOS 6D", "A 50mm", 50, 2.0, 0)); /* of the setting, but of another response */
+    assert_int_equal(how.exact, 0);
     assert_int_equal(ask(store, "", "B 50mm", 50, 2.0, 0), LENSPROF_ERROR_NOT_FOUND);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_CAMERA, "single units"));
     lensprof_store_close(store);
@@ -125,8 +128,8 @@ static void test_outside_is_said(void **state) {
     assert_true(
         has_reason(&how, LENSPROF_REASON_LOOKUP_APERTURE_OUTSIDE, "the aperture is outside those that are stored"));
     assert_ok(ask(store, "", "A 50mm", 50, 3.2, 0));
-    assert_string_equal(how.reason, "");
-    assert_int_equal(how.reason_code[0], LENSPROF_REASON_NONE);
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_UNKNOWN_SENSOR, "the sensor's size is not known"));
+    assert_int_equal(how.reason_code[1], LENSPROF_REASON_NONE);
     lensprof_store_close(store);
 }
 

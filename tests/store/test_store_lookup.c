@@ -232,9 +232,14 @@ static void test_left_out_is_said(void **state) {
     snprintf(p->provenance.doubt, sizeof p->provenance.doubt, "odd");
     put_at(store, p);
     lensprof_profile_key key = zoom_profile("Lens 50mm", 50, 2.0, INFINITY)->key;
-    key.processing = LENSPROF_PROCESSING_JPEG;
+    key.processing = LENSPROF_PROCESSING_CORRECTED;
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
-    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_PROCESSING, "processed differently"));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_CORRECTED, "the camera has corrected the falloff"));
+    p = zoom_profile("Lens 28mm", 28, 2.0, INFINITY);
+    p->key.processing = LENSPROF_PROCESSING_CORRECTED;
+    put_at(store, p);
+    assert_int_equal(ask(store, "Lens 28mm", 28, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_OTHER_PROCESSING, "the camera has corrected"));
     assert_int_equal(ask(store, "Lens 35mm", 35, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_DOUBTFUL, "doubtful"));
     assert_int_equal(ask(store, "Lens 85mm", 85, 2.0, INFINITY), LENSPROF_ERROR_NOT_FOUND);
@@ -255,7 +260,14 @@ static void test_unknown_distance(void **state) {
         put_at(store, p);
     }
     lensprof_profile_key key = zoom_profile("Lens", 50, 2.0, LENSPROF_UNKNOWN)->key;
+    assert_ok(ask_with(store, &key, &options)); /* most photographs are taken at some metres and beyond */
+    assert_true(answered.vignetting[0].k[0] > -0.48 && answered.vignetting[0].k[0] < -0.40);
+    assert_true(how.distance_sigma > 0.015 && how.distance_sigma < 0.06);
+    assert_true(how.sigma >= sqrt(how.distance_sigma * how.distance_sigma + how.falloff_sigma * how.falloff_sigma));
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_USUAL_DISTANCE, "usual distances"));
+    options.distance_rule = LENSPROF_DISTANCE_WEAKEST;
     assert_ok(ask_with(store, &key, &options));
+    assert_true(how.distance_sigma > 0.1); /* it is on the side of doing too little */
     assert_true(answered.vignetting[0].k[0] > -0.32 && answered.vignetting[0].k[0] < -0.28);
     assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE, "weakest"));
     options.distance_rule = LENSPROF_DISTANCE_FARTHEST;
@@ -278,7 +290,7 @@ static void test_doubt_and_processing(void **state) {
     options.with_doubt = 1;
     assert_ok(ask_with(store, &key, &options));
     assert_string_equal(answered.provenance.doubt, "start values of a fit that failed");
-    key.processing = LENSPROF_PROCESSING_JPEG;
+    key.processing = LENSPROF_PROCESSING_CORRECTED;
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
     options.any_processing = 1;
     assert_ok(ask_with(store, &key, &options));
@@ -343,7 +355,10 @@ static void test_arguments(void **state) {
     assert_int_equal(lensprof_store_lookup(store, &key, NULL, &answered, &how, NULL), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_store_lookup(store, &key, &options, NULL, &how, NULL), LENSPROF_ERROR_ARGUMENT);
     assert_int_equal(lensprof_store_lookup(store, &key, &options, &answered, NULL, NULL), LENSPROF_ERROR_ARGUMENT);
-    options.distance_rule = 2;
+    options.distance_rule = 3;
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_ARGUMENT);
+    lensprof_lookup_options_init(&options);
+    options.force_falloff = 2;
     assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_ARGUMENT);
     lensprof_lookup_options_init(&options);
     options.struct_size = 1;

@@ -7,8 +7,8 @@ ValueError.
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
                    RESPONSE_SAMPLES, UNKNOWN, CameraKind, CurveKind, Direction, DistanceRule, DngForm, Encoding,
                    FlatGrid, FlatLight, Format, Free, GammaFrom, Holds, ItemKind, Layout, Loss, MapSense, Method, Pack,
-                   Processing, ProfilePrior, Projection, Reason, ResponseKind, SampleType, Sampling, Saturated, Status,
-                   StoreMode)
+                   Processing, ProfilePrior, Projection, Reason, ResponseFrom, ResponseKind, SampleType, Sampling,
+                   Saturated, Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE,
                       PAIR_DTYPE)
@@ -19,7 +19,8 @@ from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
 from .formats import (FormatInfo, FrameTime, Pto, PtoImage, alsc_read, alsc_write, curves_read, curves_write,
                       detect_format, dng_opcodes_read, dng_opcodes_write, drone_xmp_read, export_profiles,
                       format_info, import_profiles, json_read, json_write, lcp_read, lcp_write, lensfun_read,
-                      lensfun_read_cameras, lensfun_write, map_read, map_write, pcalib_read, pcalib_write, points_read, points_write,
+                      lensfun_read_cameras, lensfun_write, map_read, map_write, pcalib_read, pcalib_write,
+                      points_read, points_write,
                       radical_response_read, radical_response_write, radical_vignetting_read,
                       radical_vignetting_write, times_read, times_write)
 from .geometry import Camera
@@ -27,7 +28,7 @@ from .model import Exposure, GainGrid, Response, Vignetting, emor_table, half_di
 from .profile import CameraModel, Profile, ProfileKey, Provenance
 from .reason import Item, reason_name, reason_text
 from .sample import SampleImage, SampleOptions, sample_overlap, sample_tracks
-from .store import Lookup, LookupOptions, Store, StoreFault, StoreName, StoreRow, StoreStats, StoreSummary
+from .store import Lookup, LookupOptions, Store, StoreFault, StoreName, StoreRow, StoreStats, StoreSummary, lookup_in
 
 __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel", "CurveKind", "Direction",
@@ -37,14 +38,14 @@ __all__ = [
     "GRID_SIDE", "GainGrid", "GammaFrom", "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "Layout", "Lookup",
     "LookupOptions", "Loss", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
     "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage",
-    "RESPONSE_SAMPLES", "Reason", "Response", "ResponseKind", "SampleImage", "SampleOptions", "SampleType",
-    "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreName", "StoreRow", "StoreStats",
-    "StoreSummary", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct", "curves_read", "curves_write", "detect_format",
-    "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table", "export_profiles", "fit_flat",
-    "fit_overlap", "fit_radiance", "format_info", "half_diagonal", "import_profiles", "json_read", "json_write",
-    "layout_channels", "layout_samples", "lcp_read", "lcp_write", "lensfun_read", "lensfun_read_cameras", "lensfun_write", "map_read",
-    "map_write", "pcalib_read", "pcalib_write", "points_read", "points_write", "radical_response_read",
-    "radical_response_write", "radical_vignetting_read", "radical_vignetting_write", "reason_name", "reason_text",
-    "sample_overlap", "sample_tracks", "sample_type_bytes", "simulate", "status_name", "times_read", "times_write",
-    "transfer_rms", "version",
+    "RESPONSE_SAMPLES", "Reason", "Response", "ResponseFrom", "ResponseKind", "SampleImage", "SampleOptions",
+    "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreName", "StoreRow",
+    "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct", "curves_read",
+    "curves_write", "detect_format", "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table",
+    "export_profiles", "fit_flat", "fit_overlap", "fit_radiance", "format_info", "half_diagonal", "import_profiles",
+    "json_read", "json_write", "layout_channels", "layout_samples", "lcp_read", "lcp_write", "lensfun_read",
+    "lensfun_read_cameras", "lensfun_write", "lookup_in", "map_read", "map_write", "pcalib_read", "pcalib_write",
+    "points_read", "points_write", "radical_response_read", "radical_response_write", "radical_vignetting_read",
+    "radical_vignetting_write", "reason_name", "reason_text", "sample_overlap", "sample_tracks", "sample_type_bytes",
+    "simulate", "status_name", "times_read", "times_write", "transfer_rms", "version",
 ]

@@ -23,6 +23,7 @@ FLAT_IMAGES = 128
 FLAT_SPOTS = 32
 LOOKUP_ROWS = 24
 LOOKUP_REASONS = 8
+LOOKUP_RESPONSES = 8
 STATS_GROUPS = 8
 
 
@@ -218,6 +219,7 @@ class Reason(IntEnum):
     LOOKUP_APERTURE_BEYOND = 613
     LOOKUP_TOO_FAR = 614
     LOOKUP_CONTRADICTION = 615
+    LOOKUP_CORRECTED = 616
     LOOKUP_FOCAL_ROUNDED = 651
     LOOKUP_FOCAL_OUTSIDE = 652
     LOOKUP_APERTURE_OUTSIDE = 653
@@ -227,6 +229,11 @@ class Reason(IntEnum):
     LOOKUP_BUILT_IN = 657
     LOOKUP_WEAKEST_DISTANCE = 658
     LOOKUP_FARTHEST_DISTANCE = 659
+    LOOKUP_USUAL_DISTANCE = 660
+    LOOKUP_UNKNOWN_SENSOR = 661
+    LOOKUP_ON_OTHER_CAMERA = 662
+    LOOKUP_TYPICAL_RESPONSE = 663
+    LOOKUP_OTHER_STYLE = 664
     PRIOR_OVERRULED = 751
 
 
@@ -353,6 +360,15 @@ class DistanceRule(IntEnum):
     """lensprof_distance_rule; see lensprof/store.h."""
     WEAKEST = 0
     FARTHEST = 1
+    USUAL = 2
+
+
+class ResponseFrom(IntEnum):
+    """lensprof_response_from; see lensprof/store.h."""
+    PROFILE = 0
+    CAMERA = 1
+    KIND = 2
+    RAW = 3
 
 
 class Free(IntFlag):
@@ -906,6 +922,7 @@ class LookupOptions(Structure):
         ("distance_rule", c_uint32),
         ("with_doubt", c_uint32),
         ("any_processing", c_uint32),
+        ("force_falloff", c_uint32),
     ]
 
 
@@ -922,6 +939,18 @@ class Lookup(Structure):
         ("name_score", c_double),
         ("reason", c_char * 256),
         ("reason_code", c_uint32 * 8),
+        ("falloff_sigma", c_double),
+        ("distance_sigma", c_double),
+        ("sensor_sigma", c_double),
+        ("response_sigma", c_double),
+        ("response_from", c_uint32),
+        ("camera_kind", c_uint32),
+        ("falloff_store", c_uint32),
+        ("response_store", c_uint32),
+        ("response_rows", c_uint32),
+        ("reserved2", c_uint32),
+        ("response_id", c_int64 * 8),
+        ("response_weight", c_double * 8),
     ]
 
 
@@ -1027,6 +1056,7 @@ ENUMS = {
     "LENSPROF_HOLDS_": Holds,
     "LENSPROF_STORE_": StoreMode,
     "LENSPROF_DISTANCE_": DistanceRule,
+    "LENSPROF_RESPONSE_FROM_": ResponseFrom,
     "LENSPROF_FREE_": Free,
 }
 
@@ -1285,6 +1315,8 @@ FUNCTIONS = {
     "lensprof_lookup_init_sized": (None, [POINTER(Lookup), c_size_t]),
     "lensprof_store_lookup": (c_int, [POINTER(Store), POINTER(ProfileKey), POINTER(LookupOptions), POINTER(Profile),
                                       POINTER(Lookup), POINTER(ErrorText)]),
+    "lensprof_store_lookup_in": (c_int, [POINTER(POINTER(Store)), c_uint32, POINTER(ProfileKey), POINTER(LookupOptions),
+                                         POINTER(Profile), POINTER(Lookup), POINTER(ErrorText)]),
     "lensprof_store_begin": (c_int, [POINTER(Store), POINTER(ErrorText)]),
     "lensprof_store_commit": (c_int, [POINTER(Store), POINTER(ErrorText)]),
     "lensprof_store_rollback": (None, [POINTER(Store)]),

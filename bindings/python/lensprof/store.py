@@ -4,11 +4,11 @@ from __future__ import annotations
 import ctypes
 import os
 from ctypes import POINTER, byref, c_int64, c_uint32
-from contextlib import contextmanager
-from typing import Any, Iterator, List, Optional, Union
+from contextlib import ExitStack, contextmanager
+from typing import Any, Iterator, List, Optional, Sequence, Union
 
 from . import _abi
-from ._abi import DistanceRule, Reason, Status, StoreMode
+from ._abi import CameraKind, DistanceRule, Reason, ResponseFrom, Status, StoreMode
 from ._library import Error, Handle, check, lib
 from ._struct import Enumerated, Flag, Nested, Struct, Text, Value, Vector, integer
 from .profile import CameraModel, Profile, ProfileKey, Provenance
@@ -26,17 +26,24 @@ class StoreRow(Value, _abi.StoreRow):
 
 class LookupOptions(Struct, _abi.LookupOptions):
     """How Store.lookup searches. distance_rule: where the focus distance is unknown. with_doubt: profiles with a doubt
-    count as others do. any_processing: the key's processing does not matter."""
+    count as others do. any_processing: the key's processing does not matter. force_falloff: falloffs of uncorrected
+    pictures for keys whose processing is CORRECTED, too."""
 
     distance_rule = Enumerated(DistanceRule)
     with_doubt = Flag()
     any_processing = Flag()
+    force_falloff = Flag()
 
 
 class Lookup(Value, _abi.Lookup):
-    """How Store.lookup came to its answer: id[:rows] and weight[:rows] of the profiles used, nearest first; exact when it
-    is one of them as it is; distance to the nearest; sigma of M in the corner; name_score; reason: cautions, whose
-    sentences are `reasons`."""
+    """How Store.lookup came to its answer.
+
+    The falloff: id[:rows] and weight[:rows] of the profiles it is from, nearest first; exact when the answer is one of
+    them as it is; distance to the nearest; name_score. The response: response_from says what it is, response_id and
+    response_weight[:response_rows] the profiles; camera_kind is the kind of camera. Standard errors: sigma of M in the
+    corner, of which falloff_sigma, distance_sigma and sensor_sigma are parts, and response_sigma, of ln gamma.
+    falloff_store and response_store: which of the databases of lookup_in. reason: cautions, whose sentences are
+    `reasons`."""
 
     exact: int
     rows: int
@@ -45,6 +52,17 @@ class Lookup(Value, _abi.Lookup):
     name_score: float
     reason = Text()
     reason_code = Vector(writable=False)
+    falloff_sigma: float
+    distance_sigma: float
+    sensor_sigma: float
+    response_sigma: float
+    response_from = Enumerated(ResponseFrom)
+    camera_kind = Enumerated(CameraKind)
+    falloff_store: int
+    response_store: int
+    response_rows: int
+    response_id = Vector(writable=False)
+    response_weight = Vector(writable=False)
 
     @property
     def reasons(self) -> tuple[Reason, ...]:
@@ -150,9 +168,9 @@ class Store(Handle):
         return number.value, profile
 
     def lookup(self, key: ProfileKey, options: Optional[LookupOptions] = None) -> tuple[Profile, Lookup]:
-        """The profile for a setting, stored or predicted from those of the same lens at other settings, and how it was
-        found; lensprof.Error NOT_FOUND, with the reason and, as `lookup`, its Lookup, where there is none near
-        enough."""
+        """The profile for a setting, the lens's falloff (stored or predicted from other settings) and the camera's
+        response together, and how it was found; lensprof.Error NOT_FOUND, with the reason and, as `lookup`, its Lookup,
+        where there is none near enough."""
         profile, how = Profile(), Lookup()
         try:
             self._call(lib.lensprof_store_lookup, byref(key), byref(options or LookupOptions()), byref(profile),
@@ -287,3 +305,23 @@ class Store(Handle):
             rows = (raw * found.value)()
         size = ctypes.sizeof(raw)
         return [row.from_buffer(rows, i * size) for i in range(found.value)]
+
+
+def lookup_in(stores: Sequence[Store], key: ProfileKey,
+              options: Optional[LookupOptions] = None) -> tuple[Profile, Lookup]:
+    """Store.lookup in several databases: the falloff of the first that has one for the key, the response of the first
+    that has profiles of the camera."""
+    profile, how, error = Profile(), Lookup(), _abi.ErrorText()
+    with ExitStack() as held:
+        # one order for all threads, as each database is locked
+        used = {id(store): store for store in sorted(stores, key=id)}
+        pointers = {number: held.enter_context(store._use()) for number, store in used.items()}
+        handles = (POINTER(_abi.Store) * max(len(stores), 1))(*(pointers[id(store)] for store in stores))
+        status = lib.lensprof_store_lookup_in(handles, len(stores), byref(key), byref(options or LookupOptions()),
+                                              byref(profile), byref(how), byref(error))
+    try:
+        check(status, "lensprof_store_lookup_in failed", error)
+    except Error as failure:
+        failure.lookup = how  # type: ignore[attr-defined]
+        raise
+    return profile, how

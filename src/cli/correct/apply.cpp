@@ -255,13 +255,6 @@ Json left_out_json(const Work &work) {
     return list;
 }
 
-std::string describe_lookup(const lensprof_lookup &how) {
-    std::string text =
-        "falloff " + describe_prediction(how) + format(", standard error %.3f of M in the corner", how.sigma);
-    if (*how.reason) text += std::string("; ") + how.reason;
-    return text;
-}
-
 // Everything once, with the first picture of which it is true.
 void say_notes(const std::vector<Correction> &jobs, Streams &streams) {
     std::set<std::string> said;

@@ -78,8 +78,7 @@ void PictureModels::take_profile(const PictureMetadata &metadata, Correction &jo
 
 void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const {
     const lensprof_profile_key key = key_of(metadata);
-    lensprof_lookup_options options = options_.lookup.options();
-    options.any_processing = options_.response && !is_corrected(key, metadata);
+    const lensprof_lookup_options options = options_.lookup.options();
     lensprof_lookup how;
     lensprof_lookup_init(&how);
     lensprof_error error{};

@@ -59,6 +59,13 @@ lensprof_profile_key KeyFilter::key(uint32_t processing) const {
     return key;
 }
 
+KeyFilter KeyFilter::without_setting() const {
+    KeyFilter any = *this;
+    any.focal_ = any.aperture_ = any.distance_ = LENSPROF_UNKNOWN;
+    any.processing_.reset();
+    return any;
+}
+
 void KeyFilter::put_into(lensprof_profile_key &key) const {
     if (!maker_.empty()) set_text(key.camera_maker, sizeof key.camera_maker, maker_);
     if (!camera_.empty()) set_text(key.camera_model, sizeof key.camera_model, camera_);

@@ -43,6 +43,9 @@ public:
 
     // What was given, the rest unknown; `processing` where none was given.
     lensprof_profile_key key(uint32_t processing) const;
+    // Camera, lens, unit and style alone, at any setting and processing.
+    KeyFilter without_setting() const;
+
     bool has_processing() const { return processing_.has_value(); }
 
     // What was given in place of what the key has.

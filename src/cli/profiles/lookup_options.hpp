@@ -8,7 +8,7 @@
 namespace lensprof {
 
 struct LookupOptions {
-    uint32_t distance_rule = LENSPROF_DISTANCE_WEAKEST;
+    uint32_t distance_rule = LENSPROF_DISTANCE_USUAL;
     double crop_factor = LENSPROF_UNKNOWN;
     bool doubtful = false;
 

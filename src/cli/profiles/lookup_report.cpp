@@ -12,13 +12,61 @@ Json reason_codes_json(const lensprof_lookup &how) {
     return codes;
 }
 
+namespace {
+
+const char *response_from_name(uint32_t from) {
+    static const char *const names[] = {"profile", "camera", "kind", "raw"};
+    return from <= LENSPROF_RESPONSE_FROM_RAW ? names[from] : "unknown";
+}
+
+Json known(double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(value); }
+
+Json response_json(const lensprof_lookup &how) {
+    Json rows = Json::array();
+    for (uint32_t i = 0; i < how.response_rows; i++)
+        rows.push_back({{"id", how.response_id[i]}, {"weight", how.response_weight[i]}});
+    return {{"from", response_from_name(how.response_from)},
+            {"camera_kind", camera_kind_name(how.camera_kind)},
+            {"rows", rows},
+            {"database", how.response_store},
+            {"gamma_sigma", known(how.response_sigma)}};
+}
+
+std::string describe_response(const lensprof_lookup &how) {
+    switch (how.response_from) {
+    case LENSPROF_RESPONSE_FROM_CAMERA:
+        return format("of the camera, from %s, \u00b1 %.1f %% in gamma", counted(how.response_rows, "profile").c_str(),
+                      100.0 * how.response_sigma);
+    case LENSPROF_RESPONSE_FROM_KIND:
+        return format("typical of its kind (%s), \u00b1 %.1f %% in gamma", camera_kind_name(how.camera_kind),
+                      100.0 * how.response_sigma);
+    case LENSPROF_RESPONSE_FROM_RAW: return "linear";
+    default: return "of the profile";
+    }
+}
+
+// What a standard error is made of, but for the falloff's own.
+std::string describe_parts(const lensprof_lookup &how) {
+    std::string text;
+    if (how.distance_sigma > 0.0) text += format(", %.3f by the distance", how.distance_sigma);
+    if (how.sensor_sigma > 0.0) text += format(", %.3f by the sensor's size", how.sensor_sigma);
+    return text.empty() ? text : " (falloff " + format("%.3f", how.falloff_sigma) + text + ")";
+}
+
+}  // namespace
+
 Json lookup_json(const lensprof_lookup &how) {
     Json rows = Json::array();
     for (uint32_t i = 0; i < how.rows; i++) rows.push_back({{"id", how.id[i]}, {"weight", how.weight[i]}});
     return {{"exact", how.exact != 0},
             {"rows", rows},
+            {"database", how.falloff_store},
             {"distance", how.distance},
-            {"sigma", how.sigma == LENSPROF_UNKNOWN ? Json() : Json(how.sigma)},
+            {"sigma", known(how.sigma)},
+            {"falloff_sigma", known(how.falloff_sigma)},
+            {"distance_sigma", how.distance_sigma},
+            {"sensor_sigma", how.sensor_sigma},
+            {"response", response_json(how)},
             {"name_score", how.name_score},
             {"reason", how.reason},
             {"reason_codes", reason_codes_json(how)}};
@@ -29,12 +77,20 @@ std::string describe_prediction(const lensprof_lookup &how) {
                   counted(how.rows, "profile").c_str(), static_cast<long long>(how.id[0]), how.distance);
 }
 
+std::string describe_lookup(const lensprof_lookup &how) {
+    std::string text = "falloff " + describe_prediction(how) + "; response " + describe_response(how)
+                       + format("; standard error %.3f of M in the corner", how.sigma) + describe_parts(how);
+    if (*how.reason) text += std::string("; ") + how.reason;
+    return text;
+}
+
 void print_lookup(const lensprof_lookup &how, std::ostream &out) {
     if (how.exact)
         out << "stored    as profile " << how.id[0] << "\n";
     else
-        out << describe_prediction(how) << "\n";
-    if (how.sigma != LENSPROF_UNKNOWN) out << format("sigma     %.3f of M in the corner\n", how.sigma);
+        out << "falloff   " << describe_prediction(how) << "\nresponse  " << describe_response(how) << "\n";
+    if (how.sigma != LENSPROF_UNKNOWN)
+        out << format("sigma     %.3f of M in the corner", how.sigma) << describe_parts(how) << "\n";
     if (how.name_score < 1.0) out << format("name      matched with score %.1f\n", how.name_score);
     if (*how.reason) out << "mind      " << how.reason << "\n";
 }

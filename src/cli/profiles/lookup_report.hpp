@@ -14,6 +14,9 @@ Json reason_codes_json(const lensprof_lookup &how);
 // "predicted from 6 profiles of this lens, ..."
 std::string describe_prediction(const lensprof_lookup &how);
 
+// "falloff predicted from ...; response ...; standard error ...", and the cautions.
+std::string describe_lookup(const lensprof_lookup &how);
+
 void print_lookup(const lensprof_lookup &how, std::ostream &out);
 
 }  // namespace lensprof

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/known_range.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
@@ -21,20 +22,6 @@ struct Options {
     std::string db;
     bool json = false;
 };
-
-// "24-70", or "50" where both ends are the same, or "-" where none is known.
-std::string range_text(const double range[2]) {
-    if (range[0] == LENSPROF_UNKNOWN) return "-";
-    return range[0] == range[1] ? format("%.4g", range[0]) : format("%.4g-%.4g", range[0], range[1]);
-}
-
-// [24, 70], or null; infinity as in keys.
-Json range_json(const double range[2]) {
-    if (range[0] == LENSPROF_UNKNOWN) return nullptr;
-    Json ends = Json::array();
-    for (int end = 0; end < 2; end++) ends.push_back(std::isinf(range[end]) ? Json("infinity") : Json(range[end]));
-    return ends;
-}
 
 std::string states_text(const lensprof_store_summary &row) {
     std::string text;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/profiles/key_filter.hpp"
+#include "cli/profiles/known_range.hpp"
 #include "cli/profiles/lookup_options.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
@@ -30,7 +31,9 @@ void declare(Command &command, Options &o) {
     declare_json(command, o.json);
     command.footer(
         "When no profile is stored for the setting, the falloff is predicted from those of the same lens at other\n"
-        "settings; the answer says from which, how far away they are, and how sure it is.");
+        "settings; the answer says from which, how far away they are, and how sure it is. The response is the camera's,\n"
+        "by its profiles with any lens, or the typical one of its kind. A setting that leaves several profiles open is\n"
+        "answered by the range of what is known.");
 }
 
 // Profiles of another sensor are those of a lookup, which converts them.
@@ -48,32 +51,59 @@ void leave_out_doubtful(std::vector<lensprof_store_row> &rows) {
     rows.erase(std::remove_if(rows.begin(), rows.end(), has_doubt), rows.end());
 }
 
-// The newest of the profiles that match.
-void answer_stored(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows,
-                   Streams &streams) {
-    int64_t newest = 0;
-    for (const auto &row : rows) newest = std::max(newest, row.id);
+std::vector<lensprof_store_row> rows_that_count(const Options &o, std::vector<lensprof_store_row> rows) {
+    if (o.lookup.crop_factor != LENSPROF_UNKNOWN) keep_sensor(o.lookup.crop_factor, rows);
+    if (!o.lookup.doubtful) leave_out_doubtful(rows);
+    return rows;
+}
+
+// The one profile that matches.
+void answer_stored(const Options &o, lensprof_store *store, int64_t id, Streams &streams) {
     lensprof_error error{};
     auto profile = new_profile();
-    check(lensprof_store_get(store, newest, profile.get(), &error), store_path(o.db), &error);
+    check(lensprof_store_get(store, id, profile.get(), &error), store_path(o.db), &error);
     if (o.json) {
-        Json object = profile_json(newest, *profile);
+        Json object = profile_json(id, *profile);
         object["found"] = true;
-        object["matches"] = rows.size();
+        object["matches"] = 1;
         print_json(object, streams.out);
         return;
     }
-    print_profile(newest, *profile, streams.out);
-    if (rows.size() > 1)
-        streams.out << rows.size() << " profiles match; this is the newest. Give more of the setting to choose.\n";
+    print_profile(id, *profile, streams.out);
 }
 
-// Of these the newest that matches will do.
-bool is_open(const lensprof_profile_key &key) {
-    return !*key.lens || key.focal_mm == LENSPROF_UNKNOWN || key.aperture == LENSPROF_UNKNOWN;
+// What is known of the lens or camera, where the setting leaves open which of it is meant.
+void answer_range(const Options &o, lensprof_store *store, const std::string &reason, Streams &streams) {
+    KnownRange known;
+    const auto rows = rows_that_count(o, o.filter.without_setting().matching_rows(store, o.db));
+    auto profile = new_profile();
+    for (const auto &row : rows) {
+        lensprof_error error{};
+        check(lensprof_store_get(store, row.id, profile.get(), &error), store_path(o.db), &error);
+        known.add(*profile);
+    }
+    if (o.json) {
+        print_json(Json{{"schema", 1},
+                        {"id", nullptr},
+                        {"found", true},
+                        {"matches", rows.size()},
+                        {"reason", reason},
+                        {"range", known_range_json(known)}},
+                   streams.out);
+        return;
+    }
+    print_known_range(known, streams.out);
+    streams.out << rows.size() << " profiles match: " << reason << "\n";
 }
 
-// The profile for the setting: stored, or between what is stored. False where the setting leaves open which of `rows`.
+// More than one profile may be meant.
+bool is_open(const lensprof_lookup &how) {
+    const uint32_t reason = how.reason_code[0];
+    return reason == LENSPROF_REASON_LOOKUP_FOCAL_MISSING || reason == LENSPROF_REASON_LOOKUP_APERTURE_MISSING
+           || reason == LENSPROF_REASON_LOOKUP_SEVERAL_LENSES;
+}
+
+// The profile for the setting: stored, or between what is stored. False where the key leaves open which is meant.
 bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows,
                    lensprof_lookup &how, Streams &streams) {
     lensprof_lookup_options options = o.lookup.options();
@@ -83,7 +113,7 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
     lensprof_error error{};
     auto profile = new_profile();
     const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
-    if (status == LENSPROF_ERROR_NOT_FOUND && !rows.empty() && is_open(key)) return false;
+    if (status == LENSPROF_ERROR_NOT_FOUND && is_open(how)) return false;
     if (status == LENSPROF_ERROR_NOT_FOUND)
         throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db) + "; nor can it be predicted: " + how.reason);
     check(status, store_path(o.db), &error);
@@ -102,11 +132,11 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
 
 void answer(const Options &o, lensprof_lookup &how, Streams &streams) {
     Store store = open_store(o.db, LENSPROF_STORE_READ);
-    auto rows = o.filter.rows(store.get(), o.db);
-    if (o.lookup.crop_factor != LENSPROF_UNKNOWN) keep_sensor(o.lookup.crop_factor, rows);
-    if (!o.lookup.doubtful) leave_out_doubtful(rows);
-    if (rows.size() == 1 || !answer_lookup(o, store.get(), rows, how, streams))
-        answer_stored(o, store.get(), rows, streams);
+    const auto rows = rows_that_count(o, o.filter.rows(store.get(), o.db));
+    if (rows.size() == 1)
+        answer_stored(o, store.get(), rows[0].id, streams);
+    else if (!answer_lookup(o, store.get(), rows, how, streams))
+        answer_range(o, store.get(), how.reason, streams);
 }
 
 int run(const Options &o, Streams &streams) {

@@ -110,8 +110,8 @@ const char *gamma_name(uint32_t from) {
 }
 
 const char *camera_kind_name(uint32_t kind) {
-    static const char *const names[] = {"any", "film", "digital"};
-    return kind <= LENSPROF_CAMERA_DIGITAL ? names[kind] : "unknown";
+    static const char *const names[] = {"any", "film", "digital", "camera", "phone", "linear"};
+    return kind <= LENSPROF_CAMERA_LINEAR ? names[kind] : "unknown";
 }
 
 const char *processing_name(uint32_t processing) {

@@ -14,8 +14,8 @@
 
 static const char *const rows_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(
     "SELECT id, camera_model, lens, unit, crop_factor, focal_mm, aperture, distance_m, color_temperature_k, curve, k1, k2, k3,"
-    " vignetting_curves, covariance_size, processing FROM profiles JOIN vignettings ON profile_id = id"
-    " WHERE lens_name = ?1 AND (?2 OR doubt = '') AND (?3 OR processing = ?4) ORDER BY id, curve");
+    " vignetting_curves, covariance_size, processing, style FROM profiles JOIN vignettings ON profile_id = id"
+    " WHERE lens_name = ?1 AND (?2 OR doubt = '') AND (?3 OR (processing = 'corrected') = ?4) ORDER BY id, curve");
 
 static lp_candidate *add(lp_candidates *found) {
     if (found->count == found->room) {
@@ -58,8 +58,15 @@ static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r) {
     r->curves = lp_read_integer(reader, 1, 3);
     r->covariance_size = lp_read_integer(reader, 0, LENSPROF_COVARIANCE_MAX);
     r->key.processing = lp_read_name(reader, lp_store_processings, LP_STORE_PROCESSINGS);
+    lp_read_text(reader, r->key.style, sizeof r->key.style);
     if (!reader->bad && lensprof_profile_key_validate(&r->key) != LENSPROF_OK) reader->bad = "key";
     return !reader->bad;
+}
+
+/* 1: the same picture style; 0: one of them is not known. */
+int lp_fits_style(const char *own, const char *asked) {
+    if (!lp_is_known(own) || !lp_is_known(asked)) return 0;
+    return lp_name_score(own, asked) >= 0.9 ? 1 : -1;
 }
 
 bool lp_is_known(const char *text) { return text[strspn(text, " ")] != 0; }
@@ -84,18 +91,22 @@ static void compare_names(const row *r, const lensprof_profile_key *key, lp_cand
 }
 
 /* Takes a row that fits the key; its first curve comes first. False without memory. */
-static bool take_row(const row *r, const lensprof_profile_key *key, lp_candidates *found) {
+static bool take_row(const row *r, const lensprof_profile_key *key, const lensprof_lookup_options *o,
+                     lp_candidates *found) {
     lp_candidate *one = found->count ? &found->all[found->count - 1] : NULL;
     if (!one || one->node.id != r->id) {
         compare_names(r, key, found);
         const int unit = found->any_unit ? 0 : fits(r->key.unit, key->unit);
         const int camera = found->by_table ? 1 : found->last_camera; /* as the table says */
-        if (unit < 0 || (camera < 0 && *key->camera_model) || r->curve != 0) return true;
+        if (unit < 0 || r->curve != 0) return true;
         if ((!lp_is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
         if (!(one = add(found))) return false;
         found->name_score = fmax(found->name_score, found->last_score);
         one->is_fixed = !lp_is_known(key->lens) || !lp_is_known(r->key.lens) || found->by_camera;
-        one->of_unit = unit, one->of_camera = camera > 0, one->has_covariance = r->covariance_size > 0;
+        one->of_unit = unit, one->of_camera = *key->camera_model ? camera : 0;
+        one->has_covariance = r->covariance_size > 0;
+        one->has_own_response = (o->any_processing || r->key.processing == key->processing) && one->of_camera >= 0
+                                && lp_fits_style(r->key.style, key->style) >= 0;
         one->processing = r->key.processing;
         one->crop = r->key.crop_factor;
         one->node.id = r->id;
@@ -117,7 +128,7 @@ static lensprof_status read_rows(lensprof_store *store, const char *name, const 
     lp_bind_text(&binder, name);
     lp_bind_integer(&binder, o->with_doubt);
     lp_bind_integer(&binder, o->any_processing);
-    lp_bind_text(&binder, lp_store_processings[key->processing]);
+    lp_bind_integer(&binder, key->processing == LENSPROF_PROCESSING_CORRECTED && !o->force_falloff);
     int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
     while (rc == SQLITE_ROW && status == LENSPROF_OK) {
         lp_store_reader reader;
@@ -125,7 +136,7 @@ static lensprof_status read_rows(lensprof_store *store, const char *name, const 
         if (!read_row(binder.statement, &reader, &r))
             status = lp_store_fail_profile(store, r.id, reader.bad, error);
         else
-            rc = take_row(&r, key, found) ? sqlite3_step(binder.statement) : SQLITE_NOMEM;
+            rc = take_row(&r, key, o, found) ? sqlite3_step(binder.statement) : SQLITE_NOMEM;
     }
     if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, binder.statement);

@@ -8,8 +8,11 @@
 /* A row of the lens: how well it fits the camera, and its node. */
 typedef struct lp_candidate {
     lp_falloff_node node;
-    int of_unit, of_camera, has_covariance;
-    int is_fixed; /* of a camera whose lens has no name of its own: it cannot be changed */
+    int of_unit;   /* 1: of the key's; 0: of any */
+    int of_camera; /* 1: of the key's; 0: of any; -1: of another */
+    int has_covariance;
+    int has_own_response; /* the row's response is that of the key's pictures, too: same camera, processing and style */
+    int is_fixed;         /* of a camera whose lens has no name of its own: it cannot be changed */
     uint32_t processing;
     double crop;
     double color_temperature_k; /* LENSPROF_UNKNOWN = any */
@@ -32,9 +35,14 @@ typedef struct lp_candidates {
 /* Not blanks alone. */
 bool lp_is_known(const char *text);
 
-/* All rows of the lens under the first of its names that any has, else of the lens with the same words; without a lens
- * those of the camera, its own or those of the only lens it has; these, too, where no lens has the name and the
- * camera's is named after it, as it is built in. Within a transaction. */
+/* Picture styles: 1 the same, 0 one of them is not known, -1 different ones. */
+int lp_fits_style(const char *own, const char *asked);
+
+/* Light falls off the same whatever is made of it: rows of raw and rendered pictures serve both, those of pictures that
+ * the camera has corrected serve such ones alone, unless options->force_falloff. All rows of the lens under the first
+ * of its names that any has, else of the lens with the same words; without a lens those of the camera, its own or those
+ * of the only lens it has; these, too, where no lens has the name and the camera's is named after it, as it is built
+ * in. Within a transaction. */
 lensprof_status lp_find_candidates(lensprof_store *store, const lensprof_profile_key *key,
                                    const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error);
 

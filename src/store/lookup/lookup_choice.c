@@ -49,25 +49,32 @@ static int has_several_sensors(const lp_candidates *found) {
     return high > low * (1.0 + SAME_SENSOR);
 }
 
-/* Keeps the best group; returns how many there are. */
-static uint32_t keep_best(lp_candidates *found, const lensprof_profile_key *key) {
-    double best = -1.0;
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < found->count; i++)
-        if (is_sensor_covered(&found->all[i], key)) best = fmax(best, rank_of(&found->all[i], key));
-    for (uint32_t i = 0; i < found->count; i++)
-        if (is_sensor_covered(&found->all[i], key) && rank_of(&found->all[i], key) >= best - SAME_SENSOR)
-            found->all[kept++] = found->all[i];
-    return found->count = kept;
+/* Of those whose rank is below `below` the best group, to group[]; returns its rank, -INFINITY for none. */
+static double take_best(const lp_candidates *found, const lensprof_profile_key *key, double below,
+                        lp_candidates *group) {
+    double best = -INFINITY;
+    group->count = 0;
+    for (uint32_t i = 0; i < found->count; i++) {
+        const double rank = rank_of(&found->all[i], key);
+        if (is_sensor_covered(&found->all[i], key) && rank < below) best = fmax(best, rank);
+    }
+    for (uint32_t i = 0; i < found->count && best > -INFINITY; i++) {
+        const double rank = rank_of(&found->all[i], key);
+        if (is_sensor_covered(&found->all[i], key) && rank < below && rank >= best - SAME_SENSOR)
+            group->all[group->count++] = found->all[i];
+    }
+    return best;
 }
 
-/* Curves of pictures that were processed differently are others: where any will do, those of the newest profile, which
- * is the last. */
-static void keep_one_processing(lp_candidates *found) {
-    const uint32_t processing = found->all[found->count - 1].processing;
+static bool is_corrected(const lp_candidate *c) { return c->processing == LENSPROF_PROCESSING_CORRECTED; }
+
+/* What a camera has corrected has another falloff: where any processing will do, that of the newest profile, which is
+ * the last. */
+static void keep_one_falloff(lp_candidates *found) {
+    const bool corrected = is_corrected(&found->all[found->count - 1]);
     uint32_t kept = 0;
     for (uint32_t i = 0; i < found->count; i++)
-        if (found->all[i].processing == processing) found->all[kept++] = found->all[i];
+        if (is_corrected(&found->all[i]) == corrected) found->all[kept++] = found->all[i];
     found->count = kept;
 }
 
@@ -93,18 +100,20 @@ static bool keep_nearest_light(lp_candidates *found, const lensprof_profile_key 
     return nearest == INFINITY || nearest <= 1e-6 * asked;
 }
 
-/* The candidates that count. Returns NONE, or why there are none. */
-lensprof_reason lp_choose_candidates(lp_candidates *found, const lensprof_profile_key *key, lensprof_lookup *lookup) {
+double lp_choose_candidates(const lp_candidates *found, const lensprof_profile_key *key, double below,
+                            lp_candidates *group, lensprof_lookup *lookup) {
+    const double rank = take_best(found, key, below, group);
+    if (!group->count) return rank;
     const int several = key->crop_factor == LENSPROF_UNKNOWN && has_several_sensors(found);
-    if (!keep_best(found, key)) return LENSPROF_REASON_LOOKUP_SMALLER_SENSOR;
-    keep_one_processing(found);
-    if (!keep_nearest_light(found, key)) lp_mind(lookup, LENSPROF_REASON_LOOKUP_OTHER_LIGHT, NULL);
+    keep_one_falloff(group);
+    if (!keep_nearest_light(group, key)) lp_mind(lookup, LENSPROF_REASON_LOOKUP_OTHER_LIGHT, NULL);
     if (several) lp_mind(lookup, LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR, NULL);
+    if (group->all[0].of_camera < 0) lp_mind(lookup, LENSPROF_REASON_LOOKUP_ON_OTHER_CAMERA, NULL);
     if (found->by_words)
         lp_mind(lookup, LENSPROF_REASON_LOOKUP_BY_WORDS, found->last.lens);
     else if (found->by_camera)
         lp_mind(lookup, LENSPROF_REASON_LOOKUP_BUILT_IN, found->last.lens);
-    return LENSPROF_REASON_NONE;
+    return rank - SAME_SENSOR;
 }
 
 /* ---- at which setting ---- */
@@ -190,15 +199,16 @@ void lp_round_focal(const lp_candidates *found, lp_falloff_node *at, lensprof_lo
     lp_mind(lookup, LENSPROF_REASON_LOOKUP_FOCAL_ROUNDED, NULL);
 }
 
-/* The newest row that is at the setting, or -1. */
+/* The newest row that is at the setting and has the pictures' response, or -1. */
 int64_t lp_find_exact(const lp_candidates *found, const lp_falloff_node *at, const lensprof_profile_key *key) {
     int64_t newest = -1;
     for (uint32_t i = 0; i < found->count; i++) {
         const lp_candidate *c = &found->all[i];
         const int same_sensor = c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN
                                 || fabs(c->crop / key->crop_factor - 1.0) <= SAME_SENSOR;
-        if (same_sensor && lp_is_same(c->node.focal_mm, at->focal_mm) && lp_is_same(c->node.aperture, at->aperture)
-            && lp_is_same(c->node.distance_m, at->distance_m) && c->node.id > newest)
+        if (same_sensor && c->has_own_response && lp_is_same(c->node.focal_mm, at->focal_mm)
+            && lp_is_same(c->node.aperture, at->aperture) && lp_is_same(c->node.distance_m, at->distance_m)
+            && c->node.id > newest)
             newest = c->node.id;
     }
     return newest;

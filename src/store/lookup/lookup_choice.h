@@ -12,8 +12,11 @@ void lp_mind(lensprof_lookup *lookup, lensprof_reason reason, const char *name);
 /* Two numbers of settings. */
 int lp_is_same(double a, double b);
 
-/* Keeps the candidates that count. Returns NONE, or why there are none. */
-lensprof_reason lp_choose_candidates(lp_candidates *found, const lensprof_profile_key *key, lensprof_lookup *lookup);
+/* The best of the candidates whose rank is below `below` (INFINITY: of all), to group->all, which has room for all of
+ * them; its other members are the caller's. Returns where the next best group begins: `below` of the next call.
+ * group->count is 0 where none is left. */
+double lp_choose_candidates(const lp_candidates *found, const lensprof_profile_key *key, double below,
+                            lp_candidates *group, lensprof_lookup *lookup);
 
 /* Takes the stored focal length of a fixed lens for one that is another rounding of it. */
 void lp_round_focal(const lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup);
@@ -21,7 +24,7 @@ void lp_round_focal(const lp_candidates *found, lp_falloff_node *at, lensprof_lo
 /* Focal length and aperture, where they are not given and the same everywhere. Returns NONE, or why not. */
 lensprof_reason lp_settle(lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup);
 
-/* The newest row that is at the setting, or -1. */
+/* The newest row that is at the setting and has the pictures' response, or -1. */
 int64_t lp_find_exact(const lp_candidates *found, const lp_falloff_node *at, const lensprof_profile_key *key);
 
 #endif

@@ -51,19 +51,22 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_find(lensprof_stor
 
 /* What stands for a focus distance that is not known. */
 typedef enum lensprof_distance_rule {
-    LENSPROF_DISTANCE_WEAKEST = 0, /* of the falloffs at all stored distances the weakest, radius by radius: what is
-                                      taken out was there, whatever the distance */
-    LENSPROF_DISTANCE_FARTHEST = 1 /* that at the farthest one */
+    LENSPROF_DISTANCE_WEAKEST = 0,  /* of the falloffs at all stored distances the weakest, radius by radius: what is
+                                       taken out was there, whatever the distance */
+    LENSPROF_DISTANCE_FARTHEST = 1, /* that at the farthest one */
+    LENSPROF_DISTANCE_USUAL = 2     /* the mean over the distances of most photographs (docs/database.md) */
 } lensprof_distance_rule;
 
 typedef struct lensprof_lookup_options {
     uint32_t struct_size;
     uint32_t distance_rule;  /* lensprof_distance_rule */
     uint32_t with_doubt;     /* 1: profiles with a doubt (provenance) count as others do; 0: not at all */
-    uint32_t any_processing; /* 1: the key's processing does not matter; 0: it must be the same */
+    uint32_t any_processing; /* 1: the key's processing does not matter; 0: see lensprof_store_lookup */
+    uint32_t
+        force_falloff; /* 1: falloffs of uncorrected pictures for keys whose processing is CORRECTED, too; 0: not */
 } lensprof_lookup_options;
 
-/* WEAKEST, without doubt, the same processing. */
+/* USUAL, without doubt, falloffs of the key's processing. */
 LENSPROF_API void lensprof_lookup_options_init_sized(lensprof_lookup_options *options, size_t size);
 static inline void lensprof_lookup_options_init(lensprof_lookup_options *options) {
     lensprof_lookup_options_init_sized(options, sizeof *options);
@@ -71,19 +74,28 @@ static inline void lensprof_lookup_options_init(lensprof_lookup_options *options
 
 #define LENSPROF_LOOKUP_ROWS 24
 #define LENSPROF_LOOKUP_REASONS 8
+#define LENSPROF_LOOKUP_RESPONSES 8
 
-/* How a lookup came to its answer. */
+/* Where the response of a lookup's answer is from. */
+typedef enum lensprof_response_from {
+    LENSPROF_RESPONSE_FROM_PROFILE = 0, /* the stored profile that is the answer */
+    LENSPROF_RESPONSE_FROM_CAMERA = 1,  /* profiles of the camera, whatever their lens: their weighted mean */
+    LENSPROF_RESPONSE_FROM_KIND = 2,    /* the typical response of the kind of camera (model.h) */
+    LENSPROF_RESPONSE_FROM_RAW = 3      /* linear, as sensor data are */
+} lensprof_response_from;
+
+/* How a lookup came to its answer. Standard errors are 68 % bands; those of M are of its value in the corner. */
 typedef struct lensprof_lookup {
     uint32_t struct_size;
     uint32_t exact;                      /* 1: a stored profile, as it is */
-    uint32_t rows;                       /* profiles that were used, 1..LENSPROF_LOOKUP_ROWS */
+    uint32_t rows;                       /* profiles the falloff is from, 1..LENSPROF_LOOKUP_ROWS */
     uint32_t reserved;                   /* 0 */
     int64_t id[LENSPROF_LOOKUP_ROWS];    /* of them, nearest first */
     double weight[LENSPROF_LOOKUP_ROWS]; /* of each; they add up to about 1, and may be below 0 */
-    double distance;   /* from the setting to the nearest one; 0 = the same, refused beyond 0.5: two stops from wide
-                          open, a factor 2 in focal length, 0.4 m focus against infinity */
-    double sigma;      /* standard error of M in the corner, a 68 % band, of the worst curve; LENSPROF_UNKNOWN for an
-                          exact one without covariance */
+    double distance; /* from the setting to the nearest one; 0 = the same, refused beyond 0.5: two stops from wide
+                        open, a factor 2 in focal length, 0.4 m focus against infinity */
+    double sigma;    /* standard error of M, of the worst curve: the four below together; LENSPROF_UNKNOWN for an exact
+                        one without covariance */
     double name_score; /* of the lens's name (of the camera's, where no lens was asked for): 1 the same but for case and
                           outer blanks, 0.9 but for signs and blanks, 0.8 but for a maker in front or its spelling, or
                           a camera's name in another country; 0.6 the same words in another order or form, all
@@ -93,25 +105,52 @@ typedef struct lensprof_lookup {
     uint32_t reason_code[LENSPROF_LOOKUP_REASONS]; /* lensprof_reason of each sentence, in their order, also of those
                                                       that `reason` has no room for; NONE after the last. The numbers
                                                       are the other members */
+    double falloff_sigma;    /* standard error of M by the profiles and by how far away they are */
+    double distance_sigma;   /* by the focus distance, where it is not known; else 0 */
+    double sensor_sigma;     /* by the sensor's size, where it is not known; else 0 */
+    double response_sigma;   /* standard error of ln gamma of the response; in M it is M |ln M| times that.
+                                LENSPROF_UNKNOWN for an exact one of which it is not known */
+    uint32_t response_from;  /* lensprof_response_from */
+    uint32_t camera_kind;    /* lensprof_camera_kind of the key */
+    uint32_t falloff_store;  /* index of the database that the falloff is from */
+    uint32_t response_store; /* and of that of the response, where it is from profiles */
+    uint32_t response_rows;  /* profiles the response is from, 0..LENSPROF_LOOKUP_RESPONSES */
+    uint32_t reserved2;      /* 0 */
+    int64_t response_id[LENSPROF_LOOKUP_RESPONSES];
+    double response_weight[LENSPROF_LOOKUP_RESPONSES]; /* of each; they add up to 1 */
 } lensprof_lookup;
 
 /* All zero. */
 LENSPROF_API void lensprof_lookup_init_sized(lensprof_lookup *lookup, size_t size);
 static inline void lensprof_lookup_init(lensprof_lookup *lookup) { lensprof_lookup_init_sized(lookup, sizeof *lookup); }
 
-/* The profile for a setting: a stored one, or the falloff predicted from those of the same lens at other settings
- * (docs/database.md says how). The lens's name decides, then the camera, unit and sensor - without a lens the camera,
- * whose profiles without a lens, or of its only lens, count (their focal lengths to 2 % or 0.1 mm, for such cameras
- * round them); profiles of the key's unit before those of any, of the key's camera before those of a lens alone; of
- * these, those of the smallest sensor that is not smaller than the key's, their radii rescaled, and of the smallest of
- * all where the key's is not known. A predicted profile has key `key`, the response of the nearest profile, no gain
- * grid, and provenance method "lookup". Nothing is written. NOT_FOUND, with *lookup filled as far as it goes, where
- * there is no such lens, or nothing near enough; profile is then untouched. Both are initialised ones. */
+/* The profile for a setting, composed of two kinds of knowledge (docs/database.md says how).
+ * The falloff is the lens's: that of a stored profile, or predicted from those of the same lens at other settings; raw
+ * or rendered, light falls off the same, but what the camera has corrected (CORRECTED) is only like itself. The lens's
+ * name decides, then the unit, camera and sensor - without a lens the camera, whose profiles without a lens, or of its
+ * only lens, count (their focal lengths to 2 % or 0.1 mm, for such cameras round them). Profiles of the key's unit come
+ * before those of any, of its camera before those of a lens alone and of other cameras; of these, those of the smallest
+ * sensor that is not smaller than the key's, their radii rescaled, and of the smallest of all where the key's is not
+ * known. Where the best have none near the setting, the next best serve.
+ * The response is the camera's: linear for RAW, else the mean of the responses of the camera's profiles of rendered
+ * pictures, of the key's picture style before those of none, whatever the lens; where there are none, the typical one
+ * of the kind of camera. A profile that is stored for all of it is the answer as it is. Else it has key `key`, no gain
+ * grid, provenance method "lookup", and a covariance of both parts. Nothing is written. NOT_FOUND, with *lookup filled
+ * as far as it goes, where there is no such lens, or nothing near enough; profile is then untouched. Both are
+ * initialised ones. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup(lensprof_store *store,
                                                                      const lensprof_profile_key *key,
                                                                      const lensprof_lookup_options *options,
                                                                      lensprof_profile *profile, lensprof_lookup *lookup,
                                                                      lensprof_error *error);
+
+/* The same in stores[count], count > 0: the falloff from the first that has one for the key, the response from the
+ * first that has profiles of the camera. The reason of a refusal is that of the first that knows the lens. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_store_lookup_in(lensprof_store *const *stores, uint32_t count,
+                                                                        const lensprof_profile_key *key,
+                                                                        const lensprof_lookup_options *options,
+                                                                        lensprof_profile *profile,
+                                                                        lensprof_lookup *lookup, lensprof_error *error);
 
 /* From here to commit or rollback all calls on this handle are one transaction, which makes thousands of them fast.
  * Closing the store rolls back. Errors: READ_ONLY, BUSY, ... ; ARGUMENT for a second begin, or an end without one. */

@@ -1,0 +1,275 @@
+/* The falloff of a lens at a setting that need not be stored. */
+#include "store/lookup/lookup_falloff.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/covariance.h"
+#include "store/lookup/lookup_distance.h"
+
+/* Where the sensor's size is not known, the other one that it may have: a lens for 24 x 36 mm on a sensor half as
+ * large, or, for smaller sensors, what their makers' sizes differ by. Ratios of crop factors. */
+#define FULL_FRAME 1.4
+#define SMALLER_THAN_FULL_FRAME 1.5
+#define SMALLER_THAN_OTHERS 1.1
+
+_Static_assert(LP_NEIGHBOURS == LENSPROF_LOOKUP_ROWS, "a lookup names all that a prediction uses");
+
+lensprof_status lp_refuse(lensprof_store *store, lensprof_lookup *lookup, lensprof_reason reason,
+                          lensprof_error *error) {
+    const char *text = lensprof_reason_text(reason);
+    memset(lookup->reason_code, 0, sizeof lookup->reason_code);
+    lookup->reason_code[0] = reason;
+    snprintf(lookup->reason, sizeof lookup->reason, "%s", text);
+    return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile for this setting", text, error);
+}
+
+/* ---- the rows as nodes ---- */
+
+/* k in half diagonals of the key's sensor: r there is r times the ratio here. */
+static void rescale(lp_candidate *c, const lensprof_profile_key *key) {
+    if (c->crop == LENSPROF_UNKNOWN || key->crop_factor == LENSPROF_UNKNOWN) return;
+    const double ratio2 = (c->crop / key->crop_factor) * (c->crop / key->crop_factor);
+    for (int curve = 0; curve < 3; curve++) {
+        double scale = 1.0;
+        for (int n = 0; n < 3; n++) c->node.k[curve][n] *= scale *= ratio2;
+    }
+}
+
+static bool is_same_setting(const lp_falloff_node *a, const lp_falloff_node *b) {
+    return lp_is_same(a->focal_mm, b->focal_mm) && lp_is_same(a->aperture, b->aperture)
+           && lp_is_same(a->distance_m, b->distance_m);
+}
+
+/* Whether `other` stands for `one`, of the same setting: profiles of the key's processing before others, then the
+ * newest, as everywhere: it may hold the others, or have overruled them. */
+static bool stands_for(const lp_candidate *other, const lp_candidate *one, uint32_t processing) {
+    const bool own = one->processing == processing, others = other->processing == processing;
+    if (!is_same_setting(&other->node, &one->node)) return false;
+    return own != others ? others : other->node.id > one->node.id;
+}
+
+/* One node for each setting; returns how many. */
+static uint32_t take_nodes(const lp_candidates *group, uint32_t processing, lp_falloff_node *nodes) {
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < group->count; i++) {
+        bool is_replaced = false;
+        for (uint32_t j = 0; j < group->count && !is_replaced; j++)
+            is_replaced = stands_for(&group->all[j], &group->all[i], processing);
+        if (!is_replaced) nodes[kept++] = group->all[i].node;
+    }
+    for (uint32_t i = 0; i < kept; i++)
+        if (nodes[i].distance_m == LENSPROF_UNKNOWN) nodes[i].distance_m = INFINITY;
+    return lp_drop_repeated(nodes, kept);
+}
+
+/* Variance of M in the corner, 0 = not known, without the rest of the profile, which takes longer to
+ * read. */
+static lensprof_status read_variance(lensprof_store *store, int64_t id, double *variance, lensprof_error *error) {
+    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX];
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    lensprof_status status = lp_store_prepare(
+        store,
+        "SELECT covariance_size, covariance, vignetting_curves, CAST(total(emor_modes) AS INTEGER) AS emor_modes FROM"
+        " profiles"
+        " JOIN responses ON profile_id = id WHERE id = ?1",
+        &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_bind_integer(&binder, id);
+    const int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
+    if (rc == SQLITE_ROW) {
+        lp_store_reader reader = {binder.statement, 0, NULL};
+        const uint32_t size = (uint32_t)lp_read_integer(&reader, 1, LENSPROF_COVARIANCE_MAX);
+        lp_read_doubles(&reader, covariance, size * size);
+        const uint32_t curves = (uint32_t)lp_read_integer(&reader, 1, 3);
+        const uint32_t modes = (uint32_t)lp_read_integer(&reader, 0, 3 * LENSPROF_EMOR_MODES);
+        if (reader.bad)
+            status = lp_store_fail_profile(store, id, reader.bad, error);
+        else
+            *variance = fmax(lp_corner_variance(covariance, size, modes, curves), 0.0);
+    } else
+        status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, binder.statement);
+    return status;
+}
+
+/* Profiles with a covariance count the less the less is known of them. */
+static lensprof_status weigh(lensprof_store *store, lp_candidates *group, lensprof_error *error) {
+    lensprof_status status = LENSPROF_OK;
+    for (uint32_t i = 0; i < group->count && status == LENSPROF_OK; i++) {
+        if (!group->all[i].has_covariance) continue;
+        status = read_variance(store, group->all[i].node.id, &group->all[i].node.variance, error);
+    }
+    return status;
+}
+
+/* ---- the answer of a group of rows ---- */
+
+/* Of M in the corner, where the sensor's size is not known and the lens can be put on several. */
+static double sensor_sigma(const lp_candidates *group, const lensprof_profile_key *key, const double k[3]) {
+    const lp_candidate *first = &group->all[0];
+    if (first->is_fixed || first->of_camera > 0
+        || (first->crop != LENSPROF_UNKNOWN && key->crop_factor != LENSPROF_UNKNOWN))
+        return 0.0;
+    const double crop = first->crop != LENSPROF_UNKNOWN ? first->crop : key->crop_factor;
+    const double smaller =
+        crop == LENSPROF_UNKNOWN || crop < FULL_FRAME ? SMALLER_THAN_FULL_FRAME : SMALLER_THAN_OTHERS;
+    const lensprof_vignetting v = {{k[0], k[1], k[2]}, {0.0, 0.0}};
+    return fabs(lensprof_vignetting_eval(&v, 1.0, NULL)
+                - lensprof_vignetting_eval(&v, 1.0 / (smaller * smaller), NULL));
+}
+
+/* What those that are used have in common, where the key leaves it open. */
+static lensprof_profile_key complete_key(const lensprof_profile_key *key, const lensprof_lookup_options *o,
+                                         const lp_candidates *group) {
+    lensprof_profile_key whole = *key;
+    if (o->any_processing) whole.processing = group->all[group->count - 1].processing; /* of the newest */
+    for (uint32_t i = 0; i < group->count && whole.crop_factor == LENSPROF_UNKNOWN; i++)
+        whole.crop_factor = group->all[i].crop;
+    return whole;
+}
+
+static void mind_what_is_open(const lp_falloff_node *at, uint32_t distance_rule, lensprof_lookup *lookup) {
+    static const lensprof_reason distances[] = {LENSPROF_REASON_LOOKUP_WEAKEST_DISTANCE,
+                                                LENSPROF_REASON_LOOKUP_FARTHEST_DISTANCE,
+                                                LENSPROF_REASON_LOOKUP_USUAL_DISTANCE};
+    bool said = false;
+    for (uint32_t i = 0; i < LENSPROF_LOOKUP_REASONS; i++)
+        said |= lookup->reason_code[i] == LENSPROF_REASON_LOOKUP_SMALLEST_SENSOR;
+    if (lookup->sensor_sigma > 0.0 && !said) lp_mind(lookup, LENSPROF_REASON_LOOKUP_UNKNOWN_SENSOR, NULL);
+    if (at->distance_m == LENSPROF_UNKNOWN) lp_mind(lookup, distances[distance_rule], NULL);
+}
+
+static lensprof_status predict(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
+                               lp_candidates *group, lp_falloff_node at, lp_falloff_answer *answer,
+                               lensprof_lookup *lookup, lensprof_error *error) {
+    lp_falloff_prediction p;
+    double distance_sigma = 0.0;
+    lp_falloff_node *nodes = malloc(group->count * sizeof *nodes);
+    if (!nodes) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
+    for (uint32_t i = 0; i < group->count; i++) rescale(&group->all[i], &answer->key);
+    const uint32_t count = take_nodes(group, answer->key.processing, nodes);
+    const int done = at.distance_m == LENSPROF_UNKNOWN
+                         ? lp_predict_any_distance(nodes, count, &at, o->distance_rule, &p, &distance_sigma)
+                         : lp_predict_falloff(nodes, count, &at, &p);
+    for (uint32_t i = 0; i < p.used && done > 0; i++) {
+        lookup->id[i] = nodes[p.row[i].node].id;
+        lookup->weight[i] = p.row[i].weight;
+    }
+    free(nodes);
+    if (done < 0) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
+    lookup->distance = p.nearest;
+    if (!done) return lp_refuse(store, lookup, LENSPROF_REASON_LOOKUP_TOO_FAR, error);
+    lookup->rows = p.used;
+    lookup->falloff_sigma = p.sigma;
+    lookup->distance_sigma = distance_sigma;
+    lookup->sensor_sigma = sensor_sigma(group, key, p.k[1]);
+    memcpy(answer->k, p.k, sizeof answer->k);
+    mind_what_is_open(&at, o->distance_rule, lookup);
+    return LENSPROF_OK;
+}
+
+/* NOT_FOUND where none of the group is near the setting. */
+static lensprof_status ask_group(lensprof_store *store, const lensprof_profile_key *key,
+                                 const lensprof_lookup_options *o, lp_candidates *group, lp_falloff_answer *answer,
+                                 lensprof_lookup *lookup, lensprof_error *error) {
+    lp_falloff_node at = {0, key->focal_mm, key->aperture, key->distance_m, {{0}}, 0.0};
+    lp_round_focal(group, &at, lookup);
+    int64_t same = lp_find_exact(group, &at, key);
+    if (same < 0) {
+        const lensprof_reason wrong = lp_settle(group, &at, lookup);
+        if (wrong) return lp_refuse(store, lookup, wrong, error);
+        same = lp_find_exact(group, &at, key);
+    }
+    answer->key = complete_key(key, o, group);
+    if (same > 0) {
+        lookup->exact = lookup->rows = 1;
+        lookup->id[0] = same, lookup->weight[0] = 1.0;
+        return LENSPROF_OK;
+    }
+    const lensprof_status status = weigh(store, group, error);
+    return status == LENSPROF_OK ? predict(store, key, o, group, at, answer, lookup, error) : status;
+}
+
+/* ---- groups, the best first ---- */
+
+/* No row: the lens or camera is not there at all, or only with what the key or the options leave out. */
+static lensprof_status refuse_unknown(lensprof_store *store, const lensprof_profile_key *key,
+                                      const lensprof_lookup_options *o, lensprof_lookup *lookup, bool *knows_lens,
+                                      lensprof_error *error) {
+    const bool is_corrected = key->processing == LENSPROF_PROCESSING_CORRECTED;
+    const lensprof_reason reasons[] = {
+        is_corrected ? LENSPROF_REASON_LOOKUP_CORRECTED : LENSPROF_REASON_LOOKUP_OTHER_PROCESSING,
+        LENSPROF_REASON_LOOKUP_DOUBTFUL, LENSPROF_REASON_LOOKUP_OTHER_CAMERA};
+    const bool has_lens = lp_is_known(key->lens);
+    lensprof_lookup_options wider = *o;
+    for (int which = 0; which < (has_lens ? 3 : 2); which++) {
+        lp_candidates others;
+        memset(&others, 0, sizeof others);
+        if (which == 0) wider.any_processing = 1;
+        if (which == 1) wider.with_doubt = 1;
+        others.any_unit = which == 2;
+        const lensprof_status status = lp_find_candidates(store, key, &wider, &others, error);
+        const uint32_t count = others.count;
+        free(others.all);
+        if (status != LENSPROF_OK) return status;
+        *knows_lens |= count > 0;
+        if (count) return lp_refuse(store, lookup, reasons[which], error);
+    }
+    const bool of_lens = has_lens || !*key->camera_model;
+    return lp_refuse(store, lookup, of_lens ? LENSPROF_REASON_LOOKUP_NO_LENS : LENSPROF_REASON_LOOKUP_NO_CAMERA, error);
+}
+
+/* The first group that has an answer; where none has, what is wrong with the first. */
+static lensprof_status ask_groups(lensprof_store *store, const lensprof_profile_key *key,
+                                  const lensprof_lookup_options *o, const lp_candidates *found, lp_candidates *group,
+                                  lp_falloff_answer *answer, lensprof_lookup *lookup, lensprof_error *error) {
+    const lensprof_lookup begun = *lookup;
+    lensprof_lookup best = begun;
+    lensprof_error best_error;
+    lensprof_status status = LENSPROF_ERROR_NOT_FOUND;
+    double below = INFINITY;
+    for (int tried = 0; status == LENSPROF_ERROR_NOT_FOUND; tried++) {
+        *lookup = begun;
+        below = lp_choose_candidates(found, key, below, group, lookup);
+        if (!group->count) {
+            if (!tried) return lp_refuse(store, lookup, LENSPROF_REASON_LOOKUP_SMALLER_SENSOR, error);
+            *lookup = best;
+            if (error) *error = best_error;
+            return status;
+        }
+        lensprof_error own;
+        status = ask_group(store, key, o, group, answer, lookup, &own);
+        if (!tried) best = *lookup, best_error = own;
+        if (status != LENSPROF_OK && status != LENSPROF_ERROR_NOT_FOUND && error) *error = own;
+    }
+    return status;
+}
+
+lensprof_status lp_find_falloff(lensprof_store *store, const lensprof_profile_key *key,
+                                const lensprof_lookup_options *o, lp_falloff_answer *answer, lensprof_lookup *lookup,
+                                bool *knows_lens, lensprof_error *error) {
+    lp_candidates found, group;
+    memset(&found, 0, sizeof found);
+    *knows_lens = false;
+    lensprof_status status = lp_find_candidates(store, key, o, &found, error);
+    lookup->name_score = found.name_score;
+    group = found;
+    group.all = NULL;
+    if (status != LENSPROF_OK) {
+    } else if (found.has_lenses)
+        status = lp_refuse(store, lookup, LENSPROF_REASON_LOOKUP_SEVERAL_LENSES, error);
+    else if (!found.count)
+        status = refuse_unknown(store, key, o, lookup, knows_lens, error);
+    else if (!(group.all = malloc(found.count * sizeof *group.all)))
+        status = lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
+    else {
+        *knows_lens = true;
+        status = ask_groups(store, key, o, &found, &group, answer, lookup, error);
+    }
+    free(group.all);
+    free(found.all);
+    return status;
+}
