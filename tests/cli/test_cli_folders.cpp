@@ -107,6 +107,13 @@ void test_folder_goes_on(void **) {
     assert_false(json["left_out"][0]["corrected_already"].get<bool>());
 }
 
+void test_nearest_names(void **) {
+    lens_database();
+    make_picture("in/a.jpg", "Good 35mm II");
+    assert_refused(not_found, by_exif("out") + Words{work("in/a.jpg")},
+                   {"Good 35mm II", "; nearest names: Good 35mm); "});
+}
+
 void test_named_pictures_are_all_or_none(void **) {
     lens_database();
     const std::string good = make_picture("in/a.jpg", "Good 35mm"), bad = make_picture("in/b.jpg", "Other 24mm");
@@ -199,6 +206,7 @@ int main() {
         CLI_TEST(test_links_do_not_loop),
         CLI_TEST(test_outputs_within_the_folder),
         CLI_TEST(test_folder_goes_on),
+        CLI_TEST(test_nearest_names),
         CLI_TEST(test_named_pictures_are_all_or_none),
         CLI_TEST(test_unreadable_ends_it),
         CLI_TEST(test_corrected_once),

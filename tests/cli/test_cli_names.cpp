@@ -57,6 +57,21 @@ void test_filters_take_parts_of_names(void **) {
     assert_refused(not_found, Words{"profile", "show", "--lens", "85mm"} + db_words(), {"85mm"});
 }
 
+// For people and as JSON; not where the lens is stored, but not for the setting.
+void test_nearest_names(void **) {
+    make_db();
+    const Words query = Words{"query", "--maker", "Canon"} + db_words();
+    const Words other = {"--lens", "EF24-70mm f/4L IS USM", "--aperture", "4", "--focal", "24"};
+    const std::string nearest = "; nearest names: EF24-70mm f/2.8L USM";
+    assert_refused(not_found, query + other, {nearest});
+    const Json json = json_of(query + other + Words{"--json"}, not_found);
+    assert_string_equal(json["nearest"][0].get<std::string>().c_str(), "EF24-70mm f/2.8L USM");
+    assert_true(json["nearest"].size() == 1 && contains(json["reason"].get<std::string>(), nearest));
+    const Words far = {"--lens", "EF24-70mm f/2.8L USM", "--aperture", "64", "--focal", "24"};
+    assert_true(json_of(query + far + Words{"--json"}, not_found)["nearest"].empty());
+    assert_false(contains(run_words(query + far).err, "nearest names"));
+}
+
 void test_remove_what_matches(void **) {
     make_db();
     const Words remove = Words{"profile", "remove"} + db_words();
@@ -95,6 +110,6 @@ void test_set(void **) {
 
 int main() {
     const CMUnitTest tests[] = {CLI_TEST(test_lenses_and_cameras), CLI_TEST(test_filters_take_parts_of_names),
-                                CLI_TEST(test_remove_what_matches), CLI_TEST(test_set)};
+                                CLI_TEST(test_nearest_names), CLI_TEST(test_remove_what_matches), CLI_TEST(test_set)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

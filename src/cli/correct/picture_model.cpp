@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "cli/profiles/lookup_report.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/response_words.hpp"
 
@@ -87,7 +88,7 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
     if (status == LENSPROF_ERROR_NOT_FOUND)
         throw NotThisOne(ExitCode::not_found,
                          job.source + ": no profile for " + describe_key(key) + " in " + store_path(options_.db) + " ("
-                             + how.reason
+                             + how.reason + describe_nearest(nearest_lenses(store_.get(), key, how))
                              + "); make one with `lensprof build`, name the lens with --lens or a profile with "
                                "--profile, or leave the picture out with --skip");
     check(status, store_path(options_.db), &error);

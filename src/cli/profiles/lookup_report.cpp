@@ -1,4 +1,7 @@
 #include "cli/profiles/lookup_report.hpp"
+#include <algorithm>
+#include <iterator>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/program/format.hpp"
@@ -81,6 +84,24 @@ std::string describe_lookup(const lensprof_lookup &how) {
     std::string text = "falloff " + describe_prediction(how) + "; response " + describe_response(how)
                        + format("; standard error %.3f of M in the corner", how.sigma) + describe_parts(how);
     if (*how.reason) text += std::string("; ") + how.reason;
+    return text;
+}
+
+std::vector<std::string> nearest_lenses(lensprof_store *store, const lensprof_profile_key &key,
+                                        const lensprof_lookup &how) {
+    const auto *end = std::end(how.reason_code);
+    if (std::find(std::begin(how.reason_code), end, LENSPROF_REASON_LOOKUP_NO_LENS) == end) return {};
+    lensprof_store_name names[3];
+    uint32_t count = 0;
+    if (lensprof_store_nearest_lenses(store, &key, names, 3, &count, nullptr) != LENSPROF_OK) return {};
+    std::vector<std::string> lenses;
+    for (uint32_t i = 0; i < count; i++) lenses.emplace_back(names[i].lens);
+    return lenses;
+}
+
+std::string describe_nearest(const std::vector<std::string> &lenses) {
+    std::string text;
+    for (const std::string &lens : lenses) text += (text.empty() ? "; nearest names: " : "; ") + lens;
     return text;
 }
 

@@ -96,6 +96,12 @@ void answer_range(const Options &o, lensprof_store *store, const std::string &re
     streams.out << rows.size() << " profiles match: " << reason << "\n";
 }
 
+// Why there is no answer, for JSON.
+struct Refusal {
+    lensprof_lookup how{};
+    std::vector<std::string> nearest;
+};
+
 // More than one profile may be meant.
 bool is_open(const lensprof_lookup &how) {
     const uint32_t reason = how.reason_code[0];
@@ -105,17 +111,21 @@ bool is_open(const lensprof_lookup &how) {
 
 // The profile for the setting: stored, or between what is stored. False where the key leaves open which is meant.
 bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows,
-                   lensprof_lookup &how, Streams &streams) {
+                   Refusal &refusal, Streams &streams) {
     lensprof_lookup_options options = o.lookup.options();
     options.any_processing = !o.filter.has_processing();
     lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
     key.crop_factor = o.lookup.crop_factor;
     lensprof_error error{};
     auto profile = new_profile();
+    lensprof_lookup &how = refusal.how;
     const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
     if (status == LENSPROF_ERROR_NOT_FOUND && is_open(how)) return false;
-    if (status == LENSPROF_ERROR_NOT_FOUND)
-        throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db) + "; nor can it be predicted: " + how.reason);
+    if (status == LENSPROF_ERROR_NOT_FOUND) {
+        refusal.nearest = nearest_lenses(store, key, how);
+        throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db) + "; nor can it be predicted: " + how.reason
+                                               + describe_nearest(refusal.nearest));
+    }
     check(status, store_path(o.db), &error);
     if (o.json) {
         Json object = profile_json(how.exact ? how.id[0] : 0, *profile);
@@ -130,28 +140,29 @@ bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<le
     return true;
 }
 
-void answer(const Options &o, lensprof_lookup &how, Streams &streams) {
+void answer(const Options &o, Refusal &refusal, Streams &streams) {
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     const auto rows = rows_that_count(o, o.filter.rows(store.get(), o.db));
     if (rows.size() == 1)
         answer_stored(o, store.get(), rows[0].id, streams);
-    else if (!answer_lookup(o, store.get(), rows, how, streams))
-        answer_range(o, store.get(), how.reason, streams);
+    else if (!answer_lookup(o, store.get(), rows, refusal, streams))
+        answer_range(o, store.get(), refusal.how.reason, streams);
 }
 
 int run(const Options &o, Streams &streams) {
     if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
-    lensprof_lookup how;
-    lensprof_lookup_init(&how);
+    Refusal refusal;
+    lensprof_lookup_init(&refusal.how);
     try {
-        answer(o, how, streams);
+        answer(o, refusal, streams);
     } catch (const Failure &failure) {
         if (o.json && failure.code == ExitCode::not_found)
             print_json(Json{{"schema", 1},
                             {"id", nullptr},
                             {"found", false},
                             {"reason", failure.what()},
-                            {"reason_codes", reason_codes_json(how)}},
+                            {"reason_codes", reason_codes_json(refusal.how)},
+                            {"nearest", refusal.nearest}},
                        streams.out);
         throw;
     }
