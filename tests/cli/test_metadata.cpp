@@ -97,15 +97,6 @@ void test_unit_and_sensor(void **) {
     assert_string_equal(read_exif({{"Exif.Photo.LensSerialNumber", "9"}}).key.unit, "/9");
     assert_string_equal(
         read_exif({{"Exif.Photo.BodySerialNumber", "0000"}, {"Exif.Photo.LensSerialNumber", "-"}}).key.unit, "");
-    // 6000 x 4000 pixels of 3.9 um: 23.4 mm x 15.6 mm.
-    const PictureMetadata pitched = read_exif({{"Exif.Photo.PixelXDimension", "6000"},
-                                               {"Exif.Photo.PixelYDimension", "4000"},
-                                               {"Exif.Photo.FocalPlaneXResolution", "100000/39"},
-                                               {"Exif.Photo.FocalPlaneYResolution", "100000/39"},
-                                               {"Exif.Photo.FocalPlaneResolutionUnit", "3"},
-                                               {"Exif.Photo.FocalLength", "18/1"},
-                                               {"Exif.Photo.FocalLengthIn35mmFilm", "27"}});
-    assert_close(pitched.key.crop_factor, std::hypot(36, 24) / std::hypot(23.4, 15.6), 1e-9);
     const PictureMetadata equivalent =
         read_exif({{"Exif.Photo.FocalLength", "425/100"}, {"Exif.Photo.FocalLengthIn35mmFilm", "26"}});
     assert_close(equivalent.key.crop_factor, 26 / 4.25, 1e-9);
@@ -113,6 +104,62 @@ void test_unit_and_sensor(void **) {
         assert_close(
             read_exif({{"Exif.Photo.FocalLength", focal}, {"Exif.Photo.FocalLengthIn35mmFilm", "26"}}).key.crop_factor,
             LENSPROF_UNKNOWN, 0);
+}
+
+// Pixels of 3.9 um; EXIF of a picture of width x height, in one of own_width x own_height.
+double crop_of_pitch(const char *width, const char *height, uint32_t own_width, uint32_t own_height,
+                     const char *focal_in_35mm = nullptr) {
+    const std::string path = in_folder("pitch.jpg");
+    write_picture(path, make_smooth(own_width, own_height, LENSPROF_LAYOUT_GREY));
+    edit(path, [&](Exiv2::Image &image) {
+        Exiv2::ExifData &exif = image.exifData();
+        exif["Exif.Photo.PixelXDimension"] = std::string(width);
+        exif["Exif.Photo.PixelYDimension"] = std::string(height);
+        exif["Exif.Photo.FocalPlaneXResolution"] = std::string("100000/39");
+        exif["Exif.Photo.FocalPlaneYResolution"] = std::string("100000/39");
+        exif["Exif.Photo.FocalPlaneResolutionUnit"] = std::string("3");
+        exif["Exif.Photo.FocalLength"] = std::string("18/1");
+        if (focal_in_35mm) exif["Exif.Photo.FocalLengthIn35mmFilm"] = std::string(focal_in_35mm);
+    });
+    const PictureMetadata metadata = read_metadata(path);
+    assert_int_equal(metadata.size.width, own_width);
+    assert_int_equal(metadata.size.height, own_height);
+    return metadata.key.crop_factor;
+}
+
+void test_sensor_by_pitch(void **) {
+    const double full = std::hypot(36, 24) / (std::hypot(2400, 1600) * 0.0039);  // 9.36 mm x 6.24 mm
+    assert_close(crop_of_pitch("2400", "1600", 2400, 1600), full, 1e-9);
+    assert_close(crop_of_pitch("1600", "2400", 2400, 1600), full, 1e-9);        // turned
+    assert_close(crop_of_pitch("2400", "1600", 2400, 1600, "70"), full, 1e-9);  // 70/18 is 3.89, rounded
+    assert_close(crop_of_pitch("2400", "1600", 2400, 1600, "27"), 1.5, 1e-9);   // contradiction
+    assert_close(crop_of_pitch("2400", "1600", 1200, 800), LENSPROF_UNKNOWN, 0);
+    assert_close(crop_of_pitch("2400", "1600", 1200, 800, "70"), 70 / 18.0, 1e-9);
+    assert_close(crop_of_pitch("2400", "1600", 2400, 1350), LENSPROF_UNKNOWN, 0);  // cut
+    assert_close(crop_of_pitch("1200", "800", 1200, 800), LENSPROF_UNKNOWN, 0);    // made smaller, and stated so
+    assert_close(crop_of_pitch("1200", "800", 1200, 800, "27"), 1.5, 1e-9);
+}
+
+// Nikon's numbers of AF-S Zoom-Nikkor 24-70mm f/2.8G ED.
+void test_nikon_lens_of_numbers(void **) {
+    const std::vector<std::pair<const char *, const char *>> numbers = {{"Exif.Image.Make", "NIKON CORPORATION"},
+                                                                        {"Exif.Photo.LensModel", "24.0-70.0 mm f/2.8"},
+                                                                        {"Exif.Nikon3.Version", "48 50 49 48"},
+                                                                        {"Exif.Nikon3.LensType", "6"},
+                                                                        {"Exif.NikonLd1.Version", "48 49 48 48"},
+                                                                        {"Exif.NikonLd1.LensIDNumber", "147"},
+                                                                        {"Exif.NikonLd1.LensFStops", "72"},
+                                                                        {"Exif.NikonLd1.MinFocalLength", "55"},
+                                                                        {"Exif.NikonLd1.MaxFocalLength", "92"},
+                                                                        {"Exif.NikonLd1.MaxApertureAtMinFocal", "36"},
+                                                                        {"Exif.NikonLd1.MaxApertureAtMaxFocal", "36"},
+                                                                        {"Exif.NikonLd1.MCUVersion", "149"}};
+    const std::string lens = read_exif(numbers).key.lens;
+    assert_true(lens.find("24-70mm") != std::string::npos && lens.find("AF-S") != std::string::npos);
+    assert_string_equal(read_exif({numbers[0], numbers[1]}).key.lens, "24.0-70.0 mm f/2.8");
+    auto named = numbers;
+    named[1].second = "NIKKOR 24-70";
+    assert_string_equal(read_exif(named).key.lens, "NIKKOR 24-70");
 }
 
 void test_texts(void **) {
@@ -436,6 +483,8 @@ int main() {
         TEST(test_float_tiff_is_linear),
         TEST(test_texts),
         TEST(test_unit_and_sensor),
+        TEST(test_sensor_by_pitch),
+        TEST(test_nikon_lens_of_numbers),
         TEST(test_lens_of_maker_note),
         TEST(test_style),
         TEST(test_exposure),

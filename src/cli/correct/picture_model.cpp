@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "cli/pictures/sensor.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/response_words.hpp"
@@ -40,12 +41,14 @@ PictureModels::PictureModels(const ModelOptions &options, bool by_default) : opt
     if (options.profile || options.from_db || has_database) store_ = open_store(options.db, LENSPROF_STORE_READ);
 }
 
-// What EXIF says, then what the command line says.
+// What EXIF says, then what the command line says. The sensor's size is that of the table of cameras, where it tells.
 lensprof_profile_key PictureModels::key_of(const PictureMetadata &metadata) const {
     lensprof_profile_key key = metadata.key;
     if (options_.force_falloff || options_.puts_in) key.processing = metadata.processing_before;
     options_.key.put_into(key);
-    if (options_.lookup.crop_factor != LENSPROF_UNKNOWN) key.crop_factor = options_.lookup.crop_factor;
+    const double given = options_.lookup.crop_factor;
+    const double crop = given != LENSPROF_UNKNOWN ? given : crop_factor_in_table(store_.get(), key, metadata.size);
+    if (crop != LENSPROF_UNKNOWN) key.crop_factor = crop;
     return key;
 }
 

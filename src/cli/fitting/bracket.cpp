@@ -74,7 +74,7 @@ lensprof_profile_key camera_key(const Options &o, PictureMetadata metadata, cons
     key.distance_m = unknown.distance_m;
     if (!*key.camera_model && o.store.camera.empty() && o.store.lens.empty() && !o.store.no_store)
         throw Failure(ExitCode::usage, file + ": no EXIF says which camera it was; give --camera, or --no-store");
-    return override_key(key, o.store, file);
+    return override_key(key, metadata.size, o.store, file);
 }
 
 std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, Progress &progress, BuildReport &report,

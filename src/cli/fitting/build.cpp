@@ -115,7 +115,8 @@ lensprof_profile_key profile_key(const Options &o, const Project &project, const
                                  Streams &streams) {
     const std::string &file = project.files[project.reference];
     warn_of_cut(metadata[project.reference], o.store, file, streams);
-    lensprof_profile_key key = override_key(metadata[project.reference].key, o.store, file);
+    const PictureMetadata &reference = metadata[project.reference];
+    lensprof_profile_key key = override_key(reference.key, reference.size, o.store, file);
     for (size_t i = 0; i < project.files.size() && o.store.aperture == LENSPROF_UNKNOWN && o.points.empty(); i++) {
         const lensprof_profile_key &other = metadata[i].key;
         auto differ = [](double a, double b) { return a != b && a != LENSPROF_UNKNOWN && b != LENSPROF_UNKNOWN; };

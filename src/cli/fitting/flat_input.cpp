@@ -162,7 +162,7 @@ FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
     input.response = response_of(o);
     if (o.linear) metadata.front().key.processing = LENSPROF_PROCESSING_RAW;
     warn_of_cut(metadata.front(), o.store, o.files.front(), streams);
-    input.key = override_key(metadata.front().key, o.store, o.files.front());
+    input.key = override_key(metadata.front().key, metadata.front().size, o.store, o.files.front());
     auto &options = input.options;
     options.vignettings = o.falloff_curves;
     options.light = o.light;

@@ -3,6 +3,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "cli/pictures/sensor.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
@@ -59,14 +60,17 @@ void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const s
                                   + " is longer than what is stored, and is cut; give a shorter one with " + option);
 }
 
-lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &o, const std::string &file) {
+lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, const StoreOptions &o,
+                                  const std::string &file) {
     if (!o.maker.empty()) set_text(key.camera_maker, sizeof key.camera_maker, o.maker);
     if (!o.camera.empty()) set_text(key.camera_model, sizeof key.camera_model, o.camera);
     if (!o.lens.empty()) set_text(key.lens, sizeof key.lens, o.lens);
     if (o.unit == "exif" && !*key.unit)
         throw Failure(ExitCode::usage, file + ": its EXIF has no serial numbers; give them with --unit");
     if (o.unit != "exif") set_text(key.unit, sizeof key.unit, o.unit);  // of all of the model, where none is given
-    if (o.crop_factor != LENSPROF_UNKNOWN) key.crop_factor = o.crop_factor;
+    const bool is_given = o.crop_factor != LENSPROF_UNKNOWN;
+    const double crop = is_given ? o.crop_factor : crop_factor_in_file(o.db, key, size);
+    if (crop != LENSPROF_UNKNOWN) key.crop_factor = crop;
     if (o.focal != LENSPROF_UNKNOWN) key.focal_mm = o.focal;
     if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;
     if (o.distance != LENSPROF_UNKNOWN) key.distance_m = o.distance;

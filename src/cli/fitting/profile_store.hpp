@@ -32,9 +32,11 @@ void check_store_options(const StoreOptions &o, bool reads_db = false, bool writ
 // Warns of names in the EXIF of `file` that are too long to be stored, where they are.
 void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const std::string &file, Streams &streams);
 
-// The key of a profile: that of a picture's EXIF, then what the command line says. Failure (usage) that names `file`
+// The key of a profile: that of a picture's EXIF, then what the command line says; the sensor's size by the database's
+// table of cameras, where it tells, for a picture of that size. Failure (usage) that names `file`
 // when nothing says what camera it was and the profile is to be stored.
-lensprof_profile_key override_key(lensprof_profile_key key, const StoreOptions &o, const std::string &file);
+lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, const StoreOptions &o,
+                                  const std::string &file);
 
 // Failure (store) before the work is done when the database cannot be used.
 void check_store(const StoreOptions &o);

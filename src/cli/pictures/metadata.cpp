@@ -141,8 +141,26 @@ bool is_name(const std::string &text) {
     return !begins_with_one(text, nothing);
 }
 
+// "24.0-70.0 mm f/2.8", which many lenses are.
+bool is_numbers_alone(const std::string &name) {
+    return name.find_first_not_of("0123456789.-/ mfF") == std::string::npos;
+}
+
+// By Nikon's numbers of the lens; empty where they are not there, or not known.
+std::string read_nikon_lens(const Exiv2::ExifData &exif) {
+    for (const char *key : {"Exif.NikonLd1.LensIDNumber", "Exif.NikonLd2.LensIDNumber", "Exif.NikonLd3.LensIDNumber"}) {
+        const auto datum = exif.findKey(Exiv2::ExifKey(key));
+        if (datum == exif.end() || datum->count() == 0) continue;
+        const std::string name = clean_text(datum->print(&exif));
+        if (is_name(name)) return name;
+    }
+    return {};
+}
+
 std::string read_lens(const Exiv2::ExifData &exif) {
     const std::string model = read_text(exif, "Exif.Photo.LensModel");
+    const std::string by_number = is_numbers_alone(model) ? read_nikon_lens(exif) : std::string();
+    if (!by_number.empty()) return by_number;
     if (is_name(model)) return model;
     const auto datum = Exiv2::lensName(exif);
     const std::string name = datum == exif.end() ? std::string() : clean_text(datum->print(&exif));
@@ -241,20 +259,31 @@ double read_distance(const Exiv2::ExifData &exif) {
     return datum == exif.end() || datum == stated ? LENSPROF_UNKNOWN : parse_distance(clean_text(datum->print(&exif)));
 }
 
-// 43.27 mm over the sensor's diagonal: by the pixels' pitch, else by the focal length's equivalent, which is rounded to
-// whole mm.
-double read_crop_factor(const Exiv2::ExifData &exif, double focal_mm) {
-    const double full_frame = std::hypot(36.0, 24.0);
+// 43.27 mm over the sensor's diagonal, by the pixels' pitch; NaN where the sizes that EXIF states are not the
+// picture's: it was made smaller, or cut, and the pitch is no more that of its pixels.
+double read_pitched_crop(const Exiv2::ExifData &exif, PictureSize size) {
     const double unit = read_number(exif, {"Exif.Photo.FocalPlaneResolutionUnit"}) == 3 ? 10.0 : 25.4;  // mm: cm, inch
-    const double width = read_number(exif, {"Exif.Photo.PixelXDimension"})
-                         / read_number(exif, {"Exif.Photo.FocalPlaneXResolution"}) * unit;
-    const double height = read_number(exif, {"Exif.Photo.PixelYDimension"})
-                          / read_number(exif, {"Exif.Photo.FocalPlaneYResolution"}) * unit;
+    const double width = read_number(exif, {"Exif.Photo.PixelXDimension"}),
+                 height = read_number(exif, {"Exif.Photo.PixelYDimension"});
+    const bool is_own =
+        (width == size.width && height == size.height) || (width == size.height && height == size.width);
+    return is_own ? std::hypot(36.0, 24.0)
+                        / std::hypot(width / read_number(exif, {"Exif.Photo.FocalPlaneXResolution"}) * unit,
+                                     height / read_number(exif, {"Exif.Photo.FocalPlaneYResolution"}) * unit)
+                  : NAN;
+}
+
+// By the focal length's equivalent, which is rounded to whole mm; where the pixels' pitch agrees with that, or there is
+// no equivalent, by the pitch. A picture of few pixels may be one that was made smaller by a program that changed its
+// stated size, too: then the pitch alone is not believed.
+double read_crop_factor(const Exiv2::ExifData &exif, double focal_mm, PictureSize size) {
+    constexpr double fewest_pixels = 3e6, same = 0.1;
     const double equivalent = read_number(exif, {"Exif.Photo.FocalLengthIn35mmFilm"}) / focal_mm;
-    const double pitched = full_frame / std::hypot(width, height);
+    const double pitched = read_pitched_crop(exif, size);
     const auto is_plausible = [](double crop) { return crop > 0.2 && crop < 50.0; };
     const bool known = is_plausible(equivalent) && focal_mm > 0.0;
-    if (is_plausible(pitched) && (!known || std::fabs(pitched / equivalent - 1.0) < 0.1)) return pitched;
+    const bool is_whole = double(size.width) * size.height >= fewest_pixels;
+    if (is_plausible(pitched) && (known ? std::fabs(pitched / equivalent - 1.0) < same : is_whole)) return pitched;
     return known ? equivalent : LENSPROF_UNKNOWN;
 }
 
@@ -422,7 +451,8 @@ PictureMetadata read_metadata(const std::string &path) {
         metadata.key.focal_mm = in_range(read_number(exif, {"Exif.Photo.FocalLength", "Exif.Image.FocalLength"}), 1e5)
                                     .value_or(LENSPROF_UNKNOWN);
         metadata.key.distance_m = read_distance(exif);
-        metadata.key.crop_factor = read_crop_factor(exif, metadata.key.focal_mm);
+        metadata.size = {static_cast<uint32_t>(image->pixelWidth()), static_cast<uint32_t>(image->pixelHeight())};
+        metadata.key.crop_factor = read_crop_factor(exif, metadata.key.focal_mm, metadata.size);
         store_text(read_unit(exif), metadata.key.unit, "--unit", metadata);
         store_text(read_style(exif), metadata.key.style, "--style", metadata);
         if (image->mimeType() == "image/tiff" && read_number(exif, {"Exif.Image.SampleFormat"}) == 3)

@@ -3,6 +3,7 @@
 // Threads: any function may run in several threads at once.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,11 +14,17 @@
 
 namespace lensprof {
 
+struct PictureSize {
+    uint32_t width = 0, height = 0;
+};
+
 struct PictureMetadata {
     // Unknown what the file does not say. Texts without surrounding blanks, in valid UTF-8, cut to the fields' sizes.
     // Processing is JPEG (a rendered picture, whatever the file's format), but RAW for float TIFF, which by custom
     // holds values proportional to light, and CORRECTED where corrected_by is not empty.
     lensprof_profile_key key;
+
+    PictureSize size;  // pixels, as they are stored; 0 = not known
 
     std::optional<CorrectionMark> mark;  // what lensprof did to the picture, if it did
 

@@ -109,10 +109,6 @@ Picture read_picture(const std::string &path, const ReadOptions &options = {});
 // The same without pixels: sizes (for these options), sample, layout, profile, traits.
 Picture read_header(const std::string &path, const ReadOptions &options = {});
 
-struct PictureSize {
-    uint32_t width = 0, height = 0;
-};
-
 // Size of the full frame.
 PictureSize read_size(const std::string &path);
 

@@ -1,0 +1,94 @@
+#include "cli/pictures/sensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "cli/program/paths.hpp"
+
+namespace lensprof {
+namespace {
+
+// The number at `at`, and where it ends.
+double take_number(const std::string &text, size_t &at) {
+    double value = 0;
+    for (; at < text.size() && text[at] >= '0' && text[at] <= '9'; at++) value = value * 10 + (text[at] - '0');
+    return value;
+}
+
+// Of the "16:9" in a text.
+std::optional<double> aspect_in(const std::string &text) {
+    const size_t colon = text.find(':');
+    if (colon == std::string::npos) return {};
+    size_t first = colon, next = colon + 1;
+    while (first > 0 && text[first - 1] >= '0' && text[first - 1] <= '9') first--;
+    const double width = take_number(text, first), height = take_number(text, next);
+    return width > 0 && height > 0 ? std::optional<double>(width / height) : std::nullopt;
+}
+
+// Of the pictures that the entry is for; none: of all.
+std::optional<double> aspect_of(const lensprof_camera_model &camera) {
+    for (const char *text : {camera.variant, camera.model, camera.other_model})
+        if (const auto aspect = aspect_in(text)) return aspect;
+    return {};
+}
+
+// "Canon PowerShot G5 X 4:3" is another format of the "Canon PowerShot G5 X".
+bool is_format_of(const lensprof_camera_model &camera, const lensprof_camera_model &other) {
+    const std::string model = camera.model, own = other.model;
+    if (std::string(camera.maker) != other.maker || model.compare(0, own.size(), own) != 0) return false;
+    return model.size() == own.size() || (model[own.size()] == ' ' && aspect_in(model.substr(own.size())));
+}
+
+std::vector<lensprof_camera_model> all_cameras(lensprof_store *store, const std::string &file) {
+    lensprof_error error{};
+    uint32_t count = 0;
+    check(lensprof_store_list_camera_models(store, nullptr, 0, &count, &error), file, &error);
+    std::vector<lensprof_camera_model> cameras(count);
+    if (count > 0) check(lensprof_store_list_camera_models(store, cameras.data(), count, &count, &error), file, &error);
+    return cameras;
+}
+
+// What all formats of the picture's aspect agree on.
+double crop_factor_of_format(const std::vector<lensprof_camera_model> &cameras, const lensprof_camera_model &camera,
+                             double aspect) {
+    constexpr double same_aspect = 0.02, same_crop = 0.005;
+    double crop = LENSPROF_UNKNOWN;
+    for (const auto &other : cameras) {
+        if (!is_format_of(other, camera)) continue;
+        const auto its = aspect_of(other);
+        if (!its) return LENSPROF_UNKNOWN;  // told apart by something else
+        if (!(std::fabs(*its / aspect - 1) < same_aspect)) continue;
+        if (crop != LENSPROF_UNKNOWN && std::fabs(crop / other.crop_factor - 1) > same_crop) return LENSPROF_UNKNOWN;
+        crop = other.crop_factor;
+    }
+    return crop;
+}
+
+}  // namespace
+
+double crop_factor_in_table(lensprof_store *store, const lensprof_profile_key &key, PictureSize picture) {
+    lensprof_camera_model camera;
+    lensprof_camera_model_init(&camera);
+    lensprof_error error{};
+    const std::string file = "database";
+    const auto status = lensprof_store_find_camera(store, key.camera_maker, key.camera_model, &camera, &error);
+    if (status == LENSPROF_ERROR_NOT_FOUND) return LENSPROF_UNKNOWN;
+    check(status, file, &error);
+    if (camera.crop_factor != LENSPROF_UNKNOWN && !aspect_of(camera)) return camera.crop_factor;
+    if (picture.width == 0 || picture.height == 0) return LENSPROF_UNKNOWN;
+    const double longer = std::max(picture.width, picture.height), shorter = std::min(picture.width, picture.height);
+    return crop_factor_of_format(all_cameras(store, file), camera, longer / shorter);
+}
+
+double crop_factor_in_file(const std::string &db, const lensprof_profile_key &key, PictureSize picture) {
+    if (!path_exists(store_path(db))) return LENSPROF_UNKNOWN;
+    try {
+        return crop_factor_in_table(open_store(db, LENSPROF_STORE_READ).get(), key, picture);
+    } catch (const Failure &) {
+        return LENSPROF_UNKNOWN;
+    }
+}
+
+}  // namespace lensprof
