@@ -88,6 +88,31 @@ static void test_same_answer_and_nothing_written(void **state) {
     free(is);
 }
 
+/* Leaves bytes on the stack that no error has. */
+static __attribute__((noinline)) void soil_stack(void) {
+    volatile unsigned char bytes[1 << 16];
+    for (size_t i = 0; i < sizeof bytes; i++) bytes[i] = 0x5A;
+}
+
+/* A refusal names no image or pair: the error's item is NONE, whatever was in memory before. */
+static void test_refusal_has_no_item(void **state) {
+    lensprof_store *store = zoom_store(*state);
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    static const char *const lenses[] = {zoom, "Another lens"};
+    for (int i = 0; i < 2; i++) {
+        const lensprof_profile_key key = zoom_profile(lenses[i], 200, 2.8, INFINITY)->key;
+        lensprof_error error;
+        memset(&error, 0x5A, sizeof error);
+        soil_stack();
+        assert_int_equal(lensprof_store_lookup(store, &key, &options, &answered, &how, &error),
+                         LENSPROF_ERROR_NOT_FOUND);
+        assert_int_equal(error.item.kind, LENSPROF_ITEM_NONE);
+        assert_int_equal(error.item.index, 0);
+    }
+    lensprof_store_close(store);
+}
+
 static void test_refusals(void **state) {
     lensprof_store *store = zoom_store(*state);
     static const struct {
@@ -378,6 +403,7 @@ int main(void) {
         store_test(test_between_settings),
         store_test(test_same_answer_and_nothing_written),
         store_test(test_refusals),
+        store_test(test_refusal_has_no_item),
         store_test(test_names),
         store_test(test_which_rows),
         store_test(test_aperture_beyond_the_last_focal_length),

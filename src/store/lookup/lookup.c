@@ -40,6 +40,7 @@ static lensprof_status find_falloff(work *w, lensprof_error *error) {
     for (uint32_t i = 0; i < w->count; i++) {
         lensprof_error own;
         bool knows_lens = false;
+        lp_store_clear(&own);
         lensprof_lookup_init(&w->lookup);
         w->lookup.falloff_store = i;
         const lensprof_status status =

@@ -241,6 +241,7 @@ static lensprof_status ask_groups(lensprof_store *store, const lensprof_profile_
             return status;
         }
         lensprof_error own;
+        lp_store_clear(&own);
         status = ask_group(store, key, o, group, answer, lookup, &own);
         if (!tried) best = *lookup, best_error = own;
         if (status != LENSPROF_OK && status != LENSPROF_ERROR_NOT_FOUND && error) *error = own;
