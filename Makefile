@@ -1,7 +1,7 @@
 # lensprof: the front door. `make help` lists the targets.
 SHELL := /bin/bash
 .DEFAULT_GOAL := build
-.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup install abi abi-baseline abi-headers lint format clean
+.PHONY: help deps test-deps build program profiles demo check test sanitize soak bench bench-apply bench-store bench-lookup bench-knowledge install abi abi-baseline abi-headers lint format clean
 
 JOBS ?= $(shell nproc)
 PREFIX ?= /usr/local
@@ -72,6 +72,12 @@ bench-store: build ## measure the store with 100 000 profiles
 bench-lookup: build ## measure lookups between stored settings on Lensfun's data, beside Lensfun's own rule
 	@cmake/install-packages.sh packages-test.txt
 	tests/bench/run.sh --lookup
+
+SEQUENCES ?= 60
+
+bench-knowledge: build ## measure what knowledge of the camera and the lens is worth to a fit (SEQUENCES=N)
+	@cmake/install-packages.sh packages-test.txt
+	tests/bench/run.sh --only knowledge --sequences $(SEQUENCES)
 
 install: build ## install under PREFIX (default /usr/local)
 	cmake --install build --prefix $(PREFIX)

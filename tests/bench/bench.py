@@ -17,7 +17,7 @@ import speed
 import static
 import tools
 
-PARTS = ("points", "pictures", "refusals", "flat", "static", "scale", "speed", "radiance", "real")
+PARTS = ("points", "pictures", "refusals", "flat", "static", "scale", "speed", "radiance", "knowledge", "real")
 
 
 def parse():
@@ -28,6 +28,8 @@ def parse():
     p.add_argument("--match", metavar="TEXT", default="", help="only accuracy cases with TEXT in their row's name")
     p.add_argument("--repeat", type=int, default=5, help="turns of the speed measurement")
     p.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), help="cases at a time (accuracy only)")
+    p.add_argument("--sequences", type=int, metavar="N", help="of the part knowledge; 60, quick 20")
+    p.add_argument("--tune", action="store_true", help="knowledge: the half of the lenses that constants are chosen on")
     p.add_argument("--keep", action="store_true", help="keep the rendered pictures")
     options = p.parse_args()
     options.only = options.only.split(",")
@@ -50,7 +52,7 @@ def main():
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize is not installed (package hugin-tools); lensprof is alone"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
                "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "scale": [], "speed": {},
-               "radiance": {}, "real": [], "skipped": skipped}
+               "radiance": {}, "knowledge": [], "real": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
     if "speed" in options.only:
@@ -68,6 +70,10 @@ def main():
             results[part] = cases.run_all(chosen, options.match, options.jobs, options.keep, say)
     if "flat" in options.only:
         results["flat"] = flat.run_all(options.quick, say)
+    if "knowledge" in options.only:
+        import knowledge  # it needs the library, not only the program
+        results["knowledge"] = knowledge.run_all(options.sequences or (20 if options.quick else 60), options.tune,
+                                                 options.jobs, say)
     if options.real and "real" in options.only:
         results["real"] = real.run_all(options.real, options.jobs, say)
     results["seconds"] = time.time() - start

@@ -3,7 +3,8 @@
 # Tables in Markdown go to standard output and build/bench/benchmarks.md, every figure to build/bench/results.json.
 #
 #   tests/bench/run.sh [--quick] [--real DIR] [--only PARTS] [--match TEXT] [--repeat N] [--jobs N] [--keep]
-#                      PARTS, with commas: points, pictures, refusals, flat, static, scale, speed, radiance, real
+#                      [--sequences N] [--tune]
+#                      PARTS, with commas: points, pictures, refusals, flat, static, scale, speed, radiance, knowledge, real
 #   tests/bench/run.sh --self-test      the scorer against known errors; needs no program; exit 77: NumPy is missing
 #   tests/bench/run.sh --lookup [DIR]   lookups between stored settings beside Lensfun's, also to build/bench/lookup.md;
 #                                       exit 1: worse than its target; 77: NumPy or Lensfun's data is missing

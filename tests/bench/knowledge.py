@@ -1,0 +1,190 @@
+"""What knowledge of the camera and of the lens is worth to a fit of overlapping pictures.
+
+Simulated cameras take sequences through Lensfun's lenses. Exposures vary by +-1 EV and nothing else tells them, so that
+pictures alone leave the exponent gamma open; what settles it is what is known beforehand:
+
+nothing   the typical response of a kind of camera
+camera    a bracket of the camera, fitted and stored
+lens      Lensfun's profiles of the lens, without those of the setting, looked up
+both      the bracket and the profiles in one database, looked up
+
+Camera: a response drawn from the typical one of digital cameras by its covariance; curves that fall somewhere are drawn
+anew. Lens: one of Lensfun's, and of its focal lengths and apertures one, all alike often; of the focus distances known
+there the one nearest to a distance drawn from USUAL, the shares of lensprof_store_lookup. Lookups are not told the
+distance, as EXIF mostly does not. Lenses are of the half that had no part in the constants of lookups (lookup.py).
+Pictures: those of `lensprof simulate`, 2000 pairs with noise and a tenth of outliers. Bracket: six frames 1 EV apart
+with the same noise; exposure times are off by 0.07 EV, and a common factor of the exposures in EV by 1.8 %, the
+repeatability of measured cameras (docs/model.md).
+
+Errors: |M - true M| in the corner; exponent: the slope of the exposures found on the true ones. A stated standard error
+holds where it is above the error: for M that of the corner, for the exponent that of ln gamma.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+import lookup  # first: it finds the library's Python package
+import scorer
+import tools
+import lensprof as lp
+
+STATES = ("nothing", "camera", "lens", "both")
+# median error of M in the corner, share of exponents within .9 .. 1.1
+TARGETS = {"nothing": (0.05, 0.80), "camera": (0.03, 0.90), "lens": (0.02, 0.95), "both": (0.01, 0.98)}
+HOLDS = (0.63, 0.73)  # of the standard errors stated; 68 % meant
+DRAWN, TOLD = lp.CameraKind.CAMERA, lp.CameraKind.DIGITAL  # kind of the cameras, and what fits are told
+USUAL = ((np.inf, 10.0, 5.0, 3.0, 1.5, 0.7, 0.3), (0.25, 0.2, 0.19, 0.14, 0.11, 0.08, 0.03))
+PAIRS, OUTLIERS = 2000, 0.1
+FRAMES, POINTS, NOISE = 6, 300, 2.0  # of a bracket; noise in levels
+TIME_SIGMA_EV, REPEATABILITY = 0.07, 0.018
+MAKER, MODEL = "Bench", "Bench %d"
+
+
+class Undo(Exception):
+    """Ends a transaction without storing it."""
+
+
+def draw_response(random, mean, covariance):
+    while True:
+        try:
+            return lp.Response.from_emor(random.multivariate_normal(mean, covariance, method="eigh"))
+        except lp.Error:
+            pass  # it falls somewhere
+
+
+def draw_row(random, lenses):
+    """A row and its lens's rows: -> (row, rows)."""
+    rows = lenses[random.integers(len(lenses))]
+    settings = sorted({one.setting[:2] for one in rows})
+    setting = settings[random.integers(len(settings))]
+    group = [one for one in rows if one.setting[:2] == setting]
+    distance = random.choice(USUAL[0], p=USUAL[1])
+    return min(group, key=lambda one: (abs(1.0 / one.setting[2] - 1.0 / distance), one.id)), rows
+
+
+def frames(random, response):
+    """A bracket: (images, pairs of neighbouring frames)."""
+    ev = np.arange(FRAMES) - FRAMES / 2.0
+    light = np.exp(random.uniform(-5.0, 1.0, (POINTS, 1))) * np.exp(random.normal(0.0, 0.2, (POINTS, 3)))
+    seen = [response.eval(np.minimum(light * 2.0 ** e, 1.0)) for e in ev]
+    grey = [np.clip(np.rint(255 * s + NOISE * random.normal(size=s.shape) * (s < 1.0)), 0, 255) / 255 for s in seen]
+    told = ev * np.exp(random.normal(0.0, REPEATABILITY)) + random.normal(0.0, TIME_SIGMA_EV, FRAMES)
+    xy = random.uniform((100, 100), (700, 500), (POINTS, 2))
+    pairs = np.zeros((FRAMES - 1, POINTS), dtype=lp.PAIR_DTYPE)
+    for i in range(FRAMES - 1):
+        pairs["image"][i] = i, i + 1
+        pairs["xy"][i] = np.stack([xy, xy], 1)
+        pairs["value"][i] = np.stack([grey[i], grey[i + 1]], 1)
+    images = [lp.FitImage(i, 800, 600, free=lp.Free.EV, known_ev=told[i], known_ev_sigma=TIME_SIGMA_EV)
+              for i in range(FRAMES)]
+    pairs = pairs.ravel()
+    inside = ((pairs["value"] > 2 / 255) & (pairs["value"] < 250 / 255)).all((1, 2))
+    return images, pairs[inside]
+
+
+def bracket(random, response, model):
+    """The profile that is stored of the camera: without a lens, and without a falloff."""
+    images, pairs = frames(random, response)
+    found = lp.fit_overlap(images, pairs, lp.FitOptions(free=lp.Free.RESPONSE, camera_kind=TOLD, threads=1))
+    return found.profile(lp.ProfileKey(camera_maker=MAKER, camera_model=model), source="bracket")
+
+
+def known(store, row, rows, stored, model):
+    """{state: profile or None where the lookup is refused}. The database is as before."""
+    key = row.key.copy()
+    key.camera_maker, key.camera_model, key.distance_m = MAKER, model, lp.UNKNOWN
+    key.processing = lp.Processing.JPEG
+    profiles = {"nothing": None}
+    try:
+        with store.transaction():
+            for one in rows:
+                if one.setting[:2] == row.setting[:2]:
+                    store.remove(one.id)
+            profiles["lens"] = looked_up(store, key)
+            store.put(stored)
+            profiles["camera"] = looked_up(store, stored.key)
+            profiles["both"] = looked_up(store, key)
+            raise Undo
+    except Undo:
+        return profiles
+
+
+def looked_up(store, key):
+    try:
+        return store.lookup(key)[0]
+    except lp.Error as error:
+        if error.status != lp.Status.ERROR_NOT_FOUND:
+            raise
+        return None
+
+
+def simulate(folder, seed, response, row):
+    """-> (images, pairs, truth)"""
+    words = ["--no-images", "--points", str(PAIRS), "--outliers", str(OUTLIERS), "--ev", "1", "--seed", str(seed),
+             "--response", "emor:" + ",".join("%.17g" % a for a in response.emor),
+             "--vignetting=" + ",".join("%.17g" % k for k in row.k), "-o", str(folder)]
+    subprocess.run([tools.LENSPROF, "simulate", *words], check=True, stdout=subprocess.DEVNULL)
+    truth = scorer.read_truth(folder / "truth.json")
+    sizes = tools.sizes_of_pto((folder / "pano.pto").read_text())
+    images = [lp.FitImage(i, int(w), int(h)) for i, (w, h) in enumerate(sizes)]
+    pairs = lp.points_read((folder / "points.txt").read_bytes())
+    shutil.rmtree(folder)
+    return images, pairs, truth
+
+
+def fit(images, pairs, truth, profile):
+    found = lp.fit_overlap(images, pairs, lp.FitOptions(camera_kind=TOLD, profile=profile, threads=1))
+    corner, sigma = found.profile(lp.ProfileKey()).corner_falloff(1 if found.vignettings == 3 else 0)
+    error = abs(corner - float(truth.falloff(1.0)[1]))
+    slope = scorer.gauge_exponent(truth, scorer.Model(found.exposures["ev"], None, None, None, truth.curve))
+    return {"corner_error": error, "corner_sigma": sigma, "slope": slope, "gamma_sigma": found.gamma_sigma,
+            "usable": bool(found.usable), "prior": found.profile_prior.name, "gamma_from": found.gamma_from.name}
+
+
+def run_case(number, folder, response, row, profiles):
+    images, pairs, truth = simulate(folder / str(number), number, response, row)
+    records = []
+    for state in STATES:
+        if state == "nothing" or profiles[state]:
+            records.append({"case": number, "state": state, "lens": row.key.lens, "corner": float(truth.falloff(1.0)[1]),
+                            **fit(images, pairs, truth, profiles[state])})
+        else:
+            records.append({"case": number, "state": state, "lens": row.key.lens, "refused": True})
+    return records
+
+
+def cases(store, stored, is_tuning, count):
+    """Cameras and lenses, and what is known of each."""
+    mean, covariance, _ = lp.Response.typical(DRAWN)
+    lenses = [rows for (lens, _, camera), rows in sorted(lookup.lenses(store, stored).items())
+              if lens and not camera and all(one.is_test for one in rows) != is_tuning]
+    for number in range(1, count + 1):
+        random = np.random.default_rng([number, 18])
+        response = draw_response(random, mean.emor, covariance)
+        row, rows = draw_row(random, lenses)
+        profile = bracket(random, response, MODEL % number)
+        yield number, response, row, known(store, row, rows, profile, MODEL % number)
+
+
+def run_all(count, is_tuning, jobs, say):
+    """-> records of every case and state."""
+    folder = pathlib.Path(lookup.INSTALLED)
+    if not any(folder.glob("*.xml")):
+        say("SKIPPED: knowledge: no Lensfun data in %s (package liblensfun-data-v1)" % folder)
+        return []
+    done = []
+    with tempfile.TemporaryDirectory() as scratch, \
+            lp.Store(pathlib.Path(scratch) / "lensfun.db", lp.StoreMode.CREATE) as store, ThreadPoolExecutor(jobs) as pool:
+        stored, *_ = lookup.fill(store, folder)
+        waiting = [pool.submit(run_case, case[0], pathlib.Path(scratch), *case[1:])
+                   for case in cases(store, stored, is_tuning, count)]
+        for n, result in enumerate(waiting, 1):
+            done += result.result()
+            if n % 20 == 0 or n == count:
+                say("knowledge: %d of %d sequences" % (n, count))
+    return done
