@@ -228,6 +228,7 @@ static void put_camera(lensprof_store *store, const char *model, const char *len
     strcpy(camera.model, model);
     strcpy(camera.lens, lens);
     camera.fixed_lens = fixed;
+    strcpy(camera.mount, fixed ? "own" : "Sony E");
     assert_ok(lensprof_store_put_camera(store, &camera, NULL));
 }
 
@@ -248,6 +249,8 @@ static void test_fixed_lenses_by_the_table_of_cameras(void **state) {
     assert_int_equal(ask(store, "SONY", "DSC-RX9", "", 8.8, 1.8), LENSPROF_ERROR_NOT_FOUND);
     assert_int_equal(ask(store, "SONY", "ILCE-6000", "E 35mm F1.4", 35, 1.8), LENSPROF_ERROR_NOT_FOUND);
     assert_int_equal(ask(store, "SONY", "ILCE-6000", "", 35, 1.8), LENSPROF_ERROR_NOT_FOUND);
+    put(store, "Sony", "ILCE-6000", "Sony ILCE-6000 kit", 35, 1.8); /* nor is one built in that is named after it */
+    assert_int_equal(ask(store, "SONY", "ILCE-6000", "E 35mm F1.4", 35, 1.8), LENSPROF_ERROR_NOT_FOUND);
     lensprof_store_close(store);
 }
 

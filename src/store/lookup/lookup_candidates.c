@@ -230,14 +230,17 @@ static lensprof_status find_only_lens(lensprof_store *store, const lensprof_prof
     return status;
 }
 
-/* The squeezed name of the lens that the table of cameras says is built in; else empty. */
+/* The squeezed name of the lens that the table of cameras says is built in; else empty, and whether it says that the
+ * camera's can be changed. */
 static lensprof_status find_fixed_lens(lensprof_store *store, const lensprof_profile_key *key, char *name,
-                                       lensprof_error *error) {
+                                       bool *can_change, lensprof_error *error) {
     lensprof_camera_model camera;
     bool found;
-    *name = 0;
+    *name = 0, *can_change = false;
     lensprof_status status = lp_store_find_camera(store, key->camera_maker, key->camera_model, &camera, &found, error);
-    if (status == LENSPROF_OK && found && camera.fixed_lens) lp_squeeze(camera.lens, name);
+    if (status != LENSPROF_OK || !found) return status;
+    *can_change = !camera.fixed_lens && *camera.mount;
+    if (camera.fixed_lens) lp_squeeze(camera.lens, name);
     return status;
 }
 
@@ -245,15 +248,16 @@ static lensprof_status find_camera(lensprof_store *store, const lensprof_profile
                                    const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error) {
     char name[LP_NAME_BYTES] = "";
     int lenses = 0;
+    bool can_change;
     lensprof_status status = lp_is_known(key->lens) ? LENSPROF_OK : read_rows(store, "", key, o, found, error);
     if (status != LENSPROF_OK || found->count) return status;
-    status = find_fixed_lens(store, key, name, error);
+    status = find_fixed_lens(store, key, name, &can_change, error);
     if (status == LENSPROF_OK && *name) {
         found->by_camera = found->by_table = true;
         status = read_rows(store, name, key, o, found, error);
         if (status == LENSPROF_OK && !found->count) found->by_camera = found->by_table = false;
     }
-    if (status != LENSPROF_OK || found->count) return status;
+    if (status != LENSPROF_OK || found->count || (can_change && lp_is_known(key->lens))) return status;
     status = find_only_lens(store, key, name, &lenses, error);
     found->has_lenses = lenses > 1 && !lp_is_known(key->lens);
     found->by_camera = lenses == 1 && lp_is_known(key->lens);
