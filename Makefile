@@ -27,6 +27,7 @@ profiles: build ## a database of the installed Lensfun data (liblensfun-data-v1)
 	rm -f build/lensfun.db.part
 	build/lensprof profile import --db build/lensfun.db.part /usr/share/lensfun/version_1/*.xml
 	mv build/lensfun.db.part build/lensfun.db
+	cp profiles/lensfun-LICENSE.txt build/lensfun.db.LICENSE.txt
 	@echo 'try: build/lensprof query --db build/lensfun.db --lens "Canon EF 24-70mm f/2.8L USM" --focal 40 --aperture 3.2'
 
 program: deps ## build the program alone: build/lensprof
@@ -79,7 +80,7 @@ bench-knowledge: build ## measure what knowledge of the camera and the lens is w
 	@cmake/install-packages.sh packages-test.txt
 	tests/bench/run.sh --only knowledge --sequences $(SEQUENCES)
 
-install: build ## install under PREFIX (default /usr/local)
+install: build ## install under PREFIX (default /usr/local), with the database of `make profiles` where that was made
 	cmake --install build --prefix $(PREFIX)
 
 abi-baseline: ## make tests/install/abi-baseline.xml anew, when a change of the binary interface is compatible

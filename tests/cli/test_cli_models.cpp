@@ -171,6 +171,59 @@ void test_corrected_in_camera(void **) {
     assert_true(json["left_out"][0]["corrected_already"].get<bool>());
 }
 
+// A database with one raw falloff of a lens.
+std::string make_lens(const std::string &name, const char *lens, double k1) {
+    fs::create_directories(fs::path(work(name)).parent_path());
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(work(name).c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    std::strcpy(profile->key.lens, lens);
+    profile->key.focal_mm = 50, profile->key.aperture = 2, profile->key.crop_factor = 1;
+    profile->key.processing = LENSPROF_PROCESSING_RAW;
+    profile->vignetting[0].k[0] = k1;
+    assert_ok(lensprof_store_put(store, profile.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+    return work(name);
+}
+
+// The corner of grey `grey` in a corrected picture, as a share of linear light by the response sRGB.
+double corrected_by(const std::string &file) {
+    const Picture picture = read_picture(file);
+    const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+    return linear(grey / 255.0) / linear(picture.pixels[0] / 255.0);
+}
+
+// The installed database is asked after one's own, without a step; those of --db in their order, and no other.
+void test_several_databases(void **) {
+    const std::string picture = make_picture("p.png", "Camera", "Lens 50mm");
+    const Words apply = {"apply", "--overwrite", "--response", "srgb", "--crop-factor",
+                         "1",     "-o",          work("out"),  picture};
+    assert_refused(usage, apply, {"--pto", "none is installed"});
+    make_lens("share/lensprof/lensfun.db", "Lens 50mm", -0.4);
+    const std::string out = work("out/p.png");
+    must_exit(done, apply);  // there is no database of one's own
+    assert_close(corrected_by(out), corner_falloff(-0.4), 0.02);
+    make_lens("data/lensprof/profiles.db", "Lens 35mm", -0.1);
+    const Json json = json_of(apply + Words{"--json"});
+    assert_true(json["pictures"][0]["lookup"]["database"] == work("share/lensprof/lensfun.db"));
+    assert_close(corrected_by(out), corner_falloff(-0.4), 0.02);
+    make_lens("data/lensprof/profiles.db", "Lens 50mm", -0.2);
+    must_exit(done, apply);
+    assert_close(corrected_by(out), corner_falloff(-0.2), 0.02);
+    const std::string a = make_lens("a.db", "Lens 85mm", -0.5), b = make_lens("b.db", "Lens 50mm", -0.3);
+    must_exit(done, apply + Words{"--db", a, "--db", b, "--db", a});
+    assert_close(corrected_by(out), corner_falloff(-0.3), 0.02);
+    assert_refused(not_found, apply + Words{"--db", a}, {a, "no profile of a lens of this name"});
+    assert_refused(not_found, apply + Words{"--db", a, "--db", work("none.db")}, {"none.db"});
+    assert_refused(usage, apply + Words{"--db", ""}, {"--db"});
+    const std::string said = must_exit(done, {"query", "--lens", "Lens 50mm", "--focal", "50", "--aperture", "2.1",
+                                              "--distance", "inf", "--db", a, "--db", b});
+    assert_true(contains(said, "of this lens in " + b));
+    const Json range = json_of({"query", "--lens", "Lens 50mm", "--json"});
+    assert_int_equal(range["matches"], 2);  // of both
+}
+
 }  // namespace
 
 int main() {
@@ -180,9 +233,11 @@ int main() {
         CLI_TEST(test_response_in_place_of_the_profiles),
         CLI_TEST(test_profile_of_another_processing),
         CLI_TEST(test_corrected_in_camera),
+        CLI_TEST(test_several_databases),
     };
     const auto start = [](void **state) {
-        return make_folder(state) + setenv("XDG_DATA_HOME", in_folder("work/data").c_str(), 1);
+        return make_folder(state) + setenv("XDG_DATA_HOME", in_folder("work/data").c_str(), 1)
+               + setenv("XDG_DATA_DIRS", ("relative:" + in_folder("none") + ":" + in_folder("work/share")).c_str(), 1);
     };
     return cmocka_run_group_tests(tests, start, remove_folder);
 }

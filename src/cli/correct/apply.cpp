@@ -160,7 +160,7 @@ Source open_source(const Options &o) {
     if (!from_store && o.pto.empty())
         throw Failure(ExitCode::usage,
                       "say what to correct with: --profile ID, --from-db or --pto FILE; there is no "
-                      "database of your own yet");
+                      "database of your own yet, and none is installed");
     if (!o.pto.empty()) {
         source.project = std::make_unique<Project>(read_project(o.pto, true));
         source.images = std::make_unique<ImagesByFile>(*source.project);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/pictures/contact_sheet.hpp"
+#include "cli/profiles/lookup_report.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/progress.hpp"
@@ -20,12 +21,12 @@ namespace lensprof {
 struct Correction {
     std::string source, target;
     std::shared_ptr<const lensprof_profile> model;
-    lensprof_exposure own, wanted;                  // what the picture got, and what it shall look like
-    int64_t profile_id = 0;                         // 0 = the model is of no profile
-    std::shared_ptr<const lensprof_lookup> lookup;  // how the model was predicted; NULL = it was not
-    uint64_t pixels = 0;                            // of the source
-    std::string model_name;                         // for the output's mark
-    std::string note;                               // what is to be said of it; empty = nothing
+    lensprof_exposure own, wanted;        // what the picture got, and what it shall look like
+    int64_t profile_id = 0;               // 0 = the model is of no profile
+    std::shared_ptr<const Found> lookup;  // how the model was predicted; NULL = it was not
+    uint64_t pixels = 0;                  // of the source
+    std::string model_name;               // for the output's mark
+    std::string note;                     // what is to be said of it; empty = nothing
 };
 
 struct CorrectionKind {

@@ -14,7 +14,7 @@ void ModelOptions::add_options(Command &command) {
     command.flag("--from-db", from_db,
                  "look each picture's profile up by its EXIF (default where nothing else is given and there is a "
                  "database); between the settings that are stored its falloff is predicted, as by `lensprof query`");
-    declare_db(command, db);
+    declare_databases(command, dbs, "; --profile is of the first");
     command.group("What takes the place of EXIF");
     key.add_options(command);
     lookup.add_options(command);
@@ -37,8 +37,10 @@ PictureModels::PictureModels(const ModelOptions &options, bool by_default) : opt
     options.key.check_names();
     if (options.profile && options.from_db)
         throw Failure(ExitCode::usage, "--profile and --from-db contradict each other");
-    const bool has_database = by_default && (!options.db.empty() || path_exists(store_path("")));
-    if (options.profile || options.from_db || has_database) store_ = open_store(options.db, LENSPROF_STORE_READ);
+    const auto files =
+        options.profile && options.dbs.empty() ? std::vector<std::string>{store_path("")} : databases_of(options.dbs);
+    const bool has_database = by_default && (!options.dbs.empty() || path_exists(files[0]));
+    if (options.profile || options.from_db || has_database) databases_ = Databases(files);
 }
 
 // What EXIF says, then what the command line says. The sensor's size is that of the table of cameras, where it tells.
@@ -47,7 +49,7 @@ lensprof_profile_key PictureModels::key_of(const PictureMetadata &metadata) cons
     if (options_.force_falloff || options_.puts_in) key.processing = metadata.processing_before;
     options_.key.put_into(key);
     const double given = options_.lookup.crop_factor;
-    const double crop = given != LENSPROF_UNKNOWN ? given : crop_factor_in_table(store_.get(), key, metadata.size);
+    const double crop = given != LENSPROF_UNKNOWN ? given : crop_factor_in_tables(databases_, key, metadata.size);
     if (crop != LENSPROF_UNKNOWN) key.crop_factor = crop;
     return key;
 }
@@ -66,7 +68,7 @@ static bool is_corrected(const lensprof_profile_key &key, const PictureMetadata 
 // A profile of another processing has another response, or what is left of a falloff.
 void PictureModels::take_profile(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const {
     lensprof_error error{};
-    check(lensprof_store_get(store_.get(), options_.profile, &profile, &error), store_path(options_.db), &error);
+    check(lensprof_store_get(databases_.store(0), options_.profile, &profile, &error), databases_.file(0), &error);
     job.profile_id = options_.profile;
     const lensprof_profile_key key = key_of(metadata);
     const uint32_t own = key.processing, its = profile.key.processing;
@@ -85,20 +87,18 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
     const lensprof_lookup_options options = options_.lookup.options();
     lensprof_lookup how;
     lensprof_lookup_init(&how);
-    lensprof_error error{};
-    const lensprof_status status = lensprof_store_lookup(store_.get(), &key, &options, &profile, &how, &error);
+    const lensprof_status status = databases_.look_up(key, options, profile, how);
     if (status == LENSPROF_ERROR_NOT_FOUND && is_corrected(key, metadata)) fail_corrected(job.source, metadata);
     if (status == LENSPROF_ERROR_NOT_FOUND)
         throw NotThisOne(ExitCode::not_found,
-                         job.source + ": no profile for " + describe_key(key) + " in " + store_path(options_.db) + " ("
-                             + how.reason + describe_nearest(nearest_lenses(store_.get(), key, how))
+                         job.source + ": no profile for " + describe_key(key) + " in " + databases_.names() + " ("
+                             + how.reason + describe_nearest(nearest_lenses(databases_, key, how))
                              + "); make one with `lensprof build`, name the lens with --lens or a profile with "
                                "--profile, or leave the picture out with --skip");
-    check(status, store_path(options_.db), &error);
-    if (how.exact)
+    if (how.exact && how.falloff_store == 0)
         job.profile_id = how.id[0];
     else
-        job.lookup = std::make_shared<lensprof_lookup>(how);
+        job.lookup = std::make_shared<Found>(Found{how, databases_.files()});
 }
 
 void PictureModels::choose(const PictureMetadata &metadata, Correction &job) const {

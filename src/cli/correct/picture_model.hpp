@@ -4,11 +4,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/correct/correction.hpp"
 #include "cli/pictures/metadata.hpp"
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/lookup_options.hpp"
+#include "cli/program/databases.hpp"
 
 namespace lensprof {
 
@@ -21,7 +23,7 @@ struct NotThisOne : Failure {
 };
 
 struct ModelOptions {
-    std::string db;
+    std::vector<std::string> dbs;
     int64_t profile = 0;
     bool from_db = false, force_falloff = false;
     bool puts_in = false;  // the falloff is to be put in: into a corrected picture, too
@@ -32,14 +34,14 @@ struct ModelOptions {
     void add_options(Command &command);
 };
 
-// The database that models come from.
+// The databases that models come from.
 class PictureModels {
 public:
-    // Failure (usage) for options that contradict each other. Without --profile and --from-db the database is used
+    // Failure (usage) for options that contradict each other. Without --profile and --from-db the databases are used
     // where there is one and `by_default`.
     PictureModels(const ModelOptions &options, bool by_default);
 
-    bool are_used() const { return store_ != nullptr; }
+    bool are_used() const { return !databases_.is_empty(); }
 
     // Sets the model of a picture, what it is called and how it was found. NotThisOne where there is none that fits.
     void choose(const PictureMetadata &metadata, Correction &job) const;
@@ -50,7 +52,7 @@ private:
     void look_up(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const;
 
     const ModelOptions &options_;
-    Store store_;
+    Databases databases_;
 };
 
 }  // namespace lensprof

@@ -82,10 +82,19 @@ double crop_factor_in_table(lensprof_store *store, const lensprof_profile_key &k
     return crop_factor_of_format(all_cameras(store, file), camera, longer / shorter);
 }
 
+double crop_factor_in_tables(const Databases &databases, const lensprof_profile_key &key, PictureSize picture) {
+    double crop = LENSPROF_UNKNOWN;
+    for (size_t i = 0; i < databases.size() && crop == LENSPROF_UNKNOWN; i++)
+        crop = crop_factor_in_table(databases.store(i), key, picture);
+    return crop;
+}
+
 double crop_factor_in_file(const std::string &db, const lensprof_profile_key &key, PictureSize picture) {
-    if (!path_exists(store_path(db))) return LENSPROF_UNKNOWN;
+    auto files = databases_of(db.empty() ? std::vector<std::string>() : std::vector<std::string>{db});
+    files.erase(std::remove_if(files.begin(), files.end(), [](const auto &file) { return !path_exists(file); }),
+                files.end());
     try {
-        return crop_factor_in_table(open_store(db, LENSPROF_STORE_READ).get(), key, picture);
+        return crop_factor_in_tables(Databases(files), key, picture);
     } catch (const Failure &) {
         return LENSPROF_UNKNOWN;
     }

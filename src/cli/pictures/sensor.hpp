@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/pictures/metadata.hpp"
-#include "cli/program/library.hpp"
+#include "cli/program/databases.hpp"
 
 namespace lensprof {
 
@@ -12,7 +12,11 @@ namespace lensprof {
 // picture's format. LENSPROF_UNKNOWN where the table does not tell. Throws Failure.
 double crop_factor_in_table(lensprof_store *store, const lensprof_profile_key &key, PictureSize picture);
 
-// As before, of a database that may not be there; what is wrong with it is left to others to say.
+// By the first of several databases that tells.
+double crop_factor_in_tables(const Databases &databases, const lensprof_profile_key &key, PictureSize picture);
+
+// As before, of the databases of `--db db` (empty: not given), which need not be there; what is wrong with them is left
+// to others to say.
 double crop_factor_in_file(const std::string &db, const lensprof_profile_key &key, PictureSize picture);
 
 }  // namespace lensprof

@@ -8,13 +8,6 @@
 
 namespace lensprof {
 
-Json reason_codes_json(const lensprof_lookup &how) {
-    Json codes = Json::array();
-    for (uint32_t code : how.reason_code)
-        if (code != LENSPROF_REASON_NONE) codes.push_back(lensprof_reason_name(code));
-    return codes;
-}
-
 namespace {
 
 const char *response_from_name(uint32_t from) {
@@ -24,22 +17,34 @@ const char *response_from_name(uint32_t from) {
 
 Json known(double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(value); }
 
-Json response_json(const lensprof_lookup &how) {
+const std::string &database(const Found &found, uint32_t index) {
+    static const std::string none;
+    return index < found.databases.size() ? found.databases[index] : none;
+}
+
+// Which one, where there are several.
+std::string in_database(const Found &found, uint32_t index) {
+    return found.databases.size() > 1 ? " in " + database(found, index) : std::string();
+}
+
+Json response_json(const Found &found) {
+    const lensprof_lookup &how = found.how;
     Json rows = Json::array();
     for (uint32_t i = 0; i < how.response_rows; i++)
         rows.push_back({{"id", how.response_id[i]}, {"weight", how.response_weight[i]}});
     return {{"from", response_from_name(how.response_from)},
             {"camera_kind", camera_kind_name(how.camera_kind)},
             {"rows", rows},
-            {"database", how.response_store},
+            {"database", how.response_rows ? Json(database(found, how.response_store)) : Json()},
             {"gamma_sigma", known(how.response_sigma)}};
 }
 
-std::string describe_response(const lensprof_lookup &how) {
+std::string describe_response(const Found &found) {
+    const lensprof_lookup &how = found.how;
     switch (how.response_from) {
     case LENSPROF_RESPONSE_FROM_CAMERA:
-        return format("of the camera, from %s, \u00b1 %.1f %% in gamma", counted(how.response_rows, "profile").c_str(),
-                      100.0 * how.response_sigma);
+        return "of the camera, from " + counted(how.response_rows, "profile") + in_database(found, how.response_store)
+               + format(", \u00b1 %.1f %% in gamma", 100.0 * how.response_sigma);
     case LENSPROF_RESPONSE_FROM_KIND:
         return format("typical of its kind (%s), \u00b1 %.1f %% in gamma", camera_kind_name(how.camera_kind),
                       100.0 * how.response_sigma);
@@ -56,46 +61,68 @@ std::string describe_parts(const lensprof_lookup &how) {
     return text.empty() ? text : " (falloff " + format("%.3f", how.falloff_sigma) + text + ")";
 }
 
+std::string describe_prediction(const Found &found) {
+    const lensprof_lookup &how = found.how;
+    const std::string where = in_database(found, how.falloff_store);
+    if (how.exact) return format("stored as profile %lld", static_cast<long long>(how.id[0])) + where;
+    return "predicted from " + counted(how.rows, "profile") + " of this lens" + where
+           + format(", the nearest (%lld) at %.2f of the 0.5 that are allowed", static_cast<long long>(how.id[0]),
+                    how.distance);
+}
+
 }  // namespace
 
-Json lookup_json(const lensprof_lookup &how) {
+Json reason_codes_json(const lensprof_lookup &how) {
+    Json codes = Json::array();
+    for (uint32_t code : how.reason_code)
+        if (code != LENSPROF_REASON_NONE) codes.push_back(lensprof_reason_name(code));
+    return codes;
+}
+
+Json lookup_json(const Found &found) {
+    const lensprof_lookup &how = found.how;
     Json rows = Json::array();
     for (uint32_t i = 0; i < how.rows; i++) rows.push_back({{"id", how.id[i]}, {"weight", how.weight[i]}});
     return {{"exact", how.exact != 0},
             {"rows", rows},
-            {"database", how.falloff_store},
+            {"database", database(found, how.falloff_store)},
             {"distance", how.distance},
             {"sigma", known(how.sigma)},
             {"falloff_sigma", known(how.falloff_sigma)},
             {"distance_sigma", how.distance_sigma},
             {"sensor_sigma", how.sensor_sigma},
-            {"response", response_json(how)},
+            {"response", response_json(found)},
             {"name_score", how.name_score},
             {"reason", how.reason},
             {"reason_codes", reason_codes_json(how)}};
 }
 
-std::string describe_prediction(const lensprof_lookup &how) {
-    return format("predicted from %s of this lens, the nearest (%lld) at %.2f of the 0.5 that are allowed",
-                  counted(how.rows, "profile").c_str(), static_cast<long long>(how.id[0]), how.distance);
-}
-
-std::string describe_lookup(const lensprof_lookup &how) {
-    std::string text = "falloff " + describe_prediction(how) + "; response " + describe_response(how)
-                       + format("; standard error %.3f of M in the corner", how.sigma) + describe_parts(how);
+std::string describe_lookup(const Found &found) {
+    const lensprof_lookup &how = found.how;
+    std::string text = "falloff " + describe_prediction(found) + "; response " + describe_response(found);
+    if (how.sigma != LENSPROF_UNKNOWN)
+        text += format("; standard error %.3f of M in the corner", how.sigma) + describe_parts(how);
     if (*how.reason) text += std::string("; ") + how.reason;
     return text;
 }
 
-std::vector<std::string> nearest_lenses(lensprof_store *store, const lensprof_profile_key &key,
+std::vector<std::string> nearest_lenses(const Databases &databases, const lensprof_profile_key &key,
                                         const lensprof_lookup &how) {
     const auto *end = std::end(how.reason_code);
     if (std::find(std::begin(how.reason_code), end, LENSPROF_REASON_LOOKUP_NO_LENS) == end) return {};
-    lensprof_store_name names[3];
-    uint32_t count = 0;
-    if (lensprof_store_nearest_lenses(store, &key, names, 3, &count, nullptr) != LENSPROF_OK) return {};
+    constexpr uint32_t kMost = 3;
+    std::vector<lensprof_store_name> all;
+    for (size_t i = 0; i < databases.size(); i++) {
+        lensprof_store_name names[kMost];
+        uint32_t count = 0;
+        if (lensprof_store_nearest_lenses(databases.store(i), &key, names, kMost, &count, nullptr) == LENSPROF_OK)
+            all.insert(all.end(), names, names + count);
+    }
+    std::stable_sort(all.begin(), all.end(), [](const auto &a, const auto &b) { return a.score > b.score; });
     std::vector<std::string> lenses;
-    for (uint32_t i = 0; i < count; i++) lenses.emplace_back(names[i].lens);
+    for (const lensprof_store_name &name : all)
+        if (lenses.size() < kMost && std::find(lenses.begin(), lenses.end(), name.lens) == lenses.end())
+            lenses.emplace_back(name.lens);
     return lenses;
 }
 
@@ -105,11 +132,9 @@ std::string describe_nearest(const std::vector<std::string> &lenses) {
     return text;
 }
 
-void print_lookup(const lensprof_lookup &how, std::ostream &out) {
-    if (how.exact)
-        out << "stored    as profile " << how.id[0] << "\n";
-    else
-        out << "falloff   " << describe_prediction(how) << "\nresponse  " << describe_response(how) << "\n";
+void print_lookup(const Found &found, std::ostream &out) {
+    const lensprof_lookup &how = found.how;
+    out << "falloff   " << describe_prediction(found) << "\nresponse  " << describe_response(found) << "\n";
     if (how.sigma != LENSPROF_UNKNOWN)
         out << format("sigma     %.3f of M in the corner", how.sigma) << describe_parts(how) << "\n";
     if (how.name_score < 1.0) out << format("name      matched with score %.1f\n", how.name_score);

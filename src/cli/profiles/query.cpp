@@ -9,6 +9,7 @@
 #include "cli/profiles/lookup_options.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
+#include "cli/program/databases.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/run.hpp"
@@ -18,7 +19,7 @@ namespace lensprof {
 namespace {
 
 struct Options {
-    std::string db;
+    std::vector<std::string> dbs;
     KeyFilter filter;
     LookupOptions lookup;
     bool json = false;
@@ -27,7 +28,7 @@ struct Options {
 void declare(Command &command, Options &o) {
     o.filter.add_options(command);
     o.lookup.add_options(command);
-    declare_db(command, o.db);
+    declare_databases(command, o.dbs);
     declare_json(command, o.json);
     command.footer(
         "When no profile is stored for the setting, the falloff is predicted from those of the same lens at other\n"
@@ -57,11 +58,37 @@ std::vector<lensprof_store_row> rows_that_count(const Options &o, std::vector<le
     return rows;
 }
 
-// The one profile that matches.
-void answer_stored(const Options &o, lensprof_store *store, int64_t id, Streams &streams) {
+// Profiles of one database.
+struct Match {
+    size_t database;
+    std::vector<lensprof_store_row> rows;
+};
+
+std::vector<Match> matches(const Options &o, const Databases &databases, const KeyFilter &filter, bool by_parts) {
+    std::vector<Match> all;
+    for (size_t i = 0; i < databases.size(); i++) {
+        const auto &file = databases.file(i);
+        all.push_back({i, rows_that_count(o, by_parts ? filter.matching_rows(databases.store(i), file)
+                                                      : filter.rows(databases.store(i), file))});
+    }
+    return all;
+}
+
+size_t count(const std::vector<Match> &all) {
+    size_t rows = 0;
+    for (const Match &match : all) rows += match.rows.size();
+    return rows;
+}
+
+void read_profile(const Databases &databases, size_t index, int64_t id, lensprof_profile &profile) {
     lensprof_error error{};
+    check(lensprof_store_get(databases.store(index), id, &profile, &error), databases.file(index), &error);
+}
+
+// The one profile that matches.
+void answer_stored(const Options &o, const Databases &databases, size_t index, int64_t id, Streams &streams) {
     auto profile = new_profile();
-    check(lensprof_store_get(store, id, profile.get(), &error), store_path(o.db), &error);
+    read_profile(databases, index, id, *profile);
     if (o.json) {
         Json object = profile_json(id, *profile);
         object["found"] = true;
@@ -73,27 +100,27 @@ void answer_stored(const Options &o, lensprof_store *store, int64_t id, Streams 
 }
 
 // What is known of the lens or camera, where the setting leaves open which of it is meant.
-void answer_range(const Options &o, lensprof_store *store, const std::string &reason, Streams &streams) {
+void answer_range(const Options &o, const Databases &databases, const std::string &reason, Streams &streams) {
     KnownRange known;
-    const auto rows = rows_that_count(o, o.filter.without_setting().matching_rows(store, o.db));
+    const auto all = matches(o, databases, o.filter.without_setting(), true);
     auto profile = new_profile();
-    for (const auto &row : rows) {
-        lensprof_error error{};
-        check(lensprof_store_get(store, row.id, profile.get(), &error), store_path(o.db), &error);
-        known.add(*profile);
-    }
+    for (const Match &match : all)
+        for (const auto &row : match.rows) {
+            read_profile(databases, match.database, row.id, *profile);
+            known.add(*profile);
+        }
     if (o.json) {
         print_json(Json{{"schema", 1},
                         {"id", nullptr},
                         {"found", true},
-                        {"matches", rows.size()},
+                        {"matches", count(all)},
                         {"reason", reason},
                         {"range", known_range_json(known)}},
                    streams.out);
         return;
     }
     print_known_range(known, streams.out);
-    streams.out << rows.size() << " profiles match: " << reason << "\n";
+    streams.out << count(all) << " profiles match: " << reason << "\n";
 }
 
 // Why there is no answer, for JSON.
@@ -110,43 +137,43 @@ bool is_open(const lensprof_lookup &how) {
 }
 
 // The profile for the setting: stored, or between what is stored. False where the key leaves open which is meant.
-bool answer_lookup(const Options &o, lensprof_store *store, const std::vector<lensprof_store_row> &rows,
-                   Refusal &refusal, Streams &streams) {
+bool answer_lookup(const Options &o, const Databases &databases, size_t rows, Refusal &refusal, Streams &streams) {
     lensprof_lookup_options options = o.lookup.options();
     options.any_processing = !o.filter.has_processing();
     lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
     key.crop_factor = o.lookup.crop_factor;
-    lensprof_error error{};
     auto profile = new_profile();
     lensprof_lookup &how = refusal.how;
-    const lensprof_status status = lensprof_store_lookup(store, &key, &options, profile.get(), &how, &error);
+    const lensprof_status status = databases.look_up(key, options, *profile, how);
     if (status == LENSPROF_ERROR_NOT_FOUND && is_open(how)) return false;
     if (status == LENSPROF_ERROR_NOT_FOUND) {
-        refusal.nearest = nearest_lenses(store, key, how);
-        throw Failure(ExitCode::not_found, o.filter.nothing_found(o.db) + "; nor can it be predicted: " + how.reason
-                                               + describe_nearest(refusal.nearest));
+        refusal.nearest = nearest_lenses(databases, key, how);
+        throw Failure(ExitCode::not_found, o.filter.nothing_found(databases.names()) + "; nor can it be predicted: "
+                                               + how.reason + describe_nearest(refusal.nearest));
     }
-    check(status, store_path(o.db), &error);
+    const Found found{how, databases.files()};
     if (o.json) {
         Json object = profile_json(how.exact ? how.id[0] : 0, *profile);
         object["found"] = true;
-        object["matches"] = rows.size();
-        object["lookup"] = lookup_json(how);
+        object["matches"] = rows;
+        object["lookup"] = lookup_json(found);
         print_json(object, streams.out);
         return true;
     }
     print_profile(how.exact ? how.id[0] : 0, *profile, streams.out);
-    print_lookup(how, streams.out);
+    print_lookup(found, streams.out);
     return true;
 }
 
 void answer(const Options &o, Refusal &refusal, Streams &streams) {
-    Store store = open_store(o.db, LENSPROF_STORE_READ);
-    const auto rows = rows_that_count(o, o.filter.rows(store.get(), o.db));
-    if (rows.size() == 1)
-        answer_stored(o, store.get(), rows[0].id, streams);
-    else if (!answer_lookup(o, store.get(), rows, refusal, streams))
-        answer_range(o, store.get(), refusal.how.reason, streams);
+    const Databases databases(databases_of(o.dbs));
+    const auto all = matches(o, databases, o.filter, false);
+    const size_t rows = count(all);
+    const auto only = std::find_if(all.begin(), all.end(), [](const Match &match) { return match.rows.size() == 1; });
+    if (rows == 1)
+        answer_stored(o, databases, only->database, only->rows[0].id, streams);
+    else if (!answer_lookup(o, databases, rows, refusal, streams))
+        answer_range(o, databases, refusal.how.reason, streams);
 }
 
 int run(const Options &o, Streams &streams) {

@@ -1,0 +1,76 @@
+#include "cli/program/databases.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "cli/program/paths.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr const char *kInstalled = "/lensprof/lensfun.db";
+
+// The folder beside the program's: /usr/local/share of /usr/local/bin/lensprof. Empty where it cannot be told.
+std::string own_share_folder() {
+    std::error_code error;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+    return error ? std::string() : (program.parent_path().parent_path() / "share").string();
+}
+
+}  // namespace
+
+void declare_databases(Command &command, std::vector<std::string> &files, const std::string &more) {
+    command.words(
+        "--db", "FILE", [&files](const std::string &word) { files.push_back(word); },
+        "profile database" + more
+            + ", may be given more than once: the first that knows the lens or the camera answers; default "
+              "lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share, then the lens data that are installed with lensprof");
+}
+
+std::string installed_database() {
+    const char *given = std::getenv("XDG_DATA_DIRS");
+    std::string folders = own_share_folder() + ":" + (given && *given ? given : "/usr/local/share:/usr/share") + ":";
+    for (size_t begin = 0, end; (end = folders.find(':', begin)) != std::string::npos; begin = end + 1) {
+        const std::string file = folders.substr(begin, end - begin) + kInstalled;
+        if (file[0] == '/' && end > begin && is_regular_file(file)) return file;
+    }
+    return {};
+}
+
+std::vector<std::string> databases_of(const std::vector<std::string> &named) {
+    if (!named.empty()) return named;
+    std::vector<std::string> files;
+    const std::string own = store_path(""), installed = installed_database();
+    if (path_exists(own) || installed.empty()) files.push_back(own);
+    if (!installed.empty() && !is_same_file(own, installed)) files.push_back(installed);
+    return files;
+}
+
+Databases::Databases(const std::vector<std::string> &files) {
+    std::set<std::string> seen;
+    for (const std::string &file : files) {
+        if (!seen.insert(file_identity(file)).second) continue;  // a store is one transaction at a time
+        stores_.push_back(open_store(file, LENSPROF_STORE_READ));
+        files_.push_back(file);
+    }
+}
+
+std::string Databases::names() const {
+    std::string text;
+    for (const std::string &file : files_) text += (text.empty() ? "" : ", ") + file;
+    return text;
+}
+
+lensprof_status Databases::look_up(const lensprof_profile_key &key, const lensprof_lookup_options &options,
+                                   lensprof_profile &profile, lensprof_lookup &how) const {
+    std::vector<lensprof_store *> stores;
+    for (const Store &store : stores_) stores.push_back(store.get());
+    lensprof_error error{};
+    const lensprof_status status = lensprof_store_lookup_in(stores.data(), static_cast<uint32_t>(stores.size()), &key,
+                                                            &options, &profile, &how, &error);
+    if (status != LENSPROF_ERROR_NOT_FOUND) check(status, names(), &error);
+    return status;
+}
+
+}  // namespace lensprof
