@@ -32,13 +32,13 @@ import lookup  # first: it finds the library's Python package
 import scorer
 import tools
 import lensprof as lp
+from distance import USUAL
 
 STATES = ("nothing", "camera", "lens", "both")
 # median error of M in the corner, share of exponents within .9 .. 1.1
 TARGETS = {"nothing": (0.05, 0.80), "camera": (0.03, 0.90), "lens": (0.02, 0.95), "both": (0.01, 0.98)}
 HOLDS = (0.63, 0.73)  # of the standard errors stated; 68 % meant
 DRAWN, TOLD = lp.CameraKind.CAMERA, lp.CameraKind.DIGITAL  # kind of the cameras, and what fits are told
-USUAL = ((np.inf, 10.0, 5.0, 3.0, 1.5, 0.7, 0.3), (0.25, 0.2, 0.19, 0.14, 0.11, 0.08, 0.03))
 PAIRS, OUTLIERS = 2000, 0.1
 FRAMES, POINTS, NOISE = 6, 300, 2.0  # of a bracket; noise in levels
 TIME_SIGMA_EV, REPEATABILITY = 0.07, 0.018

@@ -11,6 +11,8 @@ length and aperture has nothing left and is not asked for.
 Two halves: the axes and most constants of the prediction were chosen on the lenses whose CRC-32 of
 "maker|model|mount,mount|crop factor", as the file has these, is even; the test half are lenses with none of those.
 
+Then the same lenses are asked without a focus distance (distance.py).
+
 Exit code 1: on the test half the mean error is not at least a quarter below Lensfun's; 77: there is no data.
 """
 import collections
@@ -31,6 +33,7 @@ from report import header, number, row
 sys.path.insert(0, str(tools.ROOT / "bindings" / "python"))
 os.environ.setdefault("LENSPROF_LIBRARY", str(tools.ROOT / "build" / "liblensprof.so"))
 import lensprof  # noqa: E402
+import distance  # noqa: E402
 
 TEST, CHOSEN, ALL = "test half", "other half", "all"
 TARGET = 0.75  # of Lensfun's mean error
@@ -176,16 +179,19 @@ def main():
         print("lookup.py: %s: no Lensfun data; install liblensfun-data-v1 (make test-deps)" % folder, file=sys.stderr)
         sys.exit(77)
     halves = {name: {"lenses": 0, "asked": []} for name in (TEST, CHOSEN, ALL)}
-    alone = 0
+    of_distance, alone = {TEST: [], CHOSEN: []}, 0
     with tempfile.TemporaryDirectory() as scratch, \
             lensprof.Store(pathlib.Path(scratch) / "lensfun.db", lensprof.StoreMode.CREATE) as store:
         stored, *counts = fill(store, folder)
         for rows in lenses(store, stored).values():
             asked = leave_out(store, rows)
             alone += 0 if asked else len(rows)
-            for half in (halves[TEST if all(one.is_test for one in rows) else CHOSEN], halves[ALL]):
+            name = TEST if all(one.is_test for one in rows) else CHOSEN
+            for half in (halves[name], halves[ALL]):
                 half["lenses"] += bool(asked)
                 half["asked"] += asked
+            several = distance.ask_lens(store, rows)
+            of_distance[name] += [several] if several else []
         profiles, faults = store.check()
     if faults or profiles != len(stored):
         sys.exit("lookup.py: the database is not as it was before the lookups: %d of %d profiles, %d faults"
@@ -193,7 +199,7 @@ def main():
     if not all(errors_of_both(half["asked"])[0] for half in halves.values()):
         sys.exit("lookup.py: %s: too few lenses with several settings; both halves need some" % folder)
     text = document(halves, [*counts, alone])
-    print(text, end="")
+    print(text + distance.document(of_distance), end="")
     if not ratio_of_means(halves[TEST]["asked"]) <= TARGET:
         sys.exit("lookup.py: the mean error on the test half is above %g of Lensfun's" % TARGET)
 

@@ -272,6 +272,25 @@ static void test_left_out_is_said(void **state) {
     lensprof_store_close(store);
 }
 
+/* One distance tells nothing of others: it is the answer, and the error is that of lenses known at several. */
+static void test_lone_distance(void **state) {
+    lensprof_store *store = zoom_store(*state);
+    assert_ok(ask(store, zoom, 28, 2.4, INFINITY));
+    const double k = answered.vignetting[0].k[0], sigma = how.falloff_sigma;
+    assert_close(how.distance_sigma, 0.0, 0.0);
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    const lensprof_profile_key key = zoom_profile(zoom, 28, 2.4, LENSPROF_UNKNOWN)->key;
+    for (uint32_t rule = LENSPROF_DISTANCE_WEAKEST; rule <= LENSPROF_DISTANCE_USUAL; rule++) {
+        options.distance_rule = rule;
+        assert_ok(ask_with(store, &key, &options));
+        assert_close(answered.vignetting[0].k[0], k, 0.0);
+        assert_close(how.falloff_sigma, sigma, 0.0);
+        assert_close(how.distance_sigma, 0.007, 0.0);
+    }
+    lensprof_store_close(store);
+}
+
 /* Nothing that was not there is taken out. */
 static void test_unknown_distance(void **state) {
     const place *here = *state;
@@ -410,6 +429,7 @@ int main(void) {
         store_test(test_unknown_sensor),
         store_test(test_left_out_is_said),
         store_test(test_unknown_distance),
+        store_test(test_lone_distance),
         store_test(test_doubt_and_processing),
         store_test(test_damaged_rows),
         store_test(test_transactions),

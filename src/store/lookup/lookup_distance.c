@@ -5,9 +5,9 @@
 
 #define MOST_DISTANCES 8 /* stored focus distances that are tried */
 
-/* Of M in the corner, where a lens is known at one distance only: the scatter over the usual distances of the lenses
- * that are known at several (docs/database.md). */
-#define LONE_DISTANCE_SIGMA 0.02
+/* Of M in the corner, where a lens is known at one distance only: two thirds of the errors over the usual distances are
+ * below this for lenses that are known at several, but asked by their farthest alone (make bench-lookup). */
+#define LONE_DISTANCE_SIGMA 0.007
 
 /* Distances, and the share of photographs taken at each. */
 typedef struct distances {
@@ -107,24 +107,24 @@ static void join(const predictions *made, int weakest, lp_falloff_prediction *p)
 /* How far the truth is from `p` by the distance alone: the spread over the usual distances, or over those stored where
  * none of the usual ones can be predicted. -1 without memory. */
 static int spread_by_distance(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
-                              const predictions *made, const distances *stored, const lp_falloff_prediction *p,
-                              double *sigma) {
+                              const predictions *made, const lp_falloff_prediction *p, double *sigma) {
     predictions likely;
     if (predict_at(&usual, nodes, count, *at, &likely) < 0) return -1;
     *sigma = spread_about(likely.count ? &likely : made, corner_of(p));
-    if (stored->count < 2) *sigma = fmax(*sigma, LONE_DISTANCE_SIGMA);
     return 1;
 }
 
 int lp_predict_any_distance(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at, uint32_t rule,
                             lp_falloff_prediction *prediction, double *sigma) {
     const distances stored = stored_distances(nodes, count);
-    distances tried = rule == LENSPROF_DISTANCE_USUAL ? usual : stored;
+    const int is_lone = stored.count == 1;
+    distances tried = rule == LENSPROF_DISTANCE_USUAL && !is_lone ? usual : stored;
     predictions made;
     if (rule == LENSPROF_DISTANCE_FARTHEST && tried.count) tried.count = 1;
     if (predict_at(&tried, nodes, count, *at, &made) < 0) return -1;
     *prediction = made.at[0];
     if (!made.count) return 0;
     join(&made, rule == LENSPROF_DISTANCE_WEAKEST, prediction);
-    return spread_by_distance(nodes, count, at, &made, &stored, prediction, sigma);
+    *sigma = LONE_DISTANCE_SIGMA;
+    return is_lone ? 1 : spread_by_distance(nodes, count, at, &made, prediction, sigma);
 }
