@@ -68,7 +68,8 @@ typedef enum lensprof_gamma_from {
     LENSPROF_GAMMA_EXPOSURES = 2, /* known_ev of the images alone; without differences there, the prior */
     LENSPROF_GAMMA_KNOWN = 3,     /* results only: parameters held fixed, be it response, falloff or exposures */
     LENSPROF_GAMMA_NONE = 4,      /* results only: nothing, for want of a prior (the paper's method): it is arbitrary */
-    LENSPROF_GAMMA_PROFILE = 5    /* results only: the profile that the options give as the prior */
+    LENSPROF_GAMMA_PROFILE = 5,   /* results only: the response of the profile that the options give as the prior */
+    LENSPROF_GAMMA_FALLOFF = 6    /* results only: its falloff, as it says how deep M is */
 } lensprof_gamma_from;
 
 /* One image of the fit. */
@@ -112,13 +113,14 @@ typedef struct lensprof_fit_options {
     uint32_t max_iterations;
     uint32_t vignettings; /* falloff curves: 1 for all channels, 3, or 0 = chosen by held-out error */
     uint32_t gamma_from;  /* lensprof_gamma_from */
-    uint32_t camera_kind; /* lensprof_camera_kind: ANY, FILM or DIGITAL */
-    uint32_t threads;     /* at most so many, the caller's included; 0 = one a core. The result does not depend on it */
-    uint32_t method;      /* lensprof_fit_method */
-    uint32_t refine;      /* 1: the response is freed of the EMoR modes at every grey level, and becomes a TABLE, where
-                             held-out pairs are not clearly worse for it. Wants pairs of all greys; for TRANSFER with
-                             at most 256 images and 100 pairs or more, else without effect. 0 = EMoR alone */
-    uint32_t reserved;    /* 0 */
+    uint32_t
+        camera_kind;   /* lensprof_camera_kind: whose exponents the prior is of. LINEAR: the response is held linear */
+    uint32_t threads;  /* at most so many, the caller's included; 0 = one a core. The result does not depend on it */
+    uint32_t method;   /* lensprof_fit_method */
+    uint32_t refine;   /* 1: the response is freed of the EMoR modes at every grey level, and becomes a TABLE, where
+                          held-out pairs are not clearly worse for it. Wants pairs of all greys; for TRANSFER with
+                          at most 256 images and 100 pairs or more, else without effect. 0 = EMoR alone */
+    uint32_t reserved; /* 0 */
     const lensprof_profile *profile; /* of the same camera, lens and setting, from other pictures: the prior in place of
                                         that of all cameras, by its covariance, which it must have, where a response
                                         of EMoR modes and a falloff have one; TRANSFER and RADIANCE, a prior_weight
@@ -167,7 +169,7 @@ typedef struct lensprof_fit_result {
     uint32_t components;               /* connected groups of images; 1 when all are tied together */
     uint32_t iterations;
     uint32_t converged;
-    uint32_t gamma_from;   /* what settled gamma: PRIOR, EXPOSURES, KNOWN, NONE or PROFILE */
+    uint32_t gamma_from;   /* what settled gamma: PRIOR, EXPOSURES, KNOWN, NONE, PROFILE or FALLOFF: most */
     double gamma_sigma;    /* standard error of ln gamma; 0 when KNOWN, LENSPROF_UNKNOWN when NONE */
     double before_rms;     /* |B1 - B2| of the held-out pairs, levels of 255 */
     double heldout_rms;    /* transfer residual of pairs left out of the fit, levels of 255 */

@@ -53,6 +53,8 @@ typedef enum lensprof_reason {
     /* Response. */
     LENSPROF_REASON_FEW_GREYS = 301,     /* tenths of the grey values */
     LENSPROF_REASON_MISSING_GREYS = 351, /* from, grey value 0..1; to, grey value 0..1 */
+    LENSPROF_REASON_UNUSUAL_RESPONSE =
+        352, /* distance, times that of the kind's measured cameras; standard error of ln gamma */
 
     /* Falloff. */
     LENSPROF_REASON_SMALL_RADIUS = 401,     /* largest radius, half diagonals */

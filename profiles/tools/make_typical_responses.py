@@ -9,8 +9,8 @@ shape (white's place included). Scatter of few cameras leaves directions without
 independent from mode to mode. Phones, too few to have a scatter of their own, have that of cameras and phones together.
 The error of ln gamma is what the position of a left-out camera differs from the middle of the others: 68 % of fifteen and more
 curves are nearer, of fewer the root mean square times Student's factor. It enters the covariance along the family's direction.
-"Any" is the mixture of camera, phone, digital, film and plain curves in equal parts, its error at least half the
-distance to the farthest plain curve. Also printed, to standard error: the positions, left-out errors by kind and maker, and how
+"Any" is the mixture of camera, phone, digital, film and plain curves in equal parts; of its errors the farthest plain
+curve is at most 1.95 away, so that a fit, which adds a little, stays within two. Also printed, to standard error: the positions, left-out errors by kind and maker, and how
 well 25 modes follow the curves.
 """
 import sys
@@ -22,6 +22,7 @@ from measured_curves import x
 
 MODES = 25
 INDEPENDENT = 0.2  # share of the scatter
+REACH = 1.95       # standard errors
 FLOOR = 2e-4       # standard deviation of a coefficient, at least
 KINDS = ("any", "film", "digital", "camera", "phone")  # in the order of lensprof_camera_kind
 STUDENT_68 = {3: 1.20, 4: 1.14}  # by degrees of freedom
@@ -102,7 +103,7 @@ def mixture(kinds, farthest):
     any_.mean = at_position(np.mean(means, axis=0), any_.q)
     any_.scatter = np.mean([k.scatter + np.outer(m - any_.mean, m - any_.mean) for k, m in zip(kinds, means)], axis=0)
     spread = np.sqrt(np.mean([k.sigma ** 2 + (k.q - any_.q) ** 2 for k in kinds]))
-    any_.sigma = max(spread, max(abs(c.position() - any_.q) for c in farthest) / 2)
+    any_.sigma = max(spread, max(abs(c.position() - any_.q) for c in farthest) / REACH)
     return any_
 
 

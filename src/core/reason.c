@@ -49,6 +49,7 @@ static const reason_row rows[] = {
     ROW(GAMMA_UNFOLLOWED, "gamma_unfollowed", "the response cannot follow the exponent of the known exposures"),
     ROW(FEW_GREYS, "few_greys", "the pairs cover too few grey values to show a response"),
     ROW(MISSING_GREYS, "missing_greys", "the pairs leave out a range of grey values"),
+    ROW(UNUSUAL_RESPONSE, "unusual_response", "the response is unlike those of measured cameras of this kind"),
     ROW(SMALL_RADIUS, "small_radius", "the pairs do not reach the corners"),
     ROW(CORNER_UNCERTAIN, "corner_uncertain", "the pairs leave the falloff in the corners uncertain"),
     ROW(NOT_RADIAL, "not_radial", "the residual follows one pattern over the frame: the falloff is not radial"),

@@ -63,6 +63,12 @@ void test_gamma_from_the_prior(void **) {
     const Json film = json_of(build(path, {"--gamma-from", "prior", "--camera-kind", "film"}));
     assert_string_equal(film["gamma"]["camera_kind"].get<std::string>().c_str(), "film");
     assert_true(film["gamma"]["sigma"] != json["gamma"]["sigma"]);
+    assert_string_equal(json["gamma"]["camera_kind_from"].get<std::string>().c_str(), "none");
+    assert_string_equal(film["gamma"]["camera_kind_from"].get<std::string>().c_str(), "option");
+    const Json linear = json_of(build(path, {"--camera-kind", "linear"}));
+    assert_gamma(linear, "known");
+    assert_string_equal(linear["response"]["kind"].get<std::string>().c_str(), "linear");
+    assert_close(slope(linear, path), 1.0, 0.01);
 }
 
 // The project's own response is kept, and gamma with it: here one that was found by the exposures.
@@ -143,7 +149,7 @@ void test_refused_options(void **) {
     const std::string path = linear_scene();
     for (const Words &words : {Words{"--gamma-from", "guess"}, Words{"--gamma-from", ""}, Words{"--exif-sigma", "-0.1"},
                                Words{"--exif-sigma", "nan"}, Words{"--exif-sigma", "11"},
-                               Words{"--camera-kind", "phone"}, Words{"--gamma-from", "exif", "--exif-sigma", "0"},
+                               Words{"--camera-kind", "scanner"}, Words{"--gamma-from", "exif", "--exif-sigma", "0"},
                                Words{"--falloff-curves", "2"}, Words{"--falloff-curves", "4"}})
         assert_refused(usage, build(path, words), {words[0]});
     assert_refused(usage, build(path, {"--force"}), {"--no-store and --force", "leave one out"});

@@ -64,7 +64,7 @@ inline void any_choices(Case &c) {
     const uint32_t curves[3] = {0, 1, 3};
     c.options.vignettings = curves[c.below(3)];
     c.options.gamma_from = c.below(3);
-    c.options.camera_kind = c.below(3);
+    c.options.camera_kind = c.below(6);
 }
 
 // Known exposures: the true ones, all alike, or anything.

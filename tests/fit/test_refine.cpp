@@ -68,7 +68,8 @@ void test_refines_what_modes_cannot_follow(void **) {
     assert_true(refined.result.usable);
     print_message("off by %.2f levels with modes, by %.2f refined\n", transfer_error(s, modes),
                   transfer_error(s, refined));
-    assert_true(transfer_error(s, refined) < 0.5 * transfer_error(s, modes));
+    // Held to gamma, auto takes 16 modes, which are off by 3.5 levels where 7 were by 4.1.
+    assert_true(transfer_error(s, refined) < 0.7 * transfer_error(s, modes));
     assert_true(transfer_error(s, refined) < 2.5);
     assert_true(refined.result.heldout_rms < modes.result.heldout_rms);
 }

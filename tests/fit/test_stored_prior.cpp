@@ -148,7 +148,8 @@ void test_falloff_alone(void **) {
         Found found, own;
         assert_ok(fit(s, stored.get(), found));
         assert_ok(fit(s, nullptr, own));
-        assert_int_equal(found.result->gamma_from == LENSPROF_GAMMA_PROFILE, 0);
+        assert_int_equal(found.result->gamma_from, LENSPROF_GAMMA_FALLOFF);
+        assert_true(found.result->gamma_sigma < own.result->gamma_sigma);
         with += errors_of(s, *found.result).falloff / 10.0, without += errors_of(s, *own.result).falloff / 10.0;
     }
     printf("    80 pairs: %.4f with a falloff, %.4f without\n", with, without);

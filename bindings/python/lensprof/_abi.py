@@ -172,6 +172,7 @@ class Reason(IntEnum):
     GAMMA_UNFOLLOWED = 256
     FEW_GREYS = 301
     MISSING_GREYS = 351
+    UNUSUAL_RESPONSE = 352
     SMALL_RADIUS = 401
     CORNER_UNCERTAIN = 402
     NOT_RADIAL = 451
@@ -280,6 +281,7 @@ class GammaFrom(IntEnum):
     KNOWN = 3
     NONE = 4
     PROFILE = 5
+    FALLOFF = 6
 
 
 class ProfilePrior(IntEnum):

@@ -214,14 +214,15 @@ FitInput fit_input(const Options &o, const Project &project, const std::vector<P
 }
 
 BuildReport fit_bracket(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                        const std::vector<double> &ev, Streams &streams) {
+                        const std::vector<double> &ev, const CameraKind &kind, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
     report.has_falloff = false;
     report.exposures_given = !ev.empty();
     FitInput input = fit_input(o, project, metadata, ev, streams);
-    report.camera_kind = input.options.camera_kind;
+    report.camera_kind = kind;
+    input.options.camera_kind = kind.kind;
     if (!o.reference.empty()) report.reference = image_of_word(project, o.reference);
     input.pairs = get_pairs(o, project, progress, report, input.options.channels);
     stop_if_interrupted();
@@ -252,7 +253,9 @@ int bracket_and_store(const Options &o, Streams &streams) {
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
     lensprof_profile_key key = camera_key(o, metadata[0], project.files[0], streams);
     check_store(o.store);
-    BuildReport report = fit_bracket(o, project, metadata, ev, streams);
+    CameraKind kind = camera_kind_of(o.fit, key, metadata[0]);
+    if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind) kind = {};  // the response is asked for
+    BuildReport report = fit_bracket(o, project, metadata, ev, kind, streams);
     return finish_fit(
         report, key, o.store,
         {o.fit.method == LENSPROF_METHOD_TRANSFER ? "bracket" : std::string("bracket ") + method_name(o.fit.method),

@@ -212,14 +212,15 @@ Fitted fit_for_project(const Options &o, FitInput &input, const Fitted &best, ui
 }
 
 BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
-                  const EarlierProfile &prior, OutputFiles &outputs, Streams &streams) {
+                  const EarlierProfile &prior, const CameraKind &kind, OutputFiles &outputs, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     BuildReport report;
     report.names = project.names;
     report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
     FitInput input;
     input.options = project_options(o, project, input.fixed);
-    report.camera_kind = input.options.camera_kind;
+    report.camera_kind = kind;
+    input.options.camera_kind = kind.kind;
     report.prior_id = prior.id;
     report.no_prior = prior.reason;
     input.options.profile = prior.profile.get();
@@ -263,10 +264,11 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     TrueValues truth;
     if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
     check_store(o.store);
+    const CameraKind kind = camera_kind_of(o.fit, key, metadata[project.reference]);
     OutputFiles outputs;
     EarlierProfile prior;
     if (o.fit.stored_prior) prior = find_stored_prior(o.store, key, o.pto);
-    BuildReport report = build(o, project, metadata, prior, outputs, streams);
+    BuildReport report = build(o, project, metadata, prior, kind, outputs, streams);
     int code = finish_fit(report, key, o.store, {method_name(o.fit.method), o.pto, o.json, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     if (!report.fit.usable && !o.pto_out.empty() && !o.store.force)

@@ -44,6 +44,13 @@ void declare_method(Command &command, FitOptions &o, const FitChoices &choices) 
     command.choice("--method", o.method, methods, about);
 }
 
+Choices<std::optional<uint32_t>> camera_kind_choices() {
+    Choices<std::optional<uint32_t>> choices{{"auto", std::nullopt}};
+    for (uint32_t kind = LENSPROF_CAMERA_ANY; kind <= LENSPROF_CAMERA_LINEAR; kind++)
+        choices.emplace_back(camera_kind_name(kind), kind);
+    return choices;
+}
+
 void declare_prior(Command &command, FitOptions &o, bool may_be_stored) {
     const auto read = [&o, may_be_stored](const std::string &word) {
         o.stored_prior = may_be_stored && word == "auto";
@@ -92,9 +99,9 @@ void declare_fit(Command &command, FitOptions &o, FitChoices choices) {
     declare_gamma(command, o, choices.known_response);
     command.number("--exif-sigma", o.exif_sigma, {0.0, 10.0},
                    "standard error of an EXIF exposure, EV; 0 = do not use them");
-    command.choice("--camera-kind", o.camera_kind,
-                   {{"any", LENSPROF_CAMERA_ANY}, {"film", LENSPROF_CAMERA_FILM}, {"digital", LENSPROF_CAMERA_DIGITAL}},
-                   "whose responses the prior is of: any, film or digital");
+    command.choice("--camera-kind", o.camera_kind, camera_kind_choices(),
+                   "whose exponents the prior is of: camera or phone (today's JPEG), digital (of the 1990s), film "
+                   "(scanned), linear (the response is held linear), any, or auto: what EXIF says took the pictures");
 }
 
 void check_fit_options(const FitOptions &o) {
@@ -111,7 +118,7 @@ lensprof_fit_options fit_options(const FitOptions &o) {
     options.method = o.method;
     options.modes = o.modes;
     options.loss = o.loss;
-    options.camera_kind = o.camera_kind;
+    options.camera_kind = o.camera_kind.value_or(LENSPROF_CAMERA_ANY);
     options.huber_levels = o.huber;
     options.prior_weight = o.prior_weight;
     if (o.gamma_from == LENSPROF_GAMMA_KNOWN)
@@ -119,6 +126,15 @@ lensprof_fit_options fit_options(const FitOptions &o) {
     else
         options.gamma_from = o.gamma_from;
     return options;
+}
+
+CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const PictureMetadata &metadata) {
+    if (o.camera_kind) return {*o.camera_kind, KindFrom::option};
+    key.processing = metadata.processing_before;
+    const uint32_t kind = lensprof_camera_kind_of(&key);
+    const bool is_own = kind == LENSPROF_CAMERA_LINEAR || (kind != LENSPROF_CAMERA_ANY && metadata.is_jpeg);
+    if (!is_own) return {};  // what is not the camera's JPEG was developed by something else
+    return {kind, KindFrom::pictures};
 }
 
 void add_known_exposures(const FitOptions &o, const std::vector<std::string> &files,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ namespace lensprof {
 struct FitOptions {
     uint32_t method = LENSPROF_METHOD_TRANSFER, modes = LENSPROF_MODES_AUTO, loss = LENSPROF_LOSS_ROBUST;
     uint32_t gamma_from = LENSPROF_GAMMA_AUTO;  // KNOWN: the project's response is held
-    uint32_t camera_kind = LENSPROF_CAMERA_ANY;
+    std::optional<uint32_t> camera_kind;        // empty: what the pictures say
     double prior_weight = 1.0, huber = 5.0, exif_sigma = 0.1;
     bool stored_prior = false;  // the profile that is stored for the lens and setting is the prior
 };
@@ -40,8 +41,12 @@ const char *method_name(uint32_t method);
 // Failure (usage) for options that contradict each other.
 void check_fit_options(const FitOptions &o);
 
-// The library's options; everything shared is free.
+// The library's options; everything shared is free, and the camera of any kind unless one is asked for.
 lensprof_fit_options fit_options(const FitOptions &o);
+
+// The kind of camera whose exponent the prior is of: the one asked for, else that of the pictures, whose `key` says the
+// camera, and `metadata` of one of them what the files are.
+CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const PictureMetadata &metadata);
 
 // What is fitted.
 struct FitInput {

@@ -457,6 +457,7 @@ PictureMetadata read_metadata(const std::string &path) {
         store_text(read_style(exif), metadata.key.style, "--style", metadata);
         if (image->mimeType() == "image/tiff" && read_number(exif, {"Exif.Image.SampleFormat"}) == 3)
             metadata.key.processing = LENSPROF_PROCESSING_RAW;
+        metadata.is_jpeg = image->mimeType() == "image/jpeg";
         metadata.mark = correction_mark_of(image->xmpData());
         set_corrected(falloff_corrected_by(*image, metadata.key), metadata);
     } catch (const std::exception &error) {

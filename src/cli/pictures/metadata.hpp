@@ -24,7 +24,8 @@ struct PictureMetadata {
     // holds values proportional to light, and CORRECTED where corrected_by is not empty.
     lensprof_profile_key key;
 
-    PictureSize size;  // pixels, as they are stored; 0 = not known
+    PictureSize size;      // pixels, as they are stored; 0 = not known
+    bool is_jpeg = false;  // the file: as cameras write them
 
     std::optional<CorrectionMark> mark;  // what lensprof did to the picture, if it did
 

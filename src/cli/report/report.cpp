@@ -105,8 +105,8 @@ void print_response(const lensprof_response &r, std::ostream &out) {
 }
 
 const char *gamma_name(uint32_t from) {
-    static const char *const names[] = {"auto", "prior", "exif", "known", "none", "profile"};
-    return from <= LENSPROF_GAMMA_PROFILE ? names[from] : "unknown";
+    static const char *const names[] = {"auto", "prior", "exif", "known", "none", "profile", "falloff"};
+    return from <= LENSPROF_GAMMA_FALLOFF ? names[from] : "unknown";
 }
 
 const char *camera_kind_name(uint32_t kind) {
@@ -203,6 +203,16 @@ Json images_json(const BuildReport &report) {
     return images;
 }
 
+const char *kind_from_name(KindFrom from) {
+    return from == KindFrom::option ? "option" : from == KindFrom::pictures ? "pictures" : "none";
+}
+
+const char *describe_kind_from(KindFrom from) {
+    return from == KindFrom::option     ? "as asked for"
+           : from == KindFrom::pictures ? "by what the pictures say"
+                                        : "as no picture says which; --camera-kind does";
+}
+
 // Where the exponent comes from, its standard error, and how strongly every parameter hangs on it.
 Json gamma_json(const BuildReport &report) {
     const auto &fit = report.fit;
@@ -214,7 +224,8 @@ Json gamma_json(const BuildReport &report) {
     Json json;
     json["from"] = gamma_name(fit.gamma_from);
     json["sigma"] = number_or_null(fit.gamma_sigma);
-    json["camera_kind"] = camera_kind_name(report.camera_kind);
+    json["camera_kind"] = camera_kind_name(report.camera_kind.kind);
+    json["camera_kind_from"] = kind_from_name(report.camera_kind.from);
     json["direction"] = numbers(fit.gamma_direction, fit.covariance_size);
     json["correlation"] = correlation;
     return json;
@@ -285,12 +296,17 @@ void print_exposures(const BuildReport &report, std::ostream &out) {
 void print_gamma(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     if (fit.gamma_from == LENSPROF_GAMMA_KNOWN) {
-        out << "gamma     known by what is held\n";
+        out << "gamma     known by what is held";
+        if (report.camera_kind.kind == LENSPROF_CAMERA_LINEAR && fit.response.kind == LENSPROF_RESPONSE_LINEAR)
+            out << ": a linear response, " << describe_kind_from(report.camera_kind.from);
+        out << "\n";
         return;
     }
     const bool is_given = report.exposures_given && fit.gamma_from == LENSPROF_GAMMA_EXPOSURES;
     out << "gamma     from " << (is_given ? "the exposures given" : gamma_name(fit.gamma_from));
-    if (fit.gamma_from == LENSPROF_GAMMA_PRIOR) out << " (" << camera_kind_name(report.camera_kind) << " camera)";
+    if (fit.gamma_from == LENSPROF_GAMMA_PRIOR)
+        out << " (" << camera_kind_name(report.camera_kind.kind) << " camera, "
+            << describe_kind_from(report.camera_kind.from) << ")";
     if (fit.gamma_sigma > 0.0) out << format(", +- %.0f %%", 100.0 * fit.gamma_sigma);
     if (fit.gamma_from == LENSPROF_GAMMA_NONE) out << " (no prior; no +- here holds its error)";
     out << ": the common exponent of " << (report.has_falloff ? "exposure, falloff" : "exposure")

@@ -17,6 +17,17 @@ namespace lensprof {
 
 using Json = nlohmann::ordered_json;
 
+// A kind of camera, and what says that it is one.
+enum class KindFrom {
+    none,
+    option,
+    pictures
+};
+struct CameraKind {
+    uint32_t kind = LENSPROF_CAMERA_ANY;  // lensprof_camera_kind
+    KindFrom from = KindFrom::none;
+};
+
 // Everything `build` found out.
 struct BuildReport {
     std::vector<std::string> names;
@@ -28,10 +39,10 @@ struct BuildReport {
     bool has_falloff = true;       // else it cancels in these pictures
     bool exposures_given = false;  // on the command line, and not by EXIF
     double load_s = 0, sample_s = 0;
-    uint32_t camera_kind = LENSPROF_CAMERA_ANY;  // whose prior settled gamma
-    int64_t profile_id = 0;                      // 0 = not stored
-    int64_t prior_id = 0;                        // of the profile that was the prior; 0 = none
-    std::string no_prior;                        // why none was, where one was asked for
+    CameraKind camera_kind;  // whose exponent the prior on gamma is
+    int64_t profile_id = 0;  // 0 = not stored
+    int64_t prior_id = 0;    // of the profile that was the prior; 0 = none
+    std::string no_prior;    // why none was, where one was asked for
 };
 
 // One line. Names of files need not be UTF-8, JSON must: bytes that are not become U+FFFD, and a member `x` that holds

@@ -63,7 +63,7 @@ const char *broken_option(const lensprof_fit_options &o, uint32_t image_count) {
         {o.vignettings <= 1 || o.vignettings == 3, "vignettings must be 0, 1 or 3"},
         {o.gamma_from <= LENSPROF_GAMMA_EXPOSURES,
          "gamma_from must be LENSPROF_GAMMA_AUTO, _PRIOR or _EXPOSURES; the others are of results"},
-        {o.camera_kind <= LENSPROF_CAMERA_DIGITAL, "camera_kind must be one of lensprof_camera_kind, 0..2"},
+        {o.camera_kind <= LENSPROF_CAMERA_LINEAR, "camera_kind must be one of lensprof_camera_kind, 0..5"},
         {o.method <= LENSPROF_METHOD_DEBEVEC, "method must be one of lensprof_fit_method, 0..3"},
         {o.refine <= 1, "refine must be 0 or 1"},
         {!o.reserved, "reserved must be 0"},
@@ -201,6 +201,7 @@ bool has_unknowns(const lensprof_fit_options &options, const lensprof_fit_image 
 // Everything that a call reads and writes but pairs, observations and exposures, as this library's structs.
 struct Call {
     lensprof_fit_options options;
+    lensprof_response linear;
     std::vector<lensprof_fit_image> images;
     lensprof_fit_result result;
     std::vector<lensprof_fit_image_quality> quality;
@@ -231,6 +232,12 @@ lensprof_status take_call(const lensprof_fit_options *options, const lensprof_fi
     if (const char *wrong = lp_sized_take(&call.options, options, kFirstOptions))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "fit options: %s", wrong);
     status = check_options(call.options, image_count, error);
+    if (call.options.camera_kind == LENSPROF_CAMERA_LINEAR && (call.options.free & LENSPROF_FREE_RESPONSE)
+        && call.options.method != LENSPROF_METHOD_DEBEVEC) {
+        lensprof_response_set_linear(&call.linear);
+        call.options.response = &call.linear;
+        call.options.free &= ~LENSPROF_FREE_RESPONSE;
+    }
     if (status == LENSPROF_OK) status = take_images(images, image_count, call.images, error);
     lensprof_fit_result_init(&call.result);
     if (status == LENSPROF_OK && result->image_quality) call.quality.resize(image_count);

@@ -74,7 +74,7 @@ private:
     void take_all();
     void set_vignettings(int count) {
         Method::set_vignettings(count);
-        if (stored_) stored_->put_into(prior_, count, options_.prior_weight);
+        if (stored_) stored_->put_into(prior_, count, options_.prior_weight, gauge_.is_open());
     }
     int first_vignettings() const {
         const bool three =

@@ -2,36 +2,90 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+
+#include <Eigen/LU>
 
 #include "core/response.h"
-#include "fit/prior/gamma_prior_table.hpp"
 
 namespace lensprof {
+namespace {
 
-const GammaPrior &gamma_prior(uint32_t camera_kind) { return kGammaPriors[camera_kind]; }
+using Modes = Eigen::Matrix<double, LENSPROF_EMOR_MODES, 1>;
 
-double gamma_position(const double *table) {
-    double x = std::clamp(lp_curve_invert(table, kGaugeGrey, nullptr), 1e-9, 1.0 - 1e-9);
-    return std::log(std::log(x) / std::log(kGaugeIrradiance));
+constexpr double kShapeGreys[4] = {24.0 / 255.0, 80.0 / 255.0, 144.0 / 255.0, 232.0 / 255.0};
+constexpr double kShapeError = 0.02;  // of a shape: what fits leave, and 25 modes
+constexpr double kUsual = 3.5;  // standard deviations: 95 % of a kind's measured curves are nearer, and all but a few
+constexpr double kSmallestSigma = 1e-3;  // of ln gamma: LINEAR has none
+constexpr double kOdd = 0.5;             // beyond 1, by which a response is none of the kind's
+
+double irradiance(const double *table, double grey, double *slope) {
+    return std::clamp(lp_curve_invert(table, grey, slope), 1e-9, 1.0);
 }
 
-double expected_position(const GammaPrior &prior, const double *table) {
-    double exponent = std::exp(gamma_position(table)), shape[3], z[3], length2 = 0.0;
-    for (int i = 0; i < 3; i++)
-        shape[i] = lp_curve_eval(table, std::pow(kShapePoints[i], exponent), nullptr) - prior.mean[i];
-    for (int i = 0; i < 3; i++) {
-        z[i] = 0.0;
-        for (int j = 0; j < 3; j++) z[i] += prior.whiten[i][j] * shape[j];
-        length2 += z[i] * z[i];
+// ln g at a grey value, and its change with every mode: of f(x) = b with another f, dx = -h(x) / f'(x).
+double log_irradiance(const double *table, double grey, Modes &by_mode) {
+    double slope;
+    const double x = irradiance(table, grey, &slope);
+    for (int l = 0; l < LENSPROF_EMOR_MODES; l++)
+        by_mode[l] = -lp_curve_eval(lensprof_emor_table(static_cast<uint32_t>(l) + 1), x, nullptr) * slope / x;
+    return std::log(x);
+}
+
+// Where ln g lies at four grey values between 0 at the dark and 1 at the bright one of the gauge: the same for all
+// members f(x^(1/gamma)) of a family, whose ln g are multiples of each other.
+struct ShapeOf {
+    Eigen::Vector4d at;
+    Eigen::Matrix<double, 4, LENSPROF_EMOR_MODES> by_mode;
+
+    explicit ShapeOf(const double *table) {
+        Modes of_dark, of_bright, of_grey;
+        const double dark = log_irradiance(table, kGaugeDark, of_dark),
+                     range = std::max(log_irradiance(table, kGaugeBright, of_bright) - dark, 1e-6);
+        for (int i = 0; i < 4; i++) {
+            at[i] = (log_irradiance(table, kShapeGreys[i], of_grey) - dark) / range;
+            by_mode.row(i) = ((of_grey - of_dark) - at[i] * (of_bright - of_dark)).transpose() / range;
+        }
     }
-    double shrink = std::min(1.0, kLargestShape / std::max(std::sqrt(length2), 1e-12));
-    double expected = prior.beta[0];
-    const double *beta = prior.beta + 4;
-    for (int i = 0; i < 3; i++) {
-        expected += prior.beta[1 + i] * shrink * z[i];
-        for (int j = 0; j <= i; j++) expected += *beta++ * shrink * z[i] * shrink * z[j];
-    }
-    return expected;
+};
+
+void set_typical(uint32_t kind, lensprof_response &response, double *covariance, double &sigma) {
+    if (lensprof_response_set_typical(&response, kind, covariance, &sigma) != LENSPROF_OK)
+        throw std::invalid_argument("no kind of camera");
+}
+
+}  // namespace
+
+double gamma_position(const double *table, Eigen::VectorXd *slope) {
+    Modes of_dark, of_bright;
+    const double range =
+        std::max(log_irradiance(table, kGaugeBright, of_bright) - log_irradiance(table, kGaugeDark, of_dark), 1e-6);
+    if (slope) *slope = (of_bright - of_dark) / range;
+    return std::log(range);
+}
+
+GammaPrior::GammaPrior(uint32_t camera_kind) {
+    constexpr int kModes = LENSPROF_EMOR_MODES;
+    lensprof_response typical;
+    Eigen::Matrix<double, kModes, kModes> covariance;  // symmetric
+    set_typical(camera_kind, typical, covariance.data(), sigma_);
+    position_ = gamma_position(typical.table);
+    sigma_ = std::max(sigma_, kSmallestSigma);
+    const ShapeOf shape(typical.table);
+    shape_ = shape.at;
+    Eigen::Matrix4d scatter = shape.by_mode * covariance * shape.by_mode.transpose();
+    scatter.diagonal().array() += kShapeError * kShapeError;
+    precision_ = scatter.inverse();
+    set_typical(LENSPROF_CAMERA_ANY, typical, nullptr, of_any_);
+}
+
+double GammaPrior::oddness(const double *table) const {
+    const Shape off = ShapeOf(table).at - shape_;
+    return std::sqrt(off.dot(precision_ * off)) / kUsual;
+}
+
+double GammaPrior::sigma_of(const double *table) const {
+    return std::hypot(sigma_, of_any_ * std::clamp((oddness(table) - 1.0) / kOdd, 0.0, 1.0));
 }
 
 }  // namespace lensprof

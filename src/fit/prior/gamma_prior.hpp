@@ -1,30 +1,47 @@
-// The exponent gamma that a response has by measure of its shape.
+// The exponent gamma that a response has by measure of its camera's kind.
 //
-// A response's family f(x^(1/gamma)) is one shape. Measured cameras of one shape have similar exponents: the position
-// of a curve within its family, the logarithm of ln g(0.35) / ln 0.08, follows from the curve's values at three
-// irradiances of the member with f(0.08) = 0.35, by a quadratic fitted to the DoRF database
-// (profiles/tools/make_gamma_prior.py).
+// A response's family f(x^(1/gamma)) is one shape. The position of a curve within its family is told between two mid
+// greys, g = f^-1,
+//
+//     q = ln ln( g(208/255) / g(48/255) ),
+//
+// which moves by ln gamma and does not lean on where the curve reaches white. Cameras of a kind have it in common: it
+// is that of the kind's typical response (core/typical_table.c), with the error that was measured there.
 #pragma once
+
+#include <Eigen/Core>
 
 #include <lensprof/fit.h>
 
 namespace lensprof {
 
-constexpr double kGaugeGrey = 0.35;
+constexpr double kGaugeDark = 48.0 / 255.0, kGaugeBright = 208.0 / 255.0;  // as in profiles/tools/measured_curves.py
 
-struct GammaPrior {
-    double sigma;         // standard error of ln gamma: 68 % of curves left out are nearer
-    double mean[3];       // of the shape
-    double whiten[3][3];  // shape minus mean, to unit covariance
-    double beta[10];      // 1, z0, z1, z2, z0 z0, z1 z0, z1 z1, z2 z0, z2 z1, z2 z2
+// Position of a response table within its family; *slope, when not NULL, receives its change with every EMoR mode.
+double gamma_position(const double *table, Eigen::VectorXd *slope = nullptr);
+
+class GammaPrior {
+public:
+    explicit GammaPrior(uint32_t camera_kind);  // lensprof_camera_kind
+
+    double position() const { return position_; }
+
+    // Standard error of ln gamma for a camera of the kind,
+    double sigma() const { return sigma_; }
+
+    // and for a response of this shape: one that is none of the kind's is as uncertain as any camera's besides.
+    double sigma_of(const double *table) const;
+
+    // How far the shape - what all members of a family share - is from that of the kind's typical response, relative to
+    // what measured cameras of the kind keep: beyond 1 it is unusual.
+    double oddness(const double *table) const;
+
+private:
+    using Shape = Eigen::Vector4d;
+
+    double position_, sigma_, of_any_;  // of_any_: standard error for a camera of which nothing is known
+    Shape shape_;
+    Eigen::Matrix4d precision_;
 };
-
-const GammaPrior &gamma_prior(uint32_t camera_kind);
-
-// Position of a response table within its family, ln gamma from the member with f(0.08) = 0.35.
-double gamma_position(const double *table);
-
-// The position that the prior expects of a curve of this shape.
-double expected_position(const GammaPrior &prior, const double *table);
 
 }  // namespace lensprof

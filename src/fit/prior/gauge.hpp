@@ -1,8 +1,8 @@
 // The gauge gamma: (f, M, e, w) and (f o x^(1/gamma), M^gamma, e^gamma, w^gamma) make the same pictures.
 //
 // A basis of few modes represents some members of that family better than others, so that a fit left to itself settles
-// gamma by accident. Here it is settled by what is known - the prior on the response's shape, and known exposures that
-// differ - and then held while everything else is fitted.
+// gamma by accident. Here it is settled by what is known - the exponents of cameras of the kind, and known exposures
+// that differ - and then held while everything else is fitted.
 #pragma once
 
 #include "fit/prior/gamma_prior.hpp"
@@ -27,8 +27,8 @@ public:
     // The same knowledge, which nothing holds gamma to: for first fits, whose shape is to find its own optimum.
     Gauge unheld() const;
 
-    // The prior alone: few modes can follow to the gamma of most cameras without loss of shape, not to any that known
-    // exposures may ask for, which would draw the pictures' exposures along. A refined response can.
+    // The prior alone, loosely: few modes lose shape where they are held to a gamma, and all the more to any that known
+    // exposures may ask for, which would draw the pictures' exposures along. A refined response can follow exactly.
     Gauge by_prior() const;
 
     // Moves the estimate along its family to where gamma is settled, as well as its modes and falloff can follow.
@@ -46,20 +46,23 @@ public:
     // Change of the full shared vector per unit of ln gamma.
     static Eigen::VectorXd direction(const Problem &problem, const Estimate &estimate);
 
+    // By how much the response is unlike those that the prior knows; beyond 1 it is unusual. 0 where the prior is not
+    // what settled gamma.
+    double oddness() const { return from_ == LENSPROF_GAMMA_PRIOR ? oddness_ : 0.0; }
+
     // ln gamma by which an estimate is away from where it is to be; 0 where nothing is open.
     double distance(const Problem &problem, const Estimate &estimate);
 
 private:
     void compare_known(const Problem &problem, const Estimate &estimate);
 
-    double expected(const double *table) const;  // position within the family
-    double prior_sigma() const;                  // standard error of that
+    double expected(const Estimate &estimate, double &sigma, lensprof_gamma_from &from) const;
 
-    const GammaPrior *prior_;
-    const StoredPrior *stored_;  // where it knows gamma, it is asked instead
+    GammaPrior prior_;
+    const StoredPrior *stored_;  // of a profile that says something of gamma; or NULL
     lensprof_gamma_from wanted_, from_ = LENSPROF_GAMMA_KNOWN;
-    bool open_ = false;
-    double sigma_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
+    bool open_ = false, is_loose_ = false;
+    double sigma_ = 0.0, expected_sigma_ = 0.0, oddness_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
     double scatter_ = 1.0;  // of the known exposures about the estimate's, in their stated standard errors; 1 at least
     std::vector<double> known_weight_;  // trust in each known exposure, 0..1
 };

@@ -16,6 +16,13 @@ namespace {
 // cameras and lenses that is added to what a profile says of itself, so that no number of sequences makes it certain.
 constexpr double kDrift = 0.01;
 
+constexpr double kRadii2[4] = {0.1, 0.25, 0.5, 1.0};  // r^2 at which falloffs are compared
+constexpr double kSaysNothing = 0.7;                  // a standard error of ln gamma from this on
+
+double log_falloff(const lensprof_vignetting &v, double r2) {
+    return std::log(std::max(lensprof_vignetting_eval(&v, r2, nullptr), 1e-3));
+}
+
 }  // namespace
 
 bool is_covariance(const lensprof_profile &profile) {
@@ -70,20 +77,66 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
     for (int c = 0; c < vignettings_; c++)
         for (int n = 0; n < 3; n++) mean_[kFalloff + 3 * c + n] = profile.vignetting[c].k[n];
     for (int d = 0; d < 2; d++) mean_[kCenter + d] = profile.vignetting[0].center[d];
-    if (modes_ > 0) settle_gamma(problem, profile);
+    shares_gamma_ = profile.provenance.gamma_sigma > 0.0;
+    settle_gamma(problem, profile);
 }
 
+// ln M of a falloff relative to that of the profile, over the frame: 1 where both are alike, gamma for M^gamma.
+double StoredPrior::falloff_ratio(const lensprof_vignetting &v) const {
+    const int own = green_falloff(vignettings_);
+    const lensprof_vignetting known{{mean_[own], mean_[own + 1], mean_[own + 2]}, {}};
+    double product = 0.0, square = 0.0;
+    for (double r2 : kRadii2) {
+        product += log_falloff(v, r2) * log_falloff(known, r2);
+        square += log_falloff(known, r2) * log_falloff(known, r2);
+    }
+    return square > 0.0 ? product / square : 0.0;
+}
+
+// Errors of ln gamma by the response's position and by the falloff's depth, and how they go together: both linear in
+// the profile's parameters.
 void StoredPrior::settle_gamma(const Problem &problem, const lensprof_profile &profile) {
     Estimate stored;
     set_response(stored, mean_.data(), modes_);
     for (size_t c = 0; c < 3; c++) stored.vignetting[c] = profile.vignetting[profile.vignettings == 3 ? c : 0];
     stored.log_exposure.assign(problem.image_count, {});
+    response_position_ = gamma_position(stored.curve.table.data());
+    Eigen::VectorXd by_response = Eigen::VectorXd::Zero(kMaxShared), by_falloff = by_response;
+    by_response.head(kMaxModes) = gamma_slope(stored);
+    const int own = green_falloff(vignettings_);
+    for (int n = 0; n < 3; n++) {
+        constexpr double h = 1e-5;
+        lensprof_vignetting up = profile.vignetting[vignettings_ == 3 ? 1 : 0], down = up;
+        up.k[n] += h, down.k[n] -= h;
+        by_falloff[own + n] = (falloff_ratio(up) - falloff_ratio(down)) / (2 * h);
+    }
+    const auto sigma = [&](const Eigen::VectorXd &by) { return std::sqrt(std::max(by.dot(covariance_ * by), 0.0)); };
+    response_sigma_ = modes_ > 0 ? sigma(by_response) : 0.0;
+    falloff_sigma_ = sigma(by_falloff);
+    if (!(falloff_sigma_ < kSaysNothing)) falloff_sigma_ = 0.0;
+    gamma_covariance_ = by_response.dot(covariance_ * by_falloff);
+    if (!has_response() && !has_falloff()) return;
     gamma_direction_ = Gauge::direction(problem, stored);
     for (Eigen::Index i = 0; i < kMaxShared; i++)
         if (covariance_(i, i) <= 0.0) gamma_direction_[i] = 0.0;
-    gamma_position_ = lensprof::gamma_position(stored.curve.table.data());
-    const Eigen::VectorXd slope = gamma_slope(stored);
-    gamma_sigma_ = std::sqrt(std::max(slope.dot(covariance_.topLeftCorner(kMaxModes, kMaxModes) * slope), 0.0));
+}
+
+double StoredPrior::gamma_offset(const Estimate &estimate, double &sigma, bool &by_falloff) const {
+    constexpr double kLeast = 0.05;  // of the ratio: falloffs that have nothing to do with each other
+    const double of_response = gamma_position(estimate.curve.table.data()) - response_position_,
+                 of_falloff = std::log(std::max(falloff_ratio(estimate.vignetting[1]), kLeast));
+    by_falloff = !has_response() || (has_falloff() && falloff_sigma_ < response_sigma_);
+    sigma = by_falloff ? falloff_sigma_ : response_sigma_;
+    if (!has_response() || !has_falloff()) return by_falloff ? of_falloff : of_response;
+    // The mean of least variance; no more than the better of the two, where the other adds nothing to it.
+    const double own = response_sigma_ * response_sigma_, other = falloff_sigma_ * falloff_sigma_,
+                 both = own + other - 2.0 * gamma_covariance_;
+    double share = both > 0.0 ? (other - gamma_covariance_) / both : 0.5;  // of the response
+    share = std::clamp(share, 0.0, 1.0);
+    by_falloff = share < 0.5;
+    sigma = std::sqrt(share * share * own + (1.0 - share) * (1.0 - share) * other
+                      + 2.0 * share * (1.0 - share) * gamma_covariance_);
+    return share * of_response + (1.0 - share) * of_falloff;
 }
 
 // Where the knowledge goes: green's curve for one, or one for green's, to which those of the other channels are tied.
@@ -101,9 +154,9 @@ StoredPrior::Places StoredPrior::places(int vignettings) const {
     return places;
 }
 
-// The inverse of the covariance of what is known. Any gamma is as good as another: along its direction the precision is
-// taken out.
-Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from) const {
+// The inverse of the covariance of what is known. Where gamma is settled apart, any is as good as another here: along
+// its direction the precision is taken out.
+Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from, bool settles_gamma) const {
     const auto count = static_cast<Eigen::Index>(from.size());
     Eigen::MatrixXd covariance(count, count);
     Eigen::VectorXd direction(count);
@@ -115,7 +168,7 @@ Eigen::MatrixXd StoredPrior::precision_of(const std::vector<int> &from) const {
     Eigen::MatrixXd precision = inverse_of_symmetric(covariance);
     const Eigen::VectorXd along = precision * direction;
     const double length = direction.dot(along);
-    if (length > 0.0) precision -= along * along.transpose() / length;
+    if (settles_gamma && length > 0.0) precision -= along * along.transpose() / length;
     return 0.5 * (precision + precision.transpose());
 }
 
@@ -124,7 +177,7 @@ double StoredPrior::falloff_distance(const lensprof_fit_result &alone) const {
     const int theirs = static_cast<int>(lp_covariance_index(alone.response.modes, alone.vignettings == 3 ? 1 : 0));
     if (covariance_(own, own) <= 0.0 || size < theirs + 3) return 0.0;
     double farthest = 0.0;
-    for (double r2 : {0.1, 0.25, 0.5, 1.0}) {
+    for (double r2 : kRadii2) {
         const double power[3] = {r2, r2 * r2, r2 * r2 * r2};
         double variance = 0.0, difference = 0.0;
         for (int i = 0; i < 3; i++) {
@@ -138,7 +191,7 @@ double StoredPrior::falloff_distance(const lensprof_fit_result &alone) const {
     return farthest;
 }
 
-void StoredPrior::put_into(Prior &prior, int vignettings, double weight) const {
+void StoredPrior::put_into(Prior &prior, int vignettings, double weight, bool settles_gamma) const {
     const Places places = this->places(vignettings);
     if (modes_ > 0) prior.covariance_weight = 0.0;
     const auto forget = [&](int row) { prior.precision.row(row).setZero(), prior.precision.col(row).setZero(); };
@@ -158,7 +211,7 @@ void StoredPrior::put_into(Prior &prior, int vignettings, double weight) const {
     const bool has_falloff =
         std::any_of(places.to.begin(), places.to.end(), [](int row) { return row >= kFalloff && row < kCenter; });
     if (tied && has_falloff) tie_channels(weight, vignettings, prior);
-    const Eigen::MatrixXd precision = precision_of(places.from);
+    const Eigen::MatrixXd precision = precision_of(places.from, settles_gamma);
     for (size_t i = 0; i < places.to.size(); i++)
         for (size_t j = 0; j < places.to.size(); j++)
             prior.precision(places.to[i], places.to[j]) +=

@@ -18,17 +18,25 @@ public:
     int modes() const { return modes_; }  // EMoR modes whose coefficients are known; 0: no response is
     int vignettings() const { return vignettings_; }
 
-    // Replaces what the profile knows in a prior for so many falloff curves. What it knows of gamma is not there: gamma
-    // is settled apart (gauge.hpp).
-    void put_into(Prior &prior, int vignettings, double weight) const;
+    // Replaces what the profile knows in a prior for so many falloff curves. Where gamma is settled apart (gauge.hpp),
+    // what the profile knows of it is not there.
+    void put_into(Prior &prior, int vignettings, double weight, bool settles_gamma) const;
 
     // Largest difference of its falloff (green's) from that of a result without it, in standard errors of both
     // together.
     double falloff_distance(const lensprof_fit_result &alone) const;
 
-    // Position of its response within its family (gamma_prior.hpp), and the standard error; 0 where none is known.
-    double gamma_position() const { return gamma_position_; }
-    double gamma_sigma() const { return gamma_sigma_; }
+    // What it says of gamma: by the position of its response within its family (gamma_prior.hpp), and by its falloff,
+    // as M^gamma is as deep as it.
+    bool has_response() const { return response_sigma_ > 0.0; }
+    bool has_falloff() const { return falloff_sigma_ > 0.0; }
+
+    // ln gamma by which an estimate is away from what it says, and the standard error of that. Response and falloff are
+    // told apart: `by_falloff` receives whether the falloff says more.
+    double gamma_offset(const Estimate &estimate, double &sigma, bool &by_falloff) const;
+
+    // Its falloff was found together with a response whose gamma was as uncertain: by a prior that may be the same.
+    bool shares_gamma() const { return shares_gamma_; }
 
 private:
     // Entries of the full shared vector here, and those of a prior that they are for.
@@ -36,13 +44,17 @@ private:
         std::vector<int> from, to;
     };
     Places places(int vignettings) const;
-    Eigen::MatrixXd precision_of(const std::vector<int> &from) const;
+    Eigen::MatrixXd precision_of(const std::vector<int> &from, bool settles_gamma) const;
+    double falloff_ratio(const lensprof_vignetting &v) const;
     void settle_gamma(const Problem &problem, const lensprof_profile &profile);
 
     int modes_ = 0, vignettings_ = 1;
     Eigen::VectorXd mean_ = Eigen::VectorXd::Zero(kMaxShared), gamma_direction_ = Eigen::VectorXd::Zero(kMaxShared);
     Eigen::MatrixXd covariance_ = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);  // zero where nothing is known
-    double gamma_position_ = 0.0, gamma_sigma_ = 0.0;
+    double response_position_ = 0.0;
+    double response_sigma_ = 0.0, falloff_sigma_ = 0.0;  // standard errors of ln gamma; 0 where it says nothing
+    double gamma_covariance_ = 0.0;                      // of the two
+    bool shares_gamma_ = false;
 };
 
 }  // namespace lensprof

@@ -1,6 +1,7 @@
 #include "fit/verdict/finish.hpp"
 
 #include "fit/verdict/quality.hpp"
+#include "fit/verdict/reason.hpp"
 
 namespace lensprof {
 
@@ -15,6 +16,8 @@ void finish(const Found &found, const std::function<void(lensprof_fit_result &)>
     describe_heldout(found.tested, found.train, found.has_heldout, r);
     describe_quality(found.problem, found.gauge, found.noise, found.covariance, found.estimate, r);
     judge(found.problem, found.estimate, r);
+    if (r.usable && r.reason_code == LENSPROF_REASON_NONE && found.gauge.oddness() > 1.0)
+        warn(r, {LENSPROF_REASON_UNUSUAL_RESPONSE, {found.gauge.oddness(), r.gamma_sigma}});
     if (judge_own) judge_own(r);
     r.image_quality = result.image_quality;
     write_exposures(found.problem, found.estimate, exposures);

@@ -65,6 +65,8 @@ constexpr Wording kWordings[] = {
      "the pairs cover {0} tenths of the grey values only, which does not show a response; take pictures of other exposures, or hold a response that is known"},
     {LENSPROF_REASON_MISSING_GREYS,
      "hardly a pair has grey values from {0.1} to {1.1} (of 1): what is said of the response there, and of gamma, rests on the prior"},
+    {LENSPROF_REASON_UNUSUAL_RESPONSE,
+     "the response is unlike those of measured cameras of this kind ({0.1} times as far from their mean as these keep), so that gamma is uncertain by {1%}; say another kind of camera, give known exposures that differ, or hold a response that is known"},
     {LENSPROF_REASON_SMALL_RADIUS,
      "the pairs reach to {0.1} of the half diagonal only, which does not show the falloff in the corners; overlap the pictures more, or fix the falloff"},
     {LENSPROF_REASON_CORNER_UNCERTAIN,
