@@ -1,5 +1,6 @@
 // `lensprof flat` in process: cards of a known lens as picture files, what is printed and stored, what is refused.
 #include "cli_runs.hpp"
+#include "icc_files.hpp"
 
 #include <lensprof/lensprof.h>
 
@@ -18,10 +19,12 @@ struct Card {
     uint32_t layout = LENSPROF_LAYOUT_RGB;
     double left = 0.0, right = 1.0;  // part of the width that is the card
     bool told = false;               // EXIF tells exposure and camera
+    Bytes icc;                       // colour profile
 };
 
 std::string shoot(const std::string &name, const Card &card) {
     Picture picture = make_noise(width, height, LENSPROF_SAMPLE_U16, card.layout);
+    picture.icc = card.icc;
     const uint32_t samples = lensprof_layout_samples(card.layout);
     const double half = 0.5 * std::hypot(width, height), turn = card.turn_deg * M_PI / 180.0;
     lensprof_response response;
@@ -88,6 +91,50 @@ void test_turned_shots_are_measured_and_stored(void **) {
     const std::string table = must_exit(done, words);
     for (const char *part : {"falloff", "told from the lens", "stored    profile 2", "residual", "turned180.tif"})
         assert_true(contains(table, part));
+}
+
+// Grey of a corner over that of the middle, each the mean of 16 x 16 pixels.
+double evenness(const std::string &file) {
+    const Picture picture = read_picture(file);
+    const auto mean = [&](uint32_t left, uint32_t top) {
+        double sum = 0.0;
+        for (uint32_t y = top; y < top + 16; y++)
+            for (uint32_t x = left; x < left + 16; x++)
+                sum += reinterpret_cast<const uint16_t *>(picture.pixels.data())[3 * (y * width + x) + 1];
+        return sum;
+    };
+    return mean(0, 0) / mean(width / 2 - 8, height / 2 - 8);
+}
+
+// `flat` and `apply` agree on what a card is: linear by its colour profile, or where both are told.
+void test_the_card_is_corrected(void **) {
+    for (bool has_profile : {true, false}) {
+        Card card;
+        card.told = true, card.slant = 0.0;
+        if (has_profile) card.icc = icc_files::profile_of(icc_files::samples_curve({}));
+        const std::string name = has_profile ? "linear" : "silent", file = shoot(name + ".tif", card);
+        const Words db = {"--db", in_folder(name + ".db")}, setting = {"--lens", "Box lens", "--focal", "35"};
+        assert_true(evenness(file) < 0.75);
+        const Words measure = flat({file}) + setting + db, out = {"-o", in_folder(name + "-out"), "--overwrite", file};
+        if (has_profile) {
+            const Outcome outcome = run_words(measure);
+            assert_int_equal(outcome.code, done);
+            assert_false(contains(outcome.err, "note:"));
+            assert_int_equal(json_of(Words{"profile", "list", "--json", "--processing", "raw"} + db)["profiles"].size(),
+                             1);
+            must_exit(done, Words{"apply"} + setting + db + out);
+        } else {
+            assert_refused(usage, measure, {file, "nothing in it says that it is linear", "--linear"});
+            const Outcome outcome = run_words(measure + Words{"--linear"});
+            assert_int_equal(outcome.code, done);
+            assert_true(contains(outcome.err, "lensprof apply --processing raw"));
+            const Outcome guessed = run_words(Words{"apply"} + setting + db + out);
+            assert_int_equal(guessed.code, done);
+            assert_true(contains(guessed.err, "nothing says whether this 16 bit TIFF is linear"));
+            must_exit(done, Words{"apply", "--processing", "raw"} + setting + db + out);
+        }
+        assert_close(evenness(in_folder(name + "-out/" + name + ".tif")), 1.0, 0.01);
+    }
 }
 
 void test_exposures_come_from_exif_or_the_command_line(void **) {
@@ -233,6 +280,7 @@ void test_refused(void **) {
 int main() {
     const CMUnitTest tests[] = {
         CLI_TEST(test_turned_shots_are_measured_and_stored),
+        CLI_TEST(test_the_card_is_corrected),
         CLI_TEST(test_exposures_come_from_exif_or_the_command_line),
         CLI_TEST(test_a_card_at_several_places),
         CLI_TEST(test_the_response_of_a_profile),

@@ -109,6 +109,10 @@ void PictureModels::choose(const PictureMetadata &metadata, Correction &job) con
         profile->response[0] = *options_.response;
         profile->covariance_size = 0;  // of a response that is not there
     }
+    if (metadata.may_be_linear && !options_.response && !options_.key.has_processing())
+        job.note =
+            "nothing says whether this 16 bit TIFF is linear; it is taken as rendered (give --processing raw, or "
+            "jpeg, where you know)";
     if (options_.force_falloff && !options_.puts_in && !metadata.corrected_by.empty())
         job.note = "its falloff was corrected before, " + metadata.corrected_by + ", and is once more";
     job.model = profile;

@@ -45,7 +45,10 @@ void declare_card(Command &command, FlatCommand &o) {
 void declare(Command &command, FlatCommand &o) {
     command.files("FILES", o.files, "pictures of the card, all of one camera, lens and setting");
     command.require("FILES");
-    command.flag("--linear", o.linear, "the pictures are linear (developed from RAW without a tone curve)");
+    command.flag(
+        "--linear", o.linear,
+        "the pictures are linear (developed from RAW without a tone curve); float TIFF, and a colour profile with a "
+        "linear tone curve, say so themselves");
     command.number("--gamma", o.gamma, {0.1, 10.0}, "the pictures' response is x^(1/gamma)");
     command.profile_id("--profile", o.profile, "the response is that of this profile of the database");
     command.counts("--shots", o.shots, 0, 1000000,

@@ -6,6 +6,7 @@
 #include "cli/fitting/flat.hpp"
 #include "cli/pictures/metadata.hpp"
 #include "cli/program/format.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/numbers.hpp"
 #include "cli/program/parallel.hpp"
 #include "cli/program/paths.hpp"
@@ -64,6 +65,25 @@ std::vector<double> exposures_of(const FlatCommand &o, const std::vector<uint32_
     return ev;
 }
 
+// Whether the pictures are linear: as the command line says, else as all of them say. `o` says one response at most.
+bool are_linear(const FlatCommand &o, const std::vector<PictureMetadata> &metadata) {
+    if (o.linear || o.gamma || o.profile) return o.linear;
+    for (size_t i = 0; i < metadata.size(); i++)
+        if (metadata[i].processing_before != LENSPROF_PROCESSING_RAW)
+            throw Failure(ExitCode::usage, o.files[i] + ": nothing in it says that it is linear; say which response the "
+                                                        "pictures have: one of --linear, --gamma G, --profile ID");
+    return true;
+}
+
+// Pictures that are linear by the command line alone are rendered ones to every other command.
+void note_linear(const PictureMetadata &first, const std::string &file, Streams &streams) {
+    if (first.processing_before == LENSPROF_PROCESSING_RAW) return;
+    note(streams, file
+                      + (first.may_be_linear ? ": nothing in it says that it is linear"
+                                             : ": is linear by --linear; its colour profile or format says otherwise")
+                      + "; correct such pictures with `lensprof apply --processing raw`");
+}
+
 std::vector<lensprof_response> response_of(const FlatCommand &o) {
     std::vector<lensprof_response> response(1);
     lensprof_response_set_linear(response.data());
@@ -119,7 +139,7 @@ uint32_t common_channels(const FlatCommand &o, const std::vector<Picture> &pictu
 
 void check_flat_options(const FlatCommand &o) {
     check_store_options(o.store);
-    if (o.linear + o.gamma.has_value() + (o.profile != 0) != 1)
+    if (o.linear + o.gamma.has_value() + (o.profile != 0) > 1)
         throw Failure(ExitCode::usage,
                       "say which response the pictures have: one of --linear, --gamma G, --profile ID");
     if (o.files.size() > LENSPROF_FLAT_IMAGES)
@@ -160,7 +180,10 @@ FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
         input.images.push_back(image);
     }
     input.response = response_of(o);
-    if (o.linear) metadata.front().key.processing = LENSPROF_PROCESSING_RAW;
+    if (are_linear(o, metadata)) {
+        note_linear(metadata.front(), o.files.front(), streams);
+        metadata.front().key.processing = LENSPROF_PROCESSING_RAW;
+    }
     warn_of_cut(metadata.front(), o.store, o.files.front(), streams);
     input.key = override_key(metadata.front().key, metadata.front().size, o.store, o.files.front());
     auto &options = input.options;

@@ -17,6 +17,7 @@
 #include "cli/pictures/camera_correction.hpp"
 #include "cli/pictures/codec.hpp"
 #include "cli/pictures/correction_mark.hpp"
+#include "cli/pictures/icc.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
 #include "cli/pictures/png_exif.hpp"
 #include "cli/program/error.hpp"
@@ -427,6 +428,24 @@ void set_corrected(const std::string &by_others, PictureMetadata &metadata) {
     if (!metadata.corrected_by.empty()) metadata.key.processing = LENSPROF_PROCESSING_CORRECTED;
 }
 
+ToneCurve read_tone_curve(Exiv2::Image &image) {
+    if (!image.iccProfileDefined()) return ToneCurve::unknown;
+#if EXIV2_TEST_VERSION(0, 28, 0)
+    return tone_curve_of(image.iccProfile().c_data(), image.iccProfile().size());
+#else
+    return tone_curve_of(image.iccProfile()->pData_, static_cast<size_t>(image.iccProfile()->size_));
+#endif
+}
+
+void read_processing(Exiv2::Image &image, PictureMetadata &metadata) {
+    const bool is_tiff = image.mimeType() == "image/tiff";
+    const ToneCurve curve = read_tone_curve(image);
+    const bool is_float = is_tiff && read_number(image.exifData(), {"Exif.Image.SampleFormat"}) == 3;
+    if (is_float || curve == ToneCurve::linear) metadata.key.processing = LENSPROF_PROCESSING_RAW;
+    metadata.may_be_linear = is_tiff && !is_float && curve == ToneCurve::unknown
+                             && read_number(image.exifData(), {"Exif.Image.BitsPerSample"}) == 16;
+}
+
 }  // namespace
 
 PictureMetadata unknown_metadata() {
@@ -455,8 +474,7 @@ PictureMetadata read_metadata(const std::string &path) {
         metadata.key.crop_factor = read_crop_factor(exif, metadata.key.focal_mm, metadata.size);
         store_text(read_unit(exif), metadata.key.unit, "--unit", metadata);
         store_text(read_style(exif), metadata.key.style, "--style", metadata);
-        if (image->mimeType() == "image/tiff" && read_number(exif, {"Exif.Image.SampleFormat"}) == 3)
-            metadata.key.processing = LENSPROF_PROCESSING_RAW;
+        read_processing(*image, metadata);
         metadata.is_jpeg = image->mimeType() == "image/jpeg";
         metadata.mark = correction_mark_of(image->xmpData());
         set_corrected(falloff_corrected_by(*image, metadata.key), metadata);
