@@ -138,6 +138,9 @@ static const reason_row rows[] = {
         "no response of this camera is stored: the typical one of its kind is taken"),
     ROW(LOOKUP_OTHER_STYLE, "lookup_other_style", "the camera's response is stored for other picture styles only"),
     ROW(PRIOR_OVERRULED, "prior_overruled", "the profile given as the prior contradicts the pictures and was left out"),
+    ROW(PRIOR_RESPONSE_OVERRULED, "prior_response_overruled",
+        "the response given as the prior contradicts the pictures"),
+    ROW(PRIOR_FALLOFF_OVERRULED, "prior_falloff_overruled", "the falloff given as the prior contradicts the pictures"),
 };
 
 #undef ROW

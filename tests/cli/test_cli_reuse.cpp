@@ -93,16 +93,18 @@ void test_merged_profiles_count_once(void **) {
     assert_true(contains(said, "1 was there already"));
 }
 
+// Its falloff, that is: its response is that of these pictures, and stays the prior.
 void test_wrong_profile_is_overruled(void **) {
     json_of(build(pictures("a", "1", "-0.05,0,0")));
     const Outcome outcome = run_words(build(pictures("b", "2")));
     assert_int_equal(outcome.code, done);
     assert_true(contains(outcome.err, "contradicts the pictures"));
     const Json json = Json::parse(outcome.out);
-    assert_false(json["prior"]["used"].get<bool>());
+    assert_true(json["prior"]["used"].get<bool>());
+    assert_true(json["prior"]["overruled"] == Json::array({"falloff"}));
     assert_true(contains(json["prior"]["reason"].get<std::string>(), "contradicts the pictures"));
-    assert_true(shown(2)["provenance"]["prior_id"].is_null());
-    assert_int_equal(shown(2)["provenance"]["images"], 2);
+    assert_int_equal(shown(2)["provenance"]["prior_id"], 1);
+    assert_int_equal(shown(2)["provenance"]["images"], 4);
 }
 
 void test_no_prior_for_this(void **) {

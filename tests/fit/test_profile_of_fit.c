@@ -95,7 +95,20 @@ static void test_prior(void **state) {
     result.profile_prior = LENSPROF_PROFILE_PRIOR_USED;
     assert_ok(lensprof_profile_from_fit(&profile, &result, &options, 6, &error));
     assert_int_equal(profile.provenance.images, 16);
-    assert_int_equal(profile.provenance.pairs, UINT32_MAX); /* not run over */
+    assert_int_equal(profile.provenance.pairs, UINT32_MAX);           /* not run over */
+    result.profile_prior = LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED; /* its falloff is in the result */
+    assert_ok(lensprof_profile_from_fit(&profile, &result, &options, 6, &error));
+    assert_int_equal(profile.provenance.images, 16);
+}
+
+static void test_error_of_gamma(void **state) {
+    prepare(state);
+    result.gamma_sigma = 0.075;
+    assert_ok(lensprof_profile_from_fit(&profile, &result, &options, 6, &error));
+    assert_close(profile.provenance.gamma_sigma, 0.075, 0.0);
+    result.gamma_sigma = LENSPROF_UNKNOWN;
+    assert_ok(lensprof_profile_from_fit(&profile, &result, &options, 6, &error));
+    assert_close(profile.provenance.gamma_sigma, 0.0, 0.0); /* not known */
 }
 
 static void test_flat(void **state) {
@@ -149,9 +162,9 @@ static void test_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fit),     cmocka_unit_test(test_methods_and_verdict),
-        cmocka_unit_test(test_prior),   cmocka_unit_test(test_flat),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_fit),   cmocka_unit_test(test_methods_and_verdict),
+        cmocka_unit_test(test_prior), cmocka_unit_test(test_error_of_gamma),
+        cmocka_unit_test(test_flat),  cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

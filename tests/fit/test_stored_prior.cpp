@@ -3,6 +3,8 @@
 
 #include "simulated.hpp"
 
+#include "fit/problem/curve_shape.hpp"
+
 namespace {
 
 constexpr uint32_t kSequences = 5, kCameras = 12;
@@ -110,14 +112,12 @@ void test_sequences_improve(void **) {
     assert_true(overruled <= 1);    // three standard errors
 }
 
-// Of another lens; of another response; both stated as certain.
+// Of another lens and another response, both stated as certain.
 void test_wrong_profile_is_overruled(void **) {
-    for (const bool other_lens : {true, false}) {
+    for (const double exponent : {1.3, 1.0}) {
         Simulation other = sequence(5), s = sequence(99);
-        if (other_lens)
-            other.vignetting = {{-0.05, 0.0, 0.0}, {0.0, 0.0}};
-        else
-            other.response = gamma_response(1.3);
+        other.vignetting = {{-0.05, 0.0, 0.0}, {0.0, 0.0}};
+        other.response = gamma_response(exponent);
         other.pairs.clear(), other.fit_images.clear();
         other.make(2000, 1.0, 0.0, 1.5, 5);
         Found first, found, own;
@@ -154,6 +154,41 @@ void test_falloff_alone(void **) {
     }
     printf("    80 pairs: %.4f with a falloff, %.4f without\n", with, without);
     assert_true(with < 0.6 * without);
+}
+
+// Knowledge of a response and of a falloff from different pictures, each well known.
+std::unique_ptr<lensprof_profile> composed(const lensprof_response &response, lensprof_vignetting falloff,
+                                           double times) {
+    auto stored = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(stored.get());
+    const auto emor = lensprof::project_curve(response.table, 12);
+    assert_ok(lensprof_response_set_emor(&stored->response[0], emor.data(), 12));
+    stored->vignetting[0] = falloff;
+    for (double &k : stored->vignetting[0].k) k *= times;
+    stored->covariance_size = 15;
+    for (int i = 0; i < 15; i++) stored->covariance[16 * i] = i < 12 ? 1e-3 / (1 + i * i) : 1e-5;
+    return stored;
+}
+
+// The one that is wrong is left out, the other settles gamma.
+void test_response_and_falloff_are_overruled_apart(void **) {
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        const Simulation s = sequence(seed);
+        Found found;
+        assert_ok(fit(s, composed(s.response, s.vignetting, 1.0).get(), found));
+        assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_USED);
+        assert_true(errors_of(s, *found.result).falloff < 0.03);
+        assert_ok(fit(s, composed(s.response, s.vignetting, 0.2).get(), found));
+        assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED);
+        assert_int_equal(found.result->gamma_from, LENSPROF_GAMMA_PROFILE);
+        assert_true(errors_of(s, *found.result).falloff < 0.03);
+        assert_reason(*found.result, PRIOR_FALLOFF_OVERRULED, "its response was used");
+        assert_ok(fit(s, composed(film_response(), s.vignetting, 1.0).get(), found));
+        assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED);
+        assert_int_equal(found.result->gamma_from, LENSPROF_GAMMA_FALLOFF);
+        assert_true(errors_of(s, *found.result).falloff < 0.03);
+        assert_reason(*found.result, PRIOR_RESPONSE_OVERRULED, "its falloff was used");
+    }
 }
 
 void test_three_curves_for_one_and_one_for_three(void **) {
@@ -220,9 +255,13 @@ void test_refused(void **) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sequences_improve), cmocka_unit_test(test_wrong_profile_is_overruled),
-        cmocka_unit_test(test_falloff_alone),     cmocka_unit_test(test_three_curves_for_one_and_one_for_three),
-        cmocka_unit_test(test_radiance),          cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_sequences_improve),
+        cmocka_unit_test(test_wrong_profile_is_overruled),
+        cmocka_unit_test(test_falloff_alone),
+        cmocka_unit_test(test_response_and_falloff_are_overruled_apart),
+        cmocka_unit_test(test_three_curves_for_one_and_one_for_three),
+        cmocka_unit_test(test_radiance),
+        cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

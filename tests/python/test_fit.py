@@ -79,7 +79,8 @@ class WholeWay(unittest.TestCase):
         np.testing.assert_array_equal(profile.covariance, self.result.covariance)
         self.assertEqual(profile.provenance, lp.Provenance(
             method="transfer", software=f"lensprof {lp.version()}", source="a.pto", created_unix_s=5, images=3,
-            pairs=self.result.pairs, heldout_rms=self.result.heldout_rms, inlier_share=self.result.inlier_share))
+            pairs=self.result.pairs, heldout_rms=self.result.heldout_rms, inlier_share=self.result.inlier_share,
+            gamma_sigma=self.result.gamma_sigma))
 
     def test_same_input_same_result(self):
         again = lp.fit_overlap(fit_images(), self.pairs)

@@ -236,6 +236,8 @@ class Reason(IntEnum):
     LOOKUP_TYPICAL_RESPONSE = 663
     LOOKUP_OTHER_STYLE = 664
     PRIOR_OVERRULED = 751
+    PRIOR_RESPONSE_OVERRULED = 752
+    PRIOR_FALLOFF_OVERRULED = 753
 
 
 class Projection(IntEnum):
@@ -289,6 +291,8 @@ class ProfilePrior(IntEnum):
     NONE = 0
     USED = 1
     OVERRULED = 2
+    RESPONSE_OVERRULED = 3
+    FALLOFF_OVERRULED = 4
 
 
 class FlatLight(IntEnum):

@@ -114,6 +114,10 @@ const char *camera_kind_name(uint32_t kind) {
     return kind <= LENSPROF_CAMERA_LINEAR ? names[kind] : "unknown";
 }
 
+bool holds_prior(const lensprof_fit_result &fit) {
+    return fit.profile_prior != LENSPROF_PROFILE_PRIOR_NONE && fit.profile_prior != LENSPROF_PROFILE_PRIOR_OVERRULED;
+}
+
 const char *processing_name(uint32_t processing) {
     static const char *const names[] = {"raw", "jpeg", "corrected"};
     return processing <= LENSPROF_PROCESSING_CORRECTED ? names[processing] : "unknown";
@@ -233,11 +237,13 @@ Json gamma_json(const BuildReport &report) {
 
 // The stored profile that the fit was given; null where none was asked for.
 Json prior_json(const BuildReport &report) {
+    static const Json overruled[] = {Json::array(), Json::array(), {"response", "falloff"}, {"response"}, {"falloff"}};
+    const uint32_t verdict = report.fit.profile_prior;
     if (!report.prior_id && report.no_prior.empty()) return Json();
     return {{"profile", report.prior_id ? Json(report.prior_id) : Json()},
-            {"used", report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED},
-            {"reason",
-             report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_OVERRULED ? report.verdict.text : report.no_prior}};
+            {"used", holds_prior(report.fit)},
+            {"overruled", overruled[std::min<uint32_t>(verdict, LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED)]},
+            {"reason", verdict >= LENSPROF_PROFILE_PRIOR_OVERRULED ? report.verdict.text : report.no_prior}};
 }
 
 }  // namespace
@@ -316,9 +322,14 @@ void print_gamma(const BuildReport &report, std::ostream &out) {
 void print_prior(const BuildReport &report, std::ostream &out) {
     if (!report.no_prior.empty()) out << "prior     of all cameras: " << report.no_prior << "\n";
     if (!report.prior_id) return;
-    const bool used = report.fit.profile_prior == LENSPROF_PROFILE_PRIOR_USED;
+    const uint32_t verdict = report.fit.profile_prior;
     out << "prior     profile " << report.prior_id
-        << (used ? ", which the result holds\n" : ", overruled by the pictures\n");
+        << (verdict == LENSPROF_PROFILE_PRIOR_USED ? ", which the result holds\n"
+            : verdict == LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED
+                ? ", whose falloff the result holds; its response is overruled by the pictures\n"
+            : verdict == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED
+                ? ", whose response the result holds; its falloff is overruled by the pictures\n"
+                : ", overruled by the pictures\n");
 }
 
 }  // namespace

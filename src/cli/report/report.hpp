@@ -45,6 +45,9 @@ struct BuildReport {
     std::string no_prior;    // why none was, where one was asked for
 };
 
+// Whether a fit's result holds the profile that was its prior, or a part of it.
+bool holds_prior(const lensprof_fit_result &fit);
+
 // One line. Names of files need not be UTF-8, JSON must: bytes that are not become U+FFFD, and a member `x` that holds
 // such a text is followed by `x_bytes`, its bytes in hexadecimal digits.
 void print_json(const Json &json, std::ostream &out);

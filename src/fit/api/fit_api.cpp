@@ -417,7 +417,10 @@ lensprof_status lensprof_profile_from_fit(lensprof_profile *profile, const lensp
         lensprof_gain_grid_init(&own.grid);
         own.provenance.pairs = fit.pairs;
         own.provenance.heldout_rms = fit.heldout_rms;
-        if (fit.profile_prior != LENSPROF_PROFILE_PRIOR_USED || !options.profile) return;
+        own.provenance.gamma_sigma = std::max(fit.gamma_sigma, 0.0);
+        const bool holds =
+            fit.profile_prior != LENSPROF_PROFILE_PRIOR_NONE && fit.profile_prior != LENSPROF_PROFILE_PRIOR_OVERRULED;
+        if (!holds || !options.profile) return;
         own.provenance.images = sum_of(image_count, options.profile->provenance.images);
         own.provenance.pairs = sum_of(fit.pairs, options.profile->provenance.pairs);
     };

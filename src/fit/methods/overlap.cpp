@@ -6,6 +6,7 @@
 #include <memory>
 #include <numeric>
 
+#include "core/covariance.h"
 #include "fit/base/constants.hpp"
 #include "fit/methods/method.hpp"
 #include "fit/methods/refine.hpp"
@@ -308,33 +309,127 @@ void Fit::describe(lensprof_exposure *exposures, lensprof_fit_result &result) {
            nullptr, exposures, result);
 }
 
-// Fits, and where a profile is the prior, without it too: that is the result where the pictures contradict the profile.
+// What of a profile is the prior, and what is said where the pictures contradict the rest.
+struct Part {
+    bool response, falloff;
+    lensprof_profile_prior verdict;
+};
+constexpr Part kParts[] = {{true, true, LENSPROF_PROFILE_PRIOR_USED},
+                           {false, true, LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED},
+                           {true, false, LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED}};
+
+// The profile with a covariance that knows but this part of it; NULL where that knows nothing.
+std::unique_ptr<lensprof_profile> part_of(const lensprof_profile &profile, const Part &part) {
+    auto own = std::make_unique<lensprof_profile>(profile);
+    const uint32_t n = own->covariance_size, modes = lp_covariance_modes(own->response, own->responses);
+    bool knows = false;
+    for (uint32_t i = 0; i < n; i++) {
+        const bool is_kept = i < modes ? part.response : part.falloff;
+        for (uint32_t j = 0; j < n && !is_kept; j++) own->covariance[i * n + j] = own->covariance[j * n + i] = 0.0;
+        knows = knows || own->covariance[i * n + i] > 0.0;
+    }
+    return knows ? std::move(own) : nullptr;
+}
+
+// How far the pictures are from a profile as the prior, standard errors.
+struct Contradiction {
+    double apart, worse;  // its falloff, held-out pairs
+
+    bool is_one() const {
+        constexpr double kClearly = 3.0, kFarApart = 5.0;
+        return worse > kClearly || apart > kFarApart;
+    }
+};
+
+// Fits, and where a profile is the prior, without it too. Where the pictures contradict the profile, its falloff and
+// its response are tried each by itself, and that is the result which they contradict less, if it is none; else the one
+// without.
+class InformedFit {
+public:
+    InformedFit(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count)
+        : options_(options),
+          image_count_(image_count),
+          make_(make),
+          count_(count),
+          alone_(options, image_count, make, count, nullptr, 0.0, options.profile ? 0.5 : 1.0) {}
+
+    void run(lensprof_exposure *exposures, lensprof_fit_result &r) {
+        alone_.run();
+        alone_.describe(exposures, r);
+        if (!options_.profile) return;
+        const Contradiction all = attempt(kParts[0], exposures, r, r);
+        if (!all.is_one()) return;
+        const bool has_both = part_of(*options_.profile, kParts[1]) && part_of(*options_.profile, kParts[2]);
+        auto best = std::make_unique<lensprof_fit_result>(r);
+        std::vector<lensprof_exposure> found(exposures, exposures + image_count_);
+        std::vector<lensprof_fit_image_quality> quality(image_count_);
+        Contradiction least{HUGE_VAL, HUGE_VAL};
+        for (const Part &part : {kParts[1], kParts[2]}) {
+            if (!has_both) break;
+            auto own = std::make_unique<lensprof_fit_result>(r);
+            std::vector<lensprof_exposure> own_exposures(found);
+            std::vector<lensprof_fit_image_quality> own_quality(image_count_);
+            own->image_quality = own_quality.data();
+            const Contradiction some = attempt(part, own_exposures.data(), r, *own);
+            if (some.is_one() || some.worse >= least.worse) continue;
+            least = some;
+            *best = *own, found = own_exposures, quality = own_quality;
+        }
+        const bool is_part = !least.is_one();
+        if (is_part) {
+            best->image_quality = r.image_quality;
+            std::copy(quality.begin(), quality.end(), r.image_quality);
+            std::copy(found.begin(), found.end(), exposures);
+            r = *best;
+        } else {
+            r.profile_prior = LENSPROF_PROFILE_PRIOR_OVERRULED;
+        }
+        if (r.usable) warn(r, reason_of(r.profile_prior, all));
+    }
+
+private:
+    // Into `r` where the pictures do not contradict this part of the profile.
+    Contradiction attempt(const Part &part, lensprof_exposure *exposures, const lensprof_fit_result &alone,
+                          lensprof_fit_result &r) {
+        const auto profile = part_of(*options_.profile, part);
+        if (!profile) return {HUGE_VAL, HUGE_VAL};
+        Fit informed(options_, image_count_, make_, count_, profile.get(),
+                     part.verdict == kParts[0].verdict ? 0.5 : 1.0, 1.0);
+        informed.run();
+        const Contradiction found{informed.falloff_distance(alone), informed.worse_than(alone_)};
+        if (found.is_one()) return found;
+        informed.describe(exposures, r);
+        r.profile_prior = part.verdict;
+        return found;
+    }
+
+    static Reason reason_of(uint32_t verdict, const Contradiction &all) {
+        if (verdict == LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED)
+            return {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, {all.worse}};
+        return {verdict == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED ? LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED
+                                                                    : LENSPROF_REASON_PRIOR_OVERRULED,
+                {all.apart, all.worse}};
+    }
+
+    const lensprof_fit_options &options_;
+    uint32_t image_count_;
+    const Fit::Make &make_;
+    uint32_t count_;
+    Fit alone_;
+};
+
 void run_fits(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count,
               lensprof_exposure *exposures, lensprof_fit_result &result) {
-    constexpr double kClearly = 3.0, kFarApart = 5.0;   // standard errors
     std::vector<lensprof_exposure> found(image_count);  // the caller's stay as they are until all is done
     std::vector<lensprof_fit_image_quality> quality(image_count);
-    lensprof_fit_result r = result;
-    r.image_quality = quality.data();
-    r.profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
-    Fit alone(options, image_count, make, count, nullptr, 0.0, options.profile ? 0.5 : 1.0);
-    alone.run();
-    alone.describe(found.data(), r);
-    if (options.profile) {
-        Fit informed(options, image_count, make, count, options.profile, 0.5, 1.0);
-        informed.run();
-        const double worse = informed.worse_than(alone), apart = informed.falloff_distance(r);
-        const bool overruled = worse > kClearly || apart > kFarApart;
-        r.profile_prior = overruled ? LENSPROF_PROFILE_PRIOR_OVERRULED : LENSPROF_PROFILE_PRIOR_USED;
-        if (!overruled)
-            informed.describe(found.data(), r);
-        else if (r.usable)
-            warn(r, {LENSPROF_REASON_PRIOR_OVERRULED, {apart, worse}});
-    }
-    r.image_quality = result.image_quality;
-    if (r.image_quality) std::copy(quality.begin(), quality.end(), r.image_quality);
+    auto r = std::make_unique<lensprof_fit_result>(result);
+    r->image_quality = quality.data();
+    r->profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
+    InformedFit(options, image_count, make, count).run(found.data(), *r);
+    r->image_quality = result.image_quality;
+    if (r->image_quality) std::copy(quality.begin(), quality.end(), r->image_quality);
     std::copy(found.begin(), found.end(), exposures);
-    result = r;
+    result = *r;
 }
 
 }  // namespace

@@ -121,6 +121,9 @@ constexpr Wording kWordings[] = {
     {LENSPROF_REASON_FLAT_DUST, "{0} spots of dust were left out"},
     {LENSPROF_REASON_PRIOR_OVERRULED,
      "the profile given as the prior contradicts the pictures (its falloff is {0.1}, held-out pairs {1.1} standard errors off) and was left out: is it of this lens and setting?"},
+    {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED,
+     "the response of the profile given as the prior contradicts the pictures (held-out pairs are {0.1} standard errors off) and was left out; its falloff was used"},
+    {LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED, "the falloff of the profile given as the prior contradicts the pictures (it is {0.1}, held-out pairs {1.1} standard errors off) and was left out; its response was used"},
 };
 
 std::string wording_of(lensprof_reason code) {

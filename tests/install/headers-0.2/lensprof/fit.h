@@ -96,9 +96,11 @@ static inline void lensprof_fit_image_init(lensprof_fit_image *image, uint32_t i
 
 /* What became of lensprof_fit_options.profile. */
 typedef enum lensprof_profile_prior {
-    LENSPROF_PROFILE_PRIOR_NONE = 0,     /* none was given */
-    LENSPROF_PROFILE_PRIOR_USED = 1,     /* it is in the result, which takes its place */
-    LENSPROF_PROFILE_PRIOR_OVERRULED = 2 /* the pictures contradict it; the result is without it, `reason` says so */
+    LENSPROF_PROFILE_PRIOR_NONE = 0,      /* none was given */
+    LENSPROF_PROFILE_PRIOR_USED = 1,      /* it is in the result, which takes its place */
+    LENSPROF_PROFILE_PRIOR_OVERRULED = 2, /* the pictures contradict it; the result is without it, `reason` says so */
+    LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED = 3, /* its response alone; its falloff is in the result */
+    LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED = 4   /* its falloff alone; its response is in the result */
 } lensprof_profile_prior;
 
 typedef struct lensprof_fit_options {
@@ -124,9 +126,9 @@ typedef struct lensprof_fit_options {
     const lensprof_profile *profile; /* of the same camera, lens and setting, from other pictures: the prior in place of
                                         that of all cameras, by its covariance, which it must have, where a response
                                         of EMoR modes and a falloff have one; TRANSFER and RADIANCE, a prior_weight
-                                        above 0. Overruled where held-out pairs are clearly worse for it (three
-                                        standard errors), or its falloff is far from theirs (five). NULL = none. Read
-                                        during the call */
+                                        above 0. Response and falloff are each overruled where held-out pairs are
+                                        clearly worse for them (three standard errors), or the falloff is far from
+                                        theirs (five). NULL = none. Read during the call */
     const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
     lensprof_vignetting vignetting;    /* the value where fixed */
     lensprof_progress progress;        /* or NULL */

@@ -127,7 +127,10 @@ typedef enum lensprof_reason {
 
     /* The profile given as the prior. */
     LENSPROF_REASON_PRIOR_OVERRULED =
-        751 /* distance of its falloff, standard errors; distance of held-out pairs, standard errors */
+        751, /* distance of its falloff, standard errors; distance of held-out pairs, standard errors */
+    LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED = 752, /* distance of held-out pairs, standard errors */
+    LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED =
+        753 /* distance of its falloff, standard errors; distance of held-out pairs, standard errors */
 } lensprof_reason;
 
 /* The enumerator's name in lower case without LENSPROF_REASON_, "image_groups"; "unknown" for other numbers. Static
