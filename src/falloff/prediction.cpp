@@ -207,7 +207,7 @@ void lp_fit_falloff(const double *values, double k[3]) {
 }
 
 void lp_falloff_covariance(double sigma, double covariance[9]) {
-    constexpr double kScatter[9] = {0.1298, -0.1369, 0.0682, -0.1369, 0.3262, -0.2656, 0.0682, -0.2656, 0.4005};
+    constexpr double kScatter[9] = {16.6525, -40.34, 24.2986, -40.34, 111.7629, -72.8463, 24.2986, -72.8463, 50.36};
     double corner_variance = 0.0;
     for (double value : kScatter) corner_variance += value;
     for (int i = 0; i < 9; i++) covariance[i] = kScatter[i] / corner_variance * sigma * sigma;

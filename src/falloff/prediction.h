@@ -54,8 +54,9 @@ int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_fa
 void lp_fit_falloff(const double *values, double k[3]);
 void lp_sample_falloff(const double k[3], double *values);
 
-/* Covariance of k1..k3 (3 x 3) of a falloff whose M has the standard error `sigma` in the corner: in shape that of
- * k1..k3 over the lenses of Lensfun's database. */
+/* Covariance of k1..k3 (3 x 3) of a falloff whose M has the standard error `sigma` in the corner. Its shape is that of
+ * the errors of predictions for settings that were left out, over one half of the lenses of Lensfun's database, all
+ * lenses alike, by a Student distribution of 3 degrees of freedom. */
 void lp_falloff_covariance(double sigma, double covariance[9]);
 
 #ifdef __cplusplus

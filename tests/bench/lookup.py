@@ -43,8 +43,9 @@ REASON = re.compile(r".*?has no profile for this setting[^a-z]*(.*?)( \(LENSPROF
 POWERS = np.stack([RADII ** 2, RADII ** 4, RADII ** 6])
 
 Row = collections.namedtuple("Row", "id key setting k is_test")
-# ours, theirs, corner: errors, None where refused for `reason`; foreign: rows of another lens were used.
-Asked = collections.namedtuple("Asked", "ours theirs corner sigma foreign reason")
+# ours, theirs, corner: errors, None where refused for `reason`; inner: at r = 0.5, over its standard error by the
+# profile's covariance; foreign: rows of another lens were used.
+Asked = collections.namedtuple("Asked", "ours theirs corner sigma inner foreign reason")
 
 
 class Undo(Exception):
@@ -93,26 +94,27 @@ def lenses(store, stored):
 
 
 def our_answer(store, key):
-    """(k1, k2, k3), Lookup; None and why where it is refused."""
+    """Profile, Lookup; None and why where it is refused."""
     try:
-        profile, how = store.lookup(key)
+        return store.lookup(key)
     except lensprof.Error as error:
         if error.status != lensprof.Status.ERROR_NOT_FOUND:
             raise
         return None, REASON.sub(r"\1", str(error))
-    return np.array(profile.vignetting[0].k), how
 
 
 def ask(store, one, others, span):
     """One row that is not in the database now, of a lens that has `others` there."""
-    ours, how = our_answer(store, one.key)
+    profile, how = our_answer(store, one.key)
+    ours = profile and np.array(profile.vignetting[0].k)
     theirs = lensfun_rule.predict([o.setting for o in others], [o.k for o in others], one.setting, span)
     errors = [None if k is None else (k - np.array(one.k)) @ POWERS for k in (ours, theirs)]
     rms = [None if e is None else float(np.sqrt((e ** 2).mean())) for e in errors]
     if ours is None:
-        return Asked(*rms, None, None, False, how)
+        return Asked(*rms, None, None, None, False, how)
     known = {o.id for o in others}
-    return Asked(*rms, abs(float(errors[0][-1])), how.sigma, not known.issuperset(list(how.id)[:how.rows]), "")
+    inner = abs(float(errors[0][16])) / profile.radial_falloff(0.5)[1]
+    return Asked(*rms, abs(float(errors[0][-1])), how.sigma, inner, not known.issuperset(list(how.id)[:how.rows]), "")
 
 
 def leave_out(store, rows):
@@ -156,7 +158,8 @@ def cells(name, half):
     figures = ["%.4f / %.4f" % (of(ours), of(theirs)) for of in (np.mean, np.median, lambda e: np.quantile(e, 0.9))]
     return [name, half["lenses"], len(asked), " / ".join(refused), len(both), *figures, number(ratio_of_means(asked)),
             number((ours.sum() + left.sum()) / (theirs.sum() + left.sum())),
-            *("%.1f %%" % (100.0 * (sigmas < limit).mean()) for limit in (1.0, 2.0))]
+            *("%.1f %%" % (100.0 * (sigmas < limit).mean()) for limit in (1.0, 2.0)),
+            "%.1f %%" % (100.0 * np.mean([a.inner < 1.0 for a in both]))]
 
 
 def document(halves, counts):
@@ -167,7 +170,7 @@ def document(halves, counts):
              % (*counts, sum(a.foreign for a in asked)), ""]
     lines += header("lenses", "number", "asked", "refused", "compared", "error of M, mean", "median", "90 %",
                     "ratio of means", "with what lensprof refuses at Lensfun's error", "corners within 1 sigma",
-                    "2 sigma")
+                    "2 sigma", "r = 0.5 within 1 sigma")
     lines += [row(*cells(name, half)) for name, half in halves.items()]
     lines += ["", "Refused by lensprof:"] + ["- %d: %s" % (n, reason) for reason, n in reasons.most_common()]
     return "\n".join(lines) + "\n"
