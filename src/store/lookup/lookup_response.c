@@ -44,25 +44,56 @@ void lp_typical_answer(const lensprof_profile_key *key, lp_response_answer *answ
     answer->modes = answer->response[0].kind == LENSPROF_RESPONSE_EMOR ? answer->response[0].modes : 0;
 }
 
-/* Of q = ln ln(I(208) / I(48)), I the inverse response, which moves as ln gamma does (docs/model.md), by the
- * covariance of the coefficients. */
-static double sigma_of_coefficients(const lensprof_profile *profile) {
-    const lensprof_response *response = &profile->response[0];
-    const uint32_t n = profile->covariance_size, modes = response->modes;
-    if (response->kind != LENSPROF_RESPONSE_EMOR || !modes || n < modes) return LENSPROF_UNKNOWN;
-    double slope[LENSPROF_EMOR_MODES], low_slope, high_slope, variance = 0.0;
+/* Derivatives of q = ln ln(I(208) / I(48)), I the inverse response, by the EMoR coefficients: q moves as ln gamma does
+ * (docs/model.md). */
+static bool gamma_slope(const lensprof_response *response, double slope[LENSPROF_EMOR_MODES]) {
+    double low_slope, high_slope;
     const double low = lp_curve_invert(response->table, 48.0 / 255.0, &low_slope);
     const double high = lp_curve_invert(response->table, 208.0 / 255.0, &high_slope);
-    if (!(low > 0.0) || !(high > low)) return LENSPROF_UNKNOWN;
-    for (uint32_t l = 0; l < modes; l++) {
+    if (!(low > 0.0) || !(high > low)) return false;
+    for (uint32_t l = 0; l < response->modes; l++) {
         const double *mode = lensprof_emor_table(l + 1);
         slope[l] =
             (lp_curve_eval(mode, low, NULL) * low_slope / low - lp_curve_eval(mode, high, NULL) * high_slope / high)
             / log(high / low);
     }
-    for (uint32_t i = 0; i < modes; i++)
-        for (uint32_t j = 0; j < modes; j++) variance += slope[i] * slope[j] * profile->covariance[i * n + j];
-    return variance > 0.0 && isfinite(variance) ? sqrt(variance) : LENSPROF_UNKNOWN;
+    return true;
+}
+
+/* By a covariance of the coefficients, n numbers a row; along[modes] receives that of each with q. */
+static double gamma_variance(const lensprof_response *response, const double *covariance, uint32_t n,
+                             double along[LENSPROF_EMOR_MODES]) {
+    double slope[LENSPROF_EMOR_MODES], variance = 0.0;
+    if (!gamma_slope(response, slope)) return 0.0;
+    for (uint32_t i = 0; i < response->modes; i++) {
+        along[i] = 0.0;
+        for (uint32_t j = 0; j < response->modes; j++) along[i] += covariance[i * n + j] * slope[j];
+        variance += along[i] * slope[i];
+    }
+    return isfinite(variance) ? variance : 0.0;
+}
+
+static double sigma_of_coefficients(const lensprof_profile *profile) {
+    const lensprof_response *response = &profile->response[0];
+    double along[LENSPROF_EMOR_MODES];
+    if (response->kind != LENSPROF_RESPONSE_EMOR || !response->modes || profile->covariance_size < response->modes)
+        return LENSPROF_UNKNOWN;
+    const double variance = gamma_variance(response, profile->covariance, profile->covariance_size, along);
+    return variance > 0.0 ? sqrt(variance) : LENSPROF_UNKNOWN;
+}
+
+/* The covariance states the error of gamma that the answer does: what brackets do not repeat, and what the profiles
+ * share, is added where q goes along. */
+static void widen(lp_response_answer *answer) {
+    double along[LENSPROF_EMOR_MODES];
+    const uint32_t n = answer->modes;
+    if (!n || answer->responses != 1 || answer->response[0].kind != LENSPROF_RESPONSE_EMOR) return;
+    const double variance = gamma_variance(&answer->response[0], answer->covariance, n, along);
+    const double missing = answer->sigma * answer->sigma - variance;
+    if (!(variance > 0.0) || !(missing > 0.0)) return;
+    for (uint32_t i = 0; i < n; i++)
+        for (uint32_t j = 0; j < n; j++)
+            answer->covariance[i * n + j] += along[i] * along[j] * missing / (variance * variance);
 }
 
 double lp_stated_gamma_sigma(const lensprof_profile *profile) {
@@ -238,12 +269,12 @@ static lensprof_status fuse(lensprof_store *store, const choice *chosen, lp_resp
     const double variance = (all.shared * all.shared + all.own) / (all.weight * all.weight);
     answer->sigma = sqrt(variance + REPEATABILITY * REPEATABILITY);
     for (uint32_t i = 0; i < answer->rows; i++) answer->weight[i] /= all.weight;
-    if (chosen->count == 1) {
+    if (chosen->count == 1)
         take_one(&store->scratch, answer);
-        return LENSPROF_OK;
-    }
-    if (take_several(&all, variance, answer) == LENSPROF_OK) return LENSPROF_OK;
-    return lp_store_fail_profile(store, chosen->id[0], "its response is not one", error);
+    else if (take_several(&all, variance, answer) != LENSPROF_OK)
+        return lp_store_fail_profile(store, chosen->id[0], "its response is not one", error);
+    widen(answer);
+    return LENSPROF_OK;
 }
 
 lensprof_status lp_find_response(lensprof_store *store, const lensprof_profile_key *key,
