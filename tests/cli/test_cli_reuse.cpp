@@ -107,6 +107,23 @@ void test_wrong_profile_is_overruled(void **) {
     assert_int_equal(shown(2)["provenance"]["images"], 4);
 }
 
+// Between two settings: the lens's profiles, predicted to the setting, and the camera's response. They are the prior,
+// but their pictures are not counted as of the result, and the same pictures are not their own prior.
+void test_composed_prior(void **) {
+    const std::string a = pictures("a", "1"), b = pictures("b", "2");
+    json_of(build(a, {"--aperture", "4"}));
+    json_of(build(pictures("c", "3"), {"--aperture", "5.6"}));
+    const Json json = json_of(build(b, {"--aperture", "4.5"}));
+    assert_true(json["prior"]["composed"].get<bool>());
+    assert_true(json["prior"]["used"].get<bool>());
+    assert_int_equal(json["prior"]["profile"], 1);
+    assert_true(shown(3)["provenance"]["prior_id"].is_null());
+    assert_int_equal(shown(3)["provenance"]["images"], 2);
+    const Json again = json_of(build(a, {"--aperture", "4.2", "--no-store"}));
+    assert_true(again["prior"]["profile"].is_null());
+    assert_true(contains(again["prior"]["reason"].get<std::string>(), "holds these pictures already"));
+}
+
 void test_no_prior_for_this(void **) {
     const std::string a = pictures("a", "1"), b = pictures("b", "2");
     json_of(build(a, {"--aperture", "4"}));
@@ -173,6 +190,7 @@ int main() {
                                 CLI_TEST(test_pictures_count_once),
                                 CLI_TEST(test_merged_profiles_count_once),
                                 CLI_TEST(test_wrong_profile_is_overruled),
+                                CLI_TEST(test_composed_prior),
                                 CLI_TEST(test_no_prior_for_this),
                                 CLI_TEST(test_units),
                                 CLI_TEST(test_apply_between_settings)};

@@ -223,6 +223,7 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     input.options.camera_kind = kind.kind;
     report.prior_id = prior.id;
     report.no_prior = prior.reason;
+    report.prior_is_composed = prior.is_composed;
     input.options.profile = prior.profile.get();
     get_points(o, project, progress, report, input);
     stop_if_interrupted();

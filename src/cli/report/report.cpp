@@ -241,6 +241,7 @@ Json prior_json(const BuildReport &report) {
     const uint32_t verdict = report.fit.profile_prior;
     if (!report.prior_id && report.no_prior.empty()) return Json();
     return {{"profile", report.prior_id ? Json(report.prior_id) : Json()},
+            {"composed", report.prior_is_composed},
             {"used", holds_prior(report.fit)},
             {"overruled", overruled[std::min<uint32_t>(verdict, LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED)]},
             {"reason", verdict >= LENSPROF_PROFILE_PRIOR_OVERRULED ? report.verdict.text : report.no_prior}};
@@ -323,7 +324,8 @@ void print_prior(const BuildReport &report, std::ostream &out) {
     if (!report.no_prior.empty()) out << "prior     of all cameras: " << report.no_prior << "\n";
     if (!report.prior_id) return;
     const uint32_t verdict = report.fit.profile_prior;
-    out << "prior     profile " << report.prior_id
+    out << "prior     " << (report.prior_is_composed ? "composed of profile " : "profile ") << report.prior_id
+        << (report.prior_is_composed ? " and others of the lens and the camera" : "")
         << (verdict == LENSPROF_PROFILE_PRIOR_USED ? ", which the result holds\n"
             : verdict == LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED
                 ? ", whose falloff the result holds; its response is overruled by the pictures\n"

@@ -39,10 +39,11 @@ struct BuildReport {
     bool has_falloff = true;       // else it cancels in these pictures
     bool exposures_given = false;  // on the command line, and not by EXIF
     double load_s = 0, sample_s = 0;
-    CameraKind camera_kind;  // whose exponent the prior on gamma is
-    int64_t profile_id = 0;  // 0 = not stored
-    int64_t prior_id = 0;    // of the profile that was the prior; 0 = none
-    std::string no_prior;    // why none was, where one was asked for
+    CameraKind camera_kind;          // whose exponent the prior on gamma is
+    int64_t profile_id = 0;          // 0 = not stored
+    int64_t prior_id = 0;            // of the profile that was the prior; 0 = none
+    std::string no_prior;            // why none was, where one was asked for
+    bool prior_is_composed = false;  // of several profiles, of which prior_id is the nearest
 };
 
 // Whether a fit's result holds the profile that was its prior, or a part of it.
