@@ -182,7 +182,7 @@ uint32_t lp_drop_repeated(lp_falloff_node *nodes, uint32_t count) {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < count; i++) {
         bool is_repeated = false;
-        for (uint32_t j = 0; j < kept; j++) is_repeated |= repeats(nodes[j], nodes[i]);
+        for (uint32_t j = 0; j < kept && !is_repeated; j++) is_repeated = repeats(nodes[j], nodes[i]);
         for (uint32_t j = i + 1; j < count && !is_repeated; j++) is_repeated = repeats(nodes[j], nodes[i]);
         if (!is_repeated) nodes[kept++] = nodes[i];
     }

@@ -42,6 +42,7 @@ KIND = lp.CameraKind.CAMERA
 PAIRS, OUTLIERS = 2000, 0.1
 FRAMES, POINTS, NOISE = 6, 300, 2.0  # of a bracket; noise in levels
 TIME_SIGMA_EV, REPEATABILITY = 0.07, 0.018
+CORNER, DARK = 1.03, 0.05
 MAKER, MODEL = "Bench", "Bench %d"
 
 
@@ -75,8 +76,18 @@ def draw_response(random, mean, covariance):
             pass  # it falls somewhere
 
 
+def is_dark(row):
+    """Hardly any light in the farthest corner, for the centre that `lensprof simulate` takes: it refuses M below 0."""
+    return scorer.Model(None, None, np.array([row.k]), None, None).falloff(CORNER ** 2)[0] < DARK
+
+
 def draw_row(random, lenses):
     """A row and its lens's rows: -> (row, rows)."""
+    row, rows = draw_any_row(random, lenses)
+    return (row, rows) if not is_dark(row) else draw_row(random, lenses)
+
+
+def draw_any_row(random, lenses):
     rows = lenses[random.integers(len(lenses))]
     settings = sorted({one.setting[:2] for one in rows})
     setting = settings[random.integers(len(settings))]

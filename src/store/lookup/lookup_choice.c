@@ -10,8 +10,6 @@
 #define SAME_FOCAL 0.02     /* of a lens that cannot be changed */
 #define SAME_FOCAL_MM 0.1
 
-int lp_is_same(double a, double b) { return a == b || fabs(a - b) <= 1e-6 * fmin(a, b); }
-
 /* A clause for which there is no room is left out as a whole, its name first. */
 void lp_mind(lensprof_lookup *lookup, lensprof_reason reason, const char *name) {
     const char *text = lensprof_reason_text(reason);

@@ -3,14 +3,15 @@
 #define LENSPROF_STORE_LOOKUP_CHOICE_H
 
 #include <lensprof/store.h>
+#include <math.h>
 
 #include "store/lookup/lookup_candidates.h"
 
 /* Adds a caution for the caller; `name` (or NULL) follows the sentence. */
 void lp_mind(lensprof_lookup *lookup, lensprof_reason reason, const char *name);
 
-/* Two numbers of settings. */
-int lp_is_same(double a, double b);
+/* Two numbers of settings. Inline: lookups compare every row with every other. */
+static inline int lp_is_same(double a, double b) { return a == b || fabs(a - b) <= 1e-6 * (a < b ? a : b); }
 
 /* The best of the candidates whose rank is below `below` (INFINITY: of all), to group->all, which has room for all of
  * them; its other members are the caller's. Returns where the next best group begins: `below` of the next call.
