@@ -338,7 +338,7 @@ def knowledge(records):
             beside(100 * slopes, "%.0f %%", "%.0f %%" % (100 * least), slopes >= least),
             "%.3f" % statistics.pstdev(logs), "%.3f" % statistics.median(r["gamma_sigma"] for r in of),
             *(beside(100 * h, "%.0f %%", target, HOLDS[0] <= h <= HOLDS[1]) for h in held),
-            count(of, lambda r: not r["usable"]), count(of, lambda r: r["prior"] == "OVERRULED")))
+            count(of, lambda r: not r["usable"]), count(of, lambda r: r["prior"].endswith("OVERRULED"))))
     return lines + [""]
 
 
