@@ -119,6 +119,32 @@ static void test_responses_of_the_camera(void **state) {
     lensprof_store_close(store);
 }
 
+/* A bracket, stored without lens and setting, is no falloff of none: that of the camera's lens stays. */
+static void test_bracket_has_no_falloff(void **state) {
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    lensprof_profile *p = profile_of("DSC-RX100", "Fixed 10-37mm", RAW, 2.0);
+    p->vignetting[0].k[0] = -0.4;
+    put_at(store, p);
+    p = profile_of("DSC-RX100", "", JPEG, LENSPROF_UNKNOWN);
+    p->key.focal_mm = LENSPROF_UNKNOWN;
+    memset(p->vignetting[0].k, 0, sizeof p->vignetting[0].k);
+    assert_ok(lensprof_response_set_gamma(&p->response[0], 2.0));
+    p->provenance.gamma_sigma = 0.02;
+    const lensprof_profile_key bracket = p->key;
+    const int64_t id = put_at(store, p);
+    lensprof_profile_key key = key_of("DSC-RX100", JPEG, 2.0);
+    key.lens[0] = 0;
+    assert_ok(ask_for(store, &key));
+    assert_int_equal(how.exact, 0);
+    assert_close(answered.vignetting[0].k[0], -0.4, 1e-9);
+    assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_CAMERA);
+    assert_int_equal(how.response_id[0], id);
+    assert_ok(ask_for(store, &bracket)); /* by itself it is found as it is */
+    assert_int_equal(how.exact, 1);
+    assert_int_equal(how.id[0], id);
+    lensprof_store_close(store);
+}
+
 /* Errors of a prior on the kind of camera are one error: no number of profiles makes it smaller. */
 static void test_shared_errors_stay(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
@@ -362,6 +388,7 @@ int main(void) {
         store_test(test_raw_rows_serve_jpeg),
         store_test(test_raw_is_linear),
         store_test(test_responses_of_the_camera),
+        store_test(test_bracket_has_no_falloff),
         store_test(test_shared_errors_stay),
         store_test(test_covariances_of_responses),
         store_test(test_styles),

@@ -90,6 +90,14 @@ static void compare_names(const row *r, const lensprof_profile_key *key, lp_cand
     found->last_camera = fits(r->key.camera_model, key->camera_model);
 }
 
+/* A bracket tells the response of its camera, whatever the lens and the setting, and nothing of a falloff. */
+static bool is_response_alone(const row *r, const lensprof_profile_key *key) {
+    const bool asks_for_camera =
+        !lp_is_known(key->lens) && key->focal_mm == LENSPROF_UNKNOWN && key->aperture == LENSPROF_UNKNOWN;
+    return !asks_for_camera && !lp_is_known(r->key.lens) && r->key.focal_mm == LENSPROF_UNKNOWN
+           && r->key.aperture == LENSPROF_UNKNOWN && r->k[0] == 0.0 && r->k[1] == 0.0 && r->k[2] == 0.0;
+}
+
 /* Takes a row that fits the key; its first curve comes first. False without memory. */
 static bool take_row(const row *r, const lensprof_profile_key *key, const lensprof_lookup_options *o,
                      lp_candidates *found) {
@@ -98,7 +106,7 @@ static bool take_row(const row *r, const lensprof_profile_key *key, const lenspr
         compare_names(r, key, found);
         const int unit = found->any_unit ? 0 : fits(r->key.unit, key->unit);
         const int camera = found->by_table ? 1 : found->last_camera; /* as the table says */
-        if (unit < 0 || r->curve != 0) return true;
+        if (unit < 0 || r->curve != 0 || is_response_alone(r, key)) return true;
         if ((!lp_is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
         if (!(one = add(found))) return false;
         found->name_score = fmax(found->name_score, found->last_score);
