@@ -87,11 +87,11 @@ void test_table(void **) {
         const double crop = crop_factor_in_table(store.get(), key_of(one.maker, one.model), one.picture);
         if (std::fabs(crop - one.crop_factor) > 1e-12)
             fail_msg("%s %ux%u: %g", one.model, one.picture.width, one.picture.height, crop);
-        assert_close(crop_factor_in_file(db, key_of(one.maker, one.model), one.picture), crop, 0);
+        assert_close(crop_factor_in_files({db}, key_of(one.maker, one.model), one.picture), crop, 0);
     }
-    assert_close(crop_factor_in_file(work("none.db"), key_of("Canon", "EOS 600D"), {}), LENSPROF_UNKNOWN, 0);
+    assert_close(crop_factor_in_files({work("none.db")}, key_of("Canon", "EOS 600D"), {}), LENSPROF_UNKNOWN, 0);
     save_text(work("bad.db"), "no database");
-    assert_close(crop_factor_in_file(work("bad.db"), key_of("Canon", "EOS 600D"), {}), LENSPROF_UNKNOWN, 0);
+    assert_close(crop_factor_in_files({work("bad.db")}, key_of("Canon", "EOS 600D"), {}), LENSPROF_UNKNOWN, 0);
 }
 
 // For keys of profiles that are made: what is given, the table, EXIF.

@@ -20,7 +20,14 @@ Choices<std::optional<uint32_t>> processing_choices() {
 }
 
 void declare_store(Command &command, StoreOptions &o) {
-    declare_db(command, o.db);
+    command.words(
+        "--db", "FILE",
+        [&o](const std::string &word) {
+            o.dbs.push_back(word);
+            o.db = o.dbs.front();
+        },
+        "profile database; where it is given more than once the profile is stored in the first, and the others are read; "
+        "default lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share");
     command.flag("--no-store", o.no_store, "do not store the profile");
     command.flag("--force", o.force, "store a result that is not usable");
     command.text("--maker", o.maker, "camera maker, instead of EXIF's");
@@ -69,7 +76,7 @@ lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, co
         throw Failure(ExitCode::usage, file + ": its EXIF has no serial numbers; give them with --unit");
     if (o.unit != "exif") set_text(key.unit, sizeof key.unit, o.unit);  // of all of the model, where none is given
     const bool is_given = o.crop_factor != LENSPROF_UNKNOWN;
-    const double crop = is_given ? o.crop_factor : crop_factor_in_file(o.db, key, size);
+    const double crop = is_given ? o.crop_factor : crop_factor_in_files(o.dbs, key, size);
     if (crop != LENSPROF_UNKNOWN) key.crop_factor = crop;
     if (o.focal != LENSPROF_UNKNOWN) key.focal_mm = o.focal;
     if (o.aperture != LENSPROF_UNKNOWN) key.aperture = o.aperture;

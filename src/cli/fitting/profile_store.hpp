@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/pictures/metadata.hpp"
 #include "cli/program/library.hpp"
@@ -13,7 +14,9 @@ namespace lensprof {
 
 // The options of every command that stores a profile.
 struct StoreOptions {
-    std::string db, maker, camera, lens, unit, style;
+    std::vector<std::string> dbs;  // of --db, in their order: lookups ask all of them
+    std::string db;                // the first: profiles are stored there; empty = the user's own
+    std::string maker, camera, lens, unit, style;
     std::optional<uint32_t> processing;  // LENSPROF_PROCESSING_...
     double crop_factor = LENSPROF_UNKNOWN, focal = LENSPROF_UNKNOWN, aperture = LENSPROF_UNKNOWN,
            distance = LENSPROF_UNKNOWN;

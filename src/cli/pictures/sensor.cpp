@@ -89,8 +89,9 @@ double crop_factor_in_tables(const Databases &databases, const lensprof_profile_
     return crop;
 }
 
-double crop_factor_in_file(const std::string &db, const lensprof_profile_key &key, PictureSize picture) {
-    auto files = databases_of(db.empty() ? std::vector<std::string>() : std::vector<std::string>{db});
+double crop_factor_in_files(const std::vector<std::string> &named, const lensprof_profile_key &key,
+                            PictureSize picture) {
+    auto files = databases_of(named);
     files.erase(std::remove_if(files.begin(), files.end(), [](const auto &file) { return !path_exists(file); }),
                 files.end());
     try {

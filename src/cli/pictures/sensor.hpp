@@ -15,8 +15,9 @@ double crop_factor_in_table(lensprof_store *store, const lensprof_profile_key &k
 // By the first of several databases that tells.
 double crop_factor_in_tables(const Databases &databases, const lensprof_profile_key &key, PictureSize picture);
 
-// As before, of the databases of `--db db` (empty: not given), which need not be there; what is wrong with them is left
+// As before, of the databases that --db names (databases_of), which need not be there; what is wrong with them is left
 // to others to say.
-double crop_factor_in_file(const std::string &db, const lensprof_profile_key &key, PictureSize picture);
+double crop_factor_in_files(const std::vector<std::string> &named, const lensprof_profile_key &key,
+                            PictureSize picture);
 
 }  // namespace lensprof
