@@ -315,7 +315,7 @@ void test_bad_options(void **) {
         {"build", pto, "--processing", "cooked"},
         {"build", pto, "--method", "magic"},
         {"build", pto, "--sampling", "x"},
-        {"build", pto, "--no-store", "--db", work("p.db")},
+        {"build", pto, "--no-store", "--stored", "none", "--db", work("p.db")},
         {"apply"},
         {"apply", png},
         {"apply", "-o", work("out"), png},

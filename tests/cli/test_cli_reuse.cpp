@@ -3,6 +3,8 @@
 
 #include "cli_runs.hpp"
 
+#include <lensprof/store.h>
+
 using namespace cli_runs;
 using namespace picture_files;
 
@@ -16,7 +18,7 @@ std::string pictures(const std::string &name, const char *seed, const char *fall
 }
 
 Words build(const std::string &project, const Words &more = {}) {
-    return Words{"build", project, "--db", work("l.db"), "--prior", "auto", "--json"} + more;
+    return Words{"build", project, "--db", work("l.db"), "--stored", "auto", "--json"} + more;
 }
 
 double corner_sigma(const Json &json) {
@@ -47,7 +49,7 @@ void test_next_sequences(void **) {
     assert_false(stored["provenance"]["forced"].get<bool>());
     assert_int_equal(stored["provenance"]["images"], 6);
     assert_int_equal(stored["provenance"]["pairs"].get<int>(), 3 * shown(1)["provenance"]["pairs"].get<int>());
-    const std::string said = must_exit(done, {"build", pictures("d", "4"), "--db", work("l.db"), "--prior", "auto"});
+    const std::string said = must_exit(done, {"build", pictures("d", "4"), "--db", work("l.db"), "--stored", "auto"});
     assert_true(contains(said, "prior     profile 3, which the result holds"));
 }
 
@@ -80,9 +82,14 @@ void test_merged_profiles_count_once(void **) {
     must_exit(done, Words{"profile", "merge", work("l.db")} + all);
     const Json merged = json_of(Words{"profile", "show", "3", "--json"} + all);
     assert_int_equal(merged["provenance"]["prior_id"], 2);
-    const Words again = all + Words{"--prior", "auto", "--json", "--no-store"};
+    const Words again = all + Words{"--stored", "auto", "--json", "--no-store"};
     assert_int_equal(json_of(Words{"build", b} + again)["prior"]["profile"], 2);
-    assert_refused(usage, Words{"build", a} + again, {a, "profile 3 holds these pictures already"});
+    assert_refused(usage, Words{"build", a} + again, {a, "profile 3 holds these pictures already", "--stored none"});
+    assert_refused(usage, Words{"build", a, "--stored", "3", "--no-store"} + all, {"holds these pictures already"});
+    const Json deep =
+        json_of(Words{"build", a, "--no-store", "--json"} + all);  // not asked for: it is said, and left out
+    assert_true(deep["prior"]["profile"].is_null());
+    assert_true(contains(deep["prior"]["reason"].get<std::string>(), "profile 3 holds these pictures already"));
     // What is in a file has no numbers of ours.
     must_exit(done, Words{"profile", "export", "3", "-o", work("one.json")} + all);
     must_exit(done, {"profile", "import", work("one.json"), "--db", work("one.db")});
@@ -129,11 +136,69 @@ void test_no_prior_for_this(void **) {
     json_of(build(a, {"--aperture", "4"}));
     assert_true(
         contains(json_of(build(b, {"--no-store"}))["prior"]["reason"].get<std::string>(), "no profile is stored"));
-    assert_refused(usage, build(b, {"--method", "transfer-function"}), {"--prior auto", "transfer"});
-    assert_refused(usage, {"build", b, "--prior", "some"}, {"--prior", "some", "auto"});
-    assert_refused(usage, {"bracket", work("a/img000.png"), "--prior", "auto"}, {"--prior"});
+    assert_refused(usage, build(b, {"--method", "transfer-function"}), {"--stored", "transfer"});
+    assert_refused(usage, {"build", b, "--prior", "some"}, {"--prior", "some"});
+    assert_refused(usage, {"build", b, "--prior", "auto"}, {"--prior", "--stored auto"});
+    assert_refused(usage, {"build", b, "--stored", "some"}, {"--stored", "some"});
+    assert_refused(usage, build(b, {"--prior", "0"}), {"--stored", "--prior above 0"});
+    assert_refused(not_found, {"build", b, "--stored", "9", "--db", work("l.db")}, {work("l.db"), "9"});
+    assert_refused(usage, {"bracket", work("a/img000.png"), "--stored", "auto"}, {"--stored"});
     save_text(work("l.db"), "not a database, but long enough that it might be one. not a database, but long enough...");
     assert_refused(store_failed, build(b), {work("l.db")});
+}
+
+// Without a word from the user: what is stored, in any of the databases, is the prior.
+void test_stored_by_default(void **) {
+    const std::string a = pictures("a", "1"), b = pictures("b", "2"), db = work("l.db");
+    const Words one = {"--db", db, "--json", "--no-store"}, two = {"--db", work("own.db")};
+    assert_true(json_of(Words{"build", a, "--json", "--db", db})["prior"].is_null());  // nothing is stored yet
+    const Json stored = json_of(Words{"build", b} + one)["prior"];
+    assert_int_equal(stored["profile"], 1);
+    assert_true(stored["used"].get<bool>() && !stored["composed"].get<bool>());
+    assert_true(json_of({"build", b, "--stored", "none", "--json", "--no-store"})["prior"].is_null());
+    assert_true(json_of({"build", b, "--prior", "0", "--json", "--no-store"})["prior"].is_null());
+    assert_int_equal(json_of(Words{"build", b, "--stored", "1"} + one)["prior"]["profile"], 1);
+    const Json other = json_of(Words{"build", b, "--json"} + two + Words{"--db", db});
+    assert_true(other["prior"]["used"].get<bool>() && other["prior"]["composed"].get<bool>());
+    const Json row =
+        json_of(Words{"profile", "show", "1", "--json"} + two);  // numbers of one database mean nothing in another
+    assert_true(row["provenance"]["prior_id"].is_null());
+    assert_int_equal(row["provenance"]["images"], 2);
+}
+
+// A falloff without covariance, as importers write it, settles gamma as far as it goes; so does one that was measured
+// at other settings.
+void test_imported_falloff_settles_gamma(void **) {
+    const std::string a = pictures("a", "1"), db = work("lens.db");
+    const Words fit = {"build", a, "--json", "--no-store", "--exif-sigma", "0"};
+    const Words words = fit + Words{"--db", work("own.db"), "--db", db};
+    const Json alone = json_of(fit + Words{"--stored", "none"});
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(db.c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    std::strcpy(profile->key.lens, "Simulated Lens");
+    profile->key.focal_mm = 38.6, profile->key.crop_factor = 1;
+    profile->key.processing = LENSPROF_PROCESSING_RAW;
+    const double truth[3] = {-0.4, 0.1, -0.1};
+    std::copy_n(truth, 3, profile->vignetting[0].k);
+    for (double aperture : {2.8, 4.0}) {
+        profile->key.aperture = aperture;
+        assert_ok(lensprof_store_put(store, profile.get(), nullptr, nullptr));
+    }
+    lensprof_store_close(store);
+    for (const char *aperture : {"2.8", "2.9"}) {
+        const Json json = json_of(words + Words{"--aperture", aperture, "--focal", "38.6", "--crop-factor", "1"});
+        assert_true(json["prior"]["used"].get<bool>() && json["prior"]["composed"].get<bool>());
+        assert_true(json["gamma"]["sigma"].get<double>() < alone["gamma"]["sigma"].get<double>());
+        double corner = 1, before = 1;
+        for (size_t i = 0; i < 3; i++) {
+            corner += json["vignetting"]["k"][0][i].get<double>();
+            before += alone["vignetting"]["k"][0][i].get<double>();
+        }
+        assert_true(std::fabs(corner - 0.6) < 0.03);
+        assert_true(std::fabs(corner - 0.6) <= std::fabs(before - 0.6) + 0.005);
+    }
 }
 
 void write_exif(const std::string &file, const std::map<std::string, std::string> &values) {
@@ -190,6 +255,8 @@ int main() {
                                 CLI_TEST(test_pictures_count_once),
                                 CLI_TEST(test_merged_profiles_count_once),
                                 CLI_TEST(test_wrong_profile_is_overruled),
+                                CLI_TEST(test_stored_by_default),
+                                CLI_TEST(test_imported_falloff_settles_gamma),
                                 CLI_TEST(test_composed_prior),
                                 CLI_TEST(test_no_prior_for_this),
                                 CLI_TEST(test_units),

@@ -97,7 +97,7 @@ void test_table(void **) {
 // For keys of profiles that are made: what is given, the table, EXIF.
 void test_keys_of_profiles(void **) {
     StoreOptions o;
-    o.db = make_database();
+    o.dbs = {make_database()};
     lensprof_profile_key key = key_of("Canon", "Canon EOS 600D");
     key.crop_factor = 2.8;
     assert_close(override_key(key, {600, 400}, o, "a.jpg").crop_factor, 1.6, 0);

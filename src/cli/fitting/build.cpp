@@ -268,7 +268,9 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     const CameraKind kind = camera_kind_of(o.fit, key, metadata[project.reference]);
     OutputFiles outputs;
     EarlierProfile prior;
-    if (o.fit.stored_prior) prior = find_stored_prior(o.store, key, o.pto);
+    if (takes_stored_prior(o.fit))
+        prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_asked, key, o.pto);
+    if (!prior.id && !o.fit.stored_is_asked && prior.is_nothing) prior.reason.clear();
     BuildReport report = build(o, project, metadata, prior, kind, outputs, streams);
     int code = finish_fit(report, key, o.store, {method_name(o.fit.method), o.pto, o.json, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
@@ -282,7 +284,7 @@ int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
     if (o.json && !o.compare.empty())
         throw Failure(ExitCode::usage, "--compare prints a table, which --json leaves out; give one of the two");
-    check_store_options(o.store, o.fit.stored_prior, !o.pto_out.empty());
+    check_store_options(o.store, takes_stored_prior(o.fit), !o.pto_out.empty());
 
     std::vector<std::string> names;
     try {

@@ -52,20 +52,25 @@ Choices<std::optional<uint32_t>> camera_kind_choices() {
 }
 
 void declare_prior(Command &command, FitOptions &o, bool may_be_stored) {
-    const auto read = [&o, may_be_stored](const std::string &word) {
-        o.stored_prior = may_be_stored && word == "auto";
-        try {
-            o.prior_weight = o.stored_prior ? 1.0 : number_of(word, {0.0, 1e6});
-        } catch (const std::invalid_argument &wrong) {
-            throw std::invalid_argument(wrong.what() + std::string(may_be_stored ? ", nor auto" : ""));
-        }
-    };
-    std::string about = "weight of the priors; 0 = none, as in the paper";
-    if (may_be_stored)
-        about +=
-            "; auto: the profile that is stored for this lens and setting is the prior, and what is stored holds "
-            "both";
-    command.word("--prior", may_be_stored ? "WEIGHT|auto" : "WEIGHT", read, about);
+    command.word(
+        "--prior", "WEIGHT",
+        [&o, may_be_stored](const std::string &word) {
+            if (word == "auto" && may_be_stored)
+                throw std::invalid_argument("auto: stored profiles are the prior by --stored auto, the default");
+            o.prior_weight = number_of(word, {0.0, 1e6});
+        },
+        std::string("weight of the priors; 0 = none, as in the paper")
+            + (may_be_stored ? ", stored ones included" : ""));
+    if (!may_be_stored) return;
+    command.word(
+        "--stored", "auto|none|ID",
+        [&o](const std::string &word) {
+            o.stored = word != "none";
+            o.stored_is_asked = o.stored;
+            o.stored_id = !o.stored || word == "auto" ? 0 : profile_id_of(word);
+        },
+        "prior knowledge from the databases: auto, the profile that is stored for this lens and setting, or the falloff "
+        "of the lens and the response of the camera as far as they are known (default); ID, a profile; none");
 }
 
 void declare_gamma(Command &command, FitOptions &o, bool known_response) {
@@ -104,9 +109,14 @@ void declare_fit(Command &command, FitOptions &o, FitChoices choices) {
                    "(scanned), linear (the response is held linear), any, or auto: what EXIF says took the pictures");
 }
 
+bool takes_stored_prior(const FitOptions &o) {
+    return o.stored && o.prior_weight > 0.0
+           && (o.method == LENSPROF_METHOD_TRANSFER || o.method == LENSPROF_METHOD_RADIANCE);
+}
+
 void check_fit_options(const FitOptions &o) {
-    if (o.stored_prior && o.method != LENSPROF_METHOD_TRANSFER && o.method != LENSPROF_METHOD_RADIANCE)
-        throw Failure(ExitCode::usage, "--prior auto: is for the methods transfer and radiance; give a weight");
+    if (o.stored_is_asked && !takes_stored_prior(o))
+        throw Failure(ExitCode::usage, "--stored: is for the methods transfer and radiance, and a --prior above 0");
     if (o.gamma_from == LENSPROF_GAMMA_EXPOSURES && o.exif_sigma == 0.0)
         throw Failure(ExitCode::usage,
                       "--gamma-from exif and --exif-sigma 0, which leaves EXIF out, contradict each other");

@@ -24,7 +24,9 @@ struct FitOptions {
     uint32_t gamma_from = LENSPROF_GAMMA_AUTO;  // KNOWN: the project's response is held
     std::optional<uint32_t> camera_kind;        // empty: what the pictures say
     double prior_weight = 1.0, huber = 5.0, exif_sigma = 0.1;
-    bool stored_prior = false;  // the profile that is stored for the lens and setting is the prior
+    bool stored = true;  // what is stored of the lens and the camera is the prior, as far as it goes
+    bool stored_is_asked = false;
+    int64_t stored_id = 0;  // the profile that is the prior; 0: what a lookup finds
 };
 
 // What not every command has to offer.
@@ -34,6 +36,9 @@ struct FitChoices {
     bool stored_prior = false;   // a stored profile may be the prior
 };
 void declare_fit(Command &command, FitOptions &o, FitChoices choices = {});
+
+// Whether stored knowledge is the prior of this fit: the method takes one, and priors have a weight.
+bool takes_stored_prior(const FitOptions &o);
 
 // Of --method, as provenances name it.
 const char *method_name(uint32_t method);

@@ -1,9 +1,11 @@
 #include "cli/fitting/stored_prior.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <vector>
 
+#include "cli/program/databases.hpp"
 #include "cli/program/paths.hpp"
 
 namespace lensprof {
@@ -34,19 +36,36 @@ void forget_response(lensprof_profile &profile) {
         for (uint32_t j = 0; j < n; j++) profile.covariance[i * n + j] = profile.covariance[j * n + i] = 0.0;
 }
 
+// Standard error of M in the corner that is added to what profiles of other settings say of it: copies of a lens
+// differ, and most of those who measured Lensfun's lenses do not say how sure they are. Assumed, not measured.
+constexpr double kCopySigma = 0.02;
+
+// Adds it to the falloff's block, which a lookup scales to the error that it states.
+void add_copy_error(const lensprof_lookup &how, lensprof_profile &profile) {
+    const double stated = std::hypot(how.falloff_sigma, std::hypot(how.distance_sigma, how.sensor_sigma));
+    if (!(stated > 0.0)) return;
+    const double scale = (stated * stated + kCopySigma * kCopySigma) / (stated * stated);
+    const uint32_t n = profile.covariance_size;
+    for (uint32_t i = n - std::min(n, 3 * profile.vignettings); i < n; i++)
+        for (uint32_t j = n - std::min(n, 3 * profile.vignettings); j < n; j++) profile.covariance[i * n + j] *= scale;
+}
+
 // What is composed of profiles of the lens at other settings, and of the camera with other lenses. It is the prior, but
 // nobody's pictures count as those of the result.
-EarlierProfile composed_prior(lensprof_store *store, const lensprof_lookup &how,
+EarlierProfile composed_prior(const Databases &databases, const lensprof_lookup &how,
                               std::unique_ptr<lensprof_profile> profile, const std::string &own) {
     const bool is_camera =
         how.response_from == LENSPROF_RESPONSE_FROM_PROFILE || how.response_from == LENSPROF_RESPONSE_FROM_CAMERA;
     if (!is_camera) forget_response(*profile);
     if (!is_uncertain(*profile)) return {0, nullptr, "profiles of this lens have no covariance"};
-    std::vector<int64_t> ids(how.id, how.id + how.rows);
-    if (is_camera) ids.insert(ids.end(), how.response_id, how.response_id + how.response_rows);
+    add_copy_error(how, *profile);
+    std::vector<std::pair<lensprof_store *, int64_t>> rows;
+    for (uint32_t i = 0; i < how.rows; i++) rows.emplace_back(databases.store(how.falloff_store), how.id[i]);
+    for (uint32_t i = 0; is_camera && i < how.response_rows; i++)
+        rows.emplace_back(databases.store(how.response_store), how.response_id[i]);
     auto row = new_profile();
     double gamma_sigma = 0.0;
-    for (const int64_t id : ids) {
+    for (const auto &[store, id] : rows) {
         if (lensprof_store_get(store, id, row.get(), nullptr) != LENSPROF_OK) continue;
         if (row->provenance.source == own || holds(store, *row, own))
             return {0, nullptr, "profile " + std::to_string(id) + " holds these pictures already"};
@@ -58,41 +77,70 @@ EarlierProfile composed_prior(lensprof_store *store, const lensprof_lookup &how,
     lensprof_provenance &provenance = profile->provenance;
     provenance.images = provenance.pairs = 0;
     provenance.gamma_sigma = gamma_sigma;
-    return {how.id[0], std::move(profile), "", true};
+    return {how.id[0], std::move(profile), "", false, true};
+}
+
+// The profile of an id, in the first database, unless these pictures are in it; `named` is what it is called.
+EarlierProfile one_prior(lensprof_store *store, int64_t id, std::unique_ptr<lensprof_profile> profile,
+                         const std::string &own, bool is_asked) {
+    const std::string named = "profile " + std::to_string(id);
+    if (!is_uncertain(*profile)) return {0, nullptr, named + " has no covariance"};
+    if (profile->provenance.forced) return {0, nullptr, named + " was stored by --force, of a fit that was not usable"};
+    if (own == profile->provenance.source) {  // fitted again: what it was given then is the prior again
+        id = profile->provenance.prior_id;
+        if (id <= 0 || lensprof_store_get(store, id, profile.get(), nullptr) != LENSPROF_OK || !is_uncertain(*profile))
+            return {0, nullptr, named + " is of these pictures alone, which are fitted again"};
+    }
+    if (own != profile->provenance.source && !holds(store, *profile, own)) return {id, std::move(profile), ""};
+    const std::string reason =
+        "profile " + std::to_string(id) + " holds these pictures already, and others that came later";
+    if (is_asked)
+        throw Failure(ExitCode::usage,
+                      own + ": " + reason + "; nothing would be gained. Give --stored none to fit them alone");
+    return {0, nullptr, reason};
+}
+
+// What a lookup predicts states its error, which an imported profile does not: the falloff is asked a hair beside the
+// setting.
+lensprof_profile_key beside(lensprof_profile_key key) {
+    constexpr double hair = 1e-4;
+    key.aperture *= 1.0 + hair;
+    return key;
 }
 
 }  // namespace
 
-EarlierProfile find_stored_prior(const StoreOptions &o, const lensprof_profile_key &key, const std::string &source) {
-    const std::string file = store_path(o.db);
-    if (!path_exists(file)) return {0, nullptr, "there is no database yet"};
-    Store store = open_store(o.db, LENSPROF_STORE_READ);
+EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_asked, const lensprof_profile_key &key,
+                                 const std::string &source) {
+    auto files = databases_of(o.dbs);
+    files.erase(std::remove_if(files.begin(), files.end(), [](const auto &file) { return !path_exists(file); }),
+                files.end());
     auto profile = new_profile();
-    lensprof_error error{};
+    const std::string own = source_of(source);
+    if (id) {
+        const Store store = open_store(o.db, LENSPROF_STORE_READ);
+        lensprof_error error{};
+        check(lensprof_store_get(store.get(), id, profile.get(), &error), store_path(o.db), &error);
+        EarlierProfile given = one_prior(store.get(), id, std::move(profile), own, is_asked);
+        if (!given.id)
+            throw Failure(ExitCode::usage, "--stored " + std::to_string(id) + ": " + given.reason
+                                               + "; give another, or --stored none to fit the pictures alone");
+        return given;
+    }
+    if (files.empty()) return {0, nullptr, "there is no database yet", true};
+    const Databases databases(files);
     lensprof_lookup how;
     lensprof_lookup_init(&how);
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
-    const lensprof_status status = lensprof_store_lookup(store.get(), &key, &options, profile.get(), &how, &error);
-    if (status != LENSPROF_ERROR_NOT_FOUND) check(status, file, &error);
-    if (status != LENSPROF_OK) return {0, nullptr, "no profile is stored for this lens and setting"};
-    if (!how.exact) return composed_prior(store.get(), how, std::move(profile), source_of(source));
-    const std::string named = "profile " + std::to_string(how.id[0]);
-    if (!is_uncertain(*profile)) return {0, nullptr, named + " has no covariance"};
-    if (profile->provenance.forced) return {0, nullptr, named + " was stored by --force, of a fit that was not usable"};
-    const std::string own = source_of(source);
-    int64_t id = how.id[0];
-    if (own == profile->provenance.source) {  // fitted again: what it was given then is the prior again
-        id = profile->provenance.prior_id;
-        if (id <= 0 || lensprof_store_get(store.get(), id, profile.get(), nullptr) != LENSPROF_OK
-            || !is_uncertain(*profile))
-            return {0, nullptr, named + " is of these pictures alone, which are fitted again"};
-    }
-    if (own == profile->provenance.source || holds(store.get(), *profile, own))
-        throw Failure(ExitCode::usage, source + ": profile " + std::to_string(id)
-                                           + " holds these pictures already, and others that came later; nothing would be "
-                                             "gained. Leave --prior auto out to fit them alone");
-    return {id, std::move(profile), ""};
+    if (databases.look_up(key, options, *profile, how) != LENSPROF_OK)
+        return {0, nullptr, "no profile is stored for this lens and setting", true};
+    const bool is_own = is_same_file(databases.file(how.falloff_store), store_path(o.db));
+    if (how.exact && is_own && is_uncertain(*profile))
+        return one_prior(databases.store(how.falloff_store), how.id[0], std::move(profile), own, is_asked);
+    if (how.exact && databases.look_up(beside(key), options, *profile, how) != LENSPROF_OK)
+        return {0, nullptr, "profile " + std::to_string(how.id[0]) + " has no covariance"};
+    return composed_prior(databases, how, std::move(profile), own);
 }
 
 }  // namespace lensprof

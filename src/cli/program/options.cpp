@@ -336,9 +336,9 @@ void Command::size(const char *names, uint32_t &width, uint32_t &height, std::pa
     add_option(names, "WIDTHxHEIGHT", read, about);
 }
 
-namespace {
+namespace {}  // namespace
 
-int64_t id_of(const std::string &word) {
+int64_t profile_id_of(const std::string &word) {
     const bool digits = word.find_first_not_of("0123456789") == std::string::npos;
     errno = 0;
     const unsigned long long id = digits ? std::strtoull(word.c_str(), nullptr, 10) : 0;
@@ -347,16 +347,14 @@ int64_t id_of(const std::string &word) {
     return static_cast<int64_t>(id);
 }
 
-}  // namespace
-
 void Command::profile_id(const char *names, int64_t &value, const std::string &about) {
     add_option(
-        names, "ID", [&value](const std::string &word) { value = id_of(word); }, about);
+        names, "ID", [&value](const std::string &word) { value = profile_id_of(word); }, about);
 }
 
 void Command::profile_ids(const char *name, std::vector<int64_t> &values, const std::string &about) {
     add_option(
-        name, "", [&values](const std::string &word) { values.push_back(id_of(word)); }, about)
+        name, "", [&values](const std::string &word) { values.push_back(profile_id_of(word)); }, about)
         ->expected(1, CLI::detail::expected_max_vector_size)
         ->allow_extra_args();
 }

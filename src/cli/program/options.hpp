@@ -122,6 +122,9 @@ private:
 // --db FILE, a profile database; `more` is said of it.
 void declare_db(Command &command, std::string &path, const std::string &more = "");
 
+// The number of a profile; throws std::invalid_argument.
+int64_t profile_id_of(const std::string &word);
+
 // --json and --progress.
 void declare_json(Command &command, bool &json);
 void declare_progress(Command &command, bool &progress);
