@@ -139,9 +139,24 @@ void test_apply(void **) {
     assert_close(corner_of("Canon", "Else", {"--camera", "EOS REBEL T3i"}), 1 - 0.4 * r2 / (1.6 * 1.6), 1e-3);
 }
 
+// The same without a picture: the table tells the sensor of the camera that is named, but not of which format it is.
+void test_query(void **) {
+    make_database();
+    const auto corner = [](const Words &more) {
+        const Json found = json_of(Words{"query", "--json", "--db", work("p.db"), "--lens", "Lens 50mm", "--focal",
+                                         "50", "--aperture", "2", "--processing", "jpeg"}
+                                   + more);
+        return 1 + found["vignetting"]["k"][0][0].get<double>();
+    };
+    assert_close(corner({"--maker", "Canon", "--camera", "Canon EOS 600D"}), 1 - 0.4 / (1.6 * 1.6), 1e-9);
+    assert_close(corner({"--maker", "Canon", "--camera", "Canon EOS 600D", "--crop-factor", "1"}), 1 - 0.4, 1e-9);
+    assert_close(corner({"--camera", "Nobody's"}), 1 - 0.4, 1e-9);
+}
+
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_table), CLI_TEST(test_keys_of_profiles), CLI_TEST(test_apply)};
+    const CMUnitTest tests[] = {CLI_TEST(test_table), CLI_TEST(test_keys_of_profiles), CLI_TEST(test_apply),
+                                CLI_TEST(test_query)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/pictures/sensor.hpp"
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/known_range.hpp"
 #include "cli/profiles/lookup_options.hpp"
@@ -142,6 +143,8 @@ bool answer_lookup(const Options &o, const Databases &databases, size_t rows, Re
     options.any_processing = !o.filter.has_processing();
     lensprof_profile_key key = o.filter.key(LENSPROF_PROCESSING_RAW);
     key.crop_factor = o.lookup.crop_factor;
+    if (key.crop_factor == LENSPROF_UNKNOWN && *key.camera_model)
+        key.crop_factor = crop_factor_in_tables(databases, key, {});
     auto profile = new_profile();
     lensprof_lookup &how = refusal.how;
     const lensprof_status status = databases.look_up(key, options, *profile, how);
