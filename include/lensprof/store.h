@@ -62,8 +62,10 @@ typedef struct lensprof_lookup_options {
     uint32_t distance_rule;  /* lensprof_distance_rule */
     uint32_t with_doubt;     /* 1: profiles with a doubt (provenance) count as others do; 0: not at all */
     uint32_t any_processing; /* 1: the key's processing does not matter; 0: see lensprof_store_lookup */
+    uint32_t force_falloff;  /* 1: falloffs of uncorrected pictures for keys that are CORRECTED, too; 0: not */
     uint32_t
-        force_falloff; /* 1: falloffs of uncorrected pictures for keys whose processing is CORRECTED, too; 0: not */
+        response_alone; /* 1: where there is no falloff for the key, but the camera has profiles, its response
+                           without a falloff is the answer, as a prior of fits: `rows` is 0; 0: that is NOT_FOUND */
 } lensprof_lookup_options;
 
 /* USUAL, without doubt, falloffs of the key's processing. */

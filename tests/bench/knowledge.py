@@ -136,16 +136,18 @@ def known(store, row, rows, stored, model):
                     store.remove(one.id)
             profiles["lens"] = looked_up(store, key)
             store.put(stored)
-            profiles["camera"] = looked_up(store, stored.key)
+            nowhere = key.copy()
+            nowhere.lens = "a lens that nobody has measured"
+            profiles["camera"] = looked_up(store, nowhere, lp.LookupOptions(response_alone=True))
             profiles["both"] = looked_up(store, key)
             raise Undo
     except Undo:
         return profiles
 
 
-def looked_up(store, key):
+def looked_up(store, key, options=None):
     try:
-        return store.lookup(key)[0]
+        return store.lookup(key, options)[0]
     except lp.Error as error:
         if error.status != lp.Status.ERROR_NOT_FOUND:
             raise

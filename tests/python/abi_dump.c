@@ -392,6 +392,7 @@ static void print_structs(void) {
     FIELD(lensprof_lookup_options, with_doubt);
     FIELD(lensprof_lookup_options, any_processing);
     FIELD(lensprof_lookup_options, force_falloff);
+    FIELD(lensprof_lookup_options, response_alone);
     STRUCT(lensprof_lookup);
     FIELD(lensprof_lookup, struct_size);
     FIELD(lensprof_lookup, exact);

@@ -315,6 +315,38 @@ static void test_next_best_profiles(void **state) {
     lensprof_store_close(store);
 }
 
+/* For fits, which find the falloff themselves. */
+static void test_response_alone(void **state) {
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    lensprof_lookup_options options;
+    lensprof_lookup_options_init(&options);
+    options.response_alone = 1;
+    const lensprof_profile_key key = key_of("EOS 5D", JPEG, 2.0), raw = key_of("EOS 5D", RAW, 2.0);
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
+    lensprof_profile *p = profile_of("EOS 5D", "Example 85mm f/2", JPEG, 2.0);
+    static const double coefficients[3] = {0.5, 0.1, 0.02};
+    assert_ok(lensprof_response_set_emor(&p->response[0], coefficients, 3));
+    p->covariance_size = 6;
+    for (uint32_t j = 0; j < 6; j++) p->covariance[7 * j] = 4e-4;
+    const int64_t id = put_at(store, p);
+    assert_ok(ask_with(store, &key, &options));
+    assert_int_equal(how.rows, 0);
+    assert_int_equal(how.response_rows, 1);
+    assert_int_equal(how.response_id[0], id);
+    assert_true(has_reason(&how, LENSPROF_REASON_LOOKUP_NO_LENS, "of this name"));
+    assert_int_equal(answered.covariance_size, 3);
+    assert_close(answered.response[0].emor[0], 0.5, 0.0);
+    assert_close(answered.vignetting[0].k[0], 0.0, 0.0);
+    assert_true(answered.provenance.gamma_sigma > 0.018);
+    assert_ok(lensprof_profile_validate(&answered));
+    assert_int_equal(ask_with(store, &raw, &options), LENSPROF_ERROR_NOT_FOUND);
+    options.response_alone = 0;
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_NOT_FOUND);
+    options.response_alone = 2;
+    assert_int_equal(ask_with(store, &key, &options), LENSPROF_ERROR_ARGUMENT);
+    lensprof_store_close(store);
+}
+
 static void test_several_databases(void **state) {
     const place *here = *state;
     char second_path[PATH_MAX];
@@ -395,6 +427,7 @@ int main(void) {
         store_test(test_which_responses),
         store_test(test_corrected),
         store_test(test_next_best_profiles),
+        store_test(test_response_alone),
         store_test(test_several_databases),
         store_test(test_open_settings_widen_the_error),
     };

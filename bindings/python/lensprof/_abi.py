@@ -929,6 +929,7 @@ class LookupOptions(Structure):
         ("with_doubt", c_uint32),
         ("any_processing", c_uint32),
         ("force_falloff", c_uint32),
+        ("response_alone", c_uint32),
     ]
 
 

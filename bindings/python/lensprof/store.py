@@ -27,12 +27,14 @@ class StoreRow(Value, _abi.StoreRow):
 class LookupOptions(Struct, _abi.LookupOptions):
     """How Store.lookup searches. distance_rule: where the focus distance is unknown. with_doubt: profiles with a doubt
     count as others do. any_processing: the key's processing does not matter. force_falloff: falloffs of uncorrected
-    pictures for keys whose processing is CORRECTED, too."""
+    pictures for keys whose processing is CORRECTED, too. response_alone: the camera's response is an answer where there
+    is no falloff."""
 
     distance_rule = Enumerated(DistanceRule)
     with_doubt = Flag()
     any_processing = Flag()
     force_falloff = Flag()
+    response_alone = Flag()
 
 
 class Lookup(Value, _abi.Lookup):

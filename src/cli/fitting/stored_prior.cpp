@@ -77,7 +77,7 @@ EarlierProfile composed_prior(const Databases &databases, const lensprof_lookup 
     lensprof_provenance &provenance = profile->provenance;
     provenance.images = provenance.pairs = 0;
     provenance.gamma_sigma = gamma_sigma;
-    return {how.id[0], std::move(profile), "", false, true};
+    return {rows.front().second, std::move(profile), "", false, true};
 }
 
 // The profile of an id, in the first database, unless these pictures are in it; `named` is what it is called.
@@ -133,6 +133,7 @@ EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_aske
     lensprof_lookup_init(&how);
     lensprof_lookup_options options;
     lensprof_lookup_options_init(&options);
+    options.response_alone = 1;
     if (databases.look_up(key, options, *profile, how) != LENSPROF_OK)
         return {0, nullptr, "no profile is stored for this lens and setting", true};
     const bool is_own = is_same_file(databases.file(how.falloff_store), store_path(o.db));

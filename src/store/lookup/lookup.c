@@ -132,6 +132,25 @@ static void set_falloff(const work *w, lensprof_profile *profile) {
     lensprof_gain_grid_init(&profile->grid);
 }
 
+static void set_response(const work *w, lensprof_profile *profile) {
+    profile->responses = w->response.responses;
+    for (uint32_t c = 0; c < 3; c++) {
+        if (c < profile->responses)
+            profile->response[c] = w->response.response[c];
+        else
+            lensprof_response_set_linear(&profile->response[c]);
+    }
+}
+
+static void set_provenance(const work *w, lensprof_profile *profile) {
+    lensprof_provenance *p = &profile->provenance;
+    snprintf(p->method, sizeof p->method, "lookup");
+    p->images = p->pairs = p->forced = 0;
+    p->prior_id = 0;
+    p->heldout_rms = p->inlier_share = LENSPROF_UNKNOWN;
+    p->gamma_sigma = w->response.sigma;
+}
+
 /* In the scratch of the store that the falloff is from, of the nearest of its profiles. */
 static lensprof_status compose(work *w, lensprof_error *error) {
     lensprof_store *store = w->stores[w->lookup.falloff_store];
@@ -141,23 +160,33 @@ static lensprof_status compose(work *w, lensprof_error *error) {
     if (status != LENSPROF_OK) return status;
     set_sigma(w);
     profile->key = w->falloff.key;
-    profile->responses = w->response.responses;
-    for (uint32_t c = 0; c < 3; c++) {
-        if (c < profile->responses)
-            profile->response[c] = w->response.response[c];
-        else
-            lensprof_response_set_linear(&profile->response[c]);
-    }
+    set_response(w, profile);
     set_falloff(w, profile);
     set_covariance(w, profile);
-    lensprof_provenance *p = &profile->provenance;
-    snprintf(p->method, sizeof p->method, "lookup");
-    p->images = p->pairs = p->forced = 0;
-    p->prior_id = 0;
-    p->heldout_rms = p->inlier_share = LENSPROF_UNKNOWN;
-    p->gamma_sigma = w->response.sigma;
+    set_provenance(w, profile);
     if (lensprof_profile_validate(profile) != LENSPROF_OK)
         return lp_refuse(store, &w->lookup, LENSPROF_REASON_LOOKUP_CONTRADICTION, error);
+    return LENSPROF_OK;
+}
+
+/* The camera's response where no falloff was found, which `error` tells and *lookup has the reason of. */
+static lensprof_status answer_response(work *w, lensprof_error *error) {
+    lensprof_error own;
+    w->falloff.key = *w->key;
+    lensprof_status status = find_response(w, &own);
+    if (status != LENSPROF_OK && error) *error = own;
+    if (status != LENSPROF_OK) return status;
+    if (!w->response.rows) return LENSPROF_ERROR_NOT_FOUND;
+    w->lookup.falloff_store = w->lookup.response_store;
+    lensprof_profile *profile = &w->stores[w->lookup.response_store]->scratch;
+    lensprof_profile_init(profile);
+    profile->key = *w->key;
+    set_response(w, profile);
+    set_provenance(w, profile);
+    const uint32_t modes = lp_covariance_modes(profile->response, profile->responses);
+    if (w->response.modes != modes) return LENSPROF_OK;
+    profile->covariance_size = modes;
+    memcpy(profile->covariance, w->response.covariance, modes * modes * sizeof(double));
     return LENSPROF_OK;
 }
 
@@ -189,7 +218,10 @@ static lensprof_status look_up(work *w, lensprof_error *error) {
         if (status == LENSPROF_OK) begun++;
     }
     if (status == LENSPROF_OK) status = find_falloff(w, error);
-    if (status == LENSPROF_OK) status = w->lookup.exact ? answer_exact(w, error) : compose(w, error);
+    if (status == LENSPROF_OK)
+        status = w->lookup.exact ? answer_exact(w, error) : compose(w, error);
+    else if (status == LENSPROF_ERROR_NOT_FOUND && w->options.response_alone)
+        status = answer_response(w, error);
     while (begun > 0) lp_store_rollback(w->stores[--begun]);
     return status;
 }
@@ -206,7 +238,7 @@ static lensprof_status check_lookup(const lensprof_profile_key *key, const lensp
     const lensprof_status status = lp_store_check_size(profile, error);
     if (status != LENSPROF_OK) return status;
     if (own->distance_rule > LENSPROF_DISTANCE_USUAL || own->with_doubt > 1 || own->any_processing > 1
-        || own->force_falloff > 1)
+        || own->force_falloff > 1 || own->response_alone > 1)
         return lp_store_fail_argument("an option is unknown; see lensprof_lookup_options", error);
     if (lensprof_profile_key_validate(key) != LENSPROF_OK)
         return lp_store_fail_argument("the key is not valid; see lensprof_profile_key", error);
