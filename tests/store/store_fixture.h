@@ -158,9 +158,10 @@ static inline void assert_file(const char *path, const void *expected, size_t si
  * layout 3 prior_id and forced stand at the end of the method. */
 static inline void make_layout(const char *path, int layout, const lensprof_profile *profiles, size_t count) {
     static const char *const schemas[] = {lp_schema_0001, lp_schema_0002, lp_schema_0003, lp_schema_0004},
-                             *const added[] = {"", ", gain_grids", ", gain_grids, unit, crop_factor, doubt, lens_name",
-                                               ", gain_grids, unit, crop_factor, doubt, lens_name, color_temperature_k,"
-                                               " prior_id, forced"};
+                             *const added[] = {
+                                 "", ", gain_grids", ", gain_grids, unit, crop_factor, doubt, lens_name",
+                                 (", gain_grids, unit, crop_factor, doubt, lens_name, color_temperature_k,"
+                                  " prior_id, forced")};
     const char *method =
         layout < 4 ? "method || ifnull('+' || prior_id, '') || iif(forced, ' (forced)', '')" : "method";
     char newer[400], sql[2000];
