@@ -206,7 +206,11 @@ void test_several_databases(void **) {
     assert_close(corrected_by(out), corner_falloff(-0.4), 0.02);
     make_lens("data/lensprof/profiles.db", "Lens 35mm", -0.1);
     const Json json = json_of(apply + Words{"--json"});
-    assert_true(json["pictures"][0]["lookup"]["database"] == work("share/lensprof/lensfun.db"));
+    const Json &found = json["pictures"][0]["lookup"];
+    assert_true(found["database"] == work("share/lensprof/lensfun.db"));
+    assert_true(found["response"]["from"] == "given");  // by --response: nothing is said of another
+    for (const auto &code : found["reason_codes"]) assert_true(code != "lookup_typical_response");
+    assert_false(contains(found["reason"].get<std::string>(), "typical"));
     assert_close(corrected_by(out), corner_falloff(-0.4), 0.02);
     make_lens("data/lensprof/profiles.db", "Lens 50mm", -0.2);
     must_exit(done, apply);
@@ -221,7 +225,9 @@ void test_several_databases(void **) {
                                               "--distance", "inf", "--db", a, "--db", b});
     assert_true(contains(said, "of this lens in " + b));
     const Json range = json_of({"query", "--lens", "Lens 50mm", "--json"});
-    assert_int_equal(range["matches"], 2);  // of both
+    assert_int_equal(range["matches"], 2);                    // of both
+    save_text(work("share/lensprof/lensfun.db"), "damaged");  // nobody named it: it is passed over
+    must_exit(done, apply);
 }
 
 }  // namespace

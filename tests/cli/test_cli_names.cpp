@@ -1,6 +1,8 @@
 // `lensprof profile lenses | cameras | set`, `list` and `remove` of what matches.
 #include "cli_runs.hpp"
 
+#include <lensprof/store.h>
+
 using namespace cli_runs;
 
 namespace {
@@ -106,10 +108,38 @@ void test_set(void **) {
     assert_true(load(work("p.db")) == before);
 }
 
+// A camera with a maker and without one is listed once each; every part of a key can be set, and no two ways at once.
+void test_each_once(void **) {
+    const std::string db = work("once.db");
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(db.c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    std::strcpy(profile->key.camera_model, "EOS 5D");
+    assert_ok(lensprof_store_put(store, profile.get(), nullptr, nullptr));
+    std::strcpy(profile->key.camera_maker, "Canon");
+    assert_ok(lensprof_store_put(store, profile.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+    const Words at = {"--db", db};
+    assert_int_equal(json_of(Words{"profile", "list", "--camera", "EOS 5D", "--json"} + at)["profiles"].size(), 2);
+    must_exit(done, Words{"profile", "set", "1", "1", "--style", "Vivid"} + at);
+    assert_true(json_of(Words{"profile", "show", "1", "--json"} + at)["key"]["style"] == "Vivid");
+    assert_refused(usage, Words{"profile", "set", "1", "--focal", "60", "--clear", "focal"} + at, {"--clear"});
+    assert_refused(usage, Words{"profile", "set", "1", "--crop-factor", "2", "--clear", "crop-factor"} + at,
+                   {"--clear"});
+    assert_refused(usage, Words{"profile", "set", "1", "--unit", "7", "--any-unit"} + at, {"--any-unit"});
+    must_exit(done, Words{"profile", "remove", "1", "1"} + at);
+    must_exit(done, Words{"profile", "remove", "--camera", "EOS 5D", "--yes"} + at);
+}
+
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_lenses_and_cameras), CLI_TEST(test_filters_take_parts_of_names),
-                                CLI_TEST(test_nearest_names), CLI_TEST(test_remove_what_matches), CLI_TEST(test_set)};
+    const CMUnitTest tests[] = {CLI_TEST(test_lenses_and_cameras),
+                                CLI_TEST(test_filters_take_parts_of_names),
+                                CLI_TEST(test_nearest_names),
+                                CLI_TEST(test_remove_what_matches),
+                                CLI_TEST(test_set),
+                                CLI_TEST(test_each_once)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

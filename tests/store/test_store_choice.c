@@ -118,6 +118,15 @@ static void test_built_in_lens(void **state) {
     lensprof_store_close(store);
 }
 
+/* Spacings of nodes below f/1, too: one more beyond f/1.4 is f/2.06. */
+static void test_fast_lens(void **state) {
+    static const entry entries[] = {{"", "A 50mm", "", 0.95, 1, -0.6, RAW}, {"", "A 50mm", "", 1.4, 1, -0.4, RAW}};
+    lensprof_store *store = store_of(*state, entries, 2);
+    assert_ok(ask(store, "", "A 50mm", 50, 2.0, 0));
+    assert_int_equal(ask(store, "", "A 50mm", 50, 2.2, 0), LENSPROF_ERROR_NOT_FOUND);
+    lensprof_store_close(store);
+}
+
 /* One node beyond the last, which is said. */
 static void test_outside_is_said(void **state) {
     static const entry entries[] = {{"", "A 50mm", "", 2.0, 1, -0.5, RAW},
@@ -136,7 +145,7 @@ static void test_outside_is_said(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         store_test(test_one_processing), store_test(test_newest_of_a_setting), store_test(test_lens_of_cameras),
-        store_test(test_built_in_lens),  store_test(test_outside_is_said),
+        store_test(test_built_in_lens),  store_test(test_outside_is_said),     store_test(test_fast_lens),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

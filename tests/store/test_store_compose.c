@@ -253,6 +253,9 @@ static void test_which_responses(void **state) {
         assert_ok(ask_for(store, &key));
         assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_KIND);
     }
+    put_rendered(store, "EOS 5D", 2.2, 0.26, ""); /* less sure than the typical response is */
+    assert_ok(ask_for(store, &key));
+    assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_KIND);
     const int64_t old = put_rendered(store, "EOS 5D", 2.2, 0.02, "");
     lensprof_profile *p = profile_of("EOS 5D", "Example 85mm f/2", JPEG, 2.0);
     assert_ok(lensprof_response_set_gamma(&p->response[0], 2.3));
@@ -261,6 +264,14 @@ static void test_which_responses(void **state) {
     assert_ok(ask_for(store, &key));
     assert_int_equal(how.response_rows, 1);
     assert_int_equal(how.response_id[0], new);
+    p->provenance.prior_id = new; /* which holds the oldest, too */
+    const int64_t newest = put_at(store, p);
+    assert_ok(ask_for(store, &key));
+    assert_int_equal(how.response_rows, 1);
+    assert_int_equal(how.response_id[0], newest);
+    const lensprof_profile_key nameless = key_of("-", JPEG, 2.0);
+    assert_ok(ask_for(store, &nameless));
+    assert_int_equal(how.response_from, LENSPROF_RESPONSE_FROM_KIND);
     lensprof_store_close(store);
 }
 

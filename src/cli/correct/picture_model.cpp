@@ -98,7 +98,8 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
     if (how.exact && how.falloff_store == 0)
         job.profile_id = how.id[0];
     else
-        job.lookup = std::make_shared<Found>(Found{how, databases_.files()});
+        job.lookup = std::make_shared<Found>(options_.response ? with_response_given({how, databases_.files()})
+                                                               : Found{how, databases_.files()});
 }
 
 void PictureModels::choose(const PictureMetadata &metadata, Correction &job) const {

@@ -223,7 +223,7 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
         auto profile = profile_of(report.fit, &options, report.names.size());
         profile->key = key;
         const bool holds = finish.prior && holds_prior(report.fit);
-        const int64_t held = holds && !finish.prior->is_composed ? finish.prior->id : 0;
+        const int64_t held = holds && finish.prior->is_own ? finish.prior->id : 0;
         report.profile_id =
             store_profile(store, *profile, {finish.method, finish.source, report.fit.usable != 0, held});
     }

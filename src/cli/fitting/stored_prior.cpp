@@ -52,7 +52,7 @@ void add_copy_error(const lensprof_lookup &how, lensprof_profile &profile) {
 
 // What is composed of profiles of the lens at other settings, and of the camera with other lenses. It is the prior, but
 // nobody's pictures count as those of the result.
-EarlierProfile composed_prior(const Databases &databases, const lensprof_lookup &how,
+EarlierProfile composed_prior(const Databases &databases, const lensprof_store *own_store, const lensprof_lookup &how,
                               std::unique_ptr<lensprof_profile> profile, const std::string &own) {
     const bool is_camera =
         how.response_from == LENSPROF_RESPONSE_FROM_PROFILE || how.response_from == LENSPROF_RESPONSE_FROM_CAMERA;
@@ -77,7 +77,8 @@ EarlierProfile composed_prior(const Databases &databases, const lensprof_lookup 
     lensprof_provenance &provenance = profile->provenance;
     provenance.images = provenance.pairs = 0;
     provenance.gamma_sigma = gamma_sigma;
-    return {rows.front().second, std::move(profile), "", false, true};
+    const bool is_own = rows.front().first == own_store;
+    return {rows.front().second, std::move(profile), "", false, true, is_own};
 }
 
 // The profile of an id, in the first database, unless these pictures are in it; `named` is what it is called.
@@ -88,7 +89,8 @@ EarlierProfile one_prior(lensprof_store *store, int64_t id, std::unique_ptr<lens
     if (profile->provenance.forced) return {0, nullptr, named + " was stored by --force, of a fit that was not usable"};
     if (own == profile->provenance.source) {  // fitted again: what it was given then is the prior again
         id = profile->provenance.prior_id;
-        if (id <= 0 || lensprof_store_get(store, id, profile.get(), nullptr) != LENSPROF_OK || !is_uncertain(*profile))
+        if (id <= 0 || lensprof_store_get(store, id, profile.get(), nullptr) != LENSPROF_OK || !is_uncertain(*profile)
+            || profile->provenance.forced)
             return {0, nullptr, named + " is of these pictures alone, which are fitted again"};
     }
     if (own != profile->provenance.source && !holds(store, *profile, own)) return {id, std::move(profile), ""};
@@ -102,9 +104,10 @@ EarlierProfile one_prior(lensprof_store *store, int64_t id, std::unique_ptr<lens
 
 // What a lookup predicts states its error, which an imported profile does not: the falloff is asked a hair beside the
 // setting.
-lensprof_profile_key beside(lensprof_profile_key key) {
+lensprof_profile_key beside(lensprof_profile_key key, const lensprof_profile &stored) {
     constexpr double hair = 1e-4;
-    key.aperture *= 1.0 + hair;
+    if (key.aperture == LENSPROF_UNKNOWN) key.aperture = stored.key.aperture;
+    if (key.aperture != LENSPROF_UNKNOWN) key.aperture *= 1.0 + hair;
     return key;
 }
 
@@ -113,8 +116,7 @@ lensprof_profile_key beside(lensprof_profile_key key) {
 EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_asked, const lensprof_profile_key &key,
                                  const std::string &source) {
     auto files = databases_of(o.dbs);
-    files.erase(std::remove_if(files.begin(), files.end(), [](const auto &file) { return !path_exists(file); }),
-                files.end());
+    if (!path_exists(files.front())) files.erase(files.begin());  // it is made when the profile is stored
     auto profile = new_profile();
     const std::string own = source_of(source);
     if (id) {
@@ -139,9 +141,13 @@ EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_aske
     const bool is_own = is_same_file(databases.file(how.falloff_store), store_path(o.db));
     if (how.exact && is_own && is_uncertain(*profile))
         return one_prior(databases.store(how.falloff_store), how.id[0], std::move(profile), own, is_asked);
-    if (how.exact && databases.look_up(beside(key), options, *profile, how) != LENSPROF_OK)
-        return {0, nullptr, "profile " + std::to_string(how.id[0]) + " has no covariance"};
-    return composed_prior(databases, how, std::move(profile), own);
+    if (how.exact) {
+        const std::string named = "profile " + std::to_string(how.id[0]);
+        if (databases.look_up(beside(key, *profile), options, *profile, how) != LENSPROF_OK || how.exact)
+            return {0, nullptr, named + " has no covariance"};
+    }
+    return composed_prior(databases, is_own ? databases.store(how.falloff_store) : nullptr, how, std::move(profile),
+                          own);
 }
 
 }  // namespace lensprof

@@ -14,6 +14,7 @@ struct EarlierProfile {
     std::string reason;                         // why there is none
     bool is_nothing = false;                    // nothing at all is stored of the lens
     bool is_composed = false;                   // of profiles at other settings, of which `id` is the nearest
+    bool is_own = true;                         // `id` is of the database that the result is stored in
 };
 
 // The profile that is stored for the key, or what is composed of those of its lens and camera (lensprof_store_lookup_in

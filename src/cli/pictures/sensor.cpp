@@ -91,14 +91,15 @@ double crop_factor_in_tables(const Databases &databases, const lensprof_profile_
 
 double crop_factor_in_files(const std::vector<std::string> &named, const lensprof_profile_key &key,
                             PictureSize picture) {
-    auto files = databases_of(named);
-    files.erase(std::remove_if(files.begin(), files.end(), [](const auto &file) { return !path_exists(file); }),
-                files.end());
-    try {
-        return crop_factor_in_tables(Databases(files), key, picture);
-    } catch (const Failure &) {
-        return LENSPROF_UNKNOWN;
+    for (const std::string &file : databases_of(named)) {
+        if (!path_exists(file)) continue;
+        try {
+            const double crop = crop_factor_in_table(open_store(file, LENSPROF_STORE_READ).get(), key, picture);
+            if (crop != LENSPROF_UNKNOWN) return crop;
+        } catch (const Failure &) {
+        }
     }
+    return LENSPROF_UNKNOWN;
 }
 
 }  // namespace lensprof

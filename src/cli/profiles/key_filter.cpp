@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 
 #include "cli/fitting/profile_store.hpp"
 #include "cli/program/library.hpp"
@@ -71,6 +72,7 @@ void KeyFilter::put_into(lensprof_profile_key &key) const {
     if (!camera_.empty()) set_text(key.camera_model, sizeof key.camera_model, camera_);
     if (!lens_.empty()) set_text(key.lens, sizeof key.lens, lens_);
     if (!unit_.empty()) set_text(key.unit, sizeof key.unit, unit_);
+    if (!style_.empty()) set_text(key.style, sizeof key.style, style_);
     if (focal_ != LENSPROF_UNKNOWN) key.focal_mm = focal_;
     if (aperture_ != LENSPROF_UNKNOWN) key.aperture = aperture_;
     if (distance_ != LENSPROF_UNKNOWN) key.distance_m = distance_;
@@ -96,6 +98,7 @@ std::vector<lensprof_store_row> KeyFilter::rows(lensprof_store *store, const std
 
 std::vector<lensprof_store_row> KeyFilter::matching_rows(lensprof_store *store, const std::string &db) const {
     std::vector<lensprof_store_row> all;
+    std::set<int64_t> seen;
     lensprof_profile_key filter = key(LENSPROF_PROCESSING_JPEG);
     const auto cameras = named(store, db, camera_, lensprof_store_list_cameras);
     const auto lenses = named(store, db, lens_, lensprof_store_list_lenses);
@@ -105,7 +108,8 @@ std::vector<lensprof_store_row> KeyFilter::matching_rows(lensprof_store *store, 
             std::copy_n(camera.camera_model, sizeof filter.camera_model, filter.camera_model);
             std::copy_n(lens.lens, sizeof filter.lens, filter.lens);
             const auto rows = rows_of(store, db, filter);
-            all.insert(all.end(), rows.begin(), rows.end());
+            for (const auto &row : rows)  // a name without maker stands for any maker's
+                if (seen.insert(row.id).second) all.push_back(row);
         }
     return all;
 }

@@ -1,5 +1,6 @@
 #include "cli/profiles/lookup_report.hpp"
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include <nlohmann/json.hpp>
@@ -32,6 +33,7 @@ Json response_json(const Found &found) {
     Json rows = Json::array();
     for (uint32_t i = 0; i < how.response_rows; i++)
         rows.push_back({{"id", how.response_id[i]}, {"weight", how.response_weight[i]}});
+    if (found.response_is_given) return {{"from", "given"}};
     return {{"from", response_from_name(how.response_from)},
             {"camera_kind", camera_kind_name(how.camera_kind)},
             {"rows", rows},
@@ -41,6 +43,7 @@ Json response_json(const Found &found) {
 
 std::string describe_response(const Found &found) {
     const lensprof_lookup &how = found.how;
+    if (found.response_is_given) return "as given";
     switch (how.response_from) {
     case LENSPROF_RESPONSE_FROM_CAMERA:
         return "of the camera, from " + counted(how.response_rows, "profile") + in_database(found, how.response_store)
@@ -77,6 +80,31 @@ Json reason_codes_json(const lensprof_lookup &how) {
     for (uint32_t code : how.reason_code)
         if (code != LENSPROF_REASON_NONE) codes.push_back(lensprof_reason_name(code));
     return codes;
+}
+
+Found with_response_given(Found found) {
+    lensprof_lookup &how = found.how;
+    found.response_is_given = true;
+    how.response_sigma = 0.0;
+    how.sigma = std::hypot(how.falloff_sigma, std::hypot(how.distance_sigma, how.sensor_sigma));
+    std::vector<uint32_t> codes;
+    std::string text = how.reason;
+    for (uint32_t code : how.reason_code) {
+        if (code != LENSPROF_REASON_LOOKUP_TYPICAL_RESPONSE && code != LENSPROF_REASON_LOOKUP_OTHER_STYLE) {
+            codes.push_back(code);
+            continue;
+        }
+        const std::string sentence = lensprof_reason_text(code);
+        const size_t at = text.find(sentence);
+        if (at == std::string::npos) continue;
+        const size_t before = at >= 2 ? 2 : 0;  // "; "
+        text.erase(at - before, sentence.size() + before);
+    }
+    codes.resize(std::size(how.reason_code));
+    std::copy(codes.begin(), codes.end(), how.reason_code);
+    std::fill(std::begin(how.reason), std::end(how.reason), '\0');
+    std::copy(text.begin(), text.end(), how.reason);
+    return found;
 }
 
 Json lookup_json(const Found &found) {

@@ -13,7 +13,11 @@ namespace lensprof {
 struct Found {
     lensprof_lookup how;
     std::vector<std::string> databases;
+    bool response_is_given = false;  // by the command line: the lookup's is not used
 };
+
+// The same answer with a response that is given: without the error of the lookup's own and what is said of it.
+Found with_response_given(Found found);
 
 // docs/json.md, `lookup`.
 Json lookup_json(const Found &found);

@@ -1,5 +1,7 @@
 // `lensprof profile set | remove`: profiles get another key, or are taken out. All of them or none.
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/profiles/key_filter.hpp"
 #include "cli/program/commands.hpp"
@@ -31,6 +33,11 @@ void print_changed(const std::vector<int64_t> &ids, const char *what, bool json,
         streams.out << what << " " << counted(ids.size(), "profile") << "\n";
 }
 
+void keep_once(std::vector<int64_t> &ids) {
+    std::set<int64_t> seen;
+    ids.erase(std::remove_if(ids.begin(), ids.end(), [&](int64_t id) { return !seen.insert(id).second; }), ids.end());
+}
+
 // ---- remove ----
 
 struct RemoveOptions {
@@ -45,6 +52,7 @@ int remove(RemoveOptions &o, Streams &streams) {
         throw Failure(ExitCode::usage,
                       "profile remove: give either ids that `lensprof profile list` shows, or --camera, "
                       "--lens and the like with --yes");
+    keep_once(o.ids);
     const Store store = open_store(o.db, LENSPROF_STORE_WRITE);
     if (o.ids.empty()) {
         for (const auto &row : o.filter.matching_rows(store.get(), o.db)) o.ids.push_back(row.id);
@@ -83,12 +91,26 @@ struct SetOptions {
     bool json = false;
 };
 
-int set(const SetOptions &o, Streams &streams) {
+// A number that is given and cleared, a unit that is named and any.
+void check_contradictions(const SetOptions &o) {
+    lensprof_profile_key given = o.key.key(LENSPROF_PROCESSING_JPEG);
+    given.crop_factor = o.crop_factor;
+    for (double lensprof_profile_key::*number : o.unknown)
+        if (given.*number != LENSPROF_UNKNOWN)
+            throw Failure(ExitCode::usage,
+                          "profile set: --clear and the option of the same number contradict each other");
+    if (o.any_unit && *given.unit)
+        throw Failure(ExitCode::usage, "profile set: --unit and --any-unit contradict each other");
+}
+
+int set(SetOptions &o, Streams &streams) {
     if (o.ids.empty())
         throw Failure(ExitCode::usage, "profile set: give the ids of profiles that `lensprof profile list` shows");
     if (o.key.is_empty() && o.crop_factor == LENSPROF_UNKNOWN && o.unknown.empty() && !o.any_unit)
         throw Failure(ExitCode::usage, "profile set: give what is to change, as --lens NAME or --clear distance");
     o.key.check_names();
+    check_contradictions(o);
+    keep_once(o.ids);
     const Store store = open_store(o.db, LENSPROF_STORE_WRITE);
     const auto profile = new_profile();
     change_all(o.db, store.get(), o.ids, [&](lensprof_store *db, int64_t id, lensprof_error *error) {

@@ -104,6 +104,7 @@ void answer_stored(const Options &o, const Databases &databases, size_t index, i
 void answer_range(const Options &o, const Databases &databases, const std::string &reason, Streams &streams) {
     KnownRange known;
     const auto all = matches(o, databases, o.filter.without_setting(), true);
+    if (!count(all)) throw Failure(ExitCode::not_found, o.filter.nothing_found(databases.names()) + "; " + reason);
     auto profile = new_profile();
     for (const Match &match : all)
         for (const auto &row : match.rows) {
@@ -181,6 +182,7 @@ void answer(const Options &o, Refusal &refusal, Streams &streams) {
 
 int run(const Options &o, Streams &streams) {
     if (!o.filter.has_camera_or_lens()) throw Failure(ExitCode::usage, "give at least --camera or --lens");
+    o.filter.check_names();
     Refusal refusal;
     lensprof_lookup_init(&refusal.how);
     try {

@@ -18,6 +18,14 @@ std::string own_share_folder() {
     return error ? std::string() : (program.parent_path().parent_path() / "share").string();
 }
 
+// Nobody named it: what is damaged is passed over.
+bool can_be_read(const std::string &file) {
+    lensprof_store *store = nullptr;
+    const bool can = lensprof_store_open(file.c_str(), LENSPROF_STORE_READ, &store, nullptr) == LENSPROF_OK;
+    lensprof_store_close(store);
+    return can;
+}
+
 }  // namespace
 
 void declare_databases(Command &command, std::vector<std::string> &files, const std::string &more) {
@@ -33,7 +41,7 @@ std::string installed_database() {
     std::string folders = own_share_folder() + ":" + (given && *given ? given : "/usr/local/share:/usr/share") + ":";
     for (size_t begin = 0, end; (end = folders.find(':', begin)) != std::string::npos; begin = end + 1) {
         const std::string file = folders.substr(begin, end - begin) + kInstalled;
-        if (file[0] == '/' && end > begin && is_regular_file(file)) return file;
+        if (file[0] == '/' && end > begin && is_regular_file(file) && can_be_read(file)) return file;
     }
     return {};
 }

@@ -13,7 +13,7 @@ namespace lensprof {
 void declare_databases(Command &command, std::vector<std::string> &files, const std::string &more = "");
 
 // lensprof/lensfun.db as `make install` puts it: in the program's own share folder, else in $XDG_DATA_DIRS. Empty where
-// there is none.
+// there is none that can be read.
 std::string installed_database();
 
 // What --db names; without any, the user's own database and then the installed one, as far as they are there.

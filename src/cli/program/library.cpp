@@ -95,6 +95,8 @@ Store open_store(const std::string &path, lensprof_store_mode mode) {
         std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
     }
     if (mode == LENSPROF_STORE_CREATE) demand_folder(path);
+    if (path_exists(file) && !is_regular_file(file) && !is_folder(file))  // reading a pipe would wait for ever
+        throw Failure(ExitCode::store, file + ": is no regular file; give the path of a database");
     lensprof_store *store = nullptr;
     lensprof_error error{};
     check(lensprof_store_open(file.c_str(), mode, &store, &error), file, &error);

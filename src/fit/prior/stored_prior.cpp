@@ -16,10 +16,6 @@ namespace {
 // cameras and lenses that is added to what a profile says of itself, so that no number of sequences makes it certain.
 constexpr double kDrift = 0.01;
 
-// A response without coefficients (a refined curve, a gamma) states no errors of its shape: this share of the scatter
-// over all cameras, about a grey level, stands for them.
-constexpr double kCurveShape = 0.05;
-
 constexpr double kRadii2[4] = {0.1, 0.25, 0.5, 1.0};  // r^2 at which falloffs are compared
 constexpr double kSaysNothing = 0.7;                  // a standard error of ln gamma from this on
 
@@ -50,8 +46,7 @@ bool is_covariance(const lensprof_profile &profile) {
 
 StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem, int most_modes)
     : vignettings_(static_cast<int>(profile.vignettings)) {
-    const uint32_t kind = profile.response[0].kind;
-    const bool is_emor = profile.responses == 1 && kind == LENSPROF_RESPONSE_EMOR;
+    const bool is_emor = profile.responses == 1 && profile.response[0].kind == LENSPROF_RESPONSE_EMOR;
     if (is_emor) modes_ = std::min(static_cast<int>(profile.response[0].modes), most_modes);
     const int stored = static_cast<int>(profile.covariance_size);
     const uint32_t before = lp_covariance_modes(profile.response, profile.responses);
@@ -83,23 +78,7 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
         for (int n = 0; n < 3; n++) mean_[kFalloff + 3 * c + n] = profile.vignetting[c].k[n];
     for (int d = 0; d < 2; d++) mean_[kCenter + d] = profile.vignetting[0].center[d];
     shares_gamma_ = profile.provenance.gamma_sigma > 0.0;
-    const bool is_curve = kind == LENSPROF_RESPONSE_TABLE || kind == LENSPROF_RESPONSE_GAMMA;
-    if (profile.responses == 1 && is_curve && shares_gamma_ && most_modes > 0) take_curve(profile, problem, most_modes);
     settle_gamma(problem, profile);
-}
-
-// The nearest EMoR response; its errors are those of the shape, and of gamma as the profile states it.
-void StoredPrior::take_curve(const lensprof_profile &profile, const Problem &problem, int modes) {
-    modes_ = modes;
-    const auto coefficients = project_curve(profile.response[0].table, modes_);
-    for (int l = 0; l < modes_; l++) mean_[l] = coefficients[static_cast<size_t>(l)];
-    const double sigma = profile.provenance.gamma_sigma;
-    Estimate stored;
-    set_response(stored, mean_.data(), modes_);
-    stored.log_exposure.assign(problem.image_count, {});
-    const Eigen::VectorXd along = sigma * Gauge::direction(problem, stored).head(modes_);
-    covariance_.topLeftCorner(modes_, modes_) =
-        kCurveShape * kCurveShape * scatter_of_all().topLeftCorner(modes_, modes_) + along * along.transpose();
 }
 
 // ln M of a falloff relative to that of the profile, over the frame: 1 where both are alike, gamma for M^gamma.

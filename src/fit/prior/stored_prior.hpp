@@ -46,7 +46,6 @@ private:
     Places places(int vignettings) const;
     Eigen::MatrixXd precision_of(const std::vector<int> &from, bool settles_gamma) const;
     double falloff_ratio(const lensprof_vignetting &v) const;
-    void take_curve(const lensprof_profile &profile, const Problem &problem, int modes);
     void settle_gamma(const Problem &problem, const lensprof_profile &profile);
 
     int modes_ = 0, vignettings_ = 1;

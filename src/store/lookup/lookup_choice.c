@@ -148,7 +148,7 @@ static lensprof_reason settle(lp_candidates *found, lp_falloff_node *at, int whi
  * outermost two nodes' spacing (in stops or octaves), or a twelfth of an octave in focal length and a third of a stop
  * where there is one node only. */
 static int place_of(const lp_candidates *found, const lp_falloff_node *at, int which) {
-    double low = INFINITY, high = 0.0, above_low = INFINITY, below_high = 0.0;
+    double low = INFINITY, high = -INFINITY, above_low = INFINITY, below_high = -INFINITY;
     const double single = which ? 1.0 / 6.0 : 1.0 / 12.0; /* log2; of the f-number half a stop counts as 1/4 */
     for (uint32_t i = 0; i < found->count; i++) {
         const double value = log2(setting(&found->all[i].node, which));

@@ -18,6 +18,9 @@
 #define REPEATABILITY 0.018 /* of ln gamma between brackets of one camera (docs/model.md) */
 #define SHARED 0.5 /* errors of this share of the typical one, and larger ones, are common to a camera's profiles */
 
+#define MOST_HELD 64
+#define LEAST_SIGMA 1e-3 /* of ln gamma: nobody knows it better */
+
 /* As column lens_name has names: without ASCII case, blanks and signs. The index profiles_by_rendering has the same
  * expression. */
 #define SQUEEZED(column)                                            \
@@ -106,25 +109,29 @@ double lp_stated_gamma_sigma(const lensprof_profile *profile) {
 typedef struct choice {
     uint32_t count;
     int64_t id[LENSPROF_LOOKUP_RESPONSES];
-    int64_t held[LENSPROF_LOOKUP_RESPONSES]; /* the prior that the profile of the same index holds already; 0 = none */
-    int style;                               /* lp_fits_style of all of them */
+    int64_t held[MOST_HELD]; /* priors that these profiles hold already, and what those hold in turn */
+    uint32_t held_count;
+    int style; /* lp_fits_style of all of them */
     bool has_other_style;
 } choice;
 
 static bool is_held(const choice *chosen, int64_t id) {
+    for (uint32_t i = 0; i < chosen->held_count; i++)
+        if (chosen->held[i] == id) return true;
     for (uint32_t i = 0; i < chosen->count; i++)
-        if (chosen->held[i] == id || chosen->id[i] == id) return true;
+        if (chosen->id[i] == id) return true;
     return false;
 }
 
 /* One row, the newest first: those of the picture style before those of none that is known. */
 static void choose(choice *chosen, int64_t id, int style, int64_t prior) {
     if (style < 0) chosen->has_other_style = true;
-    if (style < 0 || style < chosen->style || is_held(chosen, id)) return;
+    if (style < 0 || style < chosen->style) return;
+    const bool is_in_another = is_held(chosen, id);
     if (style > chosen->style) chosen->count = 0, chosen->style = style;
-    if (chosen->count == LENSPROF_LOOKUP_RESPONSES) return;
-    chosen->id[chosen->count] = id;
-    chosen->held[chosen->count++] = prior;
+    if (prior && chosen->held_count < MOST_HELD) chosen->held[chosen->held_count++] = prior;
+    if (is_in_another || chosen->count == LENSPROF_LOOKUP_RESPONSES) return;
+    chosen->id[chosen->count++] = id;
 }
 
 static lensprof_status choose_rows(lensprof_store *store, const char *camera, const lensprof_profile_key *key,
@@ -258,7 +265,7 @@ static lensprof_status fuse(lensprof_store *store, const choice *chosen, lp_resp
         if (status != LENSPROF_OK) return status;
         const lensprof_profile *profile = &store->scratch;
         double sigma = lp_stated_gamma_sigma(profile);
-        if (sigma == LENSPROF_UNKNOWN) sigma = typical;
+        sigma = sigma == LENSPROF_UNKNOWN ? typical : fmax(sigma, LEAST_SIGMA);
         add_profile(&all, profile, sigma, sigma >= SHARED * typical);
         if (profile->responses == 3) answer->responses = 3;
         answer->id[i] = chosen->id[i];
@@ -277,12 +284,33 @@ static lensprof_status fuse(lensprof_store *store, const choice *chosen, lp_resp
     return LENSPROF_OK;
 }
 
+/* Leaves out profiles that know gamma less well than the typical response of the kind does: they rest on a wider
+ * prior. */
+static lensprof_status drop_unsure(lensprof_store *store, choice *chosen, double typical, lensprof_error *error) {
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < chosen->count; i++) {
+        const lensprof_status status = lp_store_fetch(store, chosen->id[i], error);
+        if (status != LENSPROF_OK) return status;
+        if (!(lp_stated_gamma_sigma(&store->scratch) > typical * (1.0 + 1e-9))) chosen->id[kept++] = chosen->id[i];
+    }
+    chosen->count = kept;
+    return LENSPROF_OK;
+}
+
+/* A name of signs alone is that of profiles without a camera. */
+static bool has_letters(const char *model) {
+    char squeezed[LP_NAME_BYTES];
+    lp_squeeze(model, squeezed);
+    return *squeezed != 0;
+}
+
 lensprof_status lp_find_response(lensprof_store *store, const lensprof_profile_key *key,
                                  const lensprof_lookup_options *o, lp_response_answer *answer, lensprof_error *error) {
     choice chosen;
-    if (key->processing == LENSPROF_PROCESSING_RAW || !lp_is_known(key->camera_model)) return LENSPROF_OK;
-    const lensprof_status status = choose_profiles(store, key, o, &chosen, error);
+    if (key->processing == LENSPROF_PROCESSING_RAW || !has_letters(key->camera_model)) return LENSPROF_OK;
+    lensprof_status status = choose_profiles(store, key, o, &chosen, error);
     if (status != LENSPROF_OK) return status;
     answer->has_other_style |= chosen.has_other_style;
-    return chosen.count ? fuse(store, &chosen, answer, error) : LENSPROF_OK;
+    if (chosen.count) status = drop_unsure(store, &chosen, answer->sigma, error);
+    return status == LENSPROF_OK && chosen.count ? fuse(store, &chosen, answer, error) : status;
 }

@@ -55,8 +55,10 @@ lensprof_status lensprof_store_nearest_lenses(lensprof_store *store, const lensp
     lensprof_store_name *nearest = malloc((most ? most : 1) * sizeof *nearest);
     if (!nearest) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
     lensprof_status status = lp_store_begin(store, false, error);
-    if (status == LENSPROF_OK && most) status = search(store, key, nearest, most, &found, error);
-    if (status == LENSPROF_OK || sqlite3_get_autocommit(store->db) == 0) lp_store_rollback(store);
+    if (status == LENSPROF_OK) {
+        if (most) status = search(store, key, nearest, most, &found, error);
+        lp_store_rollback(store);
+    }
     if (status == LENSPROF_OK) {
         if (found) memcpy(names, nearest, found * sizeof *nearest);
         *count = found;
