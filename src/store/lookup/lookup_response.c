@@ -253,47 +253,39 @@ static lensprof_status take_several(const sums *all, double variance, lp_respons
     return LENSPROF_OK;
 }
 
+/* Of the chosen profiles; but those that know gamma less well than the typical response, which `answer` holds, rest on
+ * a wider prior and are left out. */
 static lensprof_status fuse(lensprof_store *store, const choice *chosen, lp_response_answer *answer,
                             lensprof_error *error) {
     const double typical = answer->sigma;
     sums all;
     memset(&all, 0, sizeof all);
     all.is_emor = all.has_covariance = true;
-    answer->responses = 1;
     for (uint32_t i = 0; i < chosen->count; i++) {
-        const lensprof_status status = lp_store_fetch(store, chosen->id[i], error);
+        lensprof_status status = lp_store_fetch(store, chosen->id[i], error);
         if (status != LENSPROF_OK) return status;
         const lensprof_profile *profile = &store->scratch;
         double sigma = lp_stated_gamma_sigma(profile);
+        if (sigma > typical * (1.0 + 1e-9)) continue;
         sigma = sigma == LENSPROF_UNKNOWN ? typical : fmax(sigma, LEAST_SIGMA);
         add_profile(&all, profile, sigma, sigma >= SHARED * typical);
         if (profile->responses == 3) answer->responses = 3;
-        answer->id[i] = chosen->id[i];
-        answer->weight[i] = 1.0 / (sigma * sigma);
+        answer->id[answer->rows] = chosen->id[i];
+        answer->weight[answer->rows++] = 1.0 / (sigma * sigma);
     }
-    answer->rows = chosen->count;
+    if (!answer->rows) return LENSPROF_OK;
     answer->from = LENSPROF_RESPONSE_FROM_CAMERA;
     const double variance = (all.shared * all.shared + all.own) / (all.weight * all.weight);
     answer->sigma = sqrt(variance + REPEATABILITY * REPEATABILITY);
     for (uint32_t i = 0; i < answer->rows; i++) answer->weight[i] /= all.weight;
-    if (chosen->count == 1)
-        take_one(&store->scratch, answer);
-    else if (take_several(&all, variance, answer) != LENSPROF_OK)
-        return lp_store_fail_profile(store, chosen->id[0], "its response is not one", error);
-    widen(answer);
-    return LENSPROF_OK;
-}
-
-/* Leaves out profiles that know gamma less well than the typical response of the kind does: they rest on a wider
- * prior. */
-static lensprof_status drop_unsure(lensprof_store *store, choice *chosen, double typical, lensprof_error *error) {
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < chosen->count; i++) {
-        const lensprof_status status = lp_store_fetch(store, chosen->id[i], error);
+    lensprof_status status = LENSPROF_OK;
+    if (answer->rows == 1) {
+        if (answer->id[0] != chosen->id[chosen->count - 1]) status = lp_store_fetch(store, answer->id[0], error);
         if (status != LENSPROF_OK) return status;
-        if (!(lp_stated_gamma_sigma(&store->scratch) > typical * (1.0 + 1e-9))) chosen->id[kept++] = chosen->id[i];
-    }
-    chosen->count = kept;
+        take_one(&store->scratch, answer);
+    } else if (take_several(&all, variance, answer) != LENSPROF_OK)
+        return lp_store_fail_profile(store, answer->id[0], "its response is not one", error);
+    widen(answer);
     return LENSPROF_OK;
 }
 
@@ -308,9 +300,8 @@ lensprof_status lp_find_response(lensprof_store *store, const lensprof_profile_k
                                  const lensprof_lookup_options *o, lp_response_answer *answer, lensprof_error *error) {
     choice chosen;
     if (key->processing == LENSPROF_PROCESSING_RAW || !has_letters(key->camera_model)) return LENSPROF_OK;
-    lensprof_status status = choose_profiles(store, key, o, &chosen, error);
+    const lensprof_status status = choose_profiles(store, key, o, &chosen, error);
     if (status != LENSPROF_OK) return status;
     answer->has_other_style |= chosen.has_other_style;
-    if (chosen.count) status = drop_unsure(store, &chosen, answer->sigma, error);
-    return status == LENSPROF_OK && chosen.count ? fuse(store, &chosen, answer, error) : status;
+    return chosen.count ? fuse(store, &chosen, answer, error) : LENSPROF_OK;
 }
