@@ -270,7 +270,6 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     EarlierProfile prior;
     if (takes_stored_prior(o.fit))
         prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_asked, key, o.pto);
-    if (!prior.id && !o.fit.stored_is_asked && prior.is_nothing) prior.reason.clear();
     BuildReport report = build(o, project, metadata, prior, kind, outputs, streams);
     int code = finish_fit(report, key, o.store, {method_name(o.fit.method), o.pto, o.json, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);

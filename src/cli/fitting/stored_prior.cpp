@@ -78,7 +78,7 @@ EarlierProfile composed_prior(const Databases &databases, const lensprof_store *
     provenance.images = provenance.pairs = 0;
     provenance.gamma_sigma = gamma_sigma;
     const bool is_own = rows.front().first == own_store;
-    return {rows.front().second, std::move(profile), "", false, true, is_own};
+    return {rows.front().second, std::move(profile), "", true, is_own};
 }
 
 // The profile of an id, in the first database, unless these pictures are in it; `named` is what it is called.
@@ -129,7 +129,7 @@ EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_aske
                                                + "; give another, or --stored none to fit the pictures alone");
         return given;
     }
-    if (files.empty()) return {0, nullptr, "there is no database yet", true};
+    if (files.empty()) return {0, nullptr, is_asked ? "there is no database yet" : ""};
     const Databases databases(files);
     lensprof_lookup how;
     lensprof_lookup_init(&how);
@@ -137,7 +137,7 @@ EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_aske
     lensprof_lookup_options_init(&options);
     options.response_alone = 1;
     if (databases.look_up(key, options, *profile, how) != LENSPROF_OK)
-        return {0, nullptr, "no profile is stored for this lens and setting", true};
+        return {0, nullptr, is_asked ? "no profile is stored for this lens and setting" : ""};
     const bool is_own = is_same_file(databases.file(how.falloff_store), store_path(o.db));
     if (how.exact && is_own && is_uncertain(*profile))
         return one_prior(databases.store(how.falloff_store), how.id[0], std::move(profile), own, is_asked);

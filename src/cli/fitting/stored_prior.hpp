@@ -12,7 +12,6 @@ struct EarlierProfile {
     int64_t id = 0;                             // 0: there is none
     std::unique_ptr<lensprof_profile> profile;  // or NULL
     std::string reason;                         // why there is none
-    bool is_nothing = false;                    // nothing at all is stored of the lens
     bool is_composed = false;                   // of profiles at other settings, of which `id` is the nearest
     bool is_own = true;                         // `id` is of the database that the result is stored in
 };
@@ -21,7 +20,8 @@ struct EarlierProfile {
 // of the databases of `o`), unless it is of a fit that was not usable. Of the profile `id`, where that is not 0, in the
 // first database; Failure where that is of no use. No pictures count twice: where the profile was made from `source`,
 // the one that is in it (provenance.prior_id) is the prior again.
-// Failure (usage) where `source` is deeper in it, and `is_asked`: what was asked for would gain nothing.
+// Where nothing is stored at all the reason is empty unless `is_asked`. Failure (usage) where `source` is deeper in it,
+// and `is_asked`: what was asked for would gain nothing.
 EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_asked, const lensprof_profile_key &key,
                                  const std::string &source);
 
