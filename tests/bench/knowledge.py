@@ -119,7 +119,7 @@ def frames(random, response):
 def bracket(random, response, model):
     """The profile that is stored of the camera: without a lens, and without a falloff."""
     images, pairs = frames(random, response)
-    found = lp.fit_overlap(images, pairs, lp.FitOptions(free=lp.Free.RESPONSE, camera_kind=KIND, threads=1))
+    found = lp.fit_overlap(images, pairs, lp.FitOptions(free=lp.Free.RESPONSE, refine=True, camera_kind=KIND, threads=1))
     return found.profile(lp.ProfileKey(camera_maker=MAKER, camera_model=model), source="bracket")
 
 

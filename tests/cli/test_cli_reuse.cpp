@@ -176,6 +176,33 @@ void test_response_of_the_camera(void **) {
     assert_true(json["gamma"]["from"] != "prior");
 }
 
+// So is one that a bracket refined: a table, whose error is that of its gamma.
+void test_refined_response_of_the_camera(void **) {
+    const std::string a = pictures("a", "1"), b = pictures("b", "2"), db = work("l.db");
+    const Json first = json_of({"build", a, "--no-store", "--json"});
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(db.c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    std::strcpy(profile->key.camera_model, "Simulated Camera");
+    std::vector<double> curve;
+    for (const auto &value : first["response"]["values"][0]) curve.push_back(value.get<double>());
+    assert_ok(lensprof_response_set_table(&profile->response[0], curve.data(), uint32_t(curve.size())));
+    profile->provenance.gamma_sigma = 0.02;
+    assert_ok(lensprof_store_put(store, profile.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+    const Words words = {"build", b, "--lens", "This lens", "--json", "--no-store", "--exif-sigma", "0"};
+    const Json alone = json_of(words), json = json_of(words + Words{"--db", db});
+    assert_true(json["prior"]["used"].get<bool>());
+    assert_true(json["prior"]["overruled"].empty());
+    assert_string_equal(json["gamma"]["from"].get<std::string>().c_str(), "profile");
+    assert_true(json["gamma"]["sigma"].get<double>() < 0.05 && alone["gamma"]["sigma"].get<double>() > 0.06);
+    double worst = 0;
+    for (size_t i = 0; i < curve.size(); i++)
+        worst = std::max(worst, std::fabs(json["response"]["values"][0][i].get<double>() - curve[i]));
+    assert_true(worst < 0.02);
+}
+
 // A falloff without covariance, as importers write it, settles gamma as far as it goes; so does one that was measured
 // at other settings.
 void test_imported_falloff_settles_gamma(void **) {
@@ -269,6 +296,7 @@ int main() {
                                 CLI_TEST(test_wrong_profile_is_overruled),
                                 CLI_TEST(test_stored_by_default),
                                 CLI_TEST(test_response_of_the_camera),
+                                CLI_TEST(test_refined_response_of_the_camera),
                                 CLI_TEST(test_imported_falloff_settles_gamma),
                                 CLI_TEST(test_composed_prior),
                                 CLI_TEST(test_no_prior_for_this),

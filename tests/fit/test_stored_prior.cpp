@@ -170,6 +170,51 @@ std::unique_ptr<lensprof_profile> composed(const lensprof_response &response, le
     return stored;
 }
 
+// A refined response, as brackets store it: a table, with the error of its gamma and no covariance. The table without
+// that says nothing of how sure it is.
+void test_refined_response(void **) {
+    Errors with, without;
+    for (uint64_t seed = 1; seed <= 5; seed++) {
+        const Simulation s = sequence(seed);
+        auto stored = std::make_unique<lensprof_profile>();
+        lensprof_profile_init(stored.get());
+        assert_ok(lensprof_response_set_table(&stored->response[0], s.response.table, LENSPROF_RESPONSE_SAMPLES));
+        Found found, own;
+        assert_int_equal(fit(s, stored.get(), found), LENSPROF_ERROR_ARGUMENT);
+        stored->provenance.gamma_sigma = 0.02;
+        assert_ok(fit(s, stored.get(), found));
+        assert_ok(fit(s, nullptr, own));
+        assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_USED);
+        assert_int_equal(found.result->gamma_from, LENSPROF_GAMMA_PROFILE);
+        assert_true(found.result->gamma_sigma < 0.5 * own.result->gamma_sigma);
+        with.add(errors_of(s, *found.result)), without.add(errors_of(s, *own.result));
+    }
+    with = with.root_mean(5.0), without = without.root_mean(5.0);
+    printf("    f %.4f and M %.4f with a refined response, %.4f and %.4f without\n", with.response, with.falloff,
+           without.response, without.falloff);
+    assert_true(with.response < 0.5 * without.response && with.falloff < 0.8 * without.falloff);
+}
+
+// One that is wrong is overruled as one with a covariance is.
+void test_wrong_refined_response_is_overruled(void **) {
+    const Simulation s = sequence(4, 40000);
+    auto stored = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(stored.get());
+    double wrong[LENSPROF_RESPONSE_SAMPLES];  // a steep S
+    for (int j = 0; j < LENSPROF_RESPONSE_SAMPLES; j++) wrong[j] = 0.5 - 0.5 * std::cos(M_PI * std::sqrt(j / 1023.0));
+    assert_ok(lensprof_response_set_table(&stored->response[0], wrong, LENSPROF_RESPONSE_SAMPLES));
+    stored->provenance.gamma_sigma = 0.02;
+    Found found;
+    assert_ok(fit(s, stored.get(), found));
+    assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_OVERRULED);
+    stored->vignetting[0] = s.vignetting;
+    stored->covariance_size = 5;
+    for (int i = 0; i < 3; i++) stored->covariance[6 * i] = 1e-4;
+    assert_ok(fit(s, stored.get(), found));
+    assert_int_equal(found.result->profile_prior, LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED);
+    assert_int_equal(found.result->gamma_from, LENSPROF_GAMMA_FALLOFF);
+}
+
 // The one that is wrong is left out, the other settles gamma.
 void test_response_and_falloff_are_overruled_apart(void **) {
     for (uint64_t seed = 1; seed <= 3; seed++) {
@@ -236,7 +281,7 @@ void test_refused(void **) {
     auto profile = std::make_unique<lensprof_profile>();
     lensprof_profile_init(profile.get());
     assert_int_equal(fit(s, profile.get(), found, &error), LENSPROF_ERROR_ARGUMENT);
-    assert_non_null(strstr(error.text, "no covariance"));
+    assert_non_null(strstr(error.text, "neither a covariance"));
     profile->covariance_size = 5;  // all held
     assert_int_equal(fit(s, profile.get(), found, &error), LENSPROF_ERROR_ARGUMENT);
     profile->covariance[0] = profile->covariance[6] = 1e-4;
@@ -258,6 +303,8 @@ int main(void) {
         cmocka_unit_test(test_sequences_improve),
         cmocka_unit_test(test_wrong_profile_is_overruled),
         cmocka_unit_test(test_falloff_alone),
+        cmocka_unit_test(test_refined_response),
+        cmocka_unit_test(test_wrong_refined_response_is_overruled),
         cmocka_unit_test(test_response_and_falloff_are_overruled_apart),
         cmocka_unit_test(test_three_curves_for_one_and_one_for_three),
         cmocka_unit_test(test_radiance),

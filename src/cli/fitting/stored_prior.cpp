@@ -23,7 +23,11 @@ bool holds(lensprof_store *store, const lensprof_profile &profile, const std::st
     }
 }
 
-bool is_uncertain(const lensprof_profile &profile) {
+// A refined response, which is a table, says it of gamma alone.
+bool says_how_sure(const lensprof_profile &profile) {
+    if (profile.responses == 1 && profile.response[0].kind == LENSPROF_RESPONSE_TABLE
+        && profile.provenance.gamma_sigma > 0.0)
+        return true;
     for (uint32_t i = 0; i < profile.covariance_size; i++)
         if (profile.covariance[i * profile.covariance_size + i] > 0.0) return true;
     return false;
@@ -57,7 +61,7 @@ EarlierProfile composed_prior(const Databases &databases, const lensprof_store *
     const bool is_camera =
         how.response_from == LENSPROF_RESPONSE_FROM_PROFILE || how.response_from == LENSPROF_RESPONSE_FROM_CAMERA;
     if (!is_camera) forget_response(*profile);
-    if (!is_uncertain(*profile)) return {0, nullptr, "profiles of this lens have no covariance"};
+    if (!says_how_sure(*profile)) return {0, nullptr, "profiles of this lens have no covariance"};
     add_copy_error(how, *profile);
     std::vector<std::pair<lensprof_store *, int64_t>> rows;
     for (uint32_t i = 0; i < how.rows; i++) rows.emplace_back(databases.store(how.falloff_store), how.id[i]);
@@ -74,6 +78,8 @@ EarlierProfile composed_prior(const Databases &databases, const lensprof_store *
                     "profile " + std::to_string(id) + " was stored by --force, of a fit that was not usable"};
         gamma_sigma = std::max(gamma_sigma, row->provenance.gamma_sigma);
     }
+    if (is_camera && profile->response[0].kind == LENSPROF_RESPONSE_TABLE)
+        gamma_sigma = std::max(how.response_sigma, 0.0);
     lensprof_provenance &provenance = profile->provenance;
     provenance.images = provenance.pairs = 0;
     provenance.gamma_sigma = gamma_sigma;
@@ -85,11 +91,11 @@ EarlierProfile composed_prior(const Databases &databases, const lensprof_store *
 EarlierProfile one_prior(lensprof_store *store, int64_t id, std::unique_ptr<lensprof_profile> profile,
                          const std::string &own, bool is_asked) {
     const std::string named = "profile " + std::to_string(id);
-    if (!is_uncertain(*profile)) return {0, nullptr, named + " has no covariance"};
+    if (!says_how_sure(*profile)) return {0, nullptr, named + " has no covariance"};
     if (profile->provenance.forced) return {0, nullptr, named + " was stored by --force, of a fit that was not usable"};
     if (own == profile->provenance.source) {  // fitted again: what it was given then is the prior again
         id = profile->provenance.prior_id;
-        if (id <= 0 || lensprof_store_get(store, id, profile.get(), nullptr) != LENSPROF_OK || !is_uncertain(*profile)
+        if (id <= 0 || lensprof_store_get(store, id, profile.get(), nullptr) != LENSPROF_OK || !says_how_sure(*profile)
             || profile->provenance.forced)
             return {0, nullptr, named + " is of these pictures alone, which are fitted again"};
     }
@@ -139,7 +145,7 @@ EarlierProfile find_stored_prior(const StoreOptions &o, int64_t id, bool is_aske
     if (databases.look_up(key, options, *profile, how) != LENSPROF_OK)
         return {0, nullptr, is_asked ? "no profile is stored for this lens and setting" : ""};
     const bool is_own = is_same_file(databases.file(how.falloff_store), store_path(o.db));
-    if (how.exact && is_own && is_uncertain(*profile))
+    if (how.exact && is_own && says_how_sure(*profile))
         return one_prior(databases.store(how.falloff_store), how.id[0], std::move(profile), own, is_asked);
     if (how.exact) {
         const std::string named = "profile " + std::to_string(how.id[0]);

@@ -35,17 +35,16 @@ lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *err
     lensprof_status status = lensprof_profile_validate(o.profile);
     if (status != LENSPROF_OK)
         return fail(status, error, "fit options: the profile is not valid; see lensprof_profile_validate");
-    bool knows = false;
-    for (uint32_t i = 0; i < o.profile->covariance_size; i++)
-        knows = knows || o.profile->covariance[i * o.profile->covariance_size + i] > 0.0;
-    if (knows && !is_covariance(*o.profile))
+    if (!says_how_sure(*o.profile))
+        return fail(LENSPROF_ERROR_ARGUMENT, error,
+                    "fit options: the profile has neither a covariance nor a refined response's gamma_sigma, and says "
+                    "nothing of how sure it is; leave it out");
+    if (!is_covariance(*o.profile))
         return fail(
             LENSPROF_ERROR_ARGUMENT, error,
             "fit options: the profile's covariance is none (a combination of parameters has a variance below 0); "
             "leave it out");
-    return knows ? LENSPROF_OK
-                 : fail(LENSPROF_ERROR_ARGUMENT, error,
-                        "fit options: the profile has no covariance, and says nothing of how sure it is; leave it out");
+    return LENSPROF_OK;
 }
 
 // The first option that is out of its range, with that range; NULL when none is.

@@ -56,6 +56,7 @@ public:
     double worse_than(const Fit &other) const;
 
     double falloff_distance(const lensprof_fit_result &alone) const { return stored_->falloff_distance(alone); }
+    double response_distance(const lensprof_fit_result &alone) const { return stored_->response_distance(alone); }
 
     void describe(lensprof_exposure *exposures, lensprof_fit_result &result);
 
@@ -322,22 +323,22 @@ constexpr Part kParts[] = {{true, true, LENSPROF_PROFILE_PRIOR_USED},
 std::unique_ptr<lensprof_profile> part_of(const lensprof_profile &profile, const Part &part) {
     auto own = std::make_unique<lensprof_profile>(profile);
     const uint32_t n = own->covariance_size, modes = lp_covariance_modes(own->response, own->responses);
-    bool knows = false;
     for (uint32_t i = 0; i < n; i++) {
         const bool is_kept = i < modes ? part.response : part.falloff;
         for (uint32_t j = 0; j < n && !is_kept; j++) own->covariance[i * n + j] = own->covariance[j * n + i] = 0.0;
-        knows = knows || own->covariance[i * n + i] > 0.0;
     }
-    return knows ? std::move(own) : nullptr;
+    if (!part.response && !modes) lensprof_response_set_linear(&own->response[0]);
+    return says_how_sure(*own) ? std::move(own) : nullptr;
 }
 
 // How far the pictures are from a profile as the prior, standard errors.
 struct Contradiction {
-    double apart, worse;  // its falloff, held-out pairs
+    double falloff, response, worse;  // of its own, the latter's shape; held-out pairs
 
+    double apart() const { return std::max(falloff, response); }
     bool is_one() const {
         constexpr double kClearly = 3.0, kFarApart = 5.0;
-        return worse > kClearly || apart > kFarApart;
+        return worse > kClearly || apart() > kFarApart;
     }
 };
 
@@ -363,7 +364,7 @@ public:
         auto best = std::make_unique<lensprof_fit_result>(r);
         std::vector<lensprof_exposure> found(exposures, exposures + image_count_);
         std::vector<lensprof_fit_image_quality> quality(image_count_);
-        Contradiction least{HUGE_VAL, HUGE_VAL};
+        Contradiction least{HUGE_VAL, HUGE_VAL, HUGE_VAL};
         for (const Part &part : {kParts[1], kParts[2]}) {
             if (!has_both) break;
             auto own = std::make_unique<lensprof_fit_result>(r);
@@ -392,11 +393,12 @@ private:
     Contradiction attempt(const Part &part, lensprof_exposure *exposures, const lensprof_fit_result &alone,
                           lensprof_fit_result &r) {
         const auto profile = part_of(*options_.profile, part);
-        if (!profile) return {HUGE_VAL, HUGE_VAL};
+        if (!profile) return {HUGE_VAL, HUGE_VAL, HUGE_VAL};
         Fit informed(options_, image_count_, make_, count_, profile.get(),
                      part.verdict == kParts[0].verdict ? 0.5 : 1.0, 1.0);
         informed.run();
-        const Contradiction found{informed.falloff_distance(alone), informed.worse_than(alone_)};
+        const Contradiction found{informed.falloff_distance(alone), informed.response_distance(alone),
+                                  informed.worse_than(alone_)};
         if (found.is_one()) return found;
         informed.describe(exposures, r);
         r.profile_prior = part.verdict;
@@ -405,10 +407,10 @@ private:
 
     static Reason reason_of(uint32_t verdict, const Contradiction &all) {
         if (verdict == LENSPROF_PROFILE_PRIOR_RESPONSE_OVERRULED)
-            return {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, {all.worse}};
-        return {verdict == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED ? LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED
-                                                                    : LENSPROF_REASON_PRIOR_OVERRULED,
-                {all.apart, all.worse}};
+            return {LENSPROF_REASON_PRIOR_RESPONSE_OVERRULED, {all.response, all.worse}};
+        if (verdict == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED)
+            return {LENSPROF_REASON_PRIOR_FALLOFF_OVERRULED, {all.falloff, all.worse}};
+        return {LENSPROF_REASON_PRIOR_OVERRULED, {all.apart(), all.worse}};
     }
 
     const lensprof_fit_options &options_;

@@ -49,6 +49,12 @@ struct ShapeOf {
     }
 };
 
+// Variances of the shape at the four grey values.
+Eigen::Vector4d shape_variance(const ShapeOf &shape, const Eigen::MatrixXd &covariance) {
+    const auto by_mode = shape.by_mode.leftCols(covariance.cols());
+    return (by_mode * covariance).cwiseProduct(by_mode).rowwise().sum();
+}
+
 void set_typical(uint32_t kind, lensprof_response &response, double *covariance, double &sigma) {
     if (lensprof_response_set_typical(&response, kind, covariance, &sigma) != LENSPROF_OK)
         throw std::invalid_argument("no kind of camera");
@@ -62,6 +68,13 @@ double gamma_position(const double *table, Eigen::VectorXd *slope) {
         std::max(log_irradiance(table, kGaugeBright, of_bright) - log_irradiance(table, kGaugeDark, of_dark), 1e-6);
     if (slope) *slope = (of_bright - of_dark) / range;
     return std::log(range);
+}
+
+double shape_distance(const KnownResponse &a, const KnownResponse &b) {
+    const ShapeOf of_a(a.table), of_b(b.table);
+    const Eigen::Array4d variance =
+        (shape_variance(of_a, a.covariance) + shape_variance(of_b, b.covariance)).array() + kShapeError * kShapeError;
+    return ((of_a.at - of_b.at).array().abs() / variance.sqrt()).maxCoeff();
 }
 
 GammaPrior::GammaPrior(uint32_t camera_kind) {

@@ -20,6 +20,16 @@ constexpr double kGaugeDark = 48.0 / 255.0, kGaugeBright = 208.0 / 255.0;  // as
 // Position of a response table within its family; *slope, when not NULL, receives its change with every EMoR mode.
 double gamma_position(const double *table, Eigen::VectorXd *slope = nullptr);
 
+// A response table and the covariance of its EMoR modes, as many as it has.
+struct KnownResponse {
+    const double *table;
+    Eigen::MatrixXd covariance;
+};
+
+// Largest difference of two responses' shapes - what all members of a family share - at four grey values, in standard
+// errors of both together and of what modes leave.
+double shape_distance(const KnownResponse &a, const KnownResponse &b);
+
 class GammaPrior {
 public:
     explicit GammaPrior(uint32_t camera_kind);  // lensprof_camera_kind

@@ -16,6 +16,11 @@ namespace {
 // cameras and lenses that is added to what a profile says of itself, so that no number of sequences makes it certain.
 constexpr double kDrift = 0.01;
 
+// A refined response keeps no covariance but the error of its gamma. Assumed of its shape: what refined brackets leave,
+// levels RMS, and the share of the scatter over all cameras by which a camera's curve differs from day to day.
+constexpr int kCurveModes = 9;
+constexpr double kCurveLevels = 0.3, kCurveDrift = 0.05;
+
 constexpr double kRadii2[4] = {0.1, 0.25, 0.5, 1.0};  // r^2 at which falloffs are compared
 constexpr double kSaysNothing = 0.7;                  // a standard error of ln gamma from this on
 
@@ -23,7 +28,19 @@ double log_falloff(const lensprof_vignetting &v, double r2) {
     return std::log(std::max(lensprof_vignetting_eval(&v, r2, nullptr), 1e-3));
 }
 
+bool is_refined_curve(const lensprof_profile &profile) {
+    return profile.responses == 1 && profile.response[0].kind == LENSPROF_RESPONSE_TABLE
+           && profile.provenance.gamma_sigma > 0.0;
+}
+
 }  // namespace
+
+bool says_how_sure(const lensprof_profile &profile) {
+    const uint32_t n = profile.covariance_size;
+    bool says = is_refined_curve(profile);
+    for (uint32_t i = 0; i < n; i++) says = says || profile.covariance[i * n + i] > 0.0;
+    return says;
+}
 
 bool is_covariance(const lensprof_profile &profile) {
     const auto n = static_cast<Eigen::Index>(profile.covariance_size);
@@ -47,6 +64,8 @@ bool is_covariance(const lensprof_profile &profile) {
 StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem, int most_modes)
     : vignettings_(static_cast<int>(profile.vignettings)) {
     const bool is_emor = profile.responses == 1 && profile.response[0].kind == LENSPROF_RESPONSE_EMOR;
+    const bool is_curve = is_refined_curve(profile);
+    if (is_curve) modes_ = std::min(kCurveModes, most_modes);
     if (is_emor) modes_ = std::min(static_cast<int>(profile.response[0].modes), most_modes);
     const int stored = static_cast<int>(profile.covariance_size);
     const uint32_t before = lp_covariance_modes(profile.response, profile.responses);
@@ -58,9 +77,9 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
         return all;
     };
     const Eigen::MatrixXd scatter = scatter_of_all();
-    if (modes_ > 0 && !is_known(0, modes_)) modes_ = 0;
+    if (is_emor && !is_known(0, modes_)) modes_ = 0;
     std::vector<int> from, to;  // row of the profile's covariance, column of the full shared vector
-    for (int l = 0; l < modes_; l++) from.push_back(l), to.push_back(l);
+    for (int l = 0; l < modes_ && is_emor; l++) from.push_back(l), to.push_back(l);
     for (int i = 0; i < 3 * vignettings_ && is_known(falloff, 3 * vignettings_); i++)
         from.push_back(falloff + i), to.push_back(kFalloff + i);
     for (int d = 0; d < 2 && is_known(center, 2); d++) from.push_back(center + d), to.push_back(kCenter + d);
@@ -69,7 +88,7 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
             covariance_(to[i], to[j]) =
                 profile.covariance[from[i] * stored + from[j]] + kDrift * kDrift * scatter(to[i], to[j]);
     if (modes_ > 0) {
-        const auto coefficients = modes_ == static_cast<int>(profile.response[0].modes)
+        const auto coefficients = is_emor && modes_ == static_cast<int>(profile.response[0].modes)
                                       ? std::vector<double>(profile.response[0].emor, profile.response[0].emor + modes_)
                                       : project_curve(profile.response[0].table, modes_);
         for (int l = 0; l < modes_; l++) mean_[l] = coefficients[static_cast<size_t>(l)];
@@ -77,8 +96,29 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
     for (int c = 0; c < vignettings_; c++)
         for (int n = 0; n < 3; n++) mean_[kFalloff + 3 * c + n] = profile.vignetting[c].k[n];
     for (int d = 0; d < 2; d++) mean_[kCenter + d] = profile.vignetting[0].center[d];
+    if (is_curve) take_curve_error(problem, profile);
     shares_gamma_ = profile.provenance.gamma_sigma > 0.0;
     settle_gamma(problem, profile);
+}
+
+// Covariance of the modes that a refined curve was projected to: its shape's, and its gamma's along the family.
+void StoredPrior::take_curve_error(const Problem &problem, const lensprof_profile &profile) {
+    if (modes_ == 0) return;
+    constexpr double kNoise = kCurveLevels / 255.0 * kCurveLevels / 255.0 * LENSPROF_RESPONSE_SAMPLES;
+    const Eigen::MatrixXd scatter = scatter_of_all();
+    const Eigen::VectorXd along = Gauge::direction(problem, estimate_of(problem, profile)).head(modes_);
+    const double gamma_sigma = profile.provenance.gamma_sigma;
+    covariance_.topLeftCorner(modes_, modes_) = gamma_sigma * gamma_sigma * along * along.transpose();
+    for (int l = 0; l < modes_; l++) covariance_(l, l) += kNoise + kCurveDrift * kCurveDrift * scatter(l, l);
+}
+
+// The profile as an estimate for the problem's pictures.
+Estimate StoredPrior::estimate_of(const Problem &problem, const lensprof_profile &profile) const {
+    Estimate stored;
+    set_response(stored, mean_.data(), modes_);
+    for (size_t c = 0; c < 3; c++) stored.vignetting[c] = profile.vignetting[profile.vignettings == 3 ? c : 0];
+    stored.log_exposure.assign(problem.image_count, {});
+    return stored;
 }
 
 // ln M of a falloff relative to that of the profile, over the frame: 1 where both are alike, gamma for M^gamma.
@@ -96,10 +136,7 @@ double StoredPrior::falloff_ratio(const lensprof_vignetting &v) const {
 // Errors of ln gamma by the response's position and by the falloff's depth, and how they go together: both linear in
 // the profile's parameters.
 void StoredPrior::settle_gamma(const Problem &problem, const lensprof_profile &profile) {
-    Estimate stored;
-    set_response(stored, mean_.data(), modes_);
-    for (size_t c = 0; c < 3; c++) stored.vignetting[c] = profile.vignetting[profile.vignettings == 3 ? c : 0];
-    stored.log_exposure.assign(problem.image_count, {});
+    const Estimate stored = estimate_of(problem, profile);
     response_position_ = gamma_position(stored.curve.table.data());
     Eigen::VectorXd by_response = Eigen::VectorXd::Zero(kMaxShared), by_falloff = by_response;
     by_response.head(kMaxModes) = gamma_slope(stored);
@@ -115,6 +152,9 @@ void StoredPrior::settle_gamma(const Problem &problem, const lensprof_profile &p
     falloff_sigma_ = sigma(by_falloff);
     if (!(falloff_sigma_ < kSaysNothing)) falloff_sigma_ = 0.0;
     gamma_covariance_ = by_response.dot(covariance_ * by_falloff);
+    if (is_refined_curve(profile)
+        && profile.provenance.images > 0)  // of one fit, which does not say how they go together
+        gamma_covariance_ = std::pow(std::min(response_sigma_, falloff_sigma_), 2);
     if (!has_response() && !has_falloff()) return;
     gamma_direction_ = Gauge::direction(problem, stored);
     for (Eigen::Index i = 0; i < kMaxShared; i++)
@@ -189,6 +229,17 @@ double StoredPrior::falloff_distance(const lensprof_fit_result &alone) const {
         if (variance > 0.0) farthest = std::max(farthest, std::abs(difference) / std::sqrt(variance));
     }
     return farthest;
+}
+
+double StoredPrior::response_distance(const lensprof_fit_result &alone) const {
+    if (modes_ == 0) return 0.0;
+    const auto size = static_cast<Eigen::Index>(alone.covariance_size);
+    const auto modes = std::min(static_cast<Eigen::Index>(alone.response.modes), size);
+    const Eigen::Map<const Eigen::MatrixXd> theirs(alone.covariance, size, size);
+    Estimate stored;
+    set_response(stored, mean_.data(), modes_);
+    return shape_distance({stored.curve.table.data(), covariance_.topLeftCorner(modes_, modes_)},
+                          {alone.response.table, theirs.topLeftCorner(modes, modes)});
 }
 
 void StoredPrior::put_into(Prior &prior, int vignettings, double weight, bool settles_gamma) const {

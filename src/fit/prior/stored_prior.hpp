@@ -6,13 +6,17 @@
 
 namespace lensprof {
 
+// Whether a valid profile says how sure it is of anything: by its covariance, or by the gamma_sigma of a refined
+// response, which is a table.
+bool says_how_sure(const lensprof_profile &profile);
+
 // Whether the covariance of a valid profile is one: no combination of parameters has a variance below 0.
 bool is_covariance(const lensprof_profile &profile);
 
 class StoredPrior {
 public:
-    // `profile` is valid and has a covariance; at most `most_modes` of its response's modes are of use. `problem` tells
-    // what is free.
+    // `profile` is valid and says how sure it is; at most `most_modes` of its response's modes are of use. `problem`
+    // tells what is free.
     StoredPrior(const lensprof_profile &profile, const Problem &problem, int most_modes);
 
     int modes() const { return modes_; }  // EMoR modes whose coefficients are known; 0: no response is
@@ -25,6 +29,9 @@ public:
     // Largest difference of its falloff (green's) from that of a result without it, in standard errors of both
     // together.
     double falloff_distance(const lensprof_fit_result &alone) const;
+
+    // That of its response's shape, which has no gamma (gamma_prior.hpp).
+    double response_distance(const lensprof_fit_result &alone) const;
 
     // What it says of gamma: by the position of its response within its family (gamma_prior.hpp), and by its falloff,
     // as M^gamma is as deep as it.
@@ -46,6 +53,8 @@ private:
     Places places(int vignettings) const;
     Eigen::MatrixXd precision_of(const std::vector<int> &from, bool settles_gamma) const;
     double falloff_ratio(const lensprof_vignetting &v) const;
+    void take_curve_error(const Problem &problem, const lensprof_profile &profile);
+    Estimate estimate_of(const Problem &problem, const lensprof_profile &profile) const;
     void settle_gamma(const Problem &problem, const lensprof_profile &profile);
 
     int modes_ = 0, vignettings_ = 1;

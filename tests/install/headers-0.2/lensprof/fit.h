@@ -124,11 +124,12 @@ typedef struct lensprof_fit_options {
                           at most 256 images and 100 pairs or more, else without effect. 0 = EMoR alone */
     uint32_t reserved; /* 0 */
     const lensprof_profile *profile; /* of the same camera, lens and setting, from other pictures: the prior in place of
-                                        that of all cameras, by its covariance, which it must have, where a response
-                                        of EMoR modes and a falloff have one; TRANSFER and RADIANCE, a prior_weight
-                                        above 0. Response and falloff are each overruled where held-out pairs are
-                                        clearly worse for them (three standard errors), or the falloff is far from
-                                        theirs (five). NULL = none. Read during the call */
+                                        that of all cameras, where a response of EMoR modes and a falloff have a
+                                        covariance, and where a TABLE has a gamma_sigma above 0, as refined responses
+                                        have; one of these it must have. TRANSFER and RADIANCE, a prior_weight above
+                                        0. Response and falloff are each overruled where held-out pairs are clearly
+                                        worse for them (three standard errors), or the falloff is far from theirs
+                                        (five). NULL = none. Read during the call */
     const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
     lensprof_vignetting vignetting;    /* the value where fixed */
     lensprof_progress progress;        /* or NULL */
