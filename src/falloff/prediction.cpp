@@ -55,10 +55,15 @@ double covariance(const Point &a, const Point &b) {
 
 double corner(const double *k) { return k[0] + k[1] + k[2]; }
 
-// The smallest f-number at this focal length or a longer one; beyond the longest that is known, at that.
-double widest_at(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node &at, double focal_mm) {
+double longest_of(const lp_falloff_node *nodes, uint32_t count) {
     double longest = 0.0;
-    for (uint32_t i = 0; i < count; i++) longest = std::fmax(longest, nodes[i].focal_mm);
+    for (uint32_t i = 0; i < count; i++) longest = nodes[i].focal_mm > longest ? nodes[i].focal_mm : longest;
+    return longest;
+}
+
+// The smallest f-number at this focal length or a longer one; beyond the longest that is known, at that.
+double widest_at(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node &at, double focal_mm,
+                 double longest) {
     const double from = 0.999 * std::fmin(focal_mm, longest);
     double widest = at.focal_mm >= from ? at.aperture : INFINITY;
     for (uint32_t i = 0; i < count; i++)
@@ -70,12 +75,15 @@ Point point_of(const lp_falloff_node &node, double widest) {
     return {0.5 * std::log2(node.focal_mm), widest / node.aperture, std::fmin(0.2 / node.distance_m, 6.0), 0.0, 0};
 }
 
-bool is_nearer(const Point &a, const Point &b) { return a.d != b.d ? a.d < b.d : a.node < b.node; }
+struct IsNearer {
+    bool operator()(const Point &a, const Point &b) const { return a.d != b.d ? a.d < b.d : a.node < b.node; }
+};
 
-// `other` is the same as `node` and focused at least as far away.
-bool repeats(const lp_falloff_node &other, const lp_falloff_node &node) {
-    return other.focal_mm == node.focal_mm && other.aperture == node.aperture
-           && !std::memcmp(other.k, node.k, sizeof node.k) && other.distance_m >= node.distance_m;
+// Focal length, aperture and curves, in some order.
+int compare_curves(const lp_falloff_node &a, const lp_falloff_node &b) {
+    if (a.focal_mm != b.focal_mm) return a.focal_mm < b.focal_mm ? -1 : 1;
+    if (a.aperture != b.aperture) return a.aperture < b.aperture ? -1 : 1;
+    return std::memcmp(a.k, b.k, sizeof a.k);
 }
 
 // The nodes that a prediction uses, nearest first.
@@ -87,17 +95,19 @@ struct Neighbours {
     const lp_falloff_node &node(uint32_t i) const { return nodes[points[i].node]; }
 };
 
-// All nodes by their distance, nearest first, to points[count].
-void sort_by_distance(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node &at, const Point &here,
-                      Point *points) {
+// The setting asked for; points[count] receives the nodes, of which the LP_NEIGHBOURS nearest come first, in order.
+Point sort_by_distance(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node &at, Point *points) {
+    const double longest = longest_of(nodes, count);
+    const Point here = point_of(at, widest_at(nodes, count, at, at.focal_mm, longest));
     double focal_mm = -1.0, widest = 0.0;
     for (uint32_t i = 0; i < count; i++) {
-        if (nodes[i].focal_mm != focal_mm) widest = widest_at(nodes, count, at, focal_mm = nodes[i].focal_mm);
+        if (nodes[i].focal_mm != focal_mm) widest = widest_at(nodes, count, at, focal_mm = nodes[i].focal_mm, longest);
         points[i] = point_of(nodes[i], widest);
         points[i].d = distance(points[i], here);
         points[i].node = i;
     }
-    std::sort(points, points + count, is_nearer);
+    std::partial_sort(points, points + std::min<uint32_t>(count, LP_NEIGHBOURS), points + count, IsNearer());
+    return here;
 }
 
 // Keeps a curve near those of the neighbours.
@@ -178,14 +188,19 @@ void krige(const Neighbours &near, const Point &here, lp_falloff_prediction &pre
 
 }  // namespace
 
-uint32_t lp_drop_repeated(lp_falloff_node *nodes, uint32_t count) {
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        bool is_repeated = false;
-        for (uint32_t j = 0; j < kept && !is_repeated; j++) is_repeated = repeats(nodes[j], nodes[i]);
-        for (uint32_t j = i + 1; j < count && !is_repeated; j++) is_repeated = repeats(nodes[j], nodes[i]);
-        if (!is_repeated) nodes[kept++] = nodes[i];
-    }
+uint32_t lp_drop_repeated(lp_falloff_node *nodes, uint32_t count, uint32_t *order) {
+    for (uint32_t i = 0; i < count; i++) order[i] = i;
+    std::sort(order, order + count, [nodes](uint32_t a, uint32_t b) {
+        const int side = compare_curves(nodes[a], nodes[b]);
+        if (side) return side < 0;
+        const double of_a = nodes[a].distance_m, of_b = nodes[b].distance_m;
+        return of_a != of_b ? of_a > of_b : a > b;
+    });
+    uint32_t kept = 0;  // the first of each run of order[], whose indices then rise again
+    for (uint32_t i = 0; i < count; i++)
+        if (!kept || compare_curves(nodes[order[kept - 1]], nodes[order[i]])) order[kept++] = order[i];
+    std::sort(order, order + kept);
+    for (uint32_t i = 0; i < kept; i++) nodes[i] = nodes[order[i]];
     return kept;
 }
 
@@ -213,16 +228,19 @@ void lp_falloff_covariance(double sigma, double covariance[9]) {
     for (int i = 0; i < 9; i++) covariance[i] = kScatter[i] / corner_variance * sigma * sigma;
 }
 
-int lp_predict_falloff(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
-                       lp_falloff_prediction *prediction) {
+int lp_predict_falloff(const lp_falloff_nodes *nodes, const lp_falloff_node *at, lp_falloff_prediction *prediction) {
     *prediction = {};
     prediction->nearest = INFINITY;
+    const uint32_t count = nodes->count, used = std::min<uint32_t>(count, LP_NEIGHBOURS);
     const std::unique_ptr<Point[]> points(new (std::nothrow) Point[count]);
     if (!points) return -1;
-    const Point here = point_of(*at, widest_at(nodes, count, *at, at->focal_mm));
-    sort_by_distance(nodes, count, *at, here, points.get());
+    const Point here = sort_by_distance(nodes->node, count, *at, points.get());
     prediction->nearest = points[0].d;
     if (points[0].d > LP_FALLOFF_REACH) return 0;
-    krige({nodes, points.get(), std::min<uint32_t>(count, LP_NEIGHBOURS)}, here, *prediction);
+    for (uint32_t i = 0; i < used; i++) {
+        lp_falloff_node &node = nodes->node[points[i].node];
+        if (node.variance == LP_VARIANCE_UNREAD && !nodes->read_variance(nodes->user, &node)) return -1;
+    }
+    krige({nodes->node, points.get(), used}, here, *prediction);
     return 1;
 }

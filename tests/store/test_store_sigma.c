@@ -9,10 +9,11 @@ static void test_covariance_counts(void **state) {
     lp_falloff_node nodes[2] = {{1, 50, 2.0, INFINITY, {{-0.2}, {-0.2}, {-0.2}}, 0.0},
                                 {2, 50, 2.0, INFINITY, {{-0.4}, {-0.4}, {-0.4}}, 0.0}};
     const lp_falloff_node at = {0, 50, 2.2, INFINITY, {{0}}, 0.0};
+    const lp_falloff_nodes known = {nodes, 2, NULL, NULL};
     lp_falloff_prediction equal, unequal;
-    assert_int_equal(lp_predict_falloff(nodes, 2, &at, &equal), 1);
+    assert_int_equal(lp_predict_falloff(&known, &at, &equal), 1);
     nodes[0].variance = 0.1;
-    assert_int_equal(lp_predict_falloff(nodes, 2, &at, &unequal), 1);
+    assert_int_equal(lp_predict_falloff(&known, &at, &unequal), 1);
     assert_true(unequal.k[0][0] < equal.k[0][0] - 0.03);
 }
 

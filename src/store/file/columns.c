@@ -85,10 +85,10 @@ double lp_read_real(lp_store_reader *reader) {
 }
 
 double lp_read_known(lp_store_reader *reader) {
-    if (lp_read_null(reader)) return LENSPROF_UNKNOWN;
-    int column = reader->column++;
+    int column = reader->column++, type = sqlite3_column_type(reader->statement, column);
+    if (type == SQLITE_NULL) return LENSPROF_UNKNOWN;
     double value = sqlite3_column_double(reader->statement, column);
-    if (sqlite3_column_type(reader->statement, column) == SQLITE_FLOAT && value >= 0.0) return value;
+    if (type == SQLITE_FLOAT && value >= 0.0) return value;
     bad(reader, column);
     return LENSPROF_UNKNOWN;
 }

@@ -133,13 +133,11 @@ static void set_falloff(const work *w, lensprof_profile *profile) {
 }
 
 static void set_response(const work *w, lensprof_profile *profile) {
+    lensprof_response linear;
+    if (w->response.responses < 3) lensprof_response_set_linear(&linear);
     profile->responses = w->response.responses;
-    for (uint32_t c = 0; c < 3; c++) {
-        if (c < profile->responses)
-            profile->response[c] = w->response.response[c];
-        else
-            lensprof_response_set_linear(&profile->response[c]);
-    }
+    for (uint32_t c = 0; c < profile->responses; c++) profile->response[c] = w->response.response[c];
+    for (uint32_t c = profile->responses; c < 3; c++) profile->response[c] = linear;
 }
 
 static void set_provenance(const work *w, lensprof_profile *profile) {

@@ -12,10 +12,19 @@
 #define BUILT_IN_SCORE 0.6 /* of a lens that was found by its camera */
 #define SHORTEST_CAMERA 3  /* characters of a name that says something within another one */
 
+#define NEAR_ID 4 /* rows of other lenses between two rows that cost less to read than to jump over */
+
+/* Without curves, which only a prediction needs. A bracket tells the response of its camera, whatever the lens and the
+ * setting, and nothing of a falloff: it counts where a camera is asked for (?5) alone. */
 static const char *const rows_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(
-    "SELECT id, camera_model, lens, unit, crop_factor, focal_mm, aperture, distance_m, color_temperature_k, curve, k1, k2, k3,"
-    " vignetting_curves, covariance_size, processing, style FROM profiles JOIN vignettings ON profile_id = id"
-    " WHERE lens_name = ?1 AND (?2 OR doubt = '') AND (?3 OR (processing = 'corrected') = ?4) ORDER BY id, curve");
+    "SELECT id, camera_model, lens, unit, crop_factor, focal_mm, aperture, distance_m, color_temperature_k,"
+    " covariance_size, processing, style FROM profiles"
+    " WHERE lens_name = ?1 AND (?2 OR doubt = '') AND (?3 OR (processing = 'corrected') = ?4)"
+    " AND (focal_mm IS NOT NULL OR aperture IS NOT NULL OR ?5 OR trim(lens) <> '' OR EXISTS (SELECT 1 FROM vignettings"
+    " WHERE profile_id = id AND curve = 0 AND (k1 <> 0 OR k2 <> 0 OR k3 <> 0))) ORDER BY id");
+static const char curves_sql[] =
+    "SELECT profile_id, curve, k1, k2, k3 FROM vignettings"
+    " WHERE profile_id BETWEEN ?1 AND ?2 ORDER BY profile_id, curve";
 
 static lp_candidate *add(lp_candidates *found) {
     if (found->count == found->room) {
@@ -33,32 +42,41 @@ static int fits(const char *own, const char *asked) {
     return lp_name_score(own, asked) >= 0.8 ? 1 : -1;
 }
 
-/* One curve of a row, as rows_sql has it. */
+/* As rows_sql has it. */
 typedef struct row {
     lensprof_profile_key key;
-    int64_t id, curve, curves, covariance_size;
-    double k[3];
+    int64_t id, covariance_size;
 } row;
 
-/* False, with the reader's column, for what no profile has. */
+/* As lp_read_text; `text` holds that of the row before, which most rows share. */
+static void read_text(lp_store_reader *reader, char *text, size_t capacity) {
+    if (sqlite3_column_type(reader->statement, reader->column) == SQLITE_TEXT) {
+        const char *found = (const char *)sqlite3_column_text(reader->statement, reader->column);
+        const size_t bytes = (size_t)sqlite3_column_bytes(reader->statement, reader->column);
+        const bool is_as_long = found && bytes < capacity && !text[bytes] && (!bytes || text[bytes - 1]);
+        if (is_as_long && !memcmp(found, text, bytes)) {
+            reader->column++;
+            return;
+        }
+    }
+    lp_read_text(reader, text, capacity);
+}
+
+/* *r holds the row before. False, with the reader's column, for what no profile has. */
 static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r) {
     *reader = (lp_store_reader){statement, 0, NULL};
-    lensprof_profile_key_init(&r->key);
     r->id = lp_read_integer(reader, 1, INT64_MAX);
-    lp_read_text(reader, r->key.camera_model, sizeof r->key.camera_model);
-    lp_read_text(reader, r->key.lens, sizeof r->key.lens);
-    lp_read_text(reader, r->key.unit, sizeof r->key.unit);
+    read_text(reader, r->key.camera_model, sizeof r->key.camera_model);
+    read_text(reader, r->key.lens, sizeof r->key.lens);
+    read_text(reader, r->key.unit, sizeof r->key.unit);
     r->key.crop_factor = lp_read_known(reader);
     r->key.focal_mm = lp_read_known(reader);
     r->key.aperture = lp_read_known(reader);
     r->key.distance_m = lp_read_known(reader);
     r->key.color_temperature_k = lp_read_known(reader);
-    r->curve = lp_read_integer(reader, 0, 2);
-    for (int n = 0; n < 3; n++) r->k[n] = lp_read_real(reader);
-    r->curves = lp_read_integer(reader, 1, 3);
     r->covariance_size = lp_read_integer(reader, 0, LENSPROF_COVARIANCE_MAX);
     r->key.processing = lp_read_name(reader, lp_store_processings, LP_STORE_PROCESSINGS);
-    lp_read_text(reader, r->key.style, sizeof r->key.style);
+    read_text(reader, r->key.style, sizeof r->key.style);
     if (!reader->bad && lensprof_profile_key_validate(&r->key) != LENSPROF_OK) reader->bad = "key";
     return !reader->bad;
 }
@@ -90,41 +108,33 @@ static void compare_names(const row *r, const lensprof_profile_key *key, lp_cand
     found->last_camera = fits(r->key.camera_model, key->camera_model);
 }
 
-/* A bracket tells the response of its camera, whatever the lens and the setting, and nothing of a falloff. */
-static bool is_response_alone(const row *r, const lensprof_profile_key *key) {
-    const bool asks_for_camera =
-        !lp_is_known(key->lens) && key->focal_mm == LENSPROF_UNKNOWN && key->aperture == LENSPROF_UNKNOWN;
-    return !asks_for_camera && !lp_is_known(r->key.lens) && r->key.focal_mm == LENSPROF_UNKNOWN
-           && r->key.aperture == LENSPROF_UNKNOWN && r->k[0] == 0.0 && r->k[1] == 0.0 && r->k[2] == 0.0;
+static bool asks_for_camera(const lensprof_profile_key *key) {
+    return !lp_is_known(key->lens) && key->focal_mm == LENSPROF_UNKNOWN && key->aperture == LENSPROF_UNKNOWN;
 }
 
-/* Takes a row that fits the key; its first curve comes first. False without memory. */
+/* Takes a row that fits the key. False without memory. */
 static bool take_row(const row *r, const lensprof_profile_key *key, const lensprof_lookup_options *o,
                      lp_candidates *found) {
-    lp_candidate *one = found->count ? &found->all[found->count - 1] : NULL;
-    if (!one || one->node.id != r->id) {
-        compare_names(r, key, found);
-        const int unit = found->any_unit ? 0 : fits(r->key.unit, key->unit);
-        const int camera = found->by_table ? 1 : found->last_camera; /* as the table says */
-        if (unit < 0 || r->curve != 0 || is_response_alone(r, key)) return true;
-        if ((!lp_is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
-        if (!(one = add(found))) return false;
-        found->name_score = fmax(found->name_score, found->last_score);
-        one->is_fixed = !lp_is_known(key->lens) || !lp_is_known(r->key.lens) || found->by_camera;
-        one->of_unit = unit, one->of_camera = *key->camera_model ? camera : 0;
-        one->has_covariance = r->covariance_size > 0;
-        one->has_own_response = (o->any_processing || r->key.processing == key->processing) && one->of_camera >= 0
-                                && lp_fits_style(r->key.style, key->style) >= 0;
-        one->processing = r->key.processing;
-        one->crop = r->key.crop_factor;
-        one->node.id = r->id;
-        one->node.focal_mm = r->key.focal_mm;
-        one->node.aperture = r->key.aperture;
-        one->node.distance_m = r->key.distance_m;
-        one->color_temperature_k = r->key.color_temperature_k;
-        for (int c = 0; c < 3; c++) memcpy(one->node.k[c], r->k, sizeof r->k); /* of all, unless others follow */
-    } else
-        memcpy(one->node.k[r->curve], r->k, sizeof r->k);
+    compare_names(r, key, found);
+    const int unit = found->any_unit ? 0 : fits(r->key.unit, key->unit);
+    const int camera = found->by_table ? 1 : found->last_camera; /* as the table says */
+    if (unit < 0) return true;
+    if ((!lp_is_known(key->lens) || found->by_camera) && camera <= 0) return true; /* the camera's own only */
+    lp_candidate *one = add(found);
+    if (!one) return false;
+    found->name_score = fmax(found->name_score, found->last_score);
+    one->is_fixed = !lp_is_known(key->lens) || !lp_is_known(r->key.lens) || found->by_camera;
+    one->of_unit = unit, one->of_camera = *key->camera_model ? camera : 0;
+    one->node.variance = r->covariance_size > 0 ? LP_VARIANCE_UNREAD : 0.0;
+    one->has_own_response = (o->any_processing || r->key.processing == key->processing) && one->of_camera >= 0
+                            && lp_fits_style(r->key.style, key->style) >= 0;
+    one->processing = r->key.processing;
+    one->crop = r->key.crop_factor;
+    one->node.id = r->id;
+    one->node.focal_mm = r->key.focal_mm;
+    one->node.aperture = r->key.aperture;
+    one->node.distance_m = r->key.distance_m;
+    one->color_temperature_k = r->key.color_temperature_k;
     return true;
 }
 
@@ -137,10 +147,12 @@ static lensprof_status read_rows(lensprof_store *store, const char *name, const 
     lp_bind_integer(&binder, o->with_doubt);
     lp_bind_integer(&binder, o->any_processing);
     lp_bind_integer(&binder, key->processing == LENSPROF_PROCESSING_CORRECTED && !o->force_falloff);
+    lp_bind_integer(&binder, asks_for_camera(key));
     int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
+    row r;
+    lensprof_profile_key_init(&r.key);
     while (rc == SQLITE_ROW && status == LENSPROF_OK) {
         lp_store_reader reader;
-        row r;
         if (!read_row(binder.statement, &reader, &r))
             status = lp_store_fail_profile(store, r.id, reader.bad, error);
         else
@@ -148,6 +160,45 @@ static lensprof_status read_rows(lensprof_store *store, const char *name, const 
     }
     if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, binder.statement);
+    return status;
+}
+
+/* The curves of all[count], whose ids are near to each other. */
+static lensprof_status read_run(lensprof_store *store, lp_candidate *all, uint32_t count, lensprof_error *error) {
+    lp_store_binder binder = {NULL, 0, SQLITE_OK};
+    lensprof_status status = lp_store_prepare(store, curves_sql, &binder.statement, error);
+    if (status != LENSPROF_OK) return status;
+    lp_bind_integer(&binder, all[0].node.id);
+    lp_bind_integer(&binder, all[count - 1].node.id);
+    int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
+    for (uint32_t i = 0; rc == SQLITE_ROW && status == LENSPROF_OK; rc = sqlite3_step(binder.statement)) {
+        lp_store_reader reader = {binder.statement, 0, NULL};
+        const int64_t id = lp_read_integer(&reader, 1, INT64_MAX), curve = lp_read_integer(&reader, 0, 2);
+        double k[3];
+        while (i < count && all[i].node.id < id) i++;
+        if (i == count || all[i].node.id != id) continue;
+        for (int n = 0; n < 3; n++) k[n] = lp_read_real(&reader);
+        if (curve == 0) all[i].has_curve = true;
+        for (int64_t c = curve; c < (curve ? curve + 1 : 3); c++) /* of all, unless others follow */
+            memcpy(all[i].node.k[c], k, sizeof k);
+        if (reader.bad) status = lp_store_fail_profile(store, id, reader.bad, error);
+        if (reader.bad) break;
+    }
+    if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
+    lp_store_release(store, binder.statement);
+    return status;
+}
+
+lensprof_status lp_read_curves(lensprof_store *store, lp_candidates *group, lensprof_error *error) {
+    lensprof_status status = LENSPROF_OK;
+    for (uint32_t from = 0, to; from < group->count && status == LENSPROF_OK; from = to) {
+        lp_candidate *all = group->all;
+        for (to = from + 1; to < group->count && all[to].node.id - all[to - 1].node.id <= NEAR_ID;) to++;
+        status = read_run(store, &all[from], to - from, error);
+    }
+    for (uint32_t i = 0; i < group->count && status == LENSPROF_OK; i++)
+        if (!group->all[i].has_curve)
+            status = lp_store_fail_profile(store, group->all[i].node.id, "vignetting curves", error);
     return status;
 }
 

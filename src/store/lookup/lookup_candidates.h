@@ -8,10 +8,11 @@
 /* A row of the lens: how well it fits the camera, and its node. */
 typedef struct lp_candidate {
     lp_falloff_node node;
-    int of_unit;   /* 1: of the key's; 0: of any */
-    int of_camera; /* 1: of the key's; 0: of any; -1: of another */
-    int has_covariance;
+    int of_unit;          /* 1: of the key's; 0: of any */
+    int of_camera;        /* 1: of the key's; 0: of any; -1: of another */
     int has_own_response; /* the row's response is that of the key's pictures, too: same camera, processing and style */
+    bool has_curve;       /* lp_read_curves has read node.k */
+    bool is_replaced;     /* another row has the same setting and comes before it */
     int is_fixed;         /* of a camera whose lens has no name of its own: it cannot be changed */
     uint32_t processing;
     double crop;
@@ -45,5 +46,8 @@ int lp_fits_style(const char *own, const char *asked);
  * in. Within a transaction. */
 lensprof_status lp_find_candidates(lensprof_store *store, const lensprof_profile_key *key,
                                    const lensprof_lookup_options *o, lp_candidates *found, lensprof_error *error);
+
+/* node.k of all of the group, by rising id, which lp_find_candidates leaves open. Within a transaction. */
+lensprof_status lp_read_curves(lensprof_store *store, lp_candidates *group, lensprof_error *error);
 
 #endif

@@ -20,13 +20,14 @@ static const distances usual = {
     7, {INFINITY, 10.0, 5.0, 3.0, 1.5, 0.7, 0.3}, {0.25, 0.2, 0.19, 0.14, 0.11, 0.08, 0.03}};
 
 /* Those that are stored, from far to near, in equal shares. */
-static distances stored_distances(const lp_falloff_node *nodes, uint32_t count) {
+static distances stored_distances(const lp_falloff_nodes *nodes) {
     distances all = {0, {0.0}, {0.0}};
     for (double below = INFINITY; all.count < MOST_DISTANCES; all.count++) {
         double next = 0.0;
-        for (uint32_t i = 0; i < count; i++)
-            if ((all.count == 0 || nodes[i].distance_m < below) && nodes[i].distance_m > next)
-                next = nodes[i].distance_m;
+        for (uint32_t i = 0; i < nodes->count; i++) {
+            const double distance_m = nodes->node[i].distance_m;
+            if ((all.count == 0 || distance_m < below) && distance_m > next) next = distance_m;
+        }
         if (next <= 0.0) break;
         all.distance_m[all.count] = below = next;
     }
@@ -48,14 +49,13 @@ typedef struct predictions {
 } predictions;
 
 /* -1 without memory. Where none can be made, at[0] says how far the nearest node is. */
-static int predict_at(const distances *where, const lp_falloff_node *nodes, uint32_t count, lp_falloff_node at,
-                      predictions *made) {
+static int predict_at(const distances *where, const lp_falloff_nodes *nodes, lp_falloff_node at, predictions *made) {
     double shares = 0.0;
     made->count = 0;
     for (uint32_t d = 0; d < where->count; d++) {
         lp_falloff_prediction one;
         at.distance_m = where->distance_m[d];
-        const int done = lp_predict_falloff(nodes, count, &at, &one);
+        const int done = lp_predict_falloff(nodes, &at, &one);
         if (done < 0) return -1;
         if (!done && (made->count || d)) continue;
         made->at[made->count] = one;
@@ -106,25 +106,25 @@ static void join(const predictions *made, int weakest, lp_falloff_prediction *p)
 
 /* How far the truth is from `p` by the distance alone: the spread over the usual distances, or over those stored where
  * none of the usual ones can be predicted. -1 without memory. */
-static int spread_by_distance(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at,
-                              const predictions *made, const lp_falloff_prediction *p, double *sigma) {
+static int spread_by_distance(const lp_falloff_nodes *nodes, const lp_falloff_node *at, const predictions *made,
+                              const lp_falloff_prediction *p, double *sigma) {
     predictions likely;
-    if (predict_at(&usual, nodes, count, *at, &likely) < 0) return -1;
+    if (predict_at(&usual, nodes, *at, &likely) < 0) return -1;
     *sigma = spread_about(likely.count ? &likely : made, corner_of(p));
     return 1;
 }
 
-int lp_predict_any_distance(const lp_falloff_node *nodes, uint32_t count, const lp_falloff_node *at, uint32_t rule,
+int lp_predict_any_distance(const lp_falloff_nodes *nodes, const lp_falloff_node *at, uint32_t rule,
                             lp_falloff_prediction *prediction, double *sigma) {
-    const distances stored = stored_distances(nodes, count);
+    const distances stored = stored_distances(nodes);
     const int is_lone = stored.count == 1;
     distances tried = rule == LENSPROF_DISTANCE_USUAL && !is_lone ? usual : stored;
     predictions made;
     if (rule == LENSPROF_DISTANCE_FARTHEST && tried.count) tried.count = 1;
-    if (predict_at(&tried, nodes, count, *at, &made) < 0) return -1;
+    if (predict_at(&tried, nodes, *at, &made) < 0) return -1;
     *prediction = made.at[0];
     if (!made.count) return 0;
     join(&made, rule == LENSPROF_DISTANCE_WEAKEST, prediction);
     *sigma = LONE_DISTANCE_SIGMA;
-    return is_lone ? 1 : spread_by_distance(nodes, count, at, &made, prediction, sigma);
+    return is_lone ? 1 : spread_by_distance(nodes, at, &made, prediction, sigma);
 }

@@ -43,26 +43,80 @@ static bool is_same_setting(const lp_falloff_node *a, const lp_falloff_node *b) 
            && lp_is_same(a->distance_m, b->distance_m);
 }
 
-/* Whether `other` stands for `one`, of the same setting: profiles of the key's processing before others, then the
- * newest, as everywhere: it may hold the others, or have overruled them. */
-static bool stands_for(const lp_candidate *other, const lp_candidate *one, uint32_t processing) {
-    const bool own = one->processing == processing, others = other->processing == processing;
-    if (!is_same_setting(&other->node, &one->node)) return false;
-    return own != others ? others : other->node.id > one->node.id;
+/* A row's place among the others: `at` is larger by no more than TOLERANCE of itself where the setting is the same. */
+typedef struct placed {
+    double at;
+    lp_candidate *row;
+    bool is_own; /* of the key's processing */
+} placed;
+
+#define TOLERANCE 2e-6 /* twice that of lp_is_same */
+
+/* Rises with all three numbers; settings that differ rarely share it. */
+static double place_of(const lp_falloff_node *node) {
+    const double d = node->distance_m;
+    const double reach = d == LENSPROF_UNKNOWN ? 2.0 : isinf(d) ? 1.0 : d / (1.0 + d);
+    return node->focal_mm + 1.4142135623730951 * node->aperture + 1.7320508075688772 * reach;
 }
 
-/* One node for each setting; returns how many. */
-static uint32_t take_nodes(const lp_candidates *group, uint32_t processing, lp_falloff_node *nodes) {
+static int order_of(double a, double b) { return a < b ? -1 : a > b; }
+
+/* Of rows with one setting profiles of the key's processing come before others, then the newest, as everywhere: it may
+ * hold the others, or have overruled them. */
+static int compare_rank(const placed *a, const placed *b) {
+    if (a->is_own != b->is_own) return a->is_own ? -1 : 1;
+    return a->row->node.id > b->row->node.id ? -1 : a->row->node.id < b->row->node.id;
+}
+
+static int compare_places(const void *first, const void *second) {
+    const placed *a = first, *b = second;
+    const lp_falloff_node *of_a = &a->row->node, *of_b = &b->row->node;
+    int side = order_of(a->at, b->at);
+    if (!side) side = order_of(of_a->focal_mm, of_b->focal_mm);
+    if (!side) side = order_of(of_a->aperture, of_b->aperture);
+    if (!side) side = order_of(of_a->distance_m, of_b->distance_m);
+    return side ? side : compare_rank(a, b);
+}
+
+static bool is_twin(const lp_falloff_node *a, const lp_falloff_node *b) {
+    return a->focal_mm == b->focal_mm && a->aperture == b->aperture && a->distance_m == b->distance_m;
+}
+
+/* Marks rows of a setting that a better row has, too. */
+static void find_replaced(lp_candidates *group, uint32_t processing, placed *places) {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < group->count; i++) {
-        bool is_replaced = false;
-        for (uint32_t j = 0; j < group->count && !is_replaced; j++)
-            is_replaced = stands_for(&group->all[j], &group->all[i], processing);
-        if (!is_replaced) nodes[kept++] = group->all[i].node;
+        lp_candidate *row = &group->all[i];
+        row->is_replaced = false;
+        places[i] = (placed){place_of(&row->node), row, row->processing == processing};
     }
+    qsort(places, group->count, sizeof *places, compare_places);
+    for (uint32_t i = 0; i < group->count; i++) /* the first of the same numbers is the best of them */
+        if (kept && is_twin(&places[kept - 1].row->node, &places[i].row->node))
+            places[i].row->is_replaced = true;
+        else
+            places[kept++] = places[i];
+    for (uint32_t i = 0; i < kept; i++)
+        for (uint32_t j = i + 1; j < kept && places[j].at <= places[i].at * (1.0 + TOLERANCE); j++)
+            if (is_same_setting(&places[i].row->node, &places[j].row->node))
+                places[compare_rank(&places[i], &places[j]) < 0 ? j : i].row->is_replaced = true;
+}
+
+/* One node for each setting, to nodes[group->count]; returns how many, or 0 without memory. */
+static uint32_t take_nodes(lp_candidates *group, uint32_t processing, lp_falloff_node *nodes) {
+    uint32_t kept = 0;
+    placed *places = malloc(group->count * sizeof *places);
+    if (!places) return 0;
+    find_replaced(group, processing, places);
+    for (uint32_t i = 0; i < group->count; i++)
+        if (!group->all[i].is_replaced) nodes[kept++] = group->all[i].node;
     for (uint32_t i = 0; i < kept; i++)
         if (nodes[i].distance_m == LENSPROF_UNKNOWN) nodes[i].distance_m = INFINITY;
-    return lp_drop_repeated(nodes, kept);
+    free(places);
+    uint32_t *order = malloc(kept * sizeof *order);
+    kept = order ? lp_drop_repeated(nodes, kept, order) : 0;
+    free(order);
+    return kept;
 }
 
 /* Variance of M in the corner, 0 = not known, without the rest of the profile, which takes longer to
@@ -95,14 +149,18 @@ static lensprof_status read_variance(lensprof_store *store, int64_t id, double *
     return status;
 }
 
-/* Profiles with a covariance count the less the less is known of them. */
-static lensprof_status weigh(lensprof_store *store, lp_candidates *group, lensprof_error *error) {
-    lensprof_status status = LENSPROF_OK;
-    for (uint32_t i = 0; i < group->count && status == LENSPROF_OK; i++) {
-        if (!group->all[i].has_covariance) continue;
-        status = read_variance(store, group->all[i].node.id, &group->all[i].node.variance, error);
-    }
-    return status;
+/* Whose nodes a prediction is from, and what went wrong when one was read. */
+typedef struct source {
+    lensprof_store *store;
+    lensprof_error *error;
+    lensprof_status status;
+} source;
+
+static bool read_node(void *user, lp_falloff_node *node) {
+    source *from = user;
+    node->variance = 0.0;
+    from->status = read_variance(from->store, node->id, &node->variance, from->error);
+    return from->status == LENSPROF_OK;
 }
 
 /* ---- the answer of a group of rows ---- */
@@ -142,23 +200,33 @@ static void mind_what_is_open(const lp_falloff_node *at, uint32_t distance_rule,
     if (at->distance_m == LENSPROF_UNKNOWN) lp_mind(lookup, distances[distance_rule], NULL);
 }
 
+/* As lp_predict_falloff; -1 also with an error that from->status tells. */
+static int predict_at(source *from, lp_falloff_nodes *nodes, const lp_falloff_node *at, uint32_t distance_rule,
+                      lp_falloff_prediction *p, double *distance_sigma) {
+    nodes->read_variance = read_node, nodes->user = from;
+    if (!nodes->count) return -1;
+    *distance_sigma = 0.0;
+    return at->distance_m == LENSPROF_UNKNOWN ? lp_predict_any_distance(nodes, at, distance_rule, p, distance_sigma)
+                                              : lp_predict_falloff(nodes, at, p);
+}
+
 static lensprof_status predict(lensprof_store *store, const lensprof_profile_key *key, const lensprof_lookup_options *o,
                                lp_candidates *group, lp_falloff_node at, lp_falloff_answer *answer,
                                lensprof_lookup *lookup, lensprof_error *error) {
     lp_falloff_prediction p;
-    double distance_sigma = 0.0;
-    lp_falloff_node *nodes = malloc(group->count * sizeof *nodes);
-    if (!nodes) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
+    double distance_sigma;
+    source from = {store, error, LENSPROF_OK};
+    lp_falloff_nodes nodes = {malloc(group->count * sizeof *nodes.node), 0, NULL, NULL};
+    if (!nodes.node) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
     for (uint32_t i = 0; i < group->count; i++) rescale(&group->all[i], &answer->key);
-    const uint32_t count = take_nodes(group, answer->key.processing, nodes);
-    const int done = at.distance_m == LENSPROF_UNKNOWN
-                         ? lp_predict_any_distance(nodes, count, &at, o->distance_rule, &p, &distance_sigma)
-                         : lp_predict_falloff(nodes, count, &at, &p);
-    for (uint32_t i = 0; i < p.used && done > 0; i++) {
-        lookup->id[i] = nodes[p.row[i].node].id;
+    nodes.count = take_nodes(group, answer->key.processing, nodes.node);
+    const int done = predict_at(&from, &nodes, &at, o->distance_rule, &p, &distance_sigma);
+    for (uint32_t i = 0; done > 0 && i < p.used; i++) {
+        lookup->id[i] = nodes.node[p.row[i].node].id;
         lookup->weight[i] = p.row[i].weight;
     }
-    free(nodes);
+    free(nodes.node);
+    if (from.status != LENSPROF_OK) return from.status;
     if (done < 0) return lp_store_fail_sql(store->path, NULL, SQLITE_NOMEM, error);
     lookup->distance = p.nearest;
     if (!done) return lp_refuse(store, lookup, LENSPROF_REASON_LOOKUP_TOO_FAR, error);
@@ -189,7 +257,7 @@ static lensprof_status ask_group(lensprof_store *store, const lensprof_profile_k
         lookup->id[0] = same, lookup->weight[0] = 1.0;
         return LENSPROF_OK;
     }
-    const lensprof_status status = weigh(store, group, error);
+    const lensprof_status status = lp_read_curves(store, group, error);
     return status == LENSPROF_OK ? predict(store, key, o, group, at, answer, lookup, error) : status;
 }
 
