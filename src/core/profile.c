@@ -33,6 +33,11 @@ int lp_is_setting(double focal_mm, double aperture, double distance_m) {
            && is_known_or_unknown(distance_m, INFINITY);
 }
 
+int lp_are_key_numbers(const lensprof_profile_key *key) {
+    return is_known_or_unknown(key->crop_factor, 1e4) && lp_is_setting(key->focal_mm, key->aperture, key->distance_m)
+           && is_known_or_unknown(key->color_temperature_k, 1e6);
+}
+
 /* Room for members to come: another value is of a newer lensprof. */
 static int is_empty(const uint32_t *reserved, size_t count) {
     for (size_t i = 0; i < count; i++)
@@ -48,10 +53,7 @@ lensprof_status lensprof_profile_key_validate(const lensprof_profile_key *key) {
         || !is_text(key->lens, sizeof key->lens) || !is_text(key->unit, sizeof key->unit)
         || !is_text(key->style, sizeof key->style))
         return LENSPROF_ERROR_ARGUMENT;
-    if (!is_known_or_unknown(key->crop_factor, 1e4) || !lp_is_setting(key->focal_mm, key->aperture, key->distance_m)
-        || !is_known_or_unknown(key->color_temperature_k, 1e6))
-        return LENSPROF_ERROR_ARGUMENT;
-    return LENSPROF_OK;
+    return lp_are_key_numbers(key) ? LENSPROF_OK : LENSPROF_ERROR_ARGUMENT;
 }
 
 void lensprof_camera_model_init(lensprof_camera_model *camera) {

@@ -16,6 +16,9 @@ static inline int lp_is_control(unsigned char c) { return c < 0x20 || c == 0x7f;
 /* A key's focal length, aperture and distance: each in its range, or LENSPROF_UNKNOWN. */
 int lp_is_setting(double focal_mm, double aperture, double distance_m);
 
+/* Whether all numbers of a key are: lensprof_profile_key_validate without the texts. */
+int lp_are_key_numbers(const lensprof_profile_key *key);
+
 /* A provenance's figures: each in its range, or LENSPROF_UNKNOWN. */
 int lp_is_quality(double heldout_rms, double inlier_share);
 

@@ -158,6 +158,21 @@ static void test_shared_errors_stay(void **state) {
     lensprof_store_close(store);
 }
 
+/* More profiles than are used: the newest of them, whichever of its names they have the camera under. */
+static void test_newest_under_all_names(void **state) {
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    int64_t newest = 0;
+    put_raw(store);
+    for (int i = 0; i < 2 * LENSPROF_LOOKUP_RESPONSES; i++)
+        newest = put_rendered(store, i % 2 ? "Canon EOS 5D" : "EOS 5D", 2.2, 0.07, "");
+    lensprof_profile_key key = key_of("EOS 5D", JPEG, 2.0);
+    strcpy(key.camera_maker, "Canon");
+    assert_ok(ask_for(store, &key));
+    assert_int_equal(how.response_rows, LENSPROF_LOOKUP_RESPONSES);
+    for (int i = 0; i < LENSPROF_LOOKUP_RESPONSES; i++) assert_int_equal(how.response_id[i], newest - i);
+    lensprof_store_close(store);
+}
+
 /* Derivative of q = ln ln(I(208) / I(48)) by EMoR coefficient l, by differences. */
 static double gamma_slope(const lensprof_response *response, uint32_t l) {
     const double h = 1e-4;
@@ -428,19 +443,13 @@ static void test_open_settings_widen_the_error(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        store_test(test_raw_rows_serve_jpeg),
-        store_test(test_raw_is_linear),
-        store_test(test_responses_of_the_camera),
-        store_test(test_bracket_has_no_falloff),
-        store_test(test_shared_errors_stay),
-        store_test(test_covariances_of_responses),
-        store_test(test_styles),
-        store_test(test_which_responses),
-        store_test(test_corrected),
-        store_test(test_next_best_profiles),
-        store_test(test_response_alone),
-        store_test(test_several_databases),
-        store_test(test_open_settings_widen_the_error),
+        store_test(test_raw_rows_serve_jpeg),      store_test(test_raw_is_linear),
+        store_test(test_responses_of_the_camera),  store_test(test_bracket_has_no_falloff),
+        store_test(test_shared_errors_stay),       store_test(test_newest_under_all_names),
+        store_test(test_covariances_of_responses), store_test(test_styles),
+        store_test(test_which_responses),          store_test(test_corrected),
+        store_test(test_next_best_profiles),       store_test(test_response_alone),
+        store_test(test_several_databases),        store_test(test_open_settings_widen_the_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -154,7 +154,7 @@ static lensprof_status compose(work *w, lensprof_error *error) {
     lensprof_store *store = w->stores[w->lookup.falloff_store];
     lensprof_profile *profile = &store->scratch;
     lensprof_status status = find_response(w, error);
-    if (status == LENSPROF_OK) status = lp_store_fetch(store, w->lookup.id[0], error);
+    if (status == LENSPROF_OK) status = lp_store_fetch_falloff(store, w->lookup.id[0], error);
     if (status != LENSPROF_OK) return status;
     set_sigma(w);
     profile->key = w->falloff.key;

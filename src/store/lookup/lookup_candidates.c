@@ -45,39 +45,45 @@ static int fits(const char *own, const char *asked) {
 /* As rows_sql has it. */
 typedef struct row {
     lensprof_profile_key key;
+    char processing[16]; /* key.processing as it is stored */
     int64_t id, covariance_size;
 } row;
 
-/* As lp_read_text; `text` holds that of the row before, which most rows share. */
-static void read_text(lp_store_reader *reader, char *text, size_t capacity) {
+/* As lp_read_text; `text` holds that of the row before, which most rows share. Returns whether it is another. */
+static bool read_text(lp_store_reader *reader, char *text, size_t capacity) {
     if (sqlite3_column_type(reader->statement, reader->column) == SQLITE_TEXT) {
         const char *found = (const char *)sqlite3_column_text(reader->statement, reader->column);
         const size_t bytes = (size_t)sqlite3_column_bytes(reader->statement, reader->column);
         const bool is_as_long = found && bytes < capacity && !text[bytes] && (!bytes || text[bytes - 1]);
         if (is_as_long && !memcmp(found, text, bytes)) {
             reader->column++;
-            return;
+            return false;
         }
     }
     lp_read_text(reader, text, capacity);
+    return true;
 }
 
 /* *r holds the row before. False, with the reader's column, for what no profile has. */
 static bool read_row(sqlite3_stmt *statement, lp_store_reader *reader, row *r) {
     *reader = (lp_store_reader){statement, 0, NULL};
     r->id = lp_read_integer(reader, 1, INT64_MAX);
-    read_text(reader, r->key.camera_model, sizeof r->key.camera_model);
-    read_text(reader, r->key.lens, sizeof r->key.lens);
-    read_text(reader, r->key.unit, sizeof r->key.unit);
+    bool is_new = read_text(reader, r->key.camera_model, sizeof r->key.camera_model);
+    is_new |= read_text(reader, r->key.lens, sizeof r->key.lens);
+    is_new |= read_text(reader, r->key.unit, sizeof r->key.unit);
     r->key.crop_factor = lp_read_known(reader);
     r->key.focal_mm = lp_read_known(reader);
     r->key.aperture = lp_read_known(reader);
     r->key.distance_m = lp_read_known(reader);
     r->key.color_temperature_k = lp_read_known(reader);
     r->covariance_size = lp_read_integer(reader, 0, LENSPROF_COVARIANCE_MAX);
-    r->key.processing = lp_read_name(reader, lp_store_processings, LP_STORE_PROCESSINGS);
-    read_text(reader, r->key.style, sizeof r->key.style);
-    if (!reader->bad && lensprof_profile_key_validate(&r->key) != LENSPROF_OK) reader->bad = "key";
+    if (read_text(reader, r->processing, sizeof r->processing)) {
+        reader->column--;
+        r->key.processing = lp_read_name(reader, lp_store_processings, LP_STORE_PROCESSINGS);
+    }
+    is_new |= read_text(reader, r->key.style, sizeof r->key.style);
+    const bool is_key = is_new ? lensprof_profile_key_validate(&r->key) == LENSPROF_OK : lp_are_key_numbers(&r->key);
+    if (!reader->bad && !is_key) reader->bad = "key";
     return !reader->bad;
 }
 
@@ -149,7 +155,7 @@ static lensprof_status read_rows(lensprof_store *store, const char *name, const 
     lp_bind_integer(&binder, key->processing == LENSPROF_PROCESSING_CORRECTED && !o->force_falloff);
     lp_bind_integer(&binder, asks_for_camera(key));
     int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
-    row r;
+    row r = {.processing = ""};
     lensprof_profile_key_init(&r.key);
     while (rc == SQLITE_ROW && status == LENSPROF_OK) {
         lp_store_reader reader;

@@ -21,19 +21,17 @@
 #define MOST_HELD 64
 #define LEAST_SIGMA 1e-3 /* of ln gamma: nobody knows it better */
 
-/* As column lens_name has names: without ASCII case, blanks and signs. The index profiles_by_rendering has the same
- * expression. */
-#define SQUEEZED(column)                                            \
-    "lower(replace(replace(replace(replace(replace(replace(" column \
-    ", ' ', ''), '-', ''), '/', ''), '.', ''), '(',"                \
-    " ''), ')', ''))"
+#define MOST_SPELLINGS (2 * LP_CAMERA_NAMES)
 
+/* The newest first, whatever the camera is called in them. */
 static const char *const
-    rows_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT("SELECT id, style, coalesce(prior_id, 0) FROM profiles WHERE " SQUEEZED(
-        "camera_model") " = ?1"
-                        " AND processing <> 'raw' AND (?2 OR (doubt = '' AND NOT forced))"
+    rows_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT("SELECT id, style, coalesce(prior_id, 0) FROM profiles WHERE " LP_SQUEEZED(
+        "camera_model") " IN (?2, ?3, ?4, ?5, ?6, ?7)"
+                        " AND processing <> 'raw' AND (?1 OR (doubt = '' AND NOT forced))"
                         " AND EXISTS (SELECT 1 FROM responses WHERE profile_id = id AND kind <> 'linear')"
                         " ORDER BY id DESC");
+
+_Static_assert(MOST_SPELLINGS == 6, "rows_sql has a parameter for each");
 
 void lp_typical_answer(const lensprof_profile_key *key, lp_response_answer *answer) {
     memset(answer, 0, sizeof *answer);
@@ -134,15 +132,42 @@ static void choose(choice *chosen, int64_t id, int style, int64_t prior) {
     chosen->id[chosen->count++] = id;
 }
 
-static lensprof_status choose_rows(lensprof_store *store, const char *camera, const lensprof_profile_key *key,
-                                   const lensprof_lookup_options *o, choice *chosen, lensprof_error *error) {
+/* All names of the camera, with its maker in front and without. */
+typedef struct spellings {
+    uint32_t count;
+    char name[MOST_SPELLINGS][2 * LP_NAME_BYTES];
+} spellings;
+
+static void spell(const lensprof_profile_key *key, spellings *all) {
+    char own[LP_NAME_BYTES], maker[LP_NAME_BYTES];
+    const char *names[LP_CAMERA_NAMES];
+    lp_squeeze(key->camera_model, own);
+    lp_squeeze(key->camera_maker, maker);
+    const char *bare = lp_without_maker(own), *in_front = lp_maker_in_front(own);
+    if (!in_front) in_front = lp_maker_in_front(maker);
+    if (!in_front) in_front = maker;
+    const uint32_t count = lp_camera_names(bare, names);
+    all->count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        strcpy(all->name[all->count++], names[i]);
+        if (!*in_front) continue;
+        strcpy(all->name[all->count], in_front);
+        strcat(all->name[all->count++], names[i]);
+    }
+}
+
+static lensprof_status choose_profiles(lensprof_store *store, const lensprof_profile_key *key,
+                                       const lensprof_lookup_options *o, choice *chosen, lensprof_error *error) {
+    spellings all;
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
     lensprof_status status = lp_store_prepare(store, lp_store_of_layout(store, rows_sql), &binder.statement, error);
     if (status != LENSPROF_OK) return status;
-    lp_bind_text(&binder, camera);
+    memset(chosen, 0, sizeof *chosen);
+    spell(key, &all);
     lp_bind_integer(&binder, o->with_doubt);
+    for (uint32_t i = 0; i < all.count; i++) lp_bind_text(&binder, all.name[i]); /* what is not bound is NULL */
     int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
-    for (; rc == SQLITE_ROW && status == LENSPROF_OK; rc = sqlite3_step(binder.statement)) {
+    for (; rc == SQLITE_ROW; rc = sqlite3_step(binder.statement)) {
         lp_store_reader reader = {binder.statement, 0, NULL};
         char style[sizeof key->style];
         const int64_t id = lp_read_integer(&reader, 1, INT64_MAX);
@@ -156,30 +181,6 @@ static lensprof_status choose_rows(lensprof_store *store, const char *camera, co
     }
     if (status == LENSPROF_OK && rc != SQLITE_DONE) status = lp_store_fail_sql(store->path, store->db, rc, error);
     lp_store_release(store, binder.statement);
-    return status;
-}
-
-/* Under all names of the camera, with its maker in front and without. */
-static lensprof_status choose_profiles(lensprof_store *store, const lensprof_profile_key *key,
-                                       const lensprof_lookup_options *o, choice *chosen, lensprof_error *error) {
-    char own[LP_NAME_BYTES], maker[LP_NAME_BYTES];
-    const char *names[LP_CAMERA_NAMES];
-    lensprof_status status = LENSPROF_OK;
-    memset(chosen, 0, sizeof *chosen);
-    lp_squeeze(key->camera_model, own);
-    lp_squeeze(key->camera_maker, maker);
-    const char *bare = lp_without_maker(own), *in_front = lp_maker_in_front(own);
-    if (!in_front) in_front = lp_maker_in_front(maker);
-    if (!in_front) in_front = maker;
-    const uint32_t count = lp_camera_names(bare, names);
-    for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) {
-        char whole[2 * LP_NAME_BYTES];
-        status = choose_rows(store, names[i], key, o, chosen, error);
-        if (status != LENSPROF_OK || !*in_front) continue;
-        strcpy(whole, in_front);
-        strcat(whole, names[i]);
-        status = choose_rows(store, whole, key, o, chosen, error);
-    }
     return status;
 }
 

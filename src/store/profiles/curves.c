@@ -191,9 +191,9 @@ static lensprof_status read_coefficients(lensprof_store *store, int64_t id, uint
     return response->kind == LENSPROF_RESPONSE_EMOR ? read_rows(store, id, &wanted, error) : LENSPROF_OK;
 }
 
-lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, uint32_t grids, lensprof_error *error) {
+static lensprof_status read_responses(lensprof_store *store, int64_t id, lensprof_error *error) {
     lensprof_profile *profile = &store->scratch;
-    rows responses = {
+    const rows responses = {
         "SELECT curve, kind, gamma, emor_modes, samples FROM responses WHERE profile_id = ?"
         " ORDER BY curve",
         0,
@@ -201,6 +201,21 @@ lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, uint32_t
         "count of responses",
         read_response,
         profile->response};
+    lensprof_status status = read_rows(store, id, &responses, error);
+    for (uint32_t c = 0; c < profile->responses && status == LENSPROF_OK; c++) {
+        lensprof_response rebuilt;
+        status = read_coefficients(store, id, c, &profile->response[c], error);
+        if (status != LENSPROF_OK) break;
+        if (lp_store_rebuild(&profile->response[c], &rebuilt) != LENSPROF_OK)
+            return lp_store_fail_profile(store, id, "its response is not one", error);
+        profile->response[c] = rebuilt;
+    }
+    return status;
+}
+
+lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, bool with_response, uint32_t grids,
+                                     lensprof_error *error) {
+    lensprof_profile *profile = &store->scratch;
     rows vignettings = {
         "SELECT curve, k1, k2, k3, center_x, center_y FROM vignettings WHERE profile_id = ?"
         " ORDER BY curve",
@@ -215,16 +230,8 @@ lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, uint32_t
                        "count of gain_grids",
                        read_grid,
                        &profile->grid};
-    lensprof_status status = read_rows(store, id, &responses, error);
+    lensprof_status status = with_response ? read_responses(store, id, error) : LENSPROF_OK;
     if (status == LENSPROF_OK) status = read_rows(store, id, &vignettings, error);
     if (status == LENSPROF_OK && store->layout >= 2) status = read_rows(store, id, &gain_grids, error);
-    for (uint32_t c = 0; c < profile->responses && status == LENSPROF_OK; c++) {
-        lensprof_response rebuilt;
-        status = read_coefficients(store, id, c, &profile->response[c], error);
-        if (status != LENSPROF_OK) break;
-        if (lp_store_rebuild(&profile->response[c], &rebuilt) != LENSPROF_OK)
-            return lp_store_fail_profile(store, id, "its response is not one", error);
-        profile->response[c] = rebuilt;
-    }
     return status;
 }

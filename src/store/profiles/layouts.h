@@ -30,9 +30,12 @@
     " END AS prior_id, " LP_FORCED_3 " AS forced, " LP_STYLE_4 ", " columns)
 #define LP_PROFILES_4 \
     LP_WITH_PROFILES(LP_SINCE_1 "method, color_temperature_k, prior_id, forced, " LP_STYLE_4 ", " LP_UNITS_3)
-#define LP_UNITS_2 /* as 0003_units.sql makes lens_name */ \
-    "'' AS unit, NULL AS crop_factor, '' AS doubt, lower(replace(replace(replace(replace(replace(replace(lens," \
-    " ' ', ''), '-', ''), '/', ''), '.', ''), '(', ''), ')', '')) AS lens_name"
+/* A name without ASCII case, blanks and signs, as 0003_units.sql makes lens_name; the index profiles_by_rendering
+ * (0005_cameras.sql) has the same expression. */
+#define LP_SQUEEZED(column) \
+    "lower(replace(replace(replace(replace(replace(replace(" column \
+    ", ' ', ''), '-', ''), '/', ''), '.', ''), '(', ''), ')', ''))"
+#define LP_UNITS_2 "'' AS unit, NULL AS crop_factor, '' AS doubt, " LP_SQUEEZED("lens") " AS lens_name"
 
 /* The statement for each layout: `sql` is a literal that begins with SELECT and names no column that is not in the
  * newest `profiles`. */

@@ -7,6 +7,9 @@
 /* read.c: the profile with an id, within a transaction, into store->scratch. */
 lensprof_status lp_store_fetch(lensprof_store *store, int64_t id, lensprof_error *error);
 
+/* read.c: the same, its responses linear whatever they are. */
+lensprof_status lp_store_fetch_falloff(lensprof_store *store, int64_t id, lensprof_error *error);
+
 /* read.c: the ten columns of a key but its processing, from the maker on. */
 void lp_store_bind_key(lp_store_binder *binder, const lensprof_profile_key *key);
 
@@ -39,7 +42,9 @@ extern const char *const lp_store_kinds[LP_STORE_KINDS];
 lensprof_status lp_store_rebuild(const lensprof_response *from, lensprof_response *response);
 lensprof_status lp_store_put_curves(lensprof_store *store, int64_t id, const lensprof_profile *profile,
                                     lensprof_error *error);
-/* Into store->scratch, which knows how many curves there are; `grids` is the number of gain grids, 0 or 1. */
-lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, uint32_t grids, lensprof_error *error);
+/* Into store->scratch, which knows how many curves there are; `grids` is the number of gain grids, 0 or 1. Without
+ * with_response the responses stay what they are. */
+lensprof_status lp_store_read_curves(lensprof_store *store, int64_t id, bool with_response, uint32_t grids,
+                                     lensprof_error *error);
 
 #endif

@@ -69,7 +69,7 @@ static void read_row(lp_store_reader *reader, lensprof_store_row *row) {
 }
 
 /* From the row at which `statement` stands, and its curves, into store->scratch. */
-static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *statement, int64_t *id,
+static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *statement, bool with_response, int64_t *id,
                                     lensprof_error *error) {
     lensprof_store_row row;
     lensprof_profile *profile = &store->scratch;
@@ -88,7 +88,7 @@ static lensprof_status read_profile(lensprof_store *store, sqlite3_stmt *stateme
     uint32_t grids = (uint32_t)lp_read_integer(&reader, 0, 1);
     *id = sqlite3_column_int64(statement, 0);
     if (reader.bad) return lp_store_fail_profile(store, *id, reader.bad, error);
-    lensprof_status status = lp_store_read_curves(store, *id, grids, error);
+    lensprof_status status = lp_store_read_curves(store, *id, with_response, grids, error);
     if (status != LENSPROF_OK) return status;
     status = lensprof_profile_validate(profile);
     return status == LENSPROF_OK ? LENSPROF_OK : lp_store_fail_profile(store, *id, lensprof_status_name(status), error);
@@ -118,7 +118,7 @@ static const char *const get_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(SELECT_PROFILE 
 static const char *const list_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(LIST);
 
 /* Reads the profile with `key`, or with `*id` when key is NULL, into store->scratch. */
-static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *key, int64_t *id,
+static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *key, bool with_response, int64_t *id,
                              lensprof_error *error) {
     lp_store_binder binder = {NULL, 0, SQLITE_OK};
     const char *sql = lp_store_of_layout(store, key ? find_sql : get_sql);
@@ -131,7 +131,7 @@ static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *
         lp_bind_integer(&binder, *id);
     int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
     if (rc == SQLITE_ROW)
-        status = read_profile(store, binder.statement, id, error);
+        status = read_profile(store, binder.statement, with_response, id, error);
     else if (rc != SQLITE_DONE)
         status = lp_store_fail_sql(store->path, store->db, rc, error);
     else if (!key)
@@ -144,14 +144,18 @@ static lensprof_status fetch(lensprof_store *store, const lensprof_profile_key *
 }
 
 lensprof_status lp_store_fetch(lensprof_store *store, int64_t id, lensprof_error *error) {
-    return fetch(store, NULL, &id, error);
+    return fetch(store, NULL, true, &id, error);
+}
+
+lensprof_status lp_store_fetch_falloff(lensprof_store *store, int64_t id, lensprof_error *error) {
+    return fetch(store, NULL, false, &id, error);
 }
 
 static lensprof_status fetch_in_transaction(lensprof_store *store, const lensprof_profile_key *key, int64_t *id,
                                             lensprof_error *error) {
     lensprof_status status = lp_store_begin(store, false, error);
     if (status != LENSPROF_OK) return status;
-    status = fetch(store, key, id, error);
+    status = fetch(store, key, true, id, error);
     lp_store_rollback(store);
     return status;
 }
