@@ -59,6 +59,18 @@ double lp_curve_power(double x, double exponent, double *slope);
 /* table = f0 + sum coefficients[l] h_(l+1), ends set to 0 and 1 exactly. Not checked for monotony. */
 void lp_emor_curve(const double *coefficients, uint32_t modes, double *table);
 
+/* ln I at a level b in 0..1, I the inverse response, and its change with every EMoR mode h: of f(x) = b with another f
+ * x moves by -h(x) / f'(x). I is at least 1e-9. */
+double lp_log_irradiance(const double *table, double b, double by_mode[LENSPROF_EMOR_MODES]);
+
+/* Position of a response within its family f(x^(1/gamma)): q = ln ln(I(208/255) / I(48/255)), which moves by ln gamma
+ * and does not lean on where the curve reaches white (docs/model.md, profiles/tools/measured_curves.py); and its change
+ * with every EMoR mode. */
+#define LP_GAUGE_DARK (48.0 / 255.0)
+#define LP_GAUGE_BRIGHT (208.0 / 255.0)
+#define LP_GAUGE_LEAST 1e-6 /* of ln(I / I), so that q is finite */
+double lp_gauge_position(const double *table, double by_mode[LENSPROF_EMOR_MODES]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -19,19 +19,6 @@ constexpr double kUsual = 3.5;  // standard deviations: 95 % of a kind's measure
 constexpr double kSmallestSigma = 1e-3;  // of ln gamma: LINEAR has none
 constexpr double kOdd = 0.5;             // beyond 1, by which a response is none of the kind's
 
-double irradiance(const double *table, double grey, double *slope) {
-    return std::clamp(lp_curve_invert(table, grey, slope), 1e-9, 1.0);
-}
-
-// ln g at a grey value, and its change with every mode: of f(x) = b with another f, dx = -h(x) / f'(x).
-double log_irradiance(const double *table, double grey, Modes &by_mode) {
-    double slope;
-    const double x = irradiance(table, grey, &slope);
-    for (int l = 0; l < LENSPROF_EMOR_MODES; l++)
-        by_mode[l] = -lp_curve_eval(lensprof_emor_table(static_cast<uint32_t>(l) + 1), x, nullptr) * slope / x;
-    return std::log(x);
-}
-
 // Where ln g lies at four grey values between 0 at the dark and 1 at the bright one of the gauge: the same for all
 // members f(x^(1/gamma)) of a family, whose ln g are multiples of each other.
 struct ShapeOf {
@@ -40,10 +27,11 @@ struct ShapeOf {
 
     explicit ShapeOf(const double *table) {
         Modes of_dark, of_bright, of_grey;
-        const double dark = log_irradiance(table, kGaugeDark, of_dark),
-                     range = std::max(log_irradiance(table, kGaugeBright, of_bright) - dark, 1e-6);
+        const double dark = lp_log_irradiance(table, LP_GAUGE_DARK, of_dark.data()),
+                     range =
+                         std::max(lp_log_irradiance(table, LP_GAUGE_BRIGHT, of_bright.data()) - dark, LP_GAUGE_LEAST);
         for (int i = 0; i < 4; i++) {
-            at[i] = (log_irradiance(table, kShapeGreys[i], of_grey) - dark) / range;
+            at[i] = (lp_log_irradiance(table, kShapeGreys[i], of_grey.data()) - dark) / range;
             by_mode.row(i) = ((of_grey - of_dark) - at[i] * (of_bright - of_dark)).transpose() / range;
         }
     }
@@ -63,11 +51,10 @@ void set_typical(uint32_t kind, lensprof_response &response, double *covariance,
 }  // namespace
 
 double gamma_position(const double *table, Eigen::VectorXd *slope) {
-    Modes of_dark, of_bright;
-    const double range =
-        std::max(log_irradiance(table, kGaugeBright, of_bright) - log_irradiance(table, kGaugeDark, of_dark), 1e-6);
-    if (slope) *slope = (of_bright - of_dark) / range;
-    return std::log(range);
+    Modes by_mode;
+    const double position = lp_gauge_position(table, by_mode.data());
+    if (slope) *slope = by_mode;
+    return position;
 }
 
 double shape_distance(const KnownResponse &a, const KnownResponse &b) {

@@ -1,12 +1,8 @@
 // The exponent gamma that a response has by measure of its camera's kind.
 //
-// A response's family f(x^(1/gamma)) is one shape. The position of a curve within its family is told between two mid
-// greys, g = f^-1,
-//
-//     q = ln ln( g(208/255) / g(48/255) ),
-//
-// which moves by ln gamma and does not lean on where the curve reaches white. Cameras of a kind have it in common: it
-// is that of the kind's typical response (core/typical_table.c), with the error that was measured there.
+// A response's family f(x^(1/gamma)) is one shape; its position in it (lp_gauge_position) moves by ln gamma. Cameras of
+// a kind have it in common: it is that of the kind's typical response (core/typical_table.c), with the error that was
+// measured there.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +10,6 @@
 #include <lensprof/fit.h>
 
 namespace lensprof {
-
-constexpr double kGaugeDark = 48.0 / 255.0, kGaugeBright = 208.0 / 255.0;  // as in profiles/tools/measured_curves.py
 
 // Position of a response table within its family; *slope, when not NULL, receives its change with every EMoR mode.
 double gamma_position(const double *table, Eigen::VectorXd *slope = nullptr);

@@ -45,27 +45,11 @@ void lp_typical_answer(const lensprof_profile_key *key, lp_response_answer *answ
     answer->modes = answer->response[0].kind == LENSPROF_RESPONSE_EMOR ? answer->response[0].modes : 0;
 }
 
-/* Derivatives of q = ln ln(I(208) / I(48)), I the inverse response, by the EMoR coefficients: q moves as ln gamma does
- * (docs/model.md). */
-static bool gamma_slope(const lensprof_response *response, double slope[LENSPROF_EMOR_MODES]) {
-    double low_slope, high_slope;
-    const double low = lp_curve_invert(response->table, 48.0 / 255.0, &low_slope);
-    const double high = lp_curve_invert(response->table, 208.0 / 255.0, &high_slope);
-    if (!(low > 0.0) || !(high > low)) return false;
-    for (uint32_t l = 0; l < response->modes; l++) {
-        const double *mode = lensprof_emor_table(l + 1);
-        slope[l] =
-            (lp_curve_eval(mode, low, NULL) * low_slope / low - lp_curve_eval(mode, high, NULL) * high_slope / high)
-            / log(high / low);
-    }
-    return true;
-}
-
 /* By a covariance of the coefficients, n numbers a row; along[modes] receives that of each with q. */
 static double gamma_variance(const lensprof_response *response, const double *covariance, uint32_t n,
                              double along[LENSPROF_EMOR_MODES]) {
     double slope[LENSPROF_EMOR_MODES], variance = 0.0;
-    if (!gamma_slope(response, slope)) return 0.0;
+    (void)lp_gauge_position(response->table, slope);
     for (uint32_t i = 0; i < response->modes; i++) {
         along[i] = 0.0;
         for (uint32_t j = 0; j < response->modes; j++) along[i] += covariance[i * n + j] * slope[j];
