@@ -415,8 +415,28 @@ static void test_arguments(void **state) {
     lensprof_store_close(store);
 }
 
+/* A corner that no row is near: one number outside is predicted, both are not. */
+static void test_outside_both_ranges(void **state) {
+    static const double focals[] = {24, 28, 35}, apertures[] = {2.8, 4.0, 5.6};
+    lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
+    for (int f = 0; f < 3; f++)
+        for (int a = 0; a < 3; a++) put_falloff(store, zoom, focals[f], apertures[a], INFINITY);
+    assert_ok(ask(store, zoom, 22, 2.8, INFINITY));
+    assert_ok(ask(store, zoom, 24, 2.5, INFINITY));
+    assert_ok(ask(store, zoom, 23.5, 2.5, INFINITY)); /* another rounding of 24 mm */
+    const double corners[4][2] = {{22, 2.5}, {39, 2.5}, {22, 6.3}, {39, 6.3}};
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(ask(store, zoom, corners[i][0], corners[i][1], INFINITY), LENSPROF_ERROR_NOT_FOUND);
+        assert_int_equal(how.reason_code[0], LENSPROF_REASON_LOOKUP_FOCAL_BEYOND);
+        assert_int_equal(how.reason_code[1], LENSPROF_REASON_LOOKUP_APERTURE_BEYOND);
+        assert_non_null(strstr(how.reason, "24 to 35 mm, f/2.8 to f/5.6"));
+    }
+    lensprof_store_close(store);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        store_test(test_outside_both_ranges),
         store_test(test_exact),
         store_test(test_nearest_light),
         store_test(test_between_settings),

@@ -25,6 +25,10 @@ void lp_round_focal(const lp_candidates *found, lp_falloff_node *at, lensprof_lo
 /* Focal length and aperture, where they are not given and the same everywhere. Returns NONE, or why not. */
 lensprof_reason lp_settle(lp_candidates *found, lp_falloff_node *at, lensprof_lookup *lookup);
 
+/* Whether focal length and aperture, settled, are both outside the rows': a corner of which they say nothing. Then
+ * text[bytes] receives both, and the ranges. */
+bool lp_is_outside_both(const lp_candidates *found, const lp_falloff_node *at, char *text, size_t bytes);
+
 /* The newest row that is at the setting and has the pictures' response, or -1. */
 int64_t lp_find_exact(const lp_candidates *found, const lp_falloff_node *at, const lensprof_profile_key *key);
 

@@ -26,6 +26,15 @@ lensprof_status lp_refuse(lensprof_store *store, lensprof_lookup *lookup, lenspr
     return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile for this setting", text, error);
 }
 
+static lensprof_status refuse_both(lensprof_store *store, const char *text, lensprof_lookup *lookup,
+                                   lensprof_error *error) {
+    memset(lookup->reason_code, 0, sizeof lookup->reason_code);
+    lookup->reason_code[0] = LENSPROF_REASON_LOOKUP_FOCAL_BEYOND;
+    lookup->reason_code[1] = LENSPROF_REASON_LOOKUP_APERTURE_BEYOND;
+    snprintf(lookup->reason, sizeof lookup->reason, "%s", text);
+    return lp_store_fail(store->path, LENSPROF_ERROR_NOT_FOUND, "has no profile for this setting", text, error);
+}
+
 /* ---- the rows as nodes ---- */
 
 /* k in half diagonals of the key's sensor: r there is r times the ratio here. */
@@ -257,6 +266,8 @@ static lensprof_status ask_group(lensprof_store *store, const lensprof_profile_k
         lookup->id[0] = same, lookup->weight[0] = 1.0;
         return LENSPROF_OK;
     }
+    char text[sizeof lookup->reason];
+    if (lp_is_outside_both(group, &at, text, sizeof text)) return refuse_both(store, text, lookup, error);
     const lensprof_status status = lp_read_curves(store, group, error);
     return status == LENSPROF_OK ? predict(store, key, o, group, at, answer, lookup, error) : status;
 }
