@@ -421,6 +421,10 @@ static void test_outside_both_ranges(void **state) {
     lensprof_store *store = store_at(((place *)*state)->path, LENSPROF_STORE_CREATE);
     for (int f = 0; f < 3; f++)
         for (int a = 0; a < 3; a++) put_falloff(store, zoom, focals[f], apertures[a], INFINITY);
+    assert_ok(ask(store, zoom, 24.0001, 2.8, INFINITY));
+    const double inside = how.falloff_sigma;
+    assert_ok(ask(store, zoom, 23.9999, 2.8, INFINITY));
+    assert_true(how.falloff_sigma > 1.8 * inside); /* nothing but the side of 24 mm has changed */
     assert_ok(ask(store, zoom, 22, 2.8, INFINITY));
     assert_ok(ask(store, zoom, 24, 2.5, INFINITY));
     assert_ok(ask(store, zoom, 23.5, 2.5, INFINITY)); /* another rounding of 24 mm */

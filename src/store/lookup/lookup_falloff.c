@@ -240,7 +240,7 @@ static lensprof_status predict(lensprof_store *store, const lensprof_profile_key
     lookup->distance = p.nearest;
     if (!done) return lp_refuse(store, lookup, LENSPROF_REASON_LOOKUP_TOO_FAR, error);
     lookup->rows = p.used;
-    lookup->falloff_sigma = p.sigma;
+    lookup->falloff_sigma = p.sigma * lp_widening(group, &at);
     lookup->distance_sigma = distance_sigma;
     lookup->sensor_sigma = sensor_sigma(group, key, p.k[1]);
     memcpy(answer->k, p.k, sizeof answer->k);
