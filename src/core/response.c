@@ -7,6 +7,7 @@
 
 #include "core/emor_table.h"
 
+#define LEAST_IRRADIANCE 1e-9 /* whose logarithm is taken */
 #define LAST LP_CURVE_LAST
 
 const double *lensprof_emor_table(uint32_t mode) { return mode <= LENSPROF_EMOR_MODES ? lp_emor_table[mode] : NULL; }
@@ -122,8 +123,8 @@ double lensprof_response_invert(const lensprof_response *response, double b, dou
 }
 
 double lp_log_irradiance(const double *table, double b, double by_mode[LENSPROF_EMOR_MODES]) {
-    double slope;
-    const double x = fmin(fmax(lp_curve_invert(table, b, &slope), 1e-9), 1.0);
+    double slope, x = lp_curve_invert(table, b, &slope);
+    if (x < LEAST_IRRADIANCE) x = LEAST_IRRADIANCE;
     for (uint32_t l = 0; l < LENSPROF_EMOR_MODES; l++)
         by_mode[l] = -lp_curve_eval(lp_emor_table[l + 1], x, NULL) * slope / x;
     return log(x);
@@ -132,7 +133,8 @@ double lp_log_irradiance(const double *table, double b, double by_mode[LENSPROF_
 double lp_gauge_position(const double *table, double by_mode[LENSPROF_EMOR_MODES]) {
     double of_dark[LENSPROF_EMOR_MODES];
     const double bright = lp_log_irradiance(table, LP_GAUGE_BRIGHT, by_mode);
-    const double range = fmax(bright - lp_log_irradiance(table, LP_GAUGE_DARK, of_dark), LP_GAUGE_LEAST);
+    double range = bright - lp_log_irradiance(table, LP_GAUGE_DARK, of_dark);
+    if (range < LP_GAUGE_LEAST) range = LP_GAUGE_LEAST;
     for (uint32_t l = 0; l < LENSPROF_EMOR_MODES; l++) by_mode[l] = (by_mode[l] - of_dark[l]) / range;
     return log(range);
 }
