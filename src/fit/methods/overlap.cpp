@@ -57,6 +57,7 @@ public:
 
     double falloff_distance(const lensprof_fit_result &alone) const { return stored_->falloff_distance(alone); }
     double response_distance(const lensprof_fit_result &alone) const { return stored_->response_distance(alone); }
+    double gamma_distance() const { return gauge_.contradiction(estimate_); }
 
     void describe(lensprof_exposure *exposures, lensprof_fit_result &result);
 
@@ -333,9 +334,10 @@ std::unique_ptr<lensprof_profile> part_of(const lensprof_profile &profile, const
 
 // How far the pictures are from a profile as the prior, standard errors.
 struct Contradiction {
-    double falloff, response, worse;  // of its own, the latter's shape; held-out pairs
+    double falloff, response, worse, gamma;  // the response's shape, held-out pairs, gamma of the kind of camera
 
     double apart() const { return std::max(falloff, response); }
+    double in_all() const { return std::max(worse, gamma); }
     bool is_one() const {
         constexpr double kClearly = 3.0, kFarApart = 5.0;
         return worse > kClearly || apart() > kFarApart;
@@ -343,8 +345,8 @@ struct Contradiction {
 };
 
 // Fits, and where a profile is the prior, without it too. Where the pictures contradict the profile, its falloff and
-// its response are tried each by itself, and that is the result which they contradict less, if it is none; else the one
-// without.
+// its response are tried each by itself, and that is the result which they and the kind of camera contradict less, if
+// it is none; else the one without.
 class InformedFit {
 public:
     InformedFit(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count)
@@ -364,7 +366,7 @@ public:
         auto best = std::make_unique<lensprof_fit_result>(r);
         std::vector<lensprof_exposure> found(exposures, exposures + image_count_);
         std::vector<lensprof_fit_image_quality> quality(image_count_);
-        Contradiction least{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+        Contradiction least{HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
         for (const Part &part : {kParts[1], kParts[2]}) {
             if (!has_both) break;
             auto own = std::make_unique<lensprof_fit_result>(r);
@@ -372,7 +374,7 @@ public:
             std::vector<lensprof_fit_image_quality> own_quality(image_count_);
             own->image_quality = own_quality.data();
             const Contradiction some = attempt(part, own_exposures.data(), r, *own);
-            if (some.is_one() || some.worse >= least.worse) continue;
+            if (some.is_one() || some.in_all() >= least.in_all()) continue;
             least = some;
             *best = *own, found = own_exposures, quality = own_quality;
         }
@@ -393,12 +395,12 @@ private:
     Contradiction attempt(const Part &part, lensprof_exposure *exposures, const lensprof_fit_result &alone,
                           lensprof_fit_result &r) {
         const auto profile = part_of(*options_.profile, part);
-        if (!profile) return {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+        if (!profile) return {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
         Fit informed(options_, image_count_, make_, count_, profile.get(),
                      part.verdict == kParts[0].verdict ? 0.5 : 1.0, 1.0);
         informed.run();
         const Contradiction found{informed.falloff_distance(alone), informed.response_distance(alone),
-                                  informed.worse_than(alone_)};
+                                  informed.worse_than(alone_), informed.gamma_distance()};
         if (found.is_one()) return found;
         informed.describe(exposures, r);
         r.profile_prior = part.verdict;

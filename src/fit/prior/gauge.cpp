@@ -187,12 +187,22 @@ double Gauge::expected(const Estimate &estimate, double &sigma, lensprof_gamma_f
         sigma = std::min(kind_sigma, stored_sigma);
         return is_of_kind ? of_kind : of_stored;
     }
-    // errors of the kind's have heavy tails: where the falloff contradicts it, it counts for less
+    // errors of falloffs of other settings have heavy tails, a kind's have none: where they contradict, the falloff
+    // counts for less
     const double z = (of_kind - of_stored) / std::hypot(kind_sigma, stored_sigma);
-    const double kind = 1.0 / (kind_sigma * kind_sigma * (1.0 + z * z)), stored = 1.0 / (stored_sigma * stored_sigma);
+    const double kind = 1.0 / (kind_sigma * kind_sigma), stored = 1.0 / (stored_sigma * stored_sigma * (1.0 + z * z));
     from = kind > stored ? LENSPROF_GAMMA_PRIOR : LENSPROF_GAMMA_FALLOFF;
     sigma = 1.0 / std::sqrt(kind + stored);
     return (kind * of_kind + stored * of_stored) / (kind + stored);
+}
+
+double Gauge::contradiction(const Estimate &estimate) const {
+    if (!stored_) return 0.0;
+    const double *table = estimate.curve.table.data();
+    double sigma;
+    bool by_falloff;
+    const double of_stored = stored_->gamma_offset(estimate, sigma, by_falloff);
+    return std::abs(gamma_position(table) - prior_.position() - of_stored) / std::hypot(prior_.sigma_of(table), sigma);
 }
 
 // From where that and known exposures, each by its standard error, want it.

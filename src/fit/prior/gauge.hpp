@@ -46,6 +46,9 @@ public:
     // Change of the full shared vector per unit of ln gamma.
     static Eigen::VectorXd direction(const Problem &problem, const Estimate &estimate);
 
+    // How far apart the profile and cameras of the kind want gamma, in standard errors; 0 without such a profile.
+    double contradiction(const Estimate &estimate) const;
+
     // By how much the response is unlike those that the prior knows; beyond 1 it is unusual. 0 where the prior is not
     // what settled gamma.
     double oddness() const { return from_ == LENSPROF_GAMMA_PRIOR ? oddness_ : 0.0; }

@@ -19,7 +19,7 @@ constexpr double kDrift = 0.01;
 // A refined response keeps no covariance but the error of its gamma. Assumed of its shape: what refined brackets leave,
 // levels RMS, and the share of the scatter over all cameras by which a camera's curve differs from day to day.
 constexpr int kCurveModes = 9;
-constexpr double kCurveLevels = 0.3, kCurveDrift = 0.05;
+constexpr double kCurveLevels = 0.2, kCurveDrift = 0.025;
 
 constexpr double kRadii2[4] = {0.1, 0.25, 0.5, 1.0};  // r^2 at which falloffs are compared
 constexpr double kSaysNothing = 0.7;                  // a standard error of ln gamma from this on
@@ -168,9 +168,12 @@ double StoredPrior::gamma_offset(const Estimate &estimate, double &sigma, bool &
     by_falloff = !has_response() || (has_falloff() && falloff_sigma_ < response_sigma_);
     sigma = by_falloff ? falloff_sigma_ : response_sigma_;
     if (!has_response() || !has_falloff()) return by_falloff ? of_falloff : of_response;
-    // The mean of least variance; no more than the better of the two, where the other adds nothing to it.
-    const double own = response_sigma_ * response_sigma_, other = falloff_sigma_ * falloff_sigma_,
-                 both = own + other - 2.0 * gamma_covariance_;
+    // The mean of least variance; no more than the better of the two, where the other adds nothing to it. Errors of
+    // falloffs of other settings have heavy tails: where the falloff contradicts the response, it counts for less.
+    const double own = response_sigma_ * response_sigma_;
+    double other = falloff_sigma_ * falloff_sigma_, both = own + other - 2.0 * gamma_covariance_;
+    if (both > 0.0) other *= 1.0 + std::pow(of_response - of_falloff, 2) / both;
+    both = own + other - 2.0 * gamma_covariance_;
     double share = both > 0.0 ? (other - gamma_covariance_) / both : 0.5;  // of the response
     share = std::clamp(share, 0.0, 1.0);
     by_falloff = share < 0.5;
