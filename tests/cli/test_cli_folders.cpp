@@ -114,10 +114,43 @@ void test_nearest_names(void **) {
                    {"Good 35mm II", "; nearest names: Good 35mm); "});
 }
 
+// What EXIF does not say is what to give.
+void test_missing_setting_is_named(void **) {
+    lens_database();
+    const std::string file = make_picture("in/a.jpg", "Other 24mm");
+    assert_refused(not_found, by_exif("out") + Words{file}, {"the focal length with --focal", "with --aperture"});
+    assert_refused(not_found, by_exif("out") + Words{"--focal", "24", "--aperture", "8", file},
+                   {"name the lens as the database has it with --lens"});
+}
+
+// Without -o they go to a folder here, which takes the place of nothing that is not by lensprof.
+void test_output_by_default(void **) {
+    lens_database();
+    const std::string file = make_picture("a.jpg", "Good 35mm"), here = fs::current_path().string();
+    const Words apply = {"apply", "--from-db", "--db", work("lens.db"), file};
+    fs::current_path(work(""));
+    const Outcome first = run_words(apply), again = run_words(apply);
+    make_picture("corrected/a.jpg", "Good 35mm");
+    const Outcome other = run_words(apply), overwritten = run_words(apply + Words{"--overwrite"});
+    fs::current_path(here);
+    assert_int_equal(first.code, done);
+    assert_string_equal(first.out.c_str(), "corrected/a.jpg\n");
+    assert_int_equal(again.code, done);
+    assert_int_equal(other.code, usage);
+    assert_true(contains(other.err, "corrected/a.jpg: is there already and is not by lensprof"));
+    assert_int_equal(overwritten.code, done);
+    assert_files(work("corrected"), {"a.jpg"});
+}
+
 void test_named_pictures_are_all_or_none(void **) {
     lens_database();
     const std::string good = make_picture("in/a.jpg", "Good 35mm"), bad = make_picture("in/b.jpg", "Other 24mm");
-    assert_refused(not_found, by_exif("out") + Words{good, bad}, {bad, "--skip"});
+    const std::string worse = make_picture("in/c.jpg", "Third 85mm");
+    assert_refused(not_found, by_exif("out") + Words{good, bad}, {bad, "; or leave it out with --skip"});
+    assert_refused(not_found, by_exif("out") + Words{good, bad, worse},
+                   {"lensprof: " + bad + ": no profile for ", "lensprof: " + worse + ": no profile for ",
+                    "2 of 3 pictures cannot be corrected, and none is; leave them out with --skip"});
+    assert_files(work("out"), {});
     const Outcome outcome = run_words(by_exif("out") + Words{"--skip", good, bad});
     assert_int_equal(outcome.code, not_found);
     assert_true(contains(outcome.err, "1 of 2 pictures left out:\n"));
@@ -152,7 +185,7 @@ void test_corrected_once(void **) {
         assert_string_equal(metadata.mark->digest.c_str(), digest_of(file).c_str());
         assert_int_equal(metadata.key.processing, LENSPROF_PROCESSING_CORRECTED);
         assert_string_equal(metadata.key.lens, "Good 35mm");
-        assert_refused(usage, corrected_into("twice", {once}),
+        assert_refused(not_found, corrected_into("twice", {once}),
                        {once, "is corrected already, by lensprof", "--force-falloff"});
         must_exit(done, corrected_into("twice", {"--force-falloff", once}));
     }
@@ -209,6 +242,8 @@ int main() {
         CLI_TEST(test_nearest_names),
         CLI_TEST(test_named_pictures_are_all_or_none),
         CLI_TEST(test_unreadable_ends_it),
+        CLI_TEST(test_missing_setting_is_named),
+        CLI_TEST(test_output_by_default),
         CLI_TEST(test_corrected_once),
         CLI_TEST(test_simulated_may_be_corrected),
         CLI_TEST(test_kept_falloff),

@@ -152,9 +152,9 @@ void test_corrected_in_camera(void **) {
     const std::string file = make_corrected("in/a.jpg");
     const Words words = {"apply", "--lens", "JPEG 35mm"};
     const char *by = "its falloff was corrected before, in camera (Panasonic: shading compensation)";
-    assert_refused(usage, words + Words{"-o", work("out"), file}, {file, by, "--force-falloff", "--skip"});
-    assert_refused(usage, {"apply", "--profile", "2", "-o", work("out"), file}, {by});
-    assert_refused(usage, words + Words{"--response", "srgb", "-o", work("out"), file}, {by});
+    assert_refused(not_found, words + Words{"-o", work("out"), file}, {file, by, "--force-falloff"});
+    assert_refused(not_found, {"apply", "--profile", "2", "-o", work("out"), file}, {by});
+    assert_refused(not_found, words + Words{"--response", "srgb", "-o", work("out"), file}, {by});
     for (const Words &how : {Words{"--lens", "JPEG 35mm"}, Words{"--profile", "2"}}) {
         const Outcome forced = run_words(Words{"apply", "--force-falloff", "-o", work("forced"), file} + how);
         assert_int_equal(forced.code, done);

@@ -276,10 +276,14 @@ void test_apply_between_settings(void **) {
     const Words db = {"--db", work("l.db"), "--distance", "inf"};
     must_exit(done, Words{"build", a, "--aperture", "2.5"} + db);
     must_exit(done, Words{"build", b, "--aperture", "3.2"} + db);
-    const Words apply = {"apply", "--from-db", "-o", work("out"), work("a/img000.png"), "--db", work("l.db")};
+    const Words apply = {"apply", "--from-db", "-o", work("out"), work("a/img000.png"), work("a/img001.png"),
+                         "--db",  work("l.db")};
     const Outcome outcome = run_words(apply);
     assert_int_equal(outcome.code, done);
-    assert_true(contains(outcome.err, "falloff predicted from 2 profiles of this lens"));
+    // Once for both, for they are answered alike.
+    assert_true(contains(outcome.err, "img000.png and 1 more: falloff predicted from 2 profiles, response "));
+    assert_true(contains(outcome.err, "; at most, M in the corner \u00b1 0."));
+    assert_int_equal(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
     fs::remove_all(work("out"));
     const Json lookup = json_of(apply + Words{"--json"})["pictures"][0]["lookup"];
     assert_int_equal(lookup["rows"].size(), 2);

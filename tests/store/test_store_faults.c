@@ -2,6 +2,7 @@
  * nothing, and the database is as before it or as after it. */
 #include "store_fixture.h"
 
+#define MOST_ROWS 4000 /* that the sessions of one fault leave */
 #ifndef STEP
 #define STEP 101 /* every 101st operation is made to fail; in the slow variant every 47th */
 #endif
@@ -127,7 +128,7 @@ static lensprof_status whole_database(lensprof_store *store, const lensprof_prof
 static lensprof_status session(const char *path, const lensprof_profile *profile, bool *done, lensprof_error *error) {
     static lensprof_profile found = {.struct_size = sizeof found};
     lensprof_store *store = NULL;
-    static lensprof_store_row rows[2000];
+    static lensprof_store_row rows[MOST_ROWS];
     uint32_t count;
     int64_t id;
     *done = false;
@@ -137,7 +138,7 @@ static lensprof_status session(const char *path, const lensprof_profile *profile
     if (status == LENSPROF_OK) status = lensprof_store_find(store, &profile->key, &found, &id, error);
     if (status == LENSPROF_OK) assert_same_profile(&found, profile);
     if (status == LENSPROF_OK) status = lensprof_store_get(store, id, &found, error);
-    if (status == LENSPROF_OK) status = lensprof_store_list(store, NULL, rows, 2000, &count, error);
+    if (status == LENSPROF_OK) status = lensprof_store_list(store, NULL, rows, MOST_ROWS, &count, error);
     if (status == LENSPROF_OK) status = whole_database(store, profile, error);
     if (status == LENSPROF_OK) status = lensprof_store_remove(store, id, error);
     if (status == LENSPROF_OK) *done = false;
@@ -167,7 +168,7 @@ static int fail_each(const place *here, int first, start start_at, lensprof_stat
         make_layout(here->path, 1, NULL, 0);
         layout_1 = read_file(here->path, &size);
     }
-    for (n = first; n < 100000; n += STEP) {
+    for (n = first; n < 200000; n += STEP) {
         if (start_at != AS_LEFT) unlink(here->path);
         if (start_at != AS_LEFT) stored = 0;
         if (start_at == LAYOUT_1) write_file(here->path, layout_1, size);

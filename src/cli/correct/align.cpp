@@ -45,7 +45,7 @@ void declare(Command &command, Options &o) {
     command.files("FRAMES", o.files, "pictures of one camera, in order; with --project default all of it");
     command.choice("--to", o.to, targets,
                    "whose exposure and white balance all frames get: first, last, brightest, or mean (geometric)");
-    command.file("-o,--output", o.output, "folder for the frames (aligned)");
+    command.folder("-o,--output", o.output, "folder for the frames (aligned)");
     command.file("--project", o.pto,
                  "Hugin project that says where the camera looked; the falloff is then found and evened out, too. "
                  "Without it the camera stood still");
@@ -141,7 +141,7 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
                         {}});
     }
     check_targets(jobs, project.files, "");
-    check_older_outputs(jobs, o.kind);
+    check_older_outputs(jobs, o.kind, true);
     return jobs;
 }
 

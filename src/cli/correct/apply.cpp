@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -36,7 +37,7 @@ struct Options {
     std::string pto, output, sheet;
     Exposure exposure = Exposure::by_default;
     CorrectionKind kind;
-    bool skip = false, json = false, progress = false;
+    bool skip = false, json = false, progress = false, has_output = true;
     std::vector<std::string> files;
 };
 
@@ -73,8 +74,8 @@ void declare(Command &command, Options &o) {
         "--skip", o.skip,
         "leave out pictures without a profile and those corrected already, and list them at the end, as is done "
         "with those of folders; without it none is corrected where one that is named cannot be");
-    command.file("-o,--output", o.output, "folder for the pictures; those of subfolders go to subfolders");
-    command.require("--output");
+    command.folder("-o,--output", o.output,
+                   "folder for the pictures; those of subfolders go to subfolders; default corrected, here");
     command.file("--contact-sheet", o.sheet, "write an overview, before above after, as .png, .tif or .jpg");
     declare_writing(command, o.kind);
     declare_json(command, o.json);
@@ -85,8 +86,7 @@ void declare(Command &command, Options &o) {
         "Pictures keep format, depth, metadata and colour profile; a mark in their XMP says that lensprof corrected\n"
         "them. Several are corrected at once, in strips of rows; interlaced PNG and progressive JPEG alone are held in\n"
         "memory as a whole. All are opened first: when one cannot be, nothing is written. When one turns out to be\n"
-        "damaged later, those before it are written, it and those after it are not. Exit code 5: pictures of folders, or\n"
-        "with --skip, had no profile and were left out. An output is replaced where it was made of the same picture, or\n"
+        "damaged later, those before it are written, it and those after it are not. XX An output is replaced where it was made of the same picture, or\n"
         "not by lensprof.");
 }
 
@@ -189,7 +189,7 @@ PictureMetadata metadata_of(const Options &o, const std::string &file) {
 void check_mark(const Options &o, const std::string &file, const PictureMetadata &metadata) {
     const auto &mark = metadata.mark;
     if (o.model.force_falloff || o.kind.simulate || !mark || mark->falloff != CorrectionMark::Falloff::removed) return;
-    throw NotThisOne(ExitCode::usage,
+    throw NotThisOne(ExitCode::not_found,
                      file + ": is corrected already, " + metadata.corrected_by
                          + "; correct that picture, or this one once more with --force-falloff",
                      true);
@@ -210,7 +210,17 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
     return job;
 }
 
-Work plan_work(const Options &o) {
+// Pictures that are named are all wanted: all reasons are told, and nothing is written.
+[[noreturn]] void fail_refused(const std::vector<NotThisOne> &refused, size_t count, Streams &streams) {
+    if (refused.size() == 1)
+        throw Failure(refused[0].code,
+                      refused[0].what() + std::string(count > 1 ? "; or leave it out with --skip" : ""));
+    for (const NotThisOne &one : refused) tell(streams, one.what());
+    throw Failure(refused[0].code, std::to_string(refused.size()) + " of " + counted(count, "picture")
+                                       + " cannot be corrected, and none is; leave them out with --skip");
+}
+
+Work plan_work(const Options &o, Streams &streams) {
     const Source source = open_source(o);
     std::vector<NamedPicture> pictures;
     if (o.files.empty() && source.project)
@@ -222,17 +232,21 @@ Work plan_work(const Options &o) {
     lensprof_exposure_init(&work.mean);
     if (source.project) work.mean = mean_exposure(source.exposures);
     std::vector<std::string> inputs = source.project ? source.project->files : std::vector<std::string>();
+    std::vector<NotThisOne> refused;
     for (const NamedPicture &picture : pictures) {
         inputs.push_back(picture.file);
         try {
             work.jobs.push_back(make_job(o, source, picture));
         } catch (const NotThisOne &failure) {
-            if (!o.skip && !picture.in_folder) throw;
-            work.left_out.push_back({picture.file, failure.what(), failure.corrected_already});
+            if (o.skip || picture.in_folder)
+                work.left_out.push_back({picture.file, failure.what(), failure.corrected_already});
+            else
+                refused.push_back(failure);
         }
     }
+    if (!refused.empty()) fail_refused(refused, pictures.size(), streams);
     check_targets(work.jobs, inputs, o.sheet);
-    check_older_outputs(work.jobs, o.kind);
+    check_older_outputs(work.jobs, o.kind, o.has_output);
     if (source.model) {
         check_has_result(*source.project);
         check_one_result(*source.project);
@@ -255,15 +269,29 @@ Json left_out_json(const Work &work) {
     return list;
 }
 
-// Everything once, with the first picture of which it is true.
+// Everything once, with the first picture of which it is true; of pictures that are answered alike the largest error.
 void say_notes(const std::vector<Correction> &jobs, Streams &streams) {
-    std::set<std::string> said;
-    const auto say = [&](const Correction &job, const std::string &text) {
-        if (!text.empty() && said.insert(text).second) note(streams, job.source + ": " + text);
+    struct Answer {
+        const Correction *first, *least_sure;
+        size_t count;
     };
+    std::vector<std::string> order;
+    std::map<std::string, Answer> answers;
+    std::set<std::string> said;
     for (const Correction &job : jobs) {
-        if (job.lookup) say(job, describe_lookup(*job.lookup));
-        say(job, job.note);
+        if (!job.note.empty() && said.insert(job.note).second) note(streams, job.source + ": " + job.note);
+        if (!job.lookup) continue;
+        const auto [found, is_new] = answers.try_emplace(describe_briefly(*job.lookup), Answer{&job, &job, 0});
+        if (is_new) order.push_back(found->first);
+        Answer &answer = found->second;
+        answer.count++;
+        if (job.lookup->how.sigma > answer.least_sure->lookup->how.sigma) answer.least_sure = &job;
+    }
+    for (const std::string &text : order) {
+        const Answer &answer = answers.at(text);
+        const std::string others = answer.count > 1 ? " and " + std::to_string(answer.count - 1) + " more" : "";
+        note(streams, answer.first->source + others + ": " + text + "; " + (answer.count > 1 ? "at most, " : "")
+                          + describe_error(answer.least_sure->lookup->how));
     }
 }
 
@@ -288,7 +316,9 @@ Corrected correct(const Options &o, Work &work, Streams &streams) {
 
 int run(Options &o, Streams &streams) {
     o.model.puts_in = o.kind.simulate;
-    Work work = plan_work(o);
+    o.has_output = !o.output.empty();
+    if (!o.has_output) o.output = "corrected";
+    Work work = plan_work(o, streams);
     const Corrected written = correct(o, work, streams);
     if (o.json) {
         Json json = {{"schema", 1}, {"pictures", written.pictures}, {"left_out", left_out_json(work)}};

@@ -47,7 +47,7 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
         throw Failure(ExitCode::usage, sheet + ": the contact sheet would overwrite a picture; give it another name");
 }
 
-// What is no picture, or has no mark, is overwritten as any file of that name.
+// None: no picture, or without a mark.
 static std::optional<CorrectionMark> mark_of_older(const std::string &file) {
     if (!is_regular_file(file)) return std::nullopt;
     try {
@@ -57,10 +57,13 @@ static std::optional<CorrectionMark> mark_of_older(const std::string &file) {
     }
 }
 
-void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKind &kind) {
+void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKind &kind, bool replaces_unmarked) {
     for (const Correction &job : jobs) {
         if (kind.overwrite) return;
         const auto mark = mark_of_older(job.target);
+        if (!mark && !replaces_unmarked && path_exists(job.target))
+            throw Failure(ExitCode::usage, job.target + ": is there already and is not by lensprof; give a folder "
+                                                        "with -o, or --overwrite");
         if (!mark || mark->digest.empty() || mark->digest == digest_of(job.source)) continue;
         throw Failure(ExitCode::usage, job.target + ": is there already and was made of another picture ("
                                            + mark->source + "); give another folder with -o, or --overwrite");

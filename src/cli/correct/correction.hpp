@@ -62,8 +62,9 @@ lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures)
 // before anything is written. Sets the jobs' numbers of pixels.
 void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet);
 
-// Failure (usage) for an output that is there and was made of another picture, as its mark says.
-void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKind &kind);
+// Failure (usage) for an output that is there and was made of another picture, as its mark says, or, unless
+// `replaces_unmarked`, not by lensprof.
+void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKind &kind, bool replaces_unmarked);
 
 // Corrects and writes all pictures; `sheet` (NULL = none) receives them before and after. Several pictures are worked
 // on at once, one a thread, each in strips of rows; where there are at least twice as many threads as pictures, a

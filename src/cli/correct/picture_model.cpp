@@ -55,9 +55,9 @@ lensprof_profile_key PictureModels::key_of(const PictureMetadata &metadata) cons
 }
 
 [[noreturn]] static void fail_corrected(const std::string &file, const PictureMetadata &metadata) {
-    throw NotThisOne(ExitCode::usage,
+    throw NotThisOne(ExitCode::not_found,
                      file + ": its falloff was corrected before, " + metadata.corrected_by
-                         + "; correct it all the same with --force-falloff, or leave the picture out with --skip",
+                         + "; correct it all the same with --force-falloff",
                      true);
 }
 
@@ -82,6 +82,18 @@ void PictureModels::take_profile(const PictureMetadata &metadata, Correction &jo
                                           + ", or its curve, as --response srgb");
 }
 
+// What the picture does not say is what to name; where it says all, its lens may be known by another name.
+static std::string missing_options(const lensprof_profile_key &key) {
+    std::string options;
+    const auto add = [&](bool is_missing, const char *option) {
+        if (is_missing) options += (options.empty() ? "" : ", ") + std::string(option);
+    };
+    add(!*key.lens && !*key.camera_model, "the lens with --lens");
+    add(key.focal_mm == LENSPROF_UNKNOWN, "the focal length with --focal");
+    add(key.aperture == LENSPROF_UNKNOWN, "the aperture with --aperture");
+    return options.empty() ? "the lens as the database has it with --lens" : options;
+}
+
 void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, lensprof_profile &profile) const {
     const lensprof_profile_key key = key_of(metadata);
     const lensprof_lookup_options options = options_.lookup.options();
@@ -93,8 +105,8 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
         throw NotThisOne(ExitCode::not_found,
                          job.source + ": no profile for " + describe_key(key) + " in " + databases_.names() + " ("
                              + how.reason + describe_nearest(nearest_lenses(databases_, key, how))
-                             + "); make one with `lensprof build`, name the lens with --lens or a profile with "
-                               "--profile, or leave the picture out with --skip");
+                             + "); make one with `lensprof build`, name " + missing_options(key) + ", or a "
+                               "profile with --profile");
     if (how.exact && how.falloff_store == 0)
         job.profile_id = how.id[0];
     else

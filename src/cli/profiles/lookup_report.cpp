@@ -56,12 +56,25 @@ std::string describe_response(const Found &found) {
     }
 }
 
-// What a standard error is made of, but for the falloff's own.
+// What a standard error is made of. The response's part is what the others leave.
 std::string describe_parts(const lensprof_lookup &how) {
     std::string text;
-    if (how.distance_sigma > 0.0) text += format(", %.3f by the distance", how.distance_sigma);
-    if (how.sensor_sigma > 0.0) text += format(", %.3f by the sensor's size", how.sensor_sigma);
+    const double others = std::hypot(how.falloff_sigma, std::hypot(how.distance_sigma, how.sensor_sigma)),
+                 response = std::sqrt(std::max(how.sigma * how.sigma - others * others, 0.0));
+    if (how.distance_sigma > 0.0) text += format(", distance %.3f", how.distance_sigma);
+    if (how.sensor_sigma > 0.0) text += format(", sensor size %.3f", how.sensor_sigma);
+    if (response >= 0.0005) text += format(", response %.3f", response);
     return text.empty() ? text : " (falloff " + format("%.3f", how.falloff_sigma) + text + ")";
+}
+
+// Takes the sentence of a reason out of a text of several.
+void leave_out(uint32_t code, std::string &text) {
+    const std::string sentence = lensprof_reason_text(code);
+    const size_t at = text.find(sentence);
+    if (at == std::string::npos) return;
+    const size_t before = at >= 2 ? 2 : 0;  // "; "
+    text.erase(at - before, sentence.size() + before);
+    if (text.rfind("; ", 0) == 0) text.erase(0, 2);
 }
 
 std::string describe_prediction(const Found &found) {
@@ -94,11 +107,7 @@ Found with_response_given(Found found) {
             codes.push_back(code);
             continue;
         }
-        const std::string sentence = lensprof_reason_text(code);
-        const size_t at = text.find(sentence);
-        if (at == std::string::npos) continue;
-        const size_t before = at >= 2 ? 2 : 0;  // "; "
-        text.erase(at - before, sentence.size() + before);
+        leave_out(code, text);
     }
     codes.resize(std::size(how.reason_code));
     std::copy(codes.begin(), codes.end(), how.reason_code);
@@ -125,13 +134,20 @@ Json lookup_json(const Found &found) {
             {"reason_codes", reason_codes_json(how)}};
 }
 
-std::string describe_lookup(const Found &found) {
+std::string describe_briefly(const Found &found) {
     const lensprof_lookup &how = found.how;
-    std::string text = "falloff " + describe_prediction(found) + "; response " + describe_response(found);
-    if (how.sigma != LENSPROF_UNKNOWN)
-        text += format("; standard error %.3f of M in the corner", how.sigma) + describe_parts(how);
-    if (*how.reason) text += std::string("; ") + how.reason;
-    return text;
+    std::string others = how.reason;  // the parts of the error say these two
+    leave_out(LENSPROF_REASON_LOOKUP_USUAL_DISTANCE, others);
+    leave_out(LENSPROF_REASON_LOOKUP_TYPICAL_RESPONSE, others);
+    std::string text = how.exact ? format("falloff of profile %lld", static_cast<long long>(how.id[0]))
+                                 : "falloff predicted from " + counted(how.rows, "profile");
+    text += in_database(found, how.falloff_store) + ", response " + describe_response(found);
+    return others.empty() ? text : text + "; " + others;
+}
+
+std::string describe_error(const lensprof_lookup &how) {
+    if (how.sigma == LENSPROF_UNKNOWN) return "the error of M is not known";
+    return format("M in the corner \u00b1 %.3f", how.sigma) + describe_parts(how);
 }
 
 std::vector<std::string> nearest_lenses(const Databases &databases, const lensprof_profile_key &key,

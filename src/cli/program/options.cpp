@@ -92,8 +92,10 @@ std::string advice(const std::string &word, const std::vector<std::string> &word
 
 // What a shell makes of a variable that is not set.
 std::string empty_text(const CLI::Option &option) {
-    const bool is_file = option.get_type_name() == "FILE";
-    return std::string(is_file ? "names no file; give one" : "its value is empty; give one")
+    const std::string type = option.get_type_name();
+    return (type == "FILE"     ? std::string("names no file; give one")
+            : type == "FOLDER" ? "names no folder; give one"
+                               : "its value is empty; give one")
            + (option.get_required() ? "" : ", or leave it out");
 }
 
@@ -275,6 +277,11 @@ void Command::text(const char *names, std::string &value, const std::string &abo
 void Command::file(const char *names, std::string &value, const std::string &about) {
     add_option(
         names, "FILE", [&value](const std::string &word) { value = word; }, about);
+}
+
+void Command::folder(const char *names, std::string &value, const std::string &about) {
+    add_option(
+        names, "FOLDER", [&value](const std::string &word) { value = word; }, about);
 }
 
 void Command::files(const char *name, std::vector<std::string> &values, const std::string &about) {

@@ -42,6 +42,7 @@ public:
     void flag(const char *names, bool &value, const std::string &about);
     void text(const char *names, std::string &value, const std::string &about);
     void file(const char *names, std::string &value, const std::string &about);
+    void folder(const char *names, std::string &value, const std::string &about);
     void files(const char *name, std::vector<std::string> &values, const std::string &about);  // positional
     void texts(const char *name, std::vector<std::string> &values, const std::string &about);  // positional
     void number(const char *names, double &value, const Quantity &quantity, const std::string &about);

@@ -79,7 +79,7 @@ void declare_disturbances(Command &command, Options &o) {
 }
 
 void declare(Command &command, Options &o) {
-    command.file("-o,--output", o.output, "folder for pictures, pano.pto and truth.json");
+    command.folder("-o,--output", o.output, "folder for pictures, pano.pto and truth.json");
     command.require("--output");
     command.count("--images", o.images, 2, 5000, "number of pictures");
     command.count("--rows", o.rows, 1, 100, "rows of pictures");
