@@ -128,8 +128,8 @@ typedef struct lensprof_fit_options {
                                         covariance, and where a TABLE has a gamma_sigma above 0, as refined responses
                                         have; one of these it must have. TRANSFER and RADIANCE, a prior_weight above
                                         0. Response and falloff are each overruled where held-out pairs are clearly
-                                        worse for them (three standard errors), or the falloff is far from theirs
-                                        (five). NULL = none. Read during the call */
+                                        worse for them (three standard errors), or the falloff or the response's
+                                        shape is far from theirs (five). NULL = none. Read during the call */
     const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
     lensprof_vignetting vignetting;    /* the value where fixed */
     lensprof_progress progress;        /* or NULL */
