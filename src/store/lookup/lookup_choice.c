@@ -210,16 +210,28 @@ double lp_widening(const lp_candidates *found, const lp_falloff_node *at) {
     return widening;
 }
 
+/* Of a setting, to two decimals; a point whatever the locale. */
+#define NUMBER_BYTES 24
+static void spell_number(double value, char text[NUMBER_BYTES]) {
+    const long long hundredths = llround(fmin(value, 1e9) * 100.0);
+    int length = snprintf(text, NUMBER_BYTES, "%lld.%02d", hundredths / 100, (int)(hundredths % 100));
+    while (text[length - 1] == '0') text[--length] = 0;
+    if (text[length - 1] == '.') text[--length] = 0;
+}
+
 bool lp_is_outside_both(const lp_candidates *found, const lp_falloff_node *at, char *text, size_t bytes) {
     double low[2], high[2];
     for (int which = 0; which < 2; which++) range_of(found, which, &low[which], &high[which]);
     const bool is_shorter = at->focal_mm < low[0] / (1.0 + NEAR_FOCAL);
     if (!is_shorter && at->focal_mm <= high[0] * (1.0 + NEAR_FOCAL)) return false;
     if (at->aperture >= low[1] * (1.0 - 1e-6) && at->aperture <= high[1] * (1.0 + 1e-6)) return false;
+    char word[6][NUMBER_BYTES];
+    const double values[6] = {at->focal_mm, at->aperture, low[0], high[0], low[1], high[1]};
+    for (int i = 0; i < 6; i++) spell_number(values[i], word[i]);
     snprintf(text, bytes,
-             "focal length %g mm and aperture f/%g are both outside those at which this lens is known: %g to %g mm,"
-             " f/%g to f/%g",
-             at->focal_mm, at->aperture, low[0], high[0], low[1], high[1]);
+             "focal length %s mm and aperture f/%s are both outside those at which this lens is known: %s to %s mm,"
+             " f/%s to f/%s",
+             word[0], word[1], word[2], word[3], word[4], word[5]);
     return true;
 }
 
