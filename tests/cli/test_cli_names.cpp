@@ -132,6 +132,53 @@ void test_each_once(void **) {
     must_exit(done, Words{"profile", "remove", "--camera", "EOS 5D", "--yes"} + at);
 }
 
+// The installed database is read after one's own, or alone; what writes, and what ids are of, is one's own.
+void test_installed_database(void **) {
+    make_db();
+    const std::string own = work("data/lensprof/profiles.db"), installed = work("share/lensprof/lensfun.db");
+    fs::create_directories(fs::path(installed).parent_path());
+    fs::rename(work("p.db"), installed);
+    const Words lenses = {"profile", "lenses"}, cameras = {"profile", "cameras"}, list = {"profile", "list"},
+                stats = {"profile", "stats"}, show = {"profile", "show", "--lens", "24-70", "--focal", "70"};
+    for (const Words &words : {lenses, cameras, list, stats, show})
+        assert_false(contains(must_exit(done, words), "  in "));  // of one there is no need to say which
+    assert_int_equal(json_of(stats + Words{"--json"})["profiles"], 4);
+    must_exit(done, {"profile", "export", "1", "-o", work("one.json")});
+    assert_false(fs::exists(own));
+
+    save_text(work("own.json"), Json{{"schema", 1}, {"profiles", {one_of("Mine", "My 24-70mm", 70, 4)}}}.dump());
+    const Bytes before = load(installed);
+    must_exit(done, {"profile", "import", work("own.json")});
+    assert_true(load(installed) == before);
+    for (const Words &words : {lenses, cameras, list}) {
+        const std::string text = must_exit(done, words);
+        assert_true(text.find("  in " + own) < text.find("  in " + installed));
+        assert_true(contains(text, "  in " + installed));
+    }
+    const Json all = json_of(list + Words{"--json"})["profiles"];
+    assert_int_equal(all.size(), 5);
+    assert_true(all[0]["database"] == own && all[1]["database"] == installed);
+    assert_true(json_of(lenses + Words{"--json", "FE"})["lenses"][0]["database"] == installed);
+    const Json counts = json_of(stats + Words{"--json"});
+    assert_true(counts["file"] == own && counts["profiles"] == 1);
+    assert_true(counts["others"][0]["file"] == installed && counts["others"][0]["profiles"] == 4);
+    const std::string shown = must_exit(done, show);
+    assert_true(contains(shown, "database  " + own) && contains(shown, "database  " + installed));
+    assert_true(json_of({"profile", "show", "1", "--json"})["key"]["lens"] == "My 24-70mm");
+    assert_refused(not_found, {"profile", "show", "2"}, {own});
+
+    const auto exported = [](const Words &which) {
+        return json_of(Words{"profile", "export", "--format", "json", "-o", work("out.json"), "--json"} + which);
+    };
+    assert_int_equal(exported({"--all"})["profiles"].size(), 1);
+    assert_int_equal(exported({"--lens", "24-70"})["profiles"].size(), 1);  // one's own goes before
+    assert_int_equal(exported({"--lens", "RF50mm"})["profiles"].size(), 1);
+    assert_refused(usage, {"profile", "export", "1", "-o", installed, "--format", "json"}, {"is the profile database"});
+    must_exit(done, {"profile", "remove", "--lens", "24-70", "--yes"});
+    assert_true(load(installed) == before);
+    assert_int_equal(json_of(list + Words{"--json"})["profiles"].size(), 4);
+}
+
 }  // namespace
 
 int main() {
@@ -140,6 +187,7 @@ int main() {
                                 CLI_TEST(test_nearest_names),
                                 CLI_TEST(test_remove_what_matches),
                                 CLI_TEST(test_set),
-                                CLI_TEST(test_each_once)};
+                                CLI_TEST(test_each_once),
+                                CLI_TEST(test_installed_database)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -108,7 +108,7 @@ void test_options_are_no_values(void **) {
         {{"query", "--db=a", "--camera", "X", "--focal", "-1e-3"}, "--focal: -1e-3 is not a number"},
         {{"query", "--camera"}, "--camera: needs a value; give --camera TEXT"},
         {{"query", "--camera", "--", "X"}, "--camera: needs a value"},
-        {{"profile", "list", "--db", "a", "--db", "b"}, "--db: is given more than once; give it once"},
+        {{"profile", "check", "--db", "a", "--db", "b"}, "--db: is given more than once; give it once"},
         {{"query", "--json=maybe"}, "--json: takes no value, and maybe is one; give --json alone"},
         {{"simulate"}, "--output: is needed; give --output FOLDER"},
         {{"build"}, "PROJECT: is needed; give PROJECT"},

@@ -114,18 +114,23 @@ std::vector<lensprof_store_row> KeyFilter::matching_rows(lensprof_store *store, 
     return all;
 }
 
-std::vector<StoredProfile> KeyFilter::profiles(const std::string &db, std::vector<int64_t> ids) const {
-    Store store = open_store(db, LENSPROF_STORE_READ);
-    if (ids.empty())
-        for (const auto &row : matching_rows(store.get(), db)) ids.push_back(row.id);
-    if (ids.empty()) throw Failure(ExitCode::not_found, nothing_found(db));
+std::vector<StoredProfile> KeyFilter::profiles(const Databases &databases, const std::vector<int64_t> &ids,
+                                               bool of_first) const {
     std::vector<StoredProfile> profiles;
-    for (int64_t id : ids) {
-        auto profile = new_profile();
-        lensprof_error error{};
-        check(lensprof_store_get(store.get(), id, profile.get(), &error), store_path(db), &error);
-        profiles.push_back({id, std::move(profile)});
+    for (size_t i = 0; i < databases.size(); i++) {
+        const std::string &file = databases.file(i);
+        std::vector<int64_t> wanted = ids;
+        if (ids.empty())
+            for (const auto &row : matching_rows(databases.store(i), file)) wanted.push_back(row.id);
+        for (int64_t id : wanted) {
+            auto profile = new_profile();
+            lensprof_error error{};
+            check(lensprof_store_get(databases.store(i), id, profile.get(), &error), file, &error);
+            profiles.push_back({id, std::move(profile), databases.size() > 1 ? file : std::string()});
+        }
+        if (!ids.empty() || (of_first && !profiles.empty())) break;
     }
+    if (profiles.empty()) throw Failure(ExitCode::not_found, nothing_found(databases.names()));
     return profiles;
 }
 

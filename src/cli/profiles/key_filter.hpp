@@ -8,6 +8,7 @@
 
 #include <lensprof/lensprof.h>
 
+#include "cli/program/databases.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
 
@@ -59,8 +60,10 @@ public:
     // the names.
     std::vector<lensprof_store_row> matching_rows(lensprof_store *store, const std::string &db) const;
 
-    // The profiles with these ids, or where there are none those of matching_rows(); Failure (not_found).
-    std::vector<StoredProfile> profiles(const std::string &db, std::vector<int64_t> ids) const;
+    // The profiles with these ids in the first database, or where there are none those of matching_rows() in all of
+    // them, or `of_first` in the first that has any; Failure (not_found).
+    std::vector<StoredProfile> profiles(const Databases &databases, const std::vector<int64_t> &ids,
+                                        bool of_first) const;
 
     // "no profile for CAMERA with this setting in FILE; what to do".
     std::string nothing_found(const std::string &db) const;

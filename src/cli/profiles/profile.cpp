@@ -7,6 +7,7 @@
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/profile_blob.hpp"
 #include "cli/program/commands.hpp"
+#include "cli/program/databases.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/message.hpp"
@@ -37,41 +38,64 @@ int report_damaged(lensprof_store *store, const std::vector<lensprof_store_row> 
     return static_cast<int>(code);
 }
 
-int list(const std::string &db, const KeyFilter &filter, bool json, Streams &streams) {
-    Store store = open_store(db, LENSPROF_STORE_READ);
-    const std::vector<lensprof_store_row> rows = filter.matching_rows(store.get(), db);
-    if (json) {
-        Json profiles = Json::array();
-        Json damaged = Json::array();
-        for (const auto &row : rows)
-            if (row.damaged)
+struct ListOptions {
+    std::vector<std::string> dbs;
+    KeyFilter filter;
+    bool json = false;
+};
+
+using Rows = std::vector<lensprof_store_row>;
+
+void list_json(const Databases &databases, const std::vector<Rows> &all, std::ostream &out) {
+    Json profiles = Json::array();
+    Json damaged = Json::array();
+    for (size_t i = 0; i < all.size(); i++)
+        for (const auto &row : all[i])
+            if (row.damaged) {
                 damaged.push_back(row.id);
-            else
+            } else {
                 profiles.push_back(
                     {{"id", row.id}, {"key", key_json(row.key)}, {"provenance", provenance_json(row.provenance)}});
-        print_json(Json{{"schema", 1}, {"profiles", profiles}, {"damaged", damaged}}, streams.out);
-        return report_damaged(store.get(), rows, streams);
-    }
-    streams.out << format("%6s  %-28s %-32s %5s %7s %6s %9s  %s\n", "id", "camera", "lens", "crop", "mm", "f/",
-                          "focus m", "state");
-    for (const auto &row : rows) {
-        if (row.damaged) continue;
-        const auto &k = row.key;
-        streams.out << format("%6lld  %-28s %-32s %5s %7s %6s %9s  %s%s%s\n", static_cast<long long>(row.id),
-                              k.camera_model, k.lens, number_or(k.crop_factor, "%.3g").c_str(),
-                              number_or(k.focal_mm, "%g").c_str(), number_or(k.aperture, "%g").c_str(),
-                              number_or(k.distance_m, "%g").c_str(), processing_name(k.processing),
-                              *k.unit ? ", unit " : "", k.unit);
-    }
-    if (rows.empty()) streams.out << "0 profiles\n";
-    return report_damaged(store.get(), rows, streams);
+                if (databases.size() > 1) profiles.back()["database"] = databases.file(i);
+            }
+    print_json(Json{{"schema", 1}, {"profiles", profiles}, {"damaged", damaged}}, out);
+}
+
+void list_text(const Databases &databases, const std::vector<Rows> &all, std::ostream &out) {
+    out << format("%6s  %-28s %-32s %5s %7s %6s %9s  %s\n", "id", "camera", "lens", "crop", "mm", "f/", "focus m",
+                  "state");
+    bool is_empty = true;
+    for (size_t i = 0; i < all.size(); i++)
+        for (const auto &row : all[i]) {
+            is_empty = false;
+            if (row.damaged) continue;
+            const auto &k = row.key;
+            out << format("%6lld  %-28s %-32s %5s %7s %6s %9s  %s%s%s", static_cast<long long>(row.id), k.camera_model,
+                          k.lens, number_or(k.crop_factor, "%.3g").c_str(), number_or(k.focal_mm, "%g").c_str(),
+                          number_or(k.aperture, "%g").c_str(), number_or(k.distance_m, "%g").c_str(),
+                          processing_name(k.processing), *k.unit ? ", unit " : "", k.unit)
+                << databases.column(i) << "\n";
+        }
+    if (is_empty) out << "0 profiles\n";
+}
+
+int list(const ListOptions &o, Streams &streams) {
+    const Databases databases(databases_of(o.dbs));
+    std::vector<Rows> all;
+    for (size_t i = 0; i < databases.size(); i++)
+        all.push_back(o.filter.matching_rows(databases.store(i), databases.file(i)));
+    o.json ? list_json(databases, all, streams.out) : list_text(databases, all, streams.out);
+    int code = static_cast<int>(ExitCode::done);
+    for (size_t i = 0; i < all.size(); i++) code = std::max(code, report_damaged(databases.store(i), all[i], streams));
+    return code;
 }
 
 // What `show` is asked for.
 struct ShowOptions {
     std::vector<int64_t> ids;
     KeyFilter filter;
-    std::string db, blob, chart_out;
+    std::vector<std::string> dbs;
+    std::string blob, chart_out;
     std::optional<int> channel;  // of charts; -1: all
     bool json = false, chart = false;
 };
@@ -79,17 +103,24 @@ struct ShowOptions {
 // One curve a profile where there are several, so that they can be compared.
 int channel_of(const ShowOptions &o, size_t profiles) { return o.channel.value_or(profiles > 1 ? 1 : -1); }
 
+Json stored_json(const StoredProfile &stored) {
+    Json object = profile_json(stored.id, *stored.profile);
+    if (!stored.database.empty()) object["database"] = stored.database;
+    return object;
+}
+
 void print_profiles(const std::vector<StoredProfile> &profiles, bool json, Streams &streams) {
     if (!json) {
         for (size_t i = 0; i < profiles.size(); i++) {
             if (i) streams.out << "\n";
             print_profile(profiles[i].id, *profiles[i].profile, streams.out);
+            if (!profiles[i].database.empty()) streams.out << "database  " << profiles[i].database << "\n";
         }
     } else if (profiles.size() == 1) {
-        print_json(profile_json(profiles[0].id, *profiles[0].profile), streams.out);
+        print_json(stored_json(profiles[0]), streams.out);
     } else {
         Json all = Json::array();
-        for (const StoredProfile &stored : profiles) all.push_back(profile_json(stored.id, *stored.profile));
+        for (const StoredProfile &stored : profiles) all.push_back(stored_json(stored));
         print_json(Json{{"schema", 1}, {"profiles", all}}, streams.out);
     }
 }
@@ -127,16 +158,18 @@ int show(const ShowOptions &o, Streams &streams) {
                       "--lens and the like, or --blob");
     if (o.channel && !o.chart && o.chart_out.empty())
         throw Failure(ExitCode::usage, "profile show: --channel belongs to --chart and --chart-out; add one of them");
-    if (!o.blob.empty() && !o.db.empty())
+    if (!o.blob.empty() && !o.dbs.empty())
         throw Failure(ExitCode::usage, "profile show: --blob reads a file of its own; leave --db out");
     if (!o.chart_out.empty()) check_chart_name(o.chart_out);
-    if (is_same_file(o.chart_out, o.blob.empty() ? store_path(o.db) : o.blob))
-        throw Failure(ExitCode::usage, o.chart_out + ": is the " + (o.blob.empty() ? "profile database" : "blob")
-                                           + "; give --chart-out another name");
+    const std::vector<std::string> read = o.blob.empty() ? databases_of(o.dbs) : std::vector<std::string>{o.blob};
+    for (const std::string &file : read)
+        if (is_same_file(o.chart_out, file))
+            throw Failure(ExitCode::usage, o.chart_out + ": is the " + (o.blob.empty() ? "profile database" : "blob")
+                                               + "; give --chart-out another name");
     std::vector<StoredProfile> profiles;
     BlobStamp stamp{};
     if (o.blob.empty())
-        profiles = o.filter.profiles(o.db, o.ids);
+        profiles = o.filter.profiles(Databases(read), o.ids, false);
     else
         profiles.push_back({0, read_blob(o.blob, stamp)});
     if (!o.chart && o.chart_out.empty()) {
@@ -159,25 +192,20 @@ int show(const ShowOptions &o, Streams &streams) {
 }
 
 void declare_list(Command &profile) {
-    struct Options {
-        std::string db;
-        KeyFilter filter;
-        bool json = false;
-    };
     Command command = profile.add("list", "the profiles of the database, a line each");
-    auto o = std::make_shared<Options>();
-    declare_db(command, o->db);
+    auto o = std::make_shared<ListOptions>();
+    declare_listed_databases(command, o->dbs);
     declare_json(command, o->json);
     command.group("What to list");
     o->filter.add_options(command);
-    command.run([o](Streams &streams) { return list(o->db, o->filter, o->json, streams); });
+    command.run([o](Streams &streams) { return list(*o, streams); });
 }
 
 void declare_show(Command &profile) {
     Command command = profile.add("show", "all of some profiles, or of a blob");
     auto o = std::make_shared<ShowOptions>();
     command.profile_ids("ID", o->ids, "profiles to show");
-    declare_db(command, o->db);
+    declare_listed_databases(command, o->dbs, ": ids are of the first");
     declare_json(command, o->json);
     command.flag("--chart", o->chart, "relative illuminance, M over r, as a chart and a table instead");
     command.file("--chart-out", o->chart_out, "draw that chart into this .svg or .png");

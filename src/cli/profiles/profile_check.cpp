@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program/commands.hpp"
+#include "cli/program/databases.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
@@ -21,18 +22,10 @@ lensprof_status collect(void *user, const lensprof_store_fault *fault) {
     return LENSPROF_OK;
 }
 
-// What both have in common.
-struct Options {
+struct CheckOptions {
     std::string db;
     bool json = false;
 };
-
-void declare(Command command, int (*run)(const Options &, Streams &)) {
-    auto o = std::make_shared<Options>();
-    declare_db(command, o->db);
-    declare_json(command, o->json);
-    command.run([o, run](Streams &streams) { return run(*o, streams); });
-}
 
 std::string range(const double *ends, const char *front, const char *end) {
     if (ends[0] == LENSPROF_UNKNOWN) return "not known of any";
@@ -98,7 +91,7 @@ void print_stats(const std::string &file, const lensprof_store_stats &s, std::os
     print_groups("source", s.source, s.sources, out);
 }
 
-int run_check(const Options &o, Streams &streams) {
+int run_check(const CheckOptions &o, Streams &streams) {
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     const std::string file = store_path(o.db);
     std::vector<Fault> faults;
@@ -124,29 +117,53 @@ int run_check(const Options &o, Streams &streams) {
     return static_cast<int>(faults.empty() ? ExitCode::done : ExitCode::store);
 }
 
-int run_stats(const Options &o, Streams &streams) {
-    Store store = open_store(o.db, LENSPROF_STORE_READ);
-    auto stats = std::make_unique<lensprof_store_stats>();
-    lensprof_store_stats_init(stats.get());
-    lensprof_error error{};
-    check(lensprof_store_get_stats(store.get(), stats.get(), &error), store_path(o.db), &error);
-    if (o.json)
-        print_json(stats_json(store_path(o.db), *stats), streams.out);
-    else
-        print_stats(store_path(o.db), *stats, streams.out);
+struct StatsOptions {
+    std::vector<std::string> dbs;
+    bool json = false;
+};
+
+// In JSON the first database's, with those of the others in a list.
+int run_stats(const StatsOptions &o, Streams &streams) {
+    const Databases databases(databases_of(o.dbs));
+    Json first, others = Json::array();
+    for (size_t i = 0; i < databases.size(); i++) {
+        const std::string &file = databases.file(i);
+        auto stats = std::make_unique<lensprof_store_stats>();
+        lensprof_store_stats_init(stats.get());
+        lensprof_error error{};
+        check(lensprof_store_get_stats(databases.store(i), stats.get(), &error), file, &error);
+        if (!o.json) {
+            streams.out << (i ? "\n" : "");
+            print_stats(file, *stats, streams.out);
+        } else if (i == 0) {
+            first = stats_json(file, *stats);
+        } else {
+            others.push_back(stats_json(file, *stats));
+        }
+    }
+    if (!others.empty()) first["others"] = others;
+    if (o.json) print_json(first, streams.out);
     return 0;
 }
 
 }  // namespace
 
 void declare_profile_check(Command &profile) {
-    declare(profile.add("check", "read and check the whole database",
-                        "Lists everything that is wrong. Exit code 0 when nothing is, 6 otherwise. Writes nothing."),
-            run_check);
+    Command command =
+        profile.add("check", "read and check the whole database",
+                    "Lists everything that is wrong. Exit code 0 when nothing is, 6 otherwise. Writes nothing.");
+    auto o = std::make_shared<CheckOptions>();
+    declare_db(command, o->db);
+    declare_json(command, o->json);
+    command.run([o](Streams &streams) { return run_check(*o, streams); });
 }
 
 void declare_profile_stats(Command &profile) {
-    declare(profile.add("stats", "count what is in the database"), run_stats);
+    Command command = profile.add("stats", "count what is in the database");
+    auto o = std::make_shared<StatsOptions>();
+    declare_listed_databases(command, o->dbs);
+    declare_json(command, o->json);
+    command.run([o](Streams &streams) { return run_stats(*o, streams); });
 }
 
 }  // namespace lensprof

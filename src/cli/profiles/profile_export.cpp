@@ -10,8 +10,10 @@
 #include "cli/profiles/profile_blob.hpp"
 #include "cli/profiles/profile_split.hpp"
 #include "cli/program/commands.hpp"
+#include "cli/program/databases.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
@@ -24,7 +26,8 @@ struct Options {
     std::vector<int64_t> ids;
     KeyFilter filter;
     ForeignOptions foreign;
-    std::string db, output, blob, format;
+    std::vector<std::string> dbs;
+    std::string output, blob, format;
     double crop_factor = LENSPROF_UNKNOWN;
     bool covariance = false, all = false, json = false, split = false;
 };
@@ -43,7 +46,8 @@ void declare(Command &command, Options &o) {
     declare_foreign(command, o.foreign, true);
     command.number("--crop-factor", o.crop_factor, crop_factors,
                    "43.27 mm over the sensor's diagonal, for profiles that do not know it; lensfun and lcp need it");
-    declare_db(command, o.db);
+    declare_listed_databases(command, o.dbs,
+                             ": ids and --all are of the first, other profiles of the first that has any");
     declare_json(command, o.json);
     command.group("Which profiles, instead of ids");
     o.filter.add_options(command);
@@ -73,8 +77,9 @@ void check_options(Options &o) {
         throw Failure(ExitCode::usage, "profile export: --split and --blob contradict each other; use --format blob");
     if (o.split && path_exists(o.output) && !is_folder(o.output))
         throw Failure(ExitCode::usage, o.output + ": is a file; --split needs a folder");
-    if (is_same_file(o.output, store_path(o.db)))
-        throw Failure(ExitCode::usage, o.output + ": is the profile database; give the output another name");
+    for (const std::string &file : databases_of(o.dbs))
+        if (is_same_file(o.output, file))
+            throw Failure(ExitCode::usage, o.output + ": is the profile database; give the output another name");
 }
 
 // One profile; its blob's size and checksum tell it from others.
@@ -161,7 +166,10 @@ int run(Options &o, Streams &streams) {
     const ForeignRule &rule = format_to_write(o.output, o.format);
     if (o.covariance && rule.format != LENSPROF_FORMAT_BLOB)
         throw Failure(ExitCode::usage, "profile export: --covariance belongs to --format blob");
-    const std::vector<StoredProfile> chosen = o.filter.profiles(o.db, o.ids);
+    std::vector<std::string> files = databases_of(o.dbs);
+    if (o.all) files.resize(1);
+    const std::vector<StoredProfile> chosen = o.filter.profiles(Databases(files), o.ids, true);
+    if (!chosen[0].database.empty()) note(streams, "profiles of " + chosen[0].database);
     if (o.split) {
         export_split(o, rule, chosen, streams);
         return 0;

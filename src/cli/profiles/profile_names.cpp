@@ -6,6 +6,7 @@
 #include "cli/profiles/key_filter.hpp"
 #include "cli/profiles/known_range.hpp"
 #include "cli/program/commands.hpp"
+#include "cli/program/databases.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
@@ -19,9 +20,16 @@ using Summaries = std::vector<lensprof_store_summary>;
 
 struct Options {
     std::vector<std::string> part;
-    std::string db;
+    std::vector<std::string> dbs;
     bool json = false;
 };
+
+// Calls visit(index of the database, row) for all rows.
+template <typename Visit>
+void each_row(const std::vector<Summaries> &all, const Visit &visit) {
+    for (size_t i = 0; i < all.size(); i++)
+        for (const auto &row : all[i]) visit(i, row);
+}
 
 std::string states_text(const lensprof_store_summary &row) {
     std::string text;
@@ -30,9 +38,9 @@ std::string states_text(const lensprof_store_summary &row) {
     return text;
 }
 
-Json names_json(const Summaries &rows, bool of_lenses) {
+Json names_json(const Databases &databases, const std::vector<Summaries> &all, bool of_lenses) {
     Json list = Json::array();
-    for (const auto &row : rows) {
+    each_row(all, [&](size_t index, const lensprof_store_summary &row) {
         Json one;
         if (of_lenses) {
             one["lens"] = row.lens;
@@ -46,36 +54,43 @@ Json names_json(const Summaries &rows, bool of_lenses) {
         one["focal_mm"] = range_json(row.focal_mm);
         one["aperture"] = range_json(row.aperture);
         one["distance_m"] = range_json(row.distance_m);
+        if (databases.size() > 1) one["database"] = databases.file(index);
         list.push_back(one);
-    }
+    });
     return Json{{"schema", 1}, {of_lenses ? "lenses" : "cameras", list}};
 }
 
-void print_names(const Summaries &rows, bool of_lenses, std::ostream &out) {
+void print_names(const Databases &databases, const std::vector<Summaries> &all, bool of_lenses, std::ostream &out) {
+    size_t rows = 0;
     out << format("%8s  %7s  %9s %9s %9s  %-15s  %s\n", "profiles", of_lenses ? "cameras" : "lenses", "mm", "f/",
                   "focus m", "processing", of_lenses ? "lens" : "camera");
-    for (const auto &row : rows) {
+    each_row(all, [&](size_t index, const lensprof_store_summary &row) {
         const std::string name = of_lenses ? std::string(row.lens) : camera_name(row.camera_maker, row.camera_model);
         out << format("%8u  %7u  %9s %9s %9s  %-15s  %s\n", row.profiles, row.others, range_text(row.focal_mm).c_str(),
                       range_text(row.aperture).c_str(), range_text(row.distance_m).c_str(), states_text(row).c_str(),
-                      name.c_str());
-    }
-    out << (of_lenses ? counted(rows.size(), "lens", "lenses") : counted(rows.size(), "camera")) << "\n";
+                      (name + databases.column(index)).c_str());
+        rows++;
+    });
+    out << (of_lenses ? counted(rows, "lens", "lenses") : counted(rows, "camera"));
+    out << (databases.size() > 1 ? ", of each database its own\n" : "\n");
 }
 
 int run(const Options &o, bool of_lenses, Streams &streams) {
     std::string part;
     for (const std::string &word : o.part) part += (part.empty() ? "" : " ") + word;
-    const Store store = open_store(o.db, LENSPROF_STORE_READ);
+    const Databases databases(databases_of(o.dbs));
     const auto list = of_lenses ? lensprof_store_list_lenses : lensprof_store_list_cameras;
-    const Summaries rows = listed<lensprof_store_summary>(
-        o.db, [&](lensprof_store_summary *buffer, uint32_t capacity, uint32_t *count, lensprof_error *error) {
-            return list(store.get(), part.c_str(), buffer, capacity, count, error);
-        });
+    std::vector<Summaries> all;
+    for (size_t i = 0; i < databases.size(); i++)
+        all.push_back(listed<lensprof_store_summary>(
+            databases.file(i),
+            [&](lensprof_store_summary *buffer, uint32_t capacity, uint32_t *count, lensprof_error *error) {
+                return list(databases.store(i), part.c_str(), buffer, capacity, count, error);
+            }));
     if (o.json)
-        print_json(names_json(rows, of_lenses), streams.out);
+        print_json(names_json(databases, all, of_lenses), streams.out);
     else
-        print_names(rows, of_lenses, streams.out);
+        print_names(databases, all, of_lenses, streams.out);
     return 0;
 }
 
@@ -84,7 +99,7 @@ void declare(Command &profile, const char *verb, const char *brief, bool of_lens
     auto o = std::make_shared<Options>();
     command.texts("PART", o->part,
                   "a name, or words that are in it, as 24-70 canon; case, blanks and signs do not matter; default all");
-    declare_db(command, o->db);
+    declare_listed_databases(command, o->dbs);
     declare_json(command, o->json);
     command.run([o, of_lenses](Streams &streams) { return run(*o, of_lenses, streams); });
 }

@@ -28,12 +28,22 @@ bool can_be_read(const std::string &file) {
 
 }  // namespace
 
-void declare_databases(Command &command, std::vector<std::string> &files, const std::string &more) {
+static void declare_files(Command &command, std::vector<std::string> &files, const std::string &about) {
     command.words(
         "--db", "FILE", [&files](const std::string &word) { files.push_back(word); },
-        "profile database" + more
-            + ", may be given more than once: the first that knows the lens or the camera answers; default "
-              "lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share, then the lens data that are installed with lensprof");
+        about
+            + "; default lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share, then the lens data that are installed "
+              "with lensprof");
+}
+
+void declare_databases(Command &command, std::vector<std::string> &files, const std::string &more) {
+    declare_files(command, files,
+                  "profile database" + more
+                      + ", may be given more than once: the first that knows the lens or the camera answers");
+}
+
+void declare_listed_databases(Command &command, std::vector<std::string> &files, const std::string &more) {
+    declare_files(command, files, "profile database, may be given more than once" + more);
 }
 
 std::string installed_database() {

@@ -45,6 +45,7 @@ std::unique_ptr<lensprof_profile> new_profile();  // initialised
 struct StoredProfile {
     int64_t id;  // 0: of a file, alone
     std::unique_ptr<lensprof_profile> profile;
+    std::string database = {};  // where it is one of several
 };
 
 // The database to use: `path`, or where that is empty the user's own, $XDG_DATA_HOME/lensprof/profiles.db (else under
