@@ -74,6 +74,17 @@ void test_nearest_names(void **) {
     assert_false(contains(run_words(query + far).err, "nearest names"));
 }
 
+void test_nearest_cameras(void **) {
+    make_db();
+    const Words query = Words{"query", "--aperture", "4"} + db_words();
+    for (const char *name : {"EOS 6E", "Canon EOS 6E"}) {
+        assert_refused(not_found, query + Words{"--camera", name}, {"; nearest names: Canon EOS 6D; Canon EOS R6"});
+        const Json json = json_of(query + Words{"--camera", name, "--json"}, not_found);
+        assert_true(json["nearest"] == Json({"Canon EOS 6D", "Canon EOS R6"}));
+    }
+    assert_false(contains(run_words(query + Words{"--camera", "COOLPIX P7000"}).err, "nearest names"));
+}
+
 void test_remove_what_matches(void **) {
     make_db();
     const Words remove = Words{"profile", "remove"} + db_words();
@@ -182,12 +193,9 @@ void test_installed_database(void **) {
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_lenses_and_cameras),
-                                CLI_TEST(test_filters_take_parts_of_names),
-                                CLI_TEST(test_nearest_names),
-                                CLI_TEST(test_remove_what_matches),
-                                CLI_TEST(test_set),
-                                CLI_TEST(test_each_once),
-                                CLI_TEST(test_installed_database)};
+    const CMUnitTest tests[] = {CLI_TEST(test_lenses_and_cameras),  CLI_TEST(test_filters_take_parts_of_names),
+                                CLI_TEST(test_nearest_names),       CLI_TEST(test_nearest_cameras),
+                                CLI_TEST(test_remove_what_matches), CLI_TEST(test_set),
+                                CLI_TEST(test_each_once),           CLI_TEST(test_installed_database)};
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -104,7 +104,7 @@ void PictureModels::look_up(const PictureMetadata &metadata, Correction &job, le
     if (status == LENSPROF_ERROR_NOT_FOUND)
         throw NotThisOne(ExitCode::not_found,
                          job.source + ": no profile for " + describe_key(key) + " in " + databases_.names() + " ("
-                             + how.reason + describe_nearest(nearest_lenses(databases_, key, how))
+                             + how.reason + describe_nearest(nearest_names(databases_, key, how))
                              + "); make one with `lensprof build`, name " + missing_options(key) + ", or a "
                                "profile with --profile");
     if (how.exact && how.falloff_store == 0)

@@ -5,7 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/profiles/key_filter.hpp"
 #include "cli/program/format.hpp"
+#include "cli/program/nearest.hpp"
 
 namespace lensprof {
 
@@ -150,11 +152,45 @@ std::string describe_error(const lensprof_lookup &how) {
     return format("M in the corner \u00b1 %.3f", how.sigma) + describe_parts(how);
 }
 
-std::vector<std::string> nearest_lenses(const Databases &databases, const lensprof_profile_key &key,
-                                        const lensprof_lookup &how) {
-    const auto *end = std::end(how.reason_code);
-    if (std::find(std::begin(how.reason_code), end, LENSPROF_REASON_LOOKUP_NO_LENS) == end) return {};
-    constexpr uint32_t kMost = 3;
+constexpr uint32_t kMost = 3;
+
+// "EOS 6D" of "Canon EOS 6D".
+static std::string without_maker(const std::string &model, const std::string &maker) {
+    const size_t length = maker.size() + 1;
+    const bool begins =
+        !maker.empty() && model.size() > length && letters_changed(model.substr(0, length), maker + " ") == 0;
+    return begins ? model.substr(length) : model;
+}
+
+// By how many letters of the model differ, at most half of them.
+static std::vector<std::string> nearest_cameras(const Databases &databases, const lensprof_profile_key &key) {
+    std::vector<std::pair<size_t, std::string>> ranked;
+    for (size_t i = 0; i < databases.size(); i++)
+        for (const auto &row : listed<lensprof_store_summary>(
+                 databases.file(i),
+                 [&](lensprof_store_summary *buffer, uint32_t capacity, uint32_t *count, lensprof_error *error) {
+                     return lensprof_store_list_cameras(databases.store(i), "", buffer, capacity, count, error);
+                 })) {
+            const std::string given = without_maker(key.camera_model, row.camera_maker);
+            const size_t changes = letters_changed(given, without_maker(row.camera_model, row.camera_maker));
+            if (changes <= given.size() / 2)
+                ranked.emplace_back(changes, camera_name(row.camera_maker, row.camera_model));
+        }
+    std::stable_sort(ranked.begin(), ranked.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
+    std::vector<std::string> cameras;
+    for (const auto &one : ranked)
+        if (cameras.size() < kMost && std::find(cameras.begin(), cameras.end(), one.second) == cameras.end())
+            cameras.push_back(one.second);
+    return cameras;
+}
+
+std::vector<std::string> nearest_names(const Databases &databases, const lensprof_profile_key &key,
+                                       const lensprof_lookup &how) {
+    const auto says = [&](uint32_t code) {
+        return std::find(std::begin(how.reason_code), std::end(how.reason_code), code) != std::end(how.reason_code);
+    };
+    if (says(LENSPROF_REASON_LOOKUP_NO_CAMERA) && *key.camera_model) return nearest_cameras(databases, key);
+    if (!says(LENSPROF_REASON_LOOKUP_NO_LENS)) return {};
     std::vector<lensprof_store_name> all;
     for (size_t i = 0; i < databases.size(); i++) {
         lensprof_store_name names[kMost];
@@ -170,9 +206,9 @@ std::vector<std::string> nearest_lenses(const Databases &databases, const lenspr
     return lenses;
 }
 
-std::string describe_nearest(const std::vector<std::string> &lenses) {
+std::string describe_nearest(const std::vector<std::string> &names) {
     std::string text;
-    for (const std::string &lens : lenses) text += (text.empty() ? "; nearest names: " : "; ") + lens;
+    for (const std::string &name : names) text += (text.empty() ? "; nearest names: " : "; ") + name;
     return text;
 }
 

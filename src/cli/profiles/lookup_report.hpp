@@ -30,12 +30,13 @@ std::string describe_briefly(const Found &found);
 // "M in the corner +- 0.022 (falloff 0.004, distance 0.007, response 0.020)".
 std::string describe_error(const lensprof_lookup &how);
 
-// The three stored lenses whose names are nearest to one that `how` says is not stored; none for any other answer.
-std::vector<std::string> nearest_lenses(const Databases &databases, const lensprof_profile_key &key,
-                                        const lensprof_lookup &how);
+// The three stored lenses, or cameras, whose names are nearest to one that `how` says is not stored; none for any other
+// answer.
+std::vector<std::string> nearest_names(const Databases &databases, const lensprof_profile_key &key,
+                                       const lensprof_lookup &how);
 
 // "; nearest names: A; B; C", or empty.
-std::string describe_nearest(const std::vector<std::string> &lenses);
+std::string describe_nearest(const std::vector<std::string> &names);
 
 void print_lookup(const Found &found, std::ostream &out);
 

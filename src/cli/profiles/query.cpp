@@ -151,7 +151,7 @@ bool answer_lookup(const Options &o, const Databases &databases, size_t rows, Re
     const lensprof_status status = databases.look_up(key, options, *profile, how);
     if (status == LENSPROF_ERROR_NOT_FOUND && is_open(how)) return false;
     if (status == LENSPROF_ERROR_NOT_FOUND) {
-        refusal.nearest = nearest_lenses(databases, key, how);
+        refusal.nearest = nearest_names(databases, key, how);
         throw Failure(ExitCode::not_found, o.filter.nothing_found(databases.names()) + "; nor can it be predicted: "
                                                + how.reason + describe_nearest(refusal.nearest));
     }

@@ -53,6 +53,10 @@ std::string nearest_of(const std::string &word, const std::vector<std::string> &
     return nearest;
 }
 
+size_t letters_changed(const std::string &a, const std::string &b) {
+    return distance(in_small_letters(a), in_small_letters(b));
+}
+
 std::string did_you_mean(const std::string &word, const std::vector<std::string> &words) {
     const std::string nearest = nearest_of(word, words);
     return nearest.empty() ? nearest : "; did you mean " + nearest + "?";
