@@ -230,6 +230,23 @@ void test_several_databases(void **) {
     must_exit(done, apply);
 }
 
+// An error that nobody stated is not one of 0; no label stands for two things.
+void test_unknown_error(void **) {
+    const std::string db = make_database();
+    const std::string said = must_exit(done, {"query", "--lens", "Lens 50mm", "--db", db});
+    assert_true(contains(said, "stops), error unknown\n"));
+    assert_false(contains(said, "+-"));
+    make_lens("raw.db", "Lens 50mm", -0.4), make_lens("raw.db", "Lens 50mm", -0.3);
+    const std::string newest = must_exit(done, {"query", "--lens", "Lens 50mm", "--focal", "50", "--aperture", "2",
+                                                "--crop-factor", "1", "--db", work("raw.db")});
+    assert_true(contains(newest, "error unknown\n"));
+    for (const char *label : {"\nfalloff ", "\nresponse ", "\nlookup ", "\nsigma "}) {
+        const size_t at = newest.find(label);
+        if (at == std::string::npos || newest.find(label, at + 1) != std::string::npos)
+            fail_msg("not once %s: %s", label, newest.c_str());
+    }
+}
+
 }  // namespace
 
 int main() {
@@ -240,6 +257,7 @@ int main() {
         CLI_TEST(test_profile_of_another_processing),
         CLI_TEST(test_corrected_in_camera),
         CLI_TEST(test_several_databases),
+        CLI_TEST(test_unknown_error),
     };
     const auto start = [](void **state) {
         return make_folder(state) + setenv("XDG_DATA_HOME", in_folder("work/data").c_str(), 1)

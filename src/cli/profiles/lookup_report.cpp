@@ -214,9 +214,12 @@ std::string describe_nearest(const std::vector<std::string> &names) {
 
 void print_lookup(const Found &found, std::ostream &out) {
     const lensprof_lookup &how = found.how;
-    out << "falloff   " << describe_prediction(found) << "\nresponse  " << describe_response(found) << "\n";
-    if (how.sigma != LENSPROF_UNKNOWN)
+    out << "lookup    falloff " << describe_prediction(found) << "\n          response " << describe_response(found)
+        << "\n";
+    if (how.sigma > 0.0)
         out << format("sigma     %.3f of M in the corner", how.sigma) << describe_parts(how) << "\n";
+    else
+        out << "sigma     unknown: the profile does not state its error\n";
     if (how.name_score < 1.0) out << format("name      matched with score %.1f\n", how.name_score);
     if (*how.reason) out << "mind      " << how.reason << "\n";
 }

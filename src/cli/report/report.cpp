@@ -67,11 +67,12 @@ void print_gain_grid(const lensprof_gain_grid &grid, std::ostream &out) {
 
 double corner(const lensprof_vignetting &v) { return lensprof_vignetting_eval(&v, 1.0, nullptr); }
 
-// 100 M at r, " +- " and its standard error where that is known.
-std::string light_at(const lensprof_profile &profile, uint32_t curve, double r) {
+// 100 M at r, " +- " and its standard error where that is known; an error is never 0.0.
+std::string light_at(const lensprof_profile &profile, uint32_t curve, double r, bool &is_known) {
     double sigma;
-    const double m = lensprof_profile_radial_falloff(&profile, curve, r, &sigma);
-    return format("%.1f", 100.0 * m) + (sigma > 0.0 ? format(" +- %.1f", 100.0 * sigma) : std::string());
+    const double m = lensprof_profile_radial_falloff(&profile, curve, r, &sigma), percent = 100.0 * sigma;
+    is_known = sigma > 0.0;
+    return format("%.1f", 100.0 * m) + (is_known ? format(percent < 0.05 ? " +- %.1g" : " +- %.1f", percent) : "");
 }
 
 }  // namespace
@@ -88,8 +89,10 @@ void print_vignettings(const lensprof_profile &profile, std::ostream &out) {
         out << "falloff" << channel
             << format("   k1 %+.4f  k2 %+.4f  k3 %+.4f   centre %+.4f %+.4f half diagonals\n", v.k[0], v.k[1], v.k[2],
                       v.center[0], v.center[1]);
-        out << format("          light at r = 0.5: %s %%, in the corner: %s %% (%.2f stops)\n",
-                      light_at(profile, c, 0.5).c_str(), light_at(profile, c, 1.0).c_str(), -std::log2(corner(v)));
+        bool is_known;
+        const std::string middle = light_at(profile, c, 0.5, is_known), end = light_at(profile, c, 1.0, is_known);
+        out << format("          light at r = 0.5: %s %%, in the corner: %s %% (%.2f stops)%s\n", middle.c_str(),
+                      end.c_str(), -std::log2(corner(v)), is_known ? "" : ", error unknown");
     }
 }
 
