@@ -114,6 +114,11 @@ void test_nearest_names(void **) {
                    {"Good 35mm II", "; nearest names: Good 35mm); "});
 }
 
+void test_help_tells_of_refused_pictures(void **) {
+    const std::string help = must_exit(done, {"apply", "--help"});
+    assert_true(contains(help, "Exit code 5: pictures were refused") && contains(help, "default corrected, here"));
+}
+
 // What EXIF does not say is what to give.
 void test_missing_setting_is_named(void **) {
     lens_database();
@@ -242,6 +247,7 @@ int main() {
         CLI_TEST(test_nearest_names),
         CLI_TEST(test_named_pictures_are_all_or_none),
         CLI_TEST(test_unreadable_ends_it),
+        CLI_TEST(test_help_tells_of_refused_pictures),
         CLI_TEST(test_missing_setting_is_named),
         CLI_TEST(test_output_by_default),
         CLI_TEST(test_corrected_once),

@@ -86,8 +86,10 @@ void declare(Command &command, Options &o) {
         "Pictures keep format, depth, metadata and colour profile; a mark in their XMP says that lensprof corrected\n"
         "them. Several are corrected at once, in strips of rows; interlaced PNG and progressive JPEG alone are held in\n"
         "memory as a whole. All are opened first: when one cannot be, nothing is written. When one turns out to be\n"
-        "damaged later, those before it are written, it and those after it are not. XX An output is replaced where it was made of the same picture, or\n"
-        "not by lensprof.");
+        "damaged later, those before it are written, it and those after it are not. Exit code 5: pictures were refused\n"
+        "(no profile, or corrected already): of pictures that are named none is corrected then; those of folders, and with\n"
+        "--skip all, are left out. An output is replaced where it was made of the same picture; one that is not by\n"
+        "lensprof only in a folder that is named with -o.");
 }
 
 std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
