@@ -218,6 +218,9 @@ void test_several_databases(void **) {
     const std::string a = make_lens("a.db", "Lens 85mm", -0.5), b = make_lens("b.db", "Lens 50mm", -0.3);
     must_exit(done, apply + Words{"--db", a, "--db", b, "--db", a});
     assert_close(corrected_by(out), corner_falloff(-0.3), 0.02);
+    const Json exact = json_of(apply + Words{"--json", "--processing", "raw", "--db", a, "--db", b});
+    assert_true(exact["pictures"][0]["lookup"]["exact"].get<bool>());
+    assert_true(exact["pictures"][0]["lookup"]["sigma"].is_null());  // the profile states none
     assert_refused(not_found, apply + Words{"--db", a}, {a, "no profile of a lens of this name"});
     assert_refused(not_found, apply + Words{"--db", a, "--db", work("none.db")}, {"none.db"});
     assert_refused(usage, apply + Words{"--db", ""}, {"--db"});

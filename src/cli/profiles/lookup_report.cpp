@@ -101,7 +101,8 @@ Found with_response_given(Found found) {
     lensprof_lookup &how = found.how;
     found.response_is_given = true;
     how.response_sigma = 0.0;
-    how.sigma = std::hypot(how.falloff_sigma, std::hypot(how.distance_sigma, how.sensor_sigma));
+    if (how.falloff_sigma != LENSPROF_UNKNOWN)
+        how.sigma = std::hypot(how.falloff_sigma, std::hypot(how.distance_sigma, how.sensor_sigma));
     std::vector<uint32_t> codes;
     std::string text = how.reason;
     for (uint32_t code : how.reason_code) {
