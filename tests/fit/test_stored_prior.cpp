@@ -180,7 +180,10 @@ void test_refined_response(void **) {
         lensprof_profile_init(stored.get());
         assert_ok(lensprof_response_set_table(&stored->response[0], s.response.table, LENSPROF_RESPONSE_SAMPLES));
         Found found, own;
-        assert_int_equal(fit(s, stored.get(), found), LENSPROF_ERROR_ARGUMENT);
+        for (const double says_nothing : {0.0, 1.0, 1e200}) {
+            stored->provenance.gamma_sigma = says_nothing;
+            assert_int_equal(fit(s, stored.get(), found), LENSPROF_ERROR_ARGUMENT);
+        }
         stored->provenance.gamma_sigma = 0.02;
         assert_ok(fit(s, stored.get(), found));
         assert_ok(fit(s, nullptr, own));

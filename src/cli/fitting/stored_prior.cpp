@@ -23,10 +23,10 @@ bool holds(lensprof_store *store, const lensprof_profile &profile, const std::st
     }
 }
 
-// A refined response, which is a table, says it of gamma alone.
+// A refined response, which is a table, says it of gamma alone; an error of that from 0.7 on says nothing.
 bool says_how_sure(const lensprof_profile &profile) {
     if (profile.responses == 1 && profile.response[0].kind == LENSPROF_RESPONSE_TABLE
-        && profile.provenance.gamma_sigma > 0.0)
+        && profile.provenance.gamma_sigma > 0.0 && profile.provenance.gamma_sigma < 0.7)
         return true;
     for (uint32_t i = 0; i < profile.covariance_size; i++)
         if (profile.covariance[i * profile.covariance_size + i] > 0.0) return true;

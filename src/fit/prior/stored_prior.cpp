@@ -30,7 +30,7 @@ double log_falloff(const lensprof_vignetting &v, double r2) {
 
 bool is_refined_curve(const lensprof_profile &profile) {
     return profile.responses == 1 && profile.response[0].kind == LENSPROF_RESPONSE_TABLE
-           && profile.provenance.gamma_sigma > 0.0;
+           && profile.provenance.gamma_sigma > 0.0 && profile.provenance.gamma_sigma < kSaysNothing;
 }
 
 }  // namespace
