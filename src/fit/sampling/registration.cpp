@@ -1,5 +1,5 @@
-// What is estimated is a rotation w (axis times angle, radians) of the second camera, which a project that is off by
-// turns needs. The similarity of two blocks a and b of grey levels is their normalised cross-correlation
+// What is estimated first is a rotation w (axis times angle, radians) of the second camera, which a project that is off
+// by turns needs. The similarity of two blocks a and b of grey levels is their normalised cross-correlation
 //
 //     sum (a - mean a)(b - mean b) / sqrt(sum (a - mean a)^2 sum (b - mean b)^2),      -1 .. 1,
 //
@@ -15,12 +15,23 @@
 //     c_m = correlation / (1 + |o_m - J_m d|^2 / s^2),      s = 4 p at first, then p,
 //
 // is that of a Cauchy loss, iterated: blocks on things that moved do not draw the rest along. From the coarse level,
-// whose first guess is the shift under which all blocks match best together, to the fine one; accepted only where the
-// correlations of most blocks are clearly better than by the project.
+// whose first guess is the shift under which all blocks match best together, to the fine one.
+//
+// A wrong angle of view, distortion or a camera that was moved leave more than a rotation. Where blocks do not match
+// under one, the second frame is bent by a homography as well. Every block is searched for by itself, far about; the
+// similarity (of two blocks) that most others follow is the first guess. With places s = (u, v) of the second frame in
+// half diagonals, the change M of the homography moves them by
+//
+//     du = h1 u + h2 v + h3 + u (h7 u + h8 v),     dv = h4 u + h5 v + h6 + v (h7 u + h8 v),
+//
+// linear in h, which is fitted as d is, with T = kBendTrust.
+//
+// Each is accepted only where the correlations of most blocks are clearly better than without it.
 #include "fit/sampling/registration.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -29,53 +40,24 @@
 namespace lensprof {
 namespace {
 
-constexpr int kColumns = 24, kRows = 18;  // places of the first image that are looked at
+constexpr int kColumns = 24, kRows = 18;  // places of the first image that are looked at, where the second sees it
 constexpr size_t kFewest = 8;             // blocks that take part
 constexpr int kCell = 2;                  // places side by side, of which one takes part: no single thing decides
-constexpr int kFarthest = 12;             // coarse pixels by which the project may be off
+constexpr int kFarthest = 12;             // coarse pixels by which the project may be off,
+constexpr int kFarthestBlock = 24;        // and by which one block may be
 constexpr int kSearch = 3;                // level pixels about where a block is expected
-constexpr double kTexture = 0.015;        // standard deviation of a block, grey value 0..1: more than noise
-constexpr double kMatch = 0.5;            // correlation of blocks that show the same, at least
+constexpr double kMatch = 0.5;            // correlation of blocks that show the same, at least,
+constexpr double kFarMatch = 0.6;         // and of those found far about: the best of many
 constexpr double kRight = 0.85;           // mean correlation of a project that is right
-constexpr double kBetter = 0.02;          // mean correlation by which a rotation must be better than the project
+constexpr double kBetter = 0.02;          // mean correlation by which a correction must be better than none,
+constexpr double kClearlyBetter = 0.25;   // the same, where many blocks show what lies at other distances
 constexpr double kPreferred = 0.05;       // difference of correlations that tells
 constexpr double kTrust = 0.01;           // radians: how far off a project is, for turns that blocks do not tell
+constexpr double kBendTrust = 0.02;       // the same of a homography's elements
+constexpr double kLargestBend = 0.25;     // turn or change of scale of a first guess
+constexpr double kFollows = 2.0;          // coarse pixels from where a guess has a block that follows it
+constexpr double kFewestFollow = 0.2;     // share of the blocks that follow a guess
 constexpr double kDerivativeStep = 1e-4;  // radians
-
-// Square of level pixels about a place, without its mean and of length 1.
-template <int reach>
-struct Block {
-    static constexpr int kSide = 2 * reach + 1, kCount = kSide * kSide;
-    std::array<float, kCount> value;
-    double texture = 0.0;  // standard deviation before
-
-    // (x, y): full frame. `map` turns and scales the square, given in px of the full frame `pixel` apart.
-    bool cut(const GreyLevels::Level &level, double x, double y, double pixel, const double map[2][2]) {
-        double u0 = (x + 0.5) / level.pixel, v0 = (y + 0.5) / level.pixel, step = pixel / level.pixel;
-        float sum = 0.0f, square = 0.0f;
-        for (int k = 0; k < kCount; k++) {
-            double a = step * (k % kSide - reach), b = step * (k / kSide - reach);
-            double u = std::floor(u0 + map[0][0] * a + map[0][1] * b);
-            double v = std::floor(v0 + map[1][0] * a + map[1][1] * b);
-            if (!(u >= 0.0 && v >= 0.0 && u < level.width && v < level.height)) return false;
-            value[static_cast<size_t>(k)] =
-                level.grey[static_cast<size_t>(v) * static_cast<size_t>(level.width) + static_cast<size_t>(u)];
-            sum += value[static_cast<size_t>(k)];
-        }
-        for (float &one : value) one -= sum / kCount, square += one * one;
-        texture = std::sqrt(square / kCount);
-        for (float &one : value) one = square > 0.0f ? one / std::sqrt(square) : 0.0f;
-        return true;
-    }
-
-    double correlation(const Block &other) const {
-        float sum = 0.0f;
-        for (size_t k = 0; k < value.size(); k++) sum += value[k] * other.value[k];
-        return sum;
-    }
-};
-
-constexpr double kUpright[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
 
 // A block of the first image, and where the project expects it in the second.
 struct Place {
@@ -84,6 +66,35 @@ struct Place {
     std::array<Block<4>, 2> block;  // of each level
 };
 
+// Where a block was found: `off` (px of the full frame) beside where it is expected.
+struct Match {
+    const Place *place;
+    Sight at;
+    Eigen::Vector2d off;
+    double quality;
+};
+
+// The h that minimises sum c_m |off_m - rows_m h|^2 + ridge^2 |h|^2, c_m being the trust; rows_of(m, rows) gives rows_m,
+// 2 x `size`.
+template <class RowsOf>
+Eigen::VectorXd robust_step(const std::vector<Match> &matches, double ridge, double pixel, int size, RowsOf rows_of) {
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(size);
+    Eigen::MatrixXd rows;
+    for (int round = 0; round < 8; round++) {
+        Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(size, size) * ridge * ridge;
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
+        for (size_t m = 0; m < matches.size(); m++) {
+            rows_of(m, rows);
+            const double away = (matches[m].off - rows * change).norm() / (round ? pixel : 4.0 * pixel);
+            const double weight = matches[m].quality / (1.0 + away * away);
+            normal += weight * rows.transpose() * rows;
+            right += weight * rows.transpose() * matches[m].off;
+        }
+        change = normal.ldlt().solve(right);
+    }
+    return change;
+}
+
 struct Matcher {
     const lensprof_camera &first, &second;
     const GreyLevels &first_grey, &second_grey;
@@ -91,10 +102,17 @@ struct Matcher {
 
     void find_places();
     bool cut(size_t level, const Sight &at, double du, double dv, Block<4> &out) const;
-    std::vector<std::optional<double>> correlations(size_t level, const Rotation &rotation) const;
+    std::vector<std::optional<double>> correlations(size_t level, const Correction &correction) const;
     void common_shift(double shift[2]) const;
+    std::vector<Match> look(size_t level, const double *shift, int reach, int step, double least,
+                            const Correction &correction) const;
     bool refine(size_t level, const double *shift, Rotation &rotation) const;
-    double median_shift(const Rotation &rotation) const;
+    bool refine_bend(size_t level, Correction &correction) const;
+    bool guess_bend(Correction &correction) const;
+    std::optional<Rotation> rotation() const;
+    std::optional<Correction> bent(Correction correction) const;
+    bool is_better(const Correction &correction, const Correction &than) const;
+    double median_shift(const Correction &from, const Correction &to) const;
 };
 
 // The block with most texture of every cell of the first image, where the second sees it too.
@@ -105,7 +123,7 @@ void Matcher::find_places() {
             p.x = (column + 0.5) / kColumns * first.width - 0.5, p.y = (row + 0.5) / kRows * first.height - 0.5;
             p.cell = static_cast<size_t>(row / kCell * (kColumns / kCell) + column / kCell);
             Sight at;
-            bool good = sight(first, second, {}, 1.0, p.x, p.y, at);
+            bool good = sight(first, second, {}, Way::forward, p.x, p.y, at);
             for (size_t n = 0; n < 2 && good; n++)
                 good = p.block[n].cut(first_grey.level[n], p.x, p.y, first_grey.level[n].pixel, kUpright);
             if (good && p.block[0].texture > kTexture) places.push_back(p);
@@ -123,12 +141,12 @@ bool Matcher::cut(size_t n, const Sight &at, double du, double dv, Block<4> &out
     return out.cut(level, at.x + du * level.pixel, at.y + dv * level.pixel, first_grey.level[n].pixel, at.map);
 }
 
-std::vector<std::optional<double>> Matcher::correlations(size_t n, const Rotation &rotation) const {
+std::vector<std::optional<double>> Matcher::correlations(size_t n, const Correction &correction) const {
     std::vector<std::optional<double>> result;
     Block<4> other;
     Sight at;
     for (const Place &p : places) {
-        bool seen = sight(first, second, rotation, 1.0, p.x, p.y, at) && cut(n, at, 0.0, 0.0, other);
+        bool seen = sight(first, second, correction, Way::forward, p.x, p.y, at) && cut(n, at, 0.0, 0.0, other);
         result.push_back(seen ? std::optional(p.block[n].correlation(other)) : std::nullopt);
     }
     return result;
@@ -143,7 +161,7 @@ void Matcher::common_shift(double shift[2]) const {
     Block<4> other;
     Sight at;
     for (const Place &p : places) {
-        if (!sight(first, second, {}, 1.0, p.x, p.y, at)) continue;
+        if (!sight(first, second, {}, Way::forward, p.x, p.y, at)) continue;
         for (int k = 0; k < size * size; k++)
             if (cut(0, at, offset(k % size), offset(k / size), other)) {
                 sum[static_cast<size_t>(k)] += p.block[0].correlation(other);
@@ -159,59 +177,112 @@ void Matcher::common_shift(double shift[2]) const {
     }
 }
 
-// Looks for every block about where it is expected, and fits the rotation to where they are: least squares, with less
-// trust in blocks that are far from the others. `shift`: expected beside the rotation, level pixels.
-bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
-    struct Match {
-        Eigen::Matrix<double, 2, 3> by_rotation;
-        Eigen::Vector2d off;  // px of the full frame
-        double quality;
-    };
+// Looks for every block about where it is expected. `shift`: expected beside the correction, level pixels.
+std::vector<Match> Matcher::look(size_t n, const double *shift, int reach, int step, double least,
+                                 const Correction &correction) const {
     const double pixel = second_grey.level[n].pixel;
     std::vector<Match> matches;
     Block<4> other;
     for (const Place &p : places) {
-        Sight at, moved;
-        if (!sight(first, second, rotation, 1.0, p.x, p.y, at)) continue;
         Match m{};
-        for (int dv = -kSearch; dv <= kSearch; dv++)
-            for (int du = -kSearch; du <= kSearch; du++)
-                if (cut(n, at, shift[0] + du, shift[1] + dv, other) && p.block[n].correlation(other) > m.quality) {
-                    m.quality = p.block[n].correlation(other);
-                    m.off = {(shift[0] + du) * pixel, (shift[1] + dv) * pixel};
-                }
-        bool good = m.quality > kMatch;
-        for (int d = 0; d < 3 && good; d++) {
+        m.place = &p, m.quality = least;
+        if (!sight(first, second, correction, Way::forward, p.x, p.y, m.at)) continue;
+        for (int dv = -reach; dv <= reach; dv += step)
+            for (int du = -reach; du <= reach; du += step) {
+                if (!cut(n, m.at, shift[0] + du, shift[1] + dv, other)) continue;
+                const double alike = p.block[n].correlation(other);
+                if (alike > m.quality) m.quality = alike, m.off = {(shift[0] + du) * pixel, (shift[1] + dv) * pixel};
+            }
+        if (m.quality > least) matches.push_back(m);
+    }
+    return matches;
+}
+
+// Fits the rotation to where blocks are: least squares, with less trust in blocks that are far from the others.
+bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
+    const double pixel = second_grey.level[n].pixel;
+    std::vector<Match> matches = look(n, shift, kSearch, 1, kMatch, {rotation, {}});
+    std::vector<Eigen::Matrix<double, 2, 3>> by_rotation(matches.size());
+    for (size_t m = 0; m < matches.size(); m++)
+        for (int d = 0; d < 3; d++) {
             Rotation turned = rotation;
             turned[static_cast<size_t>(d)] += kDerivativeStep;
-            good = sight(first, second, turned, 1.0, p.x, p.y, moved);
-            m.by_rotation.col(d) << (moved.x - at.x) / kDerivativeStep, (moved.y - at.y) / kDerivativeStep;
+            const Sight &at = matches[m].at;
+            double moved[2] = {at.x, at.y};
+            if (!place_of(first, second, {turned, {}}, Way::forward, matches[m].place->x, matches[m].place->y, moved))
+                matches[m].quality = 0.0;
+            by_rotation[m].col(d) << (moved[0] - at.x) / kDerivativeStep, (moved[1] - at.y) / kDerivativeStep;
         }
-        if (good) matches.push_back(m);
-    }
     if (matches.size() < kFewest) return false;
-    Eigen::Vector3d change = Eigen::Vector3d::Zero();
-    for (int round = 0; round < 8; round++) {
-        Eigen::Matrix3d normal = Eigen::Matrix3d::Identity() * std::pow(pixel / kTrust, 2);
-        Eigen::Vector3d right = Eigen::Vector3d::Zero();
-        for (const Match &m : matches) {
-            double away = (m.off - m.by_rotation * change).norm() / (round ? pixel : 4.0 * pixel);
-            double weight = m.quality / (1.0 + away * away);
-            normal += weight * m.by_rotation.transpose() * m.by_rotation;
-            right += weight * m.by_rotation.transpose() * m.off;
-        }
-        change = normal.ldlt().solve(right);
-    }
+    const Eigen::VectorXd change = robust_step(matches, pixel / kTrust, pixel, 3, [&](size_t m, Eigen::MatrixXd &rows) {
+        rows = by_rotation[m];
+    });
     for (int d = 0; d < 3; d++) rotation[static_cast<size_t>(d)] += change[d];
     return change.allFinite();
 }
 
-double Matcher::median_shift(const Rotation &rotation) const {
+// The same of the homography.
+bool Matcher::refine_bend(size_t n, Correction &correction) const {
+    constexpr double none[2] = {0.0, 0.0};
+    const double pixel = second_grey.level[n].pixel, scale = 0.5 * std::hypot(second.width, second.height);
+    const std::vector<Match> matches = look(n, none, kSearch, 1, kMatch, correction);
+    if (matches.size() < kFewest) return false;
+    const Eigen::VectorXd h = robust_step(matches, pixel / kBendTrust, pixel, 8, [&](size_t m, Eigen::MatrixXd &rows) {
+        const Eigen::Vector2d s = frame_place(second, matches[m].at.x, matches[m].at.y);
+        rows.setZero(2, 8);
+        rows.row(0) << s[0], s[1], 1.0, 0.0, 0.0, 0.0, s[0] * s[0], s[0] * s[1];
+        rows.row(1) << 0.0, 0.0, 0.0, s[0], s[1], 1.0, s[1] * s[0], s[1] * s[1];
+        rows *= scale;
+    });
+    Eigen::Matrix3d change;
+    change << 1.0 + h[0], h[1], h[2], h[3], 1.0 + h[4], h[5], -h[6], -h[7], 1.0;
+    correction.bend = change * correction.bend.value_or(Eigen::Matrix3d::Identity());
+    return h.allFinite() && correction.bend->determinant() > 0.0;
+}
+
+// The similarity of two blocks' places that most others follow; false where there is none. Of all pairs of blocks, or
+// evenly chosen ones.
+bool Matcher::guess_bend(Correction &correction) const {
+    constexpr double none[2] = {0.0, 0.0};
+    constexpr size_t kMostGuesses = 4000;
+    const double pixel = second_grey.level[0].pixel, scale = 0.5 * std::hypot(second.width, second.height);
+    const std::vector<Match> matches = look(0, none, kFarthestBlock, 2, kFarMatch, correction);
+    using Complex = std::complex<double>;
+    std::vector<Complex> from, off;
+    for (const Match &m : matches) {
+        const Eigen::Vector2d s = frame_place(second, m.at.x, m.at.y);
+        from.emplace_back(s[0], s[1]), off.emplace_back(m.off[0] / scale, m.off[1] / scale);
+    }
+    const size_t count = matches.size(), guesses = count * (count - 1) / 2;
+    const size_t step = 1 + guesses / kMostGuesses;
+    double best = 0.0;
+    Complex turn, shift;
+    size_t guess = 0;
+    for (size_t a = 0; a < count; a++)
+        for (size_t b = a + 1; b < count; b++) {
+            if (guess++ % step) continue;
+            const Complex by = (off[b] - off[a]) / (from[b] - from[a]), moved = off[a] - by * from[a];
+            if (!(std::abs(by) < kLargestBend)) continue;
+            double follow = 0.0;
+            for (size_t m = 0; m < count; m++)
+                follow += std::abs(off[m] - moved - by * from[m]) * scale < kFollows * pixel;
+            if (follow > best) best = follow, turn = by, shift = moved;
+        }
+    if (best < std::max(double(kFewest), kFewestFollow * static_cast<double>(count))) return false;
+    Eigen::Matrix3d bend;
+    bend << 1.0 + turn.real(), -turn.imag(), shift.real(), turn.imag(), 1.0 + turn.real(), shift.imag(), 0.0, 0.0, 1.0;
+    correction.bend = bend;
+    return true;
+}
+
+// By how much one correction has blocks elsewhere than another, px of the full frame.
+double Matcher::median_shift(const Correction &a, const Correction &b) const {
     std::vector<double> shifts;
     for (const Place &p : places) {
-        Sight from, to;
-        if (sight(first, second, {}, 1.0, p.x, p.y, from) && sight(first, second, rotation, 1.0, p.x, p.y, to))
-            shifts.push_back(std::hypot(to.x - from.x, to.y - from.y));
+        double from[2], to[2];
+        if (place_of(first, second, a, Way::forward, p.x, p.y, from)
+            && place_of(first, second, b, Way::forward, p.x, p.y, to))
+            shifts.push_back(std::hypot(to[0] - from[0], to[1] - from[1]));
     }
     if (shifts.empty()) return 0.0;
     auto middle = shifts.begin() + static_cast<ptrdiff_t>(shifts.size() / 2);
@@ -238,110 +309,52 @@ bool most_prefer(const std::vector<std::optional<double>> &rotated, const std::v
     return better > 2 * worse;
 }
 
-// Of every four pixels the mean of the middle two: one that is wrong does not count.
-GreyLevels::Level halved(const GreyLevels::Level &from) {
-    GreyLevels::Level to;
-    to.width = from.width / 2, to.height = from.height / 2, to.pixel = 2.0 * from.pixel;
-    to.grey.resize(static_cast<size_t>(to.width) * static_cast<size_t>(to.height));
-    for (int v = 0; v < to.height; v++) {
-        const float *above = from.grey.data() + static_cast<ptrdiff_t>(2 * v) * from.width, *below = above + from.width;
-        float *out = to.grey.data() + static_cast<ptrdiff_t>(v) * to.width;
-        for (int u = 0; u < to.width; u++, above += 2, below += 2) {
-            float low = std::min(std::min(above[0], above[1]), std::min(below[0], below[1]));
-            float high = std::max(std::max(above[0], above[1]), std::max(below[0], below[1]));
-            out[u] = 0.5f * (above[0] + above[1] + below[0] + below[1] - low - high);
-        }
-    }
-    return to;
+// Most blocks match clearly better, at places that are clearly others.
+bool Matcher::is_better(const Correction &correction, const Correction &than) const {
+    size_t compared, found_in;
+    const auto by = correlations(1, correction), without = correlations(1, than);
+    const double before = mean_of(without, compared), found = mean_of(by, found_in);
+    const bool is_match = found > kMatch || found > before + kClearlyBetter;
+    return 2 * found_in > compared && is_match && found > before + kBetter && most_prefer(by, without)
+           && median_shift(than, correction) > 0.5 * second_grey.level[1].pixel;
+}
+
+std::optional<Rotation> Matcher::rotation() const {
+    constexpr double none[2] = {0.0, 0.0};
+    Rotation rotation{};
+    double shift[2];
+    common_shift(shift);
+    if (!refine(0, shift, rotation) || !refine(0, none, rotation)) return std::nullopt;
+    for (int round = 0; round < 2; round++)
+        if (!refine(1, none, rotation)) return std::nullopt;
+    return rotation;
+}
+
+std::optional<Correction> Matcher::bent(Correction correction) const {
+    if (!guess_bend(correction)) return std::nullopt;
+    for (size_t level : {0, 0, 1, 1})
+        if (!refine_bend(level, correction)) return std::nullopt;
+    return correction;
 }
 
 }  // namespace
 
-bool place_of(const lensprof_camera &first, const lensprof_camera &second, const Rotation &rotation, double sign,
-              double x, double y, double xy[2]) {
-    double direction[2];
-    if (!lensprof_camera_unproject(&first, x, y, direction)) return false;
-    rotate(rotation, sign, direction);
-    return lensprof_camera_project(&second, direction[0], direction[1], xy);
-}
-
-void unit_vector(const double direction[2], double v[3]) {
-    v[0] = std::cos(direction[1]) * std::sin(direction[0]);
-    v[1] = std::sin(direction[1]);
-    v[2] = std::cos(direction[1]) * std::cos(direction[0]);
-}
-
-void direction_of_vector(const double v[3], double direction[2]) {
-    direction[0] = std::atan2(v[0], v[2]);
-    direction[1] = std::asin(std::clamp(v[1], -1.0, 1.0));
-}
-
-void rotate(const Rotation &rotation, double sign, double direction[2]) {
-    if (rotation[0] == 0.0 && rotation[1] == 0.0 && rotation[2] == 0.0) return;
-    Eigen::Vector3d v, axis(rotation.data());
-    unit_vector(direction, v.data());
-    v = Eigen::AngleAxisd(sign * axis.norm(), axis.normalized()) * v;
-    direction_of_vector(v.data(), direction);
-}
-
-bool sight(const lensprof_camera &first, const lensprof_camera &second, const Rotation &rotation, double sign, double x,
-           double y, Sight &out) {
-    double xy[2], beside[2];
-    constexpr double step = 2.0;  // px
-    if (!place_of(first, second, rotation, sign, x, y, xy)) return false;
-    for (int d = 0; d < 2; d++) {
-        double inwards = (d == 0 ? x < 0.5 * first.width : y < 0.5 * first.height) ? step : -step;
-        double to_x = x + (d == 0 ? inwards : 0.0), to_y = y + (d == 1 ? inwards : 0.0);
-        if (!place_of(first, second, rotation, sign, to_x, to_y, beside)) return false;
-        for (int e = 0; e < 2; e++) out.map[e][d] = (beside[e] - xy[e]) / inwards;
-    }
-    out.x = xy[0], out.y = xy[1];
-    return true;
-}
-
-GreyLevels::GreyLevels(const View &view) {
-    const auto &picture = view.image().view;
-    Level full;
-    full.width = static_cast<int>(picture.width), full.height = static_cast<int>(picture.height);
-    full.pixel = view.image().reduction;
-    full.grey.resize(static_cast<size_t>(full.width) * static_cast<size_t>(full.height));
-    for (int v = 0; v < full.height; v++)
-        view.grey_row(v, full.grey.data() + static_cast<size_t>(v) * static_cast<size_t>(full.width));
-    level[1] = halved(full);
-    level[0] = halved(level[1]);
-}
-
-std::optional<double> likeness(const GreyLevels &first, double x, double y, const GreyLevels &second,
-                               const Sight &sight) {
-    Block<3> a, b;
-    const double pixel = first.level[0].pixel;
-    if (!a.cut(first.level[0], x, y, pixel, kUpright) || !b.cut(second.level[0], sight.x, sight.y, pixel, sight.map)
-        || std::max(a.texture, b.texture) < kTexture)
-        return std::nullopt;
-    return a.correlation(b);
-}
-
-Rotation registration(const lensprof_camera &first, const GreyLevels &first_grey, const lensprof_camera &second,
-                      const GreyLevels &second_grey) {
-    constexpr double none[2] = {0.0, 0.0};
+Correction registration(const lensprof_camera &first, const GreyLevels &first_grey, const lensprof_camera &second,
+                        const GreyLevels &second_grey) {
     Matcher matcher{first, second, first_grey, second_grey, {}};
+    Correction found;
+    auto is_right = [&] {
+        size_t compared;
+        const double alike = mean_of(matcher.correlations(1, found), compared);
+        return compared < kFewest || alike > kRight;
+    };
     matcher.find_places();
-    if (matcher.places.size() < kFewest) return {};
-    size_t compared, found_in;
-    const auto by_project = matcher.correlations(1, {});
-    double project = mean_of(by_project, compared), shift[2];
-    if (compared < kFewest || project > kRight) return {};
-    matcher.common_shift(shift);
-    Rotation rotation{};
-    if (!matcher.refine(0, shift, rotation) || !matcher.refine(0, none, rotation)) return {};
-    for (int round = 0; round < 2; round++)
-        if (!matcher.refine(1, none, rotation)) return {};
-    const auto by_rotation = matcher.correlations(1, rotation);
-    double found = mean_of(by_rotation, found_in);
-    double view_pixel = 0.5 * second_grey.level[1].pixel;
-    bool is_better = 2 * found_in > compared && found > kMatch && found > project + kBetter
-                     && most_prefer(by_rotation, by_project) && matcher.median_shift(rotation) > view_pixel;
-    return is_better ? rotation : Rotation{};
+    if (matcher.places.size() < kFewest || is_right()) return found;
+    if (const auto rotation = matcher.rotation(); rotation && matcher.is_better({*rotation, {}}, found))
+        found.rotation = *rotation;
+    if (is_right()) return found;
+    if (const auto bent = matcher.bent(found); bent && matcher.is_better(*bent, found)) found = *bent;
+    return found;
 }
 
 }  // namespace lensprof

@@ -42,7 +42,7 @@ int overlap_of(const lensprof_camera &first, const lensprof_camera &second) {
     int seen = 0;
     double xy[2];
     for (int k = 0; k < columns * rows; k++)
-        seen += place_of(first, second, {}, 1.0, (k % columns + 0.5) / columns * first.width - 0.5,
+        seen += place_of(first, second, {}, Way::forward, (k % columns + 0.5) / columns * first.width - 0.5,
                          (k / columns + 0.5) / rows * first.height - 0.5, xy)
                 && xy[0] >= 0.0 && xy[1] >= 0.0 && xy[0] < second.width && xy[1] < second.height;
     return seen;
@@ -121,7 +121,7 @@ void Sampler::each(uint32_t count, const std::function<void(uint32_t)> &work, co
 // Where the project is off between neighbours, as the pictures show. A camera that stands still is not off: pictures
 // that are mostly white, or mostly black, would only seem to be.
 void Sampler::register_neighbours() {
-    rotations_.assign(edge_numbers_, {});
+    corrections_.assign(edge_numbers_, {});
     likenesses_ = std::vector<Likenesses>(edge_numbers_);
     if (options_.sampling == LENSPROF_SAMPLING_BRACKET) return;
     struct Edge {
@@ -151,19 +151,19 @@ void Sampler::register_neighbours() {
     edges.erase(std::remove_if(edges.begin(), edges.end(), is_left_out), edges.end());
     auto work = [&](uint32_t e) {
         auto [i, j, overlap] = edges[e];
-        rotations_[edge_of(i, j)] = registration(camera(i), *grey_[i], camera(j), *grey_[j]);
+        corrections_[edge_of(i, j)] = registration(camera(i), *grey_[i], camera(j), *grey_[j]);
     };
     each(static_cast<uint32_t>(edges.size()), work, [] { return 0.0; });
 }
 
-const Rotation &Sampler::rotation(uint32_t i, uint32_t j) const {
-    static constexpr Rotation none{};
-    return patches_ ? rotations_[edge_of(i, j)] : none;
+const Correction &Sampler::correction(uint32_t i, uint32_t j) const {
+    static const Correction none;
+    return patches_ ? corrections_[edge_of(i, j)] : none;
 }
 
 // Where image j sees what image i sees at (x, y); false when it does not.
 bool Sampler::correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const {
-    return place_of(views_[i].image().camera, views_[j].image().camera, rotation(i, j), i < j ? 1.0 : -1.0, x, y, xy)
+    return place_of(views_[i].image().camera, views_[j].image().camera, correction(i, j), i < j ? Way::forward : Way::back, x, y, xy)
            && views_[j].holds(xy[0], xy[1]);
 }
 
@@ -171,7 +171,7 @@ bool Sampler::correspond(uint32_t i, uint32_t j, double x, double y, double xy[2
 bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
     Sight at;
     if (!patches_ || options_.sampling == LENSPROF_SAMPLING_BRACKET) return true;
-    if (!sight(views_[i].image().camera, views_[j].image().camera, rotation(i, j), i < j ? 1.0 : -1.0, x, y, at))
+    if (!sight(views_[i].image().camera, views_[j].image().camera, correction(i, j), i < j ? Way::forward : Way::back, x, y, at))
         return false;
     std::optional<double> told = likeness(*grey_[i], x, y, *grey_[j], at);
     if (!told) return true;

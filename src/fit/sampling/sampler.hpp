@@ -88,7 +88,7 @@ private:
     static Cone cone_of(const lensprof_camera &camera);
     void find_neighbours();
     void register_neighbours();
-    const Rotation &rotation(uint32_t i, uint32_t j) const;
+    const Correction &correction(uint32_t i, uint32_t j) const;
     bool correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const;
     bool is_the_same(uint32_t i, uint32_t j, double x, double y);
     bool is_in_place(uint32_t number) const;
@@ -113,7 +113,7 @@ private:
     std::vector<uint32_t> first_edge_;               // number of every image's first pair with a neighbour
     uint32_t edge_numbers_ = 0;                      // edge_of() is less
     std::vector<std::unique_ptr<GreyLevels>> grey_;  // of every view
-    std::vector<Rotation> rotations_;                // of every pair of neighbours, from the lower image to the other
+    std::vector<Correction> corrections_;            // of every pair of neighbours, from the lower image to the other
     std::vector<Likenesses> likenesses_;             // of every pair of neighbours
     std::atomic<size_t> refused_{0};                 // pairs of places that do not show the same
     bool patches_ = true;                            // else single points

@@ -1,0 +1,109 @@
+// Blocks of grey levels and how alike they are: by normalised cross-correlation, which exposure, white balance and
+// falloff leave as it is.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "fit/sampling/correction.hpp"
+#include "fit/sampling/view.hpp"
+
+namespace lensprof {
+
+constexpr double kTexture = 0.015;  // standard deviation of a block, grey value 0..1, that can be compared
+
+// Grey levels of a view, at a quarter and at half its size.
+class GreyLevels {
+public:
+    struct Level {
+        int width = 0, height = 0;
+        double pixel = 1.0;  // px of the full frame
+        std::vector<float> grey;
+    };
+
+    explicit GreyLevels(const View &view);
+
+    // Share of a block's variance that is of the scene: `texture` is its standard deviation on the coarse level, and
+    // noise is what two halves of the pixels behind it do not share.
+    double reliability(double x, double y, double texture) const;
+
+    std::array<Level, 2> level;  // the coarse one first
+
+private:
+    std::vector<float> noise_;  // variance about every coarse pixel
+};
+
+// Square of level pixels about a place, without its mean and of length 1. Pixels that are black or saturated do not
+// count.
+template <int reach>
+struct Block {
+    static constexpr int kSide = 2 * reach + 1, kCount = kSide * kSide;
+    static constexpr float kBlack = 0.004f, kWhite = 0.98f;
+    std::array<float, kCount> value;
+    std::array<float, kCount> grey;
+    double texture = 0.0;  // standard deviation before
+    int lost = 0;          // pixels that are black or saturated
+
+    // (x, y): full frame. `map` turns and scales the square, given in px of the full frame `pixel` apart.
+    bool cut(const GreyLevels::Level &level, double x, double y, double pixel, const double map[2][2]) {
+        const double u0 = (x + 0.5) / level.pixel, v0 = (y + 0.5) / level.pixel, step = pixel / level.pixel;
+        float sum = 0.0f, square = 0.0f;
+        lost = 0;
+        for (int k = 0; k < kCount; k++) {
+            const double a = step * (k % kSide - reach), b = step * (k / kSide - reach);
+            const double u = std::floor(u0 + map[0][0] * a + map[0][1] * b);
+            const double v = std::floor(v0 + map[1][0] * a + map[1][1] * b);
+            if (!(u >= 0.0 && v >= 0.0 && u < level.width && v < level.height)) return false;
+            const float one =
+                level.grey[static_cast<size_t>(v) * static_cast<size_t>(level.width) + static_cast<size_t>(u)];
+            grey[static_cast<size_t>(k)] = one;
+            lost += is_lost(one);
+            sum += one;
+        }
+        for (size_t k = 0; k < kCount; k++) value[k] = grey[k] - sum / kCount, square += value[k] * value[k];
+        texture = std::sqrt(square / kCount);
+        for (float &one : value) one = square > 0.0f ? one / std::sqrt(square) : 0.0f;
+        return true;
+    }
+
+    // 0 where too few pixels count.
+    double correlation(const Block &other) const {
+        if (lost || other.lost) return correlation_of_rest(other);
+        float sum = 0.0f;
+        for (size_t k = 0; k < value.size(); k++) sum += value[k] * other.value[k];
+        return sum;
+    }
+
+    // Pixels that count in both.
+    int shared(const Block &other) const {
+        int count = 0;
+        for (size_t k = 0; k < kCount; k++) count += !is_lost(grey[k]) && !is_lost(other.grey[k]);
+        return count;
+    }
+
+private:
+    static bool is_lost(float grey) { return !(grey >= kBlack && grey <= kWhite); }
+
+    double correlation_of_rest(const Block &other) const {
+        double n = 0.0, a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
+        for (size_t k = 0; k < kCount; k++) {
+            if (is_lost(grey[k]) || is_lost(other.grey[k])) continue;
+            const double p = grey[k], q = other.grey[k];
+            n += 1.0, a += p, b += q, aa += p * p, bb += q * q, ab += p * q;
+        }
+        const double of_both = (n * aa - a * a) * (n * bb - b * b);
+        return 2.0 * n < kCount || !(of_both > 0.0) ? 0.0 : (n * ab - a * b) / std::sqrt(of_both);
+    }
+};
+
+constexpr double kUpright[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
+
+// Correlation of the surroundings of a place, corrected for noise; nothing where they have no texture of the scene that
+// both show. Low where something moved, stands in the way, or the project is wrong.
+std::optional<double> likeness(const GreyLevels &first, double x, double y, const GreyLevels &second,
+                               const Sight &sight);
+
+}  // namespace lensprof
