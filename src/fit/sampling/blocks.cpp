@@ -52,8 +52,8 @@ std::vector<float> mean_about(std::vector<float> values, int width, int height) 
                 before[static_cast<size_t>(k) + 1] = before[static_cast<size_t>(k)] + first[k * step];
             for (int k = 0; k < length; k++) {
                 const int from = std::max(k - kReach, 0), to = std::min(k + kReach + 1, length);
-                first[k * step] = static_cast<float>((before[static_cast<size_t>(to)] - before[static_cast<size_t>(from)])
-                                                     / (to - from));
+                first[k * step] = static_cast<float>(
+                    (before[static_cast<size_t>(to)] - before[static_cast<size_t>(from)]) / (to - from));
             }
         }
     };

@@ -27,7 +27,10 @@ struct Correction {
 };
 
 // From the correction's first image to its second, or back.
-enum class Way { forward, back };
+enum class Way {
+    forward,
+    back
+};
 
 // The place xy of image `to` that shows what image `from` shows at (x, y), px of the full frames. False where `to` does
 // not look.

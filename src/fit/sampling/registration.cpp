@@ -74,8 +74,8 @@ struct Match {
     double quality;
 };
 
-// The h that minimises sum c_m |off_m - rows_m h|^2 + ridge^2 |h|^2, c_m being the trust; rows_of(m, rows) gives rows_m,
-// 2 x `size`.
+// The h that minimises sum c_m |off_m - rows_m h|^2 + ridge^2 |h|^2, c_m being the trust; rows_of(m, rows) gives
+// rows_m, 2 x `size`.
 template <class RowsOf>
 Eigen::VectorXd robust_step(const std::vector<Match> &matches, double ridge, double pixel, int size, RowsOf rows_of) {
     Eigen::VectorXd change = Eigen::VectorXd::Zero(size);
@@ -214,9 +214,8 @@ bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
             by_rotation[m].col(d) << (moved[0] - at.x) / kDerivativeStep, (moved[1] - at.y) / kDerivativeStep;
         }
     if (matches.size() < kFewest) return false;
-    const Eigen::VectorXd change = robust_step(matches, pixel / kTrust, pixel, 3, [&](size_t m, Eigen::MatrixXd &rows) {
-        rows = by_rotation[m];
-    });
+    const Eigen::VectorXd change =
+        robust_step(matches, pixel / kTrust, pixel, 3, [&](size_t m, Eigen::MatrixXd &rows) { rows = by_rotation[m]; });
     for (int d = 0; d < 3; d++) rotation[static_cast<size_t>(d)] += change[d];
     return change.allFinite();
 }

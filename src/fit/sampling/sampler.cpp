@@ -163,7 +163,8 @@ const Correction &Sampler::correction(uint32_t i, uint32_t j) const {
 
 // Where image j sees what image i sees at (x, y); false when it does not.
 bool Sampler::correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const {
-    return place_of(views_[i].image().camera, views_[j].image().camera, correction(i, j), i < j ? Way::forward : Way::back, x, y, xy)
+    return place_of(views_[i].image().camera, views_[j].image().camera, correction(i, j),
+                    i < j ? Way::forward : Way::back, x, y, xy)
            && views_[j].holds(xy[0], xy[1]);
 }
 
@@ -171,7 +172,8 @@ bool Sampler::correspond(uint32_t i, uint32_t j, double x, double y, double xy[2
 bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
     Sight at;
     if (!patches_ || options_.sampling == LENSPROF_SAMPLING_BRACKET) return true;
-    if (!sight(views_[i].image().camera, views_[j].image().camera, correction(i, j), i < j ? Way::forward : Way::back, x, y, at))
+    if (!sight(views_[i].image().camera, views_[j].image().camera, correction(i, j), i < j ? Way::forward : Way::back,
+               x, y, at))
         return false;
     std::optional<double> told = likeness(*grey_[i], x, y, *grey_[j], at);
     if (!told) return true;

@@ -7,6 +7,7 @@
 #include "core/covariance.h"
 #include "fit/base/constants.hpp"
 #include "fit/prior/known_exposures.hpp"
+#include "fit/problem/curve_shape.hpp"
 #include "fit/verdict/quality.hpp"
 #include "fit/verdict/reason.hpp"
 
@@ -33,6 +34,9 @@ constexpr double kSmallestShare = 0.2;         // or a smaller share of its pair
 constexpr double kSmallestStillShare = 0.7;    // of all pairs, where equal places are compared,
 constexpr double kStillMedian = 1.5;           // and levels of 255 that half of them are farther off than
 constexpr double kFarCentre = 0.1;             // half diagonals: five standard errors of its prior
+constexpr double kImpossibleRise = 1.1;        // of M beyond the middle: no lens brightens so much,
+constexpr double kUnusualRise = 1.05;          // nor a camera that corrects its lens
+constexpr double kClearly = 3.0;               // standard errors
 constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
 
 // Pairs that tell something: different from each other, with both grey values of a channel between black and white.
@@ -79,6 +83,13 @@ std::pair<int, int> missing_greys(const Problem &problem, const lensprof_fit_res
     return longest;
 }
 
+bool frees_falloff(const Problem &problem) {
+    return problem.free & (LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3);
+}
+
+// Of the centre from the middle, along the axis where it is larger, half diagonals.
+double largest_offset(const lensprof_vignetting &v) { return std::max(std::abs(v.center[0]), std::abs(v.center[1])); }
+
 bool fits_response(const Estimate &estimate) { return estimate.modes > 0 || estimate.is_refined; }
 
 // Outer edge of the outermost ring that holds more than a few pair ends.
@@ -88,18 +99,43 @@ double covered_radius(const lensprof_fit_result &r) {
     return 0.0;
 }
 
+// Where the falloff is brightest beyond the middle: M there, and its standard error with gamma held.
+struct Rise {
+    double brightest = 1.0, sigma = 0.0;
+};
+
+// Covariance of k1..k3 of a curve, gamma held.
+void covariance_held(const lensprof_fit_result &r, int curve, double held[9]) {
+    const uint32_t n = r.covariance_size;
+    const uint32_t first = lp_covariance_index(r.response.modes, static_cast<uint32_t>(curve));
+    for (uint32_t i = 0; i < 9; i++) {
+        const uint32_t row = first + i / 3, column = first + i % 3;
+        held[i] = r.covariance[row * n + column]
+                  - r.gamma_sigma * r.gamma_sigma * r.gamma_direction[row] * r.gamma_direction[column];
+    }
+}
+
+Rise largest_rise(const Problem &problem, const lensprof_fit_result &r) {
+    constexpr int kRadii = 20;
+    Rise rise;
+    for (int curve = 0; curve < problem.vignettings && r.covariance_size; curve++) {
+        double held[9];
+        covariance_held(r, curve, held);
+        for (int i = 1; i <= kRadii; i++) {
+            const double r2 = std::pow(double(i) / kRadii, 2),
+                         m = lensprof_vignetting_eval(&r.vignetting[curve], r2, nullptr);
+            if (m > rise.brightest) rise = {m, std::sqrt(std::max(0.0, lp_falloff_variance(held, 3, 0, r2)))};
+        }
+    }
+    return rise;
+}
+
 // Standard error of M in the corner, gamma held.
 double corner_sigma(const Problem &problem, const lensprof_fit_result &r) {
-    const uint32_t n = r.covariance_size;
     double worst = 0.0;
-    for (int curve = 0; curve < problem.vignettings && n; curve++) {
-        const uint32_t first = lp_covariance_index(r.response.modes, static_cast<uint32_t>(curve));
+    for (int curve = 0; curve < problem.vignettings && r.covariance_size; curve++) {
         double held[9];
-        for (uint32_t i = 0; i < 9; i++) {
-            const uint32_t row = first + i / 3, column = first + i % 3;
-            held[i] = r.covariance[row * n + column]
-                      - r.gamma_sigma * r.gamma_sigma * r.gamma_direction[row] * r.gamma_direction[column];
-        }
+        covariance_held(r, curve, held);
         worst = std::max(worst, lp_falloff_variance(held, 3, 0, 1.0));
     }
     return std::sqrt(worst);
@@ -138,6 +174,14 @@ uint32_t apart_image(const Problem &problem) {
     return static_cast<uint32_t>(apart - group.begin());
 }
 
+// Pictures by a camera that did not move: every place is compared with itself, and the falloff cancels.
+bool is_static(const Problem &problem) {
+    return std::all_of(problem.pairs.begin(), problem.pairs.end(), [](const lensprof_pair &pair) {
+        constexpr double kSame = 0.01;  // px
+        return std::abs(pair.xy[0][0] - pair.xy[1][0]) < kSame && std::abs(pair.xy[0][1] - pair.xy[1][1]) < kSame;
+    });
+}
+
 // Too few, too alike, or in places that tell nothing.
 bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     size_t unknowns = free_columns(problem, estimate.modes).size() + static_cast<size_t>(problem.image_unknowns);
@@ -146,20 +190,14 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
         return refuse(r, of_image(LENSPROF_REASON_IMAGE_GROUPS, apart_image(problem), {double(r.components)}));
     if (informative * static_cast<size_t>(problem.channels) < 2 * unknowns)
         return refuse(r, {LENSPROF_REASON_FEW_PAIRS, {double(informative), double(unknowns)}});
+    const double spread = exposure_spread(problem, estimate);
+    if (fits_response(estimate) && is_static(problem) && spread < kSmallestSpread)
+        return refuse(r, {LENSPROF_REASON_EXPOSURES_ALIKE, {spread}});
     if (fits_response(estimate) && covered_greys(problem, r) < kFewestGreys)
         return refuse(r, {LENSPROF_REASON_FEW_GREYS, {double(covered_greys(problem, r))}});
-    bool falloff = problem.free & (LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3);
-    if (falloff && covered_radius(r) < kSmallestRadius)
+    if (frees_falloff(problem) && covered_radius(r) < kSmallestRadius)
         return refuse(r, {LENSPROF_REASON_SMALL_RADIUS, {covered_radius(r)}});
     return false;
-}
-
-// Pictures by a camera that did not move: every place is compared with itself, and the falloff cancels.
-bool is_static(const Problem &problem) {
-    return std::all_of(problem.pairs.begin(), problem.pairs.end(), [](const lensprof_pair &pair) {
-        constexpr double kSame = 0.01;  // px
-        return std::abs(pair.xy[0][0] - pair.xy[1][0]) < kSame && std::abs(pair.xy[0][1] - pair.xy[1][1]) < kSame;
-    });
 }
 
 bool contradicts_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
@@ -209,6 +247,12 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
         return refuse(r, {LENSPROF_REASON_UNDETERMINED, {}});
     double corner = corner_sigma(problem, r);
     if (corner > kLargestCornerSigma) return refuse(r, {LENSPROF_REASON_CORNER_UNCERTAIN, {corner}});
+    const double off_centre = largest_offset(r.vignetting[0]);
+    if (off_centre > 0.98 * kLargestCenter && (problem.free & LENSPROF_FREE_CENTER))
+        return refuse(r, {LENSPROF_REASON_CENTER_ON_LIMIT, {off_centre}});
+    const Rise rise = largest_rise(problem, r);
+    if (frees_falloff(problem) && rise.brightest - kClearly * rise.sigma > kImpossibleRise)
+        return refuse(r, {LENSPROF_REASON_FALLOFF_RISES, {rise.brightest, rise.sigma}});
     const bool still = is_static(problem);
     uint32_t image, behind;
     if (has_few_inliers(problem, r, image, behind))
@@ -283,6 +327,9 @@ bool warns_of_model(const Problem &problem, const Estimate &estimate, lensprof_f
         return warn(r, {LENSPROF_REASON_WEAK_PATTERNS, {r.image_share, own}});
     if (r.frame_share > kNotRadial && of_frame > kSmallestPattern)
         return warn(r, {LENSPROF_REASON_NOT_RADIAL, {r.frame_share, of_frame}});
+    const Rise rise = largest_rise(problem, r);
+    if (frees_falloff(problem) && rise.brightest - kClearly * rise.sigma > kUnusualRise)
+        return warn(r, {LENSPROF_REASON_FALLOFF_RISES_SOME, {rise.brightest, rise.sigma}});
     if (off_centre > kFarCentre && (problem.free & LENSPROF_FREE_CENTER))
         return warn(r, {LENSPROF_REASON_FAR_CENTER, {off_centre}});
     if (!fits_response(estimate) || covered_greys(problem, r) >= kEnoughGreys) return false;

@@ -57,10 +57,13 @@ typedef enum lensprof_reason {
         352, /* distance, times that of the kind's measured cameras; standard error of ln gamma */
 
     /* Falloff. */
-    LENSPROF_REASON_SMALL_RADIUS = 401,     /* largest radius, half diagonals */
-    LENSPROF_REASON_CORNER_UNCERTAIN = 402, /* standard error of M */
-    LENSPROF_REASON_NOT_RADIAL = 451,       /* share of the residual's variance; levels of 255 */
-    LENSPROF_REASON_FAR_CENTER = 452,       /* distance, half diagonals */
+    LENSPROF_REASON_SMALL_RADIUS = 401,       /* largest radius, half diagonals */
+    LENSPROF_REASON_CORNER_UNCERTAIN = 402,   /* standard error of M */
+    LENSPROF_REASON_FALLOFF_RISES = 403,      /* largest M; its standard error */
+    LENSPROF_REASON_CENTER_ON_LIMIT = 404,    /* distance, half diagonals */
+    LENSPROF_REASON_NOT_RADIAL = 451,         /* share of the residual's variance; levels of 255 */
+    LENSPROF_REASON_FAR_CENTER = 452,         /* distance, half diagonals */
+    LENSPROF_REASON_FALLOFF_RISES_SOME = 453, /* largest M; its standard error */
 
     /* Flat fields. */
     LENSPROF_REASON_FLAT_WHITE = 501,          /* shot: share of the card */
