@@ -161,6 +161,16 @@ void test_changed_light_is_refused(void **) {
     if (!contains(reason, "light changed") || contains(reason, "free them")) fail_msg("%s", reason.c_str());
 }
 
+// Pictures of one exposure hold no response, whatever the method, and whatever exposures are said to be theirs.
+void test_one_exposure_is_refused(void **) {
+    const Words files = shots({0.0, 0.02, -0.02});
+    for (const char *method : {"transfer", "radiance", "transfer-function"}) {
+        const Json json = json_of(bracket(files, no_store + Words{"--method", method}), not_usable);
+        assert_string_equal(json["reason_code"].get<std::string>().c_str(), "exposures_alike");
+    }
+    must_exit(not_usable, bracket(files, no_store + Words{"--ev", "0,2,-2"}));
+}
+
 // Scanned film: black is grey, and dark pictures show nothing else.
 void test_black_that_is_not_0(void **) {
     const auto film = [](double x) { return (16.0 + 239.0 * std::pow(x, 0.6)) / 255.0; };
@@ -191,6 +201,7 @@ int main() {
         CLI_TEST(test_known_exposures_hold_gamma),
         CLI_TEST(test_exposures_of_three_pictures_contradict),
         CLI_TEST(test_changed_light_is_refused),
+        CLI_TEST(test_one_exposure_is_refused),
         CLI_TEST(test_black_that_is_not_0),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

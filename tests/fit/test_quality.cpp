@@ -79,6 +79,19 @@ void test_the_corners_must_be_covered(void **) {
     assert_int_equal(run_fit(s, options).result.usable, 1);
 }
 
+// Negatives: the light of the corners, which is less, comes out as more.
+void test_a_falloff_that_rises_is_not_usable(void **) {
+    Simulation s = simulate(2000, 1.0, 0.0);
+    assert_int_equal(run_fit(s).result.usable, 1);
+    for (auto &pair : s.pairs)
+        for (auto &value : pair.value)
+            for (double &v : value) v = 1.0 - v;
+    const FitRun run = run_fit(s);
+    assert_int_equal(run.result.usable, 0);
+    assert_true(says(run, LENSPROF_REASON_FALLOFF_RISES, "as of no lens"));
+    assert_true(run.result.reason_value[0] > 1.1 && run.result.reason_value[1] < 0.1);
+}
+
 void test_the_greys_must_be_covered(void **) {
     Simulation s;
     s.response = srgb_response();
@@ -293,6 +306,7 @@ int main() {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_groups_are_told),
         cmocka_unit_test(test_the_corners_must_be_covered),
+        cmocka_unit_test(test_a_falloff_that_rises_is_not_usable),
         cmocka_unit_test(test_the_greys_must_be_covered),
         cmocka_unit_test(test_coverage_counts_every_end),
         cmocka_unit_test(test_a_misplaced_image_is_named),

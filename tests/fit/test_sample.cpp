@@ -125,6 +125,21 @@ void test_a_project_that_is_off_is_registered(void **) {
     assert_true(distance_of_pairs(pairs, truth, 0.5) > 4.0);  // the paper trusts the project
 }
 
+// The angle of view is a seventh too small, and one camera was moved nearer: no rotation puts that right.
+void test_a_wrong_angle_of_view_is_registered(void **) {
+    detail = 0.07;
+    Pictures pictures(2, 320, 240, 20.0);
+    detail = 0.0;
+    const lensprof_camera truth[2] = {pictures.images[0].camera, pictures.images[1].camera};
+    for (double hfov : {47.0, 43.0}) {
+        pictures.images[1].camera.hfov_deg = hfov;
+        std::vector<lensprof_pair> pairs;
+        assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 500), pairs));
+        assert_int_equal(pairs.size(), 500);
+        assert_true(distance_of_pairs(pairs, truth, 0.95) < 1.5);
+    }
+}
+
 // Something stands before the scene in one picture.
 void test_what_moved_is_left_out(void **) {
     detail = 0.07;
@@ -373,6 +388,7 @@ int main() {
         cmocka_unit_test(test_masks_levels_and_alpha_are_kept_out),
         cmocka_unit_test(test_patches_shrug_off_hot_pixels),
         cmocka_unit_test(test_a_project_that_is_off_is_registered),
+        cmocka_unit_test(test_a_wrong_angle_of_view_is_registered),
         cmocka_unit_test(test_what_moved_is_left_out),
         cmocka_unit_test(test_a_moving_thing_does_not_move_the_project),
         cmocka_unit_test(test_a_picture_in_the_wrong_place_has_no_pairs),
