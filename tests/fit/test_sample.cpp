@@ -125,7 +125,7 @@ void test_a_project_that_is_off_is_registered(void **) {
     assert_true(distance_of_pairs(pairs, truth, 0.5) > 4.0);  // the paper trusts the project
 }
 
-// The angle of view is a seventh too small, and one camera was moved nearer: no rotation puts that right.
+// The angle of view of one image is up to a seventh too small in the project: no rotation puts that right.
 void test_a_wrong_angle_of_view_is_registered(void **) {
     detail = 0.07;
     Pictures pictures(2, 320, 240, 20.0);

@@ -6,13 +6,15 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include <lensprof/model.h>
+
 namespace lensprof {
 namespace {
 
-double half_diagonal(const lensprof_camera &camera) { return 0.5 * std::hypot(camera.width, camera.height); }
+double half_diagonal(const lensprof_camera &camera) { return lensprof_half_diagonal(camera.width, camera.height); }
 
 // False for places behind the homography's horizon.
-bool bend(const lensprof_camera &camera, const Eigen::Matrix3d &homography, double xy[2]) {
+bool apply_homography(const lensprof_camera &camera, const Eigen::Matrix3d &homography, double xy[2]) {
     const Eigen::Vector3d moved = homography * frame_place(camera, xy[0], xy[1]).homogeneous();
     constexpr double kHorizon = 0.1;
     if (!(moved[2] > kHorizon)) return false;
@@ -21,6 +23,8 @@ bool bend(const lensprof_camera &camera, const Eigen::Matrix3d &homography, doub
 }
 
 }  // namespace
+
+Bend::Bend(const Eigen::Matrix3d &homography) : forward(homography), back(homography.inverse()) {}
 
 void unit_vector(const double direction[2], double v[3]) {
     v[0] = std::cos(direction[1]) * std::sin(direction[0]);
@@ -54,11 +58,11 @@ bool place_of(const lensprof_camera &from, const lensprof_camera &to, const Corr
               double y, double xy[2]) {
     double direction[2], own[2] = {x, y};
     const bool is_forward = way == Way::forward;
-    if (correction.bend && !is_forward && !bend(from, correction.bend->inverse(), own)) return false;
+    if (correction.bend && !is_forward && !apply_homography(from, correction.bend->back, own)) return false;
     if (!lensprof_camera_unproject(&from, own[0], own[1], direction)) return false;
     rotate(correction.rotation, is_forward ? 1.0 : -1.0, direction);
     return lensprof_camera_project(&to, direction[0], direction[1], xy)
-           && (!correction.bend || !is_forward || bend(to, *correction.bend, xy));
+           && (!correction.bend || !is_forward || apply_homography(to, correction.bend->forward, xy));
 }
 
 bool sight(const lensprof_camera &from, const lensprof_camera &to, const Correction &correction, Way way, double x,

@@ -18,12 +18,18 @@ void direction_of_vector(const double v[3], double direction[2]);
 using Rotation = std::array<double, 3>;
 void rotate(const Rotation &rotation, double sign, double direction[2]);
 
-// What is wrong with a project between two images: the second camera is turned by `rotation`, and what it then shows at
-// a place of its frame is found where the homography `bend` maps that place. Places there are half diagonals from the
-// middle of the frame.
+// A homography of a frame and its inverse. Places are in half diagonals from the middle of the frame.
+struct Bend {
+    explicit Bend(const Eigen::Matrix3d &homography);
+
+    Eigen::Matrix3d forward, back;
+};
+
+// What is wrong with a project between two images: the second camera is turned by `rotation`, and `bend` maps a place
+// of its frame to the place that shows the same.
 struct Correction {
     Rotation rotation{};
-    std::optional<Eigen::Matrix3d> bend;
+    std::optional<Bend> bend;
 };
 
 // From the correction's first image to its second, or back.

@@ -35,7 +35,9 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <lensprof/model.h>
 
 namespace lensprof {
 namespace {
@@ -58,6 +60,7 @@ constexpr double kLargestBend = 0.25;     // turn or change of scale of a first 
 constexpr double kFollows = 2.0;          // coarse pixels from where a guess has a block that follows it
 constexpr double kFewestFollow = 0.2;     // share of the blocks that follow a guess
 constexpr double kDerivativeStep = 1e-4;  // radians
+constexpr double kNoShift[2] = {0.0, 0.0};
 
 // A block of the first image, and where the project expects it in the second.
 struct Place {
@@ -66,34 +69,34 @@ struct Place {
     std::array<Block<4>, 2> block;  // of each level
 };
 
-// Where a block was found: `off` (px of the full frame) beside where it is expected.
+// A block that was found in the second image.
 struct Match {
     const Place *place;
-    Sight at;
-    Eigen::Vector2d off;
+    Sight at;             // where it was expected
+    Eigen::Vector2d off;  // and how far from there it is, px of the full frame
     double quality;
+    Eigen::Matrix<double, 2, Eigen::Dynamic> rows;  // change of the expected place with every unknown
 };
 
-// The h that minimises sum c_m |off_m - rows_m h|^2 + ridge^2 |h|^2, c_m being the trust; rows_of(m, rows) gives
-// rows_m, 2 x `size`.
-template <class RowsOf>
-Eigen::VectorXd robust_step(const std::vector<Match> &matches, double ridge, double pixel, int size, RowsOf rows_of) {
+// The h that minimises sum c_m |off_m - rows_m h|^2 + ridge^2 |h|^2, c_m being the trust.
+Eigen::VectorXd robust_step(const std::vector<Match> &matches, double ridge, double pixel) {
+    const Eigen::Index size = matches.front().rows.cols();
     Eigen::VectorXd change = Eigen::VectorXd::Zero(size);
-    Eigen::MatrixXd rows;
     for (int round = 0; round < 8; round++) {
         Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(size, size) * ridge * ridge;
         Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
-        for (size_t m = 0; m < matches.size(); m++) {
-            rows_of(m, rows);
-            const double away = (matches[m].off - rows * change).norm() / (round ? pixel : 4.0 * pixel);
-            const double weight = matches[m].quality / (1.0 + away * away);
-            normal += weight * rows.transpose() * rows;
-            right += weight * rows.transpose() * matches[m].off;
+        for (const Match &m : matches) {
+            const double away = (m.off - m.rows * change).norm() / (round ? pixel : 4.0 * pixel);
+            const double weight = m.quality / (1.0 + away * away);
+            normal += weight * m.rows.transpose() * m.rows;
+            right += weight * m.rows.transpose() * m.off;
         }
         change = normal.ldlt().solve(right);
     }
     return change;
 }
+
+using Correlations = std::vector<std::optional<double>>;  // of every place; none where the second does not see it
 
 struct Matcher {
     const lensprof_camera &first, &second;
@@ -102,7 +105,7 @@ struct Matcher {
 
     void find_places();
     bool cut(size_t level, const Sight &at, double du, double dv, Block<4> &out) const;
-    std::vector<std::optional<double>> correlations(size_t level, const Correction &correction) const;
+    Correlations correlations(size_t level, const Correction &correction) const;
     void common_shift(double shift[2]) const;
     std::vector<Match> look(size_t level, const double *shift, int reach, int step, double least,
                             const Correction &correction) const;
@@ -111,7 +114,8 @@ struct Matcher {
     bool guess_bend(Correction &correction) const;
     std::optional<Rotation> rotation() const;
     std::optional<Correction> bent(Correction correction) const;
-    bool is_better(const Correction &correction, const Correction &than) const;
+    bool is_better(const Correction &correction, const Correlations &by, const Correction &than,
+                   const Correlations &without) const;
     double median_shift(const Correction &from, const Correction &to) const;
 };
 
@@ -141,8 +145,8 @@ bool Matcher::cut(size_t n, const Sight &at, double du, double dv, Block<4> &out
     return out.cut(level, at.x + du * level.pixel, at.y + dv * level.pixel, first_grey.level[n].pixel, at.map);
 }
 
-std::vector<std::optional<double>> Matcher::correlations(size_t n, const Correction &correction) const {
-    std::vector<std::optional<double>> result;
+Correlations Matcher::correlations(size_t n, const Correction &correction) const {
+    Correlations result;
     Block<4> other;
     Sight at;
     for (const Place &p : places) {
@@ -177,7 +181,7 @@ void Matcher::common_shift(double shift[2]) const {
     }
 }
 
-// Looks for every block about where it is expected. `shift`: expected beside the correction, level pixels.
+// Searches for every block around its expected place: by the correction, and `shift` level pixels beside that.
 std::vector<Match> Matcher::look(size_t n, const double *shift, int reach, int step, double least,
                                  const Correction &correction) const {
     const double pixel = second_grey.level[n].pixel;
@@ -202,50 +206,49 @@ std::vector<Match> Matcher::look(size_t n, const double *shift, int reach, int s
 bool Matcher::refine(size_t n, const double *shift, Rotation &rotation) const {
     const double pixel = second_grey.level[n].pixel;
     std::vector<Match> matches = look(n, shift, kSearch, 1, kMatch, {rotation, {}});
-    std::vector<Eigen::Matrix<double, 2, 3>> by_rotation(matches.size());
-    for (size_t m = 0; m < matches.size(); m++)
+    auto is_lost = [&](Match &m) {
+        m.rows.resize(2, 3);
         for (int d = 0; d < 3; d++) {
             Rotation turned = rotation;
             turned[static_cast<size_t>(d)] += kDerivativeStep;
-            const Sight &at = matches[m].at;
-            double moved[2] = {at.x, at.y};
-            if (!place_of(first, second, {turned, {}}, Way::forward, matches[m].place->x, matches[m].place->y, moved))
-                matches[m].quality = 0.0;
-            by_rotation[m].col(d) << (moved[0] - at.x) / kDerivativeStep, (moved[1] - at.y) / kDerivativeStep;
+            double moved[2];
+            if (!place_of(first, second, {turned, {}}, Way::forward, m.place->x, m.place->y, moved)) return true;
+            m.rows.col(d) << (moved[0] - m.at.x) / kDerivativeStep, (moved[1] - m.at.y) / kDerivativeStep;
         }
+        return false;
+    };
+    matches.erase(std::remove_if(matches.begin(), matches.end(), is_lost), matches.end());
     if (matches.size() < kFewest) return false;
-    const Eigen::VectorXd change =
-        robust_step(matches, pixel / kTrust, pixel, 3, [&](size_t m, Eigen::MatrixXd &rows) { rows = by_rotation[m]; });
+    const Eigen::VectorXd change = robust_step(matches, pixel / kTrust, pixel);
     for (int d = 0; d < 3; d++) rotation[static_cast<size_t>(d)] += change[d];
     return change.allFinite();
 }
 
 // The same of the homography.
 bool Matcher::refine_bend(size_t n, Correction &correction) const {
-    constexpr double none[2] = {0.0, 0.0};
-    const double pixel = second_grey.level[n].pixel, scale = 0.5 * std::hypot(second.width, second.height);
-    const std::vector<Match> matches = look(n, none, kSearch, 1, kMatch, correction);
+    const double pixel = second_grey.level[n].pixel, scale = lensprof_half_diagonal(second.width, second.height);
+    std::vector<Match> matches = look(n, kNoShift, kSearch, 1, kMatch, correction);
     if (matches.size() < kFewest) return false;
-    const Eigen::VectorXd h = robust_step(matches, pixel / kBendTrust, pixel, 8, [&](size_t m, Eigen::MatrixXd &rows) {
-        const Eigen::Vector2d s = frame_place(second, matches[m].at.x, matches[m].at.y);
-        rows.setZero(2, 8);
-        rows.row(0) << s[0], s[1], 1.0, 0.0, 0.0, 0.0, s[0] * s[0], s[0] * s[1];
-        rows.row(1) << 0.0, 0.0, 0.0, s[0], s[1], 1.0, s[1] * s[0], s[1] * s[1];
-        rows *= scale;
-    });
+    for (Match &m : matches) {
+        const Eigen::Vector2d s = frame_place(second, m.at.x, m.at.y);
+        m.rows.resize(2, 8);
+        m.rows.row(0) << s[0], s[1], 1.0, 0.0, 0.0, 0.0, s[0] * s[0], s[0] * s[1];
+        m.rows.row(1) << 0.0, 0.0, 0.0, s[0], s[1], 1.0, s[1] * s[0], s[1] * s[1];
+        m.rows *= scale;
+    }
+    const Eigen::VectorXd h = robust_step(matches, pixel / kBendTrust, pixel);
     Eigen::Matrix3d change;
     change << 1.0 + h[0], h[1], h[2], h[3], 1.0 + h[4], h[5], -h[6], -h[7], 1.0;
-    correction.bend = change * correction.bend.value_or(Eigen::Matrix3d::Identity());
-    return h.allFinite() && correction.bend->determinant() > 0.0;
+    correction.bend = Bend(change * correction.bend->forward);
+    return h.allFinite() && correction.bend->forward.determinant() > 0.0;
 }
 
-// The similarity of two blocks' places that most others follow; false where there is none. Of all pairs of blocks, or
-// evenly chosen ones.
+// The similarity that most blocks follow, of those that two blocks give; false where too few follow any. Tries all
+// pairs of blocks, or evenly chosen ones.
 bool Matcher::guess_bend(Correction &correction) const {
-    constexpr double none[2] = {0.0, 0.0};
     constexpr size_t kMostGuesses = 4000;
-    const double pixel = second_grey.level[0].pixel, scale = 0.5 * std::hypot(second.width, second.height);
-    const std::vector<Match> matches = look(0, none, kFarthestBlock, 2, kFarMatch, correction);
+    const double pixel = second_grey.level[0].pixel, scale = lensprof_half_diagonal(second.width, second.height);
+    const std::vector<Match> matches = look(0, kNoShift, kFarthestBlock, 2, kFarMatch, correction);
     using Complex = std::complex<double>;
     std::vector<Complex> from, off;
     for (const Match &m : matches) {
@@ -270,7 +273,7 @@ bool Matcher::guess_bend(Correction &correction) const {
     if (best < std::max(double(kFewest), kFewestFollow * static_cast<double>(count))) return false;
     Eigen::Matrix3d bend;
     bend << 1.0 + turn.real(), -turn.imag(), shift.real(), turn.imag(), 1.0 + turn.real(), shift.imag(), 0.0, 0.0, 1.0;
-    correction.bend = bend;
+    correction.bend = Bend(bend);
     return true;
 }
 
@@ -289,7 +292,7 @@ double Matcher::median_shift(const Correction &a, const Correction &b) const {
     return *middle;
 }
 
-double mean_of(const std::vector<std::optional<double>> &correlations, size_t &count) {
+double mean_of(const Correlations &correlations, size_t &count) {
     double sum = 0.0;
     count = 0;
     for (const auto &one : correlations)
@@ -297,21 +300,22 @@ double mean_of(const std::vector<std::optional<double>> &correlations, size_t &c
     return count ? sum / static_cast<double>(count) : 0.0;
 }
 
-// Whether most blocks match better under the rotation than by the project: what moved prefers it, too, but not the
-// scene about it.
-bool most_prefer(const std::vector<std::optional<double>> &rotated, const std::vector<std::optional<double>> &project) {
+// Whether most blocks match better by the correction than without: what moved prefers it, too, but not the scene about
+// it.
+bool most_prefer(const Correlations &by, const Correlations &without) {
     size_t better = 0, worse = 0;
-    for (size_t p = 0; p < rotated.size(); p++) {
-        double gain = rotated[p].value_or(0.0) - project[p].value_or(0.0);
+    for (size_t p = 0; p < by.size(); p++) {
+        double gain = by[p].value_or(0.0) - without[p].value_or(0.0);
         better += gain > kPreferred, worse += gain < -kPreferred;
     }
     return better > 2 * worse;
 }
 
-// Most blocks match clearly better, at places that are clearly others.
-bool Matcher::is_better(const Correction &correction, const Correction &than) const {
+// Most blocks match clearly better, at places that are clearly others. `by` and `without` are the correlations of the
+// two.
+bool Matcher::is_better(const Correction &correction, const Correlations &by, const Correction &than,
+                        const Correlations &without) const {
     size_t compared, found_in;
-    const auto by = correlations(1, correction), without = correlations(1, than);
     const double before = mean_of(without, compared), found = mean_of(by, found_in);
     const bool is_match = found > kMatch || found > before + kClearlyBetter;
     return 2 * found_in > compared && is_match && found > before + kBetter && most_prefer(by, without)
@@ -319,13 +323,12 @@ bool Matcher::is_better(const Correction &correction, const Correction &than) co
 }
 
 std::optional<Rotation> Matcher::rotation() const {
-    constexpr double none[2] = {0.0, 0.0};
     Rotation rotation{};
     double shift[2];
     common_shift(shift);
-    if (!refine(0, shift, rotation) || !refine(0, none, rotation)) return std::nullopt;
+    if (!refine(0, shift, rotation) || !refine(0, kNoShift, rotation)) return std::nullopt;
     for (int round = 0; round < 2; round++)
-        if (!refine(1, none, rotation)) return std::nullopt;
+        if (!refine(1, kNoShift, rotation)) return std::nullopt;
     return rotation;
 }
 
@@ -341,18 +344,23 @@ std::optional<Correction> Matcher::bent(Correction correction) const {
 Correction registration(const lensprof_camera &first, const GreyLevels &first_grey, const lensprof_camera &second,
                         const GreyLevels &second_grey) {
     Matcher matcher{first, second, first_grey, second_grey, {}};
+    matcher.find_places();
+    if (matcher.places.size() < kFewest) return {};
     Correction found;
+    Correlations alike = matcher.correlations(1, found);
     auto is_right = [&] {
         size_t compared;
-        const double alike = mean_of(matcher.correlations(1, found), compared);
-        return compared < kFewest || alike > kRight;
+        const double mean = mean_of(alike, compared);
+        return compared < kFewest || mean > kRight;
     };
-    matcher.find_places();
-    if (matcher.places.size() < kFewest || is_right()) return found;
-    if (const auto rotation = matcher.rotation(); rotation && matcher.is_better({*rotation, {}}, found))
-        found.rotation = *rotation;
+    auto take_if_better = [&](const Correction &other) {
+        const Correlations own = matcher.correlations(1, other);
+        if (matcher.is_better(other, own, found, alike)) found = other, alike = own;
+    };
     if (is_right()) return found;
-    if (const auto bent = matcher.bent(found); bent && matcher.is_better(*bent, found)) found = *bent;
+    if (const auto rotation = matcher.rotation()) take_if_better({*rotation, {}});
+    if (is_right()) return found;
+    if (const auto bent = matcher.bent(found)) take_if_better(*bent);
     return found;
 }
 
