@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/covariance.h"
+#include "falloff/rise.hpp"
 #include "fit/base/constants.hpp"
 #include "fit/prior/known_exposures.hpp"
 #include "fit/problem/curve_shape.hpp"
@@ -34,8 +35,8 @@ constexpr double kSmallestShare = 0.2;         // or a smaller share of its pair
 constexpr double kSmallestStillShare = 0.7;    // of all pairs, where equal places are compared,
 constexpr double kStillMedian = 1.5;           // and levels of 255 that half of them are farther off than
 constexpr double kFarCentre = 0.1;             // half diagonals: five standard errors of its prior
-constexpr double kImpossibleRise = 1.1;        // of M beyond the middle: no lens brightens so much,
-constexpr double kUnusualRise = 1.05;          // nor a camera that corrects its lens
+constexpr double kOnLimit = 0.98;              // of the largest offset of the centre
+constexpr double kImpossibleRise = 1.1;        // of M beyond the middle: no lens brightens so much
 constexpr double kClearly = 3.0;               // standard errors
 constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
 
@@ -83,9 +84,9 @@ std::pair<int, int> missing_greys(const Problem &problem, const lensprof_fit_res
     return longest;
 }
 
-bool frees_falloff(const Problem &problem) {
-    return problem.free & (LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3);
-}
+constexpr uint32_t kFalloffFlags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+
+bool frees_falloff(const Problem &problem) { return problem.free & kFalloffFlags; }
 
 // Of the centre from the middle, along the axis where it is larger, half diagonals.
 double largest_offset(const lensprof_vignetting &v) { return std::max(std::abs(v.center[0]), std::abs(v.center[1])); }
@@ -99,11 +100,6 @@ double covered_radius(const lensprof_fit_result &r) {
     return 0.0;
 }
 
-// Where the falloff is brightest beyond the middle: M there, and its standard error with gamma held.
-struct Rise {
-    double brightest = 1.0, sigma = 0.0;
-};
-
 // Covariance of k1..k3 of a curve, gamma held.
 void covariance_held(const lensprof_fit_result &r, int curve, double held[9]) {
     const uint32_t n = r.covariance_size;
@@ -115,19 +111,18 @@ void covariance_held(const lensprof_fit_result &r, int curve, double held[9]) {
     }
 }
 
-Rise largest_rise(const Problem &problem, const lensprof_fit_result &r) {
-    constexpr int kRadii = 20;
-    Rise rise;
-    for (int curve = 0; curve < problem.vignettings && r.covariance_size; curve++) {
+// The largest M of a falloff that was free, and its standard error with gamma held, where it is clearly above `limit`.
+std::vector<double> rise_above(double limit, const Problem &problem, const lensprof_fit_result &r) {
+    double highest = 1.0, sigma = 0.0;
+    for (int curve = 0; curve < problem.vignettings && r.covariance_size && frees_falloff(problem); curve++) {
+        const Highest own = highest_of(r.vignetting[curve]);
+        if (own.m <= highest) continue;
         double held[9];
         covariance_held(r, curve, held);
-        for (int i = 1; i <= kRadii; i++) {
-            const double r2 = std::pow(double(i) / kRadii, 2),
-                         m = lensprof_vignetting_eval(&r.vignetting[curve], r2, nullptr);
-            if (m > rise.brightest) rise = {m, std::sqrt(std::max(0.0, lp_falloff_variance(held, 3, 0, r2)))};
-        }
+        highest = own.m, sigma = std::sqrt(std::max(0.0, lp_falloff_variance(held, 3, 0, own.r2)));
     }
-    return rise;
+    if (highest - kClearly * sigma > limit) return {highest, sigma};
+    return {};
 }
 
 // Standard error of M in the corner, gamma held.
@@ -190,9 +185,9 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
         return refuse(r, of_image(LENSPROF_REASON_IMAGE_GROUPS, apart_image(problem), {double(r.components)}));
     if (informative * static_cast<size_t>(problem.channels) < 2 * unknowns)
         return refuse(r, {LENSPROF_REASON_FEW_PAIRS, {double(informative), double(unknowns)}});
-    const double spread = exposure_spread(problem, estimate);
-    if (fits_response(estimate) && is_static(problem) && spread < kSmallestSpread)
-        return refuse(r, {LENSPROF_REASON_EXPOSURES_ALIKE, {spread}});
+    if (fits_response(estimate) && is_static(problem))
+        if (const double spread = exposure_spread(problem, estimate); spread < kSmallestSpread)
+            return refuse(r, {LENSPROF_REASON_EXPOSURES_ALIKE, {spread}});
     if (fits_response(estimate) && covered_greys(problem, r) < kFewestGreys)
         return refuse(r, {LENSPROF_REASON_FEW_GREYS, {double(covered_greys(problem, r))}});
     if (frees_falloff(problem) && covered_radius(r) < kSmallestRadius)
@@ -201,9 +196,8 @@ bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_r
 }
 
 bool contradicts_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
-    constexpr uint32_t falloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
     // else it is what was held that does not fit
-    bool is_free = (estimate.modes >= 0 || estimate.is_refined) && (problem.free & falloff) == falloff;
+    bool is_free = (estimate.modes >= 0 || estimate.is_refined) && (problem.free & kFalloffFlags) == kFalloffFlags;
     bool still = is_static(problem) && (problem.free & LENSPROF_FREE_RESPONSE);
     bool is_far = r.heldout_median == LENSPROF_UNKNOWN || r.heldout_median > kStillMedian;
     if (still && r.inlier_share < kSmallestStillShare && is_far)
@@ -248,11 +242,10 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
     double corner = corner_sigma(problem, r);
     if (corner > kLargestCornerSigma) return refuse(r, {LENSPROF_REASON_CORNER_UNCERTAIN, {corner}});
     const double off_centre = largest_offset(r.vignetting[0]);
-    if (off_centre > 0.98 * kLargestCenter && (problem.free & LENSPROF_FREE_CENTER))
+    if (off_centre > kOnLimit * kLargestCenter && (problem.free & LENSPROF_FREE_CENTER))
         return refuse(r, {LENSPROF_REASON_CENTER_ON_LIMIT, {off_centre}});
-    const Rise rise = largest_rise(problem, r);
-    if (frees_falloff(problem) && rise.brightest - kClearly * rise.sigma > kImpossibleRise)
-        return refuse(r, {LENSPROF_REASON_FALLOFF_RISES, {rise.brightest, rise.sigma}});
+    if (const auto rise = rise_above(kImpossibleRise, problem, r); !rise.empty())
+        return refuse(r, {LENSPROF_REASON_FALLOFF_RISES, rise});
     const bool still = is_static(problem);
     uint32_t image, behind;
     if (has_few_inliers(problem, r, image, behind))
@@ -327,9 +320,8 @@ bool warns_of_model(const Problem &problem, const Estimate &estimate, lensprof_f
         return warn(r, {LENSPROF_REASON_WEAK_PATTERNS, {r.image_share, own}});
     if (r.frame_share > kNotRadial && of_frame > kSmallestPattern)
         return warn(r, {LENSPROF_REASON_NOT_RADIAL, {r.frame_share, of_frame}});
-    const Rise rise = largest_rise(problem, r);
-    if (frees_falloff(problem) && rise.brightest - kClearly * rise.sigma > kUnusualRise)
-        return warn(r, {LENSPROF_REASON_FALLOFF_RISES_SOME, {rise.brightest, rise.sigma}});
+    if (const auto rise = rise_above(kLargestRise, problem, r); !rise.empty())
+        return warn(r, {LENSPROF_REASON_FALLOFF_RISES_SOME, rise});
     if (off_centre > kFarCentre && (problem.free & LENSPROF_FREE_CENTER))
         return warn(r, {LENSPROF_REASON_FAR_CENTER, {off_centre}});
     if (!fits_response(estimate) || covered_greys(problem, r) >= kEnoughGreys) return false;

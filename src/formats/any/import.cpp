@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/sized.h"
+#include "falloff/rise.hpp"
 #include "formats/any/detect.hpp"
 #include "formats/falloff/import.hpp"
 #include "formats/text/text.hpp"
@@ -15,7 +16,6 @@ namespace {
 
 constexpr size_t kFirstImport = LP_END_OF(lensprof_import_options, key);
 constexpr size_t kMostBytes = size_t{64} << 20;
-constexpr double kRisen = 1.05;  // an M that may be a gain
 
 // A file whose format is known.
 struct Input {
@@ -89,12 +89,10 @@ lensprof_status read_falloff(const Input &in, Part &part, lensprof_error *error)
 // An attenuation that rises is seldom one: a gain may have been taken for it.
 void doubt_rise(lensprof_profile &profile) {
     double highest = 1.0;
-    for (uint32_t c = 0; c < profile.vignettings; c++)
-        for (int i = 1; i <= 20; i++)
-            highest = std::max(highest, lensprof_vignetting_eval(&profile.vignetting[c], i / 20.0, nullptr));
+    for (uint32_t c = 0; c < profile.vignettings; c++) highest = std::max(highest, highest_of(profile.vignetting[c]).m);
     char text[sizeof profile.provenance.doubt];
     std::snprintf(text, sizeof text, "M rises to %.2f: is it a gain?", highest);
-    if (highest > kRisen) put_text(profile.provenance.doubt, sizeof profile.provenance.doubt, text);
+    if (highest > kLargestRise) put_text(profile.provenance.doubt, sizeof profile.provenance.doubt, text);
 }
 
 lensprof_profile_key key_of(const lensprof_import_options &o, bool is_response) {
