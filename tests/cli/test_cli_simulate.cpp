@@ -206,6 +206,26 @@ void test_exif_is_rounded(void **) {
     assert_close(std::sqrt(square / 40 - sum * sum / 1600), 0.1, 0.04);
 }
 
+// At one manual exposure the pictures tell the same, and their exposures scatter by what is asked for.
+void test_exif_tells_one_manual_exposure(void **) {
+    must_exit(done, simulate("told", {"--exif", "--exif-manual", "--exif-scatter", "0.03", "--ev", "0", "--images",
+                                      "40", "--size", "16x16"}));
+    const Json truth = truth_of("told");
+    double sum = 0, square = 0;
+    for (size_t i = 0; i < 40; ++i) {
+        const Json &image = truth["images"][i];
+        const PictureMetadata m = read_metadata(work("told/" + image["file"].get<std::string>()));
+        assert_true(m.is_manual);
+        assert_close(m.iso.value_or(0), 100, 0);
+        assert_close(m.exif_ev.value_or(NAN), truth["images"][0]["exif_ev"].get<double>(), 1e-12);
+        const double ev = image["ev"].get<double>();
+        sum += ev, square += ev * ev;
+    }
+    assert_close(std::sqrt(square / 40 - sum * sum / 1600), 0.03, 0.01);
+    must_exit(done, simulate("auto", {"--exif", "--images", "2"}));
+    assert_false(read_metadata(picture_of("auto", 0)).is_manual);
+}
+
 // Without --exif camera, lens and aperture are told, the exposure is not.
 void test_no_exposure_without_exif(void **) {
     must_exit(done, simulate("quiet", {"--images", "2"}));
@@ -240,9 +260,10 @@ void test_many_pictures(void **) {
 }
 
 void test_refused_options(void **) {
-    for (const Words &words : {Words{"--objects", "0.95"}, Words{"--objects", "nan"}, Words{"--local-tone", "5"},
-                               Words{"--local-tone", "nan"}, Words{"--exif-rounding", "0.1"}, Words{"--mean-ev", "9"},
-                               Words{"--exif-rounding", "-1", "--exif"}})
+    for (const Words &words :
+         {Words{"--objects", "0.95"}, Words{"--objects", "nan"}, Words{"--local-tone", "5"},
+          Words{"--local-tone", "nan"}, Words{"--exif-rounding", "0.1"}, Words{"--mean-ev", "9"},
+          Words{"--exif-manual"}, Words{"--exif-scatter", "0.1"}, Words{"--exif-rounding", "-1", "--exif"}})
         assert_refused(usage, simulate("s", words), {words[0]});
     assert_refused(usage, simulate("s", {"--exif", "--no-images"}), {"--exif", "--no-images"});
     assert_refused(usage, simulate("s", {"--center", "1e9,0"}), {"--center: the falloff must stay positive"});
@@ -261,6 +282,7 @@ int main() {
         CLI_TEST(test_local_tone_in_pairs),
         CLI_TEST(test_exif_tells_exposures),
         CLI_TEST(test_exif_is_rounded),
+        CLI_TEST(test_exif_tells_one_manual_exposure),
         CLI_TEST(test_no_exposure_without_exif),
         CLI_TEST(test_mean_exposure),
         CLI_TEST(test_many_pictures),

@@ -228,6 +228,17 @@ void test_exposure(void **) {
     assert_close(metadata.key.aperture, LENSPROF_UNKNOWN, 0);
 }
 
+// By either tag, whatever the other says; 0 and 2 are "not defined" and "normal program", mode 2 is bracketing.
+void test_manual_exposure(void **) {
+    using Tags = std::vector<std::pair<const char *, const char *>>;
+    const char *program = "Exif.Photo.ExposureProgram", *mode = "Exif.Photo.ExposureMode";
+    for (const Tags &tags : {Tags{{program, "1"}}, Tags{{mode, "1"}}, Tags{{program, "1"}, {mode, "2"}},
+                             Tags{{program, "2"}, {mode, "1"}}, Tags{{"Exif.Image.ExposureProgram", "1"}}})
+        assert_true(read_exif(tags).is_manual);
+    for (const Tags &tags : {Tags{}, Tags{{program, "0"}}, Tags{{program, "2"}, {mode, "0"}}, Tags{{mode, "2"}}})
+        assert_false(read_exif(tags).is_manual);
+}
+
 void test_distance(void **) {
     const std::pair<const char *, double> values[] = {{"35/10", 3.5},
                                                       {"0/1", LENSPROF_UNKNOWN},
@@ -488,6 +499,7 @@ int main() {
         TEST(test_lens_of_maker_note),
         TEST(test_style),
         TEST(test_exposure),
+        TEST(test_manual_exposure),
         TEST(test_distance),
         TEST(test_copy),
         TEST(test_copy_to_any_tiff),

@@ -7,6 +7,7 @@
 
 #include "cli/correct/correction.hpp"
 #include "cli/fitting/fitting.hpp"
+#include "cli/fitting/known_exposures.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/fitting/static_camera.hpp"

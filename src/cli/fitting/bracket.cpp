@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
+#include "cli/fitting/known_exposures.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/static_camera.hpp"
 #include "cli/program/commands.hpp"

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
+#include "cli/fitting/known_exposures.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/program/commands.hpp"

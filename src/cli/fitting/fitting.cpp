@@ -103,7 +103,8 @@ void declare_fit(Command &command, FitOptions &o, FitChoices choices) {
     declare_prior(command, o, choices.stored_prior);
     declare_gamma(command, o, choices.known_response);
     command.number("--exif-sigma", o.exif_sigma, {0.0, 10.0},
-                   "standard error of an EXIF exposure, EV; 0 = do not use them");
+                   "standard error of every EXIF exposure, EV; 0 = do not use them; without this option .1, and .03 "
+                   "of the pictures at one manual exposure");
     command.choice("--camera-kind", o.camera_kind, camera_kind_choices(),
                    "whose exponents the prior is of: camera or phone (today's JPEG), digital (of the 1990s), film "
                    "(scanned), linear (the response is held linear), any, or auto: what EXIF says took the pictures");
@@ -145,21 +146,6 @@ CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const P
     const bool is_own = kind == LENSPROF_CAMERA_LINEAR || (kind != LENSPROF_CAMERA_ANY && metadata.is_jpeg);
     if (!is_own) return {};  // what is not the camera's JPEG was developed by something else
     return {kind, KindFrom::pictures};
-}
-
-void add_known_exposures(const FitOptions &o, const std::vector<std::string> &files,
-                         const std::vector<PictureMetadata> &metadata, std::vector<lensprof_fit_image> &images,
-                         Streams &streams) {
-    constexpr double farthest = 40.0;  // EV from 1 s, f/1, ISO 100: no picture was ever taken there
-    for (size_t i = 0; i < images.size() && o.exif_sigma > 0.0; i++) {
-        if (!metadata[i].exif_ev) continue;
-        if (!(std::fabs(*metadata[i].exif_ev) < farthest)) {
-            warn(streams, files[i] + ": time, aperture and ISO in its EXIF cannot be true and are not used");
-            continue;
-        }
-        images[i].known_ev = *metadata[i].exif_ev;
-        images[i].known_ev_sigma = std::max(o.exif_sigma, 1e-3);
-    }
 }
 
 Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,

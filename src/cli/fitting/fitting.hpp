@@ -23,8 +23,9 @@ struct FitOptions {
     uint32_t method = LENSPROF_METHOD_TRANSFER, modes = LENSPROF_MODES_AUTO, loss = LENSPROF_LOSS_ROBUST;
     uint32_t gamma_from = LENSPROF_GAMMA_AUTO;  // KNOWN: the project's response is held
     std::optional<uint32_t> camera_kind;        // empty: what the pictures say
-    double prior_weight = 1.0, huber = 5.0, exif_sigma = 0.1;
-    bool stored = true;  // what is stored of the lens and the camera is the prior, as far as it goes
+    double prior_weight = 1.0, huber = 5.0;
+    std::optional<double> exif_sigma;  // of all EXIF exposures, EV; 0: none is used; empty: by what EXIF says of them
+    bool stored = true;                // what is stored of the lens and the camera is the prior, as far as it goes
     bool stored_is_asked = false;
     int64_t stored_id = 0;  // the profile that is the prior; 0: what a lookup finds
 };
@@ -61,11 +62,6 @@ struct FitInput {
     std::vector<lensprof_pair> pairs;                // what is fitted where there are no observations
     std::vector<lensprof_observation> observations;  // tracks, for the method radiance
 };
-
-// Exposures by EXIF, as soft observations of the images.
-void add_known_exposures(const FitOptions &o, const std::vector<std::string> &files,
-                         const std::vector<PictureMetadata> &metadata, std::vector<lensprof_fit_image> &images,
-                         Streams &streams);
 
 // A result and the exposures that belong to it.
 struct Fitted {

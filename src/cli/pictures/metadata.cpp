@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
-#include <initializer_list>
 #include <iterator>
 #include <memory>
 #include <mutex>
@@ -17,6 +16,8 @@
 #include "cli/pictures/camera_correction.hpp"
 #include "cli/pictures/codec.hpp"
 #include "cli/pictures/correction_mark.hpp"
+#include "cli/pictures/exif_exposure.hpp"
+#include "cli/pictures/exif_value.hpp"
 #include "cli/pictures/icc.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
 #include "cli/pictures/png_exif.hpp"
@@ -193,51 +194,6 @@ std::string read_unit(const Exiv2::ExifData &exif) {
     return is_nothing(lens) ? unit : unit + "/" + lens;
 }
 
-// In double precision; NaN when there is no value.
-double number(const Exiv2::Exifdatum &datum) {
-    if (datum.count() == 0) return NAN;
-    if (const auto *value = dynamic_cast<const Exiv2::URationalValue *>(&datum.value()))
-        return static_cast<double>(value->value_[0].first) / value->value_[0].second;
-    if (const auto *value = dynamic_cast<const Exiv2::RationalValue *>(&datum.value()))
-        return static_cast<double>(value->value_[0].first) / value->value_[0].second;
-    return static_cast<double>(datum.toFloat());
-}
-
-// The first of the keys that is there; NaN when none is.
-double read_number(const Exiv2::ExifData &exif, std::initializer_list<const char *> keys) {
-    for (const char *key : keys) {
-        const auto datum = exif.findKey(Exiv2::ExifKey(key));
-        if (datum != exif.end()) return number(*datum);
-    }
-    return NAN;
-}
-
-std::optional<double> in_range(double value, double below) {
-    return value > 0 && value < below ? std::optional<double>(value) : std::nullopt;
-}
-
-// EXIF 2.32 section 4.6.5: APEX values Tv = -log2(time), Av = 2 log2(f-number).
-std::optional<double> read_exposure_time(const Exiv2::ExifData &exif) {
-    const double time = read_number(exif, {"Exif.Photo.ExposureTime", "Exif.Image.ExposureTime"});
-    const double apex = read_number(exif, {"Exif.Photo.ShutterSpeedValue", "Exif.Image.ShutterSpeedValue"});
-    const std::optional<double> stated = in_range(time, 1e6);
-    return stated ? stated : in_range(std::exp2(-apex), 1e6);
-}
-
-std::optional<double> read_f_number(const Exiv2::ExifData &exif) {
-    const double stated = read_number(exif, {"Exif.Photo.FNumber", "Exif.Image.FNumber"});
-    const double apex = read_number(exif, {"Exif.Photo.ApertureValue", "Exif.Image.ApertureValue"});
-    if (in_range(stated, 1000)) return stated;
-    return apex > 0 ? in_range(std::exp2(apex / 2), 1000) : std::nullopt;
-}
-
-// Exiv2 knows where the makers put it; the readable form is the number of the standard, the raw one often is not.
-std::optional<double> read_iso(const Exiv2::ExifData &exif) {
-    const auto datum = Exiv2::isoSpeed(exif);
-    if (datum == exif.end()) return std::nullopt;
-    return in_range(std::strtod(datum->print(&exif).c_str(), nullptr), 1e8);
-}
-
 // Maker notes print "3.5 m", "Infinity", "Unknown" and the like; beyond 10 km the number means something else.
 double parse_distance(const std::string &text) {
     if (text.compare(0, 5, "Infin") == 0) return INFINITY;
@@ -396,26 +352,8 @@ void set_sizes(Exiv2::ExifData &exif, Exiv2::XmpData &xmp, uint32_t width, uint3
     }
 }
 
-// The fraction with small terms that is within 1e-9 of the value, by continued fractions.
-Exiv2::URational to_rational(double value) {
-    double p0 = 0, q0 = 1, p1 = 1, q1 = 0, rest = value;
-    for (int i = 0; i < 40; ++i) {
-        const double whole = std::floor(rest);
-        const double p2 = whole * p1 + p0, q2 = whole * q1 + q0;
-        if (p2 > 4e9 || q2 > 4e9) break;
-        p0 = p1, q0 = q1, p1 = p2, q1 = q2;
-        if (std::fabs(p1 / q1 - value) <= 1e-9 * value || rest == whole) break;
-        rest = 1 / (rest - whole);
-    }
-    return {static_cast<uint32_t>(p1), static_cast<uint32_t>(q1)};
-}
-
 void set_text(Exiv2::ExifData &exif, const char *key, const char *text) {
     if (text[0] != '\0') exif[key] = std::string(text);
-}
-
-void set_rational(Exiv2::ExifData &exif, const char *key, double value) {
-    if (value > 0 && value < 4e9) exif[key] = to_rational(value);
 }
 
 // What lensprof did is the last that was done.
@@ -463,9 +401,7 @@ PictureMetadata read_metadata(const std::string &path) {
         store_text(read_text(exif, "Exif.Image.Make"), metadata.key.camera_maker, "--maker", metadata);
         store_text(read_text(exif, "Exif.Image.Model"), metadata.key.camera_model, "--camera", metadata);
         store_text(read_lens(exif), metadata.key.lens, "--lens", metadata);
-        metadata.f_number = read_f_number(exif);
-        metadata.exposure_time_s = read_exposure_time(exif);
-        metadata.iso = read_iso(exif);
+        read_exposure(exif, metadata);
         metadata.key.aperture = metadata.f_number.value_or(LENSPROF_UNKNOWN);
         metadata.key.focal_mm = in_range(read_number(exif, {"Exif.Photo.FocalLength", "Exif.Image.FocalLength"}), 1e5)
                                     .value_or(LENSPROF_UNKNOWN);
@@ -481,9 +417,6 @@ PictureMetadata read_metadata(const std::string &path) {
     } catch (const std::exception &error) {
         fail_reading(path, error);
     }
-    if (metadata.exposure_time_s && metadata.iso && metadata.f_number)
-        metadata.exif_ev =
-            std::log2(*metadata.exposure_time_s * *metadata.iso / 100 / (*metadata.f_number * *metadata.f_number));
     return metadata;
 }
 
@@ -522,12 +455,9 @@ bool write_metadata(const std::string &path, const PictureMetadata &metadata) {
         set_text(exif, "Exif.Image.Model", key.camera_model);
         set_text(exif, "Exif.Photo.LensModel", key.lens);
         set_rational(exif, "Exif.Photo.FocalLength", key.focal_mm);
-        set_rational(exif, "Exif.Photo.FNumber", key.aperture);
         set_rational(exif, "Exif.Photo.SubjectDistance", key.distance_m);
         if (std::isinf(key.distance_m)) exif["Exif.Photo.SubjectDistance"] = Exiv2::URational(0xffffffffu, 1);
-        set_rational(exif, "Exif.Photo.ExposureTime", metadata.exposure_time_s.value_or(LENSPROF_UNKNOWN));
-        if (metadata.iso && *metadata.iso >= 0.5)  // 16 bits; 65535 stands for what is larger
-            exif["Exif.Photo.ISOSpeedRatings"] = static_cast<uint16_t>(std::lround(std::fmin(*metadata.iso, 65535)));
+        write_exposure(metadata, exif);
     });
     return true;
 }

@@ -47,6 +47,8 @@ struct PictureMetadata {
     // log2(exposure_time_s * iso / 100 / f_number^2), EV: larger means a brighter rendering of the same scene. Only
     // when all three are known.
     std::optional<double> exif_ev;
+
+    bool is_manual = false;  // time, aperture and ISO were set by hand: EXIF's ExposureProgram or ExposureMode says so
 };
 
 // All unknown.

@@ -44,9 +44,9 @@ struct Options {
     std::vector<Format> formats = {{".png", LENSPROF_SAMPLE_U8}};
     uint32_t images = 6, rows = 1, seed = 1, points = 0, test_points = 0, width = 800, height = 600;
     double hfov = 50, overlap = 0.4, jitter = 1, ev = 1, mean_ev = 0, wb = 0.15, noise = 2, outliers = 0, misalign = 0,
-           objects = 0, local_tone = 0, exif_rounding = 0;
+           objects = 0, local_tone = 0, exif_rounding = 0, exif_scatter = 0;
     std::vector<double> vignetting{-0.30, 0.05, -0.15}, center{0.02, -0.015};
-    bool no_images = false, exif = false;
+    bool no_images = false, exif = false, exif_manual = false;
 };
 
 void declare_camera(Command &command, Options &o) {
@@ -76,6 +76,9 @@ void declare_disturbances(Command &command, Options &o) {
                    "local tone mapping after the response, strongest gain, EV");
     command.flag("--exif", o.exif, "pictures tell exposure time and ISO too, true to the exposures");
     command.number("--exif-rounding", o.exif_rounding, {0.0, 4.0}, "sigma of the error of what they tell, EV");
+    command.flag("--exif-manual", o.exif_manual, "they tell that the exposure was set by hand, at one ISO");
+    command.number("--exif-scatter", o.exif_scatter, {0.0, 4.0},
+                   "sigma of the shutter and aperture about what was set and is told, EV");
 }
 
 void declare(Command &command, Options &o) {
@@ -96,16 +99,25 @@ void declare(Command &command, Options &o) {
 // A wide aperture, which stays: falloff changes with it.
 constexpr double kFNumber = 2.8;
 
-// Exposure time and ISO that make up the exposure of every image, but for `rounding` (sigma, EV).
-std::vector<Settings> exposure_settings(const Truth &truth, double rounding) {
+// Exposure time and ISO that make up the exposure of every image, but for --exif-rounding.
+std::vector<Settings> exposure_settings(const Options &o, const Truth &truth) {
     Random random(truth.seed * 104729ull + 11);
     std::vector<Settings> settings;
     for (const auto &e : truth.exposures) {
-        double stated = e.ev + rounding * random.normal();
+        double stated = e.ev + o.exif_rounding * random.normal();
         double iso = 100.0 * std::exp2(std::floor(random.uniform(0.0, 4.0)));
+        if (o.exif_manual) iso = 100.0;
         settings.push_back({std::exp2(stated) / iso, iso, kFNumber});  // 1/100 s at ISO 100 for 0 EV
     }
     return settings;
+}
+
+// What the pictures tell of their exposures, and how these then scatter.
+void add_settings(const Options &o, Truth &truth) {
+    truth.settings = exposure_settings(o, truth);
+    truth.is_manual = o.exif_manual;
+    Random random(truth.seed * 86028121ull + 7);
+    for (auto &e : truth.exposures) e.ev += o.exif_scatter * random.normal();
 }
 
 // Asked for with --objects, --local-tone and --exif; random numbers of their own, so that the rest stays the same.
@@ -117,13 +129,15 @@ void add_disturbances(const Options &o, const Scene &scene, Truth &truth) {
         for (const auto &camera : truth.cameras) truth.objects.push_back(random_blocks(camera, o.objects, random));
     if (o.local_tone > 0.0)
         for (uint32_t i = 0; i < truth.cameras.size(); i++) truth.tone.push_back(tone_map(truth, scene, i));
-    if (o.exif) truth.settings = exposure_settings(truth, o.exif_rounding);
+    if (o.exif) add_settings(o, truth);
 }
 
 void check_exif(const Options &o) {
     if (o.exif && o.no_images)
         throw Failure(ExitCode::usage, "--exif: there is no picture to write it into; leave out --no-images");
     if (o.exif_rounding > 0.0 && !o.exif) throw Failure(ExitCode::usage, "--exif-rounding: needs --exif");
+    if (o.exif_scatter > 0.0 && !o.exif) throw Failure(ExitCode::usage, "--exif-scatter: needs --exif");
+    if (o.exif_manual && !o.exif) throw Failure(ExitCode::usage, "--exif-manual: needs --exif");
 }
 
 void place_cameras(const Options &o, Random &random, Truth &truth) {
@@ -288,6 +302,7 @@ PictureMetadata metadata_of(const Truth &truth, uint32_t i) {
     if (!truth.settings.empty()) {
         m.iso = truth.settings[i].iso;
         m.exposure_time_s = truth.settings[i].time_s;
+        m.is_manual = truth.is_manual;
     }
     return m;
 }

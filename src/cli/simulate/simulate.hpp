@@ -47,6 +47,7 @@ struct Truth {
     std::vector<std::vector<Block>> objects;  // of every image; the last one is in front; empty = none anywhere
     std::vector<ToneMap> tone;                // of every image; empty = no local tone mapping
     std::vector<Settings> settings;           // of every image; empty = the pictures do not tell
+    bool is_manual = false;                   // they tell that these were set by hand
 };
 
 // splitmix64: uniform and normal numbers from a seed, the same on every machine.

@@ -1,0 +1,64 @@
+#include "cli/pictures/exif_exposure.hpp"
+
+#include <cmath>
+#include <cstdlib>
+
+#include "cli/pictures/exif_value.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint16_t kManual = 1;  // EXIF 2.32 section 4.6.5, of ExposureProgram and of ExposureMode alike
+
+// EXIF 2.32 section 4.6.5: APEX values Tv = -log2(time), Av = 2 log2(f-number).
+std::optional<double> read_exposure_time(const Exiv2::ExifData &exif) {
+    const double time = read_number(exif, {"Exif.Photo.ExposureTime", "Exif.Image.ExposureTime"});
+    const double apex = read_number(exif, {"Exif.Photo.ShutterSpeedValue", "Exif.Image.ShutterSpeedValue"});
+    const std::optional<double> stated = in_range(time, 1e6);
+    return stated ? stated : in_range(std::exp2(-apex), 1e6);
+}
+
+std::optional<double> read_f_number(const Exiv2::ExifData &exif) {
+    const double stated = read_number(exif, {"Exif.Photo.FNumber", "Exif.Image.FNumber"});
+    const double apex = read_number(exif, {"Exif.Photo.ApertureValue", "Exif.Image.ApertureValue"});
+    if (in_range(stated, 1000)) return stated;
+    return apex > 0 ? in_range(std::exp2(apex / 2), 1000) : std::nullopt;
+}
+
+// Exiv2 knows where the makers put it; the readable form is the number of the standard, the raw one often is not.
+std::optional<double> read_iso(const Exiv2::ExifData &exif) {
+    const auto datum = Exiv2::isoSpeed(exif);
+    if (datum == exif.end()) return std::nullopt;
+    return in_range(std::strtod(datum->print(&exif).c_str(), nullptr), 1e8);
+}
+
+// Cameras write one tag, or both; where these disagree (a program that the camera has no number for, bracketing by
+// hand) the one that says so is right.
+bool read_is_manual(const Exiv2::ExifData &exif) {
+    return read_number(exif, {"Exif.Photo.ExposureProgram", "Exif.Image.ExposureProgram"}) == kManual
+           || read_number(exif, {"Exif.Photo.ExposureMode"}) == kManual;
+}
+
+}  // namespace
+
+void read_exposure(const Exiv2::ExifData &exif, PictureMetadata &metadata) {
+    metadata.f_number = read_f_number(exif);
+    metadata.exposure_time_s = read_exposure_time(exif);
+    metadata.iso = read_iso(exif);
+    metadata.is_manual = read_is_manual(exif);
+    if (metadata.exposure_time_s && metadata.iso && metadata.f_number)
+        metadata.exif_ev =
+            std::log2(*metadata.exposure_time_s * *metadata.iso / 100 / (*metadata.f_number * *metadata.f_number));
+}
+
+void write_exposure(const PictureMetadata &metadata, Exiv2::ExifData &exif) {
+    set_rational(exif, "Exif.Photo.FNumber", metadata.key.aperture);
+    set_rational(exif, "Exif.Photo.ExposureTime", metadata.exposure_time_s.value_or(LENSPROF_UNKNOWN));
+    if (metadata.iso && *metadata.iso >= 0.5)  // 16 bits; 65535 stands for what is larger
+        exif["Exif.Photo.ISOSpeedRatings"] = static_cast<uint16_t>(std::lround(std::fmin(*metadata.iso, 65535)));
+    if (!metadata.is_manual) return;
+    exif["Exif.Photo.ExposureProgram"] = kManual;
+    exif["Exif.Photo.ExposureMode"] = kManual;
+}
+
+}  // namespace lensprof
