@@ -138,6 +138,25 @@ void test_another_reference_beside_held_exposures(void **) {
         assert_close(other["images"][i]["ev"].get<double>(), first["images"][i]["ev"].get<double>() - moved, 1e-9);
 }
 
+// Small pictures of one manual exposure: a strip of 28 stays level, by what EXIF says of it.
+void test_a_strip_at_one_manual_exposure(void **) {
+    const std::string path = work("strip");
+    must_exit(done, {"simulate", "-o",        path,       "--size",  "200x150",   "--hfov", "12",
+                     "--jitter", "0.4",       "--images", "28",      "--overlap", "0.25",   "--ev",
+                     "0",        "--mean-ev", "-1",       "--noise", "5",         "--exif", "--exif-manual"});
+    const Json known = json_of(build(path, {"--stored", "none"}));
+    const auto spread = [](const Json &json) {
+        double low = 0, high = 0;  // the reference's
+        for (const Json &image : json["images"]) {
+            low = std::min(low, image["ev"].get<double>());
+            high = std::max(high, image["ev"].get<double>());
+        }
+        return high - low;
+    };
+    assert_true(spread(known) <= 0.05);
+    assert_true(spread(known) < spread(json_of(build(path, {"--stored", "none", "--exif-sigma", "0"}))));
+}
+
 // What is held settles gamma.
 void test_known_is_said(void **) {
     const std::string path = linear_scene();
@@ -169,6 +188,7 @@ int main() {
         CLI_TEST(test_coverage_and_errors_are_told),
         CLI_TEST(test_another_reference),
         CLI_TEST(test_another_reference_beside_held_exposures),
+        CLI_TEST(test_a_strip_at_one_manual_exposure),
         CLI_TEST(test_known_is_said),
         CLI_TEST(test_refused_options),
     };

@@ -20,6 +20,7 @@ struct Simulation {
     std::vector<lensprof_vignetting> chromatic;  // one falloff curve a channel; empty = `vignetting` for all
     double local_ev = 0.0;  // largest local tone error, EV: waves over the frame that start elsewhere in each image
     double frame_ev = 0.0;  // the same at the same place of every image, EV
+    double tilt_ev = 0.0;   // from the left edge of every frame to the right, EV: no lens does it, and it adds up
     uint32_t reach = 1;     // images of a pair are up to this many apart
     double shift = 0.0;     // from one frame to the next, widths: neighbours in one are so in the other; 0 = anywhere
     std::vector<lensprof_exposure> exposures;  // drawn, unless given before make()
@@ -90,7 +91,7 @@ struct Simulation {
         constexpr double kTurn = 6.283185307179586;
         double phase = 2.4 * image, x = 2.0 * kTurn * xy[0] / width, y = kTurn * xy[1] / height;
         return std::exp2(local_ev * std::sin(x + phase) * std::cos(y + 2.0 * phase)
-                         + frame_ev * std::sin(x) * std::cos(y));
+                         + frame_ev * std::sin(x) * std::cos(y) + tilt_ev * (xy[0] / width - 0.5));
     }
 
     // Exponent that pictures leave open: slope of recovered on true exposures.

@@ -16,13 +16,9 @@ namespace {
 // 0.1 left gamma to that accident (median error 0.14, and 0.05 with this one), at held-out pairs better by half a
 // percent.
 constexpr double kPinSigma = 1e-3, kSmallestPinSigma = 2e-4, kLargestPinSigma = 0.01, kPinPairs = 20000.0;
-constexpr double kLooseSigma = 0.07;    // of a response that is moved to its gamma exactly afterwards
-constexpr double kLargestStep = 1.2;    // of ln gamma in one move along the family
-constexpr double kDoubtful = 3.0;       // known exposures farther off, in standard errors, count for less
-constexpr double kChanceScatter = 2.0;  // standard errors: a scatter up to this may be chance
-constexpr double kSmallestSlope = 0.1;  // and its inverse: beyond, known exposures are of something else
-
-double known_sigma(const lensprof_fit_image &image) { return std::max(image.known_ev_sigma, kKnownSigma); }
+constexpr double kLooseSigma = 0.07;  // of a response that is moved to its gamma exactly afterwards
+constexpr double kLargestStep = 1.2;  // of ln gamma in one move along the family
+constexpr double kDoubtful = 3.0;     // known exposures farther off, in standard errors, count for less
 
 // Images whose exposure or white balance is held away from the reference's.
 bool has_fixed_exposure(const Problem &problem) {
@@ -59,15 +55,6 @@ void raise_falloff(const Problem &problem, double gamma, lensprof_vignetting &v)
         return PowerSample{r2, std::pow(m, gamma) - 1.0, 1.0};
     });
     for (size_t u = 0; u < powers.size(); u++) v.k[powers[u] - 1] = k[static_cast<Eigen::Index>(u)];
-}
-
-// Standard deviation by the median of what two parameters leave, less what may be chance; 1 where there is no more.
-double scatter_of(std::vector<double> off) {
-    if (off.size() < 3) return 1.0;
-    auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-    std::nth_element(off.begin(), middle, off.end());
-    double count = static_cast<double>(off.size()), scatter = kMadToSigma * *middle * std::sqrt(count / (count - 2.0));
-    return std::sqrt(1.0 + std::max(0.0, scatter * scatter - kChanceScatter * kChanceScatter));
 }
 
 }  // namespace
@@ -120,53 +107,6 @@ Gauge Gauge::by_prior() const {
     other.is_loose_ = true;
     other.known_weight_.clear();
     return other;
-}
-
-// Regression of the known exposures on the estimate's, over the reference's component: the known ones carry the error.
-// What they vary beyond their own error is what they say about gamma: equal ones say nothing. Where they scatter more
-// than stated, their error is what they scatter.
-void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
-    slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0, scatter_ = 1.0;
-    if (known_weight_.empty()) return;
-    std::vector<uint32_t> members;
-    for (uint32_t i = 0; i < problem.image_count; i++)
-        if (problem.images[i].known_ev_sigma > 0.0 && problem.component[i] == problem.component[problem.reference])
-            members.push_back(i);
-    if (members.size() < 2) known_weight_.clear();  // only differences say something
-    if (known_weight_.empty()) return;
-    for (uint32_t i : members) known_weight_[i] = 1.0;
-    auto found = [&](uint32_t i) { return estimate.log_exposure[i][problem.measured_channel()] / kLn2; };
-    auto error = [&](uint32_t i) { return scatter_ * known_sigma(problem.images[i]); };
-    double per_known = 1.0;  // known EV per found EV
-    for (int round = 0; round < 8 && !members.empty(); round++) {
-        double sum = 0, mean_found = 0, mean_known = 0, xx = 0, xy = 0, yy = 0, own = 0;
-        for (uint32_t i : members) {
-            double w = known_weight_[i] / std::pow(error(i), 2);
-            sum += w, mean_found += w * found(i), mean_known += w * problem.images[i].known_ev;
-            own += known_weight_[i];
-        }
-        mean_found /= sum, mean_known /= sum;
-        for (uint32_t i : members) {
-            double w = known_weight_[i] / std::pow(error(i), 2);
-            double dx = found(i) - mean_found, dy = problem.images[i].known_ev - mean_known;
-            xx += w * dx * dx, xy += w * dx * dy, yy += w * dy * dy;
-        }
-        double excess = yy > 0.0 ? std::max(0.0, 1.0 - own / yy) : 0.0;  // yy is chi-squared where exposures are equal
-        bool says = open_ && excess > 0.0 && members.size() > 1 && xy > kSmallestSlope * xx && xy * kSmallestSlope < xx;
-        per_known = says ? xy / xx : 1.0;
-        slope_ = 1.0 / per_known;
-        slope_sigma_ = says ? 1.0 / (per_known * std::sqrt(xx * excess)) : 0.0;
-        known_offset_ = kLn2 * (mean_found - slope_ * mean_known);
-        std::vector<double> off;  // in stated standard errors
-        for (uint32_t i : members)
-            off.push_back(std::abs(mean_known + per_known * (found(i) - mean_found) - problem.images[i].known_ev)
-                          / known_sigma(problem.images[i]));
-        scatter_ = scatter_of(off);
-        for (size_t m = 0; m < members.size(); m++) {
-            double z = off[m] / (kDoubtful * scatter_);
-            known_weight_[members[m]] = 1.0 / (1.0 + z * z);
-        }
-    }
 }
 
 // From where cameras of the kind, or the profile, want it. A response's own gamma takes the place of that of the kind,
@@ -258,15 +198,7 @@ void Gauge::renew(const Problem &problem, const Estimate &estimate, Prior &prior
     } else {
         compare_known(problem, estimate);
     }
-    prior.known.clear();
-    if (known_weight_.empty()) return;
-    prior.known.resize(problem.image_count);
-    for (uint32_t i = 0; i < problem.image_count; i++) {
-        const auto &image = problem.images[i];
-        if (!(image.known_ev_sigma > 0.0) || problem.component[i] != problem.component[problem.reference]) continue;
-        prior.known[i].log_exposure = known_offset_ + slope_ * kLn2 * image.known_ev;
-        prior.known[i].precision = known_weight_[i] / std::pow(slope_ * kLn2 * scatter_ * known_sigma(image), 2);
-    }
+    put_known(problem, prior);
 }
 
 Eigen::VectorXd Gauge::direction(const Problem &problem, const Estimate &estimate) {

@@ -5,6 +5,8 @@
 // that differ - and then held while everything else is fitted.
 #pragma once
 
+#include <algorithm>
+
 #include "fit/prior/gamma_prior.hpp"
 #include "fit/prior/prior.hpp"
 #include "fit/prior/stored_prior.hpp"
@@ -14,6 +16,8 @@ namespace lensprof {
 
 // Known exposures are not taken to be better than this, EV: shutters and apertures are not.
 constexpr double kKnownSigma = 0.02;
+
+inline double known_sigma(const lensprof_fit_image &image) { return std::max(image.known_ev_sigma, kKnownSigma); }
 
 class Gauge {
 public:
@@ -58,6 +62,7 @@ public:
 
 private:
     void compare_known(const Problem &problem, const Estimate &estimate);
+    void put_known(const Problem &problem, Prior &prior) const;
 
     double expected(const Estimate &estimate, double &sigma, lensprof_gamma_from &from) const;
 
@@ -68,6 +73,7 @@ private:
     double sigma_ = 0.0, expected_sigma_ = 0.0, oddness_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
     double scatter_ = 1.0;  // of the known exposures about the estimate's, in their stated standard errors; 1 at least
     std::vector<double> known_weight_;  // trust in each known exposure, 0..1
+    std::vector<double> level_offset_;  // of each image, as known_offset_: that of the level it is on
 };
 
 // Change of a response's position within its family for each of its coefficients.

@@ -30,6 +30,7 @@ struct Prior {
     // Known exposures: precision (a - log_exposure)^2 / 2 of the measured channel; empty where there are none.
     struct KnownExposure {
         double log_exposure = 0.0, precision = 0.0;
+        double hold = 1.0;  // by how much it is held more firmly than its standard error says
     };
     std::vector<KnownExposure> known;
 };

@@ -75,6 +75,11 @@ struct Stepper {
     }
 };
 
+// Exposures that are held firmly and their common offset, which is renewed between rounds, follow each other slowly.
+bool is_held(const Prior &prior) {
+    return std::any_of(prior.known.begin(), prior.known.end(), [](const auto &known) { return known.hold > 1.0; });
+}
+
 }  // namespace
 
 double largest_change(const Estimate &a, const Estimate &b) {
@@ -96,10 +101,10 @@ double largest_change(const Estimate &a, const Estimate &b) {
 Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &loss, bool refine_noise,
               const Control &control, Estimate &estimate) {
     constexpr double kStill = 3e-5;  // nothing a user sees moves by more in a step
-    constexpr int kNoiseRounds = 4;
+    constexpr int kNoiseRounds = 4, kHeldRounds = 10;
     Prior renewed = prior_of(prior, estimate.modes);
     Outcome outcome;
-    for (int round = 0; round < control.rounds; round++) {
+    for (int round = 0; round < control.rounds * (is_held(renewed) ? kHeldRounds : 1); round++) {
         Estimate before = estimate;
         if (refine_noise && round < kNoiseRounds) loss.noise = estimate_noise(problem, estimate, loss.noise);
         gauge.renew(problem, estimate, renewed);
@@ -129,6 +134,7 @@ Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, 
     Prior renewed = prior_of(prior, estimate.modes);
     gauge.renew(problem, estimate, renewed);
     renewed.pin_precision *= kHeldFirmly;
+    for (auto &known : renewed.known) known.precision /= known.hold;
     std::unique_ptr<NormalEquations> about = make_objective(problem, renewed, loss, estimate)->model_at(estimate);
     NormalEquations &model = *about;
     auto n = static_cast<Eigen::Index>(model.columns().size());

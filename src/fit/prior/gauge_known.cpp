@@ -1,0 +1,142 @@
+// What known exposures say of gamma and of the fitted exposures.
+#include <algorithm>
+#include <cmath>
+
+#include "fit/base/constants.hpp"
+#include "fit/prior/gauge.hpp"
+#include "fit/prior/known_levels.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kDoubtful = 3.0;       // known exposures farther off, in standard errors, count for less
+constexpr double kSmallestSlope = 0.1;  // and its inverse: beyond, known exposures are of something else
+constexpr size_t kFewestOfLevels = 6;   // known exposures: of fewer, one that is wrong does not show which
+
+// Of known exposures that are repeatable to less than kRepeatable, EV. The pairs between two pictures have errors in
+// common that no model describes (falloff that is not radial, bias by noise): what more than kLinkPairs of them say
+// adds up along a row of pictures like a drift, and the hold keeps up with them.
+constexpr double kRepeatable = 0.05, kLinkPairs = 40.0;
+
+// The known exposures of the reference's group and what was found, EV, by image.
+struct Known {
+    std::vector<uint32_t> members;
+    std::vector<bool> is_member;
+    std::vector<double> found, known, sigma;
+
+    Known(const Problem &problem, const Estimate &estimate)
+        : is_member(problem.image_count),
+          found(problem.image_count),
+          known(problem.image_count),
+          sigma(problem.image_count) {
+        for (uint32_t i = 0; i < problem.image_count; i++) {
+            const auto &image = problem.images[i];
+            if (!(image.known_ev_sigma > 0.0) || problem.component[i] != problem.component[problem.reference]) continue;
+            members.push_back(i);
+            is_member[i] = true;
+            found[i] = estimate.log_exposure[i][static_cast<size_t>(problem.measured_channel())] / kLn2;
+            known[i] = image.known_ev, sigma[i] = known_sigma(image);
+        }
+    }
+};
+
+// Of one level: how many are on it, weights and means.
+struct Level {
+    size_t count = 0;
+    double weight = 0.0, trust = 0.0, found = 0.0, known = 0.0;
+};
+
+// Sums of squares about the means of the levels, in standard errors.
+struct Regression {
+    std::vector<Level> levels;
+    size_t largest = 0;
+    double trust = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // trust: what yy is where exposures are equal
+
+    Regression(const Known &known, const std::vector<int> &level, const std::vector<double> &trusts, double scatter)
+        : levels(1 + static_cast<size_t>(*std::max_element(level.begin(), level.end()))) {
+        auto weight = [&](uint32_t i) { return trusts[i] / std::pow(scatter * known.sigma[i], 2); };
+        for (uint32_t i : known.members) {
+            Level &one = levels[static_cast<size_t>(level[i])];
+            one.count++, one.weight += weight(i), one.trust += trusts[i];
+            one.found += weight(i) * known.found[i], one.known += weight(i) * known.known[i];
+        }
+        for (size_t l = 0; l < levels.size(); l++) {
+            levels[l].found /= levels[l].weight, levels[l].known /= levels[l].weight;
+            if (levels[l].count > 1) trust += levels[l].trust;
+            if (levels[l].count > levels[largest].count) largest = l;
+        }
+        for (uint32_t i : known.members) {
+            const Level &one = levels[static_cast<size_t>(level[i])];
+            const double dx = known.found[i] - one.found, dy = known.known[i] - one.known;
+            xx += weight(i) * dx * dx, xy += weight(i) * dx * dy, yy += weight(i) * dy * dy;
+        }
+    }
+
+    // Distance of an image from a level, EV.
+    double off(const Known &known, uint32_t i, size_t level, double per_known) const {
+        return per_known * (known.found[i] - levels[level].found) - (known.known[i] - levels[level].known);
+    }
+};
+
+}  // namespace
+
+// Regression of the known exposures on the estimate's, over the reference's component: the known ones carry the error.
+// What they vary beyond their own error is what they say about gamma: equal ones say nothing. Where they scatter more
+// than stated, their error is what they scatter: from neighbour to neighbour, for what adds up along a row of pictures
+// is the estimate's. Those that agree are on one level (known_levels.hpp), with an offset of its own: an image alone on
+// its level is left out, and the others are known as well as before.
+void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
+    slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0, scatter_ = 1.0;
+    if (known_weight_.empty()) return;
+    const Known known(problem, estimate);
+    if (known.members.size() < 2) known_weight_.clear();  // only differences say something
+    if (known_weight_.empty()) return;
+    const KnownNeighbours neighbours(problem, known.is_member);
+    const size_t count = problem.image_count;
+    std::vector<int> level(count, 0);
+    std::vector<double> off(count);
+    known_weight_.assign(count, 1.0);
+    level_offset_.assign(count, 0.0);
+    for (int round = 0; round < 8; round++) {
+        if (round > 0 && known.members.size() >= kFewestOfLevels) level = neighbours.levels(off, known.sigma, scatter_);
+        const Regression of(known, level, known_weight_, scatter_);
+        const double excess = of.yy > 0.0 ? std::max(0.0, 1.0 - of.trust / of.yy) : 0.0;
+        const bool says = open_ && excess > 0.0 && of.xy > kSmallestSlope * of.xx && of.xy * kSmallestSlope < of.xx;
+        const double per_known = says ? of.xy / of.xx : 1.0;  // known EV per found EV
+        slope_ = 1.0 / per_known;
+        slope_sigma_ = says ? 1.0 / (per_known * std::sqrt(of.xx * excess)) : 0.0;
+        auto offset = [&](size_t l) { return kLn2 * (of.levels[l].found - slope_ * of.levels[l].known); };
+        known_offset_ = offset(of.largest);
+        std::vector<double> distances;
+        for (uint32_t i : known.members) {
+            off[i] = of.off(known, i, of.largest, per_known);
+            distances.push_back(std::abs(off[i]) / known.sigma[i]);
+        }
+        scatter_ = std::min(scatter_of(distances, 2), neighbours.scatter(off, known.sigma));
+        for (uint32_t i : known.members) {
+            const auto own = static_cast<size_t>(level[i]);
+            const double z = of.off(known, i, own, per_known) / (kDoubtful * scatter_ * known.sigma[i]);
+            known_weight_[i] = 1.0 / (1.0 + z * z);
+            level_offset_[i] = offset(own);
+        }
+    }
+}
+
+void Gauge::put_known(const Problem &problem, Prior &prior) const {
+    prior.known.clear();
+    if (known_weight_.empty()) return;
+    prior.known.resize(problem.image_count);
+    const double pairs =
+        static_cast<double>(problem.pairs.size()) / static_cast<double>(std::max<size_t>(problem.edges.size(), 1));
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        const auto &image = problem.images[i];
+        if (!(image.known_ev_sigma > 0.0) || problem.component[i] != problem.component[problem.reference]) continue;
+        auto &known = prior.known[i];
+        known.log_exposure = level_offset_[i] + slope_ * kLn2 * image.known_ev;
+        known.precision = known_weight_[i] / std::pow(slope_ * kLn2 * scatter_ * known_sigma(image), 2);
+        if (scatter_ * known_sigma(image) < kRepeatable) known.hold = std::max(1.0, pairs / kLinkPairs);
+        known.precision *= known.hold;
+    }
+}
+
+}  // namespace lensprof
