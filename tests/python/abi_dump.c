@@ -205,7 +205,7 @@ static void print_structs(void) {
     FIELD(lensprof_fit_image_quality, pairs);
     FIELD(lensprof_fit_image_quality, inliers);
     FIELD(lensprof_fit_image_quality, component);
-    FIELD(lensprof_fit_image_quality, reserved);
+    FIELD(lensprof_fit_image_quality, known_ev_left_out);
     STRUCT(lensprof_fit_result);
     FIELD(lensprof_fit_result, struct_size);
     FIELD(lensprof_fit_result, usable);

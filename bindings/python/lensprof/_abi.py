@@ -671,7 +671,7 @@ class FitImageQuality(Structure):
         ("pairs", c_uint32),
         ("inliers", c_uint32),
         ("component", c_uint32),
-        ("reserved", c_uint32),
+        ("known_ev_left_out", c_uint32),
     ]
 
 

@@ -32,7 +32,7 @@ EXPOSURE_DTYPE = _dtype(_abi.Exposure)
 
 IMAGE_QUALITY_DTYPE = _dtype(_abi.FitImageQuality)
 """Layout of an image's quality: ev_sigma, white_balance_sigma[3], median_residual, known_ev_residual, radius, grey_low,
-grey_high, pairs, inliers, component."""
+grey_high, pairs, inliers, component, known_ev_left_out."""
 
 FLAT_QUALITY_DTYPE = _dtype(_abi.FlatImageQuality)
 """Layout of what one picture gave to a flat field fit; see lensprof/flat.h."""

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/project.hpp"
+#include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
@@ -193,6 +194,18 @@ BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure
     return report;
 }
 
+// Names the other images whose known exposures are wrong; the verdict names the one that is farthest off.
+void name_left_out(const BuildReport &report, Streams &streams) {
+    if (report.verdict.code != LENSPROF_REASON_KNOWN_WRONG) return;
+    for (size_t i = 0; i < report.quality.size(); i++) {
+        const auto &q = report.quality[i];
+        if (q.known_ev_left_out && i != report.verdict.item.index)
+            warn(streams, report.names[i]
+                              + format(": its exposure is %.1f EV away from the known one, which is left out",
+                                       std::fabs(q.known_ev_residual)));
+    }
+}
+
 std::string not_usable_text(const std::string &source, const Verdict &verdict, const StoreOptions &store) {
     return source + ": not usable: " + verdict.text
            + (store.force || store.no_store ? "" : "; nothing was stored (--force stores it all the same)");
@@ -222,6 +235,7 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(store.db) << ": "
                     << describe_key(key) << "\n";
     if (report.fit.usable && !report.verdict.text.empty()) warn(streams, finish.source + ": " + report.verdict.text);
+    if (report.fit.usable) name_left_out(report, streams);
     if (!report.fit.usable) tell(streams, not_usable_text(finish.source, report.verdict, store));
     return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
 }

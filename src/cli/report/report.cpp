@@ -197,6 +197,7 @@ Json images_json(const BuildReport &report) {
             image["white_balance_sigma"] = numbers(q.white_balance_sigma, 3);
             image["median_residual"] = q.pairs ? Json(q.median_residual) : Json();
             image["known_ev_residual"] = q.known_ev_residual;
+            image["known_ev_left_out"] = q.known_ev_left_out != 0;
             image["pairs"] = q.pairs;
             image["inliers"] = q.inliers;
             image["component"] = q.component;

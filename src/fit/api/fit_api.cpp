@@ -23,7 +23,7 @@ constexpr uint32_t kImageFlags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF
 constexpr size_t kFirstOptions = LP_END_OF(lensprof_fit_options, progress_user);
 constexpr size_t kFirstImage = LP_END_OF(lensprof_fit_image, known_ev_sigma);
 constexpr size_t kFirstResult = LP_END_OF(lensprof_fit_result, image_quality);
-constexpr size_t kFirstQuality = LP_END_OF(lensprof_fit_image_quality, reserved);
+constexpr size_t kFirstQuality = LP_END_OF(lensprof_fit_image_quality, known_ev_left_out);
 
 // The profile that is to be the prior.
 lensprof_status check_profile(const lensprof_fit_options &o, lensprof_error *error) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <set>
 
 #include "fit/prior/gamma_prior.hpp"
 #include "fit/prior/prior.hpp"
@@ -45,6 +46,7 @@ public:
     double sigma() const { return sigma_; }                // standard error of ln gamma; 0 when known
     double slope() const { return slope_; }                // of the estimate's exposures on the known ones
     bool knows() const { return !known_weight_.empty(); }  // of exposures that can be compared
+    bool leaves_out(uint32_t image) const { return known_left_out_.count(image) > 0; }
     double known_offset() const { return known_offset_; }  // common offset of the known exposures, natural logarithm
 
     // Change of the full shared vector per unit of ln gamma.
@@ -62,6 +64,7 @@ public:
 
 private:
     void compare_known(const Problem &problem, const Estimate &estimate);
+    void leave_out(const Problem &problem, const std::vector<double> &off);
     void put_known(const Problem &problem, Prior &prior) const;
 
     double expected(const Estimate &estimate, double &sigma, lensprof_gamma_from &from) const;
@@ -72,8 +75,9 @@ private:
     bool open_ = false, is_loose_ = false;
     double sigma_ = 0.0, expected_sigma_ = 0.0, oddness_ = 0.0, slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0;
     double scatter_ = 1.0;  // of the known exposures about the estimate's, in their stated standard errors; 1 at least
-    std::vector<double> known_weight_;  // trust in each known exposure, 0..1
-    std::vector<double> level_offset_;  // of each image, as known_offset_: that of the level it is on
+    std::vector<double> known_weight_;   // trust in each known exposure, 0..1
+    std::set<uint32_t> known_left_out_;  // images whose known exposures contradict those of the others
+    std::vector<double> level_offset_;   // of each image, as known_offset_: that of the level it is on
 };
 
 // Change of a response's position within its family for each of its coefficients.

@@ -11,12 +11,18 @@ namespace {
 
 constexpr double kDoubtful = 3.0;       // known exposures farther off, in standard errors, count for less
 constexpr double kSmallestSlope = 0.1;  // and its inverse: beyond, known exposures are of something else
+constexpr double kContradiction = 5.0;  // standard errors from the level of most
+constexpr size_t kFew = 4;              // one in four at most is wrong: of more nothing shows which are
 constexpr size_t kFewestOfLevels = 6;   // known exposures: of fewer, one that is wrong does not show which
 
 // Of known exposures that are repeatable to less than kRepeatable, EV. The pairs between two pictures have errors in
 // common that no model describes (falloff that is not radial, bias by noise): what more than kLinkPairs of them say
 // adds up along a row of pictures like a drift, and the hold keeps up with them.
 constexpr double kRepeatable = 0.05, kLinkPairs = 40.0;
+
+bool is_known(const Problem &problem, uint32_t i) {
+    return problem.images[i].known_ev_sigma > 0.0 && problem.component[i] == problem.component[problem.reference];
+}
 
 // The known exposures of the reference's group and what was found, EV, by image.
 struct Known {
@@ -31,7 +37,7 @@ struct Known {
           sigma(problem.image_count) {
         for (uint32_t i = 0; i < problem.image_count; i++) {
             const auto &image = problem.images[i];
-            if (!(image.known_ev_sigma > 0.0) || problem.component[i] != problem.component[problem.reference]) continue;
+            if (!is_known(problem, i)) continue;
             members.push_back(i);
             is_member[i] = true;
             found[i] = estimate.log_exposure[i][static_cast<size_t>(problem.measured_channel())] / kLn2;
@@ -87,6 +93,7 @@ struct Regression {
 // its level is left out, and the others are known as well as before.
 void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
     slope_ = 1.0, slope_sigma_ = 0.0, known_offset_ = 0.0, scatter_ = 1.0;
+    known_left_out_.clear();
     if (known_weight_.empty()) return;
     const Known known(problem, estimate);
     if (known.members.size() < 2) known_weight_.clear();  // only differences say something
@@ -120,6 +127,19 @@ void Gauge::compare_known(const Problem &problem, const Estimate &estimate) {
             level_offset_[i] = offset(own);
         }
     }
+    leave_out(problem, off);
+}
+
+// The few that are far from the level of most.
+void Gauge::leave_out(const Problem &problem, const std::vector<double> &off) {
+    size_t count = 0;
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        if (!is_known(problem, i)) continue;
+        count++;
+        const double limit = kContradiction * scatter_ * known_sigma(problem.images[i]);
+        if (std::abs(off[i]) > limit) known_left_out_.insert(i);
+    }
+    if (count < kFewestOfLevels || known_left_out_.size() * kFew > count) known_left_out_.clear();
 }
 
 void Gauge::put_known(const Problem &problem, Prior &prior) const {
@@ -130,7 +150,7 @@ void Gauge::put_known(const Problem &problem, Prior &prior) const {
         static_cast<double>(problem.pairs.size()) / static_cast<double>(std::max<size_t>(problem.edges.size(), 1));
     for (uint32_t i = 0; i < problem.image_count; i++) {
         const auto &image = problem.images[i];
-        if (!(image.known_ev_sigma > 0.0) || problem.component[i] != problem.component[problem.reference]) continue;
+        if (!is_known(problem, i)) continue;
         auto &known = prior.known[i];
         known.log_exposure = level_offset_[i] + slope_ * kLn2 * image.known_ev;
         known.precision = known_weight_[i] / std::pow(slope_ * kLn2 * scatter_ * known_sigma(image), 2);

@@ -264,25 +264,34 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
     return false;
 }
 
-// The image whose exposure is farthest from its known one, when it clearly is; else -1.
+bool leaves_out_any(const Problem &problem, const lensprof_fit_result &r) {
+    return r.image_quality && std::any_of(r.image_quality, r.image_quality + problem.image_count, [](const auto &q) {
+               return q.known_ev_left_out != 0;
+           });
+}
+
+// The image whose exposure is farthest from its known one, when it clearly is; else -1. Of those that are left out,
+// where some are.
 int contradicting_image(const Problem &problem, const lensprof_fit_result &r) {
     int odd = -1;
-    double limit = kContradiction;
+    const bool any = leaves_out_any(problem, r);
+    double limit = any ? 0.0 : kContradiction;
     for (uint32_t i = 0; i < problem.image_count && r.image_quality; i++) {
         double sigma = problem.images[i].known_ev_sigma;
         double off = sigma > 0.0 ? std::abs(r.image_quality[i].known_ev_residual) / std::max(sigma, kKnownSigma) : 0.0;
+        if (any && !r.image_quality[i].known_ev_left_out) continue;
         if (off > limit) limit = off, odd = static_cast<int>(i);
     }
     return odd;
 }
 
 // Says how known exposures contradict each other, or the exponent of the result, if they do. Of many, whose errors are
-// known from their scatter, only single ones are told (contradicting_image).
+// known from their scatter, only steps and single ones are told (contradicting_image).
 bool minds_known_exposures(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     using Explanation = KnownExposures::Explanation;
     bool open = r.gamma_from == LENSPROF_GAMMA_EXPOSURES || r.gamma_from == LENSPROF_GAMMA_PRIOR;
     KnownExposures known = compare_known(problem, estimate, open);
-    if (known.count > kMany) return false;
+    if (known.count > kMany && known.explanation != Explanation::step) return false;
     const double away = std::abs(std::log(std::max(known.slope, 1e-3))), off = std::abs(known.off_ev);
     switch (known.explanation) {
     case Explanation::order: return warn(r, {LENSPROF_REASON_KNOWN_ORDER, {known.off_ev}});
@@ -290,7 +299,9 @@ bool minds_known_exposures(const Problem &problem, const Estimate &estimate, len
     case Explanation::step:
         return warn(r, of_image(known.off_ev > 0.0 ? LENSPROF_REASON_KNOWN_MORE_FROM : LENSPROF_REASON_KNOWN_LESS_FROM,
                                 known.image, {off}));
-    case Explanation::any: return warn(r, {LENSPROF_REASON_KNOWN_CONTRADICT, {known.off_ev}});
+    case Explanation::any:
+        if (leaves_out_any(problem, r)) return false;  // these are
+        return warn(r, {LENSPROF_REASON_KNOWN_CONTRADICT, {known.off_ev}});
     default: break;
     }
     const bool is_unfollowed =

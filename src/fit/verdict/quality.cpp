@@ -49,7 +49,7 @@ void describe_residuals(const Problem &problem, const Estimate &estimate, double
     r.inlier_share = static_cast<double>(std::count(is_inlier.begin(), is_inlier.end(), true))
                      / static_cast<double>(problem.pairs.size());
     std::vector<std::vector<double>> of_image(r.image_quality ? problem.image_count : 0);
-    for (size_t i = 0; i < of_image.size(); i++) r.image_quality[i].inliers = r.image_quality[i].reserved = 0;
+    for (size_t i = 0; i < of_image.size(); i++) r.image_quality[i].inliers = 0;
     for_each_transfer(problem, estimate, [&](size_t p, const PairTransfer &t) {
         residual[p] = signed_residual(t, problem.channels);
         if (of_image.empty()) return;
@@ -77,6 +77,7 @@ void describe_images(const Problem &problem, const Gauge &gauge, const Estimate 
         double gamma_sigma = std::max(gauge.sigma(), 0.0);
         q.pairs = 0, q.radius = q.ev_sigma = q.known_ev_residual = 0.0;
         q.component = problem.component[i];
+        q.known_ev_left_out = gauge.leaves_out(i);
         auto sigma = [&](int unknown, double log_value) {  // of a logarithm: the data's and that of gamma
             if (unknown < 0 || !found.is_determined || q.component != problem.component[problem.reference]) return 0.0;
             return std::sqrt(std::max(0.0, found.images[unknown]) + std::pow(gamma_sigma * log_value, 2));

@@ -152,9 +152,9 @@ typedef struct lensprof_fit_image_quality {
     double radius;                 /* largest r of a pair, half diagonals */
     double grey_low, grey_high;    /* 5 % and 95 % quantile of its grey values, 0..1 */
     uint32_t pairs;
-    uint32_t inliers;   /* of these, those within 3 sigma of the noise */
-    uint32_t component; /* smallest index of an image it is tied to through pairs */
-    uint32_t reserved;  /* 0 */
+    uint32_t inliers;           /* of these, those within 3 sigma of the noise */
+    uint32_t component;         /* smallest index of an image it is tied to through pairs */
+    uint32_t known_ev_left_out; /* 1: known_ev contradicts the pictures and those of other images, and had no part */
 } lensprof_fit_image_quality;
 
 #define LENSPROF_COVERAGE_BINS 10
