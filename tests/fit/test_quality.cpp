@@ -92,6 +92,25 @@ void test_a_falloff_that_rises_is_not_usable(void **) {
     assert_true(run.result.reason_value[0] > 1.1 && run.result.reason_value[1] < 0.1);
 }
 
+// Two pictures whose white balances differ, which are held: the falloff's centre takes the difference on, to its limit.
+void test_a_centre_on_its_limit_is_not_usable(void **) {
+    for (uint64_t seed = 1; seed <= 4; seed++) {
+        Simulation s;
+        s.response = srgb_response();
+        s.images = 2;
+        s.shift = 0.6;
+        s.exposures = {{0.0, {1.0, 1.0, 1.0}}, {0.25, {1.1, 1.0, 0.9}}};
+        s.make(2000, 2.0, 0.0, 1.0, seed);
+        const FitRun all = run_fit(s);
+        assert_int_equal(all.result.usable, 1);
+        assert_close(all.result.vignetting[0].center[0], s.vignetting.center[0], 0.02);
+        s.fit_images[1].free = LENSPROF_FREE_EV;
+        const FitRun held = run_fit(s);
+        assert_int_equal(held.result.reason_code, LENSPROF_REASON_CENTER_ON_LIMIT);
+        assert_close(held.result.reason_value[0], 0.5, 0.01);
+    }
+}
+
 void test_the_greys_must_be_covered(void **) {
     Simulation s;
     s.response = srgb_response();
@@ -307,6 +326,7 @@ int main() {
         cmocka_unit_test(test_groups_are_told),
         cmocka_unit_test(test_the_corners_must_be_covered),
         cmocka_unit_test(test_a_falloff_that_rises_is_not_usable),
+        cmocka_unit_test(test_a_centre_on_its_limit_is_not_usable),
         cmocka_unit_test(test_the_greys_must_be_covered),
         cmocka_unit_test(test_coverage_counts_every_end),
         cmocka_unit_test(test_a_misplaced_image_is_named),
