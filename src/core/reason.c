@@ -46,6 +46,7 @@ static const reason_row rows[] = {
     ROW(KNOWN_LESS_FROM, "known_less_from", "from one image on the known exposures are less than the pictures"),
     ROW(KNOWN_CONTRADICT, "known_contradict", "the known exposures contradict each other"),
     ROW(GAMMA_UNFOLLOWED, "gamma_unfollowed", "the response cannot follow the exponent of the known exposures"),
+    ROW(BALANCES_HELD, "balances_held", "white balances are held, but the pictures differ in them"),
     ROW(FEW_GREYS, "few_greys", "the pairs cover too few grey values to show a response"),
     ROW(MISSING_GREYS, "missing_greys", "the pairs leave out a range of grey values"),
     ROW(UNUSUAL_RESPONSE, "unusual_response", "the response is unlike those of measured cameras of this kind"),

@@ -157,6 +157,16 @@ void test_a_strip_at_one_manual_exposure(void **) {
     assert_true(spread(known) < spread(json_of(build(path, {"--stored", "none", "--exif-sigma", "0"}))));
 }
 
+// White balances that differ but are held: the option that frees them is named, and mends it.
+void test_held_balances(void **) {
+    const std::string path = work("warm");
+    must_exit(done, {"simulate", "-o", path, "--size", "400x300", "--images", "6", "--wb", "0.03", "--ev", "0.5"});
+    const Json held = json_of(build(path, {"--free", "response,falloff,ev"}));
+    assert_string_equal(held["reason_code"].get<std::string>().c_str(), "balances_held");
+    assert_true(contains(held["reason"].get<std::string>(), "--free all"));
+    assert_string_equal(json_of(build(path, {"--free", "all"}))["reason_code"].get<std::string>().c_str(), "none");
+}
+
 // What is held settles gamma.
 void test_known_is_said(void **) {
     const std::string path = linear_scene();
@@ -189,6 +199,7 @@ int main() {
         CLI_TEST(test_another_reference),
         CLI_TEST(test_another_reference_beside_held_exposures),
         CLI_TEST(test_a_strip_at_one_manual_exposure),
+        CLI_TEST(test_held_balances),
         CLI_TEST(test_known_is_said),
         CLI_TEST(test_refused_options),
     };

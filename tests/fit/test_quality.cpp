@@ -111,6 +111,29 @@ void test_a_centre_on_its_limit_is_not_usable(void **) {
     }
 }
 
+// Six pictures, of which the third is warmer; the balances are held, or free, or equal.
+void test_balances_that_are_held_are_told(void **) {
+    for (uint64_t seed = 1; seed <= 4; seed++) {
+        Simulation s;
+        s.response = srgb_response();
+        uint64_t random = seed;
+        for (uint32_t i = 0; i < s.images; i++)
+            s.exposures.push_back({i ? lp_random(&random) - 0.5 : 0.0, {1.0, 1.0, 1.0}});
+        Simulation equal = s;
+        s.exposures[2] = {0.3, {1.06, 1.0, 0.94}};
+        for (Simulation *one : {&s, &equal}) {
+            one->make(6000, 2.0, 0.02, 1.0, seed);
+            const FitRun free = run_fit(*one);
+            assert_int_not_equal(free.result.reason_code, LENSPROF_REASON_BALANCES_HELD);
+            for (auto &image : one->fit_images) image.free = LENSPROF_FREE_EV;
+        }
+        assert_int_not_equal(run_fit(equal).result.reason_code, LENSPROF_REASON_BALANCES_HELD);
+        const FitRun held = run_fit(s);
+        assert_true(says(held, LENSPROF_REASON_BALANCES_HELD, "the colours of image 2 differ"));
+        assert_true(held.result.reason_value[0] > 1.5 && held.result.reason_value[0] < 20.0);
+    }
+}
+
 void test_the_greys_must_be_covered(void **) {
     Simulation s;
     s.response = srgb_response();
@@ -327,6 +350,7 @@ int main() {
         cmocka_unit_test(test_the_corners_must_be_covered),
         cmocka_unit_test(test_a_falloff_that_rises_is_not_usable),
         cmocka_unit_test(test_a_centre_on_its_limit_is_not_usable),
+        cmocka_unit_test(test_balances_that_are_held_are_told),
         cmocka_unit_test(test_the_greys_must_be_covered),
         cmocka_unit_test(test_coverage_counts_every_end),
         cmocka_unit_test(test_a_misplaced_image_is_named),

@@ -235,6 +235,8 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     Fitted best = fit(input, report.reference, item, progress, &report.quality);
     report.fit = best.result;
     report.verdict = verdict_of(best.result);
+    if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)
+        report.verdict.text += " (Er and Eb on the v lines, or --free all)";
     name_image(project.names, report.verdict);
     report.exposures = best.exposures;
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(input.pairs, project));

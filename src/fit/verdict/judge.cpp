@@ -9,6 +9,7 @@
 #include "fit/base/constants.hpp"
 #include "fit/prior/known_exposures.hpp"
 #include "fit/problem/curve_shape.hpp"
+#include "fit/verdict/held_balance.hpp"
 #include "fit/verdict/quality.hpp"
 #include "fit/verdict/reason.hpp"
 
@@ -311,6 +312,8 @@ bool minds_known_exposures(const Problem &problem, const Estimate &estimate, len
 
 // The weightiest caution about a usable result.
 bool warns_of_images(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
+    if (const HeldBalance held = held_balance(problem, estimate); held.levels > 0.0)
+        return warn(r, of_image(LENSPROF_REASON_BALANCES_HELD, held.image, {held.levels}));
     const int odd = odd_image(problem, r), contradicting = contradicting_image(problem, r);
     if (odd >= 0) {
         const auto image = static_cast<uint32_t>(odd);

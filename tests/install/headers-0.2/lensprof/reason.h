@@ -49,6 +49,7 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_KNOWN_LESS_FROM = 254,  /* image: step, EV */
     LENSPROF_REASON_KNOWN_CONTRADICT = 255, /* distance, EV */
     LENSPROF_REASON_GAMMA_UNFOLLOWED = 256, /* factor of all exposures */
+    LENSPROF_REASON_BALANCES_HELD = 257,    /* image: difference, levels of 255 */
 
     /* Response. */
     LENSPROF_REASON_FEW_GREYS = 301,     /* tenths of the grey values */
