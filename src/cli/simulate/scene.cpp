@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "cli/simulate/scene_maths.hpp"
+
 namespace lensprof {
 namespace {
 
@@ -15,10 +17,6 @@ uint32_t hash(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
 }
 
 double unit(uint32_t h) { return h * (1.0 / 4294967296.0); }
-
-double smooth(double t) { return t * t * (3.0 - 2.0 * t); }
-
-double mix(double a, double b, double t) { return a + (b - a) * t; }
 
 }  // namespace
 
@@ -43,9 +41,36 @@ double Scene::fractal(const double d[3], double frequency, int octaves) const {
     return sum;
 }
 
+double Scene::draw(double u, double v, uint32_t what) const {
+    return unit(hash(static_cast<uint32_t>(static_cast<int32_t>(std::floor(u))),
+                     static_cast<uint32_t>(static_cast<int32_t>(std::floor(v))), what, seed_));
+}
+
+const char *scene_word(SceneKind kind) {
+    const char *const words[] = {"landscape", "sky", "wall", "foliage", "interior"};
+    return words[static_cast<int>(kind)];
+}
+
 void Scene::radiance(double longitude, double latitude, double rgb[3]) const {
-    double d[3] = {std::cos(latitude) * std::sin(longitude), std::sin(latitude),
-                   std::cos(latitude) * std::cos(longitude)};
+    const Ray ray = {
+        longitude,
+        latitude,
+        {std::cos(latitude) * std::sin(longitude), std::sin(latitude), std::cos(latitude) * std::cos(longitude)}};
+    switch (kind_) {
+    case SceneKind::landscape: return landscape(ray, rgb);
+    case SceneKind::sky: return sky(ray, rgb);
+    case SceneKind::wall: return wall(ray, rgb);
+    case SceneKind::foliage: return foliage(ray, rgb);
+    case SceneKind::interior: return interior(ray, rgb);
+    }
+}
+
+double Scene::nearness(double longitude, double latitude) const {
+    return std::floor(kLayers * draw(longitude * 9.0, latitude * 14.0, 23)) / (kLayers - 1);
+}
+
+void Scene::landscape(const Ray &ray, double rgb[3]) const {
+    const double longitude = ray.longitude, latitude = ray.latitude, *d = ray.d;
     double horizon = 0.06 * fractal(d, 4.0, 3);
     double above = horizon - latitude;  // positive: sky
     double day = smooth(std::fmin(std::fmax(above / 0.02 + 0.5, 0.0), 1.0));

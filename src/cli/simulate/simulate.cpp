@@ -5,202 +5,19 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <stdexcept>
-
-#include <nlohmann/json.hpp>
 
 #include "cli/fitting/project.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/format.hpp"
-#include "cli/program/numbers.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/parallel.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/progress.hpp"
-#include "cli/program/response_words.hpp"
 #include "cli/program/run.hpp"
-#include "cli/report/report.hpp"
 
 namespace lensprof {
 namespace {
-
-// Of the pictures.
-struct Format {
-    const char *extension;
-    uint32_t sample;
-};
-
-const Choices<Format> formats = {
-    {"png", {".png", LENSPROF_SAMPLE_U8}},     {"png16", {".png", LENSPROF_SAMPLE_U16}},
-    {"tiff", {".tif", LENSPROF_SAMPLE_U8}},    {"tiff16", {".tif", LENSPROF_SAMPLE_U16}},
-    {"tiff32", {".tif", LENSPROF_SAMPLE_F32}}, {"jpeg", {".jpg", LENSPROF_SAMPLE_U8}},
-};
-
-struct Options {
-    std::string output;
-    lensprof_response response;
-    std::vector<Format> formats = {{".png", LENSPROF_SAMPLE_U8}};
-    uint32_t images = 6, rows = 1, seed = 1, points = 0, test_points = 0, width = 800, height = 600;
-    double hfov = 50, overlap = 0.4, jitter = 1, ev = 1, mean_ev = 0, wb = 0.15, noise = 2, outliers = 0, misalign = 0,
-           objects = 0, local_tone = 0, exif_rounding = 0, exif_scatter = 0;
-    std::vector<double> vignetting{-0.30, 0.05, -0.15}, center{0.02, -0.015};
-    bool no_images = false, exif = false, exif_manual = false;
-};
-
-void declare_camera(Command &command, Options &o) {
-    o.response = response_of_word("srgb");
-    command.size("--size", o.width, o.height, {16, 32768}, "of the pictures, px");
-    command.number("--hfov", o.hfov, {1.0, 150.0}, "horizontal field of view, degrees");
-    command.number("--overlap", o.overlap, {0.0, 0.99}, "share of a picture that the next one sees too");
-    command.number("--jitter", o.jitter, {0.0, 20.0}, "sigma of yaw, pitch and roll, degrees");
-    command.number("--misalign", o.misalign, {0.0, 1e3}, "sigma of the error of the project's yaw and pitch, px");
-    command.word(
-        "--response", "RESPONSE", [&o](const std::string &word) { o.response = response_of_word(word); },
-        "linear, srgb, gamma:G, film, or emor:a,b,... (EMoR coefficients)");
-    command.numbers("--vignetting", o.vignetting, any_number, "k1,k2,k3, or nine numbers for red, green, blue");
-    command.numbers("--center", o.center, any_number, "x,y of the falloff's centre, half diagonals");
-    command.number("--ev", o.ev, {0.0, 8.0}, "exposures are uniform within +- this, EV");
-    command.number("--mean-ev", o.mean_ev, {-8.0, 8.0}, "about this; at 0 the brightest clouds are white");
-    command.number("--wb", o.wb, {0.0, 0.9}, "white balance factors are uniform within 1 +- this");
-}
-
-void declare_disturbances(Command &command, Options &o) {
-    command.number("--noise", o.noise, {0.0, 100.0}, "sigma, levels of 255");
-    command.number("--outliers", o.outliers, {0.0, 1.0},
-                   "share of pixels (and of --points pairs) replaced by random numbers");
-    command.number("--objects", o.objects, {0.0, 0.9},
-                   "share of every picture that moving objects cover; pairs with an end on one see it");
-    command.number("--local-tone", o.local_tone, {0.0, 4.0},
-                   "local tone mapping after the response, strongest gain, EV");
-    command.flag("--exif", o.exif, "pictures tell exposure time and ISO too, true to the exposures");
-    command.number("--exif-rounding", o.exif_rounding, {0.0, 4.0}, "sigma of the error of what they tell, EV");
-    command.flag("--exif-manual", o.exif_manual, "they tell that the exposure was set by hand, at one ISO");
-    command.number("--exif-scatter", o.exif_scatter, {0.0, 4.0},
-                   "sigma of the shutter and aperture about what was set and is told, EV");
-}
-
-void declare(Command &command, Options &o) {
-    command.folder("-o,--output", o.output, "folder for pictures, pano.pto and truth.json");
-    command.require("--output");
-    command.count("--images", o.images, 2, 5000, "number of pictures");
-    command.count("--rows", o.rows, 1, 100, "rows of pictures");
-    declare_camera(command, o);
-    declare_disturbances(command, o);
-    command.list("--format", o.formats, formats, "of the pictures; several, with commas, take turns");
-    command.count("--seed", o.seed, 0, UINT32_MAX, "another seed, another scene and camera");
-    command.count("--points", o.points, 0, 1000000, "also write points.txt with this many noisy pairs");
-    command.count("--test-points", o.test_points, 0, 1000000,
-                  "also write test_points.txt with noise-free pairs, for scoring");
-    command.flag("--no-images", o.no_images, "write no pictures");
-}
-
-// A wide aperture, which stays: falloff changes with it.
-constexpr double kFNumber = 2.8;
-
-// Exposure time and ISO that make up the exposure of every image, but for --exif-rounding.
-std::vector<Settings> exposure_settings(const Options &o, const Truth &truth) {
-    Random random(truth.seed * 104729ull + 11);
-    std::vector<Settings> settings;
-    for (const auto &e : truth.exposures) {
-        double stated = e.ev + o.exif_rounding * random.normal();
-        double iso = 100.0 * std::exp2(std::floor(random.uniform(0.0, 4.0)));
-        if (o.exif_manual) iso = 100.0;
-        settings.push_back({std::exp2(stated) / iso, iso, kFNumber});  // 1/100 s at ISO 100 for 0 EV
-    }
-    return settings;
-}
-
-// What the pictures tell of their exposures, and how these then scatter.
-void add_settings(const Options &o, Truth &truth) {
-    truth.settings = exposure_settings(o, truth);
-    truth.is_manual = o.exif_manual;
-    Random random(truth.seed * 86028121ull + 7);
-    for (auto &e : truth.exposures) e.ev += o.exif_scatter * random.normal();
-}
-
-// Asked for with --objects, --local-tone and --exif; random numbers of their own, so that the rest stays the same.
-void add_disturbances(const Options &o, const Scene &scene, Truth &truth) {
-    Random random(o.seed * 15485863ull + 3);
-    truth.object_share = o.objects;
-    truth.local_tone = o.local_tone;
-    if (o.objects > 0.0)
-        for (const auto &camera : truth.cameras) truth.objects.push_back(random_blocks(camera, o.objects, random));
-    if (o.local_tone > 0.0)
-        for (uint32_t i = 0; i < truth.cameras.size(); i++) truth.tone.push_back(tone_map(truth, scene, i));
-    if (o.exif) add_settings(o, truth);
-}
-
-void check_exif(const Options &o) {
-    if (o.exif && o.no_images)
-        throw Failure(ExitCode::usage, "--exif: there is no picture to write it into; leave out --no-images");
-    if (o.exif_rounding > 0.0 && !o.exif) throw Failure(ExitCode::usage, "--exif-rounding: needs --exif");
-    if (o.exif_scatter > 0.0 && !o.exif) throw Failure(ExitCode::usage, "--exif-scatter: needs --exif");
-    if (o.exif_manual && !o.exif) throw Failure(ExitCode::usage, "--exif-manual: needs --exif");
-}
-
-void place_cameras(const Options &o, Random &random, Truth &truth) {
-    double degree = std::acos(-1.0) / 180.0,
-           vfov = 2.0 / degree * std::atan(std::tan(o.hfov / 2.0 * degree) * o.height / o.width);
-    uint32_t columns = (o.images + o.rows - 1) / o.rows;
-    for (uint32_t i = 0; i < o.images; i++) {
-        uint32_t row = i / columns, column = i % columns;
-        lensprof_camera camera{};
-        camera.width = o.width;
-        camera.height = o.height;
-        camera.hfov_deg = o.hfov;
-        double yaw = (column - (columns - 1) / 2.0 + (row % 2 ? 0.5 : 0.0)) * o.hfov * (1.0 - o.overlap);
-        camera.yaw_deg = std::remainder(yaw + o.jitter * random.normal(), 360.0);
-        camera.pitch_deg = (row - (o.rows - 1) / 2.0) * vfov * (1.0 - o.overlap) + o.jitter * random.normal();
-        camera.roll_deg = o.jitter * random.normal();
-        check(lensprof_camera_validate(&camera), "--hfov");
-        truth.cameras.push_back(camera);
-    }
-}
-
-// Failure (usage) that names the option to blame: the curve, or where only it is off the middle the centre.
-void check_falloff(lensprof_vignetting falloff) {
-    if (lensprof_vignetting_validate(&falloff) == LENSPROF_OK) return;
-    falloff.center[0] = falloff.center[1] = 0.0;
-    if (lensprof_vignetting_validate(&falloff) != LENSPROF_OK)
-        throw Failure(ExitCode::usage,
-                      "--vignetting: the falloff must stay positive to the corner; give smaller numbers");
-    throw Failure(ExitCode::usage,
-                  "--center: the falloff must stay positive to the corner farthest from its centre; give "
-                  "a centre nearer to 0,0");
-}
-
-Truth make_truth(const Options &o) {
-    Truth truth;
-    truth.seed = o.seed;
-    truth.response = o.response;
-    truth.noise_levels = o.noise;
-    truth.outlier_share = o.outliers;
-    if (o.vignetting.size() != 3 && o.vignetting.size() != 9)
-        throw Failure(ExitCode::usage, "--vignetting: give three numbers, or nine");
-    if (o.center.size() != 2) throw Failure(ExitCode::usage, "--center: give two numbers, x,y");
-    truth.vignettings = static_cast<uint32_t>(o.vignetting.size() / 3);
-    for (uint32_t c = 0; c < 3; c++) {
-        for (uint32_t n = 0; n < 3; n++)
-            truth.vignetting[c].k[n] = o.vignetting[(truth.vignettings == 3 ? 3 * c : 0) + n];
-        for (uint32_t d = 0; d < 2; d++) truth.vignetting[c].center[d] = o.center[d];
-        check_falloff(truth.vignetting[c]);
-    }
-    Random random(o.seed);
-    place_cameras(o, random, truth);
-    for (uint32_t i = 0; i < o.images; i++) {
-        lensprof_exposure e;
-        lensprof_exposure_init(&e);
-        double draws[3] = {o.mean_ev + random.uniform(-o.ev, o.ev), random.uniform(1 - o.wb, 1 + o.wb),
-                           random.uniform(1 - o.wb, 1 + o.wb)};
-        e.ev = draws[0];
-        if (i > 0) e.white_balance[0] = draws[1], e.white_balance[2] = draws[2];
-        truth.exposures.push_back(e);
-        truth.files.push_back(format("img%03u", i) + o.formats[i % o.formats.size()].extension);
-    }
-    return truth;
-}
 
 // Irradiance of one picture before the lens, as float RGB.
 Picture render(const Truth &truth, const Scene &scene, uint32_t i) {
@@ -297,8 +114,8 @@ PictureMetadata metadata_of(const Truth &truth, uint32_t i) {
     set_text(m.key.lens, sizeof m.key.lens, "Simulated Lens");
     double half = truth.cameras[i].hfov_deg * std::acos(-1.0) / 360.0;
     m.key.focal_mm = std::round(180.0 / std::tan(half)) / 10.0;  // on a sensor 36 mm wide
-    m.key.aperture = kFNumber;
-    m.f_number = kFNumber;
+    m.key.aperture = kSimulatedFNumber;
+    m.f_number = kSimulatedFNumber;
     if (!truth.settings.empty()) {
         m.iso = truth.settings[i].iso;
         m.exposure_time_s = truth.settings[i].time_s;
@@ -307,67 +124,12 @@ PictureMetadata metadata_of(const Truth &truth, uint32_t i) {
     return m;
 }
 
-// The project as an alignment program would leave it: geometry known, exposures to be found.
-std::string project_text(const Options &o, const Truth &truth) {
-    Random random(truth.seed * 31ull + 5);
-    std::string text =
-        "# rendered by lensprof simulate\np f2 w3000 h1500 v360  E0 R0 n\"TIFF_m c:LZW\"\nm g1 i0 f0 m2 "
-        "p0.00784314\n\n";
-    for (size_t i = 0; i < truth.cameras.size(); i++) {
-        const auto &c = truth.cameras[i];
-        double degrees_per_px = c.hfov_deg / c.width, e[2] = {random.normal(), random.normal()};
-        const char *link = i ? "=0" : "0", *va = i ? "=0" : "1";
-        text += format("i w%u h%u f0 v%s", c.width, c.height, i ? "=0" : format("%.17g", c.hfov_deg).c_str());
-        for (char letter : {'a', 'b', 'c', 'd', 'e'}) text += format(" R%c%s", letter, link);
-        text +=
-            format(" Eev0 Er1 Eb1 r%.17g p%.17g y%.17g TrX0 TrY0 TrZ0 Tpy0 Tpp0 j0", c.roll_deg,
-                   c.pitch_deg + o.misalign * degrees_per_px * e[0], c.yaw_deg + o.misalign * degrees_per_px * e[1]);
-        for (char letter : {'a', 'b', 'c', 'd', 'e', 'g', 't'}) text += format(" %c%s", letter, link);
-        text += format(" Va%s Vb%s Vc%s Vd%s Vx%s Vy%s Vm5 n\"%s\"\n", va, link, link, link, link, link,
-                       truth.files[i].c_str());
-    }
-    text += "\nv Ra0 Rb0 Rc0 Rd0 Re0\nv Vb0 Vc0 Vd0 Vx0 Vy0\n";
-    for (size_t i = 1; i < truth.cameras.size(); i++) text += format("v Eev%zu Er%zu Eb%zu\n", i, i, i);
-    return text + "v\n";
-}
-
-Json image_json(const Truth &truth, size_t i) {
-    const auto &e = truth.exposures[i];
-    Json image = {
-        {"file", truth.files[i]}, {"ev", e.ev}, {"white_balance", {e.white_balance[0], 1.0, e.white_balance[2]}}};
-    if (!truth.settings.empty()) {
-        const auto &s = truth.settings[i];
-        image["exif_ev"] = std::log2(s.time_s * s.iso / 100.0 / (s.f_number * s.f_number));
-    }
-    if (!truth.objects.empty()) {
-        image["objects"] = Json::array();
-        for (const auto &b : truth.objects[i]) image["objects"].push_back({b.left, b.top, b.right, b.bottom});
-    }
-    return image;
-}
-
-Json truth_json(const Truth &truth) {
-    Json json, images = Json::array(), k = Json::array();
-    for (size_t i = 0; i < truth.files.size(); i++) images.push_back(image_json(truth, i));
-    for (uint32_t c = 0; c < truth.vignettings; c++)
-        k.push_back({truth.vignetting[c].k[0], truth.vignetting[c].k[1], truth.vignetting[c].k[2]});
-    json["schema"] = 1;
-    json["images"] = images;
-    json["vignetting"] = {{"k", k}, {"center", {truth.vignetting[0].center[0], truth.vignetting[0].center[1]}}};
-    json["response"] = {
-        {"values", {std::vector<double>(truth.response.table, truth.response.table + LENSPROF_RESPONSE_SAMPLES)}}};
-    json["noise"] = truth.noise_levels;
-    json["outliers"] = truth.outlier_share;
-    json["objects"] = truth.object_share;
-    json["local_tone"] = truth.local_tone;
-    return json;
-}
-
-void write_pictures(const Options &o, const Truth &truth, const Scene &scene, Progress &progress) {
+void write_pictures(const SimulateOptions &o, const Truth &truth, const Scene &scene, Progress &progress) {
     for_each_parallel(static_cast<uint32_t>(truth.files.size()), "rendering", progress, [&](uint32_t i) {
         Picture picture = render(truth, scene, i);
         expose(truth, i, picture);
         if (!truth.tone.empty()) map_tones(truth, i, picture);
+        if (truth.sharpening > 0.0) sharpen(truth.sharpening, picture);
         digitise(truth, i, o.formats[i % o.formats.size()].sample, picture);
         PictureMetadata metadata = metadata_of(truth, i);
         WriteOptions write;
@@ -378,17 +140,16 @@ void write_pictures(const Options &o, const Truth &truth, const Scene &scene, Pr
     });
 }
 
-int run(const Options &o, Streams &streams) {
-    check_exif(o);
-    Truth truth = make_truth(o);
-    Scene scene(o.seed);
-    add_disturbances(o, scene, truth);
+int run(const SimulateOptions &o, Streams &streams) {
+    check_simulate_options(o);
+    const Scene scene(o.seed, o.scene);
+    const Truth truth = make_truth(o, scene);
     make_folder(o.output);
     std::filesystem::path folder(o.output);
 
     Progress progress(streams.err, ShowProgress::when_terminal);
     if (!o.no_images) write_pictures(o, truth, scene, progress);
-    std::string project = project_text(o, truth), json = truth_json(truth).dump(1) + "\n";
+    std::string project = project_text(o, truth), json = truth_text(truth);
     std::string pto = (folder / "pano.pto").string();
     write_file(pto, project.data(), project.size());
     write_file((folder / "truth.json").string(), json.data(), json.size());
@@ -413,8 +174,8 @@ void declare_simulate(Command &program) {
     Command command = program.add(
         "simulate", "render overlapping pictures with a known camera",
         "Renders overlapping pictures of a procedural scene, taken by a camera whose truth is written down.");
-    auto o = std::make_shared<Options>();
-    declare(command, *o);
+    auto o = std::make_shared<SimulateOptions>();
+    declare_simulate_options(command, *o);
     command.run([o](Streams &streams) { return run(*o, streams); });
 }
 

@@ -1,12 +1,15 @@
 // The parts of `lensprof simulate`: a known camera before a known scene.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include <lensprof/lensprof.h>
 
+#include "cli/pictures/picture.hpp"
 #include "cli/simulate/scene.hpp"
+#include "cli/simulate/simulate_options.hpp"
 
 namespace lensprof {
 
@@ -34,6 +37,7 @@ struct Settings {
 // Everything that is true about a simulated sequence.
 struct Truth {
     uint32_t seed = 1;
+    SceneKind scene = SceneKind::landscape;
     lensprof_response response;
     lensprof_vignetting vignetting[3];  // of red, green, blue
     uint32_t vignettings = 1;
@@ -41,7 +45,11 @@ struct Truth {
     double outlier_share = 0.0;  // pixels or pairs replaced by random numbers
     double object_share = 0.0;   // of a picture, covered by objects that move
     double local_tone = 0.0;     // EV: most that local tone mapping raises shadows and lowers lights
+    double parallax = 0.0;       // px: most that something near shifts between two pictures
+    double sharpening = 0.0;     // gain of the unsharp mask
+    double clip_share = 0.0;     // of the pixels, white in a channel; 0 = exposures as drawn
     std::vector<lensprof_camera> cameras;
+    std::vector<std::array<double, 2>> positions;  // px that each shifts what is nearest by; empty = it only turns
     std::vector<lensprof_exposure> exposures;
     std::vector<std::string> files;
     std::vector<std::vector<Block>> objects;  // of every image; the last one is in front; empty = none anywhere
@@ -62,6 +70,18 @@ private:
     uint64_t state_;
 };
 
+constexpr double kSimulatedFNumber = 2.8;  // a wide aperture, which stays: falloff changes with it
+
+// All that the options ask for; Failure (usage).
+Truth make_truth(const SimulateOptions &options, const Scene &scene);
+
+// The project as an alignment program would leave it: geometry known, exposures to be found.
+std::string project_text(const SimulateOptions &options, const Truth &truth);
+std::string truth_text(const Truth &truth);  // of truth.json
+
+// Irradiance that image `index` records at a pixel of radiance `rgb`; 1 = white.
+void irradiance_of(const Truth &truth, uint32_t index, double x, double y, const double rgb[3], double irradiance[3]);
+
 // Grey values 0..1 that image `index` records of radiance `rgb` at a pixel, without noise.
 void record(const Truth &truth, uint32_t index, double x, double y, const double rgb[3], double value[3]);
 
@@ -73,6 +93,16 @@ bool object_radiance(const Truth &truth, const Scene &scene, uint32_t index, dou
 
 // Radiance that image `index` sees at a pixel: of an object, else of the scene; 0 where the lens sees nothing.
 void seen_radiance(const Truth &truth, const Scene &scene, uint32_t index, double x, double y, double rgb[3]);
+
+// --parallax: cameras that also move. Then the direction in which the scene has what is seen in a direction.
+void move_cameras(double parallax, Random &random, Truth &truth);
+void moved_direction(const Truth &truth, const Scene &scene, uint32_t index, double direction[2]);
+
+// --clip: moves all exposures alike until this share of the pixels is white in a channel.
+void clip_lights(double share, const Scene &scene, Truth &truth);
+
+// --sharpen: unsharp mask (Gaussian, sigma 1.5 px) of float RGB, clipped to 0..1.
+void sharpen(double gain, Picture &picture);
 
 // Local tone mapping after the response: where the surroundings (Gaussian mean of the grey value, sigma a tenth of the
 // width) of a pixel are black it is raised by truth.local_tone EV, where they are white lowered by as much.

@@ -19,22 +19,28 @@ double Random::normal() {
     return std::sqrt(-2.0 * std::log(1.0 - u)) * std::cos(6.283185307179586 * v);
 }
 
-void record(const Truth &truth, uint32_t index, double x, double y, const double rgb[3], double value[3]) {
+void irradiance_of(const Truth &truth, uint32_t index, double x, double y, const double rgb[3], double irradiance[3]) {
     const auto &camera = truth.cameras[index];
     double r2 = lensprof_vignetting_r2(&truth.vignetting[0], camera.width, camera.height, x, y, nullptr);
     for (uint32_t c = 0; c < 3; c++) {
         double m = lensprof_vignetting_eval(&truth.vignetting[truth.vignettings == 3 ? c : 0], r2, nullptr);
-        double irradiance = rgb[c] * m * lensprof_exposure_factor(&truth.exposures[index], c);
-        value[c] = lensprof_response_eval(&truth.response, irradiance, nullptr);
+        irradiance[c] = rgb[c] * m * lensprof_exposure_factor(&truth.exposures[index], c);
     }
+}
+
+void record(const Truth &truth, uint32_t index, double x, double y, const double rgb[3], double value[3]) {
+    double irradiance[3];
+    irradiance_of(truth, index, x, y, rgb, irradiance);
+    for (uint32_t c = 0; c < 3; c++) value[c] = lensprof_response_eval(&truth.response, irradiance[c], nullptr);
 }
 
 void seen_radiance(const Truth &truth, const Scene &scene, uint32_t index, double x, double y, double rgb[3]) {
     double direction[2];
     rgb[0] = rgb[1] = rgb[2] = 0.0;
     if (object_radiance(truth, scene, index, x, y, rgb)) return;
-    if (lensprof_camera_unproject(&truth.cameras[index], x, y, direction))
-        scene.radiance(direction[0], direction[1], rgb);
+    if (!lensprof_camera_unproject(&truth.cameras[index], x, y, direction)) return;
+    moved_direction(truth, scene, index, direction);
+    scene.radiance(direction[0], direction[1], rgb);
 }
 
 namespace {
@@ -87,8 +93,12 @@ struct Source {
 void Source::see(lensprof_pair &pair, int side, const double scene_rgb[3]) const {
     uint32_t image = pair.image[side];
     double x = pair.xy[side][0], y = pair.xy[side][1], rgb[3];
-    bool hit = noisy && object_radiance(truth, scene, image, x, y, rgb);
-    record(truth, image, x, y, hit ? rgb : scene_rgb, pair.value[side]);
+    bool other = noisy && object_radiance(truth, scene, image, x, y, rgb);
+    if (noisy && !other && !truth.positions.empty()) {
+        seen_radiance(truth, scene, image, x, y, rgb);
+        other = true;
+    }
+    record(truth, image, x, y, other ? rgb : scene_rgb, pair.value[side]);
     if (noisy && !truth.tone.empty()) map_tone(tone_gain(truth, image, x, y), pair.value[side]);
 }
 

@@ -1,0 +1,37 @@
+// The options of `lensprof simulate`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <lensprof/lensprof.h>
+
+#include "cli/program/options.hpp"
+#include "cli/simulate/scene.hpp"
+
+namespace lensprof {
+
+// Of the pictures.
+struct SimulateFormat {
+    const char *extension;
+    uint32_t sample;
+};
+
+struct SimulateOptions {
+    std::string output;
+    lensprof_response response;
+    std::vector<SimulateFormat> formats = {{".png", LENSPROF_SAMPLE_U8}};
+    SceneKind scene = SceneKind::landscape;
+    uint32_t images = 6, rows = 1, seed = 1, points = 0, test_points = 0, width = 800, height = 600;
+    double hfov = 50, overlap = 0.4, jitter = 1, ev = 1, mean_ev = 0, clip = 0, wb = 0.15, noise = 2, outliers = 0,
+           misalign = 0, parallax = 0, objects = 0, local_tone = 0, sharpen = 0, exif_rounding = 0, exif_scatter = 0;
+    std::vector<double> vignetting{-0.30, 0.05, -0.15}, center{0.02, -0.015};
+    bool no_images = false, exif = false, exif_manual = false;
+};
+
+void declare_simulate_options(Command &command, SimulateOptions &options);
+
+// Failure (usage) where options contradict each other.
+void check_simulate_options(const SimulateOptions &options);
+
+}  // namespace lensprof

@@ -1,0 +1,117 @@
+// The camera before the scene, as the options ask for it.
+#include <cmath>
+#include <stdexcept>
+
+#include "cli/program/error.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/library.hpp"
+#include "cli/simulate/simulate.hpp"
+
+namespace lensprof {
+namespace {
+
+// Exposure time and ISO that make up the exposure of every image, but for --exif-rounding.
+std::vector<Settings> exposure_settings(const SimulateOptions &o, const Truth &truth) {
+    Random random(truth.seed * 104729ull + 11);
+    std::vector<Settings> settings;
+    for (const auto &e : truth.exposures) {
+        double stated = e.ev + o.exif_rounding * random.normal();
+        double iso = 100.0 * std::exp2(std::floor(random.uniform(0.0, 4.0)));
+        if (o.exif_manual) iso = 100.0;
+        settings.push_back({std::exp2(stated) / iso, iso, kSimulatedFNumber});  // 1/100 s at ISO 100 for 0 EV
+    }
+    return settings;
+}
+
+// What the pictures tell of their exposures, and how these then scatter.
+void add_settings(const SimulateOptions &o, Truth &truth) {
+    truth.settings = exposure_settings(o, truth);
+    truth.is_manual = o.exif_manual;
+    Random random(truth.seed * 86028121ull + 7);
+    for (auto &e : truth.exposures) e.ev += o.exif_scatter * random.normal();
+}
+
+// Asked for with --objects, --parallax, --clip, --local-tone and --exif; random numbers of their own, so that the rest
+// stays the same.
+void add_disturbances(const SimulateOptions &o, const Scene &scene, Truth &truth) {
+    Random random(o.seed * 15485863ull + 3);
+    truth.object_share = o.objects;
+    truth.local_tone = o.local_tone;
+    truth.sharpening = o.sharpen;
+    if (o.objects > 0.0)
+        for (const auto &camera : truth.cameras) truth.objects.push_back(random_blocks(camera, o.objects, random));
+    Random places(o.seed * 32452843ull + 17);
+    if (o.parallax > 0.0) move_cameras(o.parallax, places, truth);
+    if (o.clip > 0.0) clip_lights(o.clip, scene, truth);
+    if (o.local_tone > 0.0)
+        for (uint32_t i = 0; i < truth.cameras.size(); i++) truth.tone.push_back(tone_map(truth, scene, i));
+    if (o.exif) add_settings(o, truth);
+}
+
+void place_cameras(const SimulateOptions &o, Random &random, Truth &truth) {
+    double degree = std::acos(-1.0) / 180.0,
+           vfov = 2.0 / degree * std::atan(std::tan(o.hfov / 2.0 * degree) * o.height / o.width);
+    uint32_t columns = (o.images + o.rows - 1) / o.rows;
+    for (uint32_t i = 0; i < o.images; i++) {
+        uint32_t row = i / columns, column = i % columns;
+        lensprof_camera camera{};
+        camera.width = o.width;
+        camera.height = o.height;
+        camera.hfov_deg = o.hfov;
+        double yaw = (column - (columns - 1) / 2.0 + (row % 2 ? 0.5 : 0.0)) * o.hfov * (1.0 - o.overlap);
+        camera.yaw_deg = std::remainder(yaw + o.jitter * random.normal(), 360.0);
+        camera.pitch_deg = (row - (o.rows - 1) / 2.0) * vfov * (1.0 - o.overlap) + o.jitter * random.normal();
+        camera.roll_deg = o.jitter * random.normal();
+        check(lensprof_camera_validate(&camera), "--hfov");
+        truth.cameras.push_back(camera);
+    }
+}
+
+// Failure (usage) that names the option to blame: the curve, or where only it is off the middle the centre.
+void check_falloff(lensprof_vignetting falloff) {
+    if (lensprof_vignetting_validate(&falloff) == LENSPROF_OK) return;
+    falloff.center[0] = falloff.center[1] = 0.0;
+    if (lensprof_vignetting_validate(&falloff) != LENSPROF_OK)
+        throw Failure(ExitCode::usage,
+                      "--vignetting: the falloff must stay positive to the corner; give smaller numbers");
+    throw Failure(ExitCode::usage,
+                  "--center: the falloff must stay positive to the corner farthest from its centre; give "
+                  "a centre nearer to 0,0");
+}
+
+}  // namespace
+
+Truth make_truth(const SimulateOptions &o, const Scene &scene) {
+    Truth truth;
+    truth.seed = o.seed;
+    truth.scene = o.scene;
+    truth.response = o.response;
+    truth.noise_levels = o.noise;
+    truth.outlier_share = o.outliers;
+    if (o.vignetting.size() != 3 && o.vignetting.size() != 9)
+        throw Failure(ExitCode::usage, "--vignetting: give three numbers, or nine");
+    if (o.center.size() != 2) throw Failure(ExitCode::usage, "--center: give two numbers, x,y");
+    truth.vignettings = static_cast<uint32_t>(o.vignetting.size() / 3);
+    for (uint32_t c = 0; c < 3; c++) {
+        for (uint32_t n = 0; n < 3; n++)
+            truth.vignetting[c].k[n] = o.vignetting[(truth.vignettings == 3 ? 3 * c : 0) + n];
+        for (uint32_t d = 0; d < 2; d++) truth.vignetting[c].center[d] = o.center[d];
+        check_falloff(truth.vignetting[c]);
+    }
+    Random random(o.seed);
+    place_cameras(o, random, truth);
+    for (uint32_t i = 0; i < o.images; i++) {
+        lensprof_exposure e;
+        lensprof_exposure_init(&e);
+        double draws[3] = {o.mean_ev + random.uniform(-o.ev, o.ev), random.uniform(1 - o.wb, 1 + o.wb),
+                           random.uniform(1 - o.wb, 1 + o.wb)};
+        e.ev = draws[0];
+        if (i > 0) e.white_balance[0] = draws[1], e.white_balance[2] = draws[2];
+        truth.exposures.push_back(e);
+        truth.files.push_back(format("img%03u", i) + o.formats[i % o.formats.size()].extension);
+    }
+    add_disturbances(o, scene, truth);
+    return truth;
+}
+
+}  // namespace lensprof
