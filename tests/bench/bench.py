@@ -3,12 +3,12 @@
 import argparse
 import json
 import os
-import pathlib
 import sys
 import time
 
 import cases
 import flat
+import gallery
 import radiance
 import real
 import report
@@ -16,27 +16,31 @@ import scale
 import speed
 import static
 import tools
+import verdicts
 
-PARTS = ("points", "pictures", "refusals", "flat", "static", "scale", "speed", "radiance", "knowledge", "real")
+PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "static", "scale", "speed", "radiance", "knowledge",
+         "real")
 
 
 def parse():
     p = argparse.ArgumentParser(description="Measures lensprof beside Hugin's vig_optimize.", prog="run.sh")
     p.add_argument("--quick", action="store_true", help="few cases, under three minutes")
-    p.add_argument("--real", metavar="DIR", help="also cross-validate on every pano.pto below DIR")
+    p.add_argument("--real", metavar="DIR", help="also real pictures: pano.pto, hugin.pto and brackets below DIR")
     p.add_argument("--only", default=",".join(PARTS), help="parts, with commas: " + ", ".join(PARTS))
-    p.add_argument("--match", metavar="TEXT", default="", help="only accuracy cases with TEXT in their row's name")
+    p.add_argument("--match", metavar="TEXT", default="",
+                   help="only accuracy cases with TEXT in their row's name; verdicts: of one kind, or one, as smooth 17")
     p.add_argument("--repeat", type=int, default=5, help="turns of the speed measurement")
     p.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), help="cases at a time (accuracy only)")
     p.add_argument("--sequences", type=int, metavar="N", help="of the part knowledge; 60, quick 20")
-    p.add_argument("--tune", action="store_true", help="knowledge: the half of the lenses that constants are chosen on")
+    p.add_argument("--tune", action="store_true",
+                   help="knowledge: the half of the lenses that constants are chosen on; verdicts: other seeds")
     p.add_argument("--keep", action="store_true", help="keep the rendered pictures")
     options = p.parse_args()
     options.only = options.only.split(",")
     if set(options.only) - set(PARTS):
         p.error("--only: use " + ", ".join(PARTS))
-    if options.real and not any(pathlib.Path(options.real).rglob("pano.pto")):
-        p.error("--real %s: holds no pano.pto" % options.real)
+    if options.real and not real.projects_below(options.real):
+        p.error("--real %s: holds no pano.pto or hugin.pto" % options.real)
     return options
 
 
@@ -52,7 +56,7 @@ def main():
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize is not installed (package hugin-tools); lensprof is alone"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
                "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "scale": [], "speed": {},
-               "radiance": {}, "knowledge": [], "real": [], "skipped": skipped}
+               "verdicts": {}, "radiance": {}, "knowledge": [], "real": [], "brackets": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
     if "speed" in options.only:
@@ -68,6 +72,9 @@ def main():
         if part in options.only:
             chosen = of(options.quick, options.match)
             results[part] = cases.run_all(chosen, options.match, options.jobs, options.keep, say)
+    if "verdicts" in options.only:
+        results["verdicts"] = verdicts.run_all(options.quick, options.tune, options.jobs, options.keep, say,
+                                               options.match)
     if "flat" in options.only:
         results["flat"] = flat.run_all(options.quick, say)
     if "knowledge" in options.only:
@@ -76,6 +83,7 @@ def main():
                                                  options.jobs, say)
     if options.real and "real" in options.only:
         results["real"] = real.run_all(options.real, options.jobs, say)
+        results["brackets"] = gallery.run_brackets(options.real, say)
     results["seconds"] = time.time() - start
     text = report.document(results)
     (tools.WORK / "results.json").write_text(json.dumps(results, indent=1) + "\n")

@@ -5,12 +5,24 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+import gallery
 import scorer
 import tools
 
 FOLDS = 5
+NAMES = ("pano.pto", "hugin.pto")
+FREE_ALL = ["--free", "all"]  # whatever the v lines of a project ask for
 CLIP_LEVELS = 20.0
 DISAGREE_LEVELS, DISAGREE_PAIRS = 10.0, 10
+
+
+def projects_below(root):
+    """{name: path} of every project; the name is its folder's, or its own where a folder has two."""
+    root = pathlib.Path(root).resolve()
+    found = sorted(p for p in root.rglob("*.pto") if p.name in NAMES)
+    folders = [p.parent for p in found]
+    places = [p.with_suffix("") if folders.count(p.parent) > 1 else p.parent for p in found]
+    return {root.name if place == root else str(place.relative_to(root)): p for place, p in zip(places, found)}
 
 
 def figures(residual):
@@ -39,13 +51,14 @@ def in_range(text):
 
 
 def cross_validate(project, points, folder):
-    """Both tools fit 80 % of the pairs (the same file) and are scored on the other 20 %, five times."""
+    """Both tools fit 80 % of the pairs (the same file) and are scored on the other 20 %, five times.
+    project: a copy whose v lines ask for everything."""
     text = pathlib.Path(project).read_text(errors="replace")
     lines = [line for line in pathlib.Path(points).read_text().splitlines() if line.strip()]
     pairs, sizes = scorer.read_points(points), tools.sizes_of_pto(text)
     fold_of = np.arange(len(lines)) % FOLDS
     calls = {"lensprof": tools.run_lensprof, **({"hugin": tools.run_hugin} if tools.VIG_OPTIMIZE else {})}
-    option = {"lensprof": "--points", "hugin": "-i"}
+    option = {"lensprof": [*FREE_ALL, "--points"], "hugin": ["-i"]}
     residual = {tool: np.zeros((len(lines), 2, 3)) for tool in calls}
     monotone, failed = dict.fromkeys(calls, 0), dict.fromkeys(calls, 0)
     for fold in range(FOLDS):
@@ -53,7 +66,7 @@ def cross_validate(project, points, folder):
         train.write_text("".join(line + "\n" for line, f in zip(lines, fold_of) if f != fold))
         test = fold_of == fold
         for tool, run in calls.items():
-            _, model = run(project, str(folder / ("%s%d" % (tool, fold))), [option[tool], str(train)])
+            _, model = run(project, str(folder / ("%s%d" % (tool, fold))), [*option[tool], str(train)])
             failed[tool] += model is None
             monotone[tool] += bool(model and model.monotone)
             used = model or scorer.identity(len(sizes))
@@ -73,29 +86,35 @@ def run_project(project, name):
     for turn in "ab":
         outputs = [folder / ("%s_%s" % (turn, file)) for file in ("pairs.txt", "result.pto")]
         used, model = tools.run_lensprof(str(project), str(folder / turn),
-                                         ["--points-out", str(outputs[0]), "--pto-out", str(outputs[1])])
+                                         [*FREE_ALL, "--points-out", str(outputs[0]), "--pto-out", str(outputs[1])])
         runs.append([used.pop("timeless", None)] + [p.read_bytes() if p.exists() else None for p in outputs])
     record = {"project": name, "images": len(tools.sizes_of_pto(project.read_text(errors="replace"))), "lensprof": used,
               "monotone": bool(model and model.monotone), "identical": runs[0] == runs[1], "folds": []}
     sources = {"lensprof": folder / "a_pairs.txt", "vig_optimize": folder / "hugin_pairs.txt"}
+    free, hugin = folder / "free.pto", None
+    gallery.freed(project, free)
     if tools.VIG_OPTIMIZE:
         own = ["-s", "0", "-p", "2000", "-w", str(sources["vig_optimize"])]
-        tools.run_hugin(str(project), str(folder / "own"), own)
+        _, hugin = tools.run_hugin(str(free), str(folder / "own"), own)
         if sources["vig_optimize"].exists():
             sources["vig_optimize"].write_text(in_range(sources["vig_optimize"].read_text()))
     for source, points in sources.items():
         if points.exists() and points.stat().st_size:
-            for result in cross_validate(str(project), str(points), folder):
+            for result in cross_validate(str(free), str(points), folder):
                 record["folds"].append(dict(result, points_by=source))
+    if tools.OPENCV:
+        expected = gallery.PROJECTS.get(project.parent.name)
+        record["gallery"] = gallery.measure(project, used, model, hugin)
+        record["unmet"] = expected and gallery.unmet(expected, used, record["gallery"])
     return record
 
 
 def run_all(root, jobs, say):
-    projects = sorted(pathlib.Path(root).resolve().rglob("pano.pto"))
-    names = [str(p.parent.relative_to(pathlib.Path(root).resolve())) for p in projects]
-    records = []
+    projects, records = projects_below(root), []
+    if not tools.OPENCV:
+        say("SKIPPED: gallery: " + tools.NO_OPENCV)
     with ThreadPoolExecutor(jobs) as pool:
-        for record in pool.map(run_project, projects, names):
+        for record in pool.map(run_project, projects.values(), projects):
             records.append(record)
             say("real: %d of %d projects" % (len(records), len(projects)))
     return records

@@ -23,8 +23,21 @@ everything else but times repeats exactly. CPU times of the accuracy tables were
 
 READING_REAL = """Five-fold cross validation: both tools fit the same 80 % of the pairs; residual of the other 20 %, in
 levels of 255. Agreeing: without the pairs of images that mostly disagree (the median residual of an image's pairs is
-above 10 levels under both tools: the project has it in the wrong place); the fits had them all. Pairs drawn by
-vig_optimize are other ones in every run; those with grey values outside 0..1 are left out for both tools."""
+above 10 levels under both tools: the project has it in the wrong place); the fits had them all. Everything is estimated,
+whatever the v lines of a project ask for. Pairs drawn by vig_optimize are other ones in every run; those with grey
+values outside 0..1 are left out for both tools."""
+
+READING_GALLERY = """Verdict, and seams beside those of vig_optimize -s 0 -p 2000. Seam of a link: median over its places
+of the difference between a picture and what the other one predicts of it, levels of 255; below: of all links the median
+(and the worst). Places come from features of the pictures, not from a project or a tool. Links measured are those of
+which lensprof joined both images."""
+
+READING_VERDICTS = """Rendered sequences, every option drawn from the seed. Good ones (smooth: sky and walls; hard:
+parallax, sharpening, white areas, moving objects) should be accepted, bad ones (noise, negatives, local tone mapping,
+pictures in each other's places) refused. Failed: accepted with a clean residual above 5 levels, over the images that
+were joined. Exposures (beside the reference) and M in the corner: share of errors, nothing taken out, within the stated
+standard error, over the accepted good sequences. In brackets the target. A case again:
+`run.sh --only verdicts --match "smooth 17"{tune}`."""
 
 
 def number(value):
@@ -184,6 +197,50 @@ def refused(records):
     return lines + [""]
 
 
+def verdicts(results):
+    """Both errors of the verdict, and the sequences that show them."""
+    if not results or not (results["records"] or results["skipped"]):
+        return []
+    from verdicts import BAD, GOOD, LIMITS, NEED_OPENCV, is_missed
+    lines = ["## Verdicts", "", READING_VERDICTS.format(tune=" --tune" if results["tune"] else ""), ""]
+    lines += header("kind", "sequences", "refused", "accepted without a word", "accepted with a warning", "evened",
+                    "failed", "exposures within their standard error", "corners")
+    for kind in GOOD + BAD:
+        of = [r for r in results["records"] if r["kind"] == kind]
+        if of:
+            lines.append(verdict_row(kind, of, kind in GOOD, LIMITS))
+        elif kind in results["skipped"]:
+            lines.append(row(kind, "SKIPPED: no OpenCV", *[""] * 7))
+    missed = [r for r in results["records"] if is_missed(r)]
+    if missed:
+        lines += ["", "Missed.", "", *header("case", "what", "clean residual", "reason")]
+        lines += [row("%s %d" % (r["kind"], r["number"]), is_missed(r), number(r.get("clean_rms")),
+                      r["reason"] or "none") for r in missed]
+    return lines + [""]
+
+
+def verdict_row(kind, of, good, limits):
+    accepted = [r for r in of if r["usable"]]
+    wordless = count(accepted, lambda r: not r["reason"])
+    evened = [r["evens"] for r in of if r["evens"] is not None]
+    missed = len(of) - len(accepted) if good else wordless
+    target = "%d (at most %.0f %%%s)" % (missed, 100 * limits[good],
+                                         "" if missed <= limits[good] * len(of) else "; **not met**")
+    holds = [held([z for r in accepted for z in r["z"][what]]) for what in ("ev", "corner")] if good else ["", ""]
+    return row(kind, len(of), target if good else len(of) - len(accepted), wordless if good else target,
+               len(accepted) - wordless, sum(evened) if evened else "–", failures(accepted) if good else "", *holds)
+
+
+def held(z):
+    """Share of errors within their standard error, beside the target."""
+    from verdicts import HOLDS
+    if not z:
+        return "–"
+    share = sum(abs(v) < 1.0 for v in z) / len(z)
+    return "%.0f %% of %d (%.0f to %.0f %%%s)" % (100 * share, len(z), *(100 * h for h in HOLDS),
+                                                "" if HOLDS[0] <= share <= HOLDS[1] else "; **not met**")
+
+
 def flat(records):
     if not records:
         return []
@@ -278,6 +335,55 @@ def real(records):
     return lines + [""]
 
 
+def seam_cells(record, tool):
+    """Median (worst)."""
+    of = record["seams"].get(tool)
+    return "%s (%s)" % (number(of["median"]), number(of["worst"])) if of else "–"
+
+
+def met(unmet):
+    return "" if unmet is None else "NOT met: " + "; ".join(unmet) if unmet else "met"
+
+
+def verdict_cells(used):
+    said = {True: "yes", False: "no"}
+    reason = used.get("reason_code") or used.get("lost", "")
+    return (*(said.get(used.get(key), "–") for key in ("usable", "evens")), reason)
+
+
+def gallery(records):
+    """Real projects beside what is expected of them."""
+    if not records:
+        return []
+    lines = ["### Gallery", ""]
+    if not any("gallery" in r for r in records):
+        return lines + ["**SKIPPED: no OpenCV for Python (package python3-opencv)**", ""]
+    lines += [READING_GALLERY, ""]
+    lines += header("project", "usable", "evens", "reason", "joined", "residual before", "held out", "links",
+                    "seam before", "lensprof", "vig_optimize", "expected")
+    for r in records:
+        of, used = r["gallery"], r["lensprof"]
+        lines.append(row(r["project"], *verdict_cells(used), "%d of %d" % (of["joined"], of["images"]),
+                         number(used.get("before_rms")), number(used.get("heldout_rms")),
+                         "%d of %d" % (of["links_measured"], of["links"]),
+                         *(seam_cells(of, tool) for tool in ("before", "lensprof", "hugin")), met(r["unmet"])))
+    return lines + [""]
+
+
+def brackets(records):
+    if not records:
+        return []
+    lines = ["### Brackets", "", "`lensprof bracket` with exposures by EXIF where there are any.", ""]
+    lines += header("set", "options", "pictures", "usable", "reason", "left out", "residual before", "held out",
+                    "expected")
+    for r in records:
+        used = r["lensprof"]
+        usable, _, reason = verdict_cells(used)
+        lines.append(row(r["set"], r["options"], r["images"], usable, reason, len(used.get("left_out", [])),
+                         number(used.get("before_rms")), number(used.get("heldout_rms")), met(r["unmet"])))
+    return lines + [""]
+
+
 def radiance(results):
     if not results:
         return []
@@ -352,7 +458,9 @@ def document(results):
                       COSTS[:1])
     lines += accuracy("From pictures", "6 pictures of 800 x 600, 50 degrees wide, 40 % overlap, exposures within 1 EV,"
                       " noise of 2 levels, unless the case says otherwise.", results["pictures"], COSTS)
-    lines += targets(results["pictures"]) + refused(results["refusals"]) + flat(results["flat"])
+    lines += targets(results["pictures"]) + refused(results["refusals"]) + verdicts(results["verdicts"])
+    lines += flat(results["flat"])
     lines += static(results["static"]) + scale(results["scale"]) + speed(results["speed"])
     lines += radiance(results["radiance"]) + knowledge(results["knowledge"]) + real(results["real"])
+    lines += gallery(results["real"]) + brackets(results["brackets"])
     return "\n".join(lines).rstrip() + "\n"

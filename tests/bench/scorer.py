@@ -89,8 +89,12 @@ def read_truth(path, response="table"):
 
 
 def model_of_json(data, curve, monotone=True):
-    return Model(np.array([i["ev"] for i in data["images"]], float),
-                 np.array([i["white_balance"] for i in data["images"]], float),
+    """An image that does not join the others, whose numbers are null, is one without a correction."""
+    def known(values, otherwise):
+        return [otherwise if v is None else v for v in values]
+
+    return Model(np.array(known([i["ev"] for i in data["images"]], 0.0), float),
+                 np.array([known(i["white_balance"] or [None] * 3, 1.0) for i in data["images"]], float),
                  np.atleast_2d(np.array(data["vignetting"]["k"], float)),
                  np.array(data["vignetting"]["center"], float), curve, monotone)
 

@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """The scorer itself: truth scores zero, the ambiguity of response and exposure is taken out and nothing else is."""
+import json
 import pathlib
+import random
+import re
 import sys
 import tempfile
 import unittest
@@ -8,11 +11,14 @@ import unittest
 import numpy as np
 
 import cases
+import gallery
 import lensfun_rule
 import real
 import report
 import scorer
+import seams
 import tools
+import verdicts
 
 SIZES = np.array([[800, 600]] * 5)
 SRGB = np.array([12.92 * x if x <= 0.0031308 else 1.055 * x ** (1 / 2.4) - 0.055 for x in np.linspace(0, 1, 1024)])
@@ -176,6 +182,23 @@ class Files(unittest.TestCase):
         kept = [line % "0", line % "1"]
         self.assertEqual(real.in_range(kept[0] + line % "-0.0004" + kept[1] + line % "1.001"), "".join(kept))
 
+    def test_an_image_that_joins_no_other(self):
+        """Its numbers are null; it counts as one without a correction, and is named."""
+        image = {"ev": 0.5, "white_balance": [1.1, 1.0, 0.9]}
+        alone = [{"ev": None, "white_balance": w, "joined": False} for w in (None, [None] * 3)]
+        data = {"usable": False, "evens": True, "reason": "r", "reason_code": "c", "pairs": 7, "seconds": {"solve": 1.0},
+                "residual": {"before_rms": 9.0, "heldout_rms": None}, "images": [dict(image, joined=True), *alone],
+                "links": [{"images": [0, 1], "pairs": 3, "verified": False}, {"images": [0, 2], "pairs": 4, "verified": True}],
+                "vignetting": {"k": [[-0.3, 0, 0]], "center": [0, 0]}}
+        model, used = scorer.model_of_json(data, None), tools.of_json(data)
+        self.assertEqual(model.ev.tolist(), [0.5, 0.0, 0.0])
+        self.assertEqual(model.white_balance.tolist(), [[1.1, 1.0, 0.9], [1.0] * 3, [1.0] * 3])
+        self.assertEqual((used["left_out"], used["unverified"], used["evens"]), ([1, 2], [[0, 1]], True))
+        data["images"] = [image]  # what older programs print
+        del data["evens"], data["links"]
+        used = tools.of_json(json.loads(json.dumps(data)))
+        self.assertEqual((used["left_out"], used["unverified"], used["evens"]), ([], [], None))
+
     def test_usage_of_a_process(self):
         with tempfile.TemporaryDirectory() as folder:
             code = "x = bytearray(64 << 20); print(3)"
@@ -217,6 +240,126 @@ class Tables(unittest.TestCase):
         self.assertEqual((bad.sum(), images), (12, [2]))
         self.assertEqual(real.disagreeing(pairs, [residual, np.ones((40, 2, 3))])[1], [])
         self.assertAlmostEqual(real.figures(residual)["clipped_rms"], np.sqrt((28 + 12 * 400) / 40))
+
+
+@unittest.skipUnless(tools.OPENCV, tools.NO_OPENCV)
+class Seams(unittest.TestCase):
+    """Two pictures of one made-up wall, the second turned, shifted and of half the exposure."""
+    SIZES = np.array([[420, 320]] * 2)
+    EV = -1.0
+
+    @classmethod
+    def setUpClass(cls):
+        import cv2
+        random, wall = np.random.default_rng(5), np.zeros((320, 600, 3))
+        for blur, share in ((1.5, 0.35), (5.0, 0.3), (20.0, 0.35)):
+            layer = cv2.GaussianBlur(random.uniform(size=wall.shape), (0, 0), blur)
+            wall += share * (layer - layer.min()) / np.ptp(layer)
+        cls.turn = cv2.getRotationMatrix2D((210, 160), 4.0, 1.0) + [[0, 0, -70], [0, 0, 6]]
+        light = [wall[:, :420], 2.0 ** cls.EV * cv2.warpAffine(wall, cls.turn, (420, 320), flags=cv2.INTER_CUBIC)]
+        with tempfile.TemporaryDirectory() as folder:
+            files = [folder + "/%d.png" % n for n in range(2)]
+            for file, part in zip(files, light):
+                cv2.imwrite(file, np.clip(np.rint(255 * part), 0, 255).astype(np.uint8))
+            cls.pairs = seams.seam_pairs(files)
+            cls.twin = seams.seam_pairs([files[0], files[0]])
+
+    def seam(self, ev):
+        model = scorer.identity(2)
+        model.ev[1] = ev
+        return seams.seams(model, self.pairs, self.SIZES)[(0, 1)]
+
+    def test_the_true_gain_leaves_no_seam_and_others_do(self):
+        self.assertGreater(self.seam(0.0), 30.0)
+        self.assertLess(self.seam(self.EV), 1.0)
+        self.assertGreater(self.seam(self.EV + 0.1), 3.0)
+
+    def test_places_are_the_same_point_of_the_wall(self):
+        there = self.pairs.xy[:, 0] @ self.turn[:, :2].T + self.turn[:, 2]
+        self.assertGreater(len(there), 200)
+        self.assertLess(np.median(np.hypot(*(there - self.pairs.xy[:, 1]).T)), 0.3)
+
+    def test_a_picture_beside_itself(self):
+        self.assertEqual(seams.seams(scorer.identity(2), self.twin, self.SIZES), {(0, 1): 0.0})
+
+
+class Verdicts(unittest.TestCase):
+    def test_drawing_repeats_and_tuning_has_other_seeds(self):
+        def drawn(tune):
+            return {s.name: s.arguments for s in verdicts.sequences(False, tune)}
+
+        report_on, tune = drawn(False), drawn(True)
+        self.assertEqual(report_on, drawn(False))
+        self.assertEqual(len(report_on), 2 * 100 + 4 * 50)
+        self.assertEqual(report_on.keys(), tune.keys())
+        self.assertFalse([name for name in tune if tune[name] == report_on[name]])
+        quick = {s.name: s.arguments for s in verdicts.sequences(True, False)}
+        self.assertEqual(quick, {name: report_on[name] for name in quick})  # a case of one is a case of the other
+
+    def test_misplaced_pictures_change_places(self):
+        lines = "".join('i w%d h3 n"img%03d.png"\n' % (n, n) for n in range(5))
+        for seed in range(20):
+            with tempfile.TemporaryDirectory() as folder:
+                file = pathlib.Path(folder, "pano.pto")
+                file.write_text(lines)
+                verdicts.spoil("misplaced", pathlib.Path(folder), random.Random(seed))
+                text = file.read_text()
+            names = re.findall(r'n"img(\d+).png"', text)
+            self.assertEqual(sorted(map(int, names)), list(range(5)))
+            self.assertEqual(names, sorted(names, reverse=True))
+            self.assertEqual(re.sub('n".*"', "", text), re.sub('n".*"', "", lines))  # all else stays
+
+    def test_errors_over_stated_errors(self):
+        """Image 1 is the reference, image 2 does not join, image 3 is held."""
+        truth = scorer.identity(5)
+        truth.ev, truth.k = np.array([0.5, 1.0, 7.0, 0.0, -1.0]), np.array([[-0.3, 0.0, 0.0]])
+        images = [{"ev": ev, "ev_sigma": sigma} for ev, sigma in ((-0.4, 0.2), (0, 0), (None, None), (9, 0), (-2.3, 0.1))]
+        block = np.diag([5.0, 5.0, 1e-4, 1e-4, 1e-4, 5.0, 5.0])  # two EMoR coefficients, k, the centre
+        block[2, 3] = block[3, 2] = 5e-5
+        data = {"images": images, "reference": 1, "covariance": block.tolist(),
+                "vignetting": {"k": [[-0.25, 0.0, -0.01]], "center": [0, 0]}}
+        z = verdicts.standardised(data, truth)
+        np.testing.assert_allclose(z["ev"], [0.5, -3.0])
+        np.testing.assert_allclose(z["corner"], [0.04 / 0.02])
+        self.assertEqual(verdicts.standardised(dict(data, covariance=[]), truth)["corner"], [])
+
+    def test_what_is_missed(self):
+        def missed(kind, usable, reason="", failed=False):
+            return verdicts.is_missed({"kind": kind, "usable": usable, "reason": reason, "failed": failed})
+
+        self.assertEqual([missed("hard", False), missed("hard", True, failed=True), missed("hard", True, "careful")],
+                         ["refused", "failed", None])
+        self.assertEqual([missed("noise", True), missed("noise", True, "careful"), missed("noise", False, "no")],
+                         ["accepted", None, None])
+
+
+class Gallery(unittest.TestCase):
+    RECORD = {"joined": 3, "seams": {"lensprof": {"median": 2.4}, "hugin": {"median": 2.0}}}
+
+    def unmet(self, expected, usable=True, evens=True, record=None):
+        return gallery.unmet(gallery.Expected(**expected), {"usable": usable, "evens": evens}, record or self.RECORD)
+
+    def test_expectations(self):
+        everything = {"usable": True, "evens": True, "joined": 3, "seam": 2.4, "beside_hugin": 0.2}
+        self.assertEqual(self.unmet(everything), [])
+        self.assertEqual(self.unmet(everything, False, None), ["usable: no", "evens: not stated"])
+        self.assertEqual(self.unmet({"joined": 4}), ["joined: 3"])
+        self.assertEqual(self.unmet({"seam": 2.3}), ["seam: 2.40, above 2.30"])
+        self.assertEqual(self.unmet({"beside_hugin": 0.1}), ["seam: 2.40, above 2.30"])
+        self.assertEqual(self.unmet({"beside_hugin": 0.1, "unless_refused": True}, False), [])
+        self.assertEqual(self.unmet({"seam": 3.0}, record={"joined": 3, "seams": {}}), ["seam: not measured"])
+
+    def test_a_freed_copy(self):
+        with tempfile.TemporaryDirectory() as folder:
+            project, copy = pathlib.Path(folder, "pano.pto"), pathlib.Path(folder, "free.pto")
+            project.write_text(PTO)
+            gallery.freed(project, copy)
+            text = copy.read_text()
+            self.assertIn('n"%s/b.jpg"' % folder, text)
+        asked = re.findall(r"^v (.*)$", text, re.M)
+        self.assertEqual(asked[:10], "Ra0 Rb0 Rc0 Rd0 Re0 Vb0 Vc0 Vd0 Vx0 Vy0".split())
+        self.assertEqual(asked[10:], ["Eev1", "Er1", "Eb1", "Eev2", "Er2", "Eb2"])
+        self.assertEqual(tools.parse_pto(text), tools.parse_pto(PTO))
 
 
 class LensfunRule(unittest.TestCase):

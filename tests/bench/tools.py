@@ -1,5 +1,6 @@
 """The tools under test: how each is called and how its result is read. A result is a scorer.Model."""
 import datetime
+import importlib.util
 import json
 import os
 import pathlib
@@ -18,6 +19,8 @@ ROOT = HERE.parent.parent
 WORK = ROOT / "build" / "bench"
 LENSPROF = os.environ.get("LENSPROF", str(ROOT / "build" / "lensprof"))
 VIG_OPTIMIZE = shutil.which("vig_optimize")
+OPENCV = importlib.util.find_spec("cv2") is not None
+NO_OPENCV = "no OpenCV for Python (package python3-opencv)"
 LIMIT_S = 600
 
 PAPER = ["--modes", "5", "--loss", "huber", "--prior", "0", "--sampling", "paper"]
@@ -46,17 +49,26 @@ def monotone(values):
 
 
 def run_lensprof(project, log, extra=()):
-    """-> (usage, model or None). usage gains usable, solve_s, pairs and `timeless`: the output without its times."""
+    """-> (usage, model or None). usage gains what of_json says and `timeless`: the output without its times."""
     command = [LENSPROF, "build", project, "--no-store", "--json", *extra]
     used = measured(command, pathlib.Path(project).parent, log, 1)
     text = used.pop("out")
     if used["code"] not in (0, 4) or not text.startswith("{"):
         return dict(used, lost=pathlib.Path("%s.err" % log).read_text(errors="replace")[-300:]), None
     data = json.loads(text)
-    used.update(usable=data["usable"], reason=data["reason"], solve_s=data["seconds"]["solve"], pairs=data["pairs"],
-                heldout_rms=data["residual"]["heldout_rms"], timeless=re.sub(r'"seconds":\{[^}]*\}', "", text))
+    used.update(of_json(data), timeless=re.sub(r'"seconds":\{[^}]*\}', "", text))
     values = data["response"]["values"][0]
     return used, model_of_json(data, Curve(values), monotone(values))
+
+
+def of_json(data):
+    """The verdict and figures of the object that `build` and `bracket` print. evens: None of older programs."""
+    residual = data["residual"]
+    return {"usable": data["usable"], "evens": data.get("evens"), "reason": data["reason"],
+            "reason_code": data.get("reason_code", ""), "solve_s": data["seconds"]["solve"], "pairs": data["pairs"],
+            "before_rms": residual["before_rms"], "heldout_rms": residual["heldout_rms"],
+            "left_out": [n for n, i in enumerate(data["images"]) if i["ev"] is None or not i.get("joined", True)],
+            "unverified": [link["images"] for link in data.get("links", []) if not link["verified"]]}
 
 
 def run_hugin(project, log, extra=(), threads=1):
