@@ -56,6 +56,20 @@ typedef enum lensprof_sampling {
                                      do not. For pictures by a camera that did not move */
 } lensprof_sampling;
 
+/* What texture says of the cameras of two images that overlap, after they were corrected. */
+typedef enum lensprof_link_state {
+    LENSPROF_LINK_UNVERIFIED = 0, /* too little texture to say: pairs come from quiet places, by the cameras as given */
+    LENSPROF_LINK_VERIFIED = 1,   /* the images show the same where the cameras have it */
+    LENSPROF_LINK_CONTRADICTED = 2 /* they do not: no pairs come from this link */
+} lensprof_link_state;
+
+/* Two images that overlap. Frozen value struct. */
+typedef struct lensprof_link {
+    uint32_t image[2]; /* indices, the smaller one first */
+    uint32_t state;    /* lensprof_link_state */
+    uint32_t pairs;    /* drawn from this link; of tracks, with the image that a track was begun in */
+} lensprof_link;
+
 typedef struct lensprof_sample_options {
     uint32_t struct_size;
     uint32_t sampling; /* lensprof_sampling */
@@ -66,6 +80,10 @@ typedef struct lensprof_sample_options {
     uint32_t reserved; /* 0 */
     lensprof_progress progress; /* or NULL; the fraction never falls */
     void *progress_user;
+    lensprof_link *links;   /* the caller's array of link_capacity, or NULL: receives the links of balanced sampling, */
+    uint32_t *link_count;   /* and this their number, which may be larger than what there was room for; or NULL */
+    uint32_t link_capacity; /* n images have at most n (n - 1) / 2 links */
+    uint32_t reserved2;     /* 0 */
 } lensprof_sample_options;
 
 /* Balanced, 0 pairs (= 300 per image, or 150 points with tracks; at least 2000), seed 1, threads on all cores, no

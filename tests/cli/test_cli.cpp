@@ -136,10 +136,15 @@ void test_build_table(void **) {
 void test_points_replace_pictures(void **) {
     const std::string copy = copy_of("scene", "mit Leer \xc3\xa4"), points = work("points.txt");
     const Words words = Words{"build", copy + "/pano.pto", "--no-store", "--json", "--exif-sigma", "0"} + quick;
-    const std::string first = timeless(must_exit(done, words + Words{"--points-out", points}));
-    assert_string_equal(timeless(must_exit(done, words + Words{"--points", points})).c_str(), first.c_str());
+    // Points do not say what links the pictures had.
+    const auto fitted = [&](const char *option) {
+        const std::string json = timeless(must_exit(done, words + Words{option, points}));
+        return replaced(json, "\"links\":\\[[^;]*\\],\"components\"", "\"components\"");
+    };
+    const std::string first = fitted("--points-out");
+    assert_string_equal(fitted("--points").c_str(), first.c_str());
     for (int i = 0; i < 4; ++i) fs::remove(copy + "/img00" + std::to_string(i) + ".png");
-    assert_string_equal(timeless(must_exit(done, words + Words{"--points", points})).c_str(), first.c_str());
+    assert_string_equal(fitted("--points").c_str(), first.c_str());
 
     std::istringstream lines(text_of(points));
     std::string line;
@@ -234,7 +239,9 @@ void test_what_is_free(void **) {
     for (const Json &k : ev["vignetting"]["k"][0]) assert_close(k.get<double>(), 0, 0);
     assert_close(ev["images"][1]["white_balance"][0].get<double>(), 1, 0);
     assert_true(std::fabs(ev["images"][1]["ev"].get<double>()) > 0.1);
-    const Json falloff = json_of(build_scene({"--free", "falloff,ev,wb"}), not_usable);
+    const Json falloff =
+        json_of(build_scene({"--free", "falloff,ev,wb"}));  // no profile, but it evens the pictures out
+    assert_true(falloff["usable"] == false && falloff["evens"] == true);
     assert_close(falloff["vignetting"]["center"][0].get<double>(), 0, 0);
     assert_true(falloff["response"]["values"] == ev["response"]["values"]);
     assert_true(std::fabs(falloff["vignetting"]["k"][0][0].get<double>()) > 0.05);

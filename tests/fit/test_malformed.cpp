@@ -42,9 +42,18 @@ std::string fault_of_result(const Case &c) {
         for (double v : {q.ev_sigma, q.white_balance_sigma[0], q.white_balance_sigma[2], q.median_residual,
                          q.known_ev_residual, q.radius, q.grey_low, q.grey_high})
             if (!std::isfinite(v)) return "the quality of an image is not finite";
-    for (size_t i = 0; i < c.exposures.size(); i++)
-        if (lensprof_exposure_validate(&c.exposures[i]) != LENSPROF_OK)
+    uint32_t left_out = 0;
+    for (size_t i = 0; i < c.exposures.size(); i++) {
+        const bool is_left_out = std::isnan(c.exposures[i].ev);
+        left_out += is_left_out;
+        if (!is_left_out && lensprof_exposure_validate(&c.exposures[i]) != LENSPROF_OK)
             return "exposure " + std::to_string(i) + " is out of range: " + text_of(c.exposures[i]);
+        if (r.image_quality && c.quality[i].joined == is_left_out) return "joined contradicts the exposure";
+    }
+    if (left_out != r.left_out || r.reference >= c.exposures.size() || std::isnan(c.exposures[r.reference].ev))
+        return "images left out, or the reference";
+    if (r.evens > 1 || r.response_from > LENSPROF_FIT_RESPONSE_PROFILE || !(r.light_spread_ev >= 0.0))
+        return "evens, response_from or light_spread_ev";
     for (double v : {r.before_rms, r.noise_levels, r.inlier_share, r.frame_share, r.image_share, r.seconds})
         if (!(v >= 0.0 && v < 1e9)) return "a figure of the residual is " + std::to_string(v);
     for (double v : {r.heldout_rms, r.heldout_median})
@@ -64,6 +73,7 @@ std::string fault_of_result(const Case &c) {
 std::string fault_of_gauge(const Case &c) {
     for (uint32_t i = 0; i < c.exposures.size(); i++) {
         const auto &image = c.s.fit_images[i];
+        if (std::isnan(c.exposures[i].ev)) continue;  // left out
         bool fixed = image.ev_of == i && (i == c.options.reference || !(image.free & LENSPROF_FREE_EV));
         if (fixed && std::abs(c.exposures[i].ev - image.exposure.ev) > 1e-9)
             return "the fixed exposure of image " + std::to_string(i) + " was " + std::to_string(image.exposure.ev)

@@ -183,7 +183,7 @@ void test_coverage_counts_every_end(void **) {
 }
 
 // One image that is not where the project says: its values belong to other places.
-void test_a_misplaced_image_is_named(void **) {
+void test_a_misplaced_image_is_left_out(void **) {
     Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
     std::vector<double *> values;
     for (auto &p : s.pairs)
@@ -194,16 +194,50 @@ void test_a_misplaced_image_is_named(void **) {
     for (size_t i = 1; i < values.size(); i++) std::copy(values[i], values[i] + 3, values[i - 1]);
     std::copy(first, first + 3, values.back());
     FitRun run = run_fit(s);
-    assert_int_equal(run.result.usable, 0);
-    assert_true(says(run, LENSPROF_REASON_IMAGE_DISAGREES, "image 4 ") && names(run, 4));
-    assert_int_equal(run.result.reason_values, 2);
-    assert_close(run.result.reason_value[0], run.quality[4].inliers, 0.0);
-    assert_close(run.result.reason_value[1], run.quality[4].pairs, 0.0);
-    for (uint32_t i = 0; i < s.images; i++)
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.result.evens, 1);
+    assert_true(says(run, LENSPROF_REASON_IMAGES_LEFT_OUT, "image 4 ") && names(run, 4));
+    assert_close(run.result.reason_value[0], 1.0, 0.0);
+    assert_int_equal(run.result.left_out, 1);
+    for (uint32_t i = 0; i < s.images; i++) {
+        assert_int_equal(run.quality[i].joined, i != 4);
+        assert_int_equal(std::isnan(run.exposures[i].ev), i == 4);
         if (i == 4)
-            assert_true(run.quality[i].median_residual > 10.0);
+            assert_true(run.quality[i].pairs > 100 && run.quality[i].median_residual > 10.0);
         else
             assert_true(run.quality[i].median_residual < 3.0);
+    }
+}
+
+// Where the reference itself is the odd one, the first of the others takes its place.
+void test_a_misplaced_reference_is_replaced(void **) {
+    Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
+    for (auto &p : s.pairs)
+        for (int side = 0; side < 2; side++)
+            if (p.image[side] == 0)
+                for (double &v : p.value[side]) v = std::fmod(1.0 + 7.3 * p.xy[side][0] * p.xy[side][1], 0.9);
+    FitRun run = run_fit(s);
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.result.reference, 1);
+    assert_true(std::isnan(run.exposures[0].ev));
+    assert_close(run.exposures[1].ev, 0.0, 0.0);
+    assert_true(run.quality[2].ev_sigma > 0.0);
+}
+
+// Links that contradict the others go, their images stay.
+void test_a_broken_link_is_left_out_alone(void **) {
+    Simulation s = simulate(3000, 1.0, 0.0, 42, 3);
+    size_t of_link = 0;
+    for (auto &p : s.pairs)
+        if (p.image[0] == 2 && p.image[1] == 3) {
+            of_link++;
+            for (double &v : p.value[1]) v = std::fmod(v + 3.7 * static_cast<double>(of_link), 0.9);
+        }
+    assert_true(of_link > 50);
+    FitRun run = run_fit(s);
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.result.left_out, 0);
+    assert_int_equal(run.result.pairs, s.pairs.size() - of_link);
 }
 
 // Drops all pairs of the last image but so many.
@@ -225,12 +259,12 @@ void test_an_exposure_must_rest_on_pairs(void **) {
     FitRun run = run_fit(s);
     assert_int_equal(run.quality[last].pairs, 7);
     assert_true(run.quality[last].inliers < 3);
-    assert_int_equal(run.result.usable, 0);
-    assert_true(says(run, LENSPROF_REASON_FEW_BEHIND_EXPOSURE, "exposure of image 7 rests on") && names(run, 7));
+    assert_int_equal(run.quality[last].joined, 0);
+    assert_true(says(run, LENSPROF_REASON_IMAGES_LEFT_OUT, "image 7") && names(run, 7));
     // An exposure that is given need not show.
     s.fit_images[last].free = 0;
     s.fit_images[last].exposure = s.exposures[last];
-    assert_false(says(run_fit(s), LENSPROF_REASON_FEW_BEHIND_EXPOSURE, "exposure of image 7 rests on"));
+    assert_int_not_equal(run_fit(s).result.reason_code, LENSPROF_REASON_FEW_BEHIND_EXPOSURE);
 }
 
 // Exposures far apart hang on gamma; that is no reason to call them uncertain, in grey pictures neither.
@@ -254,9 +288,9 @@ void test_linked_images_share_their_pairs(void **) {
     Simulation s = simulate(2000, 1.0, 0.0, 42, 3);
     const uint32_t last = s.images - 1;
     keep_of_last(s, 2);
-    assert_true(says(run_fit(s), LENSPROF_REASON_FEW_BEHIND_EXPOSURE, "exposure of image 7 rests on"));
+    assert_true(says(run_fit(s), LENSPROF_REASON_IMAGES_LEFT_OUT, "image 7 among them"));
     s.fit_images[last].ev_of = s.fit_images[last].red_of = s.fit_images[last].blue_of = last - 1;
-    assert_false(says(run_fit(s), LENSPROF_REASON_FEW_BEHIND_EXPOSURE, "exposure of image 7 rests on"));
+    assert_int_not_equal(run_fit(s).result.reason_code, LENSPROF_REASON_FEW_BEHIND_EXPOSURE);
 }
 
 // Overlaps as of a panorama: neighbours in one frame are so in the other.
@@ -353,7 +387,9 @@ int main() {
         cmocka_unit_test(test_balances_that_are_held_are_told),
         cmocka_unit_test(test_the_greys_must_be_covered),
         cmocka_unit_test(test_coverage_counts_every_end),
-        cmocka_unit_test(test_a_misplaced_image_is_named),
+        cmocka_unit_test(test_a_misplaced_image_is_left_out),
+        cmocka_unit_test(test_a_misplaced_reference_is_replaced),
+        cmocka_unit_test(test_a_broken_link_is_left_out_alone),
         cmocka_unit_test(test_an_exposure_must_rest_on_pairs),
         cmocka_unit_test(test_gamma_is_no_doubt_of_an_exposure),
         cmocka_unit_test(test_linked_images_share_their_pairs),

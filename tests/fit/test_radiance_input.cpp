@@ -138,7 +138,8 @@ bool is_finite(const Call &call) {
     for (const auto &v : r.vignetting) sum += v.k[0] + v.k[1] + v.k[2] + v.center[0] + v.center[1];
     for (double c : r.covariance) sum += c;
     for (double b : r.response.table) sum += b;
-    for (const auto &e : call.exposures) sum += e.ev + e.white_balance[0] + e.white_balance[2];
+    for (const auto &e : call.exposures)
+        if (!std::isnan(e.ev)) sum += e.ev + e.white_balance[0] + e.white_balance[2];
     return std::isfinite(sum);
 }
 

@@ -207,6 +207,67 @@ void test_a_picture_in_the_wrong_place_has_no_pairs(void **) {
 }
 
 // A camera that did not move: equal places, and grey values next to black and white, where pictures do not look alike.
+// What sampling says of three pictures in a row.
+std::vector<lensprof_link> links_of(Pictures &pictures, lensprof_sample_options options, uint32_t room = 3) {
+    std::vector<lensprof_link> links(room);
+    uint32_t found = 0;
+    options.links = links.data(), options.link_capacity = room, options.link_count = &found;
+    std::vector<lensprof_pair> pairs;
+    assert_ok(pictures.sample(options, pairs));
+    uint32_t of_links = 0;
+    for (uint32_t n = 0; n < std::min(found, room); n++) of_links += links[n].pairs;
+    if (room >= found) assert_int_equal(of_links, pairs.size());
+    links.resize(found);
+    return links;
+}
+
+// Texture that agrees verifies a link, texture that does not contradicts it, and waves as slow as a sky's say nothing.
+void test_links_say_what_texture_says(void **) {
+    detail = 0.07;
+    Pictures textured(3, 320, 240, 22.0), smooth(3, 320, 240, 22.0);
+    detail = 0.0;
+    const lensprof_sample_options options = options_of(LENSPROF_SAMPLING_BALANCED, 600);
+    const std::vector<lensprof_link> links = links_of(textured, options);
+    assert_int_equal(links.size(), 3);
+    const uint32_t images[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+    for (size_t n = 0; n < 3; n++) {
+        assert_memory_equal(links[n].image, images[n], sizeof images[n]);
+        if (n != 1) assert_int_equal(links[n].state, LENSPROF_LINK_VERIFIED);
+    }
+    assert_int_equal(links_of(textured, options, 1).size(), 3);  // room for one
+    fill_with_squares(textured.data[2], 0, 0, 320, 240);
+    for (const lensprof_link &link : links_of(textured, options))
+        if (link.image[1] == 2) assert_true(link.state == LENSPROF_LINK_CONTRADICTED && link.pairs == 0);
+    for (auto &picture : smooth.data)
+        for (float &v : picture) v = 0.45f + 0.1f * v;
+    for (const lensprof_link &link : links_of(smooth, options)) assert_int_equal(link.state, LENSPROF_LINK_UNVERIFIED);
+}
+
+// A wall with few lines, off by 4 to 8 pixels: the lines together say where it is.
+void test_few_lines_register_together(void **) {
+    Pictures pictures(2, 320, 240, 20.0);
+    for (uint32_t i = 0; i < 2; i++) {
+        const lensprof_camera &camera = pictures.images[i].camera;
+        for (uint32_t n = 0; n < 320 * 240; n++) {
+            double d[2];
+            assert_true(lensprof_camera_unproject(&camera, n % 320, n / 320, d));
+            const double line = std::min(std::abs(d[0] - 0.17), std::min(std::abs(d[1] - 0.11), std::abs(d[1] + 0.2)));
+            for (int c = 0; c < 3; c++)
+                pictures.data[i][3 * n + static_cast<size_t>(c)] =
+                    static_cast<float>(0.5 + 0.1 * d[0] - (line < 0.006 ? 0.2 : 0.0));
+        }
+    }
+    const lensprof_camera truth[2] = {pictures.images[0].camera, pictures.images[1].camera};
+    for (double off : {0.6, -1.1}) {
+        pictures.images[1].camera = truth[1];
+        pictures.images[1].camera.yaw_deg += off, pictures.images[1].camera.pitch_deg -= off;
+        std::vector<lensprof_pair> pairs;
+        assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 500), pairs));
+        assert_int_equal(pairs.size(), 500);
+        assert_true(distance_of_pairs(pairs, truth, 0.95) < 1.5);
+    }
+}
+
 void test_bracket_takes_what_does_not_look_alike(void **) {
     Pictures pictures(2, 160, 120, 0.0);
     for (float &value : pictures.data[1]) value = std::min(1.0f, 2.0f * value);  // much of it is white
@@ -392,6 +453,8 @@ int main() {
         cmocka_unit_test(test_what_moved_is_left_out),
         cmocka_unit_test(test_a_moving_thing_does_not_move_the_project),
         cmocka_unit_test(test_a_picture_in_the_wrong_place_has_no_pairs),
+        cmocka_unit_test(test_links_say_what_texture_says),
+        cmocka_unit_test(test_few_lines_register_together),
         cmocka_unit_test(test_bracket_takes_what_does_not_look_alike),
         cmocka_unit_test(test_every_pixel_of_a_patch),
         cmocka_unit_test(test_same_seed_same_pairs),

@@ -1,4 +1,6 @@
 /* Writing Hugin projects: nothing changes but what was set, and what was set reads back. */
+#include <math.h>
+
 #include "pto_support.h"
 
 #include <lensprof/model.h>
@@ -190,6 +192,56 @@ static void test_other_responses_are_projected(void **state) {
     free(response);
 }
 
+/* Images without an exposure keep theirs, and a comment names them; a later result takes the comment's place. */
+static void test_images_that_were_left_out(void **state) {
+    (void)state;
+    const char *text = "i w10 h10 Eev1 Er2 Eb3 n\"a\"\ni w10 h10 Eev4 Er1 Eb1 n\"b\"\ni w10 h10 Eev5 Er1 Eb1 n\"c\"";
+    lensprof_pto *pto = read_pto(text);
+    lensprof_response *response = malloc(sizeof *response);
+    assert_ok(lensprof_response_set_emor(response, emor, 5));
+    lensprof_exposure exposures[3] = {{NAN, {1, 1, 1}}, {0, {1, 1, 1}}, {NAN, {1, 1, 1}}};
+    assert_int_equal(lensprof_pto_set_result(pto, response, &falloff, exposures, 3, 0, NULL), LENSPROF_ERROR_ARGUMENT);
+    for (int turn = 0; turn < 2; turn++) { /* the second has image 0 */
+        if (turn == 1) exposures[0] = (lensprof_exposure){2, {1, 1, 1}};
+        assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 3, 1, NULL));
+        char *written = write_pto(pto);
+        assert_non_null(strstr(written, turn == 0 ? "\n#-lensprof left_out 0 2\n" : "\n#-lensprof left_out 2\n"));
+        const char *mark = strstr(written, "left_out");
+        assert_null(strstr(mark + 1, "left_out"));
+        lensprof_pto *again = read_pto(written);
+        for (uint32_t i = 0; i < 3; i++) {
+            lensprof_pto_image image;
+            lensprof_pto_image_init(&image);
+            assert_ok(lensprof_pto_get_image(again, i, &image, NULL));
+            assert_int_equal(image.left_out, i == 2 || (i == 0 && turn == 0));
+            if (i == 0) assert_true(image.exposure.ev == (turn == 0 ? -1.0 : -2.0));
+            assert_true(image.vignetting.k[0] == falloff.k[0]);
+        }
+        lensprof_pto_destroy(again);
+        free(written);
+    }
+    exposures[2] = exposures[1];
+    assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 3, 1, NULL));
+    char *whole = write_pto(pto);
+    assert_null(strstr(whole, "left_out"));
+    free(whole);
+    free(response);
+    lensprof_pto_destroy(pto);
+}
+
+/* Comments that only look like the mark say nothing and break nothing. */
+static void test_odd_marks(void **state) {
+    (void)state;
+    lensprof_pto *pto = read_pto("#-lensprof left_out 7 -1 x 1e9 0.5 1\ni w10 h10\ni w10 h10\n# lensprof left_out 0\n");
+    for (uint32_t i = 0; i < 2; i++) {
+        lensprof_pto_image image;
+        lensprof_pto_image_init(&image);
+        assert_ok(lensprof_pto_get_image(pto, i, &image, NULL));
+        assert_int_equal(image.left_out, i == 1);
+    }
+    lensprof_pto_destroy(pto);
+}
+
 static void test_set_result_refuses(void **state) {
     (void)state;
     lensprof_response *response = malloc(sizeof *response);
@@ -279,6 +331,8 @@ int main(void) {
         cmocka_unit_test(test_links_stay_and_missing_items_come),
         cmocka_unit_test(test_reference_stays),
         cmocka_unit_test(test_other_responses_are_projected),
+        cmocka_unit_test(test_images_that_were_left_out),
+        cmocka_unit_test(test_odd_marks),
         cmocka_unit_test(test_set_result_refuses),
         cmocka_unit_test(test_set_name),
         cmocka_unit_test(test_result_keeps_set_names),

@@ -151,6 +151,10 @@ static void print_structs(void) {
     FIELD(lensprof_sample_image, mask_row_bytes);
     FIELD(lensprof_sample_image, black);
     FIELD(lensprof_sample_image, white);
+    STRUCT(lensprof_link);
+    FIELD(lensprof_link, image);
+    FIELD(lensprof_link, state);
+    FIELD(lensprof_link, pairs);
     STRUCT(lensprof_sample_options);
     FIELD(lensprof_sample_options, struct_size);
     FIELD(lensprof_sample_options, sampling);
@@ -160,6 +164,10 @@ static void print_structs(void) {
     FIELD(lensprof_sample_options, reserved);
     FIELD(lensprof_sample_options, progress);
     FIELD(lensprof_sample_options, progress_user);
+    FIELD(lensprof_sample_options, links);
+    FIELD(lensprof_sample_options, link_count);
+    FIELD(lensprof_sample_options, link_capacity);
+    FIELD(lensprof_sample_options, reserved2);
     STRUCT(lensprof_fit_image);
     FIELD(lensprof_fit_image, struct_size);
     FIELD(lensprof_fit_image, width);
@@ -194,6 +202,9 @@ static void print_structs(void) {
     FIELD(lensprof_fit_options, vignetting);
     FIELD(lensprof_fit_options, progress);
     FIELD(lensprof_fit_options, progress_user);
+    FIELD(lensprof_fit_options, links);
+    FIELD(lensprof_fit_options, link_count);
+    FIELD(lensprof_fit_options, reserved2);
     STRUCT(lensprof_fit_image_quality);
     FIELD(lensprof_fit_image_quality, ev_sigma);
     FIELD(lensprof_fit_image_quality, white_balance_sigma);
@@ -206,6 +217,8 @@ static void print_structs(void) {
     FIELD(lensprof_fit_image_quality, inliers);
     FIELD(lensprof_fit_image_quality, component);
     FIELD(lensprof_fit_image_quality, known_ev_left_out);
+    FIELD(lensprof_fit_image_quality, joined);
+    FIELD(lensprof_fit_image_quality, reserved);
     STRUCT(lensprof_fit_result);
     FIELD(lensprof_fit_result, struct_size);
     FIELD(lensprof_fit_result, usable);
@@ -240,6 +253,11 @@ static void print_structs(void) {
     FIELD(lensprof_fit_result, reason_values);
     FIELD(lensprof_fit_result, reason_item);
     FIELD(lensprof_fit_result, reason_value);
+    FIELD(lensprof_fit_result, evens);
+    FIELD(lensprof_fit_result, left_out);
+    FIELD(lensprof_fit_result, reference);
+    FIELD(lensprof_fit_result, response_from);
+    FIELD(lensprof_fit_result, light_spread_ev);
     STRUCT(lensprof_flat_image);
     FIELD(lensprof_flat_image, struct_size);
     FIELD(lensprof_flat_image, width);
@@ -339,6 +357,8 @@ static void print_structs(void) {
     FIELD(lensprof_pto_image, blue_of);
     FIELD(lensprof_pto_image, crop);
     FIELD(lensprof_pto_image, crop_circular);
+    FIELD(lensprof_pto_image, left_out);
+    FIELD(lensprof_pto_image, reserved);
     STRUCT(lensprof_import_entry);
     FIELD(lensprof_import_entry, profile);
     FIELD(lensprof_import_entry, usable);
@@ -569,6 +589,10 @@ static void print_values(void) {
     VALUE(LENSPROF_REASON_IMAGE_ODD);
     VALUE(LENSPROF_REASON_STILL_IMAGE_ODD);
     VALUE(LENSPROF_REASON_WEAK_PATTERNS);
+    VALUE(LENSPROF_REASON_IMAGES_LEFT_OUT);
+    VALUE(LENSPROF_REASON_MANY_OUTLIERS);
+    VALUE(LENSPROF_REASON_SEAMS_STAY);
+    VALUE(LENSPROF_REASON_LINKS_UNVERIFIED);
     VALUE(LENSPROF_REASON_EXPOSURE_UNCERTAIN);
     VALUE(LENSPROF_REASON_KNOWN_ALIKE);
     VALUE(LENSPROF_REASON_KNOWN_REVERSED);
@@ -583,6 +607,7 @@ static void print_values(void) {
     VALUE(LENSPROF_REASON_FEW_GREYS);
     VALUE(LENSPROF_REASON_MISSING_GREYS);
     VALUE(LENSPROF_REASON_UNUSUAL_RESPONSE);
+    VALUE(LENSPROF_REASON_RESPONSE_NOT_SHOWN);
     VALUE(LENSPROF_REASON_SMALL_RADIUS);
     VALUE(LENSPROF_REASON_CORNER_UNCERTAIN);
     VALUE(LENSPROF_REASON_FALLOFF_RISES);
@@ -663,6 +688,9 @@ static void print_values(void) {
     VALUE(LENSPROF_SAMPLING_BALANCED);
     VALUE(LENSPROF_SAMPLING_PAPER);
     VALUE(LENSPROF_SAMPLING_BRACKET);
+    VALUE(LENSPROF_LINK_UNVERIFIED);
+    VALUE(LENSPROF_LINK_VERIFIED);
+    VALUE(LENSPROF_LINK_CONTRADICTED);
     VALUE(LENSPROF_METHOD_TRANSFER);
     VALUE(LENSPROF_METHOD_RADIANCE);
     VALUE(LENSPROF_METHOD_TRANSFER_FUNCTION);
@@ -677,6 +705,10 @@ static void print_values(void) {
     VALUE(LENSPROF_GAMMA_NONE);
     VALUE(LENSPROF_GAMMA_PROFILE);
     VALUE(LENSPROF_GAMMA_FALLOFF);
+    VALUE(LENSPROF_FIT_RESPONSE_PICTURES);
+    VALUE(LENSPROF_FIT_RESPONSE_OPTIONS);
+    VALUE(LENSPROF_FIT_RESPONSE_KIND);
+    VALUE(LENSPROF_FIT_RESPONSE_PROFILE);
     VALUE(LENSPROF_PROFILE_PRIOR_NONE);
     VALUE(LENSPROF_PROFILE_PRIOR_USED);
     VALUE(LENSPROF_PROFILE_PRIOR_OVERRULED);

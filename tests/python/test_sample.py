@@ -40,6 +40,38 @@ class Sampling(unittest.TestCase):
         self.assertTrue(result.usable, result.reason)
         self.assertLess(result.heldout_rms, 1)
 
+    def test_links_reach_the_fit(self):
+        options = lp.SampleOptions()
+        self.assertIsNone(options.links)
+        pairs = lp.sample_overlap(sample_images(pictures()), options)
+        links = options.links
+        self.assertEqual(links.dtype, lp.LINK_DTYPE)
+        self.assertEqual(links["pairs"].sum(), len(pairs))
+        self.assertTrue((links["image"][:, 0] < links["image"][:, 1]).all())
+        self.assertLessEqual(set(links["state"]), set(lp.LinkState))
+        links["state"] = lp.LinkState.UNVERIFIED
+        result = lp.fit_overlap(fit_images(), pairs, lp.FitOptions(links=links))
+        self.assertTrue(result.usable and result.evens)
+        self.assertIn(result.reason_code, (lp.Reason.LINKS_UNVERIFIED, lp.Reason.MISSING_GREYS))
+        links["state"] = 7
+        with refused(self, lp.Status.ERROR_ARGUMENT):
+            lp.fit_overlap(fit_images(), pairs, lp.FitOptions(links=links))
+        with self.assertRaises(TypeError):
+            lp.FitOptions(links=[1, 2])
+
+    def test_an_image_that_does_not_agree(self):
+        pairs = lp.sample_overlap(sample_images(pictures()))
+        of_two = (pairs["image"] == 2).any(axis=1)
+        pairs = pairs[~of_two | (np.arange(len(pairs)) % 5 == 0)].copy()
+        random = np.random.default_rng(1)
+        for side in (0, 1):
+            own = pairs["image"][:, side] == 2
+            pairs["value"][own, side] = random.uniform(0.1, 0.9, (own.sum(), 3))
+        result = lp.fit_overlap(fit_images(), pairs)
+        self.assertEqual((result.left_out, result.reference), (1, 0))
+        self.assertEqual(list(result.image_quality["joined"]), [1, 1, 0])
+        self.assertEqual(list(np.isnan(result.exposures["ev"])), [False, False, True])
+
     def test_values_are_those_of_the_pictures(self):
         arrays = pictures()
         pairs = lp.sample_overlap(sample_images(arrays))

@@ -6,12 +6,12 @@ ValueError.
 """
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
                    RESPONSE_SAMPLES, UNKNOWN, CameraKind, CurveKind, Direction, DistanceRule, DngForm, Encoding,
-                   FlatGrid, FlatLight, Format, Free, GammaFrom, Holds, ItemKind, Layout, Loss, MapSense, Method, Pack,
-                   Processing, ProfilePrior, Projection, Reason, ResponseFrom, ResponseKind, SampleType, Sampling,
-                   Saturated, Status, StoreMode)
+                   FitResponse, FlatGrid, FlatLight, Format, Free, GammaFrom, Holds, ItemKind, Layout, LinkState, Loss,
+                   MapSense, Method, Pack, Processing, ProfilePrior, Projection, Reason, ResponseFrom, ResponseKind,
+                   SampleType, Sampling, Saturated, Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
-from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, OBSERVATION_DTYPE,
-                      PAIR_DTYPE)
+from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, LINK_DTYPE,
+                      OBSERVATION_DTYPE, PAIR_DTYPE)
 from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_type_bytes, simulate
 from .fit import FitImage, FitOptions, FitResult, fit_overlap, fit_radiance, transfer_rms
@@ -33,19 +33,20 @@ from .store import Lookup, LookupOptions, Store, StoreFault, StoreName, StoreRow
 __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel", "CurveKind", "Direction",
     "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES",
-    "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResult", "FixedPlan",
-    "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime", "Free",
-    "GRID_SIDE", "GainGrid", "GammaFrom", "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "Layout", "Lookup",
-    "LookupOptions", "Loss", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE", "PAIR_DTYPE", "Pack", "Plan",
-    "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance", "Pto", "PtoImage",
-    "RESPONSE_SAMPLES", "Reason", "Response", "ResponseFrom", "ResponseKind", "SampleImage", "SampleOptions",
-    "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreName", "StoreRow",
-    "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct", "curves_read",
-    "curves_write", "detect_format", "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read", "emor_table",
-    "export_profiles", "fit_flat", "fit_overlap", "fit_radiance", "format_info", "half_diagonal", "import_profiles",
-    "json_read", "json_write", "layout_channels", "layout_samples", "lcp_read", "lcp_write", "lensfun_read",
-    "lensfun_read_cameras", "lensfun_write", "lookup_in", "map_read", "map_write", "pcalib_read", "pcalib_write",
-    "points_read", "points_write", "radical_response_read", "radical_response_write", "radical_vignetting_read",
-    "radical_vignetting_write", "reason_name", "reason_text", "sample_overlap", "sample_tracks", "sample_type_bytes",
-    "simulate", "status_name", "times_read", "times_write", "transfer_rms", "version",
+    "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResponse", "FitResult",
+    "FixedPlan", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime",
+    "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE",
+    "Layout", "LinkState", "Lookup", "LookupOptions", "Loss", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE",
+    "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance",
+    "Pto", "PtoImage", "RESPONSE_SAMPLES", "Reason", "Response", "ResponseFrom", "ResponseKind", "SampleImage",
+    "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreName",
+    "StoreRow", "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct",
+    "curves_read", "curves_write", "detect_format", "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read",
+    "emor_table", "export_profiles", "fit_flat", "fit_overlap", "fit_radiance", "format_info", "half_diagonal",
+    "import_profiles", "json_read", "json_write", "layout_channels", "layout_samples", "lcp_read", "lcp_write",
+    "lensfun_read", "lensfun_read_cameras", "lensfun_write", "lookup_in", "map_read", "map_write", "pcalib_read",
+    "pcalib_write", "points_read", "points_write", "radical_response_read", "radical_response_write",
+    "radical_vignetting_read", "radical_vignetting_write", "reason_name", "reason_text", "sample_overlap",
+    "sample_tracks", "sample_type_bytes", "simulate", "status_name", "times_read", "times_write", "transfer_rms",
+    "version",
 ]

@@ -160,6 +160,10 @@ class Reason(IntEnum):
     IMAGE_ODD = 151
     STILL_IMAGE_ODD = 152
     WEAK_PATTERNS = 153
+    IMAGES_LEFT_OUT = 154
+    MANY_OUTLIERS = 155
+    SEAMS_STAY = 156
+    LINKS_UNVERIFIED = 157
     EXPOSURE_UNCERTAIN = 201
     KNOWN_ALIKE = 202
     KNOWN_REVERSED = 203
@@ -174,6 +178,7 @@ class Reason(IntEnum):
     FEW_GREYS = 301
     MISSING_GREYS = 351
     UNUSUAL_RESPONSE = 352
+    RESPONSE_NOT_SHOWN = 353
     SMALL_RADIUS = 401
     CORNER_UNCERTAIN = 402
     FALLOFF_RISES = 403
@@ -264,6 +269,13 @@ class Sampling(IntEnum):
     BRACKET = 2
 
 
+class LinkState(IntEnum):
+    """lensprof_link_state; see lensprof/sample.h."""
+    UNVERIFIED = 0
+    VERIFIED = 1
+    CONTRADICTED = 2
+
+
 class Method(IntEnum):
     """lensprof_fit_method; see lensprof/fit.h."""
     TRANSFER = 0
@@ -288,6 +300,14 @@ class GammaFrom(IntEnum):
     NONE = 4
     PROFILE = 5
     FALLOFF = 6
+
+
+class FitResponse(IntEnum):
+    """lensprof_fit_response; see lensprof/fit.h."""
+    PICTURES = 0
+    OPTIONS = 1
+    KIND = 2
+    PROFILE = 3
 
 
 class ProfilePrior(IntEnum):
@@ -605,6 +625,14 @@ class SampleImage(Structure):
     ]
 
 
+class Link(Structure):
+    _fields_ = [
+        ("image", c_uint32 * 2),
+        ("state", c_uint32),
+        ("pairs", c_uint32),
+    ]
+
+
 class SampleOptions(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -615,6 +643,10 @@ class SampleOptions(Structure):
         ("reserved", c_uint32),
         ("progress", Progress),
         ("progress_user", c_void_p),
+        ("links", POINTER(Link)),
+        ("link_count", POINTER(c_uint32)),
+        ("link_capacity", c_uint32),
+        ("reserved2", c_uint32),
     ]
 
 
@@ -657,6 +689,9 @@ class FitOptions(Structure):
         ("vignetting", Vignetting),
         ("progress", Progress),
         ("progress_user", c_void_p),
+        ("links", POINTER(Link)),
+        ("link_count", c_uint32),
+        ("reserved2", c_uint32),
     ]
 
 
@@ -673,6 +708,8 @@ class FitImageQuality(Structure):
         ("inliers", c_uint32),
         ("component", c_uint32),
         ("known_ev_left_out", c_uint32),
+        ("joined", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -711,6 +748,11 @@ class FitResult(Structure):
         ("reason_values", c_uint32),
         ("reason_item", Item),
         ("reason_value", c_double * 2),
+        ("evens", c_uint32),
+        ("left_out", c_uint32),
+        ("reference", c_uint32),
+        ("response_from", c_uint32),
+        ("light_spread_ev", c_double),
     ]
 
 
@@ -842,6 +884,8 @@ class PtoImage(Structure):
         ("blue_of", c_uint32),
         ("crop", c_int32 * 4),
         ("crop_circular", c_uint32),
+        ("left_out", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -1054,9 +1098,11 @@ ENUMS = {
     "LENSPROF_REASON_": Reason,
     "LENSPROF_PROJECTION_": Projection,
     "LENSPROF_SAMPLING_": Sampling,
+    "LENSPROF_LINK_": LinkState,
     "LENSPROF_METHOD_": Method,
     "LENSPROF_LOSS_": Loss,
     "LENSPROF_GAMMA_": GammaFrom,
+    "LENSPROF_FIT_RESPONSE_": FitResponse,
     "LENSPROF_PROFILE_PRIOR_": ProfilePrior,
     "LENSPROF_FLAT_LIGHT_": FlatLight,
     "LENSPROF_FLAT_GRID_": FlatGrid,
@@ -1088,6 +1134,7 @@ STRUCTS = {
     "lensprof_pair": Pair,
     "lensprof_observation": Observation,
     "lensprof_sample_image": SampleImage,
+    "lensprof_link": Link,
     "lensprof_sample_options": SampleOptions,
     "lensprof_fit_image": FitImage,
     "lensprof_fit_options": FitOptions,

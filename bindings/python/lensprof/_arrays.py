@@ -32,7 +32,10 @@ EXPOSURE_DTYPE = _dtype(_abi.Exposure)
 
 IMAGE_QUALITY_DTYPE = _dtype(_abi.FitImageQuality)
 """Layout of an image's quality: ev_sigma, white_balance_sigma[3], median_residual, known_ev_residual, radius, grey_low,
-grey_high, pairs, inliers, component, known_ev_left_out."""
+grey_high, pairs, inliers, component, known_ev_left_out, joined."""
+
+LINK_DTYPE = _dtype(_abi.Link)
+"""Layout of two images that overlap: image[2], state (LinkState), pairs."""
 
 FLAT_QUALITY_DTYPE = _dtype(_abi.FlatImageQuality)
 """Layout of what one picture gave to a flat field fit; see lensprof/flat.h."""
@@ -143,6 +146,11 @@ def pairs(array: np.ndarray) -> tuple[Any, int]:
 def observations(array: np.ndarray) -> tuple[Any, int]:
     """Pointer and length of an array of OBSERVATION_DTYPE."""
     return structured(array, OBSERVATION_DTYPE, _abi.Observation, "observations")
+
+
+def links(array: np.ndarray) -> tuple[Any, int]:
+    """Pointer and length of an array of LINK_DTYPE."""
+    return structured(array, LINK_DTYPE, _abi.Link, "links")
 
 
 def exposures(values: Union[np.ndarray, Iterable[Exposure]]) -> np.ndarray:

@@ -46,7 +46,8 @@ class Struct:
 
     @classmethod
     def _names(cls: Any) -> list[str]:
-        return [field[0] for field in _raw(cls)._fields_ if field[0] not in ("struct_size", "image_quality_size", "reserved")]
+        return [field[0] for field in _raw(cls)._fields_
+                if field[0] not in ("struct_size", "image_quality_size", "reserved", "reserved2")]
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not name.startswith("_"):

@@ -7,7 +7,7 @@ from typing import Any, Iterable, Optional, Sequence, Union
 import numpy as np
 
 from . import _abi, _arrays
-from ._abi import CameraKind, Free, GammaFrom, Loss, Method, ProfilePrior, Reason
+from ._abi import CameraKind, FitResponse, Free, GammaFrom, Loss, Method, ProfilePrior, Reason
 from ._library import check, lib
 from ._progress import WithProgress, calling
 from ._struct import (Curves, Enumerated, Flag, Nested, Numbers, OptionalReference, Struct, Text, Value, Vector, integer,
@@ -53,7 +53,8 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     refine: free the response of the EMoR modes where held-out pairs are clearly better for it.
     threads: at most so many, 0 = one a core; the result does not depend on it. profile: of the same camera, lens and
     setting, from other pictures, the prior in place of that of all cameras; the result takes its place, unless
-    FitResult.profile_prior says OVERRULED.
+    FitResult.profile_prior says OVERRULED. links: those of SampleOptions, so that the result warns of images that are
+    joined only where there is no texture to check the alignment; None where they are not known.
 
     progress: called now and then during a fit with a fraction 0..1; the fit is cancelled when it returns True, and
     when it raises an exception, which then comes out of fit_overlap.
@@ -76,12 +77,30 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
     profile = OptionalReference(Profile)
     response = OptionalReference(Response)
     vignetting = Nested(Vignetting)
+    _links: Optional[np.ndarray] = None
+
+    @property
+    def links(self) -> Optional[np.ndarray]:
+        return self._links
+
+    @links.setter
+    def links(self, links: Optional[np.ndarray]) -> None:
+        data, count = (None, 0) if links is None else _arrays.links(links)
+        self._links, self.link_count = links, count
+        _abi.FitOptions.links.__set__(self, data)
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [name for name in super()._names() if not name.startswith("link")]
 
 
 class FitResult(Struct, _abi.FitResult):
     """What a fit found. Arrays are views on this object.
 
-    usable: False with the `reason` in words; a usable result may have one as a caution. reason_code: what it states, a
+    usable: a profile to store; False with the `reason` in words; a usable result may have one as a caution. evens: the
+    result evens out these pictures, whether or not it is a profile to store. left_out: images that do not agree with the
+    others, of ev NaN in `exposures` and `joined` 0 in `image_quality`; reference: the image of 0 EV. response_from: where the
+    response is from; light_spread_ev: how much the light differs between the ends of pairs. reason_code: what it states, a
     Reason; reason_item: the image that it names; reason_value: its numbers. response: of all images.
     vignetting: tuple of 1 (all channels) or 3. exposures: what every image got relative to the reference,
     EXPOSURE_DTYPE; image_quality: how well each is determined, IMAGE_QUALITY_DTYPE. pairs: used. components: connected
@@ -120,6 +139,11 @@ class FitResult(Struct, _abi.FitResult):
     reason_values: int
     reason_item = Nested(Item)
     reason_value = Numbers("reason_values")
+    evens = Flag()
+    left_out: int
+    reference: int
+    response_from = Enumerated(FitResponse)
+    light_spread_ev: float
 
     def __init__(self, image_count: int, options: Optional[FitOptions] = None):
         super().__init__()

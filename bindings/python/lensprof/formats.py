@@ -57,7 +57,7 @@ class PtoImage(Value, _abi.PtoImage):
 
     emor: Ra..Re. response_type: 0 EMoR, 1 linear. free: what the `v` lines ask for. response_of, vignetting_of,
     center_of, ev_of, red_of, blue_of: index of the image at the end of the link, own index when not linked. crop:
-    left, top, right, bottom (exclusive), px.
+    left, top, right, bottom (exclusive), px. left_out: the result in the project is without this image.
     """
 
     camera = Nested(Camera)
@@ -74,6 +74,7 @@ class PtoImage(Value, _abi.PtoImage):
     blue_of: int
     crop = Vector()
     crop_circular = Flag()
+    left_out = Flag()
 
 
 class Pto(Handle):

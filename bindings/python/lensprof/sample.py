@@ -1,7 +1,7 @@
 """Correspondences: the same scene point seen in two pictures; see lensprof/sample.h."""
 from __future__ import annotations
 
-from ctypes import byref, c_uint32
+from ctypes import byref, c_uint32, pointer
 from dataclasses import dataclass
 from typing import Any, Callable, Optional, Sequence
 
@@ -49,12 +49,23 @@ class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
 
     Same seed, same pairs, on any number of threads. progress: called now and then with a fraction 0..1; sampling is
     cancelled when it returns True, and when it raises an exception, which then comes out of sample_overlap.
+    links: after a balanced sampling what texture says of the images that overlap, an array of LINK_DTYPE, for
+    FitOptions.links; None before.
     """
 
     sampling = Enumerated(Sampling)
     pairs: int
     seed: int
     threads: int
+    _links: Optional[np.ndarray] = None
+
+    @property
+    def links(self) -> Optional[np.ndarray]:
+        return self._links
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [name for name in super()._names() if not name.startswith("link")]
 
 
 def _sample(function: Any, images: Sequence[SampleImage], options: Optional[SampleOptions], dtype: np.dtype,
@@ -64,9 +75,13 @@ def _sample(function: Any, images: Sequence[SampleImage], options: Optional[Samp
     room, found = c_uint32(), c_uint32()
     check(function(byref(options), views, len(views), None, 0, byref(room), byref(error)), "sampling failed", error)
     out = np.empty(room.value, dtype=dtype)
+    links, link_count = np.zeros(min(len(views) * (len(views) - 1) // 2, 1 << 20), dtype=_arrays.LINK_DTYPE), c_uint32()
     with calling(options) as call:
+        call.links, call.link_capacity = _arrays.address(links, _abi.Link), len(links)
+        call.link_count = pointer(link_count)
         status = function(byref(call), views, len(views), *data(out), byref(found), byref(error))
     check(status, "sampling failed", error)
+    options._links = links[:link_count.value]
     return out[:found.value]
 
 

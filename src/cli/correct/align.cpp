@@ -106,8 +106,11 @@ Fitted fit_sequence(const Options &o, const Project &project, std::vector<double
     lensprof_sample_options_init(&sampling);
     sampling.pairs = o.pairs;
     sampling.seed = o.seed;
-    input.pairs = project.pto ? sample_pairs(project, pictures, sampling, {}, progress)
+    std::vector<lensprof_link> links;
+    input.pairs = project.pto ? sample_pairs(project, pictures, sampling, {}, progress, &links)
                               : sample_still(project, pictures, sampling, 0.0, progress);
+    input.options.links = links.data();
+    input.options.link_count = static_cast<uint32_t>(links.size());
     input.options.refine = !project.pto && o.fit.modes == LENSPROF_MODES_AUTO;
     input.images = fit_images(project);
     std::vector<PictureMetadata> metadata;
@@ -155,7 +158,7 @@ Json report(const Options &o, const lensprof_fit_result &r, const Verdict &verdi
         written[i]["white_balance"] = {w[0], w[1], w[2]};
     }
     auto known = [](double value) { return value == LENSPROF_UNKNOWN ? Json() : Json(value); };
-    Json json = {{"schema", 1}, {"usable", r.usable != 0}};
+    Json json = {{"schema", 1}, {"usable", r.usable != 0}, {"evens", r.evens != 0}};
     add_verdict(verdict, json);
     json["to"] = targets[static_cast<size_t>(o.to)].first;
     json["frames"] = written;
@@ -167,6 +170,18 @@ Json report(const Options &o, const lensprof_fit_result &r, const Verdict &verdi
     json["pairs"] = r.pairs;
     add_speed(corrected, json);
     return json;
+}
+
+// Frames that do not agree with the others have no exposure and stay as they are.
+void leave_out_unjoined(const Fitted &fitted, const Project &project, std::vector<uint32_t> &frames,
+                        std::vector<Correction> &jobs, Streams &streams) {
+    for (size_t n = frames.size(); n-- > 0;) {
+        if (!std::isnan(fitted.exposures[frames[n]].ev)) continue;
+        if (fitted.corrects())
+            warn(streams, project.files[frames[n]] + ": does not agree with the other frames, and is left out");
+        frames.erase(frames.begin() + static_cast<ptrdiff_t>(n));
+        jobs.erase(jobs.begin() + static_cast<ptrdiff_t>(n));
+    }
 }
 
 int align(const Options &o, Streams &streams) {
@@ -181,9 +196,10 @@ int align(const Options &o, Streams &streams) {
     Verdict verdict = verdict_of(fitted.result);
     name_image(project.names, verdict);
     std::vector<lensprof_exposure> exposures;
+    leave_out_unjoined(fitted, project, frames, jobs, streams);
     for (uint32_t i : frames) exposures.push_back(fitted.exposures[i]);
     Corrected written;
-    if (fitted.result.usable) {
+    if (fitted.corrects()) {
         std::shared_ptr<const lensprof_profile> model = profile_of(fitted.result);
         for (size_t i = 0; i < jobs.size(); i++) {
             jobs[i].model = model;
@@ -196,9 +212,9 @@ int align(const Options &o, Streams &streams) {
     }
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;
-    if (!fitted.result.usable && o.pto.empty()) verdict.text += "; frames of a camera that moved need --project";
+    if (!fitted.corrects() && o.pto.empty()) verdict.text += "; frames of a camera that moved need --project";
     if (!verdict.text.empty()) {
-        if (fitted.result.usable)
+        if (fitted.corrects())
             warn(streams, item + ": " + verdict.text);
         else
             tell(streams, item + ": not usable: " + verdict.text + "; nothing was written");
@@ -206,7 +222,7 @@ int align(const Options &o, Streams &streams) {
     if (o.json) print_json(report(o, fitted.result, verdict, exposures, written), streams.out);
     for (const auto &entry : written.pictures)
         if (!o.json) streams.out << entry["output"].get<std::string>() << "\n";
-    return static_cast<int>(fitted.result.usable ? ExitCode::done : ExitCode::not_usable);
+    return static_cast<int>(fitted.corrects() ? ExitCode::done : ExitCode::not_usable);
 }
 
 int run(const Options &o, Streams &streams) {

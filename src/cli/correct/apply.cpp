@@ -222,6 +222,14 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
                                        + " cannot be corrected, and none is; leave them out with --skip");
 }
 
+// Those of images that the result in the project is not without.
+std::vector<lensprof_exposure> joined_exposures(const Project &project, const std::vector<lensprof_exposure> &all) {
+    std::vector<lensprof_exposure> joined;
+    for (size_t i = 0; i < all.size(); i++)
+        if (!project.images[i].left_out) joined.push_back(all[i]);
+    return joined;
+}
+
 Work plan_work(const Options &o, Streams &streams) {
     const Source source = open_source(o);
     std::vector<NamedPicture> pictures;
@@ -232,11 +240,16 @@ Work plan_work(const Options &o, Streams &streams) {
     if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
     Work work;
     lensprof_exposure_init(&work.mean);
-    if (source.project) work.mean = mean_exposure(source.exposures);
+    if (source.project) work.mean = mean_exposure(joined_exposures(*source.project, source.exposures));
     std::vector<std::string> inputs = source.project ? source.project->files : std::vector<std::string>();
     std::vector<NotThisOne> refused;
     for (const NamedPicture &picture : pictures) {
         inputs.push_back(picture.file);
+        if (source.project && source.project->images[source.images->at(picture.file, "--pto")].left_out) {
+            warn(streams, picture.file + ": the result is without this picture, whose exposure is not known; it is left "
+                                         "as it is");
+            continue;
+        }
         try {
             work.jobs.push_back(make_job(o, source, picture));
         } catch (const NotThisOne &failure) {

@@ -195,11 +195,13 @@ void get_points(const Options &o, const Project &project, Progress &progress, Bu
     options.pairs = o.pairs;
     options.seed = o.seed;
     if (o.fit.method == LENSPROF_METHOD_RADIANCE) {
-        input.observations = sample_tracks(project, pictures, options, progress);
+        input.observations = sample_tracks(project, pictures, options, progress, &report.links);
         input.pairs = pairs_of_tracks(input.observations);
     } else {
-        input.pairs = sample_pairs(project, pictures, options, {}, progress);
+        input.pairs = sample_pairs(project, pictures, options, {}, progress, &report.links);
     }
+    input.options.links = report.links.data();
+    input.options.link_count = static_cast<uint32_t>(report.links.size());
     report.sample_s = lap(clock);
 }
 
@@ -239,8 +241,9 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
         report.verdict.text += " (Er and Eb on the v lines, or --free all)";
     name_image(project.names, report.verdict);
     report.exposures = best.exposures;
+    report.reference = best.reference;
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(input.pairs, project));
-    if (!o.pto_out.empty() && (report.fit.usable || o.store.force)) {
+    if (!o.pto_out.empty() && (best.corrects() || o.store.force)) {
         Fitted written = fit_for_project(o, input, best, report.reference, progress);
         outputs.add(o.pto_out, project_text(o, project, written, report.reference));
     }
@@ -274,9 +277,10 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (takes_stored_prior(o.fit))
         prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_asked, key, o.pto);
     BuildReport report = build(o, project, metadata, prior, kind, outputs, streams);
-    int code = finish_fit(report, key, o.store, {method_name(o.fit.method), o.pto, o.json, &outputs, &prior}, streams);
+    int code =
+        finish_fit(report, key, o.store, {method_name(o.fit.method), o.pto, o.json, true, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
-    if (!report.fit.usable && !o.pto_out.empty() && !o.store.force)
+    if (!report.fit.usable && !report.fit.evens && !o.pto_out.empty() && !o.store.force)
         tell(streams, o.pto_out + ": not written (--force writes it all the same)");
     return code;
 }

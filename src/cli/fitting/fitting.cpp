@@ -174,7 +174,8 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
                       item + ": asks for nothing on its v lines; add some in Hugin, or give --free all");
     check(status, item, &error);
     fitted.result.image_quality = nullptr;
-    fitted.exposures = relative_exposures(fitted.exposures, reference);
+    fitted.reference = std::isnan(fitted.exposures[reference].ev) ? fitted.result.reference : reference;
+    fitted.exposures = relative_exposures(fitted.exposures, fitted.reference);
     return fitted;
 }
 
@@ -206,6 +207,15 @@ void name_left_out(const BuildReport &report, Streams &streams) {
     }
 }
 
+// Names the images that do not agree with the others; where the verdict is about them, too.
+void name_unjoined(const BuildReport &report, Streams &streams) {
+    for (size_t i = 0; i < report.quality.size() && report.fit.left_out; i++)
+        if (!report.quality[i].joined)
+            warn(streams, report.names[i]
+                              + ": left out, for it does not agree with the others, or no pair joins it to them; check "
+                                "its alignment");
+}
+
 std::string not_usable_text(const std::string &source, const Verdict &verdict, const StoreOptions &store) {
     return source + ": not usable: " + verdict.text
            + (store.force || store.no_store ? "" : "; nothing was stored (--force stores it all the same)");
@@ -235,9 +245,15 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
         streams.out << "stored    profile " << report.profile_id << " in " << store_path(store.db) << ": "
                     << describe_key(key) << "\n";
     if (report.fit.usable && !report.verdict.text.empty()) warn(streams, finish.source + ": " + report.verdict.text);
+    const bool evens = finish.evens_pictures && report.fit.evens;
     if (report.fit.usable) name_left_out(report, streams);
-    if (!report.fit.usable) tell(streams, not_usable_text(finish.source, report.verdict, store));
-    return static_cast<int>(report.fit.usable ? ExitCode::done : ExitCode::not_usable);
+    if (report.fit.usable || evens) name_unjoined(report, streams);
+    const bool is_good = report.fit.usable || (store.no_store && evens);
+    if (!report.fit.usable && is_good)
+        warn(streams,
+             finish.source + ": evens out these pictures, but is not a profile to store: " + report.verdict.text);
+    if (!is_good) tell(streams, not_usable_text(finish.source, report.verdict, store));
+    return static_cast<int>(is_good ? ExitCode::done : ExitCode::not_usable);
 }
 
 void check_max_side(uint32_t max_side) {

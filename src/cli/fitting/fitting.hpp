@@ -66,7 +66,11 @@ struct FitInput {
 // A result and the exposures that belong to it.
 struct Fitted {
     lensprof_fit_result result{};
-    std::vector<lensprof_exposure> exposures;  // relative to the reference
+    std::vector<lensprof_exposure> exposures;  // relative to the reference; ev is NaN of images that were left out
+    uint32_t reference = 0;                    // the one asked for, or where that was left out the result's own
+
+    // Whether the pictures may be corrected with it; a profile to store has to be usable.
+    bool corrects() const { return result.usable || result.evens; }
 };
 
 // Fits, with `progress` shown. `item` names the input in a Failure. `quality` may be NULL.
@@ -81,6 +85,7 @@ struct Finish {
     std::string method;  // for the provenance
     std::string source;  // what it was made from
     bool json = false;
+    bool evens_pictures = false;            // what evens them out is a success where nothing is to be stored
     OutputFiles *outputs = nullptr;         // committed once the profile is stored; or NULL
     const EarlierProfile *prior = nullptr;  // that the fit was given; or NULL
 };

@@ -182,7 +182,8 @@ namespace {
 // By lensprof_sample_overlap or lensprof_sample_tracks.
 template <class Item, class Function>
 std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pictures, lensprof_sample_options options,
-                         const GreyRange &range, Progress &progress, Function function) {
+                         const GreyRange &range, Progress &progress, std::vector<lensprof_link> *links,
+                         Function function) {
     std::vector<lensprof_sample_image> images;
     for (size_t i = 0; i < pictures.size(); i++) {
         lensprof_sample_image image;
@@ -205,23 +206,33 @@ std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pic
     std::vector<Item> items(found);
     options.progress = on_sampling;
     options.progress_user = &progress;
+    uint32_t link_count = 0;
+    if (links) {
+        links->resize(std::min<size_t>(size_t(count) * (count - 1) / 2, 1 << 20));
+        options.links = links->data();
+        options.link_capacity = static_cast<uint32_t>(links->size());
+        options.link_count = &link_count;
+    }
     lensprof_status status = function(&options, images.data(), count, items.data(), found, &found, &error);
     stop_if_interrupted();
     check_named(status, project.path, error, LENSPROF_ITEM_IMAGE, project.names);
     items.resize(found);
+    if (links) links->resize(std::min<size_t>(links->size(), link_count));
     return items;
 }
 
 }  // namespace
 
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
-                                        lensprof_sample_options options, const GreyRange &range, Progress &progress) {
-    return sample<lensprof_pair>(project, pictures, options, range, progress, lensprof_sample_overlap);
+                                        lensprof_sample_options options, const GreyRange &range, Progress &progress,
+                                        std::vector<lensprof_link> *links) {
+    return sample<lensprof_pair>(project, pictures, options, range, progress, links, lensprof_sample_overlap);
 }
 
 std::vector<lensprof_observation> sample_tracks(const Project &project, std::vector<SamplePicture> &pictures,
-                                                lensprof_sample_options options, Progress &progress) {
-    return sample<lensprof_observation>(project, pictures, options, {}, progress, lensprof_sample_tracks);
+                                                lensprof_sample_options options, Progress &progress,
+                                                std::vector<lensprof_link> *links) {
+    return sample<lensprof_observation>(project, pictures, options, {}, progress, links, lensprof_sample_tracks);
 }
 
 std::vector<lensprof_pair> pairs_of_tracks(const std::vector<lensprof_observation> &observations) {

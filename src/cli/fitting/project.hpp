@@ -73,10 +73,13 @@ struct GreyRange {
 };
 
 // The progress function of the options is set here.
+// `links` receives those of the pictures; or NULL.
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
-                                        lensprof_sample_options options, const GreyRange &range, Progress &progress);
+                                        lensprof_sample_options options, const GreyRange &range, Progress &progress,
+                                        std::vector<lensprof_link> *links);
 std::vector<lensprof_observation> sample_tracks(const Project &project, std::vector<SamplePicture> &pictures,
-                                                lensprof_sample_options options, Progress &progress);
+                                                lensprof_sample_options options, Progress &progress,
+                                                std::vector<lensprof_link> *links);
 
 // What a point file holds of tracks: of every point its unsaturated observations, as pairs that follow each other.
 // Black ones are kept, unlike in the pairs of a fit: a fit by tracks, which joins such pairs again, takes them as

@@ -80,7 +80,7 @@ std::vector<lensprof_pair> sample_still(const Project &project, std::vector<Samp
         any_jpeg = true;
     }
     const GreyRange range{(black + next_to_black) / 255.0, (any_jpeg ? jpeg_white : next_to_white) / 255.0, true};
-    return sample_pairs(project, pictures, options, range, progress);
+    return sample_pairs(project, pictures, options, range, progress, nullptr);
 }
 
 }  // namespace lensprof

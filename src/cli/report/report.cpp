@@ -183,6 +183,11 @@ namespace {
 
 Json numbers(const double *values, size_t count) { return std::vector<double>(values, values + count); }
 
+// Whether the fit is without an image, which then has no exposure.
+bool is_left_out(const BuildReport &report, size_t image) {
+    return report.fit.left_out && image < report.quality.size() && !report.quality[image].joined;
+}
+
 // Exposure and quality of every image.
 Json images_json(const BuildReport &report) {
     Json images = Json::array();
@@ -190,7 +195,7 @@ Json images_json(const BuildReport &report) {
         const auto &e = report.exposures[i];
         Json image = {{"file", report.names[i]},
                       {"ev", std::isnan(e.ev) ? Json() : Json(e.ev)},
-                      {"white_balance", numbers(e.white_balance, 3)}};
+                      {"white_balance", is_left_out(report, i) ? Json() : numbers(e.white_balance, 3)}};
         if (i < report.quality.size()) {
             const auto &q = report.quality[i];
             image["ev_sigma"] = q.ev_sigma;
@@ -201,6 +206,7 @@ Json images_json(const BuildReport &report) {
             image["pairs"] = q.pairs;
             image["inliers"] = q.inliers;
             image["component"] = q.component;
+            image["joined"] = q.joined != 0;
             image["radius"] = q.radius;
             image["grey"] = {q.grey_low, q.grey_high};
         } else {
@@ -209,6 +215,22 @@ Json images_json(const BuildReport &report) {
         images.push_back(image);
     }
     return images;
+}
+
+Json links_json(const std::vector<lensprof_link> &links) {
+    static const char *const states[] = {"unverified", "verified", "contradicted"};
+    Json list = Json::array();
+    for (const lensprof_link &link : links)
+        list.push_back({{"images", {link.image[0], link.image[1]}},
+                        {"state", states[std::min<uint32_t>(link.state, LENSPROF_LINK_CONTRADICTED)]},
+                        {"verified", link.state == LENSPROF_LINK_VERIFIED},
+                        {"pairs", link.pairs}});
+    return list;
+}
+
+const char *response_from_name(uint32_t from) {
+    static const char *const names[] = {"pictures", "options", "kind", "profile"};
+    return from <= LENSPROF_FIT_RESPONSE_PROFILE ? names[from] : "unknown";
 }
 
 const char *kind_from_name(KindFrom from) {
@@ -258,11 +280,14 @@ Json build_json(const BuildReport &report) {
     Json json;
     json["schema"] = 1;
     json["usable"] = fit.usable != 0;
+    json["evens"] = fit.evens != 0;
     add_verdict(report.verdict, json);
     json["reference"] = report.reference;
     json["images"] = images_json(report);
     if (report.has_falloff) json["vignetting"] = vignetting_json(fit.vignetting, fit.vignettings);
     json["response"] = response_json(&fit.response, 1);
+    json["response"]["from"] = response_from_name(fit.response_from);
+    json["response"]["light_spread_ev"] = fit.light_spread_ev;
     json["residual"] = {{"before_rms", number_or_null(fit.before_rms)},
                         {"heldout_rms", number_or_null(fit.heldout_rms)},
                         {"heldout_median", number_or_null(fit.heldout_median)},
@@ -275,6 +300,7 @@ Json build_json(const BuildReport &report) {
     json["coverage"] = {{"radius", std::vector<uint32_t>(fit.radius_ends, fit.radius_ends + LENSPROF_COVERAGE_BINS)},
                         {"grey", std::vector<uint32_t>(fit.grey_ends, fit.grey_ends + LENSPROF_COVERAGE_BINS)}};
     json["pairs"] = fit.pairs;
+    json["links"] = links_json(report.links);
     json["components"] = fit.components;
     json["iterations"] = fit.iterations;
     json["covariance"] = covariance_json(fit.covariance, fit.covariance_size);
@@ -295,7 +321,8 @@ void print_exposures(const BuildReport &report, std::ostream &out) {
         double sigma = i < report.quality.size() ? report.quality[i].ev_sigma : 0.0;
         std::string error = sigma > 0.0 ? format("%.3f", sigma) : std::string("-");
         if (std::isnan(e.ev)) {
-            out << format("%-*s  %8s\n", static_cast<int>(width), report.names[i].c_str(), "unknown");
+            out << format("%-*s  %8s\n", static_cast<int>(width), report.names[i].c_str(),
+                          is_left_out(report, i) ? "left out" : "unknown");
             continue;
         }
         out << format("%-*s  %+8.3f  %6s  %7.4f  %7.4f%s\n", static_cast<int>(width), report.names[i].c_str(), e.ev,
@@ -353,7 +380,9 @@ void print_build(const BuildReport &report, std::ostream &out) {
     out << format("residual  before %.2f, after %s, levels of 255; %.1f %% inliers of %u pairs\n", fit.before_rms,
                   heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
-    if (!fit.usable)
+    if (!fit.usable && fit.evens && report.has_falloff)
+        out << "EVENS OUT these pictures; not a profile to store: " << report.verdict.text << "\n";
+    else if (!fit.usable)
         out << "NOT USABLE: " << report.verdict.text << "\n";
     else if (!report.verdict.text.empty())
         out << "mind      " << report.verdict.text << "\n";

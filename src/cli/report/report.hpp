@@ -34,7 +34,8 @@ struct BuildReport {
     std::vector<lensprof_exposure> exposures;  // relative to the reference
     std::vector<lensprof_fit_image_quality> quality;
     lensprof_fit_result fit{};
-    Verdict verdict;  // of it
+    Verdict verdict;                   // of it
+    std::vector<lensprof_link> links;  // between the images, as far as they were looked for
     uint32_t reference = 0;
     bool has_falloff = true;       // else it cancels in these pictures
     bool exposures_given = false;  // on the command line, and not by EXIF

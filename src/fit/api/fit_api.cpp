@@ -7,6 +7,7 @@
 #include "fit/api/profile.hpp"
 #include "fit/base/sized.hpp"
 #include "fit/methods/debevec.hpp"
+#include "fit/methods/group.hpp"
 #include "fit/methods/overlap.hpp"
 #include "fit/methods/transfer_function/transfer_function.hpp"
 #include "fit/prior/stored_prior.hpp"
@@ -65,9 +66,22 @@ const char *broken_option(const lensprof_fit_options &o, uint32_t image_count) {
         {o.camera_kind <= LENSPROF_CAMERA_LINEAR, "camera_kind must be one of lensprof_camera_kind, 0..5"},
         {o.method <= LENSPROF_METHOD_DEBEVEC, "method must be one of lensprof_fit_method, 0..3"},
         {o.refine <= 1, "refine must be 0 or 1"},
-        {!o.reserved, "reserved must be 0"},
+        {!o.reserved && !o.reserved2, "reserved and reserved2 must be 0"},
+        {o.links || !o.link_count, "links must not be NULL where link_count is not 0"},
     };
     return first_broken(rules);
+}
+
+lensprof_status check_links(const lensprof_fit_options &o, uint32_t image_count, lensprof_error *error) {
+    for (uint32_t n = 0; n < o.link_count; n++) {
+        const lensprof_link &link = o.links[n];
+        if (link.image[0] >= link.image[1] || link.image[1] >= image_count || link.state > LENSPROF_LINK_CONTRADICTED)
+            return fail(LENSPROF_ERROR_ARGUMENT, error,
+                        "fit options: link %u joins images %u and %u of %u, or its state is not one of "
+                        "lensprof_link_state; give the smaller image first",
+                        n, link.image[0], link.image[1], image_count);
+    }
+    return LENSPROF_OK;
 }
 
 lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_count, lensprof_error *error) {
@@ -79,6 +93,8 @@ lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_coun
     status = o.response ? lensprof_response_validate(o.response) : LENSPROF_OK;
     if (status != LENSPROF_OK)
         return fail(status, error, "fit options: the given response is not monotone from 0 to 1");
+    if (status == LENSPROF_OK) status = check_links(o, image_count, error);
+    if (status != LENSPROF_OK) return status;
     return o.profile ? check_profile(o, error) : LENSPROF_OK;
 }
 
@@ -279,11 +295,31 @@ lensprof_status fit_tracks(Call &call, const lensprof_observation *observations,
     Tracks tracks = tracks_of(observations, count);
     lensprof_status status = check_tracks(tracks, error);
     if (status != LENSPROF_OK) return status;
-    if (pairs_of(tracks, call.channels()).empty())
+    const std::vector<lensprof_pair> pairs = pairs_of(tracks, call.channels());
+    if (pairs.empty())
         return fail(LENSPROF_ERROR_NO_SAMPLES, error,
                     "fit: no point has two observations that are neither black nor saturated");
-    fit_radiance(call.options, call.images.data(), call.count(), tracks, exposures, call.result);
+    const auto fit = [&](const lensprof_fit_options &options, const Group &group, lensprof_exposure *found,
+                         lensprof_fit_result &result) {
+        const Tracks own = tracks_within(tracks, group.joined);
+        fit_radiance(options, call.images.data(), call.count(), own, found, result);
+    };
+    fit_largest_group(call.options, call.images.data(), call.count(), pairs, fit, exposures, call.result);
     return LENSPROF_OK;
+}
+
+// By a method of pairs, of the largest group of images that agree.
+template <class Method>
+void fit_group(Call &call, const lensprof_pair *pairs, uint32_t count, lensprof_exposure *exposures, Method method) {
+    const std::vector<lensprof_pair> all(pairs, pairs + count);
+    const auto fit = [&](const lensprof_fit_options &options, const Group &group, lensprof_exposure *found,
+                         lensprof_fit_result &result) {
+        std::vector<lensprof_pair> own;
+        std::copy_if(all.begin(), all.end(), std::back_inserter(own),
+                     [&](const lensprof_pair &pair) { return group.holds(pair.image[0], pair.image[1]); });
+        method(options, call.images.data(), call.count(), own.data(), static_cast<uint32_t>(own.size()), found, result);
+    };
+    fit_largest_group(call.options, call.images.data(), call.count(), all, fit, exposures, call.result);
 }
 
 lensprof_status fit_pairs(Call &call, const lensprof_pair *pairs, uint32_t count, lensprof_exposure *exposures,
@@ -295,9 +331,9 @@ lensprof_status fit_pairs(Call &call, const lensprof_pair *pairs, uint32_t count
         return fit_tracks(call, observations.data(), static_cast<uint32_t>(observations.size()), exposures, error);
     }
     if (options.method == LENSPROF_METHOD_TRANSFER)
-        fit_overlap(options, images, call.count(), pairs, count, exposures, call.result);
+        fit_group(call, pairs, count, exposures, fit_overlap);
     else if (options.method == LENSPROF_METHOD_TRANSFER_FUNCTION)
-        fit_transfer_functions(options, images, call.count(), pairs, count, exposures, call.result);
+        fit_group(call, pairs, count, exposures, fit_transfer_functions);
     else
         fit_debevec(options, images, call.count(), pairs, count, exposures, call.result);
     return LENSPROF_OK;

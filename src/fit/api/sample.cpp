@@ -26,7 +26,8 @@ lensprof_status check_options(const lensprof_sample_options &options, uint32_t c
     const Rule rules[] = {
         {options.sampling <= LENSPROF_SAMPLING_BRACKET, "sampling must be one of lensprof_sampling, 0..2"},
         {options.pairs <= kLargestCount, "pairs must be 0..16777216"},
-        {!options.reserved, "reserved must be 0"},
+        {!options.reserved && !options.reserved2, "reserved and reserved2 must be 0"},
+        {options.links || !options.link_capacity, "links must not be NULL where link_capacity is not 0"},
     };
     if (const char *wrong = first_broken(rules))
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample options: %s", wrong);
@@ -42,6 +43,12 @@ lensprof_status take_options(const lensprof_sample_options *given, uint32_t coun
     if (const char *wrong = lp_sized_take(&own, given, kFirstOptions))
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "sample options: %s", wrong);
     return check_options(own, count, error);
+}
+
+void give_links(const lensprof_sample_options &options, const std::vector<lensprof_link> &links) {
+    const size_t room = options.links ? std::min<size_t>(links.size(), options.link_capacity) : 0;
+    std::copy_n(links.begin(), room, options.links);
+    if (options.link_count) *options.link_count = static_cast<uint32_t>(links.size());
 }
 
 // draw(sampler) -> what was found.
@@ -60,6 +67,7 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
         if (status != LENSPROF_OK) return status;
         Sampler sampler(options, images.data(), count);
         items = draw(sampler);
+        give_links(options, sampler.links());
         if (items.empty() && options.sampling == LENSPROF_SAMPLING_BRACKET)
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
                         "no two images show the same place between black and white: they may be of different scenes, "

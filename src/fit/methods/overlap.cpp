@@ -10,6 +10,7 @@
 #include "fit/base/constants.hpp"
 #include "fit/methods/method.hpp"
 #include "fit/methods/refine.hpp"
+#include "fit/methods/unshown.hpp"
 #include "fit/problem/curve_shape.hpp"
 #include "fit/solver/objective.hpp"
 #include "fit/solver/start.hpp"
@@ -445,6 +446,12 @@ void fit_overlap(const lensprof_fit_options &options, const lensprof_fit_image *
         return make_problem(options, images, image_count, pairs, keep);
     };
     run_fits(options, image_count, make, pair_count, exposures, result);
+    settle_unshown_response(
+        options, image_count,
+        [&](const lensprof_fit_options &held, lensprof_exposure *own, lensprof_fit_result &r) {
+            fit_overlap(held, images, image_count, pairs, pair_count, own, r);
+        },
+        exposures, result);
 }
 
 void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
@@ -453,6 +460,12 @@ void fit_radiance(const lensprof_fit_options &options, const lensprof_fit_image 
         return make_problem(options, images, image_count, tracks, keep);
     };
     run_fits(options, image_count, make, static_cast<uint32_t>(tracks.tracks.size()), exposures, result);
+    settle_unshown_response(
+        options, image_count,
+        [&](const lensprof_fit_options &held, lensprof_exposure *own, lensprof_fit_result &r) {
+            fit_radiance(held, images, image_count, tracks, own, r);
+        },
+        exposures, result);
 }
 
 Summary transfer_summary(const lensprof_response &response, const lensprof_vignetting vignetting[3],
@@ -465,17 +478,7 @@ Summary transfer_summary(const lensprof_response &response, const lensprof_vigne
     std::iota(keep.begin(), keep.end(), 0u);
     Problem problem = make_problem(options, images, image_count, pairs, keep);
     problem.vignettings = channels;
-    Estimate estimate;
-    estimate.modes = -1;
-    estimate.fixed = response;
-    std::copy(vignetting, vignetting + 3, estimate.vignetting.begin());
-    for (uint32_t i = 0; i < image_count; i++) {
-        std::array<double, 3> a{};
-        for (size_t c = 0; c < 3; c++)
-            a[c] = exposures[i].ev * kLn2 + (channels == 1 ? 0.0 : std::log(exposures[i].white_balance[c]));
-        estimate.log_exposure.push_back(a);
-    }
-    return summarise(residual_levels(problem, estimate));
+    return summarise(residual_levels(problem, estimate_of(response, vignetting, exposures, image_count, channels)));
 }
 
 }  // namespace lensprof

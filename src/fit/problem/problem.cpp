@@ -148,6 +148,13 @@ uint32_t Problem::component_count() const {
     return count;
 }
 
+bool is_static(const Problem &problem) {
+    return std::all_of(problem.pairs.begin(), problem.pairs.end(), [](const lensprof_pair &pair) {
+        constexpr double kSame = 0.01;  // px
+        return std::abs(pair.xy[0][0] - pair.xy[1][0]) < kSame && std::abs(pair.xy[0][1] - pair.xy[1][1]) < kSame;
+    });
+}
+
 lensprof_exposure given_exposure(const lensprof_fit_image *images, uint32_t i) {
     lensprof_exposure exposure = images[i].exposure;
     exposure.ev = images[images[i].ev_of].exposure.ev;
@@ -223,6 +230,20 @@ void set_fixed(Estimate &estimate, const lensprof_response &response) {
     estimate.fixed = response;
     std::copy(response.table, response.table + LENSPROF_RESPONSE_SAMPLES, estimate.curve.table.begin());
     estimate.curve.renew_guide();
+}
+
+Estimate estimate_of(const lensprof_response &response, const lensprof_vignetting vignetting[3],
+                     const lensprof_exposure *exposures, uint32_t image_count, int channels) {
+    Estimate estimate;
+    set_fixed(estimate, response);
+    std::copy(vignetting, vignetting + 3, estimate.vignetting.begin());
+    for (uint32_t i = 0; i < image_count; i++) {
+        std::array<double, 3> a{};
+        for (size_t c = 0; c < 3; c++)
+            a[c] = exposures[i].ev * kLn2 + (channels == 1 ? 0.0 : std::log(exposures[i].white_balance[c]));
+        estimate.log_exposure.push_back(a);
+    }
+    return estimate;
 }
 
 lensprof_response table_response(const Estimate &estimate) {

@@ -77,6 +77,9 @@ struct Problem {
     int measured_channel() const { return channels == 3 ? 1 : 0; }  // the one whose white balance factor is 1
 };
 
+// Pictures by a camera that did not move: every place is compared with itself, and the falloff cancels.
+bool is_static(const Problem &problem);
+
 // The exposure that is given for an image: each value by the image whose it shares.
 lensprof_exposure given_exposure(const lensprof_fit_image *images, uint32_t i);
 
@@ -109,6 +112,10 @@ struct Estimate {
     std::vector<std::array<double, 3>> log_exposure;  // a_ic
 };
 
+// An estimate that holds a model. `vignetting`: of the channels.
+Estimate estimate_of(const lensprof_response &response, const lensprof_vignetting vignetting[3],
+                     const lensprof_exposure *exposures, uint32_t image_count, int channels);
+
 // Sets emor and curve.
 void set_response(Estimate &estimate, const double *emor, int modes);
 
@@ -124,6 +131,11 @@ lensprof_response table_response(const Estimate &estimate);
 // The full shared vector of an estimate, and back.
 Eigen::VectorXd shared_vector(const Estimate &estimate);
 void set_shared(Estimate &estimate, const Eigen::VectorXd &full, int vignettings);
+
+// Whether the response of an estimate comes from the pairs.
+inline bool fits_response(const Problem &problem, const Estimate &estimate) {
+    return (problem.free & LENSPROF_FREE_RESPONSE) && (estimate.modes > 0 || estimate.is_refined);
+}
 
 // Which entries of the full shared vector are estimated.
 std::vector<int> free_columns(const Problem &problem, int modes);

@@ -113,6 +113,20 @@ std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, ui
     return result;
 }
 
+Tracks tracks_within(const Tracks &tracks, const std::vector<bool> &images) {
+    Tracks own;
+    for (const Range &track : tracks.tracks) {
+        const size_t first = own.observations.size();
+        for (size_t n = track.first; n < track.last; n++)
+            if (images[tracks.observations[n].image]) own.observations.push_back(tracks.observations[n]);
+        if (own.observations.size() < first + 2)
+            own.observations.resize(first);
+        else
+            own.tracks.push_back({first, own.observations.size()});
+    }
+    return own;
+}
+
 std::vector<lensprof_pair> pairs_of(const Tracks &tracks, int channels) {
     std::vector<lensprof_pair> pairs;
     for (const Range &track : tracks.tracks) {

@@ -16,6 +16,9 @@ Tracks tracks_of(const lensprof_observation *observations, uint32_t count);
 // would then be at two places of one image.
 std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, uint32_t count, int channels);
 
+// The observations in some of the images, of the tracks that keep two or more of them.
+Tracks tracks_within(const Tracks &tracks, const std::vector<bool> &images);
+
 // The pairs of tracks: neighbours among the observations of which no channel is one-sided.
 std::vector<lensprof_pair> pairs_of(const Tracks &tracks, int channels);
 

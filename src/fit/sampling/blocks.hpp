@@ -35,8 +35,8 @@ private:
     std::vector<float> noise_;  // variance about every coarse pixel
 };
 
-// Square of level pixels about a place, without its mean and of length 1. Pixels that are black or saturated do not
-// count.
+// Square of level pixels about a place, without its mean and gradient and of length 1. Pixels that are black or
+// saturated do not count.
 template <int reach>
 struct Block {
     static constexpr int kSide = 2 * reach + 1, kCount = kSide * kSide;
@@ -62,7 +62,9 @@ struct Block {
             lost += is_lost(one);
             sum += one;
         }
-        for (size_t k = 0; k < kCount; k++) value[k] = grey[k] - sum / kCount, square += value[k] * value[k];
+        for (size_t k = 0; k < kCount; k++) value[k] = grey[k] - sum / kCount;
+        take_out_plane();
+        for (const float one : value) square += one * one;
         texture = std::sqrt(square / kCount);
         for (float &one : value) one = square > 0.0f ? one / std::sqrt(square) : 0.0f;
         return true;
@@ -84,6 +86,20 @@ struct Block {
     }
 
 private:
+    // A gradient over the block is that of light or falloff, and shows no place.
+    void take_out_plane() {
+        float along[2] = {0.0f, 0.0f}, squares = 0.0f;
+        for (int k = 0; k < kCount; k++) {
+            const auto a = static_cast<float>(k % kSide - reach), b = static_cast<float>(k / kSide - reach);
+            along[0] += a * value[static_cast<size_t>(k)], along[1] += b * value[static_cast<size_t>(k)];
+            squares += a * a;
+        }
+        for (int k = 0; k < kCount; k++)
+            value[static_cast<size_t>(k)] -=
+                (along[0] * static_cast<float>(k % kSide - reach) + along[1] * static_cast<float>(k / kSide - reach))
+                / squares;
+    }
+
     static bool is_lost(float grey) { return !(grey >= kBlack && grey <= kWhite); }
 
     double correlation_of_rest(const Block &other) const {

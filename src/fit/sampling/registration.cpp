@@ -26,6 +26,9 @@
 //
 // linear in h, which is fitted as d is, with T = kBendTrust.
 //
+// Where blocks are few, or show but an edge each, their places one by one say little, and what all of them say together
+// is taken first: the rotation under which their mean correlation is largest, by a search along its three axes.
+//
 // Each is accepted only where the correlations of most blocks are clearly better than without it.
 #include "fit/sampling/registration.hpp"
 
@@ -35,6 +38,7 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <lensprof/model.h>
@@ -43,22 +47,26 @@ namespace lensprof {
 namespace {
 
 constexpr int kColumns = 24, kRows = 18;  // places of the first image that are looked at, where the second sees it
-constexpr size_t kFewest = 8;             // blocks that take part
-constexpr int kCell = 2;                  // places side by side, of which one takes part: no single thing decides
-constexpr int kFarthest = 12;             // coarse pixels by which the project may be off,
-constexpr int kFarthestBlock = 24;        // and by which one block may be
-constexpr int kSearch = 3;                // level pixels about where a block is expected
-constexpr double kMatch = 0.5;            // correlation of blocks that show the same, at least,
-constexpr double kFarMatch = 0.6;         // and of those found far about: the best of many
-constexpr double kRight = 0.85;           // mean correlation of a project that is right
-constexpr double kBetter = 0.02;          // mean correlation by which a correction must be better than none,
-constexpr double kClearlyBetter = 0.25;   // the same, where many blocks show what lies at other distances
-constexpr double kPreferred = 0.05;       // difference of correlations that tells
-constexpr double kTrust = 0.01;           // radians: how far off a project is, for turns that blocks do not tell
-constexpr double kBendTrust = 0.02;       // the same of a homography's elements
-constexpr double kLargestBend = 0.25;     // turn or change of scale of a first guess
-constexpr double kFollows = 2.0;          // coarse pixels from where a guess has a block that follows it
-constexpr double kFewestFollow = 0.2;     // share of the blocks that follow a guess
+constexpr size_t kFewest = 8;             // blocks that take part, each by its own place,
+constexpr size_t kFewestTogether = 3;     // and together
+constexpr double kMatchOfFew = 0.75;     // mean correlation of fewer than kFewest blocks: some shift is right by chance
+constexpr int kCell = 2;                 // places side by side, of which one takes part: no single thing decides
+constexpr int kFarthest = 12;            // coarse pixels by which the project may be off,
+constexpr int kFarthestBlock = 24;       // and by which one block may be
+constexpr int kSearch = 3;               // level pixels about where a block is expected
+constexpr double kMatch = 0.5;           // correlation of blocks that show the same, at least,
+constexpr double kFarMatch = 0.6;        // and of those found far about: the best of many
+constexpr double kOfCoarse = 0.5;        // texture of a block on the fine level, in that on the coarse one,
+constexpr double kFineTexture = 0.0075;  // or standard deviation, grey value 0..1
+constexpr double kRight = 0.85;          // mean correlation of a project that is right
+constexpr double kBetter = 0.02;         // mean correlation by which a correction must be better than none,
+constexpr double kClearlyBetter = 0.25;  // the same, where many blocks show what lies at other distances
+constexpr double kPreferred = 0.05;      // difference of correlations that tells
+constexpr double kTrust = 0.01;          // radians: how far off a project is, for turns that blocks do not tell
+constexpr double kBendTrust = 0.02;      // the same of a homography's elements
+constexpr double kLargestBend = 0.25;    // turn or change of scale of a first guess
+constexpr double kFollows = 2.0;         // coarse pixels from where a guess has a block that follows it
+constexpr double kFewestFollow = 0.2;    // share of the blocks that follow a guess
 constexpr double kDerivativeStep = 1e-4;  // radians
 constexpr double kNoShift[2] = {0.0, 0.0};
 
@@ -67,6 +75,11 @@ struct Place {
     double x, y;
     size_t cell;
     std::array<Block<4>, 2> block;  // of each level
+
+    // What the larger block of the coarse level shows may lie beside the one of the fine level.
+    bool shows(size_t level) const {
+        return level == 0 || block[1].texture > std::min(kOfCoarse * block[0].texture, kFineTexture);
+    }
 };
 
 // A block that was found in the second image.
@@ -98,12 +111,24 @@ Eigen::VectorXd robust_step(const std::vector<Match> &matches, double ridge, dou
 
 using Correlations = std::vector<std::optional<double>>;  // of every place; none where the second does not see it
 
+double mean_of(const Correlations &correlations, size_t &count) {
+    double sum = 0.0;
+    count = 0;
+    for (const auto &one : correlations)
+        if (one) sum += *one, count++;
+    return count ? sum / static_cast<double>(count) : 0.0;
+}
+
 struct Matcher {
     const lensprof_camera &first, &second;
     const GreyLevels &first_grey, &second_grey;
     std::vector<Place> places;
 
+    bool overlap_box(double low[2], double high[2]) const;
+    bool is_textured(const Place &p) const;
     void find_places();
+    double mean_correlation(size_t level, const Rotation &rotation) const;
+    Rotation together() const;
     bool cut(size_t level, const Sight &at, double du, double dv, Block<4> &out) const;
     Correlations correlations(size_t level, const Correction &correction) const;
     void common_shift(double shift[2]) const;
@@ -119,18 +144,46 @@ struct Matcher {
     double median_shift(const Correction &from, const Correction &to) const;
 };
 
+// What of the first frame the second sees, about: shares of its width and height. False where it sees nothing.
+bool Matcher::overlap_box(double low[2], double high[2]) const {
+    constexpr int kScan = 48;
+    std::fill(low, low + 2, 1.0), std::fill(high, high + 2, 0.0);
+    double xy[2];
+    for (int row = 0; row < kScan; row++)
+        for (int column = 0; column < kScan; column++) {
+            const double at[2] = {(column + 0.5) / kScan, (row + 0.5) / kScan};
+            const bool is_seen =
+                place_of(first, second, {}, Way::forward, at[0] * first.width - 0.5, at[1] * first.height - 0.5, xy)
+                && xy[0] >= 0.0 && xy[1] >= 0.0 && xy[0] < second.width && xy[1] < second.height;
+            for (int d = 0; d < 2 && is_seen; d++)
+                low[d] = std::min(low[d], at[d] - 0.5 / kScan), high[d] = std::max(high[d], at[d] + 0.5 / kScan);
+        }
+    return high[0] > low[0];
+}
+
+// Of the scene: clear, or faint but well above the noise, as in a picture that is dark.
+bool Matcher::is_textured(const Place &p) const {
+    constexpr double kFaint = 0.004, kReliable = 0.8;
+    const double texture = p.block[0].texture;
+    if (texture > kTexture) return true;
+    return texture > kFaint && first_grey.reliability(p.x, p.y, texture) > kReliable;
+}
+
 // The block with most texture of every cell of the first image, where the second sees it too.
 void Matcher::find_places() {
+    double low[2], high[2];
+    if (!overlap_box(low, high)) return;
     for (int row = 0; row < kRows; row++)
         for (int column = 0; column < kColumns; column++) {
             Place p{};
-            p.x = (column + 0.5) / kColumns * first.width - 0.5, p.y = (row + 0.5) / kRows * first.height - 0.5;
+            p.x = (low[0] + (column + 0.5) / kColumns * (high[0] - low[0])) * first.width - 0.5;
+            p.y = (low[1] + (row + 0.5) / kRows * (high[1] - low[1])) * first.height - 0.5;
             p.cell = static_cast<size_t>(row / kCell * (kColumns / kCell) + column / kCell);
             Sight at;
             bool good = sight(first, second, {}, Way::forward, p.x, p.y, at);
             for (size_t n = 0; n < 2 && good; n++)
                 good = p.block[n].cut(first_grey.level[n], p.x, p.y, first_grey.level[n].pixel, kUpright);
-            if (good && p.block[0].texture > kTexture) places.push_back(p);
+            if (good && is_textured(p)) places.push_back(p);
         }
     std::stable_sort(places.begin(), places.end(),
                      [](const Place &a, const Place &b) { return a.block[0].texture > b.block[0].texture; });
@@ -150,7 +203,8 @@ Correlations Matcher::correlations(size_t n, const Correction &correction) const
     Block<4> other;
     Sight at;
     for (const Place &p : places) {
-        bool seen = sight(first, second, correction, Way::forward, p.x, p.y, at) && cut(n, at, 0.0, 0.0, other);
+        bool seen =
+            p.shows(n) && sight(first, second, correction, Way::forward, p.x, p.y, at) && cut(n, at, 0.0, 0.0, other);
         result.push_back(seen ? std::optional(p.block[n].correlation(other)) : std::nullopt);
     }
     return result;
@@ -158,10 +212,10 @@ Correlations Matcher::correlations(size_t n, const Correction &correction) const
 
 // The shift, in coarse pixels of the second image, under which all blocks together match best.
 void Matcher::common_shift(double shift[2]) const {
-    constexpr int size = kFarthest + 1;  // every second pixel
+    constexpr int size = 2 * kFarthest + 1;
     std::array<double, size * size> sum{};
     std::array<size_t, size * size> count{};
-    auto offset = [](int k) { return 2 * k - kFarthest; };
+    auto offset = [](int k) { return k - kFarthest; };
     Block<4> other;
     Sight at;
     for (const Place &p : places) {
@@ -176,7 +230,8 @@ void Matcher::common_shift(double shift[2]) const {
     shift[0] = shift[1] = 0.0;
     for (int k = 0; k < size * size; k++) {
         auto n = static_cast<size_t>(k);
-        double mean = count[n] >= std::max(kFewest, places.size() / 4) ? sum[n] / static_cast<double>(count[n]) : 0.0;
+        double mean =
+            count[n] >= std::max(kFewestTogether, places.size() / 4) ? sum[n] / static_cast<double>(count[n]) : 0.0;
         if (mean > best) best = mean, shift[0] = offset(k % size), shift[1] = offset(k / size);
     }
 }
@@ -200,6 +255,53 @@ std::vector<Match> Matcher::look(size_t n, const double *shift, int reach, int s
         if (m.quality > least) matches.push_back(m);
     }
     return matches;
+}
+
+// Of the blocks that are seen under the rotation; -1 where these are too few.
+double Matcher::mean_correlation(size_t level, const Rotation &rotation) const {
+    size_t count;
+    const double mean = mean_of(correlations(level, {rotation, {}}), count);
+    const auto showing = std::count_if(places.begin(), places.end(), [=](const Place &p) { return p.shows(level); });
+    return 2 * count > static_cast<size_t>(showing) ? mean : -1.0;
+}
+
+// The rotation under which the blocks match best together: along the axes through the middle of the second frame, steps
+// of two pixels at first.
+Rotation Matcher::together() const {
+    double shift[2], middle[2], beside[2];
+    const double x = 0.5 * (second.width - 1.0), y = 0.5 * (second.height - 1.0);
+    if (!lensprof_camera_unproject(&second, x, y, middle) || !lensprof_camera_unproject(&second, x + 1.0, y, beside))
+        return {};
+    Eigen::Vector3d ahead, aside;
+    unit_vector(middle, ahead.data()), unit_vector(beside, aside.data());
+    const double angle = std::acos(std::min(1.0, ahead.dot(aside)));  // of a px of the full frame
+    const Eigen::Vector3d right = (aside - ahead * ahead.dot(aside)).normalized(), up = right.cross(ahead);
+    common_shift(shift);
+    // A turn by +angle about `up` moves what is ahead to the right or to the left: both are tried.
+    const Eigen::Vector3d axes[3] = {angle * up, angle * right, ahead * 2.0 / std::hypot(second.width, second.height)};
+    const double coarse = second_grey.level[0].pixel;
+    Rotation best{};
+    double most = mean_correlation(0, best);
+    auto try_from = [&](size_t level, const Rotation &from, const Eigen::Vector3d &change) {
+        const Rotation next{from[0] + change[0], from[1] + change[1], from[2] + change[2]};
+        const double mean = mean_correlation(level, next);
+        if (mean > most) most = mean, best = next;
+    };
+    const Rotation none{};
+    for (double a : {-1.0, 1.0})
+        for (double b : {-1.0, 1.0}) try_from(0, none, coarse * (a * shift[0] * axes[0] + b * shift[1] * axes[1]));
+    for (size_t level : {0, 1}) {
+        most = mean_correlation(level, best);
+        for (double step = level == 0 ? 2.0 : 1.0; step > 0.2; step *= 0.5)
+            for (int round = 0; round < 6; round++) {
+                const Rotation from = best;
+                for (const Eigen::Vector3d &axis : axes)
+                    for (double sign : {-1.0, 1.0})
+                        try_from(level, from, sign * step * second_grey.level[level].pixel * axis);
+                if (from == best) break;
+            }
+    }
+    return best;
 }
 
 // Fits the rotation to where blocks are: least squares, with less trust in blocks that are far from the others.
@@ -292,14 +394,6 @@ double Matcher::median_shift(const Correction &a, const Correction &b) const {
     return *middle;
 }
 
-double mean_of(const Correlations &correlations, size_t &count) {
-    double sum = 0.0;
-    count = 0;
-    for (const auto &one : correlations)
-        if (one) sum += *one, count++;
-    return count ? sum / static_cast<double>(count) : 0.0;
-}
-
 // Whether most blocks match better by the correction than without: what moved prefers it, too, but not the scene about
 // it.
 bool most_prefer(const Correlations &by, const Correlations &without) {
@@ -317,7 +411,7 @@ bool Matcher::is_better(const Correction &correction, const Correlations &by, co
                         const Correlations &without) const {
     size_t compared, found_in;
     const double before = mean_of(without, compared), found = mean_of(by, found_in);
-    const bool is_match = found > kMatch || found > before + kClearlyBetter;
+    const bool is_match = found_in < kFewest ? found > kMatchOfFew : found > kMatch || found > before + kClearlyBetter;
     return 2 * found_in > compared && is_match && found > before + kBetter && most_prefer(by, without)
            && median_shift(than, correction) > 0.5 * second_grey.level[1].pixel;
 }
@@ -345,13 +439,13 @@ Correction registration(const lensprof_camera &first, const GreyLevels &first_gr
                         const GreyLevels &second_grey) {
     Matcher matcher{first, second, first_grey, second_grey, {}};
     matcher.find_places();
-    if (matcher.places.size() < kFewest) return {};
+    if (matcher.places.size() < kFewestTogether) return {};
     Correction found;
     Correlations alike = matcher.correlations(1, found);
     auto is_right = [&] {
         size_t compared;
         const double mean = mean_of(alike, compared);
-        return compared < kFewest || mean > kRight;
+        return compared < kFewestTogether || mean > kRight;
     };
     auto take_if_better = [&](const Correction &other) {
         const Correlations own = matcher.correlations(1, other);
@@ -359,6 +453,8 @@ Correction registration(const lensprof_camera &first, const GreyLevels &first_gr
     };
     if (is_right()) return found;
     if (const auto rotation = matcher.rotation()) take_if_better({*rotation, {}});
+    if (is_right()) return found;
+    take_if_better({matcher.together(), {}});
     if (is_right()) return found;
     if (const auto bent = matcher.bent(found)) take_if_better(*bent);
     return found;

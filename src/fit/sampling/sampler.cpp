@@ -21,8 +21,9 @@ constexpr double kSurely = 0.8;      // and of those that clearly do
 constexpr double kEnoughAlike = 0.4, kFewestSurely = 0.05, kAboveChance = 2.8;
 constexpr double kBeside = 12.0;  // coarse pixels
 constexpr uint32_t kFewestTold = 20;
-constexpr size_t kMostNeighbours = 8;  // of an image that are registered, those with the largest overlap
-constexpr size_t kMostRefused = 4;     // pairs of places for one wanted candidate, before the search ends
+constexpr double kMostlySmooth = 0.25;  // of the places has texture: what has none does not care for a few pixels
+constexpr size_t kMostNeighbours = 8;   // of an image that are registered, those with the largest overlap
+constexpr size_t kMostRefused = 4;      // pairs of places for one wanted candidate, before the search ends
 
 double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -175,9 +176,10 @@ bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
     if (!sight(views_[i].image().camera, views_[j].image().camera, correction(i, j), i < j ? Way::forward : Way::back,
                x, y, at))
         return false;
+    Likenesses &edge = likenesses_[edge_of(i, j)];
+    edge.seen++;
     std::optional<double> told = likeness(*grey_[i], x, y, *grey_[j], at);
     if (!told) return true;
-    Likenesses &edge = likenesses_[edge_of(i, j)];
     edge.told++;
     if (*told > kAlike) edge.alike++;
     if (*told > kSurely) edge.surely++;
@@ -190,12 +192,25 @@ bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
 }
 
 // Where hardly more places show the same than do beside where they should, the project has one of the two images
-// somewhere else: what agrees there agrees by chance.
-bool Sampler::is_in_place(uint32_t number) const {
+// somewhere else: what agrees there agrees by chance. Not so where few places have texture: a project that is off by
+// some pixels is wrong there and nowhere else, and those places are left out one by one.
+lensprof_link_state Sampler::state_of(uint32_t number) const {
     const Likenesses &edge = likenesses_[number];
     const double surely = edge.surely, told = edge.told, chance = edge.chance, beside = edge.beside;
-    if (told < kFewestTold || edge.alike > kEnoughAlike * told) return true;
-    return surely > kFewestSurely * told && surely * beside > kAboveChance * chance * told;
+    if (told < kFewestTold) return LENSPROF_LINK_UNVERIFIED;
+    if (edge.alike > kEnoughAlike * told) return LENSPROF_LINK_VERIFIED;
+    if (surely > kFewestSurely * told && surely * beside > kAboveChance * chance * told) return LENSPROF_LINK_VERIFIED;
+    return told < kMostlySmooth * edge.seen ? LENSPROF_LINK_UNVERIFIED : LENSPROF_LINK_CONTRADICTED;
+}
+
+std::vector<lensprof_link> Sampler::links() const {
+    std::vector<lensprof_link> links;
+    for (uint32_t i = 0; i < views_.size() && !likenesses_.empty(); i++)
+        for (uint32_t j : neighbours_[i]) {
+            if (j < i || likenesses_[edge_of(i, j)].seen == 0) continue;
+            links.push_back({{i, j}, static_cast<uint32_t>(state_of(edge_of(i, j))), likenesses_[edge_of(i, j)].pairs});
+        }
+    return links;
 }
 
 bool Sampler::measure(uint32_t i, double x, double y, End &end) const {
@@ -297,7 +312,9 @@ std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
     patches_ = true;
     register_neighbours();
     std::vector<Candidate> all = candidates(8 * static_cast<size_t>(wanted));
-    auto out_of_place = [&](const Candidate &c) { return !is_in_place(edge_of(c.image[0], c.image[1])); };
+    auto out_of_place = [&](const Candidate &c) {
+        return state_of(edge_of(c.image[0], c.image[1])) == LENSPROF_LINK_CONTRADICTED;
+    };
     all.erase(std::remove_if(all.begin(), all.end(), out_of_place), all.end());
     auto chosen = balance(
         all.size(), wanted, 2.0 * wanted, edge_numbers_, [&](uint32_t i) { return all[i].gradient; },
@@ -307,6 +324,7 @@ std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
         });
     std::vector<Candidate> best;
     for (uint32_t index : chosen) best.push_back(all[index]);
+    for (const Candidate &c : best) likenesses_[edge_of(c.image[0], c.image[1])].pairs++;
     return pairs_of(best);
 }
 

@@ -36,6 +36,9 @@ public:
 
     bool overlaps() const { return overlaps_; }
 
+    // Of balanced sampling: the neighbours that pairs were looked for between.
+    std::vector<lensprof_link> links() const;
+
 private:
     // One end of a correspondence. Bins of radius and grey level count from 0.
     struct End {
@@ -79,10 +82,11 @@ private:
         bool known;
     };
 
-    // Places of a pair of neighbours that have texture, and those of them that may and that clearly do show the same;
-    // places beside where the other image should show them, and those that clearly do.
+    // Places that a pair of neighbours shares, those that have texture, and those of them that may and that clearly do
+    // show the same; places beside where the other image should show them, and those that clearly do.
     struct Likenesses {
-        std::atomic<uint32_t> told{0}, alike{0}, surely{0}, beside{0}, chance{0};
+        std::atomic<uint32_t> seen{0}, told{0}, alike{0}, surely{0}, beside{0}, chance{0};
+        uint32_t pairs = 0;  // that are used
     };
 
     static Cone cone_of(const lensprof_camera &camera);
@@ -91,7 +95,7 @@ private:
     const Correction &correction(uint32_t i, uint32_t j) const;
     bool correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const;
     bool is_the_same(uint32_t i, uint32_t j, double x, double y);
-    bool is_in_place(uint32_t number) const;
+    lensprof_link_state state_of(uint32_t number) const;
     bool measure(uint32_t i, double x, double y, End &end) const;
     void look(uint32_t i, double x, double y, const uint32_t *others, size_t count, std::vector<Candidate> &found);
     Look draw(Random &random) const;

@@ -107,7 +107,7 @@ std::vector<Sampler::TrackCandidate> Sampler::track_candidates(size_t wanted, co
 std::vector<Sampler::TrackCandidate> Sampler::in_place(std::vector<TrackCandidate> all) const {
     for (TrackCandidate &c : all) {
         auto is_out = [&, anchor = c.visits[0].image](const Visit &visit) {
-            return visit.image != anchor && !is_in_place(edge_of(anchor, visit.image));
+            return visit.image != anchor && state_of(edge_of(anchor, visit.image)) == LENSPROF_LINK_CONTRADICTED;
         };
         c.visits.erase(std::remove_if(c.visits.begin(), c.visits.end(), is_out), c.visits.end());
     }
@@ -173,6 +173,8 @@ std::vector<lensprof_observation> Sampler::balanced_tracks(uint32_t wanted) {
         });
     std::vector<TrackCandidate> best;
     for (uint32_t index : chosen) best.push_back(all[index]);
+    for (const TrackCandidate &c : best)
+        for (size_t n = 1; n < c.visits.size(); n++) likenesses_[edge_of(c.visits[0].image, c.visits[n].image)].pairs++;
     return observations_of(best);
 }
 

@@ -1,5 +1,6 @@
 #include "fit/verdict/finish.hpp"
 
+#include "fit/verdict/evenness.hpp"
 #include "fit/verdict/quality.hpp"
 #include "fit/verdict/reason.hpp"
 
@@ -19,6 +20,7 @@ void finish(const Found &found, const std::function<void(lensprof_fit_result &)>
     if (r.usable && r.reason_code == LENSPROF_REASON_NONE && found.gauge.oddness() > 1.0)
         warn(r, {LENSPROF_REASON_UNUSUAL_RESPONSE, {found.gauge.oddness(), r.gamma_sigma}});
     if (judge_own) judge_own(r);
+    judge_evenness(found, r);
     r.image_quality = result.image_quality;
     write_exposures(found.problem, found.estimate, exposures);
     result = r;

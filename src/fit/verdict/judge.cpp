@@ -163,26 +163,23 @@ int uncertain_image(const Problem &problem, const Estimate &estimate, const lens
     return worst;
 }
 
-// The first image that is not in the reference's group.
-uint32_t apart_image(const Problem &problem) {
-    const auto &group = problem.component;
-    auto apart = std::find_if(group.begin(), group.end(), [&](uint32_t g) { return g != group[problem.reference]; });
-    return static_cast<uint32_t>(apart - group.begin());
+// Whether pairs tie an image to the reference. Others are left out (methods/group.cpp).
+bool is_joined(const Problem &problem, uint32_t image) {
+    return problem.component[image] == problem.component[problem.reference];
 }
 
-// Pictures by a camera that did not move: every place is compared with itself, and the falloff cancels.
-bool is_static(const Problem &problem) {
-    return std::all_of(problem.pairs.begin(), problem.pairs.end(), [](const lensprof_pair &pair) {
-        constexpr double kSame = 0.01;  // px
-        return std::abs(pair.xy[0][0] - pair.xy[1][0]) < kSame && std::abs(pair.xy[0][1] - pair.xy[1][1]) < kSame;
-    });
+// The first image that is not.
+uint32_t apart_image(const Problem &problem) {
+    uint32_t image = 0;
+    while (image + 1 < problem.image_count && is_joined(problem, image)) image++;
+    return image;
 }
 
 // Too few, too alike, or in places that tell nothing.
 bool lacks_data(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
     size_t unknowns = free_columns(problem, estimate.modes).size() + static_cast<size_t>(problem.image_unknowns);
     size_t informative = count_informative(problem);
-    if (r.components > 1 && problem.image_unknowns > 0)
+    if (r.components > 1 && problem.image_unknowns > 0 && is_static(problem))
         return refuse(r, of_image(LENSPROF_REASON_IMAGE_GROUPS, apart_image(problem), {double(r.components)}));
     if (informative * static_cast<size_t>(problem.channels) < 2 * unknowns)
         return refuse(r, {LENSPROF_REASON_FEW_PAIRS, {double(informative), double(unknowns)}});
@@ -225,7 +222,7 @@ bool has_few_inliers(const Problem &problem, const lensprof_fit_result &r, uint3
     std::vector<uint32_t> inliers(held + 1, 0u);
     for (uint32_t i = 0; i < problem.image_count; i++) inliers[owner(i)] += r.image_quality[i].inliers;
     for (image = 0; image < problem.image_count; image++)
-        if ((behind = inliers[owner(image)]) < kFewestInliers) return true;
+        if (is_joined(problem, image) && (behind = inliers[owner(image)]) < kFewestInliers) return true;
     return false;
 }
 

@@ -77,6 +77,7 @@ void describe_images(const Problem &problem, const Gauge &gauge, const Estimate 
         double gamma_sigma = std::max(gauge.sigma(), 0.0);
         q.pairs = 0, q.radius = q.ev_sigma = q.known_ev_residual = 0.0;
         q.component = problem.component[i];
+        q.joined = 1;  // methods/group.cpp leaves images out
         q.known_ev_left_out = gauge.leaves_out(i);
         auto sigma = [&](int unknown, double log_value) {  // of a logarithm: the data's and that of gamma
             if (unknown < 0 || !found.is_determined || q.component != problem.component[problem.reference]) return 0.0;
@@ -173,8 +174,12 @@ void describe_heldout(const Problem &tested, const Estimate &train, bool is_held
 void describe_quality(const Problem &problem, const Gauge &gauge, double noise, const Covariance &found,
                       const Estimate &estimate, lensprof_fit_result &r) {
     r.components = problem.component_count();
+    r.reference = problem.reference;
+    r.left_out = 0;
     r.gamma_from = gauge.from();
     r.gamma_sigma = gauge.from() == LENSPROF_GAMMA_NONE ? LENSPROF_UNKNOWN : gauge.sigma();
+    r.light_spread_ev = light_spread(problem, estimate);
+    r.response_from = fits_response(problem, estimate) ? LENSPROF_FIT_RESPONSE_PICTURES : LENSPROF_FIT_RESPONSE_OPTIONS;
     describe_residuals(problem, estimate, noise, r);
     count_coverage(problem, estimate, r);
     describe_images(problem, gauge, estimate, found, r);
@@ -190,6 +195,20 @@ double exposure_spread(const Problem &problem, const Estimate &estimate) {
             sum += pairs * std::pow(a[edge.image[0]][c] - a[edge.image[1]][c], 2);
             count += pairs;
         }
+    return std::sqrt(sum / std::max(count, 1.0)) / kLn2;
+}
+
+double light_spread(const Problem &problem, const Estimate &estimate) {
+    double sum = 0.0, count = 0.0;
+    for (const Edge &edge : problem.edges) {
+        const auto ratios = exposure_ratios(problem, estimate, edge);
+        for (size_t p = edge.first; p < edge.last; p++)
+            for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++) {
+                const auto &curve = estimate.vignetting[problem.vignettings == 3 ? c : 0];
+                sum += std::pow(std::log(ratios[c] * falloff(problem, curve, problem.pairs[p]).ratio), 2);
+                count += 1.0;
+            }
+    }
     return std::sqrt(sum / std::max(count, 1.0)) / kLn2;
 }
 

@@ -30,6 +30,9 @@ void describe_quality(const Problem &problem, const Gauge &gauge, double noise, 
 constexpr double kSmallestSpread = 0.15;
 double exposure_spread(const Problem &problem, const Estimate &estimate);
 
+// The same of the light at the two ends of a pair, falloff included.
+double light_spread(const Problem &problem, const Estimate &estimate);
+
 // What every image got, as far as it was free.
 void write_exposures(const Problem &problem, const Estimate &estimate, lensprof_exposure *exposures);
 

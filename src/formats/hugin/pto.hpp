@@ -64,6 +64,9 @@ struct PtoToken {
     size_t begin;  // of the value in the line
 };
 
+// Begins a comment line that names images, by their numbers, of which the result in the project is without.
+inline constexpr std::string_view kLeftOutMark = "#-lensprof left_out";
+
 // Splits a line after its record letter.
 std::vector<PtoToken> split_pto_line(std::string_view line, size_t number);
 

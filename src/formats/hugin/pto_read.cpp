@@ -235,6 +235,16 @@ PtoMask read_mask(const Line &line, const lensprof_pto &pto) {
     return mask;
 }
 
+// Numbers that are none of an image are ignored, as all of a comment is.
+void read_left_out(std::string_view line, lensprof_pto &pto) {
+    std::string_view rest = line.substr(kLeftOutMark.size());
+    for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+        double number;
+        if (read_whole(word, 0, static_cast<double>(pto.images.size()) - 1, number))
+            pto.images[static_cast<size_t>(number)].result.left_out = 1;
+    }
+}
+
 // 'i' for "i w100 ...", '#' or 0 for lines that are only kept.
 char record_of(std::string_view line) {
     if (line.empty() || (line.size() > 1 && !is_blank(line[1]))) return 0;
@@ -246,7 +256,7 @@ char record_of(std::string_view line) {
 lensprof_pto parse_pto(std::string text) {
     lensprof_pto pto;
     pto.text = std::move(text);
-    std::vector<Line> variables, masks;
+    std::vector<Line> variables, masks, left_out;
     LineReader reader(pto.text);
     while (reader.next()) {
         if (reader.line.find('\0') != std::string_view::npos)
@@ -255,10 +265,13 @@ lensprof_pto parse_pto(std::string text) {
         if (record == 'i') pto.images.push_back(read_image(reader, pto.images));
         if (record == 'v') variables.push_back({reader.line, reader.number});
         if (record == 'k') masks.push_back({reader.line, reader.number});
+        if (reader.line.substr(0, kLeftOutMark.size()) == kLeftOutMark)
+            left_out.push_back({reader.line, reader.number});
     }
     if (pto.images.empty()) fail_at_line(reader.number + 1, "end of text without an image; a project has `i` lines");
     for (const Line &line : variables) read_variables(line, pto);
     share_variables(pto);
+    for (const Line &line : left_out) read_left_out(line.text, pto);
     for (const Line &line : masks) pto.masks.push_back(read_mask(line, pto));
     return pto;
 }

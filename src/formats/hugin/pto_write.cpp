@@ -105,11 +105,11 @@ std::string replace_lines(const lensprof_pto &pto, const LineText &line_text) {
     return text.append(old.substr(done));
 }
 
-// The project with edited `i` lines, parsed again, so that reading and writing cannot disagree.
+// The text with edited `i` lines.
 template <class EditsOf>
-lensprof_pto rewrite(const lensprof_pto &pto, const EditsOf &edits_of) {
-    return parse_pto(replace_lines(
-        pto, [&](uint32_t i) { return edit_line(line_of(pto, pto.images[i]), pto.images[i].line, edits_of(i)); }));
+std::string edit_lines(const lensprof_pto &pto, const EditsOf &edits_of) {
+    return replace_lines(
+        pto, [&](uint32_t i) { return edit_line(line_of(pto, pto.images[i]), pto.images[i].line, edits_of(i)); });
 }
 
 // A name that can stand between the quotes of a line.
@@ -117,6 +117,24 @@ bool is_name(std::string_view name) {
     return !name.empty() && std::none_of(name.begin(), name.end(), [](char c) {
         return c == '"' || static_cast<unsigned char>(c) < 0x20;
     });
+}
+
+bool is_left_out(const lensprof_exposure &exposure) { return std::isnan(exposure.ev); }
+
+// The text without its marks of images that were left out, and with one of those that are now.
+std::string mark_left_out(std::string_view text, const lensprof_exposure *exposures, uint32_t image_count) {
+    std::string marked;
+    while (!text.empty()) {
+        const size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
+        if (text.substr(0, kLeftOutMark.size()) != kLeftOutMark) marked += text.substr(0, end);
+        text.remove_prefix(end);
+    }
+    std::string numbers;
+    for (uint32_t i = 0; i < image_count; i++)
+        if (is_left_out(exposures[i])) numbers += ' ' + std::to_string(i);
+    if (numbers.empty()) return marked;
+    if (!marked.empty() && marked.back() != '\n') marked += '\n';
+    return marked + std::string(kLeftOutMark) + numbers + '\n';
 }
 
 void check_result(const lensprof_response &response, const lensprof_vignetting &vignetting,
@@ -127,7 +145,7 @@ void check_result(const lensprof_response &response, const lensprof_vignetting &
     demand(lensprof_response_validate(&response), "the response is invalid; see lensprof_response_validate");
     demand(lensprof_vignetting_validate(&vignetting), "the vignetting is invalid; see lensprof_vignetting_validate");
     for (uint32_t i = 0; i < image_count; i++)
-        demand(lensprof_exposure_validate(&exposures[i]),
+        demand(is_left_out(exposures[i]) ? LENSPROF_OK : lensprof_exposure_validate(&exposures[i]),
                "image " + std::to_string(i) + ": its exposure is invalid; see lensprof_exposure_validate");
 }
 
@@ -139,8 +157,8 @@ using namespace lensprof;
 lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_response *response,
                                         const lensprof_vignetting *vignetting, const lensprof_exposure *exposures,
                                         uint32_t image_count, uint32_t reference, lensprof_error *error) {
-    if (!pto || !response || !vignetting || !exposures || image_count != pto->images.size()
-        || reference >= image_count) {
+    if (!pto || !response || !vignetting || !exposures || image_count != pto->images.size() || reference >= image_count
+        || is_left_out(exposures[reference])) {
         set_error(error,
                   "lensprof_pto_set_result: give a project, curves, an exposure of each image, and one of them "
                   "as the reference");
@@ -149,12 +167,15 @@ lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_respon
     return at_boundary(error, [&] {
         check_result(*response, *vignetting, exposures, image_count);
         const std::array<double, kHuginModes> modes = hugin_modes(*response);
-        *pto = rewrite(*pto, [&](uint32_t i) {
+        const std::string text = edit_lines(*pto, [&](uint32_t i) {
             std::vector<Edit> edits = model_edits(modes, *vignetting, pto->images[i]);
+            if (is_left_out(exposures[i])) return edits;
             for (Edit &edit : exposure_edits(exposures[i], exposures[reference], pto->images[reference]))
                 edits.push_back(std::move(edit));
             return edits;
         });
+        // Parsed again, so that reading and writing cannot disagree.
+        *pto = parse_pto(mark_left_out(text, exposures, image_count));
     });
 }
 

@@ -94,6 +94,15 @@ static inline void lensprof_fit_image_init(lensprof_fit_image *image, uint32_t i
     lensprof_fit_image_init_sized(image, sizeof *image, index, width, height);
 }
 
+/* Where the response of a result is from. */
+typedef enum lensprof_fit_response {
+    LENSPROF_FIT_RESPONSE_PICTURES = 0, /* fitted */
+    LENSPROF_FIT_RESPONSE_OPTIONS = 1,  /* held as given */
+    LENSPROF_FIT_RESPONSE_KIND = 2,     /* the pictures do not show it: the typical one of the kind of camera, with the
+                                            covariance of that kind */
+    LENSPROF_FIT_RESPONSE_PROFILE = 3   /* the pictures do not show it: that of the profile given as the prior */
+} lensprof_fit_response;
+
 /* What became of lensprof_fit_options.profile. */
 typedef enum lensprof_profile_prior {
     LENSPROF_PROFILE_PRIOR_NONE = 0,      /* none was given */
@@ -134,6 +143,10 @@ typedef struct lensprof_fit_options {
     lensprof_vignetting vignetting;    /* the value where fixed */
     lensprof_progress progress;        /* or NULL */
     void *progress_user;
+    const lensprof_link *links; /* what sampling said of the links: a usable result warns of images that only links
+                                   without texture join. NULL = not known. Read during the call */
+    uint32_t link_count;
+    uint32_t reserved2; /* 0 */
 } lensprof_fit_options;
 
 /* 3 channels, reference 0, everything free, modes AUTO, loss ROBUST, Huber 5 levels, prior weight 1,
@@ -155,13 +168,15 @@ typedef struct lensprof_fit_image_quality {
     uint32_t inliers;           /* of these, those within 3 sigma of the noise */
     uint32_t component;         /* smallest index of an image it is tied to through pairs */
     uint32_t known_ev_left_out; /* 1: known_ev contradicts the pictures and those of other images, and had no part */
+    uint32_t joined;            /* 1: pairs that agree join it to the reference of the result; 0: it was left out */
+    uint32_t reserved;          /* 0 */
 } lensprof_fit_image_quality;
 
 #define LENSPROF_COVERAGE_BINS 10
 
 typedef struct lensprof_fit_result {
     uint32_t struct_size;
-    uint32_t usable;             /* 1, or 0 with the reason in words */
+    uint32_t usable;             /* 1: a profile to store; 0: not one, with the reason in words */
     uint32_t image_quality_size; /* bytes of an element of image_quality, set by the _init function */
     uint32_t reserved;           /* 0 */
     char reason[256];            /* why not usable; when usable empty, or what to mind */
@@ -196,6 +211,14 @@ typedef struct lensprof_fit_result {
     uint32_t reason_values;                    /* how many numbers, 0..2, */
     lensprof_item reason_item;                 /* which image, */
     double reason_value[2];                    /* and the numbers, in the units of reason.h */
+    uint32_t evens;     /* 1: the result evens out these pictures, whether or not it is a profile to store: held-out
+                           pairs differ far less than before, and between no two images by more */
+    uint32_t left_out;  /* images that do not agree with the largest group of those that do; the fit is without them */
+    uint32_t reference; /* image whose exposure is the gauge: that of the options, or where that one was left out the
+                           first of the group */
+    uint32_t response_from; /* lensprof_fit_response */
+    double light_spread_ev; /* root mean square difference of the light at the two ends of a pair, EV: what shows the
+                               response */
 } lensprof_fit_result;
 
 /* No result, a linear response. */
@@ -205,7 +228,9 @@ static inline void lensprof_fit_result_init(lensprof_fit_result *result) {
 }
 
 /* Fits `pair_count` pairs over `image_count` images. exposures[image_count] receives what every image got,
- * relative to the reference. A fit that ran returns OK even when the result is poor: see `usable`.
+ * relative to the reference. A fit that ran returns OK even when the result is poor: see `usable` and `evens`.
+ * Where images do not all agree, the fit is of the largest group that does; the ev of an image that was left out is NaN
+ * (image_quality.joined 0). Pictures of a camera that did not move are one group or none.
  * Method DEBEVEC: an image whose exposure is not known, a falloff that is free or a response that is not ARGUMENT.
  * Method RADIANCE: pairs that have an end in common (image, position and values) are joined to a track.
  * Errors: indices, values outside 0..1, unusable options ARGUMENT; NaN NOT_FINITE; no pairs NO_SAMPLES;

@@ -28,6 +28,8 @@ typedef struct lensprof_pto_image {
     uint32_t vignetting_of, center_of, ev_of, red_of, blue_of;
     int32_t crop[4];        /* left, top, right, bottom (right and bottom exclusive), the frame when none */
     uint32_t crop_circular; /* 1 when only the circle about the crop's middle that touches its nearer sides counts */
+    uint32_t left_out;      /* 1: the result in the project is without this image, whose exposure is not known */
+    uint32_t reserved;      /* 0 */
 } lensprof_pto_image;
 
 /* All zero, to be filled by lensprof_pto_get_image. */
@@ -76,7 +78,9 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_draw_mask(const lens
 /* Puts a result into the project: exposures[count of images], one response, one vignetting. A response other than
  * EMoR with at most 5 modes is written as its least squares projection on Hugin's 5 modes. Every image receives the
  * response and vignetting of the fit; links are kept. exposures and white balance are taken relative to those of image
- * `reference`, whose Eev, Er and Eb stay. Errors: ARGUMENT, what the model's validate functions say, MEMORY. */
+ * `reference`, whose Eev, Er and Eb stay. An image whose ev is NaN was left out of the fit (lensprof_fit_result): its
+ * exposure stays, and a comment line (`#-lensprof left_out 3 7`) names it, which other programs ignore. Errors:
+ * ARGUMENT, what the model's validate functions say, MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_result(
     lensprof_pto *pto, const lensprof_response *response, const lensprof_vignetting *vignetting,
     const lensprof_exposure *exposures, uint32_t image_count, uint32_t reference, lensprof_error *error);

@@ -37,6 +37,10 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_IMAGE_ODD = 151,                 /* image: median residual, levels of 255 */
     LENSPROF_REASON_STILL_IMAGE_ODD = 152,           /* image: median residual, levels of 255 */
     LENSPROF_REASON_WEAK_PATTERNS = 153,             /* share of the residual's variance; levels of 255 */
+    LENSPROF_REASON_IMAGES_LEFT_OUT = 154,           /* image, the first of them: how many */
+    LENSPROF_REASON_MANY_OUTLIERS = 155,             /* share of the pairs that disagree; held-out RMS, levels of 255 */
+    LENSPROF_REASON_SEAMS_STAY = 156,                /* median residual and the same before, levels of 255 */
+    LENSPROF_REASON_LINKS_UNVERIFIED = 157,          /* image, the first of them: how many */
 
     /* Exposures, and the exponent gamma that pictures leave open. */
     LENSPROF_REASON_EXPOSURE_UNCERTAIN = 201, /* image: standard error, EV */
@@ -56,6 +60,7 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_MISSING_GREYS = 351, /* from, grey value 0..1; to, grey value 0..1 */
     LENSPROF_REASON_UNUSUAL_RESPONSE =
         352, /* distance, times that of the kind's measured cameras; standard error of ln gamma */
+    LENSPROF_REASON_RESPONSE_NOT_SHOWN = 353, /* difference of the light, EV; standard error of ln gamma */
 
     /* Falloff. */
     LENSPROF_REASON_SMALL_RADIUS = 401,       /* largest radius, half diagonals */

@@ -1,0 +1,207 @@
+#include "fit/methods/group.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "fit/problem/loss.hpp"
+#include "fit/verdict/quality.hpp"
+#include "fit/verdict/reason.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr int kMostFits = 6;
+constexpr size_t kFewestPairs = 10;     // of a link that can contradict the others
+constexpr double kSmallestShare = 0.2;  // of a link's pairs that agree
+
+class GroupFit {
+public:
+    GroupFit(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+             const std::vector<lensprof_pair> &pairs)
+        : options_(options), images_(images), count_(image_count), pairs_(pairs) {
+        group_.joined.assign(count_, true);
+        group_.reference = options.reference;
+    }
+
+    void run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_fit_result &result);
+
+private:
+    Problem problem() const;
+    bool take_largest();
+    bool leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r);
+    bool break_links(const lensprof_exposure *exposures, const lensprof_fit_result &r);
+    void note_quality(const lensprof_fit_result &r);
+    void describe(lensprof_exposure *exposures, lensprof_fit_result &r) const;
+    uint32_t count_unverified(uint32_t &first) const;
+
+    const lensprof_fit_options &options_;
+    const lensprof_fit_image *images_;
+    const uint32_t count_;
+    const std::vector<lensprof_pair> &pairs_;
+    Group group_;
+    std::vector<lensprof_fit_image_quality> quality_;              // of every image in the last fit that it was in
+    std::vector<bool> banned_ = std::vector<bool>(count_, false);  // images
+    std::vector<uint32_t> component_;                              // of all images, through links that hold
+};
+
+// The groups of images, each by its smallest index, that pairs, unknowns that they share, or exposures that are held
+// tie together.
+std::vector<uint32_t> tied_groups(const Problem &problem) {
+    std::vector<uint32_t> group = problem.component;
+    std::map<std::array<int, 3>, uint32_t> first;
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        const auto &balance = problem.balance_unknown[i];
+        const uint32_t tied = first.try_emplace({problem.ev_unknown[i], balance[0], balance[2]}, i).first->second;
+        const uint32_t low = std::min(group[i], group[tied]), high = std::max(group[i], group[tied]);
+        std::replace(group.begin(), group.end(), high, low);
+    }
+    return group;
+}
+
+// All images, the pairs of links that hold.
+Problem GroupFit::problem() const {
+    std::vector<uint32_t> keep;
+    for (uint32_t p = 0; p < pairs_.size(); p++)
+        if (group_.holds(pairs_[p].image[0], pairs_[p].image[1])) keep.push_back(p);
+    return make_problem(options_, images_, count_, pairs_.data(), keep);
+}
+
+// The component with the most images, and of several that of the reference, or with the most pairs. False where none
+// has pairs.
+bool GroupFit::take_largest() {
+    for (uint32_t i = 0; i < count_; i++) group_.joined[i] = !banned_[i];
+    const Problem all = problem();
+    component_ = tied_groups(all);
+    std::vector<uint32_t> members(count_, 0), pairs(count_, 0);
+    for (uint32_t i = 0; i < count_; i++) members[component_[i]] += !banned_[i];
+    for (const Edge &edge : all.edges)
+        pairs[component_[edge.image[0]]] += static_cast<uint32_t>(edge.last - edge.first);
+    const auto size_of = [&](uint32_t c) {
+        return std::tuple(members[c], c == component_[options_.reference], pairs[c]);
+    };
+    uint32_t best = 0;
+    for (uint32_t c = 0; c < count_; c++) {
+        if (pairs[c] == 0) members[c] = 0;  // tied by what they share or hold, which shows nothing
+        if (size_of(c) > size_of(best)) best = c;
+    }
+    if (members[best] < 2) return false;
+    for (uint32_t i = 0; i < count_; i++) group_.joined[i] = component_[i] == best && !banned_[i];
+    group_.reference = options_.reference;
+    while (!group_.joined[group_.reference]) group_.reference = (group_.reference + 1) % count_;
+    return true;
+}
+
+// Breaks the links of which hardly a pair agrees with the result. Returns whether there are any.
+bool GroupFit::break_links(const lensprof_exposure *exposures, const lensprof_fit_result &r) {
+    Problem judged = problem();
+    judged.vignettings = static_cast<int>(r.vignettings);
+    const Estimate estimate = estimate_of(r.response, r.vignetting, exposures, count_, judged.channels);
+    const std::vector<double> chi2 = all_chi2(judged, estimate, std::max(r.noise_levels, 0.5) / 255.0);
+    bool any = false;
+    for (const Edge &edge : judged.edges) {
+        size_t agree = 0;
+        for (size_t p = edge.first; p < edge.last; p++) agree += chi2[p] < inlier_limit(judged.channels);
+        const size_t pairs = edge.last - edge.first;
+        if (pairs < kFewestPairs || static_cast<double>(agree) > kSmallestShare * static_cast<double>(pairs)) continue;
+        group_.broken.insert({edge.image[0], edge.image[1]});
+        any = true;
+    }
+    return any;
+}
+
+// What the verdict says of a single image.
+bool GroupFit::leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r) {
+    bool any = break_links(exposures, r);
+    const bool is_of_one = r.reason_code == LENSPROF_REASON_FEW_BEHIND_EXPOSURE
+                           || r.reason_code == LENSPROF_REASON_IMAGE_DISAGREES
+                           || r.reason_code == LENSPROF_REASON_EXPOSURE_UNCERTAIN;
+    if (!any && !r.usable && is_of_one && r.reason_item.kind == LENSPROF_ITEM_IMAGE)
+        any = banned_[r.reason_item.index] = true;
+    return any;
+}
+
+// Images of the group that no verified links join to the reference, and the first of them.
+uint32_t GroupFit::count_unverified(uint32_t &first) const {
+    std::vector<uint32_t> root(count_);
+    std::iota(root.begin(), root.end(), 0u);
+    auto root_of = [&](uint32_t i) {
+        while (root[i] != i) i = root[i] = root[root[i]];
+        return i;
+    };
+    for (uint32_t n = 0; n < options_.link_count; n++) {
+        const lensprof_link &link = options_.links[n];
+        if (link.state == LENSPROF_LINK_VERIFIED && group_.holds(link.image[0], link.image[1]))
+            root[root_of(link.image[0])] = root_of(link.image[1]);
+    }
+    uint32_t count = 0;
+    for (uint32_t i = count_; i-- > 0 && options_.link_count;)
+        if (group_.joined[i] && root_of(i) != root_of(group_.reference)) first = i, count++;
+    return count;
+}
+
+// What the last fit says of its images.
+void GroupFit::note_quality(const lensprof_fit_result &r) {
+    quality_.resize(r.image_quality ? count_ : 0);
+    for (uint32_t i = 0; i < quality_.size(); i++)
+        if (group_.joined[i]) quality_[i] = r.image_quality[i];
+}
+
+void GroupFit::describe(lensprof_exposure *exposures, lensprof_fit_result &r) const {
+    r.reference = group_.reference;
+    r.left_out = static_cast<uint32_t>(std::count(group_.joined.begin(), group_.joined.end(), false));
+    r.components = 0;
+    for (uint32_t i = 0; i < count_; i++) {
+        r.components += component_[i] == i;
+        if (r.image_quality) {
+            r.image_quality[i] = quality_[i];
+            r.image_quality[i].component = component_[i], r.image_quality[i].joined = group_.joined[i];
+        }
+        if (!group_.joined[i]) exposures[i].ev = std::numeric_limits<double>::quiet_NaN();
+    }
+    uint32_t unverified = 0;
+    const uint32_t count = count_unverified(unverified);
+    if (count && r.usable && r.reason_code == LENSPROF_REASON_NONE)
+        warn(r, of_image(LENSPROF_REASON_LINKS_UNVERIFIED, unverified, {double(count)}));
+    if (r.left_out == 0) return;
+    const auto first = std::find(group_.joined.begin(), group_.joined.end(), false) - group_.joined.begin();
+    const auto image = static_cast<uint32_t>(first);
+    if (2 * r.left_out >= count_) {
+        refuse(r, of_image(LENSPROF_REASON_IMAGE_GROUPS, image, {double(std::max(r.components, 2u))}));
+        r.evens = 0;
+    } else if (r.usable && r.reason_code == LENSPROF_REASON_NONE) {
+        warn(r, of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, image, {double(r.left_out)}));
+    }
+}
+
+void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_fit_result &result) {
+    const Problem all = problem();
+    component_ = all.component;
+    const bool may_leave_out = all.image_unknowns > 0 && !is_static(all);
+    if (may_leave_out && !take_largest()) component_ = all.component, group_.joined.assign(count_, true);
+    lensprof_fit_options own = options_;
+    for (int n = 1;; n++) {
+        own.reference = group_.reference;
+        fit(own, group_, exposures, result);
+        note_quality(result);
+        const Group before = group_;
+        const std::vector<uint32_t> component = component_;
+        if (!may_leave_out || n == kMostFits || !leave_out(exposures, result)) break;
+        if (take_largest()) continue;
+        group_ = before, component_ = component;
+        break;
+    }
+    describe(exposures, result);
+}
+
+}  // namespace
+
+void fit_largest_group(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
+                       const std::vector<lensprof_pair> &pairs, const FitGroup &fit, lensprof_exposure *exposures,
+                       lensprof_fit_result &result) {
+    GroupFit(options, images, image_count, pairs).run(fit, exposures, result);
+}
+
+}  // namespace lensprof

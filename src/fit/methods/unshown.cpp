@@ -1,0 +1,87 @@
+// A pair whose ends received the same light, t = 1 in B1 - f( g(B2) t ), obeys every response. Where t is 1 for all
+// pairs but for noise, a fit finds the response that makes most of rounding and interpolation, and states errors that
+// do not hold. Held instead is what cameras of the kind have in common, with what they differ by as the covariance.
+#include "fit/methods/unshown.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "core/covariance.h"
+#include "fit/base/constants.hpp"
+#include "fit/verdict/reason.hpp"
+
+namespace lensprof {
+namespace {
+
+// EV. At .06 EV what shapes of responses differ by, some 5 levels, moves grey values by .2 to .4 levels, which is what
+// rounding and interpolation do.
+constexpr double kSmallestSpread = 0.06;
+constexpr double kFewestGreys = 2.0;  // tenths of the grey values: one shows nothing at all
+
+// The covariance of the response is the kind's; gamma, which is in it, moves the falloff as well.
+void state_errors(const double *covariance, double gamma_sigma, lensprof_fit_result &r) {
+    const uint32_t n = r.covariance_size, modes = LENSPROF_EMOR_MODES;
+    for (uint32_t i = 0; i < modes && n; i++) std::copy_n(covariance + i * modes, modes, r.covariance + i * n);
+    std::fill_n(r.gamma_direction, LENSPROF_COVARIANCE_MAX, 0.0);
+    for (uint32_t curve = 0; curve < r.vignettings && n; curve++)
+        for (int k = 0; k < 3; k++)
+            r.gamma_direction[lp_covariance_index(modes, curve) + static_cast<uint32_t>(k)] =
+                r.vignetting[curve].k[k];  // of M^gamma, where M is near 1
+    for (uint32_t i = modes; i < n; i++)
+        for (uint32_t j = modes; j < n; j++)
+            r.covariance[i * n + j] += gamma_sigma * gamma_sigma * r.gamma_direction[i] * r.gamma_direction[j];
+}
+
+// Whether the profile says something of the response, and the pictures do not contradict it.
+bool holds_response(const lensprof_profile &profile, const lensprof_fit_result &r) {
+    const bool is_kept =
+        r.profile_prior == LENSPROF_PROFILE_PRIOR_USED || r.profile_prior == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED;
+    return is_kept
+           && (lp_covariance_modes(profile.response, profile.responses) > 0 || profile.provenance.gamma_sigma > 0.0);
+}
+
+// With what cameras of the kind differ by as the error.
+void hold_typical(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
+                  lensprof_exposure *exposures, lensprof_fit_result &r) {
+    lensprof_response typical;
+    std::vector<double> covariance(LENSPROF_EMOR_MODES * LENSPROF_EMOR_MODES);
+    double sigma;
+    if (lensprof_response_set_typical(&typical, options.camera_kind, covariance.data(), &sigma) != LENSPROF_OK)
+        throw std::invalid_argument("no kind of camera");
+    lensprof_fit_options held = options;
+    held.free &= ~LENSPROF_FREE_RESPONSE;
+    held.response = &typical;
+    held.profile = nullptr;
+    fit(held, exposures, r);
+    r.response_from = LENSPROF_FIT_RESPONSE_KIND;
+    r.gamma_from = LENSPROF_GAMMA_PRIOR;
+    r.gamma_sigma = sigma;
+    state_errors(covariance.data(), sigma, r);
+    for (uint32_t i = 0; i < image_count && r.image_quality; i++) {
+        auto &q = r.image_quality[i];
+        if (q.ev_sigma > 0.0)
+            q.ev_sigma = std::hypot(q.ev_sigma, sigma * (exposures[i].ev - exposures[r.reference].ev));
+    }
+}
+
+}  // namespace
+
+void settle_unshown_response(const lensprof_fit_options &options, uint32_t image_count, const FitHeld &fit,
+                             lensprof_exposure *exposures, lensprof_fit_result &r) {
+    constexpr uint32_t kFalloff = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
+    const bool is_narrow = r.reason_code == LENSPROF_REASON_FEW_GREYS;
+    const bool is_even = r.light_spread_ev < kSmallestSpread && r.reason_code != LENSPROF_REASON_EXPOSURES_ALIKE;
+    if (r.response_from != LENSPROF_FIT_RESPONSE_PICTURES || !(options.prior_weight > 0.0)) return;
+    if (is_narrow ? r.reason_value[0] < kFewestGreys || !(options.free & kFalloff) : !is_even) return;
+    if (options.profile && holds_response(*options.profile, r))
+        r.response_from = LENSPROF_FIT_RESPONSE_PROFILE;
+    else
+        hold_typical(options, image_count, fit, exposures, r);
+    if (r.usable && r.reason_code == LENSPROF_REASON_NONE)
+        warn(r, {LENSPROF_REASON_RESPONSE_NOT_SHOWN, {r.light_spread_ev, r.gamma_sigma}});
+}
+
+}  // namespace lensprof

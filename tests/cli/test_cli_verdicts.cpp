@@ -1,0 +1,131 @@
+// The two verdicts of a fit, and pictures that do not agree with the others.
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+
+namespace {
+
+void simulate(const std::string &name, const Words &more) {
+    must_exit(done, Words{"simulate", "-o", work(name), "--size", "400x300", "--images", "6"} + more);
+}
+
+std::string pto(const std::string &name) { return work(name + "/pano.pto"); }
+
+// In the place of img005 a picture of another scene.
+void spoil(const std::string &name) {
+    simulate(name, {"--seed", "3"});
+    simulate(name + "-other", {"--seed", "99"});
+    fs::copy_file(work(name + "-other/img001.png"), work(name + "/img005.png"), fs::copy_options::overwrite_existing);
+}
+
+void test_one_bad_picture_of_six(void **) {
+    spoil("bad");
+    const std::string result = work("bad/result.pto"), even = work("even"), db = work("bad.db");
+    const Outcome found = run_words({"build", pto("bad"), "--db", db, "--json", "--pto-out", result});
+    assert_int_equal(found.code, done);
+    assert_true(contains(found.err, "img005.png: left out"));
+    const Json json = Json::parse(found.out);
+    assert_true(json["usable"] == true && json["evens"] == true);
+    for (size_t i = 0; i < 6; i++) {
+        const Json &image = json["images"][i];
+        assert_true(image["joined"] == (i != 5));
+        assert_true(image["ev"].is_null() == (i == 5) && image["white_balance"].is_null() == (i == 5));
+    }
+    for (const Json &link : json["links"]) {
+        const bool is_bad = link["images"][1] == 5;
+        if (is_bad) assert_true(link["state"] != "verified");
+        if (link["pairs"].get<int>() > 100) assert_true(link["state"] == "verified");
+    }
+    // Text: the picture has no exposure.
+    assert_true(
+        contains(must_exit(done, {"build", pto("bad"), "--no-store", "--stored", "none"}), "img005.png  left out"));
+    // The others are evened out, this one stays as it is.
+    assert_true(contains(text_of(result), "\n#-lensprof left_out 5\n"));
+    const Outcome corrected = run_words({"apply", "--pto", result, "-o", even});
+    assert_int_equal(corrected.code, done);
+    assert_true(contains(corrected.err, "img005.png: the result is without this picture"));
+    assert_true(fs::exists(even + "/img003.png") && !fs::exists(even + "/img005.png"));
+}
+
+// The reference of the project is the bad one.
+void test_the_reference_can_be_the_bad_one(void **) {
+    spoil("first");
+    const Outcome found =
+        run_words({"build", pto("first"), "--no-store", "--stored", "none", "--json", "--reference", "img005.png"});
+    assert_int_equal(found.code, done);
+    const Json json = Json::parse(found.out);
+    const auto reference = json["reference"].get<size_t>();
+    assert_true(reference != 5);
+    assert_close(json["images"][reference]["ev"].get<double>(), 0.0, 0.0);
+}
+
+// Local tone mapping that is no camera's, but evens out: nothing is stored, the pictures can be corrected.
+void test_even_pictures_that_are_no_profile(void **) {
+    simulate("tone", {"--local-tone", "0.6"});
+    const std::string db = work("tone.db"), result = work("tone/result.pto");
+    const Json json = json_of({"build", pto("tone"), "--no-store", "--json"});
+    assert_true(json["usable"] == false && json["evens"] == true && json["reason_code"] == "patterns");
+    const Outcome told = run_words({"build", pto("tone"), "--no-store", "--pto-out", result});
+    assert_int_equal(told.code, done);
+    assert_true(contains(told.err, "evens out these pictures, but is not a profile to store"));
+    assert_true(contains(told.out, "EVENS OUT"));
+    assert_true(fs::exists(result));
+    const Outcome stored = run_words({"build", pto("tone"), "--db", db});
+    assert_int_equal(stored.code, not_usable);
+    assert_true(contains(stored.err, "nothing was stored") && !fs::exists(db));
+}
+
+void test_noise_is_neither(void **) {
+    simulate("noise", {"--noise", "100"});
+    const Outcome found = run_words({"build", pto("noise"), "--no-store", "--json"});
+    assert_int_equal(found.code, not_usable);
+    const Json json = Json::parse(found.out);
+    assert_true(json["usable"] == false && json["evens"] == false);
+}
+
+// One exposure, and a falloff that the camera has corrected: the response is that of the kind of camera, and says so.
+void test_pictures_that_show_no_response(void **) {
+    simulate("flat", {"--ev", "0", "--wb", "0", "--vignetting", "0,0,0"});
+    const Json json = json_of({"build", pto("flat"), "--no-store", "--json"});
+    assert_true(json["usable"] == true && json["evens"] == true);
+    assert_true(json["reason_code"] == "response_not_shown" && json["response"]["from"] == "kind");
+    assert_true(json["response"]["light_spread_ev"].get<double>() < 0.06);
+    assert_close(json["gamma"]["sigma"].get<double>(), 0.264, 0.001);
+    const Json other = json_of({"build", pto("flat"), "--no-store", "--json", "--seed", "7"});
+    assert_true(other["response"]["values"] == json["response"]["values"]);  // not of noise
+    simulate("shown", {});
+    assert_true(json_of({"build", pto("shown"), "--no-store", "--json"})["response"]["from"] == "pictures");
+}
+
+// A sky with a few wires, whose project is off by some pixels, joins.
+void test_smooth_pictures_join(void **) {
+    simulate("sky", {"--scene", "sky", "--misalign", "4", "--response", "srgb"});
+    const Json json = json_of({"build", pto("sky"), "--no-store", "--json"});
+    for (const Json &image : json["images"]) assert_true(image["joined"] == true);
+    assert_true(json["evens"] == true);
+    for (const Json &link : json["links"]) assert_true(link["state"] != "contradicted");
+}
+
+// Frames of a camera that stood still and of one exposure are even already; a bracket of them shows nothing.
+void test_frames_of_one_exposure(void **) {
+    simulate("still", {});
+    fs::copy_file(work("still/img000.png"), work("still/copy.png"));
+    const Words frames = {work("still/img000.png"), work("still/copy.png")};
+    must_exit(done, Words{"align", "-o", work("aligned")} + frames);
+    assert_refused(not_usable, Words{"bracket", "--no-store"} + frames, {"0.00 EV"});
+}
+
+}  // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        CLI_TEST(test_one_bad_picture_of_six),
+        CLI_TEST(test_the_reference_can_be_the_bad_one),
+        CLI_TEST(test_even_pictures_that_are_no_profile),
+        CLI_TEST(test_noise_is_neither),
+        CLI_TEST(test_pictures_that_show_no_response),
+        CLI_TEST(test_smooth_pictures_join),
+        CLI_TEST(test_frames_of_one_exposure),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
