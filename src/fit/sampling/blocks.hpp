@@ -35,7 +35,7 @@ private:
     std::vector<float> noise_;  // variance about every coarse pixel
 };
 
-// Square of level pixels about a place, without its mean and gradient and of length 1. Pixels that are black or
+// Square of level pixels about a place, without its mean and of length 1. Pixels that are black or
 // saturated do not count.
 template <int reach>
 struct Block {
@@ -49,7 +49,7 @@ struct Block {
     // (x, y): full frame. `map` turns and scales the square, given in px of the full frame `pixel` apart.
     bool cut(const GreyLevels::Level &level, double x, double y, double pixel, const double map[2][2]) {
         const double u0 = (x + 0.5) / level.pixel, v0 = (y + 0.5) / level.pixel, step = pixel / level.pixel;
-        float sum = 0.0f, square = 0.0f;
+        float sum = 0.0f;
         lost = 0;
         for (int k = 0; k < kCount; k++) {
             const double a = step * (k % kSide - reach), b = step * (k / kSide - reach);
@@ -63,11 +63,25 @@ struct Block {
             sum += one;
         }
         for (size_t k = 0; k < kCount; k++) value[k] = grey[k] - sum / kCount;
-        take_out_plane();
-        for (const float one : value) square += one * one;
-        texture = std::sqrt(square / kCount);
-        for (float &one : value) one = square > 0.0f ? one / std::sqrt(square) : 0.0f;
+        normalise();
         return true;
+    }
+
+    // Takes out the gradient over the block, which is that of light or falloff and shows no place.
+    void take_out_gradient() {
+        const auto length = static_cast<float>(texture * std::sqrt(double(kCount)));
+        for (float &one : value) one *= length;
+        float along[2] = {0.0f, 0.0f}, squares = 0.0f;
+        for (int k = 0; k < kCount; k++) {
+            const auto a = static_cast<float>(k % kSide - reach), b = static_cast<float>(k / kSide - reach);
+            along[0] += a * value[static_cast<size_t>(k)], along[1] += b * value[static_cast<size_t>(k)];
+            squares += a * a;
+        }
+        for (int k = 0; k < kCount; k++)
+            value[static_cast<size_t>(k)] -=
+                (along[0] * static_cast<float>(k % kSide - reach) + along[1] * static_cast<float>(k / kSide - reach))
+                / squares;
+        normalise();
     }
 
     // 0 where too few pixels count.
@@ -86,18 +100,11 @@ struct Block {
     }
 
 private:
-    // A gradient over the block is that of light or falloff, and shows no place.
-    void take_out_plane() {
-        float along[2] = {0.0f, 0.0f}, squares = 0.0f;
-        for (int k = 0; k < kCount; k++) {
-            const auto a = static_cast<float>(k % kSide - reach), b = static_cast<float>(k / kSide - reach);
-            along[0] += a * value[static_cast<size_t>(k)], along[1] += b * value[static_cast<size_t>(k)];
-            squares += a * a;
-        }
-        for (int k = 0; k < kCount; k++)
-            value[static_cast<size_t>(k)] -=
-                (along[0] * static_cast<float>(k % kSide - reach) + along[1] * static_cast<float>(k / kSide - reach))
-                / squares;
+    void normalise() {
+        float square = 0.0f;
+        for (const float one : value) square += one * one;
+        texture = std::sqrt(square / kCount);
+        for (float &one : value) one = square > 0.0f ? one / std::sqrt(square) : 0.0f;
     }
 
     static bool is_lost(float grey) { return !(grey >= kBlack && grey <= kWhite); }

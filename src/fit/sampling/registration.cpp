@@ -183,6 +183,7 @@ void Matcher::find_places() {
             bool good = sight(first, second, {}, Way::forward, p.x, p.y, at);
             for (size_t n = 0; n < 2 && good; n++)
                 good = p.block[n].cut(first_grey.level[n], p.x, p.y, first_grey.level[n].pixel, kUpright);
+            for (auto &block : p.block) block.take_out_gradient();
             if (good && is_textured(p)) places.push_back(p);
         }
     std::stable_sort(places.begin(), places.end(),
@@ -195,7 +196,10 @@ void Matcher::find_places() {
 // The second image's block, (du, dv) level pixels beside where it is expected.
 bool Matcher::cut(size_t n, const Sight &at, double du, double dv, Block<4> &out) const {
     const auto &level = second_grey.level[n];
-    return out.cut(level, at.x + du * level.pixel, at.y + dv * level.pixel, first_grey.level[n].pixel, at.map);
+    const bool is_seen =
+        out.cut(level, at.x + du * level.pixel, at.y + dv * level.pixel, first_grey.level[n].pixel, at.map);
+    if (is_seen) out.take_out_gradient();
+    return is_seen;
 }
 
 Correlations Matcher::correlations(size_t n, const Correction &correction) const {
