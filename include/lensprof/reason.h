@@ -41,6 +41,7 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_MANY_OUTLIERS = 155,             /* share of the pairs that disagree; held-out RMS, levels of 255 */
     LENSPROF_REASON_SEAMS_STAY = 156,                /* median residual and the same before, levels of 255 */
     LENSPROF_REASON_LINKS_UNVERIFIED = 157,          /* image, the first of them: how many */
+    LENSPROF_REASON_LINKS_CONTRADICT = 158,          /* image, of the first link: how many links */
 
     /* Exposures, and the exponent gamma that pictures leave open. */
     LENSPROF_REASON_EXPOSURE_UNCERTAIN = 201, /* image: standard error, EV */

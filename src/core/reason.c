@@ -38,6 +38,7 @@ static const reason_row rows[] = {
     ROW(SEAMS_STAY, "seams_stay", "the result hardly evens out the pictures"),
     ROW(LINKS_UNVERIFIED, "links_unverified",
         "some images are joined to the others only where there is too little texture to check their alignment"),
+    ROW(LINKS_CONTRADICT, "links_contradict", "pairs of two images contradict those of the others and were left out"),
     ROW(WEAK_PATTERNS, "weak_patterns",
         "the residual follows patterns of each image's own, as weak local tone mapping makes them"),
     ROW(EXPOSURE_UNCERTAIN, "exposure_uncertain", "the pairs leave an image's exposure uncertain"),

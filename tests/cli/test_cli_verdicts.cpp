@@ -43,8 +43,11 @@ void test_one_bad_picture_of_six(void **) {
     assert_true(contains(text_of(result), "\n#-lensprof left_out 5\n"));
     const Outcome corrected = run_words({"apply", "--pto", result, "-o", even});
     assert_int_equal(corrected.code, done);
-    assert_true(contains(corrected.err, "img005.png: the result is without this picture"));
+    assert_true(contains(corrected.err, "img005.png: is not part of the result"));
     assert_true(fs::exists(even + "/img003.png") && !fs::exists(even + "/img005.png"));
+    const Json alone = json_of({"apply", "--pto", result, "-o", even, "--json", work("bad/img005.png")}, not_usable);
+    assert_int_equal(alone["pictures"].size(), 0);
+    assert_int_equal(alone["left_out"].size(), 1);
 }
 
 // The reference of the project is the bad one.

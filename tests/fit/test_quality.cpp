@@ -238,6 +238,8 @@ void test_a_broken_link_is_left_out_alone(void **) {
     assert_int_equal(run.result.usable, 1);
     assert_int_equal(run.result.left_out, 0);
     assert_int_equal(run.result.pairs, s.pairs.size() - of_link);
+    assert_true(says(run, LENSPROF_REASON_LINKS_CONTRADICT, "1 of the links") && names(run, 2));
+    assert_int_equal(run.result.evens, 0);  // that seam stays
 }
 
 // Drops all pairs of the last image but so many.

@@ -252,6 +252,19 @@ void assert_same(const FitRun &a, const FitRun &b) {
     assert_memory_equal(a.quality.data(), b.quality.data(), a.quality.size() * sizeof a.quality[0]);
 }
 
+// A bad image in the middle of the tracks is left out, and what they still have in common joins the others.
+void test_a_bad_image_within_tracks(void **) {
+    TrackSimulation s = simulate(srgb_response(), 3, 1500, 1.0, 0.0);
+    uint64_t random = 3;
+    for (auto &o : s.observations)
+        if (o.image == 2)
+            for (double &v : o.value) v = 0.1 + 0.8 * lp_random(&random);
+    FitRun run = run_radiance(s);
+    assert_int_equal(run.result.left_out, 1);
+    for (uint32_t i = 0; i < s.images; i++) assert_int_equal(std::isnan(run.exposures[i].ev), i == 2);
+    assert_int_equal(run.result.evens, 1);
+}
+
 // Same input, same bytes: on any number of threads, and in any order of the observations.
 void test_is_deterministic(void **) {
     TrackSimulation s = simulate(srgb_response(), 6, 900, 1.5, 0.1);
@@ -310,6 +323,7 @@ int main() {
         cmocka_unit_test(test_standard_errors),
         cmocka_unit_test(test_gamma_family_corrects_alike),
         cmocka_unit_test(test_two_fits_of_the_family_correct_alike),
+        cmocka_unit_test(test_a_bad_image_within_tracks),
         cmocka_unit_test(test_is_deterministic),
         cmocka_unit_test(test_pairs_become_tracks),
         cmocka_unit_test(test_fits_pairs),

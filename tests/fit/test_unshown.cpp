@@ -49,6 +49,25 @@ void test_equal_light_shows_no_response(void **) {
             }
 }
 
+// Its profile can be stored, with a doubt, so that it is not what later pictures are fitted with.
+void test_the_profile_says_that_it_is_not_shown(void **) {
+    for (uint64_t seed = 1; seed < 6; seed++) {
+        Simulation s;
+        s.response = srgb_response();
+        s.vignetting = {{-0.02, 0.004, -0.003}, {0.01, -0.01}};
+        s.exposures.assign(s.images, {0.0, {1.0, 1.0, 1.0}});
+        s.make(2000, 1.0, 0.0, 0.0, seed);
+        const lensprof_fit_options options = default_fit();
+        const FitRun run = run_fit(s, options);
+        assert_int_equal(run.result.response_from, LENSPROF_FIT_RESPONSE_KIND);
+        auto profile = std::make_unique<lensprof_profile>();
+        lensprof_profile_init(profile.get());
+        assert_ok(lensprof_profile_from_fit(profile.get(), &run.result, &options, s.images, nullptr));
+        assert_ok(lensprof_profile_validate(profile.get()));
+        assert_true(std::strstr(profile->provenance.doubt, "response not shown") != nullptr);
+    }
+}
+
 // Exposures of a fifth of an EV do.
 void test_little_light_shows_one(void **) {
     Simulation s;
@@ -95,6 +114,7 @@ void test_without_a_prior_nothing_is_held(void **) {
 int main() {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_equal_light_shows_no_response),
+        cmocka_unit_test(test_the_profile_says_that_it_is_not_shown),
         cmocka_unit_test(test_little_light_shows_one),
         cmocka_unit_test(test_the_profile_is_held_where_there_is_one),
         cmocka_unit_test(test_without_a_prior_nothing_is_held),

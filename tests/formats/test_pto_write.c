@@ -229,10 +229,30 @@ static void test_images_that_were_left_out(void **state) {
     lensprof_pto_destroy(pto);
 }
 
+/* Where others share the exposure of an image that was left out, theirs is written into it. */
+static void test_links_to_an_image_that_was_left_out(void **state) {
+    (void)state;
+    lensprof_pto *pto = read_pto("i w10 h10 Eev0 Er1 Eb1\ni w10 h10 Eev0 Er1 Eb1\ni w10 h10 Eev=0 Er1 Eb1\n");
+    lensprof_response *response = malloc(sizeof *response);
+    assert_ok(lensprof_response_set_emor(response, emor, 5));
+    const lensprof_exposure exposures[3] = {{NAN, {1, 1, 1}}, {0, {1, 1, 1}}, {0.75, {1.5, 1, 1}}};
+    assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 3, 1, NULL));
+    free(response);
+    for (uint32_t i = 0; i < 3; i++) {
+        lensprof_pto_image image;
+        lensprof_pto_image_init(&image);
+        assert_ok(lensprof_pto_get_image(pto, i, &image, NULL));
+        assert_true(image.exposure.ev == (i == 1 ? 0.0 : 0.75));
+        assert_true(image.exposure.white_balance[0] == (i == 2 ? 1.5 : 1.0)); /* not shared */
+    }
+    lensprof_pto_destroy(pto);
+}
+
 /* Comments that only look like the mark say nothing and break nothing. */
 static void test_odd_marks(void **state) {
     (void)state;
-    lensprof_pto *pto = read_pto("#-lensprof left_out 7 -1 x 1e9 0.5 1\ni w10 h10\ni w10 h10\n# lensprof left_out 0\n");
+    lensprof_pto *pto = read_pto(
+        "#-lensprof left_out 7 -1 x 1e9 0.5 1\ni w10 h10\ni w10 h10\n# lensprof left_out 0\n#-lensprof left_outs 0\n");
     for (uint32_t i = 0; i < 2; i++) {
         lensprof_pto_image image;
         lensprof_pto_image_init(&image);
@@ -332,6 +352,7 @@ int main(void) {
         cmocka_unit_test(test_reference_stays),
         cmocka_unit_test(test_other_responses_are_projected),
         cmocka_unit_test(test_images_that_were_left_out),
+        cmocka_unit_test(test_links_to_an_image_that_was_left_out),
         cmocka_unit_test(test_odd_marks),
         cmocka_unit_test(test_set_result_refuses),
         cmocka_unit_test(test_set_name),

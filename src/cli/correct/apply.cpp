@@ -49,7 +49,8 @@ struct LeftOut {
 struct Work {
     std::vector<Correction> jobs;
     std::vector<LeftOut> left_out;
-    lensprof_exposure mean{};  // what --output-exposure mean makes the pictures like
+    std::vector<LeftOut> unjoined;  // that the result of the project is without
+    lensprof_exposure mean{};       // what --output-exposure mean makes the pictures like
 };
 
 void declare_exposure(Command &command, Options &o) {
@@ -154,6 +155,15 @@ struct Source {
     std::unique_ptr<PictureModels> models;
 };
 
+// The project's exposures, relative to its reference, or where the result is without that to the first image that it
+// has.
+std::vector<lensprof_exposure> relative_to_joined(const Project &project) {
+    uint32_t reference = project.reference;
+    for (uint32_t i = 0; i < project.images.size() && project.images[reference].left_out; i++)
+        if (!project.images[i].left_out) reference = i;
+    return relative_exposures(project_exposures(project), reference);
+}
+
 Source open_source(const Options &o) {
     Source source;
     if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
@@ -166,7 +176,7 @@ Source open_source(const Options &o) {
     if (!o.pto.empty()) {
         source.project = std::make_unique<Project>(read_project(o.pto, true));
         source.images = std::make_unique<ImagesByFile>(*source.project);
-        source.exposures = project_exposures(*source.project);
+        source.exposures = relative_to_joined(*source.project);
         if (!from_store) source.model = model_of_project(*source.project);
     } else if (o.exposure == Exposure::mean || o.exposure == Exposure::reference) {
         throw Failure(ExitCode::usage, std::string("--output-exposure ")
@@ -246,8 +256,11 @@ Work plan_work(const Options &o, Streams &streams) {
     for (const NamedPicture &picture : pictures) {
         inputs.push_back(picture.file);
         if (source.project && source.project->images[source.images->at(picture.file, "--pto")].left_out) {
-            warn(streams, picture.file + ": the result is without this picture, whose exposure is not known; it is left "
-                                         "as it is");
+            const std::string reason =
+                picture.file
+                + ": is not part of the result, and its exposure is not known; it is not corrected: use the original";
+            warn(streams, reason);
+            work.unjoined.push_back({picture.file, reason, false});
             continue;
         }
         try {
@@ -278,7 +291,9 @@ void list_left_out(const Work &work, Streams &streams) {
 
 Json left_out_json(const Work &work) {
     Json list = Json::array();
-    for (const LeftOut &picture : work.left_out)
+    std::vector<LeftOut> all(work.left_out);
+    all.insert(all.end(), work.unjoined.begin(), work.unjoined.end());
+    for (const LeftOut &picture : all)
         list.push_back(
             {{"file", picture.file}, {"reason", picture.reason}, {"corrected_already", picture.corrected_already}});
     return list;
@@ -346,6 +361,7 @@ int run(Options &o, Streams &streams) {
     list_left_out(work, streams);
     const bool all_done = std::all_of(work.left_out.begin(), work.left_out.end(),
                                       [](const LeftOut &one) { return one.corrected_already; });
+    if (work.jobs.empty() && work.left_out.empty()) return static_cast<int>(ExitCode::not_usable);
     return static_cast<int>(all_done ? ExitCode::done : ExitCode::not_found);
 }
 

@@ -257,6 +257,7 @@ int bracket_and_store(const Options &o, Streams &streams) {
     CameraKind kind = camera_kind_of(o.fit, key, metadata[0]);
     if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind) kind = {};  // the response is asked for
     BuildReport report = fit_bracket(o, project, metadata, ev, kind, streams);
+    if (!report.fit.usable) report.fit.evens = 0;  // a bracket is to show a response
     return finish_fit(
         report, key, o.store,
         {o.fit.method == LENSPROF_METHOD_TRANSFER ? "bracket" : std::string("bracket ") + method_name(o.fit.method),

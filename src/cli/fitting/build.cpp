@@ -241,11 +241,14 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
         report.verdict.text += " (Er and Eb on the v lines, or --free all)";
     name_image(project.names, report.verdict);
     report.exposures = best.exposures;
+    if (best.reference != report.reference)
+        warn(streams, project.names[report.reference] + ": the reference was left out; exposures are relative to "
+                          + project.names[best.reference]);
     report.reference = best.reference;
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(input.pairs, project));
     if (!o.pto_out.empty() && (best.corrects() || o.store.force)) {
         Fitted written = fit_for_project(o, input, best, report.reference, progress);
-        outputs.add(o.pto_out, project_text(o, project, written, report.reference));
+        outputs.add(o.pto_out, project_text(o, project, written, written.reference));
     }
     progress.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)

@@ -252,7 +252,9 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
     if (!report.fit.usable && is_good)
         warn(streams,
              finish.source + ": evens out these pictures, but is not a profile to store: " + report.verdict.text);
-    if (!is_good) tell(streams, not_usable_text(finish.source, report.verdict, store));
+    if (!is_good)
+        tell(streams, not_usable_text(finish.source, report.verdict, store)
+                          + (evens ? "; it evens out these pictures, which --no-store accepts" : ""));
     return static_cast<int>(is_good ? ExitCode::done : ExitCode::not_usable);
 }
 

@@ -371,6 +371,8 @@ void print_build(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_exposures(report, out);
     if (report.has_falloff) print_vignettings(*profile_of(fit), out);
+    if (fit.response_from == LENSPROF_FIT_RESPONSE_KIND)
+        out << "response  typical of the kind of camera: the pictures do not show it\n";
     print_response(fit.response, out);
     print_gamma(report, out);
     print_prior(report, out);
@@ -509,12 +511,15 @@ const lensprof_vignetting &green_falloff(const lensprof_fit_result &fit) {
 }
 
 void print_comparison(const BuildReport &report, const TrueValues &truth, std::ostream &out) {
-    size_t n = report.exposures.size();
     std::vector<double> true_ev, ev;
-    for (size_t i = 0; i < n; i++) {
+    std::vector<size_t> images;  // with an exposure
+    for (size_t i = 0; i < report.exposures.size(); i++) {
+        if (std::isnan(report.exposures[i].ev)) continue;
+        images.push_back(i);
         true_ev.push_back(truth.ev[i] - truth.ev[report.reference]);
         ev.push_back(report.exposures[i].ev);
     }
+    const size_t n = images.size();
     double mean = 0, true_mean = 0, cross = 0, square = 0;
     for (size_t i = 0; i < n; i++)
         mean += ev[i] / static_cast<double>(n), true_mean += true_ev[i] / static_cast<double>(n);
@@ -530,7 +535,7 @@ void print_comparison(const BuildReport &report, const TrueValues &truth, std::o
     for (size_t i = 0; i < n; i++) {
         ev_error = std::max(ev_error, std::abs(ev[i] - true_ev[i]));
         ev_aligned = std::max(ev_aligned, std::abs((ev[i] - mean) / gamma - (true_ev[i] - true_mean)));
-        out << format("%5zu          %+8.3f %+8.3f %+8.3f\n", i, ev[i], true_ev[i], ev[i] / gamma);
+        out << format("%5zu          %+8.3f %+8.3f %+8.3f\n", images[i], ev[i], true_ev[i], ev[i] / gamma);
     }
     out << "radius falloff  recovered     true  aligned\n";
     for (int k = 0; k <= 4; k++) {

@@ -295,31 +295,36 @@ lensprof_status fit_tracks(Call &call, const lensprof_observation *observations,
     Tracks tracks = tracks_of(observations, count);
     lensprof_status status = check_tracks(tracks, error);
     if (status != LENSPROF_OK) return status;
-    const std::vector<lensprof_pair> pairs = pairs_of(tracks, call.channels());
-    if (pairs.empty())
+    const auto within = [&](const Group &group) {
+        return tracks_within(tracks, [&](uint32_t i, uint32_t j) { return group.holds(i, j); });
+    };
+    if (pairs_of(tracks, call.channels()).empty())
         return fail(LENSPROF_ERROR_NO_SAMPLES, error,
                     "fit: no point has two observations that are neither black nor saturated");
     const auto fit = [&](const lensprof_fit_options &options, const Group &group, lensprof_exposure *found,
                          lensprof_fit_result &result) {
-        const Tracks own = tracks_within(tracks, group.joined);
-        fit_radiance(options, call.images.data(), call.count(), own, found, result);
+        fit_radiance(options, call.images.data(), call.count(), within(group), found, result);
     };
-    fit_largest_group(call.options, call.images.data(), call.count(), pairs, fit, exposures, call.result);
+    const auto pairs_within = [&](const Group &group) { return pairs_of(within(group), call.channels()); };
+    fit_largest_group(call.options, call.images.data(), call.count(), pairs_within, fit, exposures, call.result);
     return LENSPROF_OK;
 }
 
 // By a method of pairs, of the largest group of images that agree.
 template <class Method>
 void fit_group(Call &call, const lensprof_pair *pairs, uint32_t count, lensprof_exposure *exposures, Method method) {
-    const std::vector<lensprof_pair> all(pairs, pairs + count);
+    const auto pairs_within = [&](const Group &group) {
+        std::vector<lensprof_pair> own;
+        std::copy_if(pairs, pairs + count, std::back_inserter(own),
+                     [&](const lensprof_pair &pair) { return group.holds(pair.image[0], pair.image[1]); });
+        return own;
+    };
     const auto fit = [&](const lensprof_fit_options &options, const Group &group, lensprof_exposure *found,
                          lensprof_fit_result &result) {
-        std::vector<lensprof_pair> own;
-        std::copy_if(all.begin(), all.end(), std::back_inserter(own),
-                     [&](const lensprof_pair &pair) { return group.holds(pair.image[0], pair.image[1]); });
+        const std::vector<lensprof_pair> own = pairs_within(group);
         method(options, call.images.data(), call.count(), own.data(), static_cast<uint32_t>(own.size()), found, result);
     };
-    fit_largest_group(call.options, call.images.data(), call.count(), all, fit, exposures, call.result);
+    fit_largest_group(call.options, call.images.data(), call.count(), pairs_within, fit, exposures, call.result);
 }
 
 lensprof_status fit_pairs(Call &call, const lensprof_pair *pairs, uint32_t count, lensprof_exposure *exposures,
@@ -446,17 +451,21 @@ lensprof_status lensprof_profile_from_fit(lensprof_profile *profile, const lensp
     const lensprof_status status = take_fitted(given, kFirstOptions, options, result, kFirstResult, fit, error);
     if (status != LENSPROF_OK) return status;
     const auto change = [&](lensprof_profile &own) {
-        put_result(fit, given ? method_name(options.method) : "", image_count, own);
+        const uint32_t used = image_count - std::min(fit.left_out, image_count);
+        put_result(fit, given ? method_name(options.method) : "", used, own);
         own.responses = 1;
         own.response[0] = fit.response;
         lensprof_gain_grid_init(&own.grid);
         own.provenance.pairs = fit.pairs;
         own.provenance.heldout_rms = fit.heldout_rms;
         own.provenance.gamma_sigma = std::max(fit.gamma_sigma, 0.0);
+        if (fit.response_from == LENSPROF_FIT_RESPONSE_KIND)
+            std::snprintf(own.provenance.doubt, sizeof own.provenance.doubt, "%s",
+                          "response not shown by the pictures: typical of the kind");
         const bool holds =
             fit.profile_prior != LENSPROF_PROFILE_PRIOR_NONE && fit.profile_prior != LENSPROF_PROFILE_PRIOR_OVERRULED;
         if (!holds || !options.profile) return;
-        own.provenance.images = sum_of(image_count, options.profile->provenance.images);
+        own.provenance.images = sum_of(used, options.profile->provenance.images);
         own.provenance.pairs = sum_of(fit.pairs, options.profile->provenance.pairs);
     };
     return change_given_profile(profile, change, error);

@@ -67,7 +67,6 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
         if (status != LENSPROF_OK) return status;
         Sampler sampler(options, images.data(), count);
         items = draw(sampler);
-        give_links(options, sampler.links());
         if (items.empty() && options.sampling == LENSPROF_SAMPLING_BRACKET)
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
                         "no two images show the same place between black and white: they may be of different scenes, "
@@ -78,6 +77,7 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
                         "the images overlap, but every sample there is masked, black or saturated, or does not show "
                         "the same in both; check their alignment");
+        give_links(options, sampler.links());
         return LENSPROF_OK;
     } catch (const Cancelled &) {
         return fail(LENSPROF_ERROR_CANCELLED, error, "sample: cancelled");

@@ -20,8 +20,8 @@ constexpr double kSmallestShare = 0.2;  // of a link's pairs that agree
 class GroupFit {
 public:
     GroupFit(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-             const std::vector<lensprof_pair> &pairs)
-        : options_(options), images_(images), count_(image_count), pairs_(pairs) {
+             const PairsWithin &pairs_within)
+        : options_(options), images_(images), count_(image_count), pairs_within_(pairs_within) {
         group_.joined.assign(count_, true);
         group_.reference = options.reference;
     }
@@ -40,11 +40,12 @@ private:
     const lensprof_fit_options &options_;
     const lensprof_fit_image *images_;
     const uint32_t count_;
-    const std::vector<lensprof_pair> &pairs_;
+    const PairsWithin &pairs_within_;
     Group group_;
-    std::vector<lensprof_fit_image_quality> quality_;              // of every image in the last fit that it was in
-    std::vector<bool> banned_ = std::vector<bool>(count_, false);  // images
-    std::vector<uint32_t> component_;                              // of all images, through links that hold
+    std::vector<bool> had_pairs_ = std::vector<bool>(count_, false);  // images, of all pairs
+    std::vector<lensprof_fit_image_quality> quality_;                 // of every image in the last fit that it was in
+    std::vector<bool> banned_ = std::vector<bool>(count_, false);     // images
+    std::vector<uint32_t> component_;                                 // of all images, through links that hold
 };
 
 // The groups of images, each by its smallest index, that pairs, unknowns that they share, or exposures that are held
@@ -63,10 +64,10 @@ std::vector<uint32_t> tied_groups(const Problem &problem) {
 
 // All images, the pairs of links that hold.
 Problem GroupFit::problem() const {
-    std::vector<uint32_t> keep;
-    for (uint32_t p = 0; p < pairs_.size(); p++)
-        if (group_.holds(pairs_[p].image[0], pairs_[p].image[1])) keep.push_back(p);
-    return make_problem(options_, images_, count_, pairs_.data(), keep);
+    const std::vector<lensprof_pair> pairs = pairs_within_(group_);
+    std::vector<uint32_t> keep(pairs.size());
+    std::iota(keep.begin(), keep.end(), 0u);
+    return make_problem(options_, images_, count_, pairs.data(), keep);
 }
 
 // The component with the most images, and of several that of the reference, or with the most pairs. False where none
@@ -76,7 +77,13 @@ bool GroupFit::take_largest() {
     const Problem all = problem();
     component_ = tied_groups(all);
     std::vector<uint32_t> members(count_, 0), pairs(count_, 0);
-    for (uint32_t i = 0; i < count_; i++) members[component_[i]] += !banned_[i];
+    // An image is out where all of its pairs are of broken links, even if what is held ties it to the others.
+    std::vector<bool> is_out(had_pairs_);
+    for (const Edge &edge : all.edges) is_out[edge.image[0]] = is_out[edge.image[1]] = false;
+    for (uint32_t i = 0; i < count_; i++) {
+        is_out[i] = is_out[i] || banned_[i];
+        members[component_[i]] += !is_out[i];
+    }
     for (const Edge &edge : all.edges)
         pairs[component_[edge.image[0]]] += static_cast<uint32_t>(edge.last - edge.first);
     const auto size_of = [&](uint32_t c) {
@@ -88,7 +95,7 @@ bool GroupFit::take_largest() {
         if (size_of(c) > size_of(best)) best = c;
     }
     if (members[best] < 2) return false;
-    for (uint32_t i = 0; i < count_; i++) group_.joined[i] = component_[i] == best && !banned_[i];
+    for (uint32_t i = 0; i < count_; i++) group_.joined[i] = component_[i] == best && !is_out[i];
     group_.reference = options_.reference;
     while (!group_.joined[group_.reference]) group_.reference = (group_.reference + 1) % count_;
     return true;
@@ -161,24 +168,31 @@ void GroupFit::describe(lensprof_exposure *exposures, lensprof_fit_result &r) co
         }
         if (!group_.joined[i]) exposures[i].ev = std::numeric_limits<double>::quiet_NaN();
     }
-    uint32_t unverified = 0;
-    const uint32_t count = count_unverified(unverified);
-    if (count && r.usable && r.reason_code == LENSPROF_REASON_NONE)
-        warn(r, of_image(LENSPROF_REASON_LINKS_UNVERIFIED, unverified, {double(count)}));
-    if (r.left_out == 0) return;
     const auto first = std::find(group_.joined.begin(), group_.joined.end(), false) - group_.joined.begin();
     const auto image = static_cast<uint32_t>(first);
+    const auto is_within = [&](const auto &link) { return group_.joined[link[0]] && group_.joined[link[1]]; };
+    const auto broken = std::find_if(group_.broken.begin(), group_.broken.end(), is_within);
     if (2 * r.left_out >= count_) {
         refuse(r, of_image(LENSPROF_REASON_IMAGE_GROUPS, image, {double(std::max(r.components, 2u))}));
         r.evens = 0;
-    } else if (r.usable && r.reason_code == LENSPROF_REASON_NONE) {
-        warn(r, of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, image, {double(r.left_out)}));
+        return;
     }
+    if (broken != group_.broken.end()) r.evens = 0;
+    if (!r.usable || r.reason_code != LENSPROF_REASON_NONE) return;
+    uint32_t unverified = 0;
+    if (r.left_out)
+        warn(r, of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, image, {double(r.left_out)}));
+    else if (broken != group_.broken.end())
+        warn(r, of_image(LENSPROF_REASON_LINKS_CONTRADICT, (*broken)[0],
+                         {double(std::count_if(group_.broken.begin(), group_.broken.end(), is_within))}));
+    else if (const uint32_t count = count_unverified(unverified))
+        warn(r, of_image(LENSPROF_REASON_LINKS_UNVERIFIED, unverified, {double(count)}));
 }
 
 void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_fit_result &result) {
     const Problem all = problem();
     component_ = all.component;
+    for (const Edge &edge : all.edges) had_pairs_[edge.image[0]] = had_pairs_[edge.image[1]] = true;
     const bool may_leave_out = all.image_unknowns > 0 && !is_static(all);
     if (may_leave_out && !take_largest()) component_ = all.component, group_.joined.assign(count_, true);
     lensprof_fit_options own = options_;
@@ -199,9 +213,9 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_f
 }  // namespace
 
 void fit_largest_group(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-                       const std::vector<lensprof_pair> &pairs, const FitGroup &fit, lensprof_exposure *exposures,
+                       const PairsWithin &pairs_within, const FitGroup &fit, lensprof_exposure *exposures,
                        lensprof_fit_result &result) {
-    GroupFit(options, images, image_count, pairs).run(fit, exposures, result);
+    GroupFit(options, images, image_count, pairs_within).run(fit, exposures, result);
 }
 
 }  // namespace lensprof

@@ -21,6 +21,9 @@ struct Group {
     }
 };
 
+// The pairs of the data between a group's images, by its links.
+using PairsWithin = std::function<std::vector<lensprof_pair>(const Group &group)>;
+
 // Fits the data of a group's images and links with these options.
 using FitGroup = std::function<void(const lensprof_fit_options &options, const Group &group,
                                     lensprof_exposure *exposures, lensprof_fit_result &result)>;
@@ -29,7 +32,7 @@ using FitGroup = std::function<void(const lensprof_fit_options &options, const G
 // fits again without them: the largest group of images that is still tied together. Images outside of it have an ev of
 // NaN; a group of half of the images or less is refused. `pairs` are all pairs of the data.
 void fit_largest_group(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
-                       const std::vector<lensprof_pair> &pairs, const FitGroup &fit, lensprof_exposure *exposures,
+                       const PairsWithin &pairs_within, const FitGroup &fit, lensprof_exposure *exposures,
                        lensprof_fit_result &result);
 
 }  // namespace lensprof

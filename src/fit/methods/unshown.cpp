@@ -32,7 +32,7 @@ void state_errors(const double *covariance, double gamma_sigma, lensprof_fit_res
                 r.vignetting[curve].k[k];  // of M^gamma, where M is near 1
     for (uint32_t i = modes; i < n; i++)
         for (uint32_t j = modes; j < n; j++)
-            r.covariance[i * n + j] += gamma_sigma * gamma_sigma * r.gamma_direction[i] * r.gamma_direction[j];
+            r.covariance[i * n + j] += gamma_sigma * gamma_sigma * (r.gamma_direction[i] * r.gamma_direction[j]);
 }
 
 // Whether the profile says something of the response, and the pictures do not contradict it.

@@ -113,12 +113,15 @@ std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, ui
     return result;
 }
 
-Tracks tracks_within(const Tracks &tracks, const std::vector<bool> &images) {
+Tracks tracks_within(const Tracks &tracks, const std::function<bool(uint32_t i, uint32_t j)> &holds) {
     Tracks own;
     for (const Range &track : tracks.tracks) {
         const size_t first = own.observations.size();
-        for (size_t n = track.first; n < track.last; n++)
-            if (images[tracks.observations[n].image]) own.observations.push_back(tracks.observations[n]);
+        for (size_t n = track.first; n < track.last; n++) {
+            const uint32_t image = tracks.observations[n].image;
+            const uint32_t before = own.observations.size() > first ? own.observations.back().image : image;
+            if (holds(image, image) && holds(before, image)) own.observations.push_back(tracks.observations[n]);
+        }
         if (own.observations.size() < first + 2)
             own.observations.resize(first);
         else

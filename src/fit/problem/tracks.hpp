@@ -1,6 +1,8 @@
 // Tracks: all observations of one scene point, and how they and pairs become each other.
 #pragma once
 
+#include <functional>
+
 #include "fit/problem/problem.hpp"
 
 namespace lensprof {
@@ -16,8 +18,9 @@ Tracks tracks_of(const lensprof_observation *observations, uint32_t count);
 // would then be at two places of one image.
 std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, uint32_t count, int channels);
 
-// The observations in some of the images, of the tracks that keep two or more of them.
-Tracks tracks_within(const Tracks &tracks, const std::vector<bool> &images);
+// The observations of each track that hold with the one kept before, of the tracks that keep two or more. holds(i, i):
+// whether an image has a part at all; holds(i, j): whether a link has.
+Tracks tracks_within(const Tracks &tracks, const std::function<bool(uint32_t i, uint32_t j)> &holds);
 
 // The pairs of tracks: neighbours among the observations of which no channel is one-sided.
 std::vector<lensprof_pair> pairs_of(const Tracks &tracks, int channels);

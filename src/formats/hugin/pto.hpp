@@ -66,6 +66,7 @@ struct PtoToken {
 
 // Begins a comment line that names images, by their numbers, of which the result in the project is without.
 inline constexpr std::string_view kLeftOutMark = "#-lensprof left_out";
+bool is_left_out_mark(std::string_view line);
 
 // Splits a line after its record letter.
 std::vector<PtoToken> split_pto_line(std::string_view line, size_t number);

@@ -235,6 +235,16 @@ PtoMask read_mask(const Line &line, const lensprof_pto &pto) {
     return mask;
 }
 
+}  // namespace
+
+bool is_left_out_mark(std::string_view line) {
+    const size_t end = kLeftOutMark.size();
+    const bool ends = line.size() == end || (line.size() > end && (is_blank(line[end]) || line[end] == '\n'));
+    return ends && line.substr(0, end) == kLeftOutMark;
+}
+
+namespace {
+
 // Numbers that are none of an image are ignored, as all of a comment is.
 void read_left_out(std::string_view line, lensprof_pto &pto) {
     std::string_view rest = line.substr(kLeftOutMark.size());
@@ -265,8 +275,7 @@ lensprof_pto parse_pto(std::string text) {
         if (record == 'i') pto.images.push_back(read_image(reader, pto.images));
         if (record == 'v') variables.push_back({reader.line, reader.number});
         if (record == 'k') masks.push_back({reader.line, reader.number});
-        if (reader.line.substr(0, kLeftOutMark.size()) == kLeftOutMark)
-            left_out.push_back({reader.line, reader.number});
+        if (is_left_out_mark(reader.line)) left_out.push_back({reader.line, reader.number});
     }
     if (pto.images.empty()) fail_at_line(reader.number + 1, "end of text without an image; a project has `i` lines");
     for (const Line &line : variables) read_variables(line, pto);

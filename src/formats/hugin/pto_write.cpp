@@ -121,12 +121,21 @@ bool is_name(std::string_view name) {
 
 bool is_left_out(const lensprof_exposure &exposure) { return std::isnan(exposure.ev); }
 
+constexpr PtoParameter kExposureParameters[] = {kExposureValue, kRed, kBlue};  // in the order of exposure_edits
+
+// The image whose result is written into image i: itself, or where that was left out one that is linked to it.
+uint32_t source_of(const lensprof_pto &pto, const lensprof_exposure *exposures, uint32_t i, PtoParameter parameter) {
+    for (uint32_t j = 0; j < pto.images.size() && is_left_out(exposures[i]); j++)
+        if (pto.images[j].root[parameter] == i && !is_left_out(exposures[j])) return j;
+    return i;
+}
+
 // The text without its marks of images that were left out, and with one of those that are now.
 std::string mark_left_out(std::string_view text, const lensprof_exposure *exposures, uint32_t image_count) {
     std::string marked;
     while (!text.empty()) {
         const size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
-        if (text.substr(0, kLeftOutMark.size()) != kLeftOutMark) marked += text.substr(0, end);
+        if (!is_left_out_mark(text.substr(0, end))) marked += text.substr(0, end);
         text.remove_prefix(end);
     }
     std::string numbers;
@@ -157,8 +166,13 @@ using namespace lensprof;
 lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_response *response,
                                         const lensprof_vignetting *vignetting, const lensprof_exposure *exposures,
                                         uint32_t image_count, uint32_t reference, lensprof_error *error) {
-    if (!pto || !response || !vignetting || !exposures || image_count != pto->images.size() || reference >= image_count
-        || is_left_out(exposures[reference])) {
+    if (pto && exposures && image_count == pto->images.size() && reference < image_count
+        && is_left_out(exposures[reference])) {
+        set_error(error, "lensprof_pto_set_result: the reference was left out of the fit; give that of its result");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    if (!pto || !response || !vignetting || !exposures || image_count != pto->images.size()
+        || reference >= image_count) {
         set_error(error,
                   "lensprof_pto_set_result: give a project, curves, an exposure of each image, and one of them "
                   "as the reference");
@@ -169,9 +183,11 @@ lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_respon
         const std::array<double, kHuginModes> modes = hugin_modes(*response);
         const std::string text = edit_lines(*pto, [&](uint32_t i) {
             std::vector<Edit> edits = model_edits(modes, *vignetting, pto->images[i]);
-            if (is_left_out(exposures[i])) return edits;
-            for (Edit &edit : exposure_edits(exposures[i], exposures[reference], pto->images[reference]))
-                edits.push_back(std::move(edit));
+            for (size_t n = 0; n < 3; n++) {
+                const uint32_t from = source_of(*pto, exposures, i, kExposureParameters[n]);
+                if (!is_left_out(exposures[from]))
+                    edits.push_back(exposure_edits(exposures[from], exposures[reference], pto->images[reference])[n]);
+            }
             return edits;
         });
         // Parsed again, so that reading and writing cannot disagree.
