@@ -134,8 +134,15 @@ void test_another_reference_beside_held_exposures(void **) {
     const Json other =
         json_of({"build", pto, "--no-store", "--json", "--exif-sigma", "0", "--reference", "1"}, not_usable);
     const double moved = first["images"][1]["ev"].get<double>();
-    for (size_t i : {0u, 2u, 3u})
-        assert_close(other["images"][i]["ev"].get<double>(), first["images"][i]["ev"].get<double>() - moved, 1e-9);
+    size_t compared = 0;  // exposures that are held and contradict the pictures can leave an image out, of both alike
+    for (size_t i : {0u, 2u, 3u}) {
+        const Json &a = other["images"][i]["ev"], &b = first["images"][i]["ev"];
+        assert_int_equal(a.is_null(), b.is_null());
+        if (a.is_null()) continue;
+        assert_close(a.get<double>(), b.get<double>() - moved, 1e-9);
+        compared++;
+    }
+    assert_true(compared > 0);
 }
 
 // Small pictures of one manual exposure: a strip of 28 stays level, by what EXIF says of it.
