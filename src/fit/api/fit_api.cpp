@@ -93,7 +93,7 @@ lensprof_status check_options(const lensprof_fit_options &o, uint32_t image_coun
     status = o.response ? lensprof_response_validate(o.response) : LENSPROF_OK;
     if (status != LENSPROF_OK)
         return fail(status, error, "fit options: the given response is not monotone from 0 to 1");
-    if (status == LENSPROF_OK) status = check_links(o, image_count, error);
+    status = check_links(o, image_count, error);
     if (status != LENSPROF_OK) return status;
     return o.profile ? check_profile(o, error) : LENSPROF_OK;
 }

@@ -35,8 +35,8 @@ private:
     std::vector<float> noise_;  // variance about every coarse pixel
 };
 
-// Square of level pixels about a place, without its mean and of length 1. Pixels that are black or
-// saturated do not count.
+// Square of level pixels about a place, without its mean and of length 1. Pixels that are black or saturated do not
+// count.
 template <int reach>
 struct Block {
     static constexpr int kSide = 2 * reach + 1, kCount = kSide * kSide;

@@ -65,6 +65,12 @@ bool place_of(const lensprof_camera &from, const lensprof_camera &to, const Corr
            && (!correction.bend || !is_forward || apply_homography(to, correction.bend->forward, xy));
 }
 
+bool sees(const lensprof_camera &first, const lensprof_camera &second, double across, double down) {
+    double xy[2];
+    return place_of(first, second, {}, Way::forward, across * first.width - 0.5, down * first.height - 0.5, xy)
+           && xy[0] >= 0.0 && xy[1] >= 0.0 && xy[0] < second.width && xy[1] < second.height;
+}
+
 bool sight(const lensprof_camera &from, const lensprof_camera &to, const Correction &correction, Way way, double x,
            double y, Sight &out) {
     double xy[2], beside[2];

@@ -51,6 +51,9 @@ struct Sight {
 bool sight(const lensprof_camera &from, const lensprof_camera &to, const Correction &correction, Way way, double x,
            double y, Sight &out);
 
+// Whether a place of the first frame, given as shares of its width and height, lies in the second, by the project.
+bool sees(const lensprof_camera &first, const lensprof_camera &second, double across, double down);
+
 // Places in half diagonals of a frame from its middle, and in px.
 Eigen::Vector2d frame_place(const lensprof_camera &camera, double x, double y);
 void pixel_place(const lensprof_camera &camera, const Eigen::Vector2d &place, double xy[2]);

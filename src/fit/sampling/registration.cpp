@@ -128,7 +128,7 @@ struct Matcher {
     bool is_textured(const Place &p) const;
     void find_places();
     double mean_correlation(size_t level, const Rotation &rotation) const;
-    Rotation together() const;
+    Rotation together(const double shift[2]) const;
     bool cut(size_t level, const Sight &at, double du, double dv, Block<4> &out) const;
     Correlations correlations(size_t level, const Correction &correction) const;
     void common_shift(double shift[2]) const;
@@ -137,7 +137,7 @@ struct Matcher {
     bool refine(size_t level, const double *shift, Rotation &rotation) const;
     bool refine_bend(size_t level, Correction &correction) const;
     bool guess_bend(Correction &correction) const;
-    std::optional<Rotation> rotation() const;
+    std::optional<Rotation> rotation(const double shift[2]) const;
     std::optional<Correction> bent(Correction correction) const;
     bool is_better(const Correction &correction, const Correlations &by, const Correction &than,
                    const Correlations &without) const;
@@ -148,13 +148,10 @@ struct Matcher {
 bool Matcher::overlap_box(double low[2], double high[2]) const {
     constexpr int kScan = 48;
     std::fill(low, low + 2, 1.0), std::fill(high, high + 2, 0.0);
-    double xy[2];
     for (int row = 0; row < kScan; row++)
         for (int column = 0; column < kScan; column++) {
             const double at[2] = {(column + 0.5) / kScan, (row + 0.5) / kScan};
-            const bool is_seen =
-                place_of(first, second, {}, Way::forward, at[0] * first.width - 0.5, at[1] * first.height - 0.5, xy)
-                && xy[0] >= 0.0 && xy[1] >= 0.0 && xy[0] < second.width && xy[1] < second.height;
+            const bool is_seen = sees(first, second, at[0], at[1]);
             for (int d = 0; d < 2 && is_seen; d++)
                 low[d] = std::min(low[d], at[d] - 0.5 / kScan), high[d] = std::max(high[d], at[d] + 0.5 / kScan);
         }
@@ -271,8 +268,8 @@ double Matcher::mean_correlation(size_t level, const Rotation &rotation) const {
 
 // The rotation under which the blocks match best together: along the axes through the middle of the second frame, steps
 // of two pixels at first.
-Rotation Matcher::together() const {
-    double shift[2], middle[2], beside[2];
+Rotation Matcher::together(const double shift[2]) const {
+    double middle[2], beside[2];
     const double x = 0.5 * (second.width - 1.0), y = 0.5 * (second.height - 1.0);
     if (!lensprof_camera_unproject(&second, x, y, middle) || !lensprof_camera_unproject(&second, x + 1.0, y, beside))
         return {};
@@ -280,7 +277,6 @@ Rotation Matcher::together() const {
     unit_vector(middle, ahead.data()), unit_vector(beside, aside.data());
     const double angle = std::acos(std::min(1.0, ahead.dot(aside)));  // of a px of the full frame
     const Eigen::Vector3d right = (aside - ahead * ahead.dot(aside)).normalized(), up = right.cross(ahead);
-    common_shift(shift);
     // A turn by +angle about `up` moves what is ahead to the right or to the left: both are tried.
     const Eigen::Vector3d axes[3] = {angle * up, angle * right, ahead * 2.0 / std::hypot(second.width, second.height)};
     const double coarse = second_grey.level[0].pixel;
@@ -420,10 +416,8 @@ bool Matcher::is_better(const Correction &correction, const Correlations &by, co
            && median_shift(than, correction) > 0.5 * second_grey.level[1].pixel;
 }
 
-std::optional<Rotation> Matcher::rotation() const {
+std::optional<Rotation> Matcher::rotation(const double shift[2]) const {
     Rotation rotation{};
-    double shift[2];
-    common_shift(shift);
     if (!refine(0, shift, rotation) || !refine(0, kNoShift, rotation)) return std::nullopt;
     for (int round = 0; round < 2; round++)
         if (!refine(1, kNoShift, rotation)) return std::nullopt;
@@ -456,9 +450,11 @@ Correction registration(const lensprof_camera &first, const GreyLevels &first_gr
         if (matcher.is_better(other, own, found, alike)) found = other, alike = own;
     };
     if (is_right()) return found;
-    if (const auto rotation = matcher.rotation()) take_if_better({*rotation, {}});
+    double shift[2];  // where both rotations begin
+    matcher.common_shift(shift);
+    if (const auto rotation = matcher.rotation(shift)) take_if_better({*rotation, {}});
     if (is_right()) return found;
-    take_if_better({matcher.together(), {}});
+    take_if_better({matcher.together(shift), {}});
     if (is_right()) return found;
     if (const auto bent = matcher.bent(found)) take_if_better(*bent);
     return found;

@@ -41,11 +41,8 @@ bool direction_of(const lensprof_camera &camera, double x, double y, double v[3]
 int overlap_of(const lensprof_camera &first, const lensprof_camera &second) {
     constexpr int columns = 8, rows = 6;
     int seen = 0;
-    double xy[2];
     for (int k = 0; k < columns * rows; k++)
-        seen += place_of(first, second, {}, Way::forward, (k % columns + 0.5) / columns * first.width - 0.5,
-                         (k / columns + 0.5) / rows * first.height - 0.5, xy)
-                && xy[0] >= 0.0 && xy[1] >= 0.0 && xy[0] < second.width && xy[1] < second.height;
+        seen += sees(first, second, (k % columns + 0.5) / columns, (k / columns + 0.5) / rows);
     return seen;
 }
 
