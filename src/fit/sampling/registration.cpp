@@ -27,7 +27,8 @@
 // linear in h, which is fitted as d is, with T = kBendTrust.
 //
 // Where blocks are few, or show but an edge each, their places one by one say little, and what all of them say together
-// is taken first: the rotation under which their mean correlation is largest, by a search along its three axes.
+// is taken first: the rotation under which the mean square of their positive correlations is largest, by a search
+// along its three axes.
 //
 // Each is accepted only where the correlations of most blocks are clearly better than without it.
 #include "fit/sampling/registration.hpp"
@@ -60,7 +61,7 @@ constexpr double kOfCoarse = 0.5;        // texture of a block on the fine level
 constexpr double kFineTexture = 0.0075;  // or standard deviation, grey value 0..1
 constexpr double kRight = 0.85;          // mean correlation of a project that is right
 constexpr double kBetter = 0.02;         // mean correlation by which a correction must be better than none,
-constexpr double kClearlyBetter = 0.25;  // the same, where many blocks show what lies at other distances
+constexpr double kClearlyBetter = 0.1;   // the same, where many blocks show what moved or lies at other distances
 constexpr double kPreferred = 0.05;      // difference of correlations that tells
 constexpr double kTrust = 0.01;          // radians: how far off a project is, for turns that blocks do not tell
 constexpr double kBendTrust = 0.02;      // the same of a homography's elements
@@ -119,6 +120,10 @@ double mean_of(const Correlations &correlations, size_t &count) {
     return count ? sum / static_cast<double>(count) : 0.0;
 }
 
+// The weight of a correlation in the search for where all blocks match together. Blocks of things that moved correlate
+// at random about 0; the square keeps their share small beside that of the blocks that match.
+double agreement(double correlation) { return correlation > 0.0 ? correlation * correlation : 0.0; }
+
 struct Matcher {
     const lensprof_camera &first, &second;
     const GreyLevels &first_grey, &second_grey;
@@ -127,7 +132,7 @@ struct Matcher {
     bool overlap_box(double low[2], double high[2]) const;
     bool is_textured(const Place &p) const;
     void find_places();
-    double mean_correlation(size_t level, const Rotation &rotation) const;
+    double mean_agreement(size_t level, const Rotation &rotation) const;
     Rotation together(const double shift[2]) const;
     bool cut(size_t level, const Sight &at, double du, double dv, Block<4> &out) const;
     Correlations correlations(size_t level, const Correction &correction) const;
@@ -223,7 +228,7 @@ void Matcher::common_shift(double shift[2]) const {
         if (!sight(first, second, {}, Way::forward, p.x, p.y, at)) continue;
         for (int k = 0; k < size * size; k++)
             if (cut(0, at, offset(k % size), offset(k / size), other)) {
-                sum[static_cast<size_t>(k)] += p.block[0].correlation(other);
+                sum[static_cast<size_t>(k)] += agreement(p.block[0].correlation(other));
                 count[static_cast<size_t>(k)]++;
             }
     }
@@ -259,9 +264,12 @@ std::vector<Match> Matcher::look(size_t n, const double *shift, int reach, int s
 }
 
 // Of the blocks that are seen under the rotation; -1 where these are too few.
-double Matcher::mean_correlation(size_t level, const Rotation &rotation) const {
+double Matcher::mean_agreement(size_t level, const Rotation &rotation) const {
+    Correlations each = correlations(level, {rotation, {}});
+    for (auto &one : each)
+        if (one) one = agreement(*one);
     size_t count;
-    const double mean = mean_of(correlations(level, {rotation, {}}), count);
+    const double mean = mean_of(each, count);
     const auto showing = std::count_if(places.begin(), places.end(), [=](const Place &p) { return p.shows(level); });
     return 2 * count > static_cast<size_t>(showing) ? mean : -1.0;
 }
@@ -281,17 +289,17 @@ Rotation Matcher::together(const double shift[2]) const {
     const Eigen::Vector3d axes[3] = {angle * up, angle * right, ahead * 2.0 / std::hypot(second.width, second.height)};
     const double coarse = second_grey.level[0].pixel;
     Rotation best{};
-    double most = mean_correlation(0, best);
+    double most = mean_agreement(0, best);
     auto try_from = [&](size_t level, const Rotation &from, const Eigen::Vector3d &change) {
         const Rotation next{from[0] + change[0], from[1] + change[1], from[2] + change[2]};
-        const double mean = mean_correlation(level, next);
+        const double mean = mean_agreement(level, next);
         if (mean > most) most = mean, best = next;
     };
     const Rotation none{};
     for (double a : {-1.0, 1.0})
         for (double b : {-1.0, 1.0}) try_from(0, none, coarse * (a * shift[0] * axes[0] + b * shift[1] * axes[1]));
     for (size_t level : {0, 1}) {
-        most = mean_correlation(level, best);
+        most = mean_agreement(level, best);
         for (double step = level == 0 ? 2.0 : 1.0; step > 0.2; step *= 0.5)
             for (int round = 0; round < 6; round++) {
                 const Rotation from = best;
