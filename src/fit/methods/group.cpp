@@ -30,7 +30,8 @@ public:
 
 private:
     Problem problem() const;
-    bool take_largest();
+    void join_all();
+    bool take_largest(const Problem &all);
     bool leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r);
     bool break_links(const lensprof_exposure *exposures, const lensprof_fit_result &r);
     void note_quality(const lensprof_fit_result &r);
@@ -62,7 +63,7 @@ std::vector<uint32_t> tied_groups(const Problem &problem) {
     return group;
 }
 
-// All images, the pairs of links that hold.
+// All images, the pairs of the group's images by links that hold.
 Problem GroupFit::problem() const {
     const std::vector<lensprof_pair> pairs = pairs_within_(group_);
     std::vector<uint32_t> keep(pairs.size());
@@ -70,11 +71,13 @@ Problem GroupFit::problem() const {
     return make_problem(options_, images_, count_, pairs.data(), keep);
 }
 
-// The component with the most images, and of several that of the reference, or with the most pairs. False where none
-// has pairs.
-bool GroupFit::take_largest() {
+void GroupFit::join_all() {
     for (uint32_t i = 0; i < count_; i++) group_.joined[i] = !banned_[i];
-    const Problem all = problem();
+}
+
+// Of all images that are not banned: the component with the most images, and of several that of the reference, or with
+// the most pairs. False where none has pairs.
+bool GroupFit::take_largest(const Problem &all) {
     component_ = tied_groups(all);
     std::vector<uint32_t> members(count_, 0), pairs(count_, 0);
     // An image is out where all of its pairs are of broken links, even if what is held ties it to the others.
@@ -194,7 +197,7 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_f
     component_ = all.component;
     for (const Edge &edge : all.edges) had_pairs_[edge.image[0]] = had_pairs_[edge.image[1]] = true;
     const bool may_leave_out = all.image_unknowns > 0 && !is_static(all);
-    if (may_leave_out && !take_largest()) component_ = all.component, group_.joined.assign(count_, true);
+    if (may_leave_out && !take_largest(all)) component_ = all.component, group_.joined.assign(count_, true);
     lensprof_fit_options own = options_;
     for (int n = 1;; n++) {
         own.reference = group_.reference;
@@ -203,7 +206,8 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_f
         const Group before = group_;
         const std::vector<uint32_t> component = component_;
         if (!may_leave_out || n == kMostFits || !leave_out(exposures, result)) break;
-        if (take_largest()) continue;
+        join_all();
+        if (take_largest(problem())) continue;
         group_ = before, component_ = component;
         break;
     }

@@ -30,7 +30,7 @@ using FitGroup = std::function<void(const lensprof_fit_options &options, const G
 
 // Fits all images. Where links contradict what the others agree on, or the result cannot state an image's exposure,
 // fits again without them: the largest group of images that is still tied together. Images outside of it have an ev of
-// NaN; a group of half of the images or less is refused. `pairs` are all pairs of the data.
+// NaN; a group of half of the images or less is refused.
 void fit_largest_group(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count,
                        const PairsWithin &pairs_within, const FitGroup &fit, lensprof_exposure *exposures,
                        lensprof_fit_result &result);

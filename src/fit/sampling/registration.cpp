@@ -121,7 +121,7 @@ double mean_of(const Correlations &correlations, size_t &count) {
 }
 
 // The weight of a correlation in the search for where all blocks match together. Blocks of things that moved correlate
-// at random about 0; the square keeps their share small beside that of the blocks that match.
+// at random about 0; the square keeps their share small compared with that of the blocks that match.
 double agreement(double correlation) { return correlation > 0.0 ? correlation * correlation : 0.0; }
 
 struct Matcher {
