@@ -252,10 +252,10 @@ lensprof_fit_radiance(const lensprof_fit_options *options, const lensprof_fit_im
 
 /* Puts what a fit found into an initialised profile, to be stored or applied: response, vignettings, covariance, no
  * gain grid, and in its provenance method (that of the options), software, pictures and pairs (with those of the
- * profile that is in the result as its prior), heldout_rms, inlier_share and not_usable. All else stays: key, source,
- * time, prior_id and forced are the caller's to set. options: those of the fit, whose profile is read; NULL = not
- * known. image_count: pictures that were fitted. Errors: ARGUMENT, also for a result that no fit has filled;
- * STRUCT_SIZE; MEMORY. */
+ * profile that is in the result as its prior), heldout_rms, inlier_share, not_usable and doubt (none, or that the
+ * pictures do not show the response). All else stays: key, source, time, prior_id and forced are the caller's to set.
+ * options: those of the fit, whose profile is read; NULL = not known. image_count: of the fit; pictures that it left
+ * out do not count. Errors: ARGUMENT, also for a result that no fit has filled; STRUCT_SIZE; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_from_fit(lensprof_profile *profile,
                                                                          const lensprof_fit_result *result,
                                                                          const lensprof_fit_options *options,

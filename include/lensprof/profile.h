@@ -90,7 +90,7 @@ typedef struct lensprof_provenance {
     uint32_t pairs;         /* correspondences used */
     double heldout_rms;     /* transfer residual on held-out pairs, levels of 255; LENSPROF_UNKNOWN */
     double inlier_share;    /* 0..1; LENSPROF_UNKNOWN */
-    char doubt[64];         /* why it may be wrong, as found when it was imported; empty = no doubt */
+    char doubt[64];         /* why it may be wrong, as found when it was imported or fitted; empty = no doubt */
     int64_t prior_id;       /* profile of the same database that was the prior of its fit; 0 = none */
     uint32_t forced;        /* 1: stored although the fit was not usable; else 0 */
     uint32_t not_usable;    /* 1: of a fit whose result is not usable; lensprof_store_put wants `forced` then, and does
@@ -128,6 +128,11 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_copy(lensprof_pr
 /* LENSPROF_OK when struct_size, key, provenance, responses, vignettings (which share one centre), gain grid and
  * covariance (finite, symmetric, non-negative diagonal) are valid. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_validate(const lensprof_profile *profile);
+
+/* 1 where the doubt of a provenance concerns the response alone: the fit's pictures did not show it
+ * (LENSPROF_FIT_RESPONSE_KIND). Lookups answer with the falloff of such a profile, and take its response for no other
+ * lens or setting. Else 0. */
+LENSPROF_API int lensprof_provenance_doubts_response(const lensprof_provenance *provenance);
 
 /* Relative illuminance at pixel (x, y), not necessarily a whole one, of a frame of width x height pixels, in channel 0,
  * 1 or 2 of a valid profile, as applying it divides by: M times gain grid, > 0; the centre of the falloff has 1 where

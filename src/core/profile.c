@@ -86,6 +86,13 @@ void lensprof_profile_init_sized(lensprof_profile *profile, size_t size) {
     profile->response[1] = profile->response[2] = profile->response[0];
 }
 
+int lensprof_provenance_doubts_response(const lensprof_provenance *provenance) {
+    static const char doubt[] = LP_DOUBT_RESPONSE;
+    for (size_t i = 0; i < sizeof doubt; i++)
+        if (provenance->doubt[i] != doubt[i]) return 0;
+    return 1;
+}
+
 lensprof_status lensprof_profile_copy(lensprof_profile *to, const lensprof_profile *from) {
     if (!to || !from) return LENSPROF_ERROR_ARGUMENT;
     if (to == from) return LENSPROF_OK;

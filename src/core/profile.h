@@ -10,6 +10,9 @@
  * always there; read them through a function here, which knows their default. */
 #define LP_FIRST_PROFILE LP_END_OF(lensprof_profile, covariance)
 
+/* The doubt that lensprof_provenance_doubts_response knows. */
+#define LP_DOUBT_RESPONSE "response not shown by the pictures: typical of the kind"
+
 /* No text of a profile holds a control character, which would break listings. */
 static inline int lp_is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
 

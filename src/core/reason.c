@@ -61,6 +61,7 @@ static const reason_row rows[] = {
     ROW(SMALL_RADIUS, "small_radius", "the pairs do not reach the corners"),
     ROW(CORNER_UNCERTAIN, "corner_uncertain", "the pairs leave the falloff in the corners uncertain"),
     ROW(FALLOFF_RISES, "falloff_rises", "the falloff rises away from the middle, as of no lens"),
+    ROW(FALLOFF_DARK, "falloff_dark", "the falloff leaves less light than any lens does"),
     ROW(CENTER_ON_LIMIT, "center_on_limit", "the centre of the falloff is at the limit of what is allowed"),
     ROW(NOT_RADIAL, "not_radial", "the residual follows one pattern over the frame: the falloff is not radial"),
     ROW(FAR_CENTER, "far_center", "the centre of the falloff lies far from the middle of the frame"),

@@ -100,6 +100,33 @@ void test_pictures_that_show_no_response(void **) {
     assert_true(json_of({"build", pto("shown"), "--no-store", "--json"})["response"]["from"] == "pictures");
 }
 
+// The falloff of such pictures is known all the same: stored, it is found at its setting. The response is not: it is
+// no prior of the next fit.
+void test_a_falloff_without_a_response_is_found(void **) {
+    const Words dim{"--ev", "0", "--wb", "0", "--vignetting=-.06,0,0"};
+    const Words setting{"--db", work("even.db"), "--camera", "B", "--lens", "C", "--focal", "30", "--aperture", "4"};
+    simulate("even", dim);
+    must_exit(done, Words{"build", pto("even")} + setting);
+    must_exit(done, Words{"query"} + setting);
+    simulate("next", dim + Words{"--seed", "77"});
+    const Json next = json_of(Words{"build", pto("next"), "--json", "--no-store"} + setting);
+    assert_true(next["response"]["from"] == "kind");
+    assert_close(
+        next["gamma"]["sigma"].get<double>(),
+        json_of({"build", pto("next"), "--json", "--no-store", "--stored", "none", "--camera", "B"})["gamma"]["sigma"]
+            .get<double>(),
+        0.002);
+}
+
+// Nothing of the lens is asked for: there would be nothing in the profile.
+void test_nothing_to_store(void **) {
+    simulate("nothing", {});
+    const Outcome refused = run_words({"build", pto("nothing"), "--free", "ev,wb", "--db", work("nothing.db")});
+    assert_int_equal(refused.code, usage);
+    assert_true(contains(refused.err, "give --no-store, or --free all"));
+    assert_false(fs::exists(work("nothing.db")));
+}
+
 // A sky with a few wires, whose project is off by some pixels, joins.
 void test_smooth_pictures_join(void **) {
     simulate("sky", {"--scene", "sky", "--misalign", "4", "--response", "srgb"});
@@ -127,6 +154,8 @@ int main() {
         CLI_TEST(test_even_pictures_that_are_no_profile),
         CLI_TEST(test_noise_is_neither),
         CLI_TEST(test_pictures_that_show_no_response),
+        CLI_TEST(test_a_falloff_without_a_response_is_found),
+        CLI_TEST(test_nothing_to_store),
         CLI_TEST(test_smooth_pictures_join),
         CLI_TEST(test_frames_of_one_exposure),
     };

@@ -111,6 +111,19 @@ void test_a_centre_on_its_limit_is_not_usable(void **) {
     }
 }
 
+// Grey values that no lens makes.
+void test_a_falloff_to_nothing_is_not_usable(void **) {
+    Simulation s;
+    s.response = srgb_response();
+    for (uint32_t i = 0; i < s.images; i++) s.exposures.push_back({0.2 * i, {1.0, 1.0, 1.0}});
+    s.vignetting = {{-1.6, 0.4, 0.22}, {0.0, 0.0}};
+    s.make(6000, 1.0, 0.0, 1.0, 5);
+    const FitRun run = run_fit(s);
+    assert_int_equal(run.result.usable, 0);
+    assert_int_equal(run.result.reason_code, LENSPROF_REASON_FALLOFF_DARK);
+    assert_true(run.result.reason_value[0] < 0.05);
+}
+
 // Six pictures, of which the third is warmer; the balances are held, or free, or equal.
 void test_balances_that_are_held_are_told(void **) {
     for (uint64_t seed = 1; seed <= 4; seed++) {
@@ -386,6 +399,7 @@ int main() {
         cmocka_unit_test(test_the_corners_must_be_covered),
         cmocka_unit_test(test_a_falloff_that_rises_is_not_usable),
         cmocka_unit_test(test_a_centre_on_its_limit_is_not_usable),
+        cmocka_unit_test(test_a_falloff_to_nothing_is_not_usable),
         cmocka_unit_test(test_balances_that_are_held_are_told),
         cmocka_unit_test(test_the_greys_must_be_covered),
         cmocka_unit_test(test_coverage_counts_every_end),

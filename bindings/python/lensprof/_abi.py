@@ -184,6 +184,7 @@ class Reason(IntEnum):
     CORNER_UNCERTAIN = 402
     FALLOFF_RISES = 403
     CENTER_ON_LIMIT = 404
+    FALLOFF_DARK = 405
     NOT_RADIAL = 451
     FAR_CENTER = 452
     FALLOFF_RISES_SOME = 453
@@ -1235,6 +1236,7 @@ FUNCTIONS = {
     "lensprof_profile_init_sized": (None, [POINTER(Profile), c_size_t]),
     "lensprof_profile_copy": (c_int, [POINTER(Profile), POINTER(Profile)]),
     "lensprof_profile_validate": (c_int, [POINTER(Profile)]),
+    "lensprof_provenance_doubts_response": (c_int, [POINTER(Provenance)]),
     "lensprof_profile_falloff": (c_double, [POINTER(Profile), c_uint32, c_uint32, c_uint32, c_double, c_double,
                                             POINTER(c_double)]),
     "lensprof_profile_radial_falloff": (c_double, [POINTER(Profile), c_uint32, c_double, POINTER(c_double)]),

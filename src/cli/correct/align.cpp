@@ -222,7 +222,7 @@ int align(const Options &o, Streams &streams) {
     if (o.json) print_json(report(o, fitted.result, verdict, exposures, written), streams.out);
     for (const auto &entry : written.pictures)
         if (!o.json) streams.out << entry["output"].get<std::string>() << "\n";
-    return static_cast<int>(fitted.corrects() ? ExitCode::done : ExitCode::not_usable);
+    return static_cast<int>(written.pictures.empty() ? ExitCode::not_usable : ExitCode::done);
 }
 
 int run(const Options &o, Streams &streams) {

@@ -93,6 +93,14 @@ lensprof_fit_options project_options(const Options &o, const Project &project, l
     return options;
 }
 
+// A profile holds what was measured of a lens: it is not stored where nothing of it is asked for.
+void check_unknowns(const Options &o, const Project &project, const lensprof_fit_options &options) {
+    if (!o.store.no_store && !(options.free & (LENSPROF_FREE_RESPONSE | falloff_flags)))
+        throw Failure(ExitCode::usage, project.path
+                                           + ": neither response nor falloff is asked for, so that there is nothing to "
+                                             "store; give --no-store, or --free all");
+}
+
 bool is_grey(const std::vector<lensprof_pair> &pairs) {
     for (const auto &p : pairs)
         for (const auto &v : p.value)
@@ -228,6 +236,7 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     report.no_prior = prior.reason;
     report.prior_is_composed = prior.is_composed;
     input.options.profile = prior.profile.get();
+    check_unknowns(o, project, input.options);
     get_points(o, project, progress, report, input);
     stop_if_interrupted();
     input.images = fit_images(project);

@@ -49,7 +49,9 @@ void keep_sensor(double crop_factor, std::vector<lensprof_store_row> &rows) {
 
 // As lookups do.
 void leave_out_doubtful(std::vector<lensprof_store_row> &rows) {
-    const auto has_doubt = [](const lensprof_store_row &row) { return *row.provenance.doubt != 0; };
+    const auto has_doubt = [](const lensprof_store_row &row) {
+        return *row.provenance.doubt != 0 && !lensprof_provenance_doubts_response(&row.provenance);
+    };
     rows.erase(std::remove_if(rows.begin(), rows.end(), has_doubt), rows.end());
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <new>
 
+#include "core/profile.h"
 #include "fit/api/profile.hpp"
 #include "fit/base/sized.hpp"
 #include "fit/methods/debevec.hpp"
@@ -459,9 +460,8 @@ lensprof_status lensprof_profile_from_fit(lensprof_profile *profile, const lensp
         own.provenance.pairs = fit.pairs;
         own.provenance.heldout_rms = fit.heldout_rms;
         own.provenance.gamma_sigma = std::max(fit.gamma_sigma, 0.0);
-        if (fit.response_from == LENSPROF_FIT_RESPONSE_KIND)
-            std::snprintf(own.provenance.doubt, sizeof own.provenance.doubt, "%s",
-                          "response not shown by the pictures: typical of the kind");
+        const bool is_shown = fit.response_from != LENSPROF_FIT_RESPONSE_KIND;
+        std::snprintf(own.provenance.doubt, sizeof own.provenance.doubt, "%s", is_shown ? "" : LP_DOUBT_RESPONSE);
         const bool holds =
             fit.profile_prior != LENSPROF_PROFILE_PRIOR_NONE && fit.profile_prior != LENSPROF_PROFILE_PRIOR_OVERRULED;
         if (!holds || !options.profile) return;

@@ -93,6 +93,7 @@ template <class Item, class Draw>
 lensprof_status sample_into(const lensprof_sample_options &options, const lensprof_sample_image *images,
                             uint32_t image_count, uint64_t room, Item *items, uint32_t capacity, uint32_t *count,
                             Draw draw, lensprof_error *error) {
+    if (options.link_count) *options.link_count = 0;
     if (capacity < room) *count = static_cast<uint32_t>(room);
     if (capacity == 0) return LENSPROF_OK;
     if (capacity < room)

@@ -181,7 +181,11 @@ void GroupFit::describe(lensprof_exposure *exposures, lensprof_fit_result &r) co
         return;
     }
     if (broken != group_.broken.end()) r.evens = 0;
-    if (!r.usable || r.reason_code != LENSPROF_REASON_NONE) return;
+    if (!r.usable) return;
+    // Which greys were seen is worth less than which images hold together.
+    const bool is_of_greys =
+        r.reason_code == LENSPROF_REASON_MISSING_GREYS || r.reason_code == LENSPROF_REASON_RESPONSE_NOT_SHOWN;
+    if (r.reason_code != LENSPROF_REASON_NONE && !is_of_greys) return;
     uint32_t unverified = 0;
     if (r.left_out)
         warn(r, of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, image, {double(r.left_out)}));

@@ -39,7 +39,7 @@ void state_errors(const double *covariance, double gamma_sigma, lensprof_fit_res
 bool holds_response(const lensprof_profile &profile, const lensprof_fit_result &r) {
     const bool is_kept =
         r.profile_prior == LENSPROF_PROFILE_PRIOR_USED || r.profile_prior == LENSPROF_PROFILE_PRIOR_FALLOFF_OVERRULED;
-    return is_kept
+    return is_kept && !lensprof_provenance_doubts_response(&profile.provenance)
            && (lp_covariance_modes(profile.response, profile.responses) > 0 || profile.provenance.gamma_sigma > 0.0);
 }
 

@@ -77,7 +77,8 @@ StoredPrior::StoredPrior(const lensprof_profile &profile, const Problem &problem
         return all;
     };
     const Eigen::MatrixXd scatter = scatter_of_all();
-    if (is_emor && !is_known(0, modes_)) modes_ = 0;
+    const bool is_of_kind = lensprof_provenance_doubts_response(&profile.provenance);  // and known without it
+    if (is_emor && (is_of_kind || !is_known(0, modes_))) modes_ = 0;
     std::vector<int> from, to;  // row of the profile's covariance, column of the full shared vector
     for (int l = 0; l < modes_ && is_emor; l++) from.push_back(l), to.push_back(l);
     for (int i = 0; i < 3 * vignettings_ && is_known(falloff, 3 * vignettings_); i++)

@@ -119,8 +119,10 @@ Tracks tracks_within(const Tracks &tracks, const std::function<bool(uint32_t i, 
         const size_t first = own.observations.size();
         for (size_t n = track.first; n < track.last; n++) {
             const uint32_t image = tracks.observations[n].image;
-            const uint32_t before = own.observations.size() > first ? own.observations.back().image : image;
-            if (holds(image, image) && holds(before, image)) own.observations.push_back(tracks.observations[n]);
+            bool agrees = holds(image, image);
+            for (size_t kept = first; kept < own.observations.size() && agrees; kept++)
+                agrees = holds(own.observations[kept].image, image);
+            if (agrees) own.observations.push_back(tracks.observations[n]);
         }
         if (own.observations.size() < first + 2)
             own.observations.resize(first);

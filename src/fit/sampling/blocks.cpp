@@ -44,6 +44,7 @@ std::vector<float> noise_of_halved(const GreyLevels::Level &from) {
 // Mean over the square of pixels about every pixel, as far as it lies in the frame; along rows, then along columns.
 std::vector<float> mean_about(std::vector<float> values, int width, int height) {
     constexpr int kReach = 3;
+    if (values.empty()) return values;
     auto along = [&](int lines, int length, ptrdiff_t line_step, ptrdiff_t step) {
         std::vector<double> before(static_cast<size_t>(length) + 1, 0.0);
         for (int line = 0; line < lines; line++) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "fit/base/quantile.hpp"
 #include "fit/problem/residual.hpp"
@@ -55,15 +56,17 @@ bool is_even(const Seam &seam, double noise_levels) {
            || (seam.after <= kGain * seam.before && seam.after <= kUneven);
 }
 
-// Whether some link looks worse after the correction, or keeps a seam that the other links do not have.
-bool has_odd_link(const Problem &problem, const std::vector<Seam> &seams, double noise_levels) {
+// The first link that looks worse after the correction, or keeps a seam that the other links do not have.
+std::optional<Seam> odd_link(const Problem &problem, const std::vector<Seam> &seams, double noise_levels) {
     const double most = std::max(kOddLink, kOddNoise * noise_levels);
-    return std::any_of(problem.edges.begin(), problem.edges.end(), [&](const Edge &edge) {
-        if (edge.last - edge.first < kFewestPairs) return false;
+    for (const Edge &edge : problem.edges) {
+        if (edge.last - edge.first < kFewestPairs) continue;
         const Seam seam = median_of(seams, edge.first, edge.last);
-        return seam.after > std::max(kGrown * seam.before, kSeen)
-               || (seam.after > most && seam.after > kGain * seam.before);
-    });
+        if (seam.after > std::max(kGrown * seam.before, kSeen)
+            || (seam.after > most && seam.after > kGain * seam.before))
+            return seam;
+    }
+    return std::nullopt;
 }
 
 // Verdicts on the profile that leave the pictures as even as they are.
@@ -86,13 +89,13 @@ void judge_evenness(const Found &found, lensprof_fit_result &r) {
     if (!r.usable && !is_of_profile(r.reason_code)) return;
     const std::vector<Seam> tested = seams_of(found.tested, found.train);
     const Seam whole = median_of(tested, 0, tested.size());
-    r.evens = r.converged && r.inlier_share > kFewestAgree && is_even(whole, r.noise_levels)
-              && !has_odd_link(found.problem, seams_of(found.problem, found.estimate), r.noise_levels);
+    const std::optional<Seam> odd = odd_link(found.problem, seams_of(found.problem, found.estimate), r.noise_levels);
+    r.evens = r.converged && r.inlier_share > kFewestAgree && is_even(whole, r.noise_levels) && !odd;
     if (!r.usable || r.reason_code != LENSPROF_REASON_NONE) return;
     if (r.inlier_share < kSmallestShare || r.heldout_rms > kLargestRms)
         warn(r, {LENSPROF_REASON_MANY_OUTLIERS, {1.0 - r.inlier_share, r.heldout_rms}});
     else if (!r.evens)
-        warn(r, {LENSPROF_REASON_SEAMS_STAY, {whole.after, whole.before}});
+        warn(r, {LENSPROF_REASON_SEAMS_STAY, {odd.value_or(whole).after, odd.value_or(whole).before}});
 }
 
 }  // namespace lensprof

@@ -38,6 +38,7 @@ constexpr double kStillMedian = 1.5;           // and levels of 255 that half of
 constexpr double kFarCentre = 0.1;             // half diagonals: five standard errors of its prior
 constexpr double kOnLimit = 0.98;              // of the largest offset of the centre
 constexpr double kImpossibleRise = 1.1;        // of M beyond the middle: no lens brightens so much
+constexpr double kDarkest = 0.05;              // least M of a lens: those of Lensfun leave more
 constexpr double kClearly = 3.0;               // standard errors
 constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
 
@@ -110,6 +111,15 @@ void covariance_held(const lensprof_fit_result &r, int curve, double held[9]) {
         held[i] = r.covariance[row * n + column]
                   - r.gamma_sigma * r.gamma_sigma * r.gamma_direction[row] * r.gamma_direction[column];
     }
+}
+
+// The smallest M of the falloffs that were free.
+double darkest_of(const Problem &problem, const lensprof_fit_result &r) {
+    double darkest = 1.0;
+    for (int curve = 0; curve < problem.vignettings && frees_falloff(problem); curve++)
+        for (int i = 1; i <= 20; i++)
+            darkest = std::min(darkest, lensprof_vignetting_eval(&r.vignetting[curve], i / 20.0, nullptr));
+    return darkest;
 }
 
 // The largest M of a falloff that was free, and its standard error with gamma held, where it is clearly above `limit`.
@@ -244,6 +254,8 @@ bool is_undetermined(const Problem &problem, const Estimate &estimate, lensprof_
         return refuse(r, {LENSPROF_REASON_CENTER_ON_LIMIT, {off_centre}});
     if (const auto rise = rise_above(kImpossibleRise, problem, r); !rise.empty())
         return refuse(r, {LENSPROF_REASON_FALLOFF_RISES, rise});
+    if (const double darkest = darkest_of(problem, r); darkest < kDarkest)
+        return refuse(r, {LENSPROF_REASON_FALLOFF_DARK, {darkest}});
     const bool still = is_static(problem);
     uint32_t image, behind;
     if (has_few_inliers(problem, r, image, behind))

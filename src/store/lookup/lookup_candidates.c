@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/profile.h"
 #include "store/names/names.h"
 #include "store/profiles/layouts.h"
 
@@ -19,7 +20,7 @@
 static const char *const rows_sql[LP_STORE_LAYOUT] = LP_BY_LAYOUT(
     "SELECT id, camera_model, lens, unit, crop_factor, focal_mm, aperture, distance_m, color_temperature_k,"
     " covariance_size, processing, style FROM profiles"
-    " WHERE lens_name = ?1 AND (?2 OR doubt = '') AND (?3 OR (processing = 'corrected') = ?4)"
+    " WHERE lens_name = ?1 AND (?2 OR doubt IN ('', ?6)) AND (?3 OR (processing = 'corrected') = ?4)"
     " AND (focal_mm IS NOT NULL OR aperture IS NOT NULL OR ?5 OR trim(lens) <> '' OR EXISTS (SELECT 1 FROM vignettings"
     " WHERE profile_id = id AND curve = 0 AND (k1 <> 0 OR k2 <> 0 OR k3 <> 0))) ORDER BY id");
 static const char curves_sql[] =
@@ -154,6 +155,7 @@ static lensprof_status read_rows(lensprof_store *store, const char *name, const 
     lp_bind_integer(&binder, o->any_processing);
     lp_bind_integer(&binder, key->processing == LENSPROF_PROCESSING_CORRECTED && !o->force_falloff);
     lp_bind_integer(&binder, asks_for_camera(key));
+    lp_bind_text(&binder, LP_DOUBT_RESPONSE);
     int rc = binder.rc == SQLITE_OK ? sqlite3_step(binder.statement) : binder.rc;
     row r = {.processing = ""};
     lensprof_profile_key_init(&r.key);

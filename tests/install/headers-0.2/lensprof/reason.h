@@ -68,6 +68,7 @@ typedef enum lensprof_reason {
     LENSPROF_REASON_CORNER_UNCERTAIN = 402,   /* standard error of M */
     LENSPROF_REASON_FALLOFF_RISES = 403,      /* largest M; its standard error */
     LENSPROF_REASON_CENTER_ON_LIMIT = 404,    /* distance, half diagonals */
+    LENSPROF_REASON_FALLOFF_DARK = 405,       /* smallest M */
     LENSPROF_REASON_NOT_RADIAL = 451,         /* share of the residual's variance; levels of 255 */
     LENSPROF_REASON_FAR_CENTER = 452,         /* distance, half diagonals */
     LENSPROF_REASON_FALLOFF_RISES_SOME = 453, /* largest M; its standard error */
