@@ -59,9 +59,9 @@ typedef enum lensprof_distance_rule {
 
 typedef struct lensprof_lookup_options {
     uint32_t struct_size;
-    uint32_t distance_rule; /* lensprof_distance_rule */
-    uint32_t
-        with_doubt; /* 1: profiles with a doubt (provenance) count as others do; 0: only those whose doubt concerns the response alone */
+    uint32_t distance_rule;  /* lensprof_distance_rule */
+    uint32_t with_doubt;     /* 1: profiles with a doubt (provenance) count as others do; 0: only those of which the
+                                response alone is in doubt */
     uint32_t any_processing; /* 1: the key's processing does not matter; 0: see lensprof_store_lookup */
     uint32_t force_falloff;  /* 1: falloffs of uncorrected pictures for keys that are CORRECTED, too; 0: not */
     uint32_t

@@ -49,7 +49,7 @@ class Provenance(Value, _abi.Provenance):
     """Where a profile comes from. Part of a Profile, which sets the defaults.
 
     created_unix_s: seconds since 1970-01-01 UTC, 0 = unknown. images, pairs: how many were used. heldout_rms: levels
-    of 255, or UNKNOWN. inlier_share: 0..1, or UNKNOWN. doubt: why it may be wrong, as found when it was imported.
+    of 255, or UNKNOWN. inlier_share: 0..1, or UNKNOWN. doubt: why it may be wrong, as found when it was imported or fitted.
     prior_id: the profile of the same database that was the prior of its fit, 0 = none. forced: 1 = stored although the
     fit was not usable. not_usable: 1 = of a fit that was not usable, which Store.put refuses unless it is forced; it is
     not stored. gamma_sigma: standard error of ln gamma, the common exponent of response and falloff; 0 = not known.
@@ -71,6 +71,11 @@ class Provenance(Value, _abi.Provenance):
 
     def _set_defaults(self) -> None:
         self.heldout_rms = self.inlier_share = _abi.UNKNOWN
+
+    @property
+    def doubts_response(self) -> bool:
+        """Whether the doubt concerns the response alone, which the pictures of the fit did not show."""
+        return bool(lib.lensprof_provenance_doubts_response(byref(self)))
 
 
 class CameraModel(Value, _abi.CameraModel):

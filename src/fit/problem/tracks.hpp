@@ -18,8 +18,8 @@ Tracks tracks_of(const lensprof_observation *observations, uint32_t count);
 // would then be at two places of one image.
 std::vector<lensprof_observation> observations_of(const lensprof_pair *pairs, uint32_t count, int channels);
 
-// The observations of each track that hold with all that were kept before them, of the tracks that keep two or more. holds(i, i):
-// whether an image has a part at all; holds(i, j): whether a link has.
+// The observations of each track that hold with all that were kept before them, of the tracks that keep two or more.
+// holds(i, i): whether an image has a part at all; holds(i, j): whether a link has.
 Tracks tracks_within(const Tracks &tracks, const std::function<bool(uint32_t i, uint32_t j)> &holds);
 
 // The pairs of tracks: neighbours among the observations of which no channel is one-sided.
