@@ -2,25 +2,26 @@
 # The main job from end to end: overlapping pictures in, a stored lens profile and corrected pictures out.
 #
 #   examples/demo.sh                  on a sequence that `lensprof simulate` renders
-#   examples/demo.sh dir/pano.pto     on yours: a Hugin project whose pictures are aligned
+#   examples/demo.sh folder           on yours: overlapping pictures
+#   examples/demo.sh dir/pano.pto     the same, by a Hugin project whose pictures are aligned
 set -euo pipefail
 cd "$(dirname "$0")/.."
 lensprof=$PWD/build/lensprof
 work=$PWD/build/demo
 database=$work/profiles.db
-project=${1:-}
+pictures=${1:-}  # a folder or a project
 
 say() { printf '\n== %s\n' "$*"; }
 run() { printf '$ lensprof'; printf ' %q' "$@"; printf '\n'; "$lensprof" "$@"; }
 
 mkdir -p "$work"
 rm -rf "$database" "$work/corrected" "$work/result.pto" "$work/contact-sheet.png"
-if [[ -z $project ]]; then
+if [[ -z $pictures ]]; then
     say "Render six overlapping pictures with a known camera"
     rm -rf "$work/pictures"
     run simulate -o "$work/pictures" --images 6 --size 1200x800 --response srgb --vignetting=-0.30,0.05,-0.15 \
         --center 0.02,-0.015 --ev 1 --wb 0.15 --noise 2 --format jpeg,tiff16 --seed 3
-    project=$work/pictures/pano.pto
+    pictures=$work/pictures
     options=(--compare "$work/pictures/truth.json")
 else
     options=(--free all)
@@ -29,11 +30,11 @@ fi
 say "Recover response, falloff, exposure and white balance; store the profile"
 source=(--from-db)
 code=0
-run build "$project" --db "$database" --pto-out "$work/result.pto" "${options[@]}" || code=$?
+run build "$pictures" --db "$database" --pto-out "$work/result.pto" "${options[@]}" || code=$?
 if [[ $code -eq 2 ]]; then
     source=(--profile 1)
     echo "The pictures do not say which camera took them: stored as 'Demo camera'."
-    run build "$project" --db "$database" --pto-out "$work/result.pto" "${options[@]}" \
+    run build "$pictures" --db "$database" --pto-out "$work/result.pto" "${options[@]}" \
         --camera "Demo camera" --lens "Demo lens"
 elif [[ $code -ne 0 ]]; then
     exit "$code"

@@ -10,6 +10,7 @@ import cases
 import flat
 import gallery
 import radiance
+import photographs
 import real
 import report
 import scale
@@ -19,7 +20,7 @@ import tools
 import verdicts
 
 PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "static", "scale", "speed", "radiance", "knowledge",
-         "real")
+         "photographs", "real")
 
 
 def parse():
@@ -56,7 +57,7 @@ def main():
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize is not installed (package hugin-tools); lensprof is alone"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
                "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "scale": [], "speed": {},
-               "verdicts": {}, "radiance": {}, "knowledge": [], "real": [], "brackets": [], "skipped": skipped}
+               "verdicts": {}, "radiance": {}, "knowledge": [], "photographs": [], "real": [], "brackets": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
     if "speed" in options.only:
@@ -81,6 +82,8 @@ def main():
         import knowledge  # it needs the library, not only the program
         results["knowledge"] = knowledge.run_all(options.sequences or (20 if options.quick else 60), options.tune,
                                                  options.jobs, say)
+    if "photographs" in options.only:
+        results["photographs"] = photographs.run_all(options.real, options.quick, say)
     if options.real and "real" in options.only:
         results["real"] = real.run_all(options.real, options.jobs, say)
         results["brackets"] = gallery.run_brackets(options.real, say)

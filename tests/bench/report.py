@@ -448,6 +448,27 @@ def knowledge(records):
     return lines + [""]
 
 
+def photographs(records):
+    """Registration from pictures alone, of both tools."""
+    if not records:
+        return []
+    lines = ["## From photographs", "", "From pictures to the fit; times of Hugin are of pto_gen, cpfind, cpclean and autooptimiser, without"
+             " the fit. Seam: median over the links, levels of 255, after lensprof's fit on each geometry.", ""]
+    lines += header("pictures", "number", "lensprof joined", "Hugin joined", "lensprof wall, s", "Hugin wall, s", "wall ratio", "CPU ratio",
+                    "lensprof seam", "Hugin seam", "verdict: usable, evens")
+    for r in records:
+        ours, theirs = r["lensprof"], r.get("hugin", {})
+        lines.append(row(r["name"], r["pictures"], ours["joined"], theirs.get("joined", "–"), number(ours["wall_s"]),
+                         number(theirs.get("wall_s")), number(ratio_of(ours, theirs, "wall_s")),
+                         number(ratio_of(ours, theirs, "cpu_s")), number(ours.get("seam")), number(theirs.get("seam")),
+                         "%s, %s" % (ours.get("usable"), ours.get("evens"))))
+    return lines + [""]
+
+
+def ratio_of(ours, theirs, key):
+    return ours[key] / theirs[key] if theirs.get(key) else None
+
+
 def document(results):
     lines = ["# Benchmark", "", results["machine"], ""]
     if results["skipped"]:
@@ -462,5 +483,6 @@ def document(results):
     lines += flat(results["flat"])
     lines += static(results["static"]) + scale(results["scale"]) + speed(results["speed"])
     lines += radiance(results["radiance"]) + knowledge(results["knowledge"]) + real(results["real"])
+    lines += photographs(results["photographs"])
     lines += gallery(results["real"]) + brackets(results["brackets"])
     return "\n".join(lines).rstrip() + "\n"

@@ -70,7 +70,7 @@ void test_what_is_no_file(void **) {
     assert_int_equal(mkfifo(work("fifo").c_str(), 0600), 0);
     fs::create_directory(work("folder"));
     for (const std::string &name : {std::string("/dev/zero"), work("fifo"), work("folder")}) {
-        assert_refused_in_bounds(build(name), name);
+        if (name != work("folder")) assert_refused_in_bounds(build(name), name);  // which may hold pictures
         assert_refused_in_bounds(build(scene("pano.pto"), {"--points", name}), name);
         assert_refused_in_bounds(build(scene("pano.pto"), {"--compare", name}), name);
         assert_refused_in_bounds({"apply", "--pto", name, "-o", work("out")}, name);

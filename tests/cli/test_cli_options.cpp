@@ -111,12 +111,13 @@ void test_options_are_no_values(void **) {
         {{"profile", "check", "--db", "a", "--db", "b"}, "--db: is given more than once; give it once"},
         {{"query", "--json=maybe"}, "--json: takes no value, and maybe is one; give --json alone"},
         {{"simulate"}, "--output: is needed; give --output FOLDER"},
-        {{"build"}, "PROJECT: is needed; give PROJECT"},
+        {{"build"}, "INPUT: is needed; give INPUT"},
         {{"apply", "-x.png"}, "-x.png: no such option; see `lensprof apply --help`, or put -- before names"},
         {{"apply", "-y"}, "-y: no such option; did you mean -h? Else put -- before names that begin with -\n"},
         {{"apply", "--jsn"}, "--jsn: no such option; did you mean --json?\n"},
         {{"query", "-y"}, "-y: no such option; did you mean -h?\n"},
-        {{"build", "a.pto", "b.pto"}, "b.pto: is more than this command takes"},
+        {{"build", "a.pto", "b.pto"}, "a.pto: is no picture (.jpg, .png, .tif) and no folder"},
+        {{"query", "a"}, "a: is more than this command takes"},
     };
     for (const auto &one : cases) assert_refused(usage, one.words, {one.said});
     assert_refused(unreadable, {"bracket", "-", scene("img000.png"), "--no-store", "--ev", "-1.5,-.5"}, {"-: cannot"});
@@ -174,7 +175,7 @@ void test_empty_values_that_are_needed(void **) {
         const char *said;
     } cases[] = {
         {{"apply", "-o", ""}, "--output: names no folder; give one, or leave it out\n"},
-        {{"build", ""}, "PROJECT: names no file; give one\n"},
+        {{"build", ""}, "INPUT: names no file; give one\n"},
         {{"build", "--db", ""}, "--db: names no file; give one, or leave it out\n"},
         {{"query", "--camera="}, "--camera: its value is empty; give one, or leave it out\n"},
     };

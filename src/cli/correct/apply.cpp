@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/correct/correction.hpp"
-#include "cli/correct/named_pictures.hpp"
 #include "cli/correct/picture_model.hpp"
 #include "cli/fitting/project.hpp"
+#include "cli/pictures/named_pictures.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"

@@ -8,6 +8,7 @@
 
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/known_exposures.hpp"
+#include "cli/fitting/photographs.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/program/commands.hpp"
@@ -23,7 +24,8 @@ namespace {
 struct Options {
     FitOptions fit;
     StoreOptions store;
-    std::string pto, points, points_out, pto_out, reference, compare;
+    std::vector<std::string> inputs;
+    std::string points, points_out, pto_out, project_out, reference, compare;
     std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
     uint32_t sampling = LENSPROF_SAMPLING_BALANCED, falloff_curves = 0;  // 0: held-out error decides
     bool json = false, one_lens = false, progress = false;
@@ -35,8 +37,13 @@ constexpr uint32_t lens_flags = LENSPROF_FREE_RESPONSE | falloff_flags | LENSPRO
 constexpr uint32_t balance_flags = LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
 
 void declare_points(Command &command, Options &o) {
-    command.file("PROJECT", o.pto, "Hugin project; its v lines choose what is estimated");
-    command.require("PROJECT");
+    command.files(
+        "INPUT", o.inputs,
+        "pictures and folders of pictures, whose overlaps are found; or one Hugin project, whose v lines choose "
+        "what is estimated");
+    command.require("INPUT");
+    command.file("--project-out", o.project_out,
+                 "write the project that was found for the pictures, before the fit; to correct it, open it in Hugin");
     command.file("--points", o.points,
                  "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
     command.file("--points-out", o.points_out,
@@ -153,10 +160,10 @@ void refer_to(uint32_t reference, FitInput &input) {
 
 // No output may take the place of an input, of the database or of another output.
 void check_outputs(const Options &o, const Project &project) {
-    std::vector<std::string> taken{o.pto, o.points, o.compare};
+    std::vector<std::string> taken{project.path, o.points, o.compare};
     taken.insert(taken.end(), project.files.begin(), project.files.end());
     if (!o.store.no_store) taken.push_back(store_path(o.store.db));
-    for (const std::string &output : {o.points_out, o.pto_out}) {
+    for (const std::string &output : {o.points_out, o.pto_out, o.project_out}) {
         if (output.empty()) continue;
         for (const std::string &other : taken)
             if (is_same_file(output, other))
@@ -173,15 +180,8 @@ std::string project_text(const Options &o, Project &project, const Fitted &fitte
     check(lensprof_pto_set_result(project.pto.get(), &fitted.result.response, &green_falloff(fitted.result),
                                   fitted.exposures.data(), static_cast<uint32_t>(fitted.exposures.size()), reference,
                                   &error),
-          o.pto, &error);
-    // Names are relative to the project's folder, which may be another one now.
-    const auto folder = std::filesystem::path(absolute_path(o.pto_out)).parent_path();
-    if (folder != std::filesystem::path(absolute_path(o.pto)).parent_path())
-        for (uint32_t i = 0; i < project.files.size(); i++) {
-            const auto file = std::filesystem::path(absolute_path(project.files[i])).lexically_proximate(folder);
-            check(lensprof_pto_set_name(project.pto.get(), i, file.string().c_str(), &error), project.files[i], &error);
-        }
-    return pto_text(*project.pto);
+          project.path, &error);
+    return project_text_at(project, o.pto_out);
 }
 
 // The pairs or tracks that are fitted.
@@ -214,12 +214,13 @@ void get_points(const Options &o, const Project &project, Progress &progress, Bu
 }
 
 // A project holds five modes and one falloff: what is best with these, not what is left of something better.
-Fitted fit_for_project(const Options &o, FitInput &input, const Fitted &best, uint32_t reference, Progress &progress) {
+Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, const std::string &item,
+                       Progress &progress) {
     bool fits = best.result.response.modes <= project_modes && best.result.vignettings == 1;
     if (fits || !(input.options.free & LENSPROF_FREE_RESPONSE)) return best;
     input.options.modes = std::min<uint32_t>(best.result.response.modes, project_modes);
     input.options.vignettings = 1;
-    return fit(input, reference, o.pto, progress, nullptr);
+    return fit(input, reference, item, progress, nullptr);
 }
 
 BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
@@ -242,7 +243,7 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     input.images = fit_images(project);
     if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
     refer_to(report.reference, input);
-    const std::string &item = o.points.empty() ? o.pto : o.points;
+    const std::string &item = o.points.empty() ? project.path : o.points;
     Fitted best = fit(input, report.reference, item, progress, &report.quality);
     report.fit = best.result;
     report.verdict = verdict_of(best.result);
@@ -256,25 +257,44 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     report.reference = best.reference;
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(input.pairs, project));
     if (!o.pto_out.empty() && (best.corrects() || o.store.force)) {
-        Fitted written = fit_for_project(o, input, best, report.reference, progress);
+        Fitted written = fit_for_project(input, best, report.reference, item, progress);
         outputs.add(o.pto_out, project_text(o, project, written, written.reference));
     }
     progress.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
-        warn(streams, o.pto
+        warn(streams, project.path
                           + (o.points.empty() ? ": no EXIF exposures that differ" : ": EXIF is not read with --points")
                           + ": gamma rests on the prior");
     return report;
 }
 
+// A project, or the pictures that take its place.
+Project open_project(const Options &o, Streams &streams) {
+    const bool is_project = o.inputs.size() == 1 && !names_pictures(o.inputs[0]);
+    for (const std::string &input : o.inputs)
+        if (!is_project && !names_pictures(input))
+            throw Failure(ExitCode::usage, input + ": is no picture (.jpg, .png, .tif) and no folder; give one project "
+                                                   "alone, or pictures and folders");
+    if (is_project && !o.project_out.empty())
+        throw Failure(ExitCode::usage, "--project-out: writes the project of pictures, and " + o.inputs[0]
+                                           + " is a project; leave it out, or give --pto-out");
+    if (is_project) return read_project(o.inputs[0], o.one_lens);
+    if (!o.points.empty())
+        throw Failure(ExitCode::usage,
+                      "--points: needs the project that its pairs belong to; give that in place of pictures");
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    return project_of_pictures(o.inputs, o.one_lens, progress, streams);
+}
+
 // The command once its options are read; `names` receives the images as soon as they are known.
 int build_and_store(const Options &o, std::vector<std::string> &names, Streams &streams) {
-    Project project = read_project(o.pto, o.one_lens);
+    Project project = open_project(o, streams);
     names = project.names;
     if (project.images.size() < 2)
-        throw Failure(ExitCode::not_usable, o.pto + ": has one image; at least two overlapping ones are needed",
+        throw Failure(ExitCode::not_usable, project.path + ": has one image; at least two overlapping ones are needed",
                       LENSPROF_REASON_FEW_PAIRS);
     check_outputs(o, project);
+    if (!o.project_out.empty()) write_project(project, o.project_out);
     const uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>());
     for (auto &image : project.images) image.free = free ? free : image.free;
     if (o.points.empty()) check_pictures(project, o.max_side);
@@ -287,10 +307,10 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     OutputFiles outputs;
     EarlierProfile prior;
     if (takes_stored_prior(o.fit))
-        prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_asked, key, o.pto);
+        prior = find_stored_prior(o.store, o.fit.stored_id, o.fit.stored_is_asked, key, project.path);
     BuildReport report = build(o, project, metadata, prior, kind, outputs, streams);
-    int code =
-        finish_fit(report, key, o.store, {method_name(o.fit.method), o.pto, o.json, true, &outputs, &prior}, streams);
+    int code = finish_fit(report, key, o.store,
+                          {method_name(o.fit.method), project.path, o.json, true, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     if (!report.fit.usable && !report.fit.evens && !o.pto_out.empty() && !o.store.force)
         tell(streams, o.pto_out + ": not written (--force writes it all the same)");
@@ -316,7 +336,7 @@ int run(const Options &o, Streams &streams) {
 }  // namespace
 
 void declare_build(Command &program) {
-    Command command = program.add("build", "pictures of a Hugin project -> a lens profile in the database",
+    Command command = program.add("build", "overlapping pictures, or a Hugin project -> a lens profile in the database",
                                   "Recovers response, falloff, exposure and white balance from overlapping pictures.");
     auto o = std::make_shared<Options>();
     declare(command, *o);

@@ -127,6 +127,18 @@ Project read_project(const std::string &path, bool one_lens) {
     return project;
 }
 
+std::string project_text_at(Project &project, const std::string &path) {
+    const auto folder = std::filesystem::path(absolute_path(path)).parent_path();
+    const bool stays =
+        is_regular_file(project.path) && folder == std::filesystem::path(absolute_path(project.path)).parent_path();
+    lensprof_error error{};
+    for (uint32_t i = 0; i < project.files.size() && !stays; i++) {
+        const auto file = std::filesystem::path(absolute_path(project.files[i])).lexically_proximate(folder);
+        check(lensprof_pto_set_name(project.pto.get(), i, file.string().c_str(), &error), project.files[i], &error);
+    }
+    return pto_text(*project.pto);
+}
+
 uint32_t image_of_word(const Project &project, const std::string &word) {
     for (uint32_t i = 0; i < project.names.size(); i++)
         if (word == project.names[i] || word == std::to_string(i)) return i;

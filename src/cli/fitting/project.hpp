@@ -13,7 +13,7 @@
 namespace lensprof {
 
 struct Project {
-    std::string path;  // of the .pto
+    std::string path;  // of the .pto, or what was named in its place
     Pto pto;           // NULL where the project is not of a file
     std::vector<lensprof_pto_image> images;
     std::vector<std::string> names;  // as written in the project
@@ -24,6 +24,9 @@ struct Project {
 // Reads a project. The reference is the first image whose Eev is not asked for, else image 0. With `one_lens`, images
 // that are not linked are taken as one lens; otherwise that is a Failure.
 Project read_project(const std::string &path, bool one_lens);
+
+// The text of a project that is to be written to `path`: names are relative to that file's folder.
+std::string project_text_at(Project &project, const std::string &path);
 
 // The image that a user means by a number or a file name of the project.
 uint32_t image_of_word(const Project &project, const std::string &word);

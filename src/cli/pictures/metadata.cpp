@@ -413,6 +413,8 @@ PictureMetadata read_metadata(const std::string &path) {
         read_processing(*image, metadata);
         metadata.is_jpeg = image->mimeType() == "image/jpeg";
         metadata.mark = correction_mark_of(image->xmpData());
+        metadata.orientation =
+            static_cast<uint16_t>(in_range(read_number(exif, {"Exif.Image.Orientation"}), 9.0).value_or(1.0));
         set_corrected(falloff_corrected_by(*image, metadata.key), metadata);
     } catch (const std::exception &error) {
         fail_reading(path, error);

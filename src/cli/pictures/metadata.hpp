@@ -48,6 +48,8 @@ struct PictureMetadata {
     // when all three are known.
     std::optional<double> exif_ev;
 
+    uint16_t orientation = 1;  // EXIF's, 1..8
+
     bool is_manual = false;  // time, aperture and ISO were set by hand: EXIF's ExposureProgram or ExposureMode says so
 };
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program/format.hpp"
+#include "cli/registration/project_text.hpp"
 #include "cli/report/report.hpp"
 #include "cli/simulate/simulate.hpp"
 
@@ -31,25 +31,16 @@ Json image_json(const Truth &truth, size_t i) {
 // The project as an alignment program would leave it: geometry known, exposures to be found.
 std::string project_text(const SimulateOptions &o, const Truth &truth) {
     Random random(truth.seed * 31ull + 5);
-    std::string text =
-        "# rendered by lensprof simulate\np f2 w3000 h1500 v360  E0 R0 n\"TIFF_m c:LZW\"\nm g1 i0 f0 m2 "
-        "p0.00784314\n\n";
+    std::vector<ProjectImage> images;
     for (size_t i = 0; i < truth.cameras.size(); i++) {
-        const auto &c = truth.cameras[i];
-        double degrees_per_px = c.hfov_deg / c.width, e[2] = {random.normal(), random.normal()};
-        const char *link = i ? "=0" : "0", *va = i ? "=0" : "1";
-        text += format("i w%u h%u f0 v%s", c.width, c.height, i ? "=0" : format("%.17g", c.hfov_deg).c_str());
-        for (char letter : {'a', 'b', 'c', 'd', 'e'}) text += format(" R%c%s", letter, link);
-        text +=
-            format(" Eev0 Er1 Eb1 r%.17g p%.17g y%.17g TrX0 TrY0 TrZ0 Tpy0 Tpp0 j0", c.roll_deg,
-                   c.pitch_deg + o.misalign * degrees_per_px * e[0], c.yaw_deg + o.misalign * degrees_per_px * e[1]);
-        for (char letter : {'a', 'b', 'c', 'd', 'e', 'g', 't'}) text += format(" %c%s", letter, link);
-        text += format(" Va%s Vb%s Vc%s Vd%s Vx%s Vy%s Vm5 n\"%s\"\n", va, link, link, link, link, link,
-                       truth.files[i].c_str());
+        lensprof_camera camera = truth.cameras[i];
+        const double degrees_per_px = camera.hfov_deg / camera.width;
+        const double e[2] = {random.normal(), random.normal()};
+        camera.pitch_deg += o.misalign * degrees_per_px * e[0];
+        camera.yaw_deg += o.misalign * degrees_per_px * e[1];
+        images.push_back({camera, truth.files[i]});
     }
-    text += "\nv Ra0 Rb0 Rc0 Rd0 Re0\nv Vb0 Vc0 Vd0 Vx0 Vy0\n";
-    for (size_t i = 1; i < truth.cameras.size(); i++) text += format("v Eev%zu Er%zu Eb%zu\n", i, i, i);
-    return text + "v\n";
+    return new_project_text("rendered by lensprof simulate", images);
 }
 
 std::string truth_text(const Truth &truth) {

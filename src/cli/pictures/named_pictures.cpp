@@ -1,4 +1,4 @@
-#include "cli/correct/named_pictures.hpp"
+#include "cli/pictures/named_pictures.hpp"
 
 #include <algorithm>
 #include <deque>

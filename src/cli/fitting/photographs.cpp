@@ -1,0 +1,164 @@
+#include "cli/fitting/photographs.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "cli/pictures/named_pictures.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/message.hpp"
+#include "cli/program/output_file.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/registration/registration.hpp"
+
+namespace lensprof {
+namespace {
+
+// What words name, and how reports call it: within a folder that is the only word, by the rest of the path.
+struct Photographs {
+    std::string label;  // of all
+    std::vector<std::string> files, names;
+};
+
+std::string bytes_of(const std::string &file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+// Every picture once, whatever its names; copies of a picture say nothing.
+Photographs list_pictures(const std::vector<std::string> &words, Streams &streams) {
+    const bool is_one_folder = words.size() == 1 && is_folder(words[0]);
+    Photographs list;
+    std::set<std::string> known;
+    std::map<uint64_t, std::vector<size_t>> by_size;
+    for (const NamedPicture &picture : named_pictures(words, std::string())) {
+        if (!known.insert(file_identity(picture.file)).second) continue;
+        auto &alike = by_size[file_bytes(picture.file)];
+        const auto copied = std::find_if(alike.begin(), alike.end(), [&](size_t other) {
+            return bytes_of(list.files[other]) == bytes_of(picture.file);
+        });
+        if (copied != alike.end()) {
+            warn(streams, picture.file + ": left out, it is a copy of " + list.names[*copied]);
+            continue;
+        }
+        alike.push_back(list.files.size());
+        list.files.push_back(picture.file);
+        list.names.push_back(is_one_folder ? std::filesystem::path(picture.file).lexically_relative(words[0]).string()
+                                           : picture.file);
+    }
+    list.label = words.size() == 1 ? words[0] : counted(list.files.size(), "picture");
+    return list;
+}
+
+// "img1.jpg, img2.jpg and 7 more".
+std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names) {
+    constexpr size_t most = 5;
+    std::string text;
+    for (size_t n = 0; n < numbers.size() && n < most; n++) text += (n ? ", " : "") + names[numbers[n]];
+    if (numbers.size() > most) text += format(" and %zu more", numbers.size() - most);
+    return text;
+}
+
+// Leaves the pictures of the lens that took most of them.
+void keep_one_lens(FoundProject &found, const std::vector<std::string> &names, Streams &streams) {
+    std::map<uint32_t, size_t> count;
+    for (uint32_t lens : found.lenses) count[lens]++;
+    const auto most =
+        std::max_element(count.begin(), count.end(), [](const auto &a, const auto &b) { return a.second < b.second; });
+    if (count.size() == 1) return;
+    FoundProject kept = found;
+    kept.pictures.clear(), kept.cameras.clear(), kept.lenses.clear(), kept.points.clear();
+    std::vector<uint32_t> others, number(found.pictures.size(), UINT32_MAX);
+    for (size_t n = 0; n < found.pictures.size(); n++) {
+        if (found.lenses[n] != most->first) {
+            others.push_back(found.pictures[n]);
+            continue;
+        }
+        number[n] = static_cast<uint32_t>(kept.pictures.size());
+        kept.pictures.push_back(found.pictures[n]);
+        kept.cameras.push_back(found.cameras[n]);
+        kept.lenses.push_back(0);
+    }
+    for (ControlPoint point : found.points) {
+        for (uint32_t &image : point.image) image = number[image];
+        if (std::max(point.image[0], point.image[1]) != UINT32_MAX) kept.points.push_back(point);
+    }
+    found = std::move(kept);
+    warn(streams,
+         listed(others, names)
+             + ": left out, of another camera, lens, focal length or size than most (--one-lens takes all as one)");
+}
+
+void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
+                  Streams &streams) {
+    const FoundProject &project = found.projects[0];
+    note(streams,
+         label
+             + format(": %zu pictures overlap (%u links, %.2f %% of the longer side left, %s); response, falloff, "
+                      "exposures and white balances are estimated (--free)",
+                      project.pictures.size(), project.links, 100.0 * project.residual,
+                      project.kind == SceneKind::plane ? "a camera that moved over a plane"
+                                                       : "a camera that turned about one point"));
+    for (size_t n = 1; n < found.projects.size(); n++)
+        warn(streams, listed(found.projects[n].pictures, names)
+                          + ": another group, which overlaps with none of these; give its pictures alone");
+    if (!found.alone.empty())
+        warn(streams, listed(found.alone, names) + ": left out, no overlap with another picture was found");
+}
+
+}  // namespace
+
+bool names_pictures(const std::string &word) { return is_folder(word) || is_picture_name(word); }
+
+Project project_of_pictures(const std::vector<std::string> &words, bool one_lens, Progress &progress,
+                            Streams &streams) {
+    const auto [label, files, names] = list_pictures(words, streams);
+    if (files.size() < 2)
+        throw Failure(ExitCode::not_usable, label + ": has one picture; at least two overlapping ones are needed",
+                      LENSPROF_REASON_FEW_PAIRS);
+    Registration found = register_pictures(files, progress);
+    progress.clear();
+    for (const auto &[number, why] : found.unreadable) warn(streams, why + "; left out");
+    if (found.unreadable.size() == files.size())
+        throw Failure(ExitCode::unreadable, label + ": none of the pictures can be read; give others");
+    if (found.projects.empty())
+        throw Failure(ExitCode::not_usable,
+                      label + ": no two of the pictures overlap, or too little in them can be recognised; give pictures "
+                              "that share a third, or a Hugin project",
+                      LENSPROF_REASON_FEW_PAIRS);
+    if (one_lens) std::fill(found.projects[0].lenses.begin(), found.projects[0].lenses.end(), 0);
+    keep_one_lens(found.projects[0], names, streams);
+    report_found(found, names, label, streams);
+
+    const FoundProject &own = found.projects[0];
+    std::vector<ProjectImage> images;
+    Project project;
+    project.path = label;
+    for (size_t n = 0; n < own.pictures.size(); n++) {
+        images.push_back({own.cameras[n], format("image%zu", n), 0});  // a name may hold quotes
+        project.names.push_back(names[own.pictures[n]]);
+        project.files.push_back(files[own.pictures[n]]);
+    }
+    const std::string text = new_project_text("found by lensprof build", images, own.points);
+    lensprof_pto *pto = nullptr;
+    lensprof_error error{};
+    check(lensprof_pto_read(text.data(), text.size(), &pto, &error), label, &error);
+    project.pto.reset(pto);
+    for (uint32_t i = 0; i < images.size(); i++) {
+        lensprof_pto_image image;
+        lensprof_pto_image_init(&image);
+        check(lensprof_pto_get_image(pto, i, &image, &error), label, &error);
+        project.images.push_back(image);
+    }
+    return project;
+}
+
+void write_project(Project &project, const std::string &path) {
+    const std::string text = project_text_at(project, path);
+    write_file(path, text.data(), text.size());
+}
+
+}  // namespace lensprof

@@ -1,0 +1,123 @@
+#include "cli/registration/matching.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <tuple>
+
+#include <opencv2/calib3d.hpp>
+
+#include "cli/program/parallel.hpp"
+#include "cli/registration/candidates.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr float ratio = 0.8f;          // Lowe's: of the distances to the nearest and the second nearest feature
+constexpr double tolerance = 0.003;    // of the longer side: how far a match may be from the homography
+constexpr size_t fewest_matches = 12;  // under the homography
+constexpr int most_draws = 3000;       // of four matches for a homography
+constexpr int most_rounds = 2;         // of matching: what is linked says what to look at next
+// Brown & Lowe 2007, equation 13: with more than this share of all matches under it, a homography is no chance.
+constexpr double share_of_matches = 0.22, fewest_by_chance = 8.0;
+
+using Match = std::pair<int, int>;
+
+// Every feature of `a` whose nearest one in `b` passes the ratio test, and is nearest to none more than to it. Products
+// of descriptors of length 1 are 1 - distance^2 / 2.
+std::vector<Match> match(const Features &first, const Features &second) {
+    std::vector<Match> found;
+    const Descriptors a = descriptors_of(first), b = descriptors_of(second);
+    if (a.rows() < 2 || b.rows() < 2) return found;
+    constexpr Eigen::Index block = 256;  // rows whose products stay in the cache
+    std::vector<int> taken(static_cast<size_t>(b.rows()), -1);
+    std::vector<float> nearest(static_cast<size_t>(b.rows()), -2.0f);
+    Rows products;
+    for (Eigen::Index begin = 0; begin < a.rows(); begin += block) {
+        const Eigen::Index rows = std::min(block, a.rows() - begin);
+        products.noalias() = a.middleRows(begin, rows) * b.transpose();
+        for (Eigen::Index i = 0; i < rows; i++) {
+            const float *row = products.row(i).data();
+            float best = -2.0f, next = -2.0f;
+            size_t at = 0;
+            for (size_t j = 0; j < taken.size(); j++)
+                if (row[j] > best)
+                    next = best, best = row[j], at = j;
+                else if (row[j] > next)
+                    next = row[j];
+            if (1.0f - best < ratio * ratio * (1.0f - next) && best > nearest[at])
+                nearest[at] = best, taken[at] = static_cast<int>(begin + i);
+        }
+    }
+    for (size_t to = 0; to < taken.size(); to++)
+        if (taken[to] >= 0) found.emplace_back(taken[to], static_cast<int>(to));
+    return found;
+}
+
+// The homography that most matches follow; empty where there is none that is no chance.
+std::optional<PictureLink> link(const std::vector<Features> &pictures, const PicturePair &pair) {
+    const Features &a = pictures[pair.first], &b = pictures[pair.second];
+    const std::vector<Match> matches = match(a, b);
+    if (matches.size() < fewest_matches) return std::nullopt;
+    std::vector<cv::Point2d> from, to;
+    for (const Match &m : matches) {
+        from.push_back(a.places[static_cast<size_t>(m.first)]);
+        to.push_back(b.places[static_cast<size_t>(m.second)]);
+    }
+    const double reach = tolerance * std::max(std::max(a.width, a.height), std::max(b.width, b.height));
+    std::vector<uint8_t> follows;
+    const cv::Mat homography = cv::findHomography(from, to, cv::USAC_MAGSAC, reach, follows, most_draws, 0.999);
+    if (homography.empty()) return std::nullopt;
+    PictureLink found{{pair.first, pair.second}, {}, homography};
+    for (size_t m = 0; m < matches.size(); m++)
+        if (follows[m]) found.matches.emplace_back(from[m], to[m]);
+    const auto count = static_cast<double>(found.matches.size());
+    const bool is_chance = found.matches.size() < fewest_matches
+                           || count <= fewest_by_chance + share_of_matches * static_cast<double>(matches.size());
+    return is_chance ? std::nullopt : std::optional(std::move(found));
+}
+
+}  // namespace
+
+std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Progress &progress) {
+    std::vector<PictureLink> links;
+    std::vector<PicturePair> tried, linked, pairs = candidate_pairs(pictures);
+    for (int round = 0; round < most_rounds && !pairs.empty(); round++) {
+        std::vector<std::optional<PictureLink>> found(pairs.size());
+        for_each_parallel(static_cast<uint32_t>(pairs.size()), "matching pictures", progress,
+                          [&](uint32_t n) { found[n] = link(pictures, pairs[n]); });
+        for (size_t n = 0; n < pairs.size(); n++)
+            if (found[n]) links.push_back(std::move(*found[n])), linked.push_back(pairs[n]);
+        tried.insert(tried.end(), pairs.begin(), pairs.end());
+        std::sort(tried.begin(), tried.end());
+        pairs = further_pairs(static_cast<uint32_t>(pictures.size()), linked, tried);
+    }
+    std::sort(links.begin(), links.end(), [](const PictureLink &a, const PictureLink &b) {
+        return std::tie(a.picture[0], a.picture[1]) < std::tie(b.picture[0], b.picture[1]);
+    });
+    return links;
+}
+
+std::vector<uint32_t> groups_of(size_t pictures, const std::vector<PictureLink> &links) {
+    std::vector<uint32_t> first(pictures);
+    std::iota(first.begin(), first.end(), 0u);
+    const auto root = [&](uint32_t i) {
+        while (first[i] != i) i = first[i];
+        return i;
+    };
+    for (const PictureLink &link : links) {
+        const uint32_t a = root(link.picture[0]), b = root(link.picture[1]);
+        first[std::max(a, b)] = std::min(a, b);
+    }
+    std::vector<uint32_t> group(pictures), number(pictures, UINT32_MAX);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < pictures; i++) {
+        uint32_t &n = number[root(i)];
+        if (n == UINT32_MAX) n = count++;
+        group[i] = n;
+    }
+    return group;
+}
+
+}  // namespace lensprof

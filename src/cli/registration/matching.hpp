@@ -1,0 +1,29 @@
+// Which pictures show the same: features that match from picture to picture, under one homography.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "cli/program/progress.hpp"
+#include "cli/registration/features.hpp"
+
+namespace lensprof {
+
+// Two pictures that show the same.
+struct PictureLink {
+    uint32_t picture[2];                                       // the lower number first
+    std::vector<std::pair<cv::Point2d, cv::Point2d>> matches;  // px of the two full frames
+    cv::Matx33d homography;                                    // from the first frame to the second, px
+};
+
+// The links among pictures, in the order of their numbers.
+std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Progress &progress);
+
+// Of every picture the number of its group: pictures that links join, directly or through others, are one. Groups are
+// numbered by their first picture.
+std::vector<uint32_t> groups_of(size_t pictures, const std::vector<PictureLink> &links);
+
+}  // namespace lensprof

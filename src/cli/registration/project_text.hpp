@@ -1,0 +1,29 @@
+// Hugin projects of pictures that are in none.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <lensprof/geometry.h>
+
+namespace lensprof {
+
+// The same place in two images, px of their frames.
+struct ControlPoint {
+    uint32_t image[2];
+    double xy[2][2];
+};
+
+struct ProjectImage {
+    lensprof_camera camera;
+    std::string name;   // without quotes and control characters
+    uint32_t lens = 0;  // images of one number are linked in angle of view, distortion, response and falloff
+};
+
+// A project without photometric values; its `v` lines ask for those of all images, relative to the first one.
+// `comment` is its first line.
+std::string new_project_text(const std::string &comment, const std::vector<ProjectImage> &images,
+                             const std::vector<ControlPoint> &points = {});
+
+}  // namespace lensprof

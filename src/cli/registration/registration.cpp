@@ -1,0 +1,164 @@
+#include "cli/registration/registration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <new>
+#include <tuple>
+
+#include "cli/pictures/metadata.hpp"
+#include "cli/program/error.hpp"
+#include "cli/program/parallel.hpp"
+#include "cli/registration/cameras.hpp"
+#include "cli/registration/features.hpp"
+#include "cli/registration/matching.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double unfit = 0.005;         // median residual of a link that the cameras do not fit, of the longer side
+constexpr size_t points_per_link = 10;  // that a project is given
+
+std::optional<double> hfov_by_metadata(const PictureMetadata &metadata, const Features &picture) {
+    const lensprof_profile_key &key = metadata.key;
+    if (key.crop_factor == LENSPROF_UNKNOWN || key.focal_mm == LENSPROF_UNKNOWN) return std::nullopt;
+    constexpr double full_frame_diagonal_mm = 43.2666;
+    const double across =
+        full_frame_diagonal_mm / key.crop_factor * picture.width / std::hypot(picture.width, picture.height);
+    return 2.0 * std::atan(0.5 * across / key.focal_mm) * 180.0 / M_PI;
+}
+
+void add_points(const PictureLink &link, std::vector<ControlPoint> &points) {
+    const size_t count = link.matches.size(), wanted = std::min(count, points_per_link);
+    for (size_t n = 0; n < wanted; n++) {
+        const auto &[from, to] = link.matches[n * count / wanted];
+        points.push_back({{link.picture[0], link.picture[1]}, {{from.x, from.y}, {to.x, to.y}}});
+    }
+}
+
+// The project of the pictures of one group; `links` are numbered as they are in the group.
+FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<PictureOptics> &optics,
+                        const std::vector<PictureLink> &links) {
+    FoundProject project;
+    project.pictures = std::move(numbers);
+    for (const PictureOptics &o : optics) project.lenses.push_back(o.lens);
+    FoundCameras found = find_cameras(optics, links);
+    project.kind = found.kind;
+    project.cameras = std::move(found.cameras);
+    project.links = static_cast<uint32_t>(links.size());
+    std::vector<double> residuals;
+    for (size_t n = 0; n < links.size(); n++) {
+        const bool fits = found.link_residuals[n] <= unfit;
+        project.unfit += !fits;
+        if (fits) residuals.push_back(found.link_residuals[n]), add_points(links[n], project.points);
+    }
+    if (residuals.empty()) return project;
+    std::nth_element(residuals.begin(), residuals.begin() + static_cast<ptrdiff_t>(residuals.size() / 2),
+                     residuals.end());
+    project.residual = residuals[residuals.size() / 2];
+    return project;
+}
+
+std::vector<PictureLink> links_within(const std::vector<PictureLink> &links, const std::vector<uint32_t> &numbers) {
+    std::vector<PictureLink> result;
+    const auto place = [&](uint32_t picture) { return std::lower_bound(numbers.begin(), numbers.end(), picture); };
+    for (const PictureLink &link : links) {
+        const auto a = place(link.picture[0]), b = place(link.picture[1]);
+        if (a == numbers.end() || *a != link.picture[0] || b == numbers.end() || *b != link.picture[1]) continue;
+        result.push_back(link);
+        result.back().picture[0] = static_cast<uint32_t>(a - numbers.begin());
+        result.back().picture[1] = static_cast<uint32_t>(b - numbers.begin());
+    }
+    return result;
+}
+
+struct RegisteredPicture {
+    Features features;
+    PictureMetadata metadata;
+    std::string failure;  // why it cannot be read
+};
+
+// Metadata and features of every picture.
+std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files, Progress &progress) {
+    std::vector<RegisteredPicture> pictures(files.size());
+    const uint32_t most = most_features_of(files.size());
+    for_each_parallel(static_cast<uint32_t>(files.size()), "finding features", progress, [&](uint32_t i) {
+        try {
+            pictures[i].metadata = read_metadata(files[i]);
+            pictures[i].features = find_features(files[i], most);
+        } catch (const Failure &failure) {
+            if (failure.code != ExitCode::unreadable) throw;
+            pictures[i].features = {};
+            pictures[i].failure = failure.what();
+        }
+    });
+    return pictures;
+}
+
+// Pictures of the same camera, lens, focal length and size have one number, in the order they are met.
+std::vector<uint32_t> lenses_of(const std::vector<RegisteredPicture> &pictures, const std::vector<uint32_t> &numbers) {
+    using Setting = std::tuple<std::string, std::string, std::string, double, uint32_t, uint32_t>;
+    std::map<Setting, uint32_t> found;
+    std::vector<uint32_t> lenses;
+    for (uint32_t i : numbers) {
+        const lensprof_profile_key &key = pictures[i].metadata.key;
+        const Features &own = pictures[i].features;
+        const Setting setting(key.camera_maker, key.camera_model, key.lens, key.focal_mm, own.width, own.height);
+        lenses.push_back(found.emplace(setting, static_cast<uint32_t>(found.size())).first->second);
+    }
+    return lenses;
+}
+
+// Of some pictures, by their numbers.
+std::vector<PictureOptics> optics_of(const std::vector<RegisteredPicture> &pictures,
+                                     const std::vector<uint32_t> &numbers) {
+    const std::vector<uint32_t> lenses = lenses_of(pictures, numbers);
+    std::vector<PictureOptics> optics;
+    for (size_t n = 0; n < numbers.size(); n++) {
+        const RegisteredPicture &p = pictures[numbers[n]];
+        optics.push_back({p.features.width, p.features.height, lenses[n], hfov_by_metadata(p.metadata, p.features),
+                          p.metadata.orientation});
+    }
+    return optics;
+}
+
+Registration registered(const std::vector<std::string> &files, Progress &progress) {
+    const std::vector<RegisteredPicture> pictures = read_all(files, progress);
+    Registration result;
+    std::vector<Features> features;
+    for (uint32_t i = 0; i < pictures.size(); i++) {
+        features.push_back(pictures[i].features);  // shares the descriptors
+        if (!pictures[i].failure.empty()) result.unreadable.emplace_back(i, pictures[i].failure);
+    }
+    const std::vector<PictureLink> links = find_links(features, progress);
+    const std::vector<uint32_t> groups = groups_of(pictures.size(), links);
+    std::map<uint32_t, std::vector<uint32_t>> members;
+    for (uint32_t i = 0; i < pictures.size(); i++)
+        if (pictures[i].failure.empty()) members[groups[i]].push_back(i);
+    for (const auto &[group, numbers] : members)
+        if (numbers.size() == 1)
+            result.alone.push_back(numbers[0]);
+        else
+            result.projects.push_back(project_of(numbers, optics_of(pictures, numbers), links_within(links, numbers)));
+    std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {
+        return a.pictures.size() > b.pictures.size();
+    });
+    return result;
+}
+
+}  // namespace
+
+bool can_register() { return true; }
+
+Registration register_pictures(const std::vector<std::string> &files, Progress &progress) {
+    cv::setNumThreads(1);  // every thread of ours has a picture of its own
+    try {
+        return registered(files, progress);
+    } catch (const cv::Exception &error) {
+        if (error.code == cv::Error::StsNoMem) throw std::bad_alloc();
+        throw Failure(ExitCode::failed,
+                      "finding overlaps failed in OpenCV: " + std::string(error.what()) + "; please report this");
+    }
+}
+
+}  // namespace lensprof

@@ -1,0 +1,44 @@
+// Pictures in no project: which overlap, and the cameras that took them, as Hugin projects.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lensprof/geometry.h>
+
+#include "cli/program/progress.hpp"
+#include "cli/registration/project_text.hpp"
+
+namespace lensprof {
+
+enum class SceneKind {
+    panorama,  // the camera turned about one point
+    plane      // it moved, over a scene that is nearly a plane
+};
+
+// Pictures that overlap, directly or through others.
+struct FoundProject {
+    std::vector<uint32_t> pictures;  // their numbers, ascending; the members below are in this order
+    SceneKind kind = SceneKind::panorama;
+    std::vector<lensprof_camera> cameras;
+    std::vector<uint32_t> lenses;      // those of one lens, at one focal length, have one number
+    std::vector<ControlPoint> points;  // a few of every link that the cameras fit
+    uint32_t links = 0, unfit = 0;     // pictures that show the same; those of them that the cameras do not fit
+    double residual = 0.0;             // median over the links that fit, as a share of the longer side
+};
+
+struct Registration {
+    std::vector<FoundProject> projects;                        // the one with most pictures first
+    std::vector<uint32_t> alone;                               // pictures that overlap with no other
+    std::vector<std::pair<uint32_t, std::string>> unreadable;  // and why
+};
+
+// Whether this program was built with what registration needs.
+bool can_register();
+
+// Failure (usage) without OpenCV.
+Registration register_pictures(const std::vector<std::string> &files, Progress &progress);
+
+}  // namespace lensprof

@@ -1,0 +1,102 @@
+"""From pictures alone: lensprof's own registration beside Hugin's chain (pto_gen, cpfind, cpclean, autooptimiser).
+
+Both projects are fitted by lensprof, so that the geometry alone differs; seams are measured on places that neither
+chose (seams.py). Pictures: a rendered sequence, and every folder of real ones.
+"""
+import json
+import pathlib
+import shutil
+import subprocess
+
+import numpy as np
+
+import gallery
+import real
+import scorer
+import seams
+import tools
+
+FIT = ["--no-store", "--stored", "none", "--json"]
+RENDERED = "--images 20 --rows 2 --size 4000x3000 --format jpeg --seed 1"
+QUICK = "--images 6 --size 1200x900 --format jpeg --seed 1"
+CHAIN = (("pto_gen", "-o", "0.pto"), ("cpfind", "--multirow", "-o", "1.pto", "0.pto"), ("cpclean", "-o", "2.pto", "1.pto"),
+         ("autooptimiser", "-a", "-l", "-s", "-o", "3.pto", "2.pto"))
+HAS_HUGIN = all(shutil.which(step[0]) for step in CHAIN)
+
+
+def by_hugin(files, folder):
+    """Hugin's chain -> (usage of all steps together, project or None)."""
+    total = {"wall_s": 0.0, "cpu_s": 0.0, "peak_mb": 0.0}
+    for n, step in enumerate(CHAIN):
+        used = tools.measured([*step, *(files if n == 0 else [])], folder, folder / ("hugin%d" % n))
+        total = {"wall_s": total["wall_s"] + used["wall_s"], "cpu_s": total["cpu_s"] + used["cpu_s"],
+                 "peak_mb": max(total["peak_mb"], used["peak_mb"])}
+        if used["code"]:
+            return dict(total, lost=step[0]), None
+    return total, folder / "3.pto"
+
+
+def fit(inputs, log, extra=()):
+    """`build` -> (usage with the verdict, model or None, names of the images)."""
+    used = tools.measured([tools.LENSPROF, "build", *inputs, *FIT, *extra], log.parent, log)
+    text = used.pop("out")
+    if not text.startswith("{"):
+        return dict(used, lost=pathlib.Path("%s.err" % log).read_text(errors="replace")[-300:]), None, []
+    data = json.loads(text)
+    used.update(tools.of_json(data))
+    values = data["response"]["values"][0]
+    model = tools.model_of_json(data, tools.Curve(values), tools.monotone(values))
+    return used, model, [pathlib.Path(i["file"]).name for i in data["images"]]
+
+
+def measure(name, files, folder):
+    """One set of pictures -> a record."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    files = [str(f) for f in files]
+    own, model, names = fit(files, folder / "lensprof", ["--project-out", str(folder / "found.pto")])
+    record = {"name": name, "pictures": len(files), "lensprof": dict(own, joined=len(names) - len(own.get("left_out", [])))}
+    models = {"lensprof": (model, names, own.get("left_out", []))}
+    if HAS_HUGIN:
+        chain, project = by_hugin(files, folder)
+        record["hugin"] = chain
+        if project:
+            used, model, names = fit([project], folder / "by_hugin", real.FREE_ALL)
+            record["hugin"].update(fitted=used, joined=len(names) - len(used.get("left_out", [])))
+            models["hugin"] = (model, names, used.get("left_out", []))
+    if tools.OPENCV:
+        pairs = seams.seam_pairs(files)
+        for tool, (model, names, left_out) in models.items():
+            record[tool]["seam"] = seam_of(model, names, left_out, pairs, files)
+    return record
+
+
+def seam_of(model, names, left_out, pairs, files):
+    """Median over the links of which the tool joined both pictures; None where there is no model."""
+    place = {name: n for n, name in enumerate(names) if n not in left_out}
+    number = np.array([place.get(pathlib.Path(f).name, -1) for f in files])
+    kept = pairs.select((number[pairs.image] >= 0).all(axis=1))
+    if model is None or not len(kept):
+        return None
+    own = scorer.Pairs(number[kept.image], kept.xy, kept.value)
+    import cv2
+    sizes = np.zeros((len(names), 2), int)
+    for f, n in zip(files, number):
+        if n >= 0:
+            sizes[n] = cv2.imread(f, cv2.IMREAD_UNCHANGED).shape[1::-1]
+    return float(np.median(list(seams.seams(model, own, sizes).values())))
+
+
+def run_all(root, quick, say):
+    rendered = tools.WORK / "photographs" / "rendered"
+    shutil.rmtree(rendered, ignore_errors=True)
+    subprocess.run([tools.LENSPROF, "simulate", "-o", str(rendered), *(QUICK if quick else RENDERED).split()], check=True,
+                   stdout=subprocess.DEVNULL)
+    sets = {"rendered": sorted(rendered.glob("img*"))}
+    for name, project in (real.projects_below(root) if root else {}).items():
+        sets[name] = sorted(p for p in project.parent.iterdir() if p.suffix.lower() in gallery.PICTURES)
+    records = []
+    for name, files in sets.items():
+        records.append(measure(name, files, tools.WORK / "photographs" / name.replace("/", "-")))
+        say("photographs: %d of %d sets" % (len(records), len(sets)))
+    return records

@@ -1,0 +1,134 @@
+// `build` of pictures and folders that are in no project.
+#include "cli/registration/registration.hpp"
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+
+namespace {
+
+void simulate(const std::string &name, const Words &more) {
+    const bool is_sized = std::find(more.begin(), more.end(), "--size") != more.end();
+    must_exit(done, Words{"simulate", "-o", work(name), "--noise", "1"}
+                        + (is_sized ? Words() : Words{"--size", "480x360"}) + more);
+}
+
+// With the program built without OpenCV there is nothing to test but what it says.
+bool is_missing() {
+    if (can_register()) return false;
+    simulate("none", {"--images", "2"});
+    const Outcome refused = run_words({"build", work("none"), "--no-store"});
+    assert_int_equal(refused.code, usage);
+    assert_true(contains(refused.err, "built without OpenCV"));
+    return true;
+}
+
+double corner_of(const Json &json) {
+    const Json &k = json["vignetting"]["k"][0];
+    return 1.0 + k[0].get<double>() + k[1].get<double>() + k[2].get<double>();
+}
+
+const Words quietly{"--no-store", "--stored", "none", "--json"};
+
+void assert_alike(const Json &one, const Json &other) {
+    assert_true(one["usable"] == true && other["usable"] == true);
+    assert_close(corner_of(one), corner_of(other), 0.02);
+    assert_int_equal(one["images"].size(), other["images"].size());
+    for (size_t i = 0; i < one["images"].size(); i++)
+        assert_close(one["images"][i]["ev"].get<double>(), other["images"][i]["ev"].get<double>(), 0.03);
+}
+
+// The same as with the true project; and the project found says the same again.
+void test_a_folder_is_as_good_as_its_project(void **) {
+    if (is_missing()) return;
+    simulate("row", {"--images", "6", "--seed", "11"});
+    const std::string pto = work("row/pano.pto"), found = work("found.pto");
+    const Json given = json_of(Words{"build", pto} + quietly);
+    const Outcome run = run_words(Words{"build", work("row"), "--project-out", found} + quietly);
+    assert_int_equal(run.code, done);
+    assert_true(contains(run.err, "6 pictures overlap"));
+    const Json own = Json::parse(run.out);
+    assert_true(own["images"][0]["file"] == "img000.png");
+    assert_alike(given, own);
+    assert_alike(own, json_of(Words{"build", found} + quietly));
+    assert_true(contains(text_of(found), "n\"row/img003.png\""));
+    assert_true(contains(text_of(found), "\nc n0 N1 "));
+    // Twice the same; and files in place of the folder.
+    const Json again = json_of(Words{"build", work("row")} + quietly);
+    assert_true(again["vignetting"] == own["vignetting"]);
+    Words files{"build"};
+    for (const char *name : {"img000.png", "img001.png", "img002.png", "img003.png", "img004.png", "img005.png"})
+        files = files + Words{work(std::string("row/") + name)};
+    assert_true(json_of(files + quietly)["vignetting"] == own["vignetting"]);
+}
+
+// What makes pictures unlike each other: exposures 4 EV apart, white balances, a deep falloff.
+void test_pictures_that_look_unlike(void **) {
+    if (is_missing()) return;
+    simulate("unlike", {"--images", "5", "--ev", "4", "--wb", "0.3", "--vignetting=-0.8,0.5,-0.3", "--seed", "5"});
+    const Json json = json_of(Words{"build", work("unlike")} + quietly);
+    assert_true(json["usable"] == true);
+    for (const Json &image : json["images"]) assert_true(image["joined"] == true);
+}
+
+// Two panoramas, a picture of neither, one that is damaged, a copy, and one of another size.
+void test_a_folder_of_many_things(void **) {
+    if (is_missing()) return;
+    simulate("mixed", {"--images", "5", "--seed", "21"});
+    simulate("other", {"--images", "3", "--seed", "22"});
+    simulate("single", {"--images", "2", "--seed", "23"});
+    simulate("small", {"--images", "5", "--seed", "21", "--size", "400x300"});
+    for (int i = 0; i < 3; i++)
+        fs::copy_file(work("other/img00" + std::to_string(i) + ".png"), work("mixed/x" + std::to_string(i) + ".png"));
+    fs::copy_file(work("single/img000.png"), work("mixed/y.png"));
+    fs::copy_file(work("mixed/img001.png"), work("mixed/copy.png"));
+    fs::copy_file(work("small/img002.png"), work("mixed/small.png"));
+    save_text(work("mixed/damaged.png"), text_of(work("mixed/img002.png")).substr(0, 5000));
+    const Outcome run = run_words(Words{"build", work("mixed")} + quietly);
+    assert_int_equal(run.code, done);
+    const Json json = Json::parse(run.out);
+    assert_int_equal(json["images"].size(), 5);
+    assert_true(contains(run.err, "x0.png, x1.png, x2.png: another group"));
+    assert_true(contains(run.err, "y.png: left out, no overlap"));
+    assert_true(contains(run.err, "damaged.png"));
+    assert_true(contains(run.err, "it is a copy of copy.png"));
+    assert_true(contains(run.err, "small.png: left out, of another camera, lens, focal length or size"));
+}
+
+void test_refused(void **) {
+    if (is_missing()) return;
+    simulate("one", {"--images", "2", "--seed", "31"});
+    simulate("two", {"--images", "2", "--seed", "32"});
+    const std::string a = work("one/img000.png"), b = work("two/img000.png"), pto = work("one/pano.pto");
+    const auto refuse = [](const Words &words, int code, const std::string &text) {
+        const Outcome refused = run_words(words);
+        assert_int_equal(refused.code, code);
+        if (!contains(refused.err, text)) print_error("%s\n", refused.err.c_str());
+        assert_true(contains(refused.err, text));
+    };
+    refuse({"build", a, "--no-store"}, not_usable, "has one picture");
+    refuse({"build", a, a, "--no-store"}, not_usable, "has one picture");
+    refuse({"build", a, b, "--no-store"}, not_usable, "no two of the pictures overlap");
+    refuse({"build", work("one"), "--points", work("p.txt"), "--no-store"}, usage, "--points: needs the project");
+    refuse({"build", pto, "--project-out", work("q.pto"), "--no-store"}, usage, "--project-out: writes the project of");
+    refuse({"build", work("one"), "--project-out", a, "--no-store"}, usage, "would be written over");
+    refuse({"build", work("nowhere"), "--no-store"}, unreadable, "nowhere");
+    save_text(work("p1.png"), "no picture"), save_text(work("p2.png"), "none either");
+    refuse({"build", work("p1.png"), work("p2.png"), "--no-store"}, unreadable, "none of the pictures can be read");
+    fs::create_directory(work("empty"));
+    refuse({"build", work("empty"), "--no-store"}, usage, "is a folder without pictures");
+    assert_false(fs::exists(work("q.pto")));
+    const Json json = Json::parse(run_words({"build", a, b, "--no-store", "--json"}).out);
+    assert_true(json["usable"] == false);
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_a_folder_is_as_good_as_its_project),
+        CLI_TEST(test_pictures_that_look_unlike),
+        CLI_TEST(test_a_folder_of_many_things),
+        CLI_TEST(test_refused),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,191 @@
+// Cameras and candidates of pictures without a project, from made-up matches.
+#include <cmath>
+#include <random>
+
+#include <opencv2/calib3d.hpp>
+
+#include "cli/registration/cameras.hpp"
+#include "cli/registration/candidates.hpp"
+#include "cli/registration/matching.hpp"
+extern "C" {
+#include "support.h"
+}
+
+using namespace lensprof;
+
+namespace {
+
+constexpr uint32_t kWidth = 1200, kHeight = 900;
+
+struct Scene {
+    std::vector<lensprof_camera> cameras;
+    std::vector<PictureOptics> optics;
+    std::vector<PictureLink> links;
+};
+
+lensprof_camera camera_at(double yaw, double pitch, double hfov) {
+    lensprof_camera camera{};
+    camera.width = kWidth, camera.height = kHeight;
+    camera.hfov_deg = hfov, camera.yaw_deg = yaw, camera.pitch_deg = pitch;
+    return camera;
+}
+
+bool is_seen(const double xy[2]) { return xy[0] >= 0.0 && xy[1] >= 0.0 && xy[0] < kWidth && xy[1] < kHeight; }
+
+// All pictures that share enough, with matches that are off by `noise` px, and a share of wrong ones.
+Scene scene_of(std::vector<lensprof_camera> cameras, double noise, double wrong, uint32_t seed) {
+    Scene scene;
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0.0, noise);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    scene.cameras = std::move(cameras);
+    scene.optics.assign(scene.cameras.size(), {kWidth, kHeight, 0, std::nullopt, 1});
+    for (uint32_t i = 0; i < scene.cameras.size(); i++)
+        for (uint32_t j = i + 1; j < scene.cameras.size(); j++) {
+            PictureLink link{{i, j}, {}, cv::Matx33d::eye()};
+            for (int n = 0; n < 400; n++) {
+                const double x = uniform(random) * kWidth, y = uniform(random) * kHeight;
+                double direction[2], xy[2];
+                if (!lensprof_camera_unproject(&scene.cameras[i], x, y, direction)
+                    || !lensprof_camera_project(&scene.cameras[j], direction[0], direction[1], xy) || !is_seen(xy))
+                    continue;
+                const bool is_wrong = uniform(random) < wrong;
+                if (is_wrong) xy[0] = uniform(random) * kWidth, xy[1] = uniform(random) * kHeight;
+                link.matches.push_back({{x, y}, {xy[0] + normal(random), xy[1] + normal(random)}});
+            }
+            if (link.matches.size() >= 40) scene.links.push_back(link);
+        }
+    return scene;
+}
+
+// px, of a place in picture `from` as `to` sees it: the found cameras against the true ones.
+double largest_error(const Scene &scene, const FoundCameras &found) {
+    double largest = 0.0;
+    for (const PictureLink &link : scene.links)
+        for (const auto &[place, other] : link.matches) {
+            double direction[2], xy[2], truth[2];
+            const uint32_t i = link.picture[0], j = link.picture[1];
+            if (!lensprof_camera_unproject(&scene.cameras[i], place.x, place.y, direction)
+                || !lensprof_camera_project(&scene.cameras[j], direction[0], direction[1], truth))
+                continue;
+            assert_true(lensprof_camera_unproject(&found.cameras[i], place.x, place.y, direction));
+            assert_true(lensprof_camera_project(&found.cameras[j], direction[0], direction[1], xy));
+            largest = std::max(largest, std::hypot(xy[0] - truth[0], xy[1] - truth[1]));
+        }
+    return largest;
+}
+
+// A row, two rows, and a ring that closes; nothing says the angle of view.
+void test_a_camera_that_turned(void **) {
+    for (uint32_t seed = 1; seed <= 3; seed++) {
+        std::vector<lensprof_camera> row, rows, ring;
+        for (int i = 0; i < 6; i++) row.push_back(camera_at(30.0 * i, 2.0 * (i % 2), 50.0));
+        for (int i = 0; i < 10; i++) rows.push_back(camera_at(18.0 * (i % 5), 20.0 * (i / 5), 32.0));
+        for (int i = 0; i < 18; i++) ring.push_back(camera_at(20.0 * i, 0.0, 34.0));
+        for (auto *cameras : {&row, &rows, &ring}) {
+            for (lensprof_camera &c : *cameras) c.radial[1] = -0.03;
+            const Scene scene = scene_of(*cameras, 0.4, 0.05, seed);
+            const FoundCameras found = find_cameras(scene.optics, scene.links);
+            assert_int_equal(found.kind, SceneKind::panorama);
+            assert_true(largest_error(scene, found) < 2.0);
+            assert_true(std::fabs(found.cameras[0].hfov_deg / (*cameras)[0].hfov_deg - 1.0) < 0.04);
+        }
+    }
+}
+
+// Metadata that are wrong by a tenth, and pictures on their side.
+void test_metadata_are_a_first_guess(void **) {
+    std::vector<lensprof_camera> ring;
+    for (int i = 0; i < 18; i++) ring.push_back(camera_at(20.0 * i, 0.0, 34.0));
+    for (lensprof_camera &c : ring) c.roll_deg = 90.0;
+    Scene scene = scene_of(ring, 0.4, 0.0, 4);
+    for (PictureOptics &o : scene.optics) o.hfov_deg = 34.0 * 1.08, o.orientation = 8;
+    const FoundCameras found = find_cameras(scene.optics, scene.links);
+    assert_true(largest_error(scene, found) < 2.0);
+    for (const lensprof_camera &c : found.cameras) {
+        assert_true(std::fabs(std::fabs(c.roll_deg) - 90.0) < 1.0);  // upright
+        assert_true(std::fabs(c.pitch_deg) < 1.0);
+    }
+}
+
+// A drone over the ground: the true place of every picture, seen from the first.
+void test_a_camera_that_moved_over_a_plane(void **) {
+    std::vector<lensprof_camera> cameras;
+    for (int i = 0; i < 9; i++) {
+        lensprof_camera c = camera_at(1.5 * (i % 2), -1.0 * (i % 3), 70.0);
+        c.translation[0] = 0.35 * (i % 3), c.translation[1] = 0.3 * (i / 3), c.translation[2] = 0.02 * (i % 2);
+        c.roll_deg = i % 2 ? 3.0 : -2.0;
+        cameras.push_back(c);
+    }
+    Scene scene = scene_of(cameras, 0.4, 0.05, 7);
+    for (PictureLink &link : scene.links) {
+        std::vector<cv::Point2d> from, to;
+        for (const auto &[place, other] : link.matches) from.push_back(place), to.push_back(other);
+        link.homography = cv::findHomography(from, to, cv::USAC_MAGSAC, 3.0);
+    }
+    for (PictureOptics &o : scene.optics) o.hfov_deg = 72.0;
+    const FoundCameras found = find_cameras(scene.optics, scene.links);
+    assert_int_equal(found.kind, SceneKind::plane);
+    double sum = 0.0;
+    for (double r : found.link_residuals) sum += r;
+    assert_true(sum / double(found.link_residuals.size()) < 0.001);
+}
+
+// Pictures that look alike are candidates, and their number does not grow with the square.
+void test_candidates(void **) {
+    std::mt19937 random(3);
+    std::normal_distribution<float> normal(0.0f, 1.0f);
+    constexpr int kGroups = 40, kMembers = 5, kFeatures = 60;
+    std::vector<Features> pictures;
+    for (int group = 0; group < kGroups; group++) {
+        cv::Mat own(kFeatures, descriptor_length, CV_32F);
+        for (int y = 0; y < kFeatures; y++)
+            for (int x = 0; x < descriptor_length; x++) own.at<float>(y, x) = std::fabs(normal(random));
+        for (int member = 0; member < kMembers; member++) {
+            Features picture;
+            picture.descriptors = own.clone();
+            for (int y = 0; y < kFeatures; y++)
+                for (int x = 0; x < descriptor_length; x++) {
+                    float &value = picture.descriptors.at<float>(y, x);
+                    value = std::max(0.0f, value + 0.3f * normal(random));
+                }
+            take_roots(picture.descriptors);
+            pictures.push_back(picture);
+        }
+    }
+    std::vector<Features> mixed;  // members are far apart
+    for (int member = 0; member < kMembers; member++)
+        for (int group = 0; group < kGroups; group++) mixed.push_back(pictures[size_t(group * kMembers + member)]);
+    const std::vector<PicturePair> pairs = candidate_pairs(mixed);
+    assert_true(pairs.size() <= 14 * mixed.size());
+    size_t found = 0;
+    for (const auto &[a, b] : pairs) found += a % kGroups == b % kGroups;
+    assert_int_equal(found, kGroups * kMembers * (kMembers - 1) / 2);
+
+    const std::vector<PicturePair> linked{{0, 1}, {1, 2}};
+    const std::vector<PicturePair> further = further_pairs(3, linked, linked);
+    assert_int_equal(further.size(), 1);
+    assert_true(further[0] == PicturePair(0, 2));
+}
+
+void test_groups(void **) {
+    std::vector<PictureLink> links(3);
+    links[0].picture[0] = 4, links[0].picture[1] = 5;
+    links[1].picture[0] = 0, links[1].picture[1] = 4;
+    links[2].picture[0] = 1, links[2].picture[1] = 3;
+    const std::vector<uint32_t> groups = groups_of(6, links), wanted{0, 1, 2, 1, 0, 0};
+    assert_true(groups == wanted);
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_camera_that_turned),
+        cmocka_unit_test(test_metadata_are_a_first_guess),
+        cmocka_unit_test(test_a_camera_that_moved_over_a_plane),
+        cmocka_unit_test(test_candidates),
+        cmocka_unit_test(test_groups),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
