@@ -97,6 +97,6 @@ def run_all(root, quick, say):
         sets[name] = sorted(p for p in project.parent.iterdir() if p.suffix.lower() in gallery.PICTURES)
     records = []
     for name, files in sets.items():
-        records.append(measure(name, files, tools.WORK / "photographs" / name.replace("/", "-")))
+        records.append(measure(name, files, tools.WORK / "photographs" / ("of-" + name.replace("/", "-"))))
         say("photographs: %d of %d sets" % (len(records), len(sets)))
     return records
