@@ -9,6 +9,7 @@
 #include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 
+#include "cli/program/interrupt.hpp"
 #include "threads/item_loop.hpp"
 
 namespace lensprof {
@@ -199,13 +200,14 @@ void CameraFit::find_angles_of_view() {
     }
 }
 
-// Of a few matches of every link.
+// Of a few matches of every link, or of evenly chosen links.
 double CameraFit::guess_misfit() const {
-    constexpr size_t step = 4;
+    constexpr size_t step = 4, most_links = 300;
+    const size_t link_step = 1 + links_.size() / most_links;
     constexpr double scale = 0.01;
     double sum = expectation(nullptr, nullptr);
     Eigen::Vector2d r;
-    for (size_t n = 0; n < links_.size(); n++)
+    for (size_t n = 0; n < links_.size(); n += link_step)
         for (size_t m = 0; m < matches_[n].size(); m += step) {
             const auto &p = links_[n].picture;
             const bool seen = residual(cameras_[p[0]], cameras_[p[1]], matches_[n][m], r);
@@ -400,6 +402,7 @@ void CameraFit::add_matches(double scale, std::vector<Eigen::Triplet<double>> &n
 bool CameraFit::step(double scale, double &damping) {
     std::vector<Eigen::Triplet<double>> normal;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(columns_);
+    stop_if_interrupted();
     const double before = cost(scale);
     add_matches(scale, normal, right);
     expectation(&normal, &right);

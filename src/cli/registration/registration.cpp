@@ -135,11 +135,13 @@ Registration registered(const std::vector<std::string> &files, Progress &progres
     std::map<uint32_t, std::vector<uint32_t>> members;
     for (uint32_t i = 0; i < pictures.size(); i++)
         if (pictures[i].failure.empty()) members[groups[i]].push_back(i);
-    for (const auto &[group, numbers] : members)
+    for (const auto &[group, numbers] : members) {
+        progress.update("finding cameras", static_cast<double>(group) / static_cast<double>(members.size()));
         if (numbers.size() == 1)
             result.alone.push_back(numbers[0]);
         else
             result.projects.push_back(project_of(numbers, optics_of(pictures, numbers), links_within(links, numbers)));
+    }
     std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {
         return a.pictures.size() > b.pictures.size();
     });

@@ -365,6 +365,17 @@ void print_prior(const BuildReport &report, std::ostream &out) {
                 : ", overruled by the pictures\n");
 }
 
+// "links     12 verified, 2 not (too little texture to check the alignment), 1 contradicted".
+std::string links_row(const std::vector<lensprof_link> &links) {
+    size_t count[LENSPROF_LINK_CONTRADICTED + 1] = {};
+    for (const lensprof_link &link : links) count[std::min<uint32_t>(link.state, LENSPROF_LINK_CONTRADICTED)]++;
+    std::string row = format("links     %zu verified", count[LENSPROF_LINK_VERIFIED]);
+    if (count[LENSPROF_LINK_UNVERIFIED])
+        row += format(", %zu not (too little texture to check the alignment)", count[LENSPROF_LINK_UNVERIFIED]);
+    if (count[LENSPROF_LINK_CONTRADICTED]) row += format(", %zu contradicted", count[LENSPROF_LINK_CONTRADICTED]);
+    return row + "\n";
+}
+
 }  // namespace
 
 void print_build(const BuildReport &report, std::ostream &out) {
@@ -381,6 +392,7 @@ void print_build(const BuildReport &report, std::ostream &out) {
         heldout = format("%.2f (RMS; median %.2f) on pairs left out of the fit", fit.heldout_rms, fit.heldout_median);
     out << format("residual  before %.2f, after %s, levels of 255; %.1f %% inliers of %u pairs\n", fit.before_rms,
                   heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
+    if (!report.links.empty()) out << links_row(report.links);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
     if (!fit.usable && fit.evens && report.has_falloff)
         out << "EVENS OUT these pictures; not a profile to store: " << report.verdict.text << "\n";
