@@ -1,4 +1,5 @@
 // `build` of pictures and folders that are in no project.
+#include "cli/pictures/picture.hpp"
 #include "cli/registration/registration.hpp"
 #include "cli_runs.hpp"
 
@@ -94,6 +95,42 @@ void test_a_folder_of_many_things(void **) {
     assert_true(contains(run.err, "small.png: left out, of another camera, lens, focal length or size"));
 }
 
+// Standard deviation of the logarithm of one panel over another: 0 where they differ by a factor alone. Places without
+// a picture, near black and near white do not count.
+double spread(const Picture &one, uint32_t one_top, const Picture &other, uint32_t other_top, uint32_t height) {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < one.width; x++) {
+            const uint8_t *a = one.pixels.data() + (one_top + y) * one.row_bytes + size_t(3) * x,
+                          *b = other.pixels.data() + (other_top + y) * other.row_bytes + size_t(3) * x;
+            const bool is_empty =
+                (a[0] == 128 && a[1] == 128 && a[2] == 128) || (b[0] == 128 && b[1] == 128 && b[2] == 128);
+            if (is_empty || std::min({b[0], b[1], b[2]}) < 20 || std::max({b[0], b[1], b[2]}) > 240) continue;
+            const double ratio = std::log((a[1] + 1.0) / (b[1] + 1.0));
+            sum += ratio, squares += ratio * ratio, count++;
+        }
+    assert_true(count > 0.2 * one.width * height);
+    return std::sqrt(squares / count - sum / count * (sum / count));
+}
+
+// The mosaic after correction against that of the same scene by a camera without falloff and with one exposure.
+void test_the_preview_is_even(void **) {
+    simulate("uneven", {"--images", "5", "--ev", "0.8", "--seed", "8"});
+    simulate("truth", {"--images", "5", "--ev", "0", "--wb", "0", "--vignetting", "0,0,0", "--seed", "8"});
+    const std::string preview = work("preview.png"), wide = work("wide.jpg"), pto = work("uneven/pano.pto");
+    must_exit(done, Words{"build", pto, "--preview", preview} + quietly);
+    must_exit(done, Words{"build", work("truth/pano.pto"), "--preview", work("truth.png")} + quietly);
+    const Picture own = read_picture(preview), truth = read_picture(work("truth.png"));
+    assert_true(own.width == truth.width && own.height == truth.height && own.width > 1000);
+    const uint32_t height = (own.height - 8) / 2;
+    const double before = spread(own, 0, truth, 0, height), after = spread(own, height + 8, truth, 0, height);
+    assert_true(before > 0.1 && after < 0.03);
+    assert_int_equal(run_words({"build", pto, "--preview", work("preview.txt"), "--no-store"}).code, usage);
+    assert_int_equal(run_words({"build", pto, "--preview", work("uneven/img000.png"), "--no-store"}).code, usage);
+    assert_int_equal(run_words({"build", pto, "--preview", wide, "--points", work("p.txt"), "--no-store"}).code, usage);
+    assert_false(fs::exists(wide));
+}
+
 void test_refused(void **) {
     if (is_missing()) return;
     simulate("one", {"--images", "2", "--seed", "31"});
@@ -128,6 +165,7 @@ int main() {
         CLI_TEST(test_a_folder_is_as_good_as_its_project),
         CLI_TEST(test_pictures_that_look_unlike),
         CLI_TEST(test_a_folder_of_many_things),
+        CLI_TEST(test_the_preview_is_even),
         CLI_TEST(test_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

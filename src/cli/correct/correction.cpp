@@ -14,17 +14,6 @@
 
 namespace lensprof {
 
-lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures) {
-    lensprof_exposure mean{};
-    double logs[3] = {0, 0, 0}, share = 1.0 / static_cast<double>(exposures.size());
-    for (const auto &e : exposures) {
-        mean.ev += e.ev * share;
-        for (int c = 0; c < 3; c++) logs[c] += std::log(e.white_balance[c]) * share;
-    }
-    for (int c = 0; c < 3; c++) mean.white_balance[c] = std::exp(logs[c]);
-    return mean;
-}
-
 void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet) {
     std::set<std::string> read, written;
     for (const std::string &file : inputs) read.insert(one_name(file));

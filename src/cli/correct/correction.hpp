@@ -54,9 +54,6 @@ void add_speed(const Corrected &corrected, Json &json);
 // The options --threads and --overwrite.
 void declare_writing(Command &command, CorrectionKind &kind);
 
-// Geometric mean of exposures and white balances: Goldman & Chen 2005, equation 15.
-lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures);
-
 // Failure for a picture that cannot be read (unreadable), and for an output or contact sheet (path or empty) that
 // would take the place of a picture that is corrected, of another of the `inputs` or of another output (usage):
 // before anything is written. Sets the jobs' numbers of pixels.

@@ -9,6 +9,7 @@
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/known_exposures.hpp"
 #include "cli/fitting/photographs.hpp"
+#include "cli/fitting/preview.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/program/commands.hpp"
@@ -25,7 +26,7 @@ struct Options {
     FitOptions fit;
     StoreOptions store;
     std::vector<std::string> inputs;
-    std::string points, points_out, pto_out, project_out, reference, compare;
+    std::string points, points_out, pto_out, project_out, preview, reference, compare;
     std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
     uint32_t sampling = LENSPROF_SAMPLING_BALANCED, falloff_curves = 0;  // 0: held-out error decides
     bool json = false, one_lens = false, progress = false;
@@ -48,6 +49,8 @@ void declare_points(Command &command, Options &o) {
                  "use the pairs of this point file; the pictures (and their EXIF exposures) are then not used");
     command.file("--points-out", o.points_out,
                  "write the pairs used (Hugin's 16 columns), also those of a fit that is not usable");
+    command.file("--preview", o.preview,
+                 "write a mosaic of the pictures before, and below it after correction, as .jpg, .png or .tif");
     command.file("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
 }
 
@@ -163,7 +166,7 @@ void check_outputs(const Options &o, const Project &project) {
     std::vector<std::string> taken{project.path, o.points, o.compare};
     taken.insert(taken.end(), project.files.begin(), project.files.end());
     if (!o.store.no_store) taken.push_back(store_path(o.store.db));
-    for (const std::string &output : {o.points_out, o.pto_out, o.project_out}) {
+    for (const std::string &output : {o.points_out, o.pto_out, o.project_out, o.preview}) {
         if (output.empty()) continue;
         for (const std::string &other : taken)
             if (is_same_file(output, other))
@@ -260,6 +263,7 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
         Fitted written = fit_for_project(input, best, report.reference, item, progress);
         outputs.add(o.pto_out, project_text(o, project, written, written.reference));
     }
+    if (!o.preview.empty() && best.corrects()) write_preview(o.preview, project, best, progress);
     progress.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         warn(streams, project.path
@@ -314,12 +318,17 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
     if (!report.fit.usable && !report.fit.evens && !o.pto_out.empty() && !o.store.force)
         tell(streams, o.pto_out + ": not written (--force writes it all the same)");
+    if (!report.fit.usable && !report.fit.evens && !o.preview.empty())
+        tell(streams, o.preview + ": not written, for the result evens nothing out");
     return code;
 }
 
 int run(const Options &o, Streams &streams) {
     check_max_side(o.max_side);
     check_fit_options(o.fit);
+    if (!o.preview.empty()) check_preview(o.preview);
+    if (!o.preview.empty() && !o.points.empty())
+        throw Failure(ExitCode::usage, "--preview: shows pictures, which --points leaves out; give one of the two");
     if (o.json && !o.compare.empty())
         throw Failure(ExitCode::usage, "--compare prints a table, which --json leaves out; give one of the two");
     check_store_options(o.store, takes_stored_prior(o.fit), !o.pto_out.empty());

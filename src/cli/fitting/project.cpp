@@ -322,6 +322,19 @@ std::string points_text(const std::vector<lensprof_pair> &pairs, const Project &
     });
 }
 
+lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures) {
+    lensprof_exposure mean{};
+    double logs[3] = {0, 0, 0}, count = 0.0;
+    for (const auto &e : exposures) {
+        if (std::isnan(e.ev)) continue;
+        mean.ev += e.ev, count++;
+        for (int c = 0; c < 3; c++) logs[c] += std::log(e.white_balance[c]);
+    }
+    mean.ev /= count;
+    for (int c = 0; c < 3; c++) mean.white_balance[c] = std::exp(logs[c] / count);
+    return mean;
+}
+
 std::vector<lensprof_exposure> relative_exposures(std::vector<lensprof_exposure> exposures, uint32_t reference) {
     const lensprof_exposure zero = exposures[reference];
     for (auto &e : exposures) {

@@ -99,6 +99,9 @@ std::vector<lensprof_fit_image> fit_images(const Project &project);
 // Exposures and white balances relative to those of one image.
 std::vector<lensprof_exposure> relative_exposures(std::vector<lensprof_exposure> exposures, uint32_t reference);
 
+// Geometric mean of exposures and white balances (Goldman & Chen 2005, equation 15) of images that were not left out.
+lensprof_exposure mean_exposure(const std::vector<lensprof_exposure> &exposures);
+
 // The project's own, relative to its reference.
 std::vector<lensprof_exposure> project_exposures(const Project &project);
 

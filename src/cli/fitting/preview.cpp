@@ -1,0 +1,192 @@
+#include "cli/fitting/preview.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cli/program/parallel.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t longer_side = 1600, gap = 8;                           // px of a mosaic
+constexpr uint32_t picture_side = 500;                                    // px that pictures are reduced to
+constexpr double widest_flat = 55.0 * M_PI / 180.0, farthest_flat = 8.0;  // seen ahead; px of a plane at distance 1
+
+struct Tile {
+    Picture before, after;  // 8 bit
+    lensprof_camera camera{};
+};
+
+// The model on a reduced picture, whose place in the frame does not matter: radii are in half diagonals.
+Picture applied(Picture &source, const lensprof_apply_options &options, const std::string &file) {
+    lensprof_apply_options own = options;
+    own.frame_width = source.width, own.frame_height = source.height;
+    own.source_sample = source.sample, own.source_layout = source.layout;
+    own.target_sample = LENSPROF_SAMPLE_U8;
+    Picture target;
+    target.width = source.width, target.height = source.height;
+    target.layout = source.layout;
+    target.row_bytes = size_t(source.width) * lensprof_layout_samples(source.layout);
+    target.pixels.resize(target.row_bytes * target.height);
+    std::vector<uint64_t> memory(lensprof_plan_bytes(&own) / 8 + 1);
+    const lensprof_plan *plan = nullptr;
+    lensprof_error error{};
+    check(lensprof_plan_init(memory.data(), memory.size() * 8, &own, &plan, &error), file, &error);
+    const lensprof_image from = source.view(), to = target.view();
+    check(lensprof_apply(plan, &from, &to, 0, 0), file);
+    return target;
+}
+
+// What a result makes of a picture, and the picture as it is in the same format.
+Tile tile_of(const Project &project, uint32_t i, const Fitted &fitted, const lensprof_exposure &wanted) {
+    ReadOptions read;
+    read.max_side = picture_side;
+    Picture source = read_picture(project.files[i], read);
+    lensprof_apply_options options;
+    lensprof_apply_options_init(&options);
+    options.responses = options.vignettings = 1;
+    const lensprof_vignetting none{};
+    lensprof_response linear;
+    lensprof_response_set_linear(&linear);
+    options.response = &linear, options.vignetting = &none;
+    options.input = options.output = LENSPROF_ENCODING_LINEAR;
+    Tile tile;
+    tile.before = applied(source, options, project.files[i]);
+    options.input = options.output = LENSPROF_ENCODING_RESPONSE;
+    options.response = &fitted.result.response;
+    options.vignettings = fitted.result.vignettings, options.vignetting = fitted.result.vignetting;
+    options.source = fitted.exposures[i], options.target = wanted;
+    tile.after = applied(source, options, project.files[i]);
+    tile.camera = project.images[i].camera;
+    return tile;
+}
+
+// A mosaic's projection, and the part of it that pictures cover.
+struct Canvas {
+    bool is_flat = true;
+    double left = 0.0, top = 0.0, right = 0.0, bottom = 0.0, px = 1.0;  // px: of a pixel
+    uint32_t width = 0, height = 0;
+
+    void place_of(const double direction[2], double xy[2]) const {
+        xy[0] = is_flat ? std::tan(direction[0]) : direction[0];
+        xy[1] = is_flat ? std::tan(direction[1]) / std::cos(direction[0]) : direction[1];
+    }
+    void direction_of(double x, double y, double direction[2]) const {
+        direction[0] = is_flat ? std::atan(x) : x;
+        direction[1] = is_flat ? std::atan(y / std::hypot(1.0, x)) : y;
+    }
+};
+
+struct Box {
+    double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
+};
+
+// Calls use(direction) for places of a frame, its edges among them.
+template <class Use>
+void look_around(const lensprof_camera &camera, const Use &use) {
+    constexpr int steps = 12;
+    double direction[2];
+    for (int v = 0; v <= steps; v++)
+        for (int u = 0; u <= steps; u++)
+            if (lensprof_camera_unproject(&camera, u * (camera.width - 1.0) / steps, v * (camera.height - 1.0) / steps,
+                                          direction))
+                use(direction);
+}
+
+// Where a picture lies; all around where it crosses the edge of an equirectangular canvas.
+Box box_of(const Canvas &canvas, const lensprof_camera &camera) {
+    Box box;
+    look_around(camera, [&](const double direction[2]) {
+        double xy[2];
+        if (canvas.is_flat && !(std::fabs(direction[0]) < 0.499 * M_PI)) return;
+        canvas.place_of(direction, xy);
+        if (canvas.is_flat && !(std::hypot(xy[0], xy[1]) < farthest_flat)) return;
+        box.left = std::min(box.left, xy[0]), box.right = std::max(box.right, xy[0]);
+        box.top = std::min(box.top, xy[1]), box.bottom = std::max(box.bottom, xy[1]);
+    });
+    if (!canvas.is_flat && box.right - box.left > M_PI) box.left = -M_PI, box.right = M_PI;
+    return box;
+}
+
+Canvas canvas_of(const std::vector<Tile> &tiles) {
+    Canvas canvas;
+    for (const Tile &tile : tiles) {
+        const double *t = tile.camera.translation;
+        if (t[0] != 0.0 || t[1] != 0.0 || t[2] != 0.0) break;  // a plane is flat
+        look_around(tile.camera, [&](const double direction[2]) {
+            if (std::max(std::fabs(direction[0]), std::fabs(direction[1])) > widest_flat) canvas.is_flat = false;
+        });
+    }
+    Box all;
+    for (const Tile &tile : tiles) {
+        const Box box = box_of(canvas, tile.camera);
+        all.left = std::min(all.left, box.left), all.right = std::max(all.right, box.right);
+        all.top = std::min(all.top, box.top), all.bottom = std::max(all.bottom, box.bottom);
+    }
+    canvas.left = all.left, canvas.top = all.top, canvas.right = all.right, canvas.bottom = all.bottom;
+    const double across = all.right - all.left, down = all.bottom - all.top;
+    canvas.px = std::max(across, down) / longer_side;
+    if (!(across > 0.0 && down > 0.0)) return canvas;
+    canvas.width = std::max(1u, static_cast<uint32_t>(std::lround(across / canvas.px)));
+    canvas.height = std::max(1u, static_cast<uint32_t>(std::lround(down / canvas.px)));
+    return canvas;
+}
+
+void copy_pixel(const Picture &from, uint32_t x, uint32_t y, uint8_t *to) {
+    const uint32_t samples = lensprof_layout_samples(from.layout);
+    const uint8_t *pixel = from.pixels.data() + y * from.row_bytes + size_t(x) * samples;
+    for (uint32_t c = 0; c < 3; c++) to[c] = pixel[samples < 3 ? 0 : c];
+}
+
+// A tile's pixels into both mosaics, where no other's middle is nearer.
+void paint(const Canvas &canvas, const Tile &tile, std::vector<float> &nearest, Picture &out) {
+    const lensprof_camera &camera = tile.camera;
+    const Box box = box_of(canvas, camera);
+    const auto pixel = [&](double at, double from, uint32_t count) {
+        return static_cast<uint32_t>(std::clamp((at - from) / canvas.px, 0.0, static_cast<double>(count)));
+    };
+    const uint32_t right = pixel(box.right + canvas.px, canvas.left, canvas.width),
+                   bottom = pixel(box.bottom + canvas.px, canvas.top, canvas.height);
+    for (uint32_t v = pixel(box.top, canvas.top, canvas.height); v < bottom; v++)
+        for (uint32_t u = pixel(box.left, canvas.left, canvas.width); u < right; u++) {
+            double direction[2], xy[2];
+            canvas.direction_of(canvas.left + (u + 0.5) * canvas.px, canvas.top + (v + 0.5) * canvas.px, direction);
+            if (!lensprof_camera_project(&camera, direction[0], direction[1], xy)) continue;
+            const double across = (xy[0] + 0.5) / camera.width, down = (xy[1] + 0.5) / camera.height;
+            if (!(across >= 0.0 && across < 1.0 && down >= 0.0 && down < 1.0)) continue;
+            const auto distance = static_cast<float>(std::hypot(across - 0.5, down - 0.5));
+            float &best = nearest[size_t(v) * canvas.width + u];
+            if (!(distance < best)) continue;
+            best = distance;
+            const auto x = static_cast<uint32_t>(across * tile.before.width),
+                       y = static_cast<uint32_t>(down * tile.before.height);
+            uint8_t *to = out.pixels.data() + v * out.row_bytes + size_t(3) * u;
+            copy_pixel(tile.before, x, y, to);
+            copy_pixel(tile.after, x, y, to + (canvas.height + gap) * out.row_bytes);
+        }
+}
+
+}  // namespace
+
+void check_preview(const std::string &path) { format_of_name(path); }
+
+void write_preview(const std::string &path, const Project &project, const Fitted &fitted, Progress &progress) {
+    const lensprof_exposure wanted = mean_exposure(fitted.exposures);  // as `apply --pto` has it
+    std::vector<uint32_t> joined;
+    for (uint32_t i = 0; i < project.files.size(); i++)
+        if (!std::isnan(fitted.exposures[i].ev)) joined.push_back(i);
+    std::vector<Tile> tiles(joined.size());
+    for_each_parallel(static_cast<uint32_t>(tiles.size()), "preview", progress,
+                      [&](uint32_t n) { tiles[n] = tile_of(project, joined[n], fitted, wanted); });
+    const Canvas canvas = canvas_of(tiles);
+    Picture out;
+    out.width = std::max(canvas.width, 1u), out.height = 2 * std::max(canvas.height, 1u) + gap;
+    out.row_bytes = size_t(3) * out.width;
+    out.pixels.assign(out.row_bytes * out.height, 128);
+    std::vector<float> nearest(size_t(canvas.width) * canvas.height, std::numeric_limits<float>::max());
+    for (const Tile &tile : tiles) paint(canvas, tile, nearest, out);
+    write_picture(path, out);
+}
+
+}  // namespace lensprof
