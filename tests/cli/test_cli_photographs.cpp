@@ -131,6 +131,40 @@ void test_the_preview_is_even(void **) {
     assert_false(fs::exists(wide));
 }
 
+// A cropped picture is of another angle of view for the geometry, also with --one-lens.
+void test_one_lens_keeps_the_geometry(void **) {
+    if (is_missing()) return;
+    simulate("crops", {"--images", "4", "--seed", "41", "--size", "800x600", "--overlap", "0.5"});
+    for (const char *name : {"img001.png", "img003.png"}) {
+        const std::string file = work(std::string("crops/") + name);
+        Picture picture = read_picture(file), cut = picture;
+        cut.width = 600, cut.row_bytes = size_t(3) * 600;
+        cut.pixels.resize(cut.row_bytes * cut.height);
+        for (uint32_t y = 0; y < cut.height; y++)
+            std::copy_n(picture.pixels.data() + y * picture.row_bytes + 300, cut.row_bytes,
+                        cut.pixels.data() + y * cut.row_bytes);
+        write_picture(file, cut);
+    }
+    const Json json = json_of(Words{"build", work("crops"), "--one-lens"} + quietly);
+    for (const Json &image : json["images"]) assert_true(image["joined"] == true);
+    assert_int_equal(json["images"].size(), 4);
+    assert_true(json["residual"]["heldout_median"].get<double>() < 3.0);
+}
+
+// Pictures that are no more than a line, and files that are not pictures, do not stop the others.
+void test_odd_files_among_good_ones(void **) {
+    if (is_missing()) return;
+    simulate("odd", {"--images", "3", "--seed", "51"});
+    Picture line;
+    line.width = 5000, line.height = 1, line.row_bytes = 15000, line.pixels.assign(15000, 90);
+    write_picture(work("odd/line.png"), line);
+    save_text(work("odd/empty1.jpg"), ""), save_text(work("odd/empty2.jpg"), "");
+    const Outcome run = run_words(Words{"build", work("odd")} + quietly);
+    assert_int_equal(run.code, done);
+    assert_true(contains(run.err, "line.png: left out, no overlap"));
+    assert_true(contains(run.err, "empty1.jpg") && contains(run.err, "empty2.jpg") && !contains(run.err, "a copy of"));
+}
+
 void test_refused(void **) {
     if (is_missing()) return;
     simulate("one", {"--images", "2", "--seed", "31"});
@@ -166,6 +200,8 @@ int main() {
         CLI_TEST(test_pictures_that_look_unlike),
         CLI_TEST(test_a_folder_of_many_things),
         CLI_TEST(test_the_preview_is_even),
+        CLI_TEST(test_one_lens_keeps_the_geometry),
+        CLI_TEST(test_odd_files_among_good_ones),
         CLI_TEST(test_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
@@ -23,9 +22,16 @@ struct Photographs {
     std::vector<std::string> files, names;
 };
 
-std::string bytes_of(const std::string &file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+// Whether two files of one size, which is not 0, hold the same, as far as they can be read.
+bool is_copy(const std::string &one, const std::string &other) {
+    std::ifstream a(one, std::ios::binary), b(other, std::ios::binary);
+    std::vector<char> x(1 << 16), y(1 << 16);
+    for (;;) {
+        a.read(x.data(), static_cast<std::streamsize>(x.size()));
+        b.read(y.data(), static_cast<std::streamsize>(y.size()));
+        if (a.gcount() != b.gcount() || !std::equal(x.begin(), x.begin() + a.gcount(), y.begin())) return false;
+        if (a.gcount() == 0) return true;
+    }
 }
 
 // Every picture once, whatever its names; copies of a picture say nothing.
@@ -36,9 +42,10 @@ Photographs list_pictures(const std::vector<std::string> &words, Streams &stream
     std::map<uint64_t, std::vector<size_t>> by_size;
     for (const NamedPicture &picture : named_pictures(words, std::string())) {
         if (!known.insert(file_identity(picture.file)).second) continue;
-        auto &alike = by_size[file_bytes(picture.file)];
-        const auto copied = std::find_if(alike.begin(), alike.end(), [&](size_t other) {
-            return bytes_of(list.files[other]) == bytes_of(picture.file);
+        const uint64_t bytes = file_bytes(picture.file);  // 0 where there is no file
+        auto &alike = by_size[bytes];
+        const auto copied = !bytes ? alike.end() : std::find_if(alike.begin(), alike.end(), [&](size_t other) {
+            return is_copy(list.files[other], picture.file);
         });
         if (copied != alike.end()) {
             warn(streams, picture.file + ": left out, it is a copy of " + list.names[*copied]);
@@ -71,6 +78,7 @@ void keep_one_lens(FoundProject &found, const std::vector<std::string> &names, S
     if (count.size() == 1) return;
     FoundProject kept = found;
     kept.pictures.clear(), kept.cameras.clear(), kept.lenses.clear(), kept.points.clear();
+    std::set<std::pair<uint32_t, uint32_t>> links;
     std::vector<uint32_t> others, number(found.pictures.size(), UINT32_MAX);
     for (size_t n = 0; n < found.pictures.size(); n++) {
         if (found.lenses[n] != most->first) {
@@ -84,8 +92,11 @@ void keep_one_lens(FoundProject &found, const std::vector<std::string> &names, S
     }
     for (ControlPoint point : found.points) {
         for (uint32_t &image : point.image) image = number[image];
-        if (std::max(point.image[0], point.image[1]) != UINT32_MAX) kept.points.push_back(point);
+        if (std::max(point.image[0], point.image[1]) == UINT32_MAX) continue;
+        kept.points.push_back(point);
+        links.emplace(point.image[0], point.image[1]);
     }
+    kept.links = static_cast<uint32_t>(links.size()), kept.unfit = 0;
     found = std::move(kept);
     warn(streams,
          listed(others, names)
@@ -95,13 +106,17 @@ void keep_one_lens(FoundProject &found, const std::vector<std::string> &names, S
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
                   Streams &streams) {
     const FoundProject &project = found.projects[0];
+    const std::string unfit = project.unfit ? format(", %u more do not fit the cameras", project.unfit) : "";
     note(streams,
          label
-             + format(": %zu pictures overlap (%u links, %.2f %% of the longer side left, %s); response, falloff, "
-                      "exposures and white balances are estimated (--free)",
-                      project.pictures.size(), project.links, 100.0 * project.residual,
+             + format(": %zu pictures overlap (%u links that fit%s; %.2f %% of the longer side is left; %s); "
+                      "response, falloff, exposures and white balances are estimated, unless --free says else",
+                      project.pictures.size(), project.links - project.unfit, unfit.c_str(), 100.0 * project.residual,
                       project.kind == SceneKind::plane ? "a camera that moved over a plane"
                                                        : "a camera that turned about one point"));
+    if (project.unfit == project.links)
+        warn(streams, label + ": no cameras fit the pictures well: distortion, parallax, or things that moved; a Hugin "
+                              "project may do better");
     for (size_t n = 1; n < found.projects.size(); n++)
         warn(streams, listed(found.projects[n].pictures, names)
                           + ": another group, which overlaps with none of these; give its pictures alone");
@@ -129,8 +144,12 @@ Project project_of_pictures(const std::vector<std::string> &words, bool one_lens
                       label + ": no two of the pictures overlap, or too little in them can be recognised; give pictures "
                               "that share a third, or a Hugin project",
                       LENSPROF_REASON_FEW_PAIRS);
-    if (one_lens) std::fill(found.projects[0].lenses.begin(), found.projects[0].lenses.end(), 0);
-    keep_one_lens(found.projects[0], names, streams);
+    if (!one_lens) keep_one_lens(found.projects[0], names, streams);
+    if (found.projects[0].pictures.size() < 2 || found.projects[0].links == 0)
+        throw Failure(ExitCode::not_usable,
+                      label + ": no two pictures of one camera, lens, focal length and size overlap; give --one-lens to "
+                              "take all as one",
+                      LENSPROF_REASON_FEW_PAIRS);
     report_found(found, names, label, streams);
 
     const FoundProject &own = found.projects[0];
@@ -138,7 +157,7 @@ Project project_of_pictures(const std::vector<std::string> &words, bool one_lens
     Project project;
     project.path = label;
     for (size_t n = 0; n < own.pictures.size(); n++) {
-        images.push_back({own.cameras[n], format("image%zu", n), 0});  // a name may hold quotes
+        images.push_back({own.cameras[n], format("image%zu", n), 0, own.lenses[n]});  // a name may hold quotes
         project.names.push_back(names[own.pictures[n]]);
         project.files.push_back(files[own.pictures[n]]);
     }

@@ -121,6 +121,15 @@ public:
     FoundCameras run();
 
 private:
+    // A link's part of the normal equations, over the unknowns that it touches.
+    struct Part {
+        Eigen::Index count = 0, column[2 * camera_unknowns] = {}, unknown[2 * camera_unknowns] = {};
+        int end[2 * camera_unknowns] = {};  // the picture that the unknown is of, 0 or 1
+        Eigen::Matrix<double, 2 * camera_unknowns, 2 *camera_unknowns> normal =
+            Eigen::Matrix<double, 2 * camera_unknowns, 2 * camera_unknowns>::Zero();
+        Eigen::Matrix<double, 2 * camera_unknowns, 1> right = Eigen::Matrix<double, 2 * camera_unknowns, 1>::Zero();
+    };
+
     void find_order();
     void find_angles_of_view();
     double guess_misfit() const;
@@ -131,8 +140,8 @@ private:
     double px(size_t link, double share) const;
     double expectation(std::vector<Eigen::Triplet<double>> *normal, Eigen::VectorXd *right) const;
     double cost(double scale) const;
-    void add_match(size_t link, const Match &match, double scale, std::vector<Eigen::Triplet<double>> &normal,
-                   Eigen::VectorXd &right) const;
+    Part part_of(size_t link) const;
+    void add_match(size_t link, const Match &match, double scale, Part &part) const;
     void add_matches(double scale, std::vector<Eigen::Triplet<double>> &normal, Eigen::VectorXd &right) const;
     void move(const Eigen::VectorXd &by);
     bool step(double scale, double &damping);
@@ -340,38 +349,41 @@ double CameraFit::cost(double scale) const {
     return sum;
 }
 
-void CameraFit::add_match(size_t link, const Match &match, double scale, std::vector<Eigen::Triplet<double>> &normal,
-                          Eigen::VectorXd &right) const {
+// The unknowns that a link touches.
+CameraFit::Part CameraFit::part_of(size_t link) const {
+    const uint32_t *p = links_[link].picture;
+    Part part;
+    for (int end = 0; end < 2; end++)
+        for (Eigen::Index k = 0; k < camera_unknowns; k++) {
+            const Eigen::Index c = column(p[end], k);
+            if (c < 0 || std::find(part.column, part.column + part.count, c) != part.column + part.count) continue;
+            part.end[part.count] = end, part.unknown[part.count] = k, part.column[part.count++] = c;
+        }
+    return part;
+}
+
+void CameraFit::add_match(size_t link, const Match &match, double scale, Part &part) const {
     const uint32_t *p = links_[link].picture;
     Eigen::Vector2d r;
     if (!residual(cameras_[p[0]], cameras_[p[1]], match, r)) return;
     const double s = px(link, scale), weight = 1.0 / (s * s + r.squaredNorm());  // rho'(e) / s^2
-    Eigen::Index columns[2 * camera_unknowns], count = 0;
-    Eigen::Matrix<double, 2, 2 * camera_unknowns> rows;
-    for (int end = 0; end < 2; end++)
-        for (Eigen::Index k = 0; k < camera_unknowns; k++) {
-            const Eigen::Index c = column(p[end], k);
-            if (c < 0 || std::find(columns, columns + count, c) != columns + count) continue;
-            const bool both = k < lens_unknowns && c == column(p[1 - end], k);
-            Eigen::Vector2d moved[2];
-            bool seen = true;
-            for (int side = 0; side < 2 && seen; side++) {
-                lensprof_camera camera[2] = {cameras_[p[0]], cameras_[p[1]]};
-                const double by = side ? difference_steps[k] : -difference_steps[k];
-                value(camera[end], k) += by;
-                if (both) value(camera[1 - end], k) += by;
-                seen = residual(camera[0], camera[1], match, moved[side]);
-            }
-            if (!seen) return;
-            rows.col(count) = (moved[1] - moved[0]) / (2.0 * difference_steps[k]);
-            columns[count++] = c;
+    Eigen::Matrix<double, 2, 2 *camera_unknowns> rows = Eigen::Matrix<double, 2, 2 * camera_unknowns>::Zero();
+    for (Eigen::Index n = 0; n < part.count; n++) {
+        const Eigen::Index k = part.unknown[n];
+        const int end = part.end[n];
+        const bool both = k < lens_unknowns && part.column[n] == column(p[1 - end], k);
+        Eigen::Vector2d moved[2];
+        for (int side = 0; side < 2; side++) {
+            lensprof_camera camera[2] = {cameras_[p[0]], cameras_[p[1]]};
+            const double by = side ? difference_steps[k] : -difference_steps[k];
+            value(camera[end], k) += by;
+            if (both) value(camera[1 - end], k) += by;
+            if (!residual(camera[0], camera[1], match, moved[side])) return;
         }
-    for (Eigen::Index a = 0; a < count; a++) {
-        right[columns[a]] -= weight * rows.col(a).dot(r);
-        for (Eigen::Index b = 0; b < count; b++)
-            if (columns[b] <= columns[a])
-                normal.emplace_back(columns[a], columns[b], weight * rows.col(a).dot(rows.col(b)));
+        rows.col(n) = (moved[1] - moved[0]) / (2.0 * difference_steps[k]);
     }
+    part.normal += weight * rows.transpose() * rows;
+    part.right -= weight * rows.transpose() * r;
 }
 
 void CameraFit::move(const Eigen::VectorXd &by) {
@@ -382,20 +394,19 @@ void CameraFit::move(const Eigen::VectorXd &by) {
 
 // Of all links, on all cores; summed in their order, whatever the number of threads.
 void CameraFit::add_matches(double scale, std::vector<Eigen::Triplet<double>> &normal, Eigen::VectorXd &right) const {
-    struct Part {
-        std::vector<Eigen::Triplet<double>> normal;
-        Eigen::VectorXd right;
-    };
     std::vector<Part> parts(links_.size());
     for_each_item(static_cast<uint32_t>(links_.size()), thread_count(0), [&](uint32_t n, uint32_t) {
-        parts[n].right = Eigen::VectorXd::Zero(columns_);
-        for (const Match &m : matches_[n]) add_match(n, m, scale, parts[n].normal, parts[n].right);
+        parts[n] = part_of(n);
+        for (const Match &m : matches_[n]) add_match(n, m, scale, parts[n]);
         return true;
     });
-    for (const Part &part : parts) {
-        normal.insert(normal.end(), part.normal.begin(), part.normal.end());
-        right += part.right;
-    }
+    for (const Part &part : parts)
+        for (Eigen::Index a = 0; a < part.count; a++) {
+            right[part.column[a]] += part.right[a];
+            for (Eigen::Index b = 0; b < part.count; b++)
+                if (part.column[b] <= part.column[a])
+                    normal.emplace_back(part.column[a], part.column[b], part.normal(a, b));
+        }
 }
 
 // False when no step makes the cost clearly smaller.
@@ -418,7 +429,7 @@ bool CameraFit::step(double scale, double &damping) {
         if (solver.info() == Eigen::Success && by.allFinite()) {
             move(by);
             const bool is_valid = std::all_of(cameras_.begin(), cameras_.end(), [](const lensprof_camera &c) {
-                return lensprof_camera_validate(&c) == LENSPROF_OK && c.hfov_deg > 0.5;
+                return lensprof_camera_validate(&c) == LENSPROF_OK && c.hfov_deg > 1e-3;
             });
             const double after = is_valid ? cost(scale) : before;
             if (after < before) {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr uint32_t all_pairs_up_to = 8;  // pictures
 constexpr uint32_t next_to = 2;          // pictures before and behind
+constexpr size_t enough_links = 20;      // of a picture: no more are looked for by way of it
 constexpr uint32_t most_alike = 12;      // pictures most like one
 constexpr int words = 64;
 constexpr size_t sample_size = 20000;  // descriptors that the words are made of
@@ -114,12 +115,14 @@ std::vector<PicturePair> further_pairs(uint32_t pictures, const std::vector<Pict
     std::vector<std::vector<uint32_t>> others(pictures);
     for (const auto &[a, b] : linked) others[a].push_back(b), others[b].push_back(a);
     std::set<PicturePair> pairs;
-    for (const auto &near : others)
+    for (const auto &near : others) {
+        if (near.size() >= enough_links) continue;
         for (size_t m = 0; m < near.size(); m++)
             for (size_t n = m + 1; n < near.size(); n++) {
                 const PicturePair pair = std::minmax(near[m], near[n]);
                 if (!std::binary_search(tried.begin(), tried.end(), pair)) pairs.insert(pair);
             }
+    }
     return {pairs.begin(), pairs.end()};
 }
 

@@ -16,7 +16,8 @@ using PicturePair = std::pair<uint32_t, uint32_t>;  // numbers, the lower one fi
 // square. Sorted.
 std::vector<PicturePair> candidate_pairs(const std::vector<Features> &pictures);
 
-// What few links have found: pictures that are linked to one and the same picture, and were not candidates before.
+// What few links have found: pictures that are linked to one and the same picture with few links, and were not
+// candidates before.
 std::vector<PicturePair> further_pairs(uint32_t pictures, const std::vector<PicturePair> &linked,
                                        const std::vector<PicturePair> &tried);
 

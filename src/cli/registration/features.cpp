@@ -87,6 +87,7 @@ Features find_features(const std::string &file, uint32_t most) {
     found.width = header.width, found.height = header.height;
     const double longer = std::max(header.width, header.height);
     const uint32_t reduction = std::max(1u, static_cast<uint32_t>(std::lround(longer / longer_side)));
+    if (header.width < reduction || header.height < reduction) return found;  // a line
     const cv::Mat grey = stretched(reduced_grey(reader, reduction), header.sample == LENSPROF_SAMPLE_F32);
     std::vector<cv::KeyPoint> points;
     cv::Mat descriptors;

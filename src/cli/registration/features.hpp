@@ -24,7 +24,7 @@ inline Descriptors descriptors_of(const Features &picture) {
     return Descriptors(picture.descriptors.ptr<float>(), picture.descriptors.rows, descriptor_length);
 }
 
-// At most so many features of each of `pictures`: of thousands fewer, so that their memory is bounded.
+// At most so many features of each of `pictures`: 3000 of few and 800 of many, which take 400 kB.
 uint32_t most_features_of(size_t pictures);
 
 // Features of a picture, about `most` of them, the largest first. Throws Failure for a picture that cannot be read.

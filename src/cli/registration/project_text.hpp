@@ -17,8 +17,9 @@ struct ControlPoint {
 
 struct ProjectImage {
     lensprof_camera camera;
-    std::string name;   // without quotes and control characters
-    uint32_t lens = 0;  // images of one number are linked in angle of view, distortion, response and falloff
+    std::string name;     // without quotes and control characters
+    uint32_t lens = 0;    // images of one number are linked in response and falloff,
+    uint32_t optics = 0;  // and in angle of view and distortion
 };
 
 // A project without photometric values; its `v` lines ask for those of all images, relative to the first one.
