@@ -161,17 +161,8 @@ Project project_of_pictures(const std::vector<std::string> &words, bool one_lens
         project.names.push_back(names[own.pictures[n]]);
         project.files.push_back(files[own.pictures[n]]);
     }
-    const std::string text = new_project_text("found by lensprof build", images, own.points);
-    lensprof_pto *pto = nullptr;
-    lensprof_error error{};
-    check(lensprof_pto_read(text.data(), text.size(), &pto, &error), label, &error);
-    project.pto.reset(pto);
-    for (uint32_t i = 0; i < images.size(); i++) {
-        lensprof_pto_image image;
-        lensprof_pto_image_init(&image);
-        check(lensprof_pto_get_image(pto, i, &image, &error), label, &error);
-        project.images.push_back(image);
-    }
+    project.pto = parse_pto(new_project_text("found by lensprof build", images, own.points), label);
+    for (size_t n = 0; n < images.size(); n++) add_image(project);
     return project;
 }
 

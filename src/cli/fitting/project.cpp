@@ -107,17 +107,22 @@ void check_finite(const lensprof_image &rows, uint32_t first_row, uint32_t reduc
     }
 }
 
+void add_image(Project &project) {
+    lensprof_pto_image image;
+    lensprof_pto_image_init(&image);
+    lensprof_error error{};
+    const auto next = static_cast<uint32_t>(project.images.size());
+    check(lensprof_pto_get_image(project.pto.get(), next, &image, &error), project.path, &error);
+    project.images.push_back(image);
+}
+
 Project read_project(const std::string &path, bool one_lens) {
     Project project;
     project.path = path;
     project.pto = read_pto(path);
     std::filesystem::path folder = std::filesystem::path(path).parent_path();
     for (uint32_t i = 0; i < lensprof_pto_image_count(project.pto.get()); i++) {
-        lensprof_pto_image image;
-        lensprof_pto_image_init(&image);
-        lensprof_error error{};
-        check(lensprof_pto_get_image(project.pto.get(), i, &image, &error), path, &error);
-        project.images.push_back(image);
+        add_image(project);
         project.names.push_back(pto_name(*project.pto, i));
         project.files.push_back((folder / project.names[i]).string());
         check_name(project, i);

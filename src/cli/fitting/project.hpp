@@ -25,6 +25,9 @@ struct Project {
 // that are not linked are taken as one lens; otherwise that is a Failure.
 Project read_project(const std::string &path, bool one_lens);
 
+// Takes the next image of the Pto; its name and file are the caller's to add.
+void add_image(Project &project);
+
 // The text of a project that is to be written to `path`: names are relative to that file's folder.
 std::string project_text_at(Project &project, const std::string &path);
 

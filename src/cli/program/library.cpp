@@ -103,11 +103,12 @@ Store open_store(const std::string &path, lensprof_store_mode mode) {
     return Store(store);
 }
 
-Pto read_pto(const std::string &path) {
-    std::string text = read_text(path, largest_text);
+Pto read_pto(const std::string &path) { return parse_pto(read_text(path, largest_text), path); }
+
+Pto parse_pto(const std::string &text, const std::string &item) {
     lensprof_pto *pto = nullptr;
     lensprof_error error{};
-    check(lensprof_pto_read(text.data(), text.size(), &pto, &error), path, &error);
+    check(lensprof_pto_read(text.data(), text.size(), &pto, &error), item, &error);
     return Pto(pto);
 }
 

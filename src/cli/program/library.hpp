@@ -62,6 +62,7 @@ struct PtoDestroy {
 using Pto = std::unique_ptr<lensprof_pto, PtoDestroy>;
 
 Pto read_pto(const std::string &path);
+Pto parse_pto(const std::string &text, const std::string &item);  // `item` names it in a Failure
 std::string pto_name(const lensprof_pto &pto, uint32_t index);
 std::string pto_text(const lensprof_pto &pto);
 

@@ -21,7 +21,8 @@ constexpr double widest_deg = 140.0;  // angle of view of a lens that shows line
 constexpr double last_scale = 0.001;  // of the loss, as a share of the longer side
 constexpr double fits = 0.0012;       // of the same: a panorama whose links are farther off may be a plane
 
-using Matches = std::vector<std::pair<cv::Point2d, cv::Point2d>>;
+using Match = std::pair<cv::Point2d, cv::Point2d>;
+using Matches = std::vector<Match>;
 
 // Every cell of a grid over the first frame gives its first match, until there are enough.
 Matches spread(const Matches &matches, const PictureOptics &first) {
@@ -42,8 +43,12 @@ Matches spread(const Matches &matches, const PictureOptics &first) {
     return chosen;
 }
 
+double focal_px(const PictureOptics &picture, double hfov_deg) {
+    return picture.width / (2.0 * std::tan(0.5 * hfov_deg / degrees));
+}
+
 Eigen::Vector3d ray(const PictureOptics &picture, double hfov_deg, const cv::Point2d &at) {
-    const double focal = picture.width / (2.0 * std::tan(0.5 * hfov_deg / degrees));
+    const double focal = focal_px(picture, hfov_deg);
     return Eigen::Vector3d((at.x - 0.5 * (picture.width - 1.0)) / focal, (at.y - 0.5 * (picture.height - 1.0)) / focal,
                            1.0)
         .normalized();
@@ -58,13 +63,6 @@ Eigen::Matrix3d rotation_between(const PictureOptics &first, double first_hfov, 
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
     Eigen::Vector3d sign(1.0, 1.0, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0);
     return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // The camera model's angles, from the rotation of the world to the camera.
@@ -96,8 +94,6 @@ constexpr double difference_steps[camera_unknowns] = {1e-4, 1e-5, 1e-5, 1e-5, 1e
 // How far they are from the first guess, degrees and shares; nothing is known of angles.
 constexpr double known_hfov = 0.05, unknown_hfov = 0.6, usual_hfov_deg = 45.0;  // of the angle's logarithm
 constexpr double expected_sigmas[camera_unknowns] = {0.0, 0.02, 0.05, 0.02, 1e4, 1e4, 1e4, 1.0, 1.0, 1.0};
-
-using Match = std::pair<cv::Point2d, cv::Point2d>;
 
 // How far the place that the first camera sees is from where the second one shows it, px.
 bool residual(const lensprof_camera &first, const lensprof_camera &second, const Match &match, Eigen::Vector2d &r) {
@@ -132,14 +128,13 @@ private:
 
     void find_order();
     void find_angles_of_view();
-    double guess_misfit() const;
     void start(const std::vector<double> &hfov);
     void start_before_plane();
     void choose_unknowns(bool is_distorted, bool is_plane);
     Eigen::Index column(size_t picture, Eigen::Index k) const;
     double px(size_t link, double share) const;
     double expectation(std::vector<Eigen::Triplet<double>> *normal, Eigen::VectorXd *right) const;
-    double cost(double scale) const;
+    double cost(double scale, size_t link_step = 1, size_t match_step = 1) const;
     Part part_of(size_t link) const;
     void add_match(size_t link, const Match &match, double scale, Part &part) const;
     void add_matches(double scale, std::vector<Eigen::Triplet<double>> &normal, Eigen::VectorXd &right) const;
@@ -197,32 +192,18 @@ void CameraFit::find_angles_of_view() {
         if (!known[lens].empty())
             hfov_[lens] = std::min(median(known[lens]), widest_deg), hfov_sigma_[lens] = known_hfov;
     const bool all_known = std::none_of(known.begin(), known.end(), [](const auto &k) { return k.empty(); });
+    constexpr double guess_scale = 0.01;
+    constexpr size_t most_links = 300, match_step = 4;  // evenly chosen ones say enough
+    choose_unknowns(false, false);
     double least = 1e300;
     for (double factor = all_known ? 0.9 : 0.07; factor < (all_known ? 1.1 : 3.0); factor *= 1.01) {
         std::vector<double> guess = hfov_;
         for (uint32_t lens = 0; lens < lenses_; lens++)
             if (known[lens].empty() || all_known) guess[lens] = std::min(guess[lens] * factor, widest_deg);
         start(guess);
-        choose_unknowns(false, false);
-        const double misfit = guess_misfit();
+        const double misfit = cost(guess_scale, 1 + links_.size() / most_links, match_step);
         if (misfit < least) least = misfit, first_hfov_ = guess;
     }
-}
-
-// Of a few matches of every link, or of evenly chosen links.
-double CameraFit::guess_misfit() const {
-    constexpr size_t step = 4, most_links = 300;
-    const size_t link_step = 1 + links_.size() / most_links;
-    constexpr double scale = 0.01;
-    double sum = expectation(nullptr, nullptr);
-    Eigen::Vector2d r;
-    for (size_t n = 0; n < links_.size(); n += link_step)
-        for (size_t m = 0; m < matches_[n].size(); m += step) {
-            const auto &p = links_[n].picture;
-            const bool seen = residual(cameras_[p[0]], cameras_[p[1]], matches_[n][m], r);
-            sum += std::log1p(seen ? r.squaredNorm() / std::pow(px(n, scale), 2) : 1.0 / (scale * scale));
-        }
-    return sum;
 }
 
 void CameraFit::start(const std::vector<double> &hfov) {
@@ -251,7 +232,7 @@ void CameraFit::start(const std::vector<double> &hfov) {
 void CameraFit::start_before_plane() {
     const auto lens = [&](size_t i) {
         const PictureOptics &p = pictures_[i];
-        const double focal = p.width / (2.0 * std::tan(0.5 * cameras_[i].hfov_deg / degrees));
+        const double focal = focal_px(p, cameras_[i].hfov_deg);
         Eigen::Matrix3d k;
         k << focal, 0.0, 0.5 * (p.width - 1.0), 0.0, focal, 0.5 * (p.height - 1.0), 0.0, 0.0, 1.0;
         return k;
@@ -336,13 +317,14 @@ double CameraFit::expectation(std::vector<Eigen::Triplet<double>> *normal, Eigen
     return sum;
 }
 
-double CameraFit::cost(double scale) const {
+// Of every link_step-th link every match_step-th match.
+double CameraFit::cost(double scale, size_t link_step, size_t match_step) const {
     double sum = expectation(nullptr, nullptr);
     Eigen::Vector2d r;
-    for (size_t n = 0; n < links_.size(); n++) {
+    for (size_t n = 0; n < links_.size(); n += link_step) {
         const auto &p = links_[n].picture;
-        for (const Match &m : matches_[n]) {
-            const bool seen = residual(cameras_[p[0]], cameras_[p[1]], m, r);
+        for (size_t m = 0; m < matches_[n].size(); m += match_step) {
+            const bool seen = residual(cameras_[p[0]], cameras_[p[1]], matches_[n][m], r);
             sum += std::log1p(seen ? r.squaredNorm() / std::pow(px(n, scale), 2) : 1.0 / (scale * scale));
         }
     }
@@ -529,6 +511,13 @@ FoundCameras CameraFit::run() {
 }
 
 }  // namespace
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 FoundCameras find_cameras(const std::vector<PictureOptics> &pictures, const std::vector<PictureLink> &links) {
     return CameraFit(pictures, links).run();

@@ -10,7 +10,7 @@ namespace lensprof {
 namespace {
 
 constexpr uint32_t all_pairs_up_to = 8;  // pictures
-constexpr uint32_t next_to = 2;          // pictures before and behind
+constexpr uint32_t next_to = 2;          // pictures before and after
 constexpr size_t enough_links = 20;      // of a picture: no more are looked for by way of it
 constexpr uint32_t most_alike = 12;      // pictures most like one
 constexpr int words = 64;

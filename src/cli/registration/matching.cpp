@@ -56,7 +56,7 @@ std::vector<Match> match(const Features &first, const Features &second) {
     return found;
 }
 
-// The homography that most matches follow; empty where there is none that is no chance.
+// The homography that most matches follow; empty where chance explains as many.
 std::optional<PictureLink> link(const std::vector<Features> &pictures, const PicturePair &pair) {
     const Features &a = pictures[pair.first], &b = pictures[pair.second];
     const std::vector<Match> matches = match(a, b);

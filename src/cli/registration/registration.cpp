@@ -52,10 +52,7 @@ FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<Picture
         project.unfit += !fits;
         if (fits) residuals.push_back(found.link_residuals[n]), add_points(links[n], project.points);
     }
-    if (residuals.empty()) return project;
-    std::nth_element(residuals.begin(), residuals.begin() + static_cast<ptrdiff_t>(residuals.size() / 2),
-                     residuals.end());
-    project.residual = residuals[residuals.size() / 2];
+    project.residual = median(residuals);
     return project;
 }
 
