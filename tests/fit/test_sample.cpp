@@ -165,10 +165,11 @@ void test_what_moved_is_left_out(void **) {
 }
 
 // Squares of random grey values in a part of a picture.
-void fill_with_squares(std::vector<float> &data, uint32_t left, uint32_t top, uint32_t width, uint32_t height) {
+void fill_with_squares(std::vector<float> &data, uint32_t left, uint32_t top, uint32_t width, uint32_t height,
+                       uint32_t seed = 1) {
     for (uint32_t v = 0; v < height; v++)
         for (uint32_t u = 0; u < width; u++) {
-            uint64_t random = 1000 * (v / 8) + u / 8 + 1;
+            uint64_t random = 1000 * (v / 8) + u / 8 + seed;
             lp_random(&random);
             const float value = static_cast<float>(0.2 + 0.6 * lp_random(&random));
             for (uint32_t c = 0; c < 3; c++) data[((top + v) * 320 + left + u) * 3 + c] = value;
@@ -186,6 +187,43 @@ void test_a_moving_thing_does_not_move_the_project(void **) {
     std::vector<lensprof_pair> pairs;
     assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 500), pairs));
     assert_true(distance_of_pairs(pairs, truth, 0.95) < 1.0);
+}
+
+// A smooth thing in front of other squares in either picture: the place itself shows no difference, what lies about it
+// does.
+void test_a_smooth_place_in_other_surroundings_is_left_out(void **) {
+    detail = 0.07;
+    Pictures pictures(2, 320, 240, 15.0);
+    detail = 0.0;
+    const uint32_t left[2] = {136, 44}, top = 50, side = 140, border = 44;  // 15 degrees are 92 px
+    for (uint32_t i : {0u, 1u}) {
+        fill_with_squares(pictures.data[i], left[i], top, side, side, 1 + 500000 * i);
+        for (uint32_t v = top + border; v < top + side - border; v++)
+            for (uint32_t u = left[i] + border; u < left[i] + side - border; u++)
+                std::fill_n(&pictures.data[i][3 * (v * 320 + u)], 3, 0.4f + 0.1f * static_cast<float>(i));
+    }
+    std::vector<lensprof_pair> pairs;
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 1000), pairs));
+    assert_true(pairs.size() > 500);
+    for (const auto &pair : pairs) {
+        const double *xy = pair.xy[pair.image[0] == 0 ? 0 : 1];
+        assert_false(std::abs(xy[0] - left[0] - side / 2.0) < 10 && std::abs(xy[1] - top - side / 2.0) < 10);
+    }
+}
+
+// Noise leaves some pixels of a saturated place below white: their mean is not that of the light.
+void test_a_saturated_place_is_left_out(void **) {
+    Pictures pictures(2, 320, 240, 15.0);
+    uint64_t random = 3;
+    for (uint32_t v = 0; v < 240; v++)
+        for (uint32_t u = 160; u < 320; u++)
+            if (lp_random(&random) < 0.6) pictures.data[0][3 * (v * 320 + u) + 1] = 1.0f;
+    std::vector<lensprof_pair> pairs;
+    assert_ok(pictures.sample(options_of(LENSPROF_SAMPLING_BALANCED, 600), pairs));
+    assert_true(pairs.size() > 100);
+    size_t there = 0;
+    for (const auto &pair : pairs) there += pair.xy[pair.image[0] == 0 ? 0 : 1][0] > 162;
+    assert_true(there < pairs.size() / 20);
 }
 
 // The third picture is none of the places that the project says.
@@ -452,6 +490,8 @@ int main() {
         cmocka_unit_test(test_a_wrong_angle_of_view_is_registered),
         cmocka_unit_test(test_what_moved_is_left_out),
         cmocka_unit_test(test_a_moving_thing_does_not_move_the_project),
+        cmocka_unit_test(test_a_smooth_place_in_other_surroundings_is_left_out),
+        cmocka_unit_test(test_a_saturated_place_is_left_out),
         cmocka_unit_test(test_a_picture_in_the_wrong_place_has_no_pairs),
         cmocka_unit_test(test_links_say_what_texture_says),
         cmocka_unit_test(test_few_lines_register_together),

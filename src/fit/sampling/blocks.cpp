@@ -75,6 +75,8 @@ GreyLevels::GreyLevels(const View &view) {
         view.grey_row(v, full.grey.data() + static_cast<size_t>(v) * static_cast<size_t>(full.width));
     level[1] = halved(full);
     level[0] = halved(level[1]);
+    wide[0] = halved(level[0]);
+    wide[1] = halved(wide[0]);
     noise_ = mean_about(noise_of_halved(level[1]), level[0].width, level[0].height);
 }
 
@@ -99,6 +101,20 @@ std::optional<double> likeness(const GreyLevels &first, double x, double y, cons
                  of_second = second.reliability(sight.x, sight.y, b.texture);
     if (std::min(of_first, of_second) < kOfScene) return std::nullopt;
     return std::min(1.0, a.correlation(b) / std::sqrt(of_first * of_second));
+}
+
+std::optional<double> wide_likeness(const GreyLevels &first, double x, double y, const GreyLevels &second,
+                                    const Sight &sight) {
+    for (size_t n = 0; n < first.wide.size(); n++) {
+        Block<3> a, b;
+        const double pixel = first.wide[n].pixel;
+        if (!a.cut(first.wide[n], x, y, pixel, kUpright) || !b.cut(second.wide[n], sight.x, sight.y, pixel, sight.map))
+            return std::nullopt;
+        a.take_out_gradient(), b.take_out_gradient();
+        if (std::max(a.texture, b.texture) < kTexture || 2 * a.shared(b) < Block<3>::kCount) continue;
+        return a.correlation(b);
+    }
+    return std::nullopt;
 }
 
 }  // namespace lensprof

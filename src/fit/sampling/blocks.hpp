@@ -30,6 +30,7 @@ public:
     double reliability(double x, double y, double texture) const;
 
     std::array<Level, 2> level;  // the coarse one first
+    std::array<Level, 2> wide;   // half of the coarse one, and half of that: for what lies about a smooth place
 
 private:
     std::vector<float> noise_;  // variance about every coarse pixel
@@ -127,5 +128,10 @@ constexpr double kUpright[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
 // both show. Low where something moved, stands in the way, or the project is wrong.
 std::optional<double> likeness(const GreyLevels &first, double x, double y, const GreyLevels &second,
                                const Sight &sight);
+
+// The same of what lies farther about a place without texture of its own: the square that has texture, of one twice and
+// one four times as wide.
+std::optional<double> wide_likeness(const GreyLevels &first, double x, double y, const GreyLevels &second,
+                                    const Sight &sight);
 
 }  // namespace lensprof

@@ -176,7 +176,7 @@ bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
     Likenesses &edge = likenesses_[edge_of(i, j)];
     edge.seen++;
     std::optional<double> told = likeness(*grey_[i], x, y, *grey_[j], at);
-    if (!told) return true;
+    if (!told) return wide_likeness(*grey_[i], x, y, *grey_[j], at).value_or(1.0) > kAlike;
     edge.told++;
     if (*told > kAlike) edge.alike++;
     if (*told > kSurely) edge.surely++;

@@ -156,6 +156,17 @@ bool is_out_of_range(const Lanes *values, float black, float white) {
     return false;
 }
 
+// Whether a channel is above white in more than a quarter of the pixels: it is saturated, and what is left below white,
+// by noise and coding, says little of its mean.
+bool is_saturated(const Lanes *values, float white) {
+    for (int c = 0; c < kLanes; c++) {
+        int above = 0;
+        for (int i = 0; i < kCount; i++) above += values[i][c] > white;
+        if (4 * above > kCount) return true;
+    }
+    return false;
+}
+
 bool all_in_range(const Lanes *values, float black, float white) {
     for (int i = 0; i < kCount; i++)
         for (int c = 0; c < kLanes; c++)
@@ -313,6 +324,7 @@ bool View::patch(double x, double y, bool keep_white, Patch &out) const {
     for (int c = 0; c < 3 && keep_white; c++)
         is_white[c] = std::all_of(all, all + kCount, [=](const Lanes &pixel) { return pixel[c] > white; });
     if (is_out_of_range(all, black, keep_white ? INFINITY : white)) return false;
+    if (!keep_white && is_saturated(all, white)) return false;
     if (image_.every_pixel && !all_in_range(all, black, keep_white ? INFINITY : white)) return false;
     const Slope slope = slope_of(all);
     const Lanes mean = robust_mean(all);
