@@ -25,22 +25,23 @@ constexpr double kSuspiciousImageShare = 0.1;  // and worth a word; noise and mo
 constexpr double kContradiction = 5.0;         // standard errors between an exposure and its known value
 constexpr int kMany = 12;                      // known exposures
 constexpr double kUnfollowed = 0.05;           // of ln gamma
-constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a word
-constexpr double kStillPattern = 1.0;          // where no falloff can be misled: what JPEG does is less,
-constexpr double kHarmfulPattern = 2.0;        // and this is too much
-constexpr double kNotRadial = 0.3;             // share that follows one map over the frame
-constexpr double kLargestCornerSigma = 0.1;    // of M
-constexpr double kLargestEvSigma = 0.3;        // EV, gamma apart
-constexpr uint32_t kFewestInliers = 3;         // of an image: fewer agree by chance,
-constexpr double kSmallestShare = 0.2;         // or a smaller share of its pairs
-constexpr double kSmallestStillShare = 0.7;    // of all pairs, where equal places are compared,
-constexpr double kStillMedian = 1.5;           // and levels of 255 that half of them are farther off than
-constexpr double kFarCentre = 0.1;             // half diagonals: five standard errors of its prior
-constexpr double kOnLimit = 0.98;              // of the largest offset of the centre
-constexpr double kImpossibleRise = 1.1;        // of M beyond the middle: no lens brightens so much
-constexpr double kDarkest = 0.05;              // least M of a lens: those of Lensfun leave more
-constexpr double kClearly = 3.0;               // standard errors
-constexpr double kOddImage = 5.0;              // levels of 255, and four times the noise
+constexpr double kSmallestPattern = 0.3;       // levels of 255 that are worth a word,
+constexpr double kHarmfulPattern = 0.5;        // and too much: less is what rounding and JPEG do
+constexpr double kStillPattern = 1.0;          // the same where no falloff can be misled
+constexpr double kHarmfulStillPattern = 2.0;
+constexpr double kNotRadial = 0.3;           // share that follows one map over the frame
+constexpr double kLargestCornerSigma = 0.1;  // of M
+constexpr double kLargestEvSigma = 0.3;      // EV, gamma apart
+constexpr uint32_t kFewestInliers = 3;       // of an image: fewer agree by chance,
+constexpr double kSmallestShare = 0.2;       // or a smaller share of its pairs
+constexpr double kSmallestStillShare = 0.7;  // of all pairs, where equal places are compared,
+constexpr double kStillMedian = 1.5;         // and levels of 255 that half of them are farther off than
+constexpr double kFarCentre = 0.1;           // half diagonals: five standard errors of its prior
+constexpr double kOnLimit = 0.98;            // of the largest offset of the centre
+constexpr double kImpossibleRise = 1.1;      // of M beyond the middle: no lens brightens so much
+constexpr double kDarkest = 0.05;            // least M of a lens: those of Lensfun leave more
+constexpr double kClearly = 3.0;             // standard errors
+constexpr double kOddImage = 5.0;            // levels of 255, and four times the noise
 
 // Pairs that tell something: different from each other, with both grey values of a channel between black and white.
 size_t count_informative(const Problem &problem) {
@@ -212,7 +213,7 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
         return refuse(r, {LENSPROF_REASON_STILL_FEW_AGREE, {r.inlier_share}});
     if (r.inlier_share < 0.3) return refuse(r, {LENSPROF_REASON_FEW_AGREE, {r.inlier_share}});
     double pattern = r.noise_levels * std::sqrt(r.image_share);
-    if (r.image_share > kLargestImageShare && pattern > (still ? kHarmfulPattern : kSmallestPattern))
+    if (r.image_share > kLargestImageShare && pattern > (still ? kHarmfulStillPattern : kHarmfulPattern))
         return refuse(r, {still     ? LENSPROF_REASON_STILL_PATTERNS
                           : is_free ? LENSPROF_REASON_PATTERNS
                                     : LENSPROF_REASON_PATTERNS_HELD,
