@@ -10,7 +10,7 @@
 
 #include "cli/correct/correction.hpp"
 #include "cli/correct/picture_model.hpp"
-#include "cli/fitting/project.hpp"
+#include "cli/correct/project_model.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
@@ -93,15 +93,6 @@ void declare(Command &command, Options &o) {
         "lensprof only in a folder that is named with -o.");
 }
 
-std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
-    auto profile = std::shared_ptr<lensprof_profile>(new_profile());
-    lensprof_error error{};
-    check(lensprof_pto_get_response(project.pto.get(), project.reference, &profile->response[0], &error), project.path,
-          &error);
-    profile->vignetting[0] = project.images[project.reference].vignetting;
-    return profile;
-}
-
 std::string target_name(const Options &o, const NamedPicture &picture) {
     std::filesystem::path name = std::filesystem::path(picture.file).filename();
     if (o.kind.linear) name.replace_extension(".tif");
@@ -154,15 +145,6 @@ struct Source {
     std::shared_ptr<const lensprof_profile> model;
     std::unique_ptr<PictureModels> models;
 };
-
-// The project's exposures, relative to its reference, or where the result is without that to the first image that it
-// has.
-std::vector<lensprof_exposure> relative_to_joined(const Project &project) {
-    uint32_t reference = project.reference;
-    for (uint32_t i = 0; i < project.images.size() && project.images[reference].left_out; i++)
-        if (!project.images[i].left_out) reference = i;
-    return relative_exposures(project_exposures(project), reference);
-}
 
 Source open_source(const Options &o) {
     Source source;
@@ -230,14 +212,6 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
     for (const NotThisOne &one : refused) tell(streams, one.what());
     throw Failure(refused[0].code, std::to_string(refused.size()) + " of " + counted(count, "picture")
                                        + " cannot be corrected, and none is; leave them out with --skip");
-}
-
-// Those of images that the result in the project is not without.
-std::vector<lensprof_exposure> joined_exposures(const Project &project, const std::vector<lensprof_exposure> &all) {
-    std::vector<lensprof_exposure> joined;
-    for (size_t i = 0; i < all.size(); i++)
-        if (!project.images[i].left_out) joined.push_back(all[i]);
-    return joined;
 }
 
 Work plan_work(const Options &o, Streams &streams) {

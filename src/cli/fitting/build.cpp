@@ -7,13 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/fitting.hpp"
-#include "cli/fitting/known_exposures.hpp"
 #include "cli/fitting/photographs.hpp"
 #include "cli/fitting/preview.hpp"
 #include "cli/fitting/profile_store.hpp"
-#include "cli/fitting/project.hpp"
+#include "cli/fitting/project_fit.hpp"
 #include "cli/program/commands.hpp"
-#include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
@@ -22,19 +20,13 @@
 namespace lensprof {
 namespace {
 
-struct Options {
-    FitOptions fit;
-    StoreOptions store;
+struct Options : ProjectFitOptions {
     std::vector<std::string> inputs;
-    std::string points, points_out, pto_out, project_out, preview, reference, compare;
+    std::string points_out, pto_out, project_out, preview, compare;
     std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
-    uint32_t sampling = LENSPROF_SAMPLING_BALANCED, falloff_curves = 0;  // 0: held-out error decides
     bool json = false, one_lens = false, progress = false;
-    uint32_t seed = 1, pairs = 0, max_side = 800;
 };
 
-constexpr uint32_t falloff_flags = LENSPROF_FREE_K1 | LENSPROF_FREE_K2 | LENSPROF_FREE_K3;
-constexpr uint32_t lens_flags = LENSPROF_FREE_RESPONSE | falloff_flags | LENSPROF_FREE_CENTER;
 constexpr uint32_t balance_flags = LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
 
 void declare_points(Command &command, Options &o) {
@@ -85,82 +77,6 @@ void declare(Command &command, Options &o) {
     declare_progress(command, o.progress);
 }
 
-lensprof_fit_options project_options(const Options &o, const Project &project, lensprof_response &fixed) {
-    lensprof_fit_options options = fit_options(o.fit);
-    const auto &lens = project.images[project.reference];
-    uint32_t asked = 0;
-    for (const auto &image : project.images) asked |= image.free & lens_flags;
-    options.free &= asked;
-    options.reference = project.reference;
-    options.vignettings = o.falloff_curves;
-    options.vignetting = lens.vignetting;
-    lensprof_error error{};
-    check(lensprof_pto_get_response(project.pto.get(), project.reference, &fixed, &error), project.path, &error);
-    options.response = &fixed;
-    if (options.free & falloff_flags)
-        if (lensprof_vignetting_validate(&options.vignetting) != LENSPROF_OK)
-            options.vignetting = lensprof_vignetting{};
-    return options;
-}
-
-// A profile holds what was measured of a lens: it is not stored where nothing of it is asked for.
-void check_unknowns(const Options &o, const Project &project, const lensprof_fit_options &options) {
-    if (!o.store.no_store && !(options.free & (LENSPROF_FREE_RESPONSE | falloff_flags)))
-        throw Failure(ExitCode::usage, project.path
-                                           + ": neither response nor falloff is asked for, so that there is nothing to "
-                                             "store; give --no-store, or --free all");
-}
-
-bool is_grey(const std::vector<lensprof_pair> &pairs) {
-    for (const auto &p : pairs)
-        for (const auto &v : p.value)
-            if (v[0] != v[1] || v[1] != v[2]) return false;
-    return true;
-}
-
-// What the pictures say about themselves. Beside given pairs they may be anything: only what the profile's key needs is
-// read.
-std::vector<PictureMetadata> picture_metadata(const Options &o, const Project &project) {
-    std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
-    for (uint32_t i = 0; i < metadata.size(); i++) {
-        bool needed = o.points.empty() || (i == project.reference && !o.store.no_store);
-        if (needed && path_exists(project.files[i])) metadata[i] = read_metadata(project.files[i]);
-    }
-    return metadata;
-}
-
-// The key of the profile: EXIF of the reference picture, then what the command line says.
-lensprof_profile_key profile_key(const Options &o, const Project &project, const std::vector<PictureMetadata> &metadata,
-                                 Streams &streams) {
-    const std::string &file = project.files[project.reference];
-    warn_of_cut(metadata[project.reference], o.store, file, streams);
-    const PictureMetadata &reference = metadata[project.reference];
-    lensprof_profile_key key = override_key(reference.key, reference.size, o.store, file);
-    for (size_t i = 0; i < project.files.size() && o.store.aperture == LENSPROF_UNKNOWN && o.points.empty(); i++) {
-        const lensprof_profile_key &other = metadata[i].key;
-        auto differ = [](double a, double b) { return a != b && a != LENSPROF_UNKNOWN && b != LENSPROF_UNKNOWN; };
-        if (path_exists(project.files[i])
-            && (differ(other.aperture, key.aperture) || differ(other.focal_mm, key.focal_mm)))
-            warn(streams, project.files[i] + ": aperture or focal length differ from " + file
-                              + "; one falloff is estimated for both");
-    }
-    return key;
-}
-
-// Another reference than the project's: where nothing else is held, it is held in that one's place, so that standard
-// errors are relative to it. Held exposures are relative to the project's own; there the result is moved afterwards.
-void refer_to(uint32_t reference, FitInput &input) {
-    uint32_t &own = input.options.reference, asked = 0;
-    for (const auto &image : input.images) asked |= image.free;
-    for (uint32_t i = 0; i < input.images.size(); i++) {
-        const auto &image = input.images[i];
-        bool linked = image.ev_of != i || image.red_of != i || image.blue_of != i;
-        if (linked || (i != own && image.free != asked)) return;
-    }
-    std::swap(input.images[own].free, input.images[reference].free);
-    own = reference;
-}
-
 // No output may take the place of an input, of the database or of another output.
 void check_outputs(const Options &o, const Project &project) {
     std::vector<std::string> taken{project.path, o.points, o.compare};
@@ -175,101 +91,23 @@ void check_outputs(const Options &o, const Project &project) {
     }
 }
 
-constexpr uint32_t project_modes = 5;  // Ra..Re
-
-// The text of the project with the result in it.
-std::string project_text(const Options &o, Project &project, const Fitted &fitted, uint32_t reference) {
-    lensprof_error error{};
-    check(lensprof_pto_set_result(project.pto.get(), &fitted.result.response, &green_falloff(fitted.result),
-                                  fitted.exposures.data(), static_cast<uint32_t>(fitted.exposures.size()), reference,
-                                  &error),
-          project.path, &error);
-    return project_text_at(project, o.pto_out);
-}
-
-// The pairs or tracks that are fitted.
-void get_points(const Options &o, const Project &project, Progress &progress, BuildReport &report, FitInput &input) {
-    auto clock = std::chrono::steady_clock::now();
-    uint32_t &channels = input.options.channels;
-    if (!o.points.empty()) {
-        input.pairs = read_points(o.points, project);
-        channels = is_grey(input.pairs) ? 1 : 3;
-        report.load_s = lap(clock);
-        return;
-    }
-    auto pictures = read_pictures(project, o.max_side, progress);
-    channels = channel_count(pictures);
-    report.load_s = lap(clock);
-    lensprof_sample_options options;
-    lensprof_sample_options_init(&options);
-    options.sampling = o.sampling;
-    options.pairs = o.pairs;
-    options.seed = o.seed;
-    if (o.fit.method == LENSPROF_METHOD_RADIANCE) {
-        input.observations = sample_tracks(project, pictures, options, progress, &report.links);
-        input.pairs = pairs_of_tracks(input.observations);
-    } else {
-        input.pairs = sample_pairs(project, pictures, options, {}, progress, &report.links);
-    }
-    input.options.links = report.links.data();
-    input.options.link_count = static_cast<uint32_t>(report.links.size());
-    report.sample_s = lap(clock);
-}
-
-// A project holds five modes and one falloff: what is best with these, not what is left of something better.
-Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, const std::string &item,
-                       Progress &progress) {
-    bool fits = best.result.response.modes <= project_modes && best.result.vignettings == 1;
-    if (fits || !(input.options.free & LENSPROF_FREE_RESPONSE)) return best;
-    input.options.modes = std::min<uint32_t>(best.result.response.modes, project_modes);
-    input.options.vignettings = 1;
-    return fit(input, reference, item, progress, nullptr);
-}
-
 BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
                   const EarlierProfile &prior, const CameraKind &kind, OutputFiles &outputs, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
-    BuildReport report;
-    report.names = project.names;
-    report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
-    FitInput input;
-    input.options = project_options(o, project, input.fixed);
-    report.camera_kind = kind;
-    input.options.camera_kind = kind.kind;
-    report.prior_id = prior.id;
-    report.no_prior = prior.reason;
-    report.prior_is_composed = prior.is_composed;
-    input.options.profile = prior.profile.get();
-    check_unknowns(o, project, input.options);
-    get_points(o, project, progress, report, input);
-    stop_if_interrupted();
-    input.images = fit_images(project);
-    if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
-    refer_to(report.reference, input);
-    const std::string &item = o.points.empty() ? project.path : o.points;
-    Fitted best = fit(input, report.reference, item, progress, &report.quality);
-    report.fit = best.result;
-    report.verdict = verdict_of(best.result);
-    if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)
-        report.verdict.text += " (Er and Eb on the v lines, or --free all)";
-    name_image(project.names, report.verdict);
-    report.exposures = best.exposures;
-    if (best.reference != report.reference)
-        warn(streams, project.names[report.reference] + ": the reference was left out; exposures are relative to "
-                          + project.names[best.reference]);
-    report.reference = best.reference;
-    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(input.pairs, project));
-    if (!o.pto_out.empty() && (best.corrects() || o.store.force)) {
-        Fitted written = fit_for_project(input, best, report.reference, item, progress);
-        outputs.add(o.pto_out, project_text(o, project, written, written.reference));
-    }
-    if (!o.preview.empty() && best.corrects()) write_preview(o.preview, project, best, progress);
+    ProjectFit done(progress);
+    done.report.camera_kind = kind;
+    fit_project(o, project, metadata, prior, done, streams);
+    BuildReport &report = done.report;
+    if (!o.points_out.empty()) outputs.add(o.points_out, points_text(done.input.pairs, project));
+    if (!o.pto_out.empty() && (done.best.corrects() || o.store.force))
+        outputs.add(o.pto_out, result_text(done, project, o.pto_out));
+    if (!o.preview.empty() && done.best.corrects()) write_preview(o.preview, project, done.best, progress);
     progress.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         warn(streams, project.path
                           + (o.points.empty() ? ": no EXIF exposures that differ" : ": EXIF is not read with --points")
                           + ": gamma rests on the prior");
-    return report;
+    return std::move(report);
 }
 
 // A project, or the pictures that take its place.

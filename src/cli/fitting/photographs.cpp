@@ -6,21 +6,13 @@
 #include <map>
 #include <set>
 
-#include "cli/pictures/named_pictures.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
-#include "cli/registration/registration.hpp"
 
 namespace lensprof {
 namespace {
-
-// What words name, and how reports call it: within a folder that is the only word, by the rest of the path.
-struct Photographs {
-    std::string label;  // of all
-    std::vector<std::string> files, names;
-};
 
 // Whether two files of one size, which is not 0, hold the same, as far as they can be read.
 bool is_copy(const std::string &one, const std::string &other) {
@@ -34,13 +26,14 @@ bool is_copy(const std::string &one, const std::string &other) {
     }
 }
 
-// Every picture once, whatever its names; copies of a picture say nothing.
-Photographs list_pictures(const std::vector<std::string> &words, Streams &streams) {
+}  // namespace
+
+Photographs list_photographs(const std::vector<std::string> &words, const std::vector<NamedPicture> &pictures) {
     const bool is_one_folder = words.size() == 1 && is_folder(words[0]);
     Photographs list;
     std::set<std::string> known;
     std::map<uint64_t, std::vector<size_t>> by_size;
-    for (const NamedPicture &picture : named_pictures(words, std::string())) {
+    for (const NamedPicture &picture : pictures) {
         if (!known.insert(file_identity(picture.file)).second) continue;
         const uint64_t bytes = file_bytes(picture.file);  // 0 where there is no file
         auto &alike = by_size[bytes];
@@ -48,7 +41,7 @@ Photographs list_pictures(const std::vector<std::string> &words, Streams &stream
             return is_copy(list.files[other], picture.file);
         });
         if (copied != alike.end()) {
-            warn(streams, picture.file + ": left out, it is a copy of " + list.names[*copied]);
+            list.copies.emplace_back(picture.file, "it is a copy of " + list.names[*copied]);
             continue;
         }
         alike.push_back(list.files.size());
@@ -60,6 +53,8 @@ Photographs list_pictures(const std::vector<std::string> &words, Streams &stream
     return list;
 }
 
+namespace {
+
 // "img1.jpg, img2.jpg and 7 more".
 std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names) {
     constexpr size_t most = 5;
@@ -69,22 +64,14 @@ std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::
     return text;
 }
 
-// Leaves the pictures of the lens that took most of them.
-void keep_one_lens(FoundProject &found, const std::vector<std::string> &names, Streams &streams) {
-    std::map<uint32_t, size_t> count;
-    for (uint32_t lens : found.lenses) count[lens]++;
-    const auto most =
-        std::max_element(count.begin(), count.end(), [](const auto &a, const auto &b) { return a.second < b.second; });
-    if (count.size() == 1) return;
+// Its pictures of one lens.
+FoundProject of_lens(const FoundProject &found, uint32_t lens) {
     FoundProject kept = found;
     kept.pictures.clear(), kept.cameras.clear(), kept.lenses.clear(), kept.points.clear();
     std::set<std::pair<uint32_t, uint32_t>> links;
-    std::vector<uint32_t> others, number(found.pictures.size(), UINT32_MAX);
+    std::vector<uint32_t> number(found.pictures.size(), UINT32_MAX);
     for (size_t n = 0; n < found.pictures.size(); n++) {
-        if (found.lenses[n] != most->first) {
-            others.push_back(found.pictures[n]);
-            continue;
-        }
+        if (found.lenses[n] != lens) continue;
         number[n] = static_cast<uint32_t>(kept.pictures.size());
         kept.pictures.push_back(found.pictures[n]);
         kept.cameras.push_back(found.cameras[n]);
@@ -97,10 +84,34 @@ void keep_one_lens(FoundProject &found, const std::vector<std::string> &names, S
         links.emplace(point.image[0], point.image[1]);
     }
     kept.links = static_cast<uint32_t>(links.size()), kept.unfit = 0;
-    found = std::move(kept);
-    warn(streams,
-         listed(others, names)
-             + ": left out, of another camera, lens, focal length or size than most (--one-lens takes all as one)");
+    return kept;
+}
+
+}  // namespace
+
+std::vector<FoundProject> split_by_lens(const FoundProject &found) {
+    std::map<uint32_t, size_t> count;
+    for (uint32_t lens : found.lenses) count[lens]++;
+    if (count.size() == 1) return {found};
+    std::vector<FoundProject> parts;
+    for (const auto &[lens, pictures] : count) parts.push_back(of_lens(found, lens));
+    std::stable_sort(parts.begin(), parts.end(), [](const FoundProject &a, const FoundProject &b) {
+        return a.pictures.size() > b.pictures.size();
+    });
+    return parts;
+}
+
+namespace {
+
+// Leaves the pictures of the lens that took most of them.
+void keep_one_lens(FoundProject &found, const std::vector<std::string> &names, Streams &streams) {
+    const FoundProject kept = split_by_lens(found)[0];
+    std::vector<uint32_t> others;
+    std::set_difference(found.pictures.begin(), found.pictures.end(), kept.pictures.begin(), kept.pictures.end(),
+                        std::back_inserter(others));
+    found = kept;
+    if (others.empty()) return;
+    warn(streams, listed(others, names) + ": left out, " + of_another_lens);
 }
 
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
@@ -130,7 +141,9 @@ bool names_pictures(const std::string &word) { return is_folder(word) || is_pict
 
 Project project_of_pictures(const std::vector<std::string> &words, bool one_lens, Progress &progress,
                             Streams &streams) {
-    const auto [label, files, names] = list_pictures(words, streams);
+    const Photographs list = list_photographs(words, named_pictures(words, std::string()));
+    const auto &[label, files, names, copies] = list;
+    for (const auto &[file, why] : copies) warn(streams, file + ": left out, " + why);
     if (files.size() < 2)
         throw Failure(ExitCode::not_usable, label + ": has one picture; at least two overlapping ones are needed",
                       LENSPROF_REASON_FEW_PAIRS);
@@ -153,17 +166,27 @@ Project project_of_pictures(const std::vector<std::string> &words, bool one_lens
     report_found(found, names, label, streams);
 
     const FoundProject &own = found.projects[0];
-    std::vector<ProjectImage> images;
     Project project;
     project.path = label;
-    for (size_t n = 0; n < own.pictures.size(); n++) {
-        images.push_back({own.cameras[n], format("image%zu", n), 0, own.lenses[n]});  // a name may hold quotes
-        project.names.push_back(names[own.pictures[n]]);
-        project.files.push_back(files[own.pictures[n]]);
+    for (const uint32_t picture : own.pictures) {
+        project.names.push_back(names[picture]);
+        project.files.push_back(files[picture]);
     }
-    project.pto = parse_pto(new_project_text("found by lensprof build", images, own.points), label);
-    for (size_t n = 0; n < images.size(); n++) add_image(project);
+    read_found(text_of_found(own), project);
     return project;
+}
+
+std::string text_of_found(const FoundProject &found) {
+    std::vector<ProjectImage> images;
+    for (size_t n = 0; n < found.pictures.size(); n++)
+        images.push_back({found.cameras[n], format("image%zu", n), 0, found.lenses[n]});  // a name may hold quotes
+    return new_project_text("found by lensprof build", images, found.points);
+}
+
+void read_found(const std::string &text, Project &project) {
+    project.pto = parse_pto(text, project.path);
+    project.images.clear();
+    for (size_t n = 0; n < project.files.size(); n++) add_image(project);
 }
 
 void write_project(Project &project, const std::string &path) {

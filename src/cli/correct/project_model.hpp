@@ -1,0 +1,21 @@
+// What a project with a result in it says about its pictures.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "cli/fitting/project.hpp"
+
+namespace lensprof {
+
+// Response and falloff of its reference.
+std::shared_ptr<lensprof_profile> model_of_project(const Project &project);
+
+// The project's exposures, relative to its reference, or where the result is without that to the first image that it
+// has.
+std::vector<lensprof_exposure> relative_to_joined(const Project &project);
+
+// Those of images that the result in the project is not without.
+std::vector<lensprof_exposure> joined_exposures(const Project &project, const std::vector<lensprof_exposure> &all);
+
+}  // namespace lensprof

@@ -1,0 +1,175 @@
+#include "cli/fitting/project_fit.hpp"
+
+#include <algorithm>
+
+#include "cli/fitting/known_exposures.hpp"
+#include "cli/program/interrupt.hpp"
+#include "cli/program/message.hpp"
+#include "cli/program/paths.hpp"
+
+namespace lensprof {
+namespace {
+
+lensprof_fit_options project_options(const ProjectFitOptions &o, const Project &project, lensprof_response &fixed) {
+    lensprof_fit_options options = fit_options(o.fit);
+    const auto &lens = project.images[project.reference];
+    uint32_t asked = 0;
+    for (const auto &image : project.images) asked |= image.free & lens_flags;
+    options.free &= asked;
+    options.reference = project.reference;
+    options.vignettings = o.falloff_curves;
+    options.vignetting = lens.vignetting;
+    lensprof_error error{};
+    check(lensprof_pto_get_response(project.pto.get(), project.reference, &fixed, &error), project.path, &error);
+    options.response = &fixed;
+    if (options.free & falloff_flags)
+        if (lensprof_vignetting_validate(&options.vignetting) != LENSPROF_OK)
+            options.vignetting = lensprof_vignetting{};
+    return options;
+}
+
+// A profile holds what was measured of a lens: it is not stored where nothing of it is asked for.
+void check_unknowns(const ProjectFitOptions &o, const Project &project, const lensprof_fit_options &options) {
+    if (!o.store.no_store && !(options.free & (LENSPROF_FREE_RESPONSE | falloff_flags)))
+        throw Failure(ExitCode::usage, project.path
+                                           + ": neither response nor falloff is asked for, so that there is nothing to "
+                                             "store; give --no-store, or --free all");
+}
+
+bool is_grey(const std::vector<lensprof_pair> &pairs) {
+    for (const auto &p : pairs)
+        for (const auto &v : p.value)
+            if (v[0] != v[1] || v[1] != v[2]) return false;
+    return true;
+}
+
+// The pairs or tracks that are fitted.
+void get_points(const ProjectFitOptions &o, const Project &project, Progress &progress, BuildReport &report,
+                FitInput &input) {
+    auto clock = std::chrono::steady_clock::now();
+    uint32_t &channels = input.options.channels;
+    if (!o.points.empty()) {
+        input.pairs = read_points(o.points, project);
+        channels = is_grey(input.pairs) ? 1 : 3;
+        report.load_s = lap(clock);
+        return;
+    }
+    auto pictures = read_pictures(project, o.max_side, progress);
+    channels = channel_count(pictures);
+    report.load_s = lap(clock);
+    lensprof_sample_options options;
+    lensprof_sample_options_init(&options);
+    options.sampling = o.sampling;
+    options.pairs = o.pairs;
+    options.seed = o.seed;
+    if (o.fit.method == LENSPROF_METHOD_RADIANCE) {
+        input.observations = sample_tracks(project, pictures, options, progress, &report.links);
+        input.pairs = pairs_of_tracks(input.observations);
+    } else {
+        input.pairs = sample_pairs(project, pictures, options, {}, progress, &report.links);
+    }
+    input.options.links = report.links.data();
+    input.options.link_count = static_cast<uint32_t>(report.links.size());
+    report.sample_s = lap(clock);
+}
+
+// Another reference than the project's: where nothing else is held, it is held in that one's place, so that standard
+// errors are relative to it. Held exposures are relative to the project's own; there the result is moved afterwards.
+void refer_to(uint32_t reference, FitInput &input) {
+    uint32_t &own = input.options.reference, asked = 0;
+    for (const auto &image : input.images) asked |= image.free;
+    for (uint32_t i = 0; i < input.images.size(); i++) {
+        const auto &image = input.images[i];
+        bool linked = image.ev_of != i || image.red_of != i || image.blue_of != i;
+        if (linked || (i != own && image.free != asked)) return;
+    }
+    std::swap(input.images[own].free, input.images[reference].free);
+    own = reference;
+}
+
+constexpr uint32_t project_modes = 5;  // Ra..Re
+
+// A project holds five modes and one falloff: what is best with these, not what is left of something better.
+Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, const std::string &item,
+                       Progress &progress) {
+    bool fits = best.result.response.modes <= project_modes && best.result.vignettings == 1;
+    if (fits || !(input.options.free & LENSPROF_FREE_RESPONSE)) return best;
+    input.options.modes = std::min<uint32_t>(best.result.response.modes, project_modes);
+    input.options.vignettings = 1;
+    return fit(input, reference, item, progress, nullptr);
+}
+
+}  // namespace
+
+// What the pictures say about themselves. Beside given pairs they may be anything: only what the profile's key needs is
+// read.
+std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const Project &project) {
+    std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
+    for (uint32_t i = 0; i < metadata.size(); i++) {
+        bool needed = o.points.empty() || (i == project.reference && !o.store.no_store);
+        if (needed && path_exists(project.files[i])) metadata[i] = read_metadata(project.files[i]);
+    }
+    return metadata;
+}
+
+// The key of the profile: EXIF of the reference picture, then what the command line says.
+lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &project,
+                                 const std::vector<PictureMetadata> &metadata, Streams &streams) {
+    const std::string &file = project.files[project.reference];
+    warn_of_cut(metadata[project.reference], o.store, file, streams);
+    const PictureMetadata &reference = metadata[project.reference];
+    lensprof_profile_key key = override_key(reference.key, reference.size, o.store, file);
+    for (size_t i = 0; i < project.files.size() && o.store.aperture == LENSPROF_UNKNOWN && o.points.empty(); i++) {
+        const lensprof_profile_key &other = metadata[i].key;
+        auto differ = [](double a, double b) { return a != b && a != LENSPROF_UNKNOWN && b != LENSPROF_UNKNOWN; };
+        if (path_exists(project.files[i])
+            && (differ(other.aperture, key.aperture) || differ(other.focal_mm, key.focal_mm)))
+            warn(streams, project.files[i] + ": aperture or focal length differ from " + file
+                              + "; one falloff is estimated for both");
+    }
+    return key;
+}
+
+void fit_project(const ProjectFitOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
+                 const EarlierProfile &prior, ProjectFit &done, Streams &streams) {
+    BuildReport &report = done.report;
+    FitInput &input = done.input;
+    report.names = project.names;
+    report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
+    input.options = project_options(o, project, input.fixed);
+    input.options.camera_kind = report.camera_kind.kind;
+    report.prior_id = prior.id;
+    report.no_prior = prior.reason;
+    report.prior_is_composed = prior.is_composed;
+    input.options.profile = prior.profile.get();
+    check_unknowns(o, project, input.options);
+    get_points(o, project, done.progress, report, input);
+    stop_if_interrupted();
+    input.images = fit_images(project);
+    if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
+    refer_to(report.reference, input);
+    done.item = o.points.empty() ? project.path : o.points;
+    done.best = fit(input, report.reference, done.item, done.progress, &report.quality);
+    report.fit = done.best.result;
+    report.verdict = verdict_of(done.best.result);
+    if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)
+        report.verdict.text += " (Er and Eb on the v lines, or --free all)";
+    name_image(project.names, report.verdict);
+    report.exposures = done.best.exposures;
+    if (done.best.reference != report.reference)
+        warn(streams, project.names[report.reference] + ": the reference was left out; exposures are relative to "
+                          + project.names[done.best.reference]);
+    report.reference = done.best.reference;
+}
+
+std::string result_text(ProjectFit &done, Project &project, const std::string &path) {
+    const Fitted written = fit_for_project(done.input, done.best, done.report.reference, done.item, done.progress);
+    lensprof_error error{};
+    check(lensprof_pto_set_result(project.pto.get(), &written.result.response, &green_falloff(written.result),
+                                  written.exposures.data(), static_cast<uint32_t>(written.exposures.size()),
+                                  written.reference, &error),
+          project.path, &error);
+    return project_text_at(project, path);
+}
+
+}  // namespace lensprof
