@@ -41,6 +41,7 @@ void declare_root(Command &root, const Program &program) {
 }
 
 void declare_all(Command root, const Program &program) {
+    declare_calibrate(root);
     declare_build(root);
     declare_bracket(root);
     declare_flat(root);

@@ -1,0 +1,131 @@
+// `lensprof calibrate`: pictures -> panoramas, profiles, corrected copies and what is to be said of them, in one
+// folder.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+#include "cli/calibrate/corrections.hpp"
+#include "cli/calibrate/inputs.hpp"
+#include "cli/calibrate/ledger.hpp"
+#include "cli/calibrate/panoramas.hpp"
+#include "cli/calibrate/sheet.hpp"
+#include "cli/calibrate/summary.hpp"
+#include "cli/program/commands.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/message.hpp"
+#include "cli/program/options.hpp"
+#include "cli/program/output_file.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/registration/registration.hpp"
+
+namespace lensprof {
+namespace {
+
+void declare(Command &command, CalibrateOptions &o) {
+    command.files("INPUT", o.inputs, "folders of pictures, with their subfolders, and pictures");
+    command.require("INPUT");
+    command.folder("-o,--output", o.output, "folder for all that is written");
+    command.require("-o,--output");
+    command.words(
+        "--db", "FILE",
+        [&o](const std::string &word) {
+            o.store.dbs.push_back(word);
+            o.store.db = o.store.dbs.front();
+        },
+        "profile database; where it is given more than once profiles are stored in the first, and the others are read; "
+        "default lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share");
+    command.flag("--no-store", o.store.no_store, "do not store profiles");
+    command.flag("--one-lens", o.one_lens, "take pictures of a panorama as of one lens, whatever they say");
+    command.flag("--overwrite", o.overwrite, "replace files in the output folder that are not of an earlier calibrate");
+    command.count("--threads", o.threads, 0, 1024, "threads that correct pictures; 0 = all cores (default)");
+    declare_json(command, o.json);
+    declare_progress(command, o.progress);
+    command.footer(
+        "Example: lensprof calibrate holiday -o holiday/calibrated\n"
+        "Every panorama in the folder is found, fitted, stored as a profile where it is one, and evened out. Pictures in\n"
+        "none are corrected by a profile of the databases, where there is one for their camera, lens and setting.\n"
+        "The output folder gets a corrected copy of each, under its own name; of each panorama a project\n"
+        "(panorama_NAME.pto, for Hugin) and a mosaic before and after (panorama_NAME.jpg); a contact sheet\n"
+        "(calibrate_sheet.jpg); and calibrate.json with all numbers and reasons. A second run does what is missing,\n"
+        "after an interrupt, too; what has changed is done again. Originals are never written to.\n"
+        "Exit code 0: something was corrected, and what was not is named; 4: nothing could be; 3: no picture can be read.");
+}
+
+// Files that stand where something is to be written: before anything is computed.
+void check_in_the_way(const CalibrateOptions &o, const Inputs &inputs, const Ledger &ledger) {
+    std::vector<std::string> wanted = sheet_names(o, inputs.pictures.size());
+    wanted.insert(wanted.begin(), (std::filesystem::path(o.output) / summary_name).string());
+    for (const InputPicture &picture : inputs.pictures) wanted.push_back(picture.target);
+    for (const std::string &file : wanted) {
+        if (is_folder(file)) throw Failure(ExitCode::usage, file + ": is a folder; give another name with -o");
+        if (!o.overwrite && !ledger.knows(file) && ledger.is_in_the_way(file))
+            throw Failure(ExitCode::usage, file + ": is there already and not of an earlier calibrate; give another "
+                                                  "folder with -o, or --overwrite");
+    }
+}
+
+// Only where it has changed: a run that finds everything done changes nothing.
+void write_summary(const CalibrateOptions &o, const Json &json, Ledger &ledger) {
+    const std::string file = (std::filesystem::path(o.output) / summary_name).string();
+    std::ostringstream text;
+    print_json(json, text);
+    const std::string key = digest_of_text(text.str());
+    if (!ledger.is_current(file, key)) {
+        ledger.begin(file, key);
+        ledger.save();
+        write_file(file, text.str().data(), text.str().size());
+        ledger.finish(file);
+    }
+    ledger.save();
+}
+
+int run(const CalibrateOptions &o, Streams &streams) {
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    check_output_folder(o.output);
+    check_store(o.store);
+    const Inputs inputs = find_inputs(o.inputs, o.output, progress);
+    Ledger ledger(o.output);
+    check_in_the_way(o, inputs, ledger);
+    if (inputs.unreadable == inputs.found - (inputs.left_out.size() - inputs.unreadable) && inputs.unreadable)
+        throw Failure(ExitCode::unreadable,
+                      inputs.label + ": none of the pictures can be read: " + inputs.left_out[0].reason);
+    if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, progress);
+    make_folder(o.output);
+    Panoramas panoramas = find_panoramas(o, inputs, ledger, progress);
+    forget_panoramas(o, panoramas, ledger);
+    fit_panoramas(o, panoramas, ledger, progress);
+    CorrectedPictures pictures = plan_corrections(o, inputs, panoramas);
+    write_corrections(o, pictures, ledger, progress);
+    write_sheets(o, pictures, ledger, progress);
+    progress.clear();
+    Json json = summary_json(o, inputs, panoramas, pictures);
+    write_summary(o, json, ledger);
+    if (o.json) {
+        json["now"] = {
+            {"registered", panoramas.is_registered}, {"fitted", panoramas.fitted}, {"corrected", pictures.written}};
+        print_json(json, streams.out);
+    } else {
+        print_summary(o, inputs, panoramas, pictures, streams.out);
+    }
+    const bool is_stored = std::any_of(panoramas.list.begin(), panoramas.list.end(), [](const Panorama &p) {
+        return p.summary["result"].is_object() && !p.summary["result"]["profile"].is_null();
+    });
+    if (!pictures.list.empty() || is_stored) return static_cast<int>(ExitCode::done);
+    tell(streams, inputs.label + ": nothing could be corrected; the reasons are in "
+                      + (std::filesystem::path(o.output) / summary_name).string()
+                      + ": give pictures that share a third, or a database that knows the lens");
+    return static_cast<int>(ExitCode::not_usable);
+}
+
+}  // namespace
+
+void declare_calibrate(Command &program) {
+    Command command = program.add("calibrate", "a folder of pictures -> profiles, corrected copies and a contact sheet",
+                                  "Does the whole job: finds overlaps, fits, stores, corrects and shows the result.");
+    auto o = std::make_shared<CalibrateOptions>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run(*o, streams); });
+}
+
+}  // namespace lensprof

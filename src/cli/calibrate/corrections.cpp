@@ -1,0 +1,146 @@
+#include "cli/calibrate/corrections.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "cli/correct/picture_model.hpp"
+#include "cli/correct/project_model.hpp"
+#include "cli/pictures/picture.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/output_file.hpp"
+#include "cli/program/paths.hpp"
+
+namespace lensprof {
+namespace {
+
+std::string copy_key(const InputPicture &picture, const std::string &model) {
+    return digest_of_text(std::string(lensprof_version()) + "\n" + picture.identity + "\n" + model);
+}
+
+Correction job_of(const InputPicture &picture) {
+    Correction job{picture.file, picture.target, nullptr, {}, {}, 0, nullptr, 0, {}, {}};
+    lensprof_exposure_init(&job.own);
+    lensprof_exposure_init(&job.wanted);
+    job.pixels = uint64_t(picture.metadata.size.width) * picture.metadata.size.height;
+    return job;
+}
+
+using ByFile = std::map<std::string, CorrectedPicture>;
+
+// Of the pictures of a panorama; those that its result is without get a reason.
+void take_panorama(const Panorama &panorama, ByFile &corrected, std::map<std::string, std::string> &reasons) {
+    if (!panorama.evens()) {
+        const Json &result = panorama.summary["result"];
+        const std::string why = result.is_object() ? result["reason"].get<std::string>()
+                                                   : panorama.summary["not_stored"].get<std::string>();
+        for (const InputPicture *picture : panorama.pictures)
+            reasons[picture->file] = picture->file + ": panorama " + panorama.name + " cannot be evened: " + why;
+        return;
+    }
+    const std::string text = read_text(panorama.project, largest_text);
+    const Project project = read_project(panorama.project, true);
+    if (project.images.size() != panorama.pictures.size())
+        throw Failure(ExitCode::usage, panorama.project + ": was edited to other pictures; remove it, and calibrate "
+                                                          "writes it again");
+    const std::vector<lensprof_exposure> exposures = relative_to_joined(project);
+    const lensprof_exposure mean = mean_exposure(joined_exposures(project, exposures));
+    const std::shared_ptr<const lensprof_profile> model = model_of_project(project);
+    for (size_t i = 0; i < project.images.size(); i++) {
+        const InputPicture &picture = *panorama.pictures[i];
+        if (project.images[i].left_out) {
+            reasons[picture.file] = picture.file + ": does not agree with the others of panorama " + panorama.name;
+            continue;
+        }
+        CorrectedPicture one{&picture, panorama.name, exposures[i].ev - mean.ev, copy_key(picture, text),
+                             job_of(picture)};
+        one.job.model = model;
+        one.job.own = exposures[i], one.job.wanted = mean;
+        one.job.model_name = std::filesystem::path(panorama.project).filename().string();
+        corrected.emplace(picture.file, std::move(one));
+    }
+}
+
+// By a profile of the databases; the reason why not, or "".
+std::string take_profile(const PictureModels &models, const InputPicture &picture, ByFile &corrected) {
+    if (!models.are_used()) return "there is no database of profiles yet";
+    CorrectedPicture one{&picture, "", std::nullopt, "", job_of(picture)};
+    try {
+        models.choose(picture.metadata, one.job);
+    } catch (const NotThisOne &failure) {
+        const std::string text = failure.what(), start = picture.file + ": ";
+        return text.compare(0, start.size(), start) == 0 ? text.substr(start.size()) : text;
+    }
+    Json model = profile_json(0, *one.job.model);
+    model.erase("provenance");
+    one.key = copy_key(picture, model.dump(-1, ' ', true, Json::error_handler_t::replace));
+    corrected.emplace(picture.file, std::move(one));
+    return {};
+}
+
+}  // namespace
+
+CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas) {
+    ByFile corrected;
+    std::map<std::string, std::string> reasons = panoramas.unjoined;
+    for (const Panorama &panorama : panoramas.list) take_panorama(panorama, corrected, reasons);
+    ModelOptions options;
+    options.dbs = o.store.dbs;
+    if (!options.dbs.empty())  // the first is made when a profile is stored
+        options.dbs.erase(std::remove_if(options.dbs.begin(), options.dbs.end(),
+                                         [](const std::string &db) { return !path_exists(db); }),
+                          options.dbs.end());
+    const PictureModels models(options, o.store.dbs.empty() || !options.dbs.empty());
+    CorrectedPictures pictures;
+    for (const InputPicture &picture : inputs.pictures) {
+        if (!corrected.count(picture.file)) {
+            const std::string why = take_profile(models, picture, corrected);
+            const auto reason = reasons.find(picture.file);
+            if (!why.empty())
+                pictures.left_out.push_back(
+                    {picture.file, (reason == reasons.end() ? picture.file : reason->second) + "; " + why});
+        }
+        const auto one = corrected.find(picture.file);
+        if (one != corrected.end()) pictures.list.push_back(std::move(one->second));
+    }
+    return pictures;
+}
+
+void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, Ledger &ledger, Progress &progress) {
+    std::vector<Correction> jobs;
+    for (const CorrectedPicture &one : pictures.list) {
+        if (ledger.is_current(one.picture->target, one.key)) continue;
+        if (!o.overwrite && ledger.is_in_the_way(one.picture->target))
+            throw Failure(ExitCode::usage, one.picture->target + ": was edited since it was written, and its correction "
+                                                                 "has changed; move it away, or give --overwrite");
+        jobs.push_back(one.job);
+        ledger.begin(one.picture->target, one.key);
+    }
+    ledger.save();
+    CorrectionKind kind;
+    kind.threads = o.threads;
+    std::map<std::string, std::string> damaged;
+    while (!jobs.empty()) {
+        std::string why;
+        try {
+            write_corrected(jobs, kind, nullptr, progress);
+        } catch (const Failure &failure) {
+            if (failure.code != ExitCode::unreadable) throw;
+            why = failure.what();
+        }
+        // As many as are written were worked on in this order; the next one is the one that cannot be read.
+        const auto next = std::find_if(jobs.begin(), jobs.end(),
+                                       [&](const Correction &job) { return !ledger.is_written(job.target); });
+        pictures.written += static_cast<uint32_t>(next - jobs.begin());
+        std::for_each(jobs.begin(), next, [&](const Correction &job) { ledger.finish(job.target); });
+        if (next != jobs.end()) damaged[next->source] = why;
+        jobs.erase(jobs.begin(), next == jobs.end() ? next : next + 1);
+        ledger.save();
+    }
+    const auto is_damaged = [&](const CorrectedPicture &one) { return damaged.count(one.picture->file) != 0; };
+    pictures.list.erase(std::remove_if(pictures.list.begin(), pictures.list.end(), is_damaged), pictures.list.end());
+    for (const auto &[file, why] : damaged) pictures.left_out.push_back({file, why});
+}
+
+}  // namespace lensprof

@@ -1,0 +1,169 @@
+// Fit, profile, project and mosaic of each panorama.
+#include <sstream>
+
+#include "cli/calibrate/panoramas.hpp"
+#include "cli/correct/project_model.hpp"
+#include "cli/fitting/photographs.hpp"
+#include "cli/fitting/preview.hpp"
+#include "cli/fitting/project_fit.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/interrupt.hpp"
+#include "cli/program/output_file.hpp"
+#include "cli/program/paths.hpp"
+
+namespace lensprof {
+namespace {
+
+// Warnings among the lines of standard error, as texts.
+Json warnings_in(const std::string &lines) {
+    const std::string start = "lensprof: warning: ";
+    Json warnings = Json::array();
+    std::istringstream in(lines);
+    for (std::string line; std::getline(in, line);)
+        if (line.compare(0, start.size(), start) == 0) warnings.push_back(line.substr(start.size()));
+    return warnings;
+}
+
+Project project_of(const Panorama &panorama) {
+    Project project;
+    project.path = panorama.source;
+    for (const InputPicture *picture : panorama.pictures) {
+        project.files.push_back(picture->file);
+        project.names.push_back(picture->name);
+    }
+    read_found(panorama.geometry, project);
+    return project;
+}
+
+// Fits and stores; the project's text goes to `outputs`, which are committed with the profile.
+void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &project, Progress &progress) {
+    std::ostringstream out, err;
+    Streams streams{out, err};
+    ProjectFitOptions options;
+    options.store = o.store;
+    check_pictures(project, options.max_side);
+    const std::vector<PictureMetadata> metadata = picture_metadata(options, project);
+    const lensprof_profile_key &exif = metadata[project.reference].key;
+    panorama.summary["not_stored"] = nullptr;
+    if (o.store.no_store) panorama.summary["not_stored"] = "--no-store";
+    if (!*exif.camera_model && !*exif.lens) {
+        options.store.no_store = true;
+        panorama.summary["not_stored"] =
+            "no EXIF says which camera and lens it was; `lensprof build` of the project "
+            "takes --camera and --lens";
+    }
+    const lensprof_profile_key key = profile_key(options, project, metadata, streams);
+    const EarlierProfile prior = find_stored_prior(options.store, 0, false, key, project.path);
+    ProjectFit done(progress);
+    done.report.camera_kind = camera_kind_of(options.fit, key, metadata[project.reference]);
+    fit_project(options, project, metadata, prior, done, streams);
+    OutputFiles outputs;
+    outputs.add(panorama.project, done.best.corrects() ? result_text(done, project, panorama.project)
+                                                       : project_text_at(project, panorama.project));
+    finish_fit(done.report, key, options.store,
+               {method_name(options.fit.method), project.path, true, true, &outputs, &prior}, streams);
+    Json result = Json::parse(out.str());
+    result.erase("seconds");
+    result.erase("schema");
+    if (!options.store.no_store && result["profile"].is_null()) panorama.summary["not_stored"] = result["reason"];
+    panorama.summary["key"] = key_json(key);
+    panorama.summary["database"] = result["profile"].is_null() ? Json() : Json(store_path(options.store.db));
+    panorama.summary["warnings"] = warnings_in(err.str());
+    panorama.summary["result"] = result;
+}
+
+// A panorama that cannot be fitted is no reason to leave the others.
+void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Progress &progress) {
+    Project project = project_of(panorama);
+    ledger.begin(panorama.project, panorama.key);
+    ledger.save();
+    try {
+        fit_and_store(o, panorama, project, progress);
+    } catch (const Failure &failure) {
+        if (failure.code != ExitCode::not_usable && failure.code != ExitCode::unreadable) throw;
+        panorama.summary["result"] = nullptr;
+        panorama.summary["not_stored"] = failure.what();
+        panorama.summary["warnings"] = Json::array();
+        write_project(project, panorama.project);
+    }
+    ledger.finish(panorama.project);
+    Json files = Json::array();
+    for (const InputPicture *picture : panorama.pictures) files.push_back(ascii_path(picture->file));
+    std::ostringstream valid;  // names of files need not be UTF-8
+    print_json(panorama.summary, valid);
+    panorama.summary = Json::parse(valid.str());
+    ledger.notes["results"][ascii_path(panorama.name)] = {
+        {"key", panorama.key},
+        {"files", files},
+        {"summary", panorama.summary},
+        {"project", ascii_path(read_text(panorama.project, largest_text))}};
+    ledger.save();
+}
+
+// Whether the profile that an earlier run stored is still there.
+bool is_stored(const CalibrateOptions &o, const Json &summary) {
+    const Json &result = summary["result"];
+    if (!result.is_object() || result["profile"].is_null()) return true;
+    if (!path_exists(store_path(o.store.db))) return false;
+    const Store store = open_store(o.store.db, LENSPROF_STORE_READ);
+    auto profile = new_profile();
+    return lensprof_store_get(store.get(), result["profile"].get<int64_t>(), profile.get(), nullptr) == LENSPROF_OK;
+}
+
+// The result of an earlier run, with its project, which is written again where somebody has removed it.
+bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
+    const Json &notes = ledger.notes;
+    const std::string name = ascii_path(panorama.name);
+    if (!notes.contains("results") || !notes["results"].contains(name)) return false;
+    const Json &known = notes["results"][name];
+    if (known.value("key", "") != panorama.key || !is_stored(o, known["summary"])) return false;
+    panorama.summary = known["summary"];
+    if (ledger.is_current(panorama.project, panorama.key)) return true;
+    const std::string text = path_of_ascii(known["project"].get<std::string>());
+    ledger.begin(panorama.project, panorama.key);
+    ledger.save();
+    write_file(panorama.project, text.data(), text.size());
+    ledger.finish(panorama.project);
+    ledger.save();
+    return true;
+}
+
+// The mosaic shows what the project says, which may have been edited since it was fitted.
+void draw_preview(Panorama &panorama, Ledger &ledger, Progress &progress) {
+    const std::string text = read_text(panorama.project, largest_text), key = digest_of_text("preview\n" + text);
+    panorama.summary["preview"] = panorama.preview;
+    if (ledger.is_current(panorama.preview, key)) return;
+    const Project project = read_project(panorama.project, true);
+    Fitted fitted;
+    lensprof_fit_result_init(&fitted.result);
+    const auto model = model_of_project(project);
+    fitted.result.response = model->response[0];
+    fitted.result.vignettings = 1;
+    fitted.result.vignetting[0] = model->vignetting[0];
+    fitted.exposures = relative_to_joined(project);
+    for (size_t i = 0; i < project.images.size(); i++)
+        if (project.images[i].left_out) fitted.exposures[i].ev = NAN;
+    ledger.begin(panorama.preview, key);
+    ledger.save();
+    write_preview(panorama.preview, project, fitted, progress);
+    ledger.finish(panorama.preview);
+    ledger.save();
+}
+
+}  // namespace
+
+void fit_panoramas(const CalibrateOptions &o, Panoramas &panoramas, Ledger &ledger, Progress &progress) {
+    for (Panorama &panorama : panoramas.list) {
+        stop_if_interrupted();
+        if (!recall(o, panorama, ledger)) {
+            if (!o.overwrite && ledger.is_in_the_way(panorama.project))
+                throw Failure(ExitCode::usage, panorama.project + ": was edited since it was written, and its pictures "
+                                                                  "have changed; move it away, or give --overwrite");
+            fit_one(o, panorama, ledger, progress);
+            panoramas.fitted++;
+        }
+        if (panorama.evens()) draw_preview(panorama, ledger, progress);
+    }
+}
+
+}  // namespace lensprof

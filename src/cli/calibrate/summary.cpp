@@ -1,0 +1,113 @@
+#include "cli/calibrate/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/calibrate/sheet.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/utf8.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr size_t most_panoramas = 4, most_names = 3;
+
+double corner_of(const Json &result) {
+    double corner = 1.0;
+    const Json &curves = result["vignetting"]["k"];
+    for (const Json &k : curves[curves.size() > 1 ? 1 : 0]) corner += k.get<double>();
+    return corner;
+}
+
+// "  img000 (5 pictures): profile 3 stored, corners at 0.62 (-0.69 EV); reason".
+std::string line_of(const Panorama &panorama) {
+    const Json &summary = panorama.summary, &result = summary["result"];
+    std::string text = "  " + panorama.name + " (" + counted(panorama.pictures.size(), "picture") + "): ";
+    if (!result.is_object()) return text + "not fitted: " + summary["not_stored"].get<std::string>();
+    const std::string reason = result["reason"].get<std::string>();
+    if (!panorama.evens()) return text + "not usable: " + reason;
+    text += result["profile"].is_null() ? std::string("evened, no profile stored")
+                                        : format("profile %lld stored", static_cast<long long>(result["profile"]));
+    const double corner = corner_of(result);
+    if (corner > 0.0) text += format(", light in the corners %.2f (%+.2f EV)", corner, std::log2(corner));
+    if (result["profile"].is_null() && !summary["not_stored"].is_null())
+        return text + ": " + summary["not_stored"].get<std::string>();
+    return reason.empty() ? text : text + "; " + reason;
+}
+
+std::string shortened(const std::string &line) {
+    constexpr size_t longest = 200;
+    return line.size() <= longest ? line : line.substr(0, utf8_cut(line, longest)) + "...";
+}
+
+std::vector<LeftOutPicture> all_left_out(const Inputs &inputs, const CorrectedPictures &pictures) {
+    std::vector<LeftOutPicture> all(inputs.left_out);
+    all.insert(all.end(), pictures.left_out.begin(), pictures.left_out.end());
+    std::stable_sort(all.begin(), all.end(), [](const auto &a, const auto &b) { return a.file < b.file; });
+    return all;
+}
+
+void print_panoramas(const Panoramas &panoramas, std::ostream &out) {
+    size_t members = 0, evened = 0;
+    for (const Panorama &panorama : panoramas.list) members += panorama.pictures.size(), evened += panorama.evens();
+    out << "panoramas " << panoramas.list.size();
+    if (!panoramas.list.empty()) out << " of " << counted(members, "picture") << ", " << evened << " evened";
+    out << "\n";
+    const size_t count = panoramas.list.size(), shown = count <= most_panoramas ? count : most_panoramas - 1;
+    for (size_t n = 0; n < shown; n++) out << shortened(one_line(line_of(panoramas.list[n]))) << "\n";
+    if (shown < count) out << "  and " << count - shown << " more\n";
+}
+
+}  // namespace
+
+Json summary_json(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas,
+                  const CorrectedPictures &pictures) {
+    Json json = {{"schema", 1},
+                 {"software", std::string("lensprof ") + lensprof_version()},
+                 {"inputs", o.inputs},
+                 {"found", inputs.found},
+                 {"unreadable", inputs.unreadable}};
+    json["panoramas"] = Json::array(), json["pictures"] = Json::array(), json["left_out"] = Json::array();
+    for (const Panorama &panorama : panoramas.list) json["panoramas"].push_back(panorama.summary);
+    for (const CorrectedPicture &one : pictures.list) {
+        Json entry = {{"file", one.picture->file}, {"output", one.picture->target}};
+        entry["panorama"] = one.panorama.empty() ? Json() : Json(one.panorama);
+        entry["ev"] = one.ev ? Json(*one.ev) : Json();
+        if (one.job.profile_id) entry["profile"] = one.job.profile_id;
+        if (one.job.lookup) entry["lookup"] = lookup_json(*one.job.lookup);
+        json["pictures"].push_back(entry);
+    }
+    for (const LeftOutPicture &one : all_left_out(inputs, pictures))
+        json["left_out"].push_back({{"file", one.file}, {"reason", one.reason}});
+    json["sheets"] = sheet_names(o, pictures.list.size());
+    return json;
+}
+
+void print_summary(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas,
+                   const CorrectedPictures &pictures, std::ostream &out) {
+    out << "read      " << counted(inputs.found, "picture");
+    if (inputs.unreadable) out << ", " << inputs.unreadable << " of which cannot be read";
+    out << "\n";
+    print_panoramas(panoramas, out);
+    size_t by_profile = 0;
+    for (const CorrectedPicture &one : pictures.list) by_profile += one.panorama.empty();
+    out << "corrected " << counted(pictures.list.size(), "picture");
+    if (by_profile) out << ", " << by_profile << " of which by profiles of the databases";
+    if (pictures.written < pictures.list.size())
+        out << (pictures.written ? format("; %u written now, the rest was done before", pictures.written)
+                                 : std::string("; all were done before"));
+    out << "\n";
+    const std::vector<LeftOutPicture> left_out = all_left_out(inputs, pictures);
+    if (!left_out.empty()) {
+        std::string text = "left out  " + counted(left_out.size(), "picture") + ": ";
+        for (size_t i = 0; i < std::min(most_names, left_out.size()); i++) text += (i ? ", " : "") + left_out[i].file;
+        if (left_out.size() > most_names) text += format(" and %zu more", left_out.size() - most_names);
+        out << one_line(text) << "\n";
+    }
+    out << one_line("written   to " + o.output + ": " + summary_name + " (with all reasons)"
+                    + (pictures.list.empty() ? "" : ", calibrate_sheet.jpg")
+                    + (panoramas.list.empty() ? "" : ", panorama_*.pto, panorama_*.jpg"))
+        << "\n";
+}
+
+}  // namespace lensprof
