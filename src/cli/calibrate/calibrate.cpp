@@ -26,7 +26,7 @@ void declare(Command &command, CalibrateOptions &o) {
     command.files("INPUT", o.inputs, "folders of pictures, with their subfolders, and pictures");
     command.require("INPUT");
     command.folder("-o,--output", o.output, "folder for all that is written");
-    command.require("-o,--output");
+    command.require("--output");
     command.words(
         "--db", "FILE",
         [&o](const std::string &word) {
