@@ -1,0 +1,232 @@
+// `calibrate`: the whole job, its second run, what stands in the way, and bad input.
+#include "cli/calibrate/ledger.hpp"
+#include "cli/pictures/picture.hpp"
+#include "cli/registration/registration.hpp"
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+
+namespace {
+
+void simulate(const std::string &name, const Words &more) {
+    must_exit(done, Words{"simulate", "-o", work(name), "--noise", "1", "--size", "480x360", "--exif"} + more);
+}
+
+bool is_missing() {
+    if (can_register()) return false;
+    simulate("none", {"--images", "2"});
+    const Outcome refused = run_words({"calibrate", work("none"), "-o", work("out"), "--no-store"});
+    assert_int_equal(refused.code, usage);
+    assert_true(contains(refused.err, "built without OpenCV"));
+    assert_false(fs::exists(work("out")));
+    return true;
+}
+
+// Two panoramas, a picture of neither in a subfolder, a copy and a damaged file.
+std::string make_folder_of_many() {
+    simulate("many", {"--images", "4", "--seed", "21"});
+    simulate("three", {"--images", "3", "--seed", "22"});
+    simulate("single", {"--images", "2", "--seed", "23"});
+    for (const char *number : {"0", "1", "2"})
+        fs::copy_file(work(std::string("three/img00") + number + ".png"),
+                      work(std::string("many/x") + number + ".png"));
+    fs::create_directory(work("many/sub"));
+    fs::copy_file(work("single/img000.png"), work("many/sub/y.png"));
+    fs::copy_file(work("many/img001.png"), work("many/z_copy.png"));
+    save_text(work("many/bad.png"), text_of(work("many/img002.png")).substr(0, 5000));
+    return work("many");
+}
+
+Words calibrated(const std::string &input, const Words &more = {}) {
+    return Words{"calibrate", input, "-o", work("out"), "--db", work("p.db"), "--json"} + more;
+}
+
+// What this run did: registered, fitted, corrected.
+void assert_now(const Json &json, bool registered, int fitted, int corrected) {
+    const Json now = {{"registered", registered}, {"fitted", fitted}, {"corrected", corrected}};
+    if (json["now"] != now) fail_msg("did %s, not %s", json["now"].dump().c_str(), now.dump().c_str());
+}
+
+using Stamps = std::map<std::string, std::string>;
+
+Stamps stamps() {
+    Stamps all;
+    for (const fs::directory_entry &entry : fs::recursive_directory_iterator(work("out")))
+        all[entry.path().string()] = stamp_of(entry.path().string());
+    return all;
+}
+
+// The first run does all of it; the second nothing; what is lost is written again alone.
+void test_a_folder_of_many_things(void **) {
+    if (is_missing()) return;
+    const std::string many = make_folder_of_many();
+    const Disk originals = disk();
+    const Json json = json_of(calibrated(many));
+    for (const auto &[name, bytes] : originals)
+        assert_true(fs::is_directory(in_folder(name)) || load(in_folder(name)) == bytes);
+    assert_now(json, true, 2, 8);
+    assert_int_equal(json["panoramas"].size(), 2);
+    assert_int_equal(json["panoramas"][0]["pictures"], 4);
+    assert_int_equal(json["panoramas"][1]["pictures"], 3);
+    for (const Json &panorama : json["panoramas"]) {
+        assert_true(panorama["result"]["usable"] == true && panorama["result"]["profile"].is_number());
+        assert_true(read_picture(panorama["preview"].get<std::string>()).width > 1000);
+    }
+    assert_int_equal(json["left_out"].size(), 2);
+    assert_true(contains(json["left_out"][0]["reason"], "bad.png"));
+    assert_true(contains(json["left_out"][1]["reason"], "it is a copy of img001.png"));
+    assert_true(fs::exists(work("out/sub/y.png")) && fs::exists(work("out/calibrate_sheet.jpg")));
+    assert_true(json["pictures"][4]["panorama"].is_null());  // sub/y.png, by the profile that the panoramas stored
+
+    const Stamps before = stamps();
+    assert_now(json_of(calibrated(many)), false, 0, 0);
+    assert_true(stamps() == before);
+    fs::remove(work("out/img002.png"));
+    fs::remove(json["panoramas"][0]["project"].get<std::string>());
+    assert_now(json_of(calibrated(many)), false, 0, 1);
+    assert_true(fs::exists(work("out/img002.png")));
+    assert_int_equal(json_of({"profile", "list", "--db", work("p.db"), "--json"})["profiles"].size(), 2);
+}
+
+// The same numbers as `build` of the same pictures, and copies as `apply --pto` makes them.
+void test_as_build_and_apply(void **) {
+    if (is_missing()) return;
+    simulate("row", {"--images", "5", "--seed", "11"});
+    const Json built = json_of({"build", work("row"), "--db", work("b.db"), "--json"});
+    const Json json = json_of(calibrated(work("row")));
+    const Json &result = json["panoramas"][0]["result"];
+    assert_true(result["vignetting"] == built["vignetting"]);
+    assert_true(result["images"] == built["images"]);
+    assert_true(result["response"] == built["response"]);
+    must_exit(done, {"apply", "--pto", json["panoramas"][0]["project"], "-o", work("even")});
+    for (const char *name : {"img000.png", "img001.png", "img002.png", "img003.png", "img004.png"})
+        assert_true(load(work(std::string("even/") + name)) == load(work(std::string("out/") + name)));
+    assert_now(json_of(calibrated(work("row"), {"--threads", "1"})), false, 0, 0);
+}
+
+// Of a new picture only its own panorama is done again; the output may be in the folder.
+void test_new_pictures(void **) {
+    if (is_missing()) return;
+    simulate("row", {"--images", "4", "--seed", "21"});
+    simulate("three", {"--images", "3", "--seed", "22"});
+    const Words words = {"calibrate", work("row"), "-o", work("row/out"), "--no-store", "--json"};
+    assert_now(json_of(words), true, 1, 4);
+    for (const char *number : {"0", "1", "2"})
+        fs::copy_file(work(std::string("three/img00") + number + ".png"), work(std::string("row/x") + number + ".png"));
+    const Json json = json_of(words);
+    assert_now(json, true, 1, 3);
+    assert_int_equal(json["found"], 7);
+    // Another output folder does not take the first one's for pictures.
+    const Json other = json_of({"calibrate", work("row"), "-o", work("row/other"), "--no-store", "--json"});
+    assert_int_equal(other["found"], 7);
+}
+
+// Nothing of others is replaced, and that is said before anything is computed.
+void test_what_stands_in_the_way(void **) {
+    if (is_missing()) return;
+    simulate("row", {"--images", "4", "--seed", "21"});
+    fs::create_directory(work("out"));
+    save_text(work("out/img001.png"), "mine");
+    assert_refused(usage, calibrated(work("row")), {"out/img001.png", "--overwrite"});
+    assert_now(json_of(calibrated(work("row"), {"--overwrite"})), true, 1, 4);
+    // One that was edited is kept while its correction is the same, and in the way when that changes.
+    save_text(work("out/img002.png"), "edited");
+    assert_now(json_of(calibrated(work("row"))), false, 0, 0);
+    assert_true(text_of(work("out/img002.png")) == "edited");
+    fs::last_write_time(work("row/img002.png"), fs::file_time_type::clock::now());
+    const Outcome refused = run_words(calibrated(work("row")));
+    assert_int_equal(refused.code, usage);
+    assert_true(contains(refused.err, "out/img002.png") && text_of(work("out/img002.png")) == "edited");
+    assert_refused(usage, {"calibrate", work("row"), "-o", work("row")}, {"is the folder of the pictures"});
+}
+
+void test_bad_input(void **) {
+    if (is_missing()) return;
+    fs::create_directory(work("bad"));
+    save_text(work("bad/a.jpg"), "no picture");
+    save_text(work("bad/b.png"), "nor is this");
+    assert_refused(unreadable, calibrated(work("bad")), {"none of the pictures can be read"});
+    simulate("one", {"--images", "2", "--seed", "3"});
+    fs::remove(work("one/img001.png"));
+    const Json json = json_of({"calibrate", work("one"), "-o", work("out"), "--no-store", "--json"}, not_usable);
+    assert_int_equal(json["left_out"].size(), 1);
+    assert_true(contains(json["left_out"][0]["reason"], "no overlap with another picture was found"));
+    save_text(work("notes.txt"), "x");
+    assert_refused(usage, calibrated(work("notes.txt")), {"notes.txt"});
+    assert_refused(usage, {"calibrate", work("one")}, {"-o"});
+}
+
+// However many pictures, ten lines.
+void test_ten_lines(void **) {
+    if (is_missing()) return;
+    const std::string text =
+        must_exit(done, {"calibrate", make_folder_of_many(), "-o", work("out"), "--db", work("p.db")});
+    assert_true(std::count(text.begin(), text.end(), '\n') <= 10);
+    assert_true(contains(text, "profile 1 stored") && contains(text, "left out  2 pictures"));
+}
+
+// A copy that was begun and written before the end of a run is known by the next one; one that was not is not.
+void test_ledger(void **) {
+    const std::string file = work("a.png");
+    save_text(file, "old");
+    {
+        Ledger ledger(work(""));
+        assert_true(ledger.is_in_the_way(file));
+        ledger.begin(file, "1");
+        ledger.save();
+    }
+    assert_false(Ledger(work("")).is_current(file, "1"));
+    assert_false(Ledger(work("")).is_in_the_way(file));
+    save_text(file, "new and longer");
+    assert_true(Ledger(work("")).is_current(file, "1"));
+    assert_false(Ledger(work("")).is_current(file, "2"));
+    const std::string odd = "a %\xff\n\"b";
+    assert_true(path_of_ascii(ascii_path(odd)) == odd);
+    save_text(work(".lensprof-calibrate.json"), "{damaged");
+    assert_true(Ledger(work("")).is_in_the_way(file));
+}
+
+// Ctrl-C in a run of its own process: what is finished stays, nothing is left half written, and the next run goes on.
+void test_interrupted(void **) {
+    if (is_missing()) return;
+    const std::string many = make_folder_of_many();
+    for (const int milliseconds : {30, 300, 700, 1100, 1500, 2000}) {
+        const pid_t child = fork();
+        if (child == 0) {
+            const std::string out = work("out"), db = work("p.db");
+            execl(LENSPROF_PROGRAM, "lensprof", "calibrate", many.c_str(), "-o", out.c_str(), "--db", db.c_str(),
+                  "--json", static_cast<char *>(nullptr));
+            _exit(127);
+        }
+        usleep(static_cast<useconds_t>(milliseconds) * 1000);
+        kill(child, SIGINT);
+        int status = 0;
+        assert_int_equal(waitpid(child, &status, 0), child);
+        const bool ended = WIFEXITED(status) && (WEXITSTATUS(status) == stopped || WEXITSTATUS(status) == done);
+        assert_true(ended || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT));  // before the handler is there
+        if (fs::exists(work("out")))
+            for (const fs::directory_entry &entry : fs::directory_iterator(work("out")))
+                assert_false(entry.path().filename().string().rfind(".lensprof-", 0) == 0
+                             && entry.path().filename() != ".lensprof-calibrate.json");
+    }
+    const Json json = json_of(calibrated(many));
+    assert_int_equal(json["pictures"].size(), 8);
+    assert_int_equal(json_of({"profile", "list", "--db", work("p.db"), "--json"})["profiles"].size(), 2);
+    assert_now(json_of(calibrated(many)), false, 0, 0);
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        CLI_TEST(test_a_folder_of_many_things),
+        CLI_TEST(test_as_build_and_apply),
+        CLI_TEST(test_new_pictures),
+        CLI_TEST(test_what_stands_in_the_way),
+        CLI_TEST(test_bad_input),
+        CLI_TEST(test_ten_lines),
+        CLI_TEST(test_ledger),
+        CLI_TEST(test_interrupted),
+    };
+    return cmocka_run_group_tests(tests, make_scene, remove_folder);
+}
