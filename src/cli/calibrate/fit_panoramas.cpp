@@ -46,7 +46,7 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     const lensprof_profile_key &exif = metadata[project.reference].key;
     panorama.summary["not_stored"] = nullptr;
     if (o.store.no_store) panorama.summary["not_stored"] = "--no-store";
-    if (!*exif.camera_model && !*exif.lens) {
+    if (!o.store.no_store && !*exif.camera_model && !*exif.lens) {
         options.store.no_store = true;
         panorama.summary["not_stored"] =
             "no EXIF says which camera and lens it was; `lensprof build` of the project "

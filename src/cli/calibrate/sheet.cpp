@@ -95,7 +95,7 @@ void put(const Small &small, uint32_t left, uint32_t top, Picture &page) {
 }
 
 std::string second_line(const CorrectedPicture &one) {
-    if (one.ev) return format("%+.2f EV, panorama ", *one.ev) + one.panorama;
+    if (one.ev) return format("%+.2f EV  ", *one.ev) + one.panorama;
     if (one.job.profile_id) return format("falloff by profile %lld", static_cast<long long>(one.job.profile_id));
     return "falloff predicted by a lookup";
 }
