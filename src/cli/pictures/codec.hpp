@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/pictures/picture.hpp"
 
@@ -17,6 +18,7 @@ namespace codec {
 struct ReadRequest {
     std::string path;
     uint32_t max_side = 0;
+    const std::vector<uint8_t> *bytes = nullptr;  // a JPEG that is read from memory; path names it
 };
 
 // A picture file that is being read. Nothing is decoded before the first row is asked for.
@@ -47,6 +49,8 @@ protected:
 std::unique_ptr<RowSource> open_png(const ReadRequest &request);
 std::unique_ptr<RowSource> open_tiff(const ReadRequest &request);
 std::unique_ptr<RowSource> open_jpeg(const ReadRequest &request);
+// `kind` as raw_kind names it.
+std::unique_ptr<RowSource> open_raw(const ReadRequest &request, const std::string &kind);
 
 // A picture file that is being written.
 class RowSink {

@@ -21,6 +21,7 @@
 #include "cli/pictures/icc.hpp"
 #include "cli/pictures/picture_excerpt.hpp"
 #include "cli/pictures/png_exif.hpp"
+#include "cli/pictures/raw_kind.hpp"
 #include "cli/program/error.hpp"
 #include "cli/program/utf8.hpp"
 
@@ -42,6 +43,9 @@ void prepare_exiv2() {
     static std::once_flag once;
     std::call_once(once, [] {
         Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
+#ifdef EXV_ENABLE_BMFF
+        Exiv2::enableBMFF();  // CR3
+#endif
         Exiv2::XmpParser::initialize(
             [](void *lock, bool take) {
                 std::recursive_mutex *m = static_cast<std::recursive_mutex *>(lock);
@@ -375,7 +379,11 @@ ToneCurve read_tone_curve(Exiv2::Image &image) {
 #endif
 }
 
-void read_processing(Exiv2::Image &image, PictureMetadata &metadata) {
+void read_processing(const std::string &path, Exiv2::Image &image, PictureMetadata &metadata) {
+    if (raw_kind(path)) {
+        metadata.key.processing = LENSPROF_PROCESSING_RAW;
+        return;
+    }
     const bool is_tiff = image.mimeType() == "image/tiff";
     const ToneCurve curve = read_tone_curve(image);
     const bool is_float = is_tiff && read_number(image.exifData(), {"Exif.Image.SampleFormat"}) == 3;
@@ -410,12 +418,13 @@ PictureMetadata read_metadata(const std::string &path) {
         metadata.key.crop_factor = read_crop_factor(exif, metadata.key.focal_mm, metadata.size);
         store_text(read_unit(exif), metadata.key.unit, "--unit", metadata);
         store_text(read_style(exif), metadata.key.style, "--style", metadata);
-        read_processing(*image, metadata);
+        read_processing(path, *image, metadata);
         metadata.is_jpeg = image->mimeType() == "image/jpeg";
         metadata.mark = correction_mark_of(image->xmpData());
         metadata.orientation =
             static_cast<uint16_t>(in_range(read_number(exif, {"Exif.Image.Orientation"}), 9.0).value_or(1.0));
-        set_corrected(falloff_corrected_by(*image, metadata.key), metadata);
+        // what a raw file says of corrections is meant for its development
+        set_corrected(raw_kind(path) ? std::string() : falloff_corrected_by(*image, metadata.key), metadata);
     } catch (const std::exception &error) {
         fail_reading(path, error);
     }

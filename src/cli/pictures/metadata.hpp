@@ -21,8 +21,8 @@ struct PictureSize {
 struct PictureMetadata {
     // Unknown what the file does not say. Texts without surrounding blanks, in valid UTF-8, cut to the fields' sizes.
     // Processing is JPEG (a rendered picture, whatever the file's format), but RAW for float TIFF, which by custom
-    // holds values proportional to light, and where the colour profile has a linear tone curve; CORRECTED where
-    // corrected_by is not empty.
+    // holds values proportional to light, for camera raw files, and where the colour profile has a linear tone curve;
+    // CORRECTED where corrected_by is not empty.
     lensprof_profile_key key;
 
     // Nothing says whether it is rendered: a 16 bit TIFF without colour profile, as raw converters write linear ones.

@@ -9,6 +9,8 @@
 #include <string_view>
 
 #include "cli/pictures/codec.hpp"
+#include "cli/pictures/raw_file.hpp"
+#include "cli/pictures/raw_kind.hpp"
 #include "cli/pictures/row_reducer.hpp"
 #include "cli/program/error.hpp"
 #include "cli/program/output_file.hpp"
@@ -17,6 +19,7 @@ namespace lensprof {
 
 namespace {
 
+// Of pictures that are no camera raw files.
 FileFormat format_of_content(const std::string &path) {
     const codec::File file = codec::open_for_reading(path);
     unsigned char start[12] = {};
@@ -26,12 +29,10 @@ FileFormat format_of_content(const std::string &path) {
     };
     if (begins("\x89PNG\r\n\x1a\n")) return FileFormat::png;
     if (begins("\xff\xd8\xff")) return FileFormat::jpeg;
-    if (count >= 10 && (start[8] == 'C' && start[9] == 'R') && begins("II*"))
-        codec::fail_unsupported(path, "camera raw file; develop it to TIFF first");
     using namespace std::string_view_literals;
     if (begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv)) return FileFormat::tiff;
     if (count < 8) codec::fail_damaged(path, count == 0 ? "it is empty" : "it has " + std::to_string(count) + " bytes");
-    codec::fail_unsupported(path, "is not a PNG, TIFF or JPEG picture; convert it first");
+    codec::fail_unsupported(path, "is not a PNG, TIFF, JPEG or camera raw picture; convert it first");
 }
 
 // What `read` does, with a text of its own where memory is not enough.
@@ -45,6 +46,7 @@ auto reading(const std::string &path, const Read &read) -> decltype(read()) {
 }
 
 std::unique_ptr<codec::RowSource> open_source(const codec::ReadRequest &request) {
+    if (const auto kind = raw_kind(request.path)) return codec::open_raw(request, *kind);
     switch (format_of_content(request.path)) {
     case FileFormat::png: return codec::open_png(request);
     case FileFormat::tiff: return codec::open_tiff(request);
@@ -59,6 +61,17 @@ std::unique_ptr<codec::RowSink> create_sink(const std::string &file, FileFormat 
     case FileFormat::tiff: return codec::create_tiff(file, header);
     default: return codec::create_jpeg(file, header, jpeg_quality);
     }
+}
+
+Picture read_rows(codec::RowSource &source) {
+    Picture picture = source.header();
+    codec::RowReducer reducer(picture, source.row_width(), source.halved());
+    for (uint32_t y = 0; y < source.row_count(); ++y) {
+        source.read(reducer.row());
+        reducer.accept();
+    }
+    source.finish();
+    return picture;
 }
 
 void check_held(const std::string &path, const Picture &picture) {
@@ -78,25 +91,31 @@ lensprof_image Picture::view() {
 
 Picture read_picture(const std::string &path, const ReadOptions &options) {
     return reading(path, [&] {
-        const auto source = open_source({path, options.max_side});
-        Picture picture = source->header();
-        codec::RowReducer reducer(picture, source->row_width(), source->halved());
-        for (uint32_t y = 0; y < source->row_count(); ++y) {
-            source->read(reducer.row());
-            reducer.accept();
-        }
-        source->finish();
-        return picture;
+        const auto source = open_source({path, options.max_side, nullptr});
+        return read_rows(*source);
+    });
+}
+
+Picture read_raw_preview(const std::string &path, const ReadOptions &options) {
+    const auto kind = raw_kind(path);
+    if (!kind) {
+        codec::open_for_reading(path);  // for its errors
+        codec::fail_unsupported(path, "is no camera raw file, and only these have a preview; give one");
+    }
+    return reading(path, [&] {
+        const std::vector<uint8_t> bytes = codec::raw_preview_bytes(path, *kind);
+        const auto source = codec::open_jpeg({path, options.max_side, &bytes});
+        return read_rows(*source);
     });
 }
 
 Picture read_header(const std::string &path, const ReadOptions &options) {
-    return reading(path, [&] { return open_source({path, options.max_side})->header(); });
+    return reading(path, [&] { return open_source({path, options.max_side, nullptr})->header(); });
 }
 
 PictureReader::PictureReader(const std::string &path)
     : path_(path), source_(reading(path, [&] {
-          return open_source({path, 0});
+          return open_source({path, 0, nullptr});
       })) {}
 
 PictureReader::~PictureReader() = default;
@@ -129,7 +148,7 @@ static std::optional<FileFormat> known_format(const std::string &path) {
     return std::nullopt;
 }
 
-bool is_picture_name(const std::string &path) { return known_format(path).has_value(); }
+bool is_picture_name(const std::string &path) { return known_format(path).has_value() || is_raw_name(path); }
 
 FileFormat format_of_name(const std::string &path) {
     if (const auto format = known_format(path)) return *format;

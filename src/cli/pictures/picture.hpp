@@ -22,7 +22,8 @@ namespace lensprof {
 enum class FileFormat {
     png,
     tiff,
-    jpeg
+    jpeg,
+    raw  // is read, and written as a DNG
 };
 
 // What rewriting a picture must keep beside pixels and metadata. Each writer uses what its format can express.
@@ -104,10 +105,19 @@ constexpr uint64_t jpeg_memory_bytes = uint64_t(16) << 20;
 // Reads PNG (all kinds; palette, 1, 2 and 4 bits and transparent colours are expanded), TIFF (8 and 16 bit unsigned,
 // 32 bit float; grey or RGB, at most one extra sample; first page) or JPEG (grey, YCbCr, RGB), by content whatever the
 // name. 0 = black, also for min-is-white files. NaN and infinity in float files are kept.
+// Camera raw files (with LibRaw) are 16 bit RGB, or grey, of linear light in the camera's own colours, without white
+// balance: 0 is black, and exactly what is saturated is 65535. The frame is the sensor's visible area, unturned. A
+// mosaic that is reduced has channels of its 2 x 2 cells; at full size they are interpolated.
 Picture read_picture(const std::string &path, const ReadOptions &options = {});
 
 // The same without pixels: sizes (for these options), sample, layout, profile, traits.
 Picture read_header(const std::string &path, const ReadOptions &options = {});
+
+// Whether the program was built with LibRaw.
+bool can_read_raw();
+
+// The largest JPEG that a camera raw file has in it, as a picture. Failure (unreadable) where there is none.
+Picture read_raw_preview(const std::string &path, const ReadOptions &options = {});
 
 // Size of the full frame.
 PictureSize read_size(const std::string &path);
@@ -139,7 +149,7 @@ private:
 
 // The format that a file name asks for: .png, .tif, .tiff, .jpg, .jpeg in any case; otherwise Failure (usage).
 FileFormat format_of_name(const std::string &path);
-bool is_picture_name(const std::string &path);  // it has such an end
+bool is_picture_name(const std::string &path);  // it has such an end, or that of a camera raw file
 
 // Writes a picture in the format of the name, metadata included, complete or not at all. A sample type or layout that
 // the format cannot hold is a Failure (usage): PNG 8 and 16 bit, JPEG 8 bit without alpha, TIFF everything.

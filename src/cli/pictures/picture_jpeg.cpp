@@ -71,10 +71,18 @@ jpeg_error_mgr *set_handlers(JpegState &state) {
 }
 
 struct JpegReader {
-    explicit JpegReader(const std::string &path) : file(open_for_reading(path)) { info.err = set_handlers(state); }
+    explicit JpegReader(const ReadRequest &request) : file(open(request)) {
+        if (!file) throw std::bad_alloc();
+        info.err = set_handlers(state);
+    }
     ~JpegReader() { jpeg_destroy_decompress(&info); }
     JpegReader(const JpegReader &) = delete;
     JpegReader &operator=(const JpegReader &) = delete;
+
+    static File open(const ReadRequest &request) {
+        if (!request.bytes) return open_for_reading(request.path);
+        return {fmemopen(const_cast<uint8_t *>(request.bytes->data()), request.bytes->size(), "rb"), std::fclose};
+    }
 
     JpegState state;
     File file;
@@ -183,7 +191,7 @@ private:
     bool started_ = false;
 };
 
-JpegSource::JpegSource(const ReadRequest &request) : path_(request.path), reader_(request.path) {
+JpegSource::JpegSource(const ReadRequest &request) : path_(request.path), reader_(request) {
     header_.traits.format = FileFormat::jpeg;
     run([&] { read_start(reader_, header_); });
     const int components = reader_.info.num_components;

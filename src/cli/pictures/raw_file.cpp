@@ -1,0 +1,346 @@
+#include "cli/pictures/raw_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <new>
+
+#include <libraw/libraw.h>
+
+#include "cli/pictures/codec.hpp"
+#include "cli/program/interrupt.hpp"
+
+namespace lensprof {
+
+namespace codec {
+
+namespace {
+
+constexpr unsigned most_memory_mb = 2048;
+constexpr uint64_t most_expansion = 1024;  // pixels that one byte of a file can be: Deflate of two bytes each
+constexpr uint32_t colour_period = 12;     // columns after which the mosaics repeat: 2 (Bayer) and 6 (X-Trans)
+constexpr uint16_t saturated = 65535;
+
+// Counts reads beyond the end, which LibRaw's bit readers answer with zeros.
+class CheckedStream final : public LibRaw_bigfile_datastream {
+public:
+    explicit CheckedStream(const std::string &path) : LibRaw_bigfile_datastream(path.c_str()) {}
+    int read(void *to, size_t size, size_t count) override {
+        const int got = LibRaw_bigfile_datastream::read(to, size, count);
+        if (got <= 0 && size * count > 0) is_past_end = true;
+        return got;
+    }
+    int get_char() override {
+        const int c = LibRaw_bigfile_datastream::get_char();
+        if (c < 0) is_past_end = true;
+        return c;
+    }
+
+    bool is_past_end = false;
+};
+
+int on_progress(void *, LibRaw_progress, int, int) { return interrupted() ? 1 : 0; }
+
+void on_memory_error(void *, const char *, const char *) {}
+void on_data_error(void *, const char *, int) {}  // error_count() has them; LibRaw's own prints
+
+// What LibRaw means, as a failure of ours.
+[[noreturn]] void fail_libraw(int status, const std::string &path, const std::string &kind) {
+    stop_if_interrupted();
+    switch (status) {
+    case LIBRAW_UNSUFFICIENT_MEMORY: fail_memory(path);
+    case LIBRAW_TOO_BIG:
+    case LIBRAW_MEMPOOL_OVERFLOW:
+        fail_unsupported(path, "camera raw file (" + kind + ") that declares over "
+                                   + std::to_string(most_memory_mb) + " MB of pixels; copy it again, or develop it to a "
+                                     "linear 16 bit TIFF");
+    case LIBRAW_FILE_UNSUPPORTED:
+    case LIBRAW_NOT_IMPLEMENTED:
+        fail_unsupported(path, "camera raw file (" + kind + ") that LibRaw " + LibRaw::version()
+                                   + " cannot read, or a damaged one; copy it again, convert it to DNG, or develop it "
+                                     "to a linear 16 bit TIFF");
+    default: fail_damaged(path, LibRaw::strerror(status));
+    }
+}
+
+}  // namespace
+
+struct RawFile::Decoder {
+    explicit Decoder(const std::string &path) : stream(path), libraw(LIBRAW_OPTIONS_NONE) {
+        libraw.set_progress_handler(on_progress, nullptr);
+        libraw.set_dataerror_handler(on_data_error, nullptr);
+        libraw.set_memerror_handler(on_memory_error, nullptr);
+        libraw_output_params_t &o = libraw.imgdata.params;
+#if LIBRAW_COMPILE_CHECK_VERSION_NOTLESS(0, 21)
+        libraw.imgdata.rawparams.max_raw_memory_mb = most_memory_mb;
+#else
+        o.max_raw_memory_mb = most_memory_mb;
+#endif
+        o.output_color = 0;   // the camera's own
+        o.no_auto_scale = 1;  // values are linear by then
+        o.no_auto_bright = 1;
+        o.user_flip = 0;
+        o.use_fuji_rotate = 0;
+        o.output_bps = 16;
+        o.adjust_maximum_thr = 0;
+        o.user_qual = 3;
+    }
+
+    libraw_data_t &data() { return libraw.imgdata; }
+
+    CheckedStream stream;
+    LibRaw libraw;
+};
+
+RawFile::RawFile(const std::string &path, const std::string &kind) : path_(path), kind_(kind) {
+    open_for_reading(path);  // for its errors
+    decoder_ = std::make_unique<Decoder>(path);
+    check(decoder_->libraw.open_datastream(&decoder_->stream));
+    check_size();
+    refuse_odd_kinds();
+}
+
+RawFile::~RawFile() = default;
+
+void RawFile::check(int status) const {
+    if (status != LIBRAW_SUCCESS) fail_libraw(status, path_, kind_);
+}
+
+// Before memory is used for what a header declares.
+void RawFile::check_size() const {
+    const libraw_image_sizes_t &s = decoder_->data().sizes;
+    const uint64_t pixels = uint64_t(s.raw_width) * s.raw_height;
+    check_stored(path_, size_text(s.raw_width, s.raw_height), pixels,
+                 static_cast<uint64_t>(std::max<INT64>(decoder_->stream.size(), 0)), most_expansion);
+    if (s.width == 0 || s.height == 0) fail_damaged(path_, size_text(s.width, s.height));
+}
+
+// Kinds that are not one linear value a channel of light on a square grid.
+void RawFile::refuse_odd_kinds() const {
+    LibRaw &libraw = decoder_->libraw;
+    const libraw_data_t &d = libraw.imgdata;
+    const auto refuse = [&](const std::string &what) {
+        fail_unsupported(path_, "camera raw file (" + kind_ + ") of " + what
+                                    + ", which lensprof does not read; develop it to a linear 16 bit TIFF first");
+    };
+    if (d.idata.is_foveon) refuse("a Foveon sensor");
+    if (libraw.is_fuji_rotated()) refuse("a sensor whose grid is turned by 45 degrees (Super CCD)");
+    if (libraw.is_sraw() || libraw.is_nikon_sraw())
+        refuse("reduced size (sRAW), whose values the camera has processed");
+    if (libraw.is_floating_point()) refuse("floating point values (a merged HDR)");
+    if (d.idata.colors != 3 && d.idata.colors != 1) refuse(std::to_string(d.idata.colors) + " colours");
+    if (d.idata.filters == 1) refuse("a mosaic of 16 x 16 pixels (Leaf)");
+    if (std::strcmp(d.idata.cdesc, "RGBG") != 0 && d.idata.colors == 3)
+        refuse("the colours " + std::string(d.idata.cdesc));
+    if (d.color.phase_one_data.format) refuse("Phase One's compression");
+}
+
+uint32_t RawFile::width() const { return decoder_->data().sizes.width; }
+uint32_t RawFile::height() const { return decoder_->data().sizes.height; }
+bool RawFile::is_mosaic() const { return decoder_->data().idata.filters != 0; }
+uint32_t RawFile::channels() const { return decoder_->data().idata.colors == 1 ? 1 : 3; }
+
+uint32_t RawFile::orientation() const {
+    switch (decoder_->data().sizes.flip) {
+    case 3: return 3;
+    case 5: return 8;
+    case 6: return 6;
+    default: return 1;
+    }
+}
+
+void RawFile::unpack() {
+    decoder_->stream.is_past_end = false;
+    const uint32_t declared_width = width(), declared_height = height();
+    check(decoder_->libraw.unpack());
+    const bool is_cut = decoder_->data().idata.dng_version != 0 && decoder_->stream.is_past_end;
+    if (is_cut || decoder_->libraw.error_count() > 0) fail_damaged(path_, "its pixels end before their time");
+    if (width() != declared_width || height() != declared_height)
+        fail_damaged(path_, size_text(width(), height()) + " where " + size_text(declared_width, declared_height)
+                                + " are declared");
+    make_linear();
+}
+
+void RawFile::make_linear() {
+    const libraw_rawdata_t &raw = decoder_->data().rawdata;
+    if (raw.raw_image)
+        make_linear_mosaic();
+    else if (raw.color3_image || raw.color4_image)
+        make_linear_pixels();
+    else
+        fail_unsupported(path_, "camera raw file (" + kind_ + ") whose pixels LibRaw does not give as integers; develop "
+                                "it to a linear 16 bit TIFF first");
+}
+
+namespace {
+
+// Black and white of one channel at one place.
+struct Level {
+    float black, scale;  // scale: 65535 over white - black
+    float white;         // from here on saturated
+    uint16_t of(uint16_t v) const {
+        if (v >= white) return saturated;
+        return static_cast<uint16_t>(std::clamp((v - black) * scale + 0.5f, 0.0f, 65534.0f));
+    }
+};
+
+// Saturation is where the file states it, below the nominal white of many cameras.
+float saturation_of(const libraw_colordata_t &c, uint32_t channel, float white) {
+    const auto stated = static_cast<float>(c.linear_max[channel & 3]);
+    return stated > 0.6f * white && stated < white ? stated : white;
+}
+
+}  // namespace
+
+// A black level is a common one, one a channel and one a place of a repeating pattern, added up.
+void RawFile::make_linear_mosaic() {
+    libraw_data_t &d = decoder_->data();
+    const libraw_colordata_t &c = d.color;
+    const uint32_t rows = c.cblack[4], columns = c.cblack[5], wide = width();
+    const bool has_pattern = rows > 0 && columns > 0 && uint64_t(rows) * columns <= LIBRAW_CBLACK_SIZE - 6;
+    const auto white = static_cast<float>(c.maximum);
+    std::vector<Level> levels(wide);
+    for (uint32_t y = 0; y < height(); ++y) {
+        if (y % 64 == 0) stop_if_interrupted();
+        std::array<uint32_t, colour_period> colour{};
+        for (uint32_t x = 0; x < colour_period && is_mosaic(); ++x)
+            colour[x] = static_cast<uint32_t>(decoder_->libraw.COLOR(static_cast<int>(y), static_cast<int>(x))) & 3;
+        uint16_t *row =
+            d.rawdata.raw_image + size_t(y + d.sizes.top_margin) * (d.sizes.raw_pitch / 2) + d.sizes.left_margin;
+        for (uint32_t x = 0, at = 0; x < wide; ++x, at = at + 1 == columns ? 0 : at + 1) {
+            const uint32_t channel = colour[x % colour_period];
+            uint64_t black = uint64_t(c.black) + c.cblack[channel];
+            if (has_pattern) black += c.cblack[6 + y % rows * columns + at];
+            const auto b = static_cast<float>(black);
+            if (!(white > b)) fail_damaged(path_, "its black level is not below its white level");
+            row[x] = Level{b, 65535.0f / (white - b), saturation_of(c, channel, white)}.of(row[x]);
+        }
+    }
+}
+
+// Linear raw: every pixel has all channels.
+void RawFile::make_linear_pixels() {
+    libraw_data_t &d = decoder_->data();
+    const libraw_colordata_t &c = d.color;
+    const size_t step = d.rawdata.color3_image ? 3 : 4;
+    auto *samples = d.rawdata.color3_image ? reinterpret_cast<uint16_t *>(d.rawdata.color3_image)
+                                           : reinterpret_cast<uint16_t *>(d.rawdata.color4_image);
+    std::array<Level, 3> levels{};
+    for (uint32_t i = 0; i < 3; ++i) {
+        const unsigned own = d.idata.dng_version ? c.dng_levels.dng_whitelevel[i] : 0;
+        const auto white = static_cast<float>(own ? own : c.maximum), black = static_cast<float>(c.black + c.cblack[i]);
+        if (!(white > black)) fail_damaged(path_, "its black level is not below its white level");
+        levels[i] = {black, 65535.0f / (white - black), white};
+    }
+    for (uint32_t y = 0; y < height(); ++y) {
+        if (y % 64 == 0) stop_if_interrupted();
+        uint16_t *row =
+            samples + size_t(y + d.sizes.top_margin) * (d.sizes.raw_pitch / 2) + size_t(d.sizes.left_margin) * step;
+        for (uint32_t x = 0; x < width(); ++x)
+            for (uint32_t i = 0; i < channels(); ++i) row[x * step + i] = levels[i].of(row[x * step + i]);
+    }
+}
+
+void RawFile::halved_row(uint32_t y, uint16_t *rgb) const {
+    const libraw_data_t &d = decoder_->data();
+    const auto high = static_cast<int>(height()), wide = static_cast<int>(width());
+    const size_t pitch = d.sizes.raw_pitch / 2;
+    const uint16_t *origin = d.rawdata.raw_image + d.sizes.top_margin * pitch + d.sizes.left_margin;
+    const auto gather = [&](int x0, int y0, int side, int wanted) {
+        uint32_t sum = 0, count = 0;
+        for (int v = std::max(y0, 0); v < std::min(y0 + side, high); ++v)
+            for (int u = std::max(x0, 0); u < std::min(x0 + side, wide); ++u) {
+                const int colour = decoder_->libraw.COLOR(v, u);
+                if ((colour == 3 ? 1 : colour) != wanted) continue;
+                const uint16_t value = origin[size_t(v) * pitch + size_t(u)];
+                if (value == saturated) return saturated;
+                sum += value;
+                ++count;
+            }
+        return count ? static_cast<uint16_t>((sum + count / 2) / count) : saturated;  // none: not known
+    };
+    const auto has = [&](int x0, int y0, int wanted) {
+        for (int i = 0; i < 4; ++i) {
+            const int colour = decoder_->libraw.COLOR(y0 + i / 2, x0 + i % 2);
+            if ((colour == 3 ? 1 : colour) == wanted) return true;
+        }
+        return false;
+    };
+    const int top = static_cast<int>(2 * y);
+    for (int x = 0; x < wide / 2; ++x)
+        for (int c = 0; c < 3; ++c)
+            *rgb++ = has(2 * x, top, c) ? gather(2 * x, top, 2, c) : gather(2 * x - 1, top - 1, 4, c);
+}
+
+// LibRaw copies what unpack() stored; black and white are those of the linear values by now.
+void RawFile::demosaic() {
+    if (!is_mosaic()) return;
+    libraw_data_t &d = decoder_->data();
+    for (libraw_colordata_t *c : {&d.color, &d.rawdata.color}) {
+        std::memset(c->cblack, 0, sizeof c->cblack);
+        c->black = 0;
+        c->maximum = c->data_maximum = saturated;
+    }
+    check(decoder_->libraw.dcraw_process());
+    if (d.sizes.width != d.sizes.iwidth || d.sizes.height != d.sizes.iheight || !d.image)
+        fail_damaged(path_, "LibRaw made another size of it");
+}
+
+void RawFile::full_row(uint32_t y, uint16_t *samples) const {
+    const libraw_data_t &d = decoder_->data();
+    const size_t pitch = d.sizes.raw_pitch / 2;
+    const size_t first = size_t(y + d.sizes.top_margin) * pitch;
+    if (is_mosaic()) {
+        const uint16_t *own = d.rawdata.raw_image + first + d.sizes.left_margin;
+        for (uint32_t x = 0; x < width(); ++x, samples += 3) {
+            const int colour = decoder_->libraw.COLOR(static_cast<int>(y), static_cast<int>(x));
+            for (int c = 0; c < 3; ++c) samples[c] = d.image[size_t(y) * width() + x][c];
+            samples[colour == 3 ? 1 : colour] = own[x];
+        }
+        return;
+    }
+    const uint32_t count = channels();
+    const size_t step = d.rawdata.raw_image ? 1 : d.rawdata.color3_image ? 3 : 4;
+    const uint16_t *row = d.rawdata.raw_image      ? d.rawdata.raw_image
+                          : d.rawdata.color3_image ? reinterpret_cast<uint16_t *>(d.rawdata.color3_image)
+                                                   : reinterpret_cast<uint16_t *>(d.rawdata.color4_image);
+    row += first + d.sizes.left_margin * step;
+    for (uint32_t x = 0; x < width(); ++x)
+        for (uint32_t c = 0; c < count; ++c) *samples++ = row[x * step + c];
+}
+
+RawColour RawFile::colour() const {
+    const libraw_data_t &d = decoder_->data();
+    RawColour colour;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) colour.xyz_to_camera[i][k] = d.color.cam_xyz[i][k];
+    const float *mul = d.color.cam_mul[0] > 0 && d.color.cam_mul[2] > 0 ? d.color.cam_mul : d.color.pre_mul;
+    float neutral[3], most = 0;
+    for (int i = 0; i < 3; ++i) most = std::max(most, neutral[i] = mul[i] > 0 ? 1 / mul[i] : 1);
+    for (int i = 0; i < 3; ++i) colour.as_shot_neutral[i] = neutral[i] / most;
+    colour.model = std::string(d.idata.make) + " " + d.idata.model;
+    return colour;
+}
+
+std::vector<uint8_t> raw_preview_bytes(const std::string &path, const std::string &kind) {
+    open_for_reading(path);
+    CheckedStream stream(path);
+    auto libraw = std::make_unique<LibRaw>(LIBRAW_OPTIONS_NONE);
+    libraw->set_dataerror_handler(on_data_error, nullptr);
+    libraw->set_memerror_handler(on_memory_error, nullptr);
+    int status = libraw->open_datastream(&stream);
+    if (status == LIBRAW_SUCCESS) status = libraw->unpack_thumb();
+    const libraw_thumbnail_t &thumbnail = libraw->imgdata.thumbnail;
+    if (status == LIBRAW_NO_THUMBNAIL || status == LIBRAW_UNSUPPORTED_THUMBNAIL
+        || (status == LIBRAW_SUCCESS && (thumbnail.tformat != LIBRAW_THUMBNAIL_JPEG || !thumbnail.thumb)))
+        fail_unsupported(path,
+                         "camera raw file (" + kind + ") without a JPEG preview; take a JPEG of the same picture");
+    if (status != LIBRAW_SUCCESS) fail_libraw(status, path, kind);
+    const auto *bytes = reinterpret_cast<const uint8_t *>(thumbnail.thumb);
+    return {bytes, bytes + thumbnail.tlength};
+}
+
+}  // namespace codec
+
+}  // namespace lensprof
