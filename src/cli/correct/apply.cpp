@@ -12,6 +12,8 @@
 #include "cli/correct/picture_model.hpp"
 #include "cli/correct/project_model.hpp"
 #include "cli/pictures/named_pictures.hpp"
+#include "cli/pictures/raw_kind.hpp"
+#include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/format.hpp"
@@ -32,8 +34,16 @@ enum class Exposure {
     keep
 };
 
+// What becomes of camera raw files.
+enum class RawOutput {
+    by_default,  // a DNG of a DNG, else a TIFF
+    dng,
+    tif
+};
+
 struct Options {
     ModelOptions model;
+    RawOutput raw_output = RawOutput::by_default;
     std::string pto, output, sheet;
     Exposure exposure = Exposure::by_default;
     CorrectionKind kind;
@@ -65,6 +75,10 @@ void declare(Command &command, Options &o) {
     o.model.add_options(command);
     declare_exposure(command, o);
     command.flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
+    command.choice(
+        "--raw-output", o.raw_output, {{"dng", RawOutput::dng}, {"tif", RawOutput::tif}},
+        "of camera raw files: dng, a copy of the DNG with the falloff as an opcode, pixels untouched (default "
+        "for DNG); tif, a linear 16 bit TIFF in the camera's colours (default for others)");
     command.flag("--simulate", o.kind.simulate, "put the falloff in instead of taking it out");
     command.number("--strength", o.kind.strength, {0.0, 1.0}, "share of the falloff to take out, 0 to 1; default 1");
     command.number("--gain-cap", o.kind.gain_cap, {1.0, 1e6},
@@ -93,9 +107,26 @@ void declare(Command &command, Options &o) {
         "lensprof only in a folder that is named with -o.");
 }
 
+// A DNG stays one, with the falloff as an opcode, unless something is asked for that an opcode does not express.
+bool becomes_dng(const Options &o, const std::string &raw) {
+    const CorrectionKind &kind = o.kind;
+    const bool is_plain = !kind.linear && !kind.simulate && kind.strength == 1.0 && kind.gain_cap == 0.0
+                          && o.pto.empty() && o.sheet.empty();
+    if (o.raw_output == RawOutput::dng && raw != "DNG")
+        throw Failure(ExitCode::usage, "--raw-output dng: takes DNG files, and one is a " + raw
+                                           + "; convert it to DNG first, or leave the option out");
+    if (o.raw_output == RawOutput::dng && !is_plain)
+        throw Failure(ExitCode::usage,
+                      "--raw-output dng: an opcode is a falloff alone; leave out --linear, --simulate, --strength, "
+                      "--gain-cap, --pto and --contact-sheet, or give --raw-output tif");
+    return raw == "DNG" && is_plain && o.raw_output != RawOutput::tif;
+}
+
 std::string target_name(const Options &o, const NamedPicture &picture) {
     std::filesystem::path name = std::filesystem::path(picture.file).filename();
-    if (o.kind.linear) name.replace_extension(".tif");
+    const auto raw = raw_kind(picture.file);
+    if (o.kind.linear || (raw && !becomes_dng(o, *raw))) name.replace_extension(".tif");
+    if (raw && becomes_dng(o, *raw)) name.replace_extension(".dng");
     return (std::filesystem::path(o.output) / picture.subfolder / name).string();
 }
 
@@ -189,6 +220,15 @@ void check_mark(const Options &o, const std::string &file, const PictureMetadata
                      true);
 }
 
+// NotThisOne for a DNG whose opcodes correct the falloff.
+void check_opcodes(const Options &o, const std::string &file) {
+    if (o.model.force_falloff || !has_falloff_opcode(file)) return;
+    throw NotThisOne(ExitCode::not_found,
+                     file + ": its opcodes correct the falloff already; give --raw-output tif, which corrects the "
+                            "sensor's values without them",
+                     true);
+}
+
 Correction make_job(const Options &o, const Source &source, const NamedPicture &picture) {
     Correction job{picture.file, target_name(o, picture), source.model, {}, {}, 0, nullptr, 0, {}, {}};
     lensprof_exposure_init(&job.own);
@@ -201,6 +241,7 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
     const PictureMetadata metadata = metadata_of(o, picture.file);
     check_mark(o, picture.file, metadata);
     if (source.models->are_used()) source.models->choose(metadata, job);
+    if (is_dng_name(job.target)) check_opcodes(o, picture.file);
     return job;
 }
 

@@ -7,7 +7,10 @@
 #include "cli/correct/correction.hpp"
 #include "cli/correct/strip_pipeline.hpp"
 #include "cli/fitting/project.hpp"
+#include "cli/pictures/icc.hpp"
 #include "cli/pictures/picture.hpp"
+#include "cli/pictures/raw_kind.hpp"
+#include "cli/profiles/foreign_file.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/output_file.hpp"
@@ -60,6 +63,7 @@ lensprof_apply_options options_of(const Picture &source, const Correction &job, 
 // The header of what becomes of a picture.
 Picture header_of_result(const Picture &source, uint32_t sample) {
     Picture result = source;
+    if (source.traits.format == FileFormat::raw) result.icc = linear_profile(source.layout == LENSPROF_LAYOUT_GREY);
     result.sample = sample;
     result.row_bytes =
         static_cast<size_t>(result.width) * lensprof_layout_samples(result.layout) * lensprof_sample_type_bytes(sample);
@@ -69,6 +73,7 @@ Picture header_of_result(const Picture &source, uint32_t sample) {
 // A picture that is complete beside its final name.
 struct Finished {
     std::unique_ptr<PictureWriter> writer;
+    std::unique_ptr<OutputFile> copy;  // in its place, of a DNG
     bool with_metadata = false;
 };
 
@@ -175,7 +180,15 @@ Finished PictureCorrection::run(bool split, Throughput &done) {
     make_and_take<Strip>(
         split, [&](Strip &strip) { return make(strip); }, [&](const Strip &strip) { done.add_pixels(take(strip)); });
     bool with_metadata = writer_->finish();
-    return {std::move(writer_), with_metadata};
+    return {std::move(writer_), nullptr, with_metadata};
+}
+
+// The falloff as an opcode; all else of the DNG stays as it is.
+Finished copy_dng(const Correction &job) {
+    auto output = std::make_unique<OutputFile>(job.target);
+    write_opcodes(job.source, output->temporary(), *job.model);
+    output->sync();
+    return {nullptr, std::move(output), true};
 }
 
 }  // namespace
@@ -191,14 +204,18 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
     std::vector<Finished> finished(count);
     auto work = [&](uint32_t i) {
         make_folder(std::filesystem::path(absolute_path(jobs[i].target)).parent_path().string());
+        if (is_dng_name(jobs[i].target)) {
+            finished[i] = copy_dng(jobs[i]);
+            return;
+        }
         PictureCorrection picture(jobs[i], kind, sheet != nullptr);
         finished[i] = picture.run(threads / 2 >= count, throughput);
         if (sheet) sheet->put(i, std::move(picture.before), std::move(picture.after));
     };
     Corrected corrected;
     auto finish = [&](uint32_t i) {
-        finished[i].writer->commit();
-        finished[i].writer.reset();
+        finished[i].copy ? finished[i].copy->commit() : finished[i].writer->commit();
+        finished[i] = {nullptr, nullptr, finished[i].with_metadata};
         throughput.add_picture();
         if (!finished[i].with_metadata)
             progress.warn(jobs[i].target + ": written without the metadata of " + jobs[i].source

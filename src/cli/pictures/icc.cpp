@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <initializer_list>
+#include <utility>
 
 namespace lensprof {
 namespace {
@@ -55,7 +57,88 @@ bool is_tone_curve(const Bytes &profile, size_t tag) {
     return false;
 }
 
+class ProfileBytes {
+public:
+    void put(uint32_t value, size_t size = 4) {
+        for (size_t i = size; i-- > 0;) bytes_.push_back(static_cast<uint8_t>(value >> 8 * i));
+    }
+    void text(const char *name) { bytes_.insert(bytes_.end(), name, name + std::strlen(name)); }
+    void xyz(double x, double y, double z) {
+        for (double v : {x, y, z}) put(static_cast<uint32_t>(std::lround(65536.0 * v)));
+    }
+    void fill_to(size_t size) { bytes_.resize(size); }
+    void append(const std::vector<uint8_t> &more) { bytes_.insert(bytes_.end(), more.begin(), more.end()); }
+    const std::vector<uint8_t> &bytes() const { return bytes_; }
+
+private:
+    std::vector<uint8_t> bytes_;
+};
+
+// 6.5: a tag's data begins with its type and four zeros, and has a multiple of four bytes.
+std::vector<uint8_t> tag_data(const char *type, const std::function<void(ProfileBytes &)> &write) {
+    ProfileBytes data;
+    data.text(type);
+    data.put(0);
+    write(data);
+    data.fill_to((data.bytes().size() + 3) / 4 * 4);
+    return data.bytes();
+}
+
+// Version 2.4's textDescriptionType: the ASCII text; no Unicode, no Macintosh text.
+std::vector<uint8_t> description(const char *text) {
+    return tag_data("desc", [&](ProfileBytes &data) {
+        data.put(static_cast<uint32_t>(std::strlen(text) + 1));
+        data.text(text);
+        data.put(0, 1);
+        data.fill_to(data.bytes().size() + 8 + 3 + 67);
+    });
+}
+
 }  // namespace
+
+std::vector<uint8_t> linear_profile(bool grey) {
+    const auto xyz = [](double x, double y, double z) {
+        return tag_data("XYZ ", [&](ProfileBytes &data) { data.xyz(x, y, z); });
+    };
+    const std::vector<uint8_t> curve = tag_data("curv", [](ProfileBytes &data) { data.put(0); });
+    std::vector<std::pair<const char *, std::vector<uint8_t>>> tags = {
+        {"desc", description(grey ? "Linear grey" : "Linear, colours of the camera")},
+        {"cprt", tag_data("text", [](ProfileBytes &data) { data.text("No copyright"), data.put(0, 1); })},
+        {"wtpt", xyz(0.9642, 1.0, 0.8249)}};
+    if (grey)
+        tags.insert(tags.end(), {{"kTRC", curve}});
+    else
+        tags.insert(tags.end(), {{"rXYZ", xyz(0.43607, 0.22249, 0.01392)},
+                                 {"gXYZ", xyz(0.38515, 0.71687, 0.09708)},
+                                 {"bXYZ", xyz(0.14307, 0.06061, 0.71410)},
+                                 {"rTRC", curve},
+                                 {"gTRC", curve},
+                                 {"bTRC", curve}});
+    ProfileBytes table, data;
+    const size_t start = 128 + 4 + 12 * tags.size();
+    table.put(static_cast<uint32_t>(tags.size()));
+    for (const auto &[name, bytes] : tags) {
+        table.text(name);
+        table.put(static_cast<uint32_t>(start + data.bytes().size()));
+        table.put(static_cast<uint32_t>(bytes.size()));
+        data.append(bytes);
+    }
+    ProfileBytes profile;
+    profile.put(static_cast<uint32_t>(start + data.bytes().size()));
+    profile.put(0);           // no preferred module
+    profile.put(0x02400000);  // version 2.4
+    profile.text("mntr");
+    profile.text(grey ? "GRAY" : "RGB ");
+    profile.text("XYZ ");
+    for (uint32_t part : {2026u, 1u, 1u, 0u, 0u, 0u}) profile.put(part, 2);  // always one date: outputs are repeatable
+    profile.text("acsp");
+    profile.fill_to(68);
+    profile.xyz(0.9642, 1.0, 0.8249);  // D50
+    profile.fill_to(128);
+    profile.append(table.bytes());
+    profile.append(data.bytes());
+    return profile.bytes();
+}
 
 ToneCurve tone_curve_of(const uint8_t *data, size_t bytes) {
     const Bytes profile{data, bytes};

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace lensprof {
 
@@ -14,5 +15,9 @@ enum class ToneCurve {
 
 // By the tone curves of red, green and blue, or of grey, of profile[bytes].
 ToneCurve tone_curve_of(const uint8_t *profile, size_t bytes);
+
+// A profile of linear tone curves, for pictures in a camera's own colours (with the primaries of sRGB, as a profile
+// must have some; its description states that the colours are the camera's), or for grey ones.
+std::vector<uint8_t> linear_profile(bool grey);
 
 }  // namespace lensprof

@@ -305,6 +305,9 @@ bool is_other_picture(const std::string &group) {
     return begins_with_one(group, starts);
 }
 
+// Tags of the main directory that describe a mosaic and a DNG: no developed picture has them.
+bool is_of_raw(uint16_t tag) { return tag == 33421 || tag == 33422 || (tag >= 50706 && tag <= 52600); }
+
 bool keep_exif(const Exiv2::Exifdatum &datum, const Exiv2::ExifData &target, bool to_tiff) {
     static const uint16_t resolution[] = {282, 283, 296};
     const uint16_t tag = datum.tag();
@@ -317,11 +320,12 @@ bool keep_exif(const Exiv2::Exifdatum &datum, const Exiv2::ExifData &target, boo
     return !is_structure(tag);
 }
 
-Exiv2::ExifData merge_exif(const Exiv2::ExifData &source, const Exiv2::ExifData &target, bool to_tiff) {
+Exiv2::ExifData merge_exif(const Exiv2::ExifData &source, const Exiv2::ExifData &target, bool to_tiff, bool from_raw) {
     Exiv2::ExifData merged = target;
     std::vector<const Exiv2::Exifdatum *> kept;
     for (const Exiv2::Exifdatum &datum : source) {
-        if (keep_exif(datum, target, to_tiff)) kept.push_back(&datum);
+        const bool is_lost = from_raw && datum.groupName() == "Image" && is_of_raw(datum.tag());
+        if (!is_lost && keep_exif(datum, target, to_tiff)) kept.push_back(&datum);
     }
     for (const Exiv2::Exifdatum *datum : kept) {
         const auto old = merged.findKey(Exiv2::ExifKey(datum->key()));
@@ -438,9 +442,10 @@ std::string read_xmp_packet(const std::string &path) {
 bool copy_metadata(const std::string &source, const std::string &target, const CorrectionMark *mark) {
     if (is_big_tiff(source) || is_big_tiff(target)) return false;
     const ExivImage from = open_image(source);
+    const bool from_raw = raw_kind(source).has_value();
     edit_metadata(target, [&](Exiv2::Image &to) {
         const bool tiff = to.mimeType() == "image/tiff";
-        Exiv2::ExifData exif = merge_exif(from->exifData(), to.exifData(), tiff);
+        Exiv2::ExifData exif = merge_exif(from->exifData(), to.exifData(), tiff, from_raw);
         Exiv2::XmpData xmp = copy_xmp(from->xmpData());
         set_sizes(exif, xmp, static_cast<uint32_t>(to.pixelWidth()), static_cast<uint32_t>(to.pixelHeight()));
         const auto mime_type = xmp.findKey(Exiv2::XmpKey("Xmp.dc.format"));

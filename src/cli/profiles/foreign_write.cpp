@@ -77,12 +77,13 @@ bool has_opcode(const std::vector<uint8_t> &list, const Is &is_one) {
     return false;
 }
 
+bool is_gain(uint32_t id) { return id == 3 || id == 9; }  // FixVignetteRadial, GainMap
+
 // What else a picture's lists do must stay, and a falloff must not be corrected twice.
 void demand_no_others(const std::string &path, const OpcodeLists &lists) {
-    const auto is_gain = [](uint32_t id) { return id == 3 || id == 9; };  // FixVignetteRadial, GainMap
     if (has_opcode(lists.list2, is_gain))
         throw Failure(ExitCode::usage, path + ": its OpcodeList2 corrects the falloff already; take another picture");
-    if (has_opcode(lists.list3, [&](uint32_t id) { return !is_gain(id); }))
+    if (has_opcode(lists.list3, [](uint32_t id) { return !is_gain(id); }))
         throw Failure(ExitCode::usage, path + ": its OpcodeList3 does other things, too, which would be lost (as a correction of "
                                               "distortion); take a picture without");
 }
@@ -108,18 +109,31 @@ lensprof_export_options options_of(const ForeignRule &rule, const ForeignOptions
     return options;
 }
 
-// Into the picture that is there.
-void write_opcodes(const std::string &path, lensprof_export_options options, const lensprof_profile &profile) {
+// From one picture to another, or into the one that is there.
+void write_opcodes_as(const std::string &path, const std::string &path_out, lensprof_export_options options,
+                      const lensprof_profile &profile) {
     const OpcodeLists lists = read_opcode_lists(path);
     demand_no_others(path, lists);
     // after demosaicing there are three channels; linear raw images and plain TIFF have them from the start
     if (lists.layout == LENSPROF_LAYOUT_GREY) options.layout = lists.layout;
     options.width = lists.width, options.height = lists.height;
     const std::string bytes = bytes_of(path, options, {&profile}, {});
-    write_opcode_list(path, path, tag_opcode_list3, {bytes.begin(), bytes.end()});
+    write_opcode_list(path, path_out, tag_opcode_list3, {bytes.begin(), bytes.end()});
 }
 
 }  // namespace
+
+bool has_falloff_opcode(const std::string &path) {
+    const OpcodeLists lists = read_opcode_lists(path);
+    return has_opcode(lists.list2, is_gain) || has_opcode(lists.list3, is_gain);
+}
+
+void write_opcodes(const std::string &path_in, const std::string &path_out, const lensprof_profile &profile) {
+    lensprof_export_options options;
+    lensprof_export_options_init(&options);
+    options.format = LENSPROF_FORMAT_DNG_OPCODES;
+    write_opcodes_as(path_in, path_out, options, profile);
+}
 
 std::string foreign_bytes(const ForeignRule &rule, const std::string &path, const ForeignOptions &o,
                           const std::vector<const lensprof_profile *> &profiles,
@@ -139,7 +153,8 @@ void write_foreign(const ForeignRule &rule, const std::string &path, const Forei
     if (is_map || rule.format == LENSPROF_FORMAT_DNG_OPCODES) {
         demand_one(path, rule, profiles.size());
         if (is_map) demand_frame(path, rule, o);
-        return is_map ? write_map(path, o, *profiles[0]) : write_opcodes(path, options_of(rule, o), *profiles[0]);
+        return is_map ? write_map(path, o, *profiles[0])
+                      : write_opcodes_as(path, path, options_of(rule, o), *profiles[0]);
     }
     const std::string text = foreign_bytes(rule, path, o, profiles, names);
     write_file(path, text.data(), text.size());
