@@ -270,6 +270,7 @@ Work plan_work(const Options &o, Streams &streams) {
     std::vector<NotThisOne> refused;
     for (const NamedPicture &picture : pictures) {
         inputs.push_back(picture.file);
+        note_instead(picture, streams);
         if (source.project && source.project->images[source.images->at(picture.file, "--pto")].left_out) {
             const std::string reason =
                 picture.file

@@ -9,6 +9,8 @@
 #include "cli/fitting/known_exposures.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/static_camera.hpp"
+#include "cli/pictures/named_pictures.hpp"
+#include "cli/pictures/raw_kind.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
@@ -250,12 +252,14 @@ int bracket_and_store(const Options &o, Streams &streams) {
     std::vector<double> ev = given_exposures(o);
     Project project = static_project(o.files, o.free_balance);
     check_pictures(project, o.max_side);
+    demand_one_kind(project.files);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
     lensprof_profile_key key = camera_key(o, metadata[0], project.files[0], streams);
     check_store(o.store);
     CameraKind kind = camera_kind_of(o.fit, key, metadata[0]);
-    if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind) kind = {};  // the response is asked for
+    if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind && !raw_kind(project.files[0]))
+        kind = {};  // the response is asked for; that of a camera raw file is known
     BuildReport report = fit_bracket(o, project, metadata, ev, kind, streams);
     if (!report.fit.usable) report.fit.evens = 0;  // a bracket is to show a response
     return finish_fit(

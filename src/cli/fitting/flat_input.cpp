@@ -5,6 +5,7 @@
 
 #include "cli/fitting/flat.hpp"
 #include "cli/pictures/metadata.hpp"
+#include "cli/pictures/named_pictures.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/numbers.hpp"
@@ -164,6 +165,7 @@ void check_flat_options(const FlatCommand &o) {
 FlatInput prepare_flat(const FlatCommand &o, Streams &streams) {
     FlatInput input;
     lensprof_flat_options_init(&input.options);
+    demand_one_kind(o.files);
     std::vector<PictureMetadata> metadata;
     for (const auto &file : o.files) metadata.push_back(read_metadata(file));
     input.names = o.files;

@@ -35,6 +35,7 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
     std::map<uint64_t, std::vector<size_t>> by_size;
     for (const NamedPicture &picture : pictures) {
         if (!known.insert(file_identity(picture.file)).second) continue;
+        note_instead(picture, streams);
         const uint64_t bytes = file_bytes(picture.file);  // 0 where there is no file
         auto &alike = by_size[bytes];
         const auto copied = !bytes ? alike.end() : std::find_if(alike.begin(), alike.end(), [&](size_t other) {
@@ -49,6 +50,7 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
         list.names.push_back(is_one_folder ? std::filesystem::path(picture.file).lexically_relative(words[0]).string()
                                            : picture.file);
     }
+    demand_one_kind(list.files);
     list.label = words.size() == 1 ? words[0] : counted(list.files.size(), "picture");
     return list;
 }

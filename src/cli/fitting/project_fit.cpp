@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cli/fitting/known_exposures.hpp"
+#include "cli/pictures/named_pictures.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/paths.hpp"
@@ -105,6 +106,7 @@ Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, 
 // read.
 std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const Project &project) {
     std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
+    if (o.points.empty()) demand_one_kind(project.files);
     for (uint32_t i = 0; i < metadata.size(); i++) {
         bool needed = o.points.empty() || (i == project.reference && !o.store.no_store);
         if (needed && path_exists(project.files[i])) metadata[i] = read_metadata(project.files[i]);

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "cli/pictures/picture.hpp"
+#include "cli/pictures/raw_kind.hpp"
 #include "cli/program/error.hpp"
+#include "cli/program/message.hpp"
 #include "cli/program/paths.hpp"
 
 namespace lensprof {
@@ -28,6 +31,28 @@ public:
         }
         std::sort(found_.begin(), found_.end(),
                   [](const NamedPicture &a, const NamedPicture &b) { return a.file < b.file; });
+        choose_of_pairs();
+    }
+
+    // Files of one name but its end stand together now.
+    void choose_of_pairs() {
+        const auto stem = [](const NamedPicture &p) { return fs::path(p.file).replace_extension().string(); };
+        std::map<std::string, std::vector<NamedPicture>> groups;
+        for (const NamedPicture &picture : found_) groups[stem(picture)].push_back(picture);
+        std::vector<NamedPicture> chosen;
+        for (const NamedPicture &picture : found_) {
+            const std::vector<NamedPicture> &group = groups[stem(picture)];
+            const auto other = std::find_if(group.begin(), group.end(), [&](const NamedPicture &one) {
+                return is_raw_name(one.file) != is_raw_name(picture.file);
+            });
+            if (other == group.end())
+                chosen.push_back(picture);
+            else if (is_raw_name(picture.file) == can_read_raw()) {
+                chosen.push_back(picture);
+                chosen.back().instead_of = fs::path(other->file).filename().string();
+            }
+        }
+        found_ = std::move(chosen);
     }
 
     const std::vector<NamedPicture> &found() const { return found_; }
@@ -72,6 +97,28 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
         pictures.insert(pictures.end(), walk.found().begin(), walk.found().end());
     }
     return pictures;
+}
+
+void note_instead(const NamedPicture &picture, Streams &streams) {
+    if (picture.instead_of.empty()) return;
+    note(streams,
+         picture.file + ": is taken in place of " + picture.instead_of
+             + (is_raw_name(picture.file) ? ", since raw values are linear and the camera has corrected nothing in them"
+                                          : ", since this lensprof was built without LibRaw")
+             + "; name the other to take that");
+}
+
+void demand_one_kind(const std::vector<std::string> &files) {
+    std::string raw, rendered;
+    for (const std::string &file : files) {
+        if (!is_regular_file(file)) continue;
+        std::string &first = raw_kind(file) ? raw : rendered;
+        if (first.empty()) first = file;
+        if (!raw.empty() && !rendered.empty())
+            throw Failure(ExitCode::usage, raw + ": is a camera raw file, and " + rendered
+                                               + " is not; give raw files alone, or others alone, since one response and "
+                                                 "falloff are estimated of all");
+    }
 }
 
 }  // namespace lensprof

@@ -88,7 +88,8 @@ Features find_features(const std::string &file, uint32_t most) {
     const double longer = std::max(header.width, header.height);
     const uint32_t reduction = std::max(1u, static_cast<uint32_t>(std::lround(longer / longer_side)));
     if (header.width < reduction || header.height < reduction) return found;  // a line
-    const cv::Mat grey = stretched(reduced_grey(reader, reduction), header.sample == LENSPROF_SAMPLE_F32);
+    const cv::Mat grey = stretched(reduced_grey(reader, reduction),
+                                   header.sample == LENSPROF_SAMPLE_F32 || header.traits.format == FileFormat::raw);
     std::vector<cv::KeyPoint> points;
     cv::Mat descriptors;
     cv::SIFT::create(static_cast<int>(most), 3, contrast)->detectAndCompute(grey, cv::noArray(), points, descriptors);
