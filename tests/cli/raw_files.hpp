@@ -30,7 +30,7 @@ struct Dng {
     std::vector<uint32_t> active, masked;  // top, left, bottom, right
     std::string model = "TestCam 1";
     uint16_t orientation = 1;
-    double exposure_s = 0;
+    uint32_t declared = 0;  // width and height that the header has in place of the true ones; 0 = these
 };
 
 // Bits, the highest first.
@@ -170,35 +170,36 @@ inline void add_levels(Directory &directory, const Dng &dng) {
     if (!dng.masked.empty()) directory.numbers(50830, 4, dng.masked);
 }
 
-inline Bytes dng_bytes(const Dng &dng, uint32_t declared_width = 0, uint32_t declared_height = 0) {
-    const Bytes pixels = dng.packing == Packing::lossless ? lossless_jpeg(dng)
-                         : dng.packing == Packing::bits   ? packed(dng)
-                                                          : words_of(dng.values);
+inline Directory directory_of(const Dng &dng, uint32_t pixels_at, uint32_t pixel_bytes) {
     Directory d;
-    const uint32_t height = declared_height ? declared_height : dng.height;
-    d.numbers(254, 4, {0}), d.numbers(256, 4, {declared_width ? declared_width : dng.width}),
-        d.numbers(257, 4, {height});
+    const uint32_t width = dng.declared ? dng.declared : dng.width, height = dng.declared ? dng.declared : dng.height;
+    d.numbers(254, 4, {0}), d.numbers(256, 4, {width}), d.numbers(257, 4, {height});
     d.numbers(258, 3, std::vector<uint32_t>(dng.samples, dng.packing == Packing::words ? 16 : dng.bits));
     d.numbers(259, 3, {dng.packing == Packing::lossless ? 7u : 1u});
     d.numbers(262, 3, {dng.samples == 1 ? 32803u : 34892u});
-    d.text(271, "TestMaker"), d.text(272, dng.model), d.numbers(273, 4, {8}), d.numbers(274, 3, {dng.orientation});
-    d.numbers(277, 3, {dng.samples}), d.numbers(278, 4, {height});
-    d.numbers(279, 4, {static_cast<uint32_t>(pixels.size())}), d.numbers(284, 3, {1});
-    if (dng.exposure_s > 0) d.numbers(33434, 5, {static_cast<uint32_t>(std::lround(dng.exposure_s * 1e6)), 1000000});
+    d.text(271, "TestMaker"), d.text(272, dng.model), d.numbers(273, 4, {pixels_at});
+    d.numbers(274, 3, {dng.orientation}), d.numbers(277, 3, {dng.samples}), d.numbers(278, 4, {height});
+    d.numbers(279, 4, {pixel_bytes}), d.numbers(284, 3, {1});
     if (dng.samples == 1) {
         d.numbers(33421, 3, {2, 2});
         d.numbers(33422, 1, {dng.pattern[0], dng.pattern[1], dng.pattern[2], dng.pattern[3]});
     }
-    if (dng.exposure_s > 0) d.numbers(33437, 5, {28, 10}), d.numbers(34855, 3, {100});
     d.numbers(50706, 1, {1, 4, 0, 0}), d.numbers(50707, 1, {1, 1, 0, 0}), d.text(50708, "TestMaker " + dng.model);
     add_levels(d, dng);
-    const auto place = static_cast<uint32_t>(8 + (pixels.size() + 1) / 2 * 2);
-    Bytes file = {'I', 'I', 42, 0};
-    for (unsigned i = 0; i < 4; i++) file.push_back(static_cast<uint8_t>(place >> 8 * i));
-    file.insert(file.end(), pixels.begin(), pixels.end());
-    file.resize(place);
-    const Bytes directory = d.bytes_at(place);
+    return d;
+}
+
+// The directory first, then the pixels.
+inline Bytes dng_bytes(const Dng &dng) {
+    const Bytes pixels = dng.packing == Packing::lossless ? lossless_jpeg(dng)
+                         : dng.packing == Packing::bits   ? packed(dng)
+                                                          : words_of(dng.values);
+    const auto count = static_cast<uint32_t>(pixels.size());
+    Bytes file = {'I', 'I', 42, 0, 8, 0, 0, 0};
+    const auto place = static_cast<uint32_t>(8 + directory_of(dng, 0, count).bytes_at(8).size());
+    const Bytes directory = directory_of(dng, place, count).bytes_at(8);
     file.insert(file.end(), directory.begin(), directory.end());
+    file.insert(file.end(), pixels.begin(), pixels.end());
     return file;
 }
 

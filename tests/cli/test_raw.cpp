@@ -229,7 +229,7 @@ void test_card(void **) {
     const Json flat = json_of({"flat", path, "--db", db, "--camera", "TestCam 1", "--lens", "L", "--focal", "50",
                                "--aperture", "2.8", "--json"});
     assert_true(flat["response"]["kind"] == "linear" || contains(flat["response"].dump(), "linear"));
-    assert_true(contains(flat.dump(), "\"processing\":\"raw\""));
+    assert_true(contains(json_of({"profile", "show", "1", "--db", db, "--json"}).dump(), "\"processing\":\"raw\""));
     const Json k = flat["vignetting"]["k"][0];
     for (double r : {0.5, 1.0}) {
         const double r2 = r * r,
@@ -261,7 +261,46 @@ void test_card(void **) {
                         flattened.pixels.data() + (y - 8 + i / 16) * flattened.row_bytes)[3 * (x - 8 + i % 16) + c];
             for (size_t c = 0; c < 3; c++) assert_true(std::fabs(mean[c] / 256 / (65535.0 * light[c]) - 1.0) < 2e-3);
         }
-    assert_refused(not_found, apply + Words{work("again")}, {});
+    assert_refused(not_found, {"apply", work("tif/card.tif"), "--db", db, "--profile", "1", "-o", work("again")},
+                   {"is corrected already"});
+}
+
+// A project of overlapping pictures as simulate renders them, linear, made mosaics.
+void test_build(void **) {
+    needs_libraw();
+    const std::string folder = work("pictures");
+    must_exit(done, {"simulate", "-o", folder, "--images", "6", "--size", "480x360", "--response", "linear",
+                     "--vignetting", "-0.4,0.1,-0.05", "--format", "png16", "--test-points", "2000"});
+    for (const auto &entry : fs::directory_iterator(folder)) {
+        if (entry.path().extension() != ".png") continue;
+        const Picture picture = read_picture(entry.path().string());
+        Dng dng;
+        dng.width = picture.width, dng.height = picture.height, dng.bits = 14, dng.packing = Packing::lossless;
+        dng.white = 16383, dng.black = {512, 510, 514, 512};
+        for (uint32_t y = 0; y < dng.height; y++)
+            for (uint32_t x = 0; x < dng.width; x++) {
+                const size_t place = y % 2 * 2 + x % 2;
+                const auto *row = reinterpret_cast<const uint16_t *>(picture.pixels.data() + y * picture.row_bytes);
+                const double value = row[3 * x + dng.pattern[place]] / 65535.0;
+                dng.values.push_back(
+                    static_cast<uint16_t>(std::lround(dng.black[place] + value * (dng.white - dng.black[place]))));
+            }
+        save(fs::path(entry.path()).replace_extension(".dng").string(), dng_bytes(dng));
+        fs::remove(entry.path());
+    }
+    const std::string project = replaced(text_of(folder + "/pano.pto"), "\\.png", ".dng");
+    save_text(folder + "/raw.pto", project);
+    const Json built = json_of({"build", folder + "/raw.pto", "--db", work("x.db"), "--camera", "C", "--json"});
+    const Json k = built["vignetting"]["k"][0];
+    for (double r : {0.5, 1.0}) {
+        const double r2 = r * r;
+        const double got = 1 + r2 * (k[0].get<double>() + r2 * (k[1].get<double>() + r2 * k[2].get<double>()));
+        print_message("falloff at %.1f: %.4f, true %.4f\n", r, got, 1 + r2 * (k1 + r2 * (k2 + r2 * k3)));
+        assert_true(std::fabs(got - (1 + r2 * (k1 + r2 * (k2 + r2 * k3)))) < 0.01);
+    }
+    assert_true(built["response"]["kind"] == "linear");
+    assert_true(
+        contains(json_of({"profile", "show", "1", "--db", work("x.db"), "--json"}).dump(), "\"processing\":\"raw\""));
 }
 
 void test_opcodes_are_not_doubled(void **) {
@@ -313,10 +352,8 @@ void test_content_counts(void **) {
 void test_truncated(void **) {
     needs_libraw();
     for (Packing packing : {Packing::words, Packing::bits, Packing::lossless}) {
-        Dng dng = card(160, 120, 12, packing);
-        Bytes whole = dng_bytes(dng);
-        // the directory first, as cameras write it, so that the pixels are what is cut off
-        const Bytes tail(whole.end() - 600, whole.end());
+        const Dng dng = card(160, 120, 12, packing);
+        const Bytes whole = dng_bytes(dng);
         for (size_t keep = 0; keep < whole.size(); keep += whole.size() / 23 + 1) {
             save(work("cut.dng"), Bytes(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(keep)));
             failure_of(ExitCode::unreadable, [] { read_picture(work("cut.dng")); });
@@ -330,7 +367,9 @@ void test_bombs(void **) {
     needs_libraw();
     const Dng dng = card(160, 120, 12, Packing::lossless);
     for (uint32_t side : {20000u, 65535u, 65536u, 1000000u, 4000000000u}) {
-        save(work("bomb.dng"), dng_bytes(dng, side, side));
+        Dng bomb = dng;
+        bomb.declared = side;
+        save(work("bomb.dng"), dng_bytes(bomb));
         failure_of(ExitCode::unreadable, [] { read_picture(work("bomb.dng")); });
     }
     Dng bad = dng;
@@ -362,17 +401,12 @@ void test_kinds_are_named(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_values),
-        CLI_TEST(test_masked_borders),
-        CLI_TEST(test_linear_dng),
-        CLI_TEST(test_full_size),
-        CLI_TEST(test_dcraw_emu),
-        CLI_TEST(test_card),
-        CLI_TEST(test_opcodes_are_not_doubled),
-        CLI_TEST(test_mixed_and_pairs),
-        CLI_TEST(test_content_counts),
-        CLI_TEST(test_truncated),
-        CLI_TEST(test_bombs),
+        CLI_TEST(test_values),          CLI_TEST(test_masked_borders),
+        CLI_TEST(test_linear_dng),      CLI_TEST(test_full_size),
+        CLI_TEST(test_dcraw_emu),       CLI_TEST(test_card),
+        CLI_TEST(test_build),           CLI_TEST(test_opcodes_are_not_doubled),
+        CLI_TEST(test_mixed_and_pairs), CLI_TEST(test_content_counts),
+        CLI_TEST(test_truncated),       CLI_TEST(test_bombs),
         CLI_TEST(test_kinds_are_named),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
