@@ -27,6 +27,7 @@ struct Dng {
     uint32_t white = 65535;
     std::vector<uint32_t> black = {0};  // one, or those of 2 x 2 places
     std::array<uint8_t, 4> pattern = {0, 1, 1, 2};
+    std::vector<uint32_t> pattern6;        // of 6 x 6 places, in its place; empty = none
     std::vector<uint32_t> active, masked;  // top, left, bottom, right
     std::string model = "TestCam 1";
     uint16_t orientation = 1;
@@ -180,7 +181,9 @@ inline Directory directory_of(const Dng &dng, uint32_t pixels_at, uint32_t pixel
     d.text(271, "TestMaker"), d.text(272, dng.model), d.numbers(273, 4, {pixels_at});
     d.numbers(274, 3, {dng.orientation}), d.numbers(277, 3, {dng.samples}), d.numbers(278, 4, {height});
     d.numbers(279, 4, {pixel_bytes}), d.numbers(284, 3, {1});
-    if (dng.samples == 1) {
+    if (!dng.pattern6.empty()) {
+        d.numbers(33421, 3, {6, 6}), d.numbers(33422, 1, dng.pattern6);
+    } else if (dng.samples == 1) {
         d.numbers(33421, 3, {2, 2});
         d.numbers(33422, 1, {dng.pattern[0], dng.pattern[1], dng.pattern[2], dng.pattern[3]});
     }

@@ -174,6 +174,30 @@ void test_full_size(void **) {
     assert_true(worst < 0.02);  // noise of 2 of 16383, and the border
 }
 
+// LibRaw interpolates X-Trans from 512 pixels on. Cells of 2 x 2 pixels may have no red or blue. Of one colour all
+// pixels get it, at half and at full size.
+void test_xtrans(void **) {
+    needs_libraw();
+    Dng dng;
+    dng.width = 624, dng.height = 540, dng.bits = 14, dng.white = 16383, dng.black = {1000};
+    dng.pattern6 = {1, 1, 0, 1, 1, 2, 1, 1, 2, 1, 1, 0, 2, 0, 1, 0, 2, 1,
+                    1, 1, 2, 1, 1, 0, 1, 1, 0, 1, 1, 2, 0, 2, 1, 2, 0, 1};
+    for (uint32_t y = 0; y < dng.height; y++)
+        for (uint32_t x = 0; x < dng.width; x++)
+            dng.values.push_back(static_cast<uint16_t>(1000 + 3000 * (1 + dng.pattern6[y % 6 * 6 + x % 6])));
+    const std::string path = save_dng("xtrans.dng", dng);
+    for (uint32_t side : {0u, 312u}) {
+        ReadOptions options;
+        options.max_side = side;
+        const Picture picture = read_picture(path, options);
+        assert_int_equal(picture.width, side ? 312 : 624);
+        const auto *got = reinterpret_cast<const uint16_t *>(picture.pixels.data());
+        for (size_t i = 0; i < size_t(picture.width) * picture.height * 3; i++)
+            if (std::fabs(got[i] - 65535.0 * 3000.0 * double(1 + i % 3) / 15383.0) > 1.01)
+                fail_msg("side %u, sample %zu: %d", side, i, got[i]);
+    }
+}
+
 Picture read_ppm(const std::string &path) {
     const Bytes bytes = load(path);
     unsigned width = 0, height = 0, most = 0;
@@ -401,12 +425,19 @@ void test_kinds_are_named(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_values),          CLI_TEST(test_masked_borders),
-        CLI_TEST(test_linear_dng),      CLI_TEST(test_full_size),
-        CLI_TEST(test_dcraw_emu),       CLI_TEST(test_card),
-        CLI_TEST(test_build),           CLI_TEST(test_opcodes_are_not_doubled),
-        CLI_TEST(test_mixed_and_pairs), CLI_TEST(test_content_counts),
-        CLI_TEST(test_truncated),       CLI_TEST(test_bombs),
+        CLI_TEST(test_values),
+        CLI_TEST(test_masked_borders),
+        CLI_TEST(test_linear_dng),
+        CLI_TEST(test_full_size),
+        CLI_TEST(test_xtrans),
+        CLI_TEST(test_dcraw_emu),
+        CLI_TEST(test_card),
+        CLI_TEST(test_build),
+        CLI_TEST(test_opcodes_are_not_doubled),
+        CLI_TEST(test_mixed_and_pairs),
+        CLI_TEST(test_content_counts),
+        CLI_TEST(test_truncated),
+        CLI_TEST(test_bombs),
         CLI_TEST(test_kinds_are_named),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

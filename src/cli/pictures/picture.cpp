@@ -32,7 +32,7 @@ FileFormat format_of_content(const std::string &path) {
     using namespace std::string_view_literals;
     if (begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv)) return FileFormat::tiff;
     if (count < 8) codec::fail_damaged(path, count == 0 ? "it is empty" : "it has " + std::to_string(count) + " bytes");
-    codec::fail_unsupported(path, "is not a PNG, TIFF, JPEG or camera raw picture; convert it first");
+    codec::fail_unsupported(path, "is not a PNG, TIFF or JPEG picture, nor a camera raw file; convert it first");
 }
 
 // What `read` does, with a text of its own where memory is not enough.

@@ -60,7 +60,7 @@ void on_data_error(void *, const char *, int) {}  // error_count() has them; Lib
         fail_unsupported(path, "camera raw file (" + kind + ") that LibRaw " + LibRaw::version()
                                    + " cannot read, or a damaged one; copy it again, convert it to DNG, or develop it "
                                      "to a linear 16 bit TIFF");
-    default: fail_damaged(path, LibRaw::strerror(status));
+    default: fail_damaged(path, "camera raw file, " + kind + ": " + LibRaw::strerror(status));
     }
 }
 
@@ -200,7 +200,6 @@ void RawFile::make_linear_mosaic() {
     const uint32_t rows = c.cblack[4], columns = c.cblack[5], wide = width();
     const bool has_pattern = rows > 0 && columns > 0 && uint64_t(rows) * columns <= LIBRAW_CBLACK_SIZE - 6;
     const auto white = static_cast<float>(c.maximum);
-    std::vector<Level> levels(wide);
     for (uint32_t y = 0; y < height(); ++y) {
         if (y % 64 == 0) stop_if_interrupted();
         std::array<uint32_t, colour_period> colour{};
@@ -242,35 +241,35 @@ void RawFile::make_linear_pixels() {
     }
 }
 
-void RawFile::halved_row(uint32_t y, uint16_t *rgb) const {
+uint32_t RawFile::channel_at(int x, int y) const {
+    const int colour = decoder_->libraw.COLOR(y, x);
+    return colour == 3 ? 1 : static_cast<uint32_t>(colour);  // the second green
+}
+
+uint16_t RawFile::mean_of(int x0, int y0, int side, uint32_t channel) const {
     const libraw_data_t &d = decoder_->data();
-    const auto high = static_cast<int>(height()), wide = static_cast<int>(width());
     const size_t pitch = d.sizes.raw_pitch / 2;
     const uint16_t *origin = d.rawdata.raw_image + d.sizes.top_margin * pitch + d.sizes.left_margin;
-    const auto gather = [&](int x0, int y0, int side, int wanted) {
-        uint32_t sum = 0, count = 0;
-        for (int v = std::max(y0, 0); v < std::min(y0 + side, high); ++v)
-            for (int u = std::max(x0, 0); u < std::min(x0 + side, wide); ++u) {
-                const int colour = decoder_->libraw.COLOR(v, u);
-                if ((colour == 3 ? 1 : colour) != wanted) continue;
-                const uint16_t value = origin[size_t(v) * pitch + size_t(u)];
-                if (value == saturated) return saturated;
-                sum += value;
-                ++count;
-            }
-        return count ? static_cast<uint16_t>((sum + count / 2) / count) : saturated;  // none: not known
-    };
-    const auto has = [&](int x0, int y0, int wanted) {
-        for (int i = 0; i < 4; ++i) {
-            const int colour = decoder_->libraw.COLOR(y0 + i / 2, x0 + i % 2);
-            if ((colour == 3 ? 1 : colour) == wanted) return true;
+    uint32_t sum = 0, count = 0;
+    for (int y = std::max(y0, 0); y < std::min(y0 + side, static_cast<int>(height())); ++y)
+        for (int x = std::max(x0, 0); x < std::min(x0 + side, static_cast<int>(width())); ++x) {
+            if (channel_at(x, y) != channel) continue;
+            const uint16_t value = origin[size_t(y) * pitch + size_t(x)];
+            if (value == saturated) return saturated;
+            sum += value;
+            ++count;
         }
-        return false;
-    };
-    const int top = static_cast<int>(2 * y);
+    return count ? static_cast<uint16_t>((sum + count / 2) / count) : saturated;  // none: not known
+}
+
+void RawFile::halved_row(uint32_t y, uint16_t *rgb) const {
+    const int top = static_cast<int>(2 * y), wide = static_cast<int>(width());
     for (int x = 0; x < wide / 2; ++x)
-        for (int c = 0; c < 3; ++c)
-            *rgb++ = has(2 * x, top, c) ? gather(2 * x, top, 2, c) : gather(2 * x - 1, top - 1, 4, c);
+        for (uint32_t c = 0; c < 3; ++c) {
+            bool has = false;
+            for (int i = 0; i < 4; ++i) has |= channel_at(2 * x + i % 2, top + i / 2) == c;
+            *rgb++ = has ? mean_of(2 * x, top, 2, c) : mean_of(2 * x - 1, top - 1, 4, c);
+        }
 }
 
 // LibRaw copies what unpack() stored; black and white are those of the linear values by now.
@@ -294,9 +293,13 @@ void RawFile::full_row(uint32_t y, uint16_t *samples) const {
     if (is_mosaic()) {
         const uint16_t *own = d.rawdata.raw_image + first + d.sizes.left_margin;
         for (uint32_t x = 0; x < width(); ++x, samples += 3) {
-            const int colour = decoder_->libraw.COLOR(static_cast<int>(y), static_cast<int>(x));
-            for (int c = 0; c < 3; ++c) samples[c] = d.image[size_t(y) * width() + x][c];
-            samples[colour == 3 ? 1 : colour] = own[x];
+            const uint32_t channel = channel_at(static_cast<int>(x), static_cast<int>(y));
+            for (uint32_t c = 0; c < 3; ++c) {
+                samples[c] = d.image[size_t(y) * width() + x][c];
+                if (samples[c] == 0 && c != channel)  // in a corner of X-Trans LibRaw may find no neighbour
+                    samples[c] = mean_of(static_cast<int>(x) - 2, static_cast<int>(y) - 2, 5, c);
+            }
+            samples[channel] = own[x];
         }
         return;
     }

@@ -52,6 +52,11 @@ private:
     void refuse_odd_kinds() const;
     void check_size() const;
     void check(int status) const;
+    uint32_t channel_at(int x, int y) const;  // of the mosaic: 0 red, 1 green, 2 blue
+
+    // Of the samples of a channel in a square; 65535 where one is saturated.
+    uint16_t mean_of(int x0, int y0, int side, uint32_t channel) const;
+
     void make_linear();
     void make_linear_mosaic();
     void make_linear_pixels();

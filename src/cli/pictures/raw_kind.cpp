@@ -69,6 +69,7 @@ const char *kind_of_name(const std::string &path) {
 }
 
 std::string kind_of_maker(TiffReader &reader, const TiffDirectory &first, const std::string &path) {
+    if (first.find(tag_dng_version)) return "DNG";
     std::string maker;
     const TiffEntry *entry = first.find(tag_make);
     if (entry && entry->count < 256) {
@@ -90,10 +91,7 @@ std::optional<std::string> kind_of_tiff(TiffReader &reader, const std::string &p
     };
     for (uint64_t pointer = 4; pointer;) {
         const TiffDirectory directory = reader.directory(pointer);
-        if (!first) {
-            first = directory;
-            if (directory.find(tag_dng_version)) return "DNG";
-        }
+        if (!first) first = directory;
         if (is_raw(directory)) return kind_of_maker(reader, *first, path);
         for (uint64_t child : reader.children(directory))
             if (is_raw(reader.directory(child))) return kind_of_maker(reader, *first, path);
