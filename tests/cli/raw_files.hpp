@@ -206,4 +206,28 @@ inline Bytes dng_bytes(const Dng &dng) {
     return file;
 }
 
+// As cameras and converters write them: a JPEG preview in the first directory, whose SubIFD is the raw image.
+inline Bytes dng_with_preview(const Dng &dng, const Bytes &jpeg, uint32_t width, uint32_t height) {
+    const Bytes pixels = words_of(dng.values);
+    const auto directories = [&](uint32_t raw_place, uint32_t jpeg_place, uint32_t pixels_place) {
+        Directory d;
+        d.numbers(254, 4, {1}), d.numbers(256, 4, {width}), d.numbers(257, 4, {height}), d.numbers(258, 3, {8, 8, 8});
+        d.numbers(259, 3, {7}), d.numbers(262, 3, {6}), d.text(271, "TestMaker"), d.text(272, dng.model);
+        d.numbers(273, 4, {jpeg_place}), d.numbers(277, 3, {3}), d.numbers(278, 4, {height});
+        d.numbers(279, 4, {static_cast<uint32_t>(jpeg.size())}), d.numbers(284, 3, {1}), d.numbers(330, 4, {raw_place});
+        d.numbers(50706, 1, {1, 4, 0, 0}), d.text(50708, "TestMaker " + dng.model);
+        Bytes all = d.bytes_at(8);
+        const auto own = static_cast<uint32_t>(8 + all.size());
+        const Bytes raw = directory_of(dng, pixels_place, static_cast<uint32_t>(pixels.size())).bytes_at(own);
+        all.insert(all.end(), raw.begin(), raw.end());
+        return std::make_pair(own, all);
+    };
+    const auto [raw_place, sized] = directories(0, 0, 0);
+    const auto jpeg_place = static_cast<uint32_t>(8 + sized.size());
+    const Bytes all = directories(raw_place, jpeg_place, jpeg_place + static_cast<uint32_t>(jpeg.size())).second;
+    Bytes file = {'I', 'I', 42, 0, 8, 0, 0, 0};
+    for (const Bytes &part : {all, jpeg, pixels}) file.insert(file.end(), part.begin(), part.end());
+    return file;
+}
+
 }  // namespace raw_files

@@ -372,6 +372,24 @@ void test_content_counts(void **) {
     assert_int_equal(read_size(work("b.nef")).width, 64);
 }
 
+// The JPEG in a raw file is read as if it stood alone.
+void test_preview(void **) {
+    needs_libraw();
+    const Dng dng = card(160, 120, 14, Packing::words);
+    write_picture(work("preview.jpg"), make_smooth(96, 72, LENSPROF_LAYOUT_RGB));
+    save(work("preview.dng"), dng_with_preview(dng, load(work("preview.jpg")), 96, 72));
+    assert_int_equal(read_size(work("preview.dng")).width, 160);
+    assert_same_pixels(read_raw_preview(work("preview.dng")), read_picture(work("preview.jpg")));
+    save_dng("none.dng", dng);
+    assert_failure(ExitCode::unreadable, "without a JPEG preview", [] { read_raw_preview(work("none.dng")); });
+    assert_failure(ExitCode::unreadable, "is no camera raw file", [] { read_raw_preview(work("preview.jpg")); });
+    const Bytes whole = load(work("preview.dng"));
+    for (size_t keep = 0; keep < whole.size() - 2 * 160 * 120; keep += 97) {
+        save(work("cut.dng"), Bytes(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(keep)));
+        failure_of(ExitCode::unreadable, [] { read_raw_preview(work("cut.dng")); });
+    }
+}
+
 // Cut off anywhere, a file is refused and nothing is invented.
 void test_truncated(void **) {
     needs_libraw();
@@ -436,6 +454,7 @@ int main() {
         CLI_TEST(test_opcodes_are_not_doubled),
         CLI_TEST(test_mixed_and_pairs),
         CLI_TEST(test_content_counts),
+        CLI_TEST(test_preview),
         CLI_TEST(test_truncated),
         CLI_TEST(test_bombs),
         CLI_TEST(test_kinds_are_named),

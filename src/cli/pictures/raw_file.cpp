@@ -29,6 +29,7 @@ public:
     int read(void *to, size_t size, size_t count) override {
         const int got = LibRaw_bigfile_datastream::read(to, size, count);
         if (got <= 0 && size * count > 0) is_past_end = true;
+        if (got < static_cast<int>(count)) is_short = true;
         return got;
     }
     int get_char() override {
@@ -38,6 +39,7 @@ public:
     }
 
     bool is_past_end = false;
+    bool is_short = false;  // a block was not all there; some decoders ask for more than they need
 };
 
 int on_progress(void *, LibRaw_progress, int, int) { return interrupted() ? 1 : 0; }
@@ -333,7 +335,9 @@ std::vector<uint8_t> raw_preview_bytes(const std::string &path, const std::strin
     libraw->set_dataerror_handler(on_data_error, nullptr);
     libraw->set_memerror_handler(on_memory_error, nullptr);
     int status = libraw->open_datastream(&stream);
+    stream.is_short = false;
     if (status == LIBRAW_SUCCESS) status = libraw->unpack_thumb();
+    if (status == LIBRAW_SUCCESS && stream.is_short) fail_damaged(path, "its preview ends before its time");
     const libraw_thumbnail_t &thumbnail = libraw->imgdata.thumbnail;
     if (status == LIBRAW_NO_THUMBNAIL || status == LIBRAW_UNSUPPORTED_THUMBNAIL
         || (status == LIBRAW_SUCCESS && (thumbnail.tformat != LIBRAW_THUMBNAIL_JPEG || !thumbnail.thumb)))
