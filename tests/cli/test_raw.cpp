@@ -1,5 +1,6 @@
 // Camera raw files: values against the formula and against LibRaw's own programs, falloffs that are recovered and
 // corrected, and every kind of file that cannot be read.
+#include "cli/registration/registration.hpp"
 #include "cli_runs.hpp"
 #include "raw_files.hpp"
 
@@ -289,10 +290,8 @@ void test_card(void **) {
                    {"is corrected already"});
 }
 
-// A project of overlapping pictures as simulate renders them, linear, made mosaics.
-void test_build(void **) {
-    needs_libraw();
-    const std::string folder = work("pictures");
+// Overlapping pictures as simulate renders them, linear, made mosaics.
+void make_mosaics(const std::string &folder) {
     must_exit(done, {"simulate", "-o", folder, "--images", "6", "--size", "480x360", "--response", "linear",
                      "--vignetting", "-0.4,0.1,-0.05", "--format", "png16", "--test-points", "2000"});
     for (const auto &entry : fs::directory_iterator(folder)) {
@@ -312,6 +311,12 @@ void test_build(void **) {
         save(fs::path(entry.path()).replace_extension(".dng").string(), dng_bytes(dng));
         fs::remove(entry.path());
     }
+}
+
+void test_build(void **) {
+    needs_libraw();
+    const std::string folder = work("pictures");
+    make_mosaics(folder);
     const std::string project = replaced(text_of(folder + "/pano.pto"), "\\.png", ".dng");
     save_text(folder + "/raw.pto", project);
     const Json built = json_of({"build", folder + "/raw.pto", "--db", work("x.db"), "--camera", "C", "--json"});
@@ -325,6 +330,29 @@ void test_build(void **) {
     assert_true(built["response"]["kind"] == "linear");
     assert_true(
         contains(json_of({"profile", "show", "1", "--db", work("x.db"), "--json"}).dump(), "\"processing\":\"raw\""));
+}
+
+// The copies are linear TIFFs; of the JPEG of a raw file is said that it is left out.
+void test_calibrate(void **) {
+    needs_libraw();
+    if (!can_register()) skip();
+    const std::string folder = work("pictures");
+    make_mosaics(folder);
+    Picture small = read_picture(folder + "/img002.dng");
+    small.icc.clear();
+    write_picture(folder + "/img002.png", small, WriteOptions{});
+    const Json json = json_of({"calibrate", folder, "-o", work("out"), "--db", work("x.db"), "--json"});
+    assert_int_equal(json["panoramas"].size(), 1);
+    assert_true(json["panoramas"][0]["result"]["evens"] == true);
+    assert_int_equal(json["pictures"].size(), 6);
+    for (const Json &picture : json["pictures"]) {
+        const std::string output = picture["output"];
+        assert_true(contains(output, ".tif") && fs::exists(output));
+        assert_true(read_metadata(output).processing_before == LENSPROF_PROCESSING_RAW);
+    }
+    assert_int_equal(json["found"], 7);
+    assert_int_equal(json["left_out"].size(), 1);
+    assert_true(contains(json["left_out"][0]["reason"], "img002.png: img002.dng is taken in its place"));
 }
 
 void test_opcodes_are_not_doubled(void **) {
@@ -451,6 +479,7 @@ int main() {
         CLI_TEST(test_dcraw_emu),
         CLI_TEST(test_card),
         CLI_TEST(test_build),
+        CLI_TEST(test_calibrate),
         CLI_TEST(test_opcodes_are_not_doubled),
         CLI_TEST(test_mixed_and_pairs),
         CLI_TEST(test_content_counts),

@@ -7,6 +7,7 @@
 #include "cli/fitting/photographs.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/pictures/picture.hpp"
+#include "cli/pictures/raw_kind.hpp"
 #include "cli/program/parallel.hpp"
 #include "cli/program/paths.hpp"
 
@@ -20,7 +21,8 @@ void check_output(const std::vector<std::string> &words, const std::string &outp
         if (!is_folder(word) && !is_picture_name(word) && path_exists(word))
             throw Failure(
                 ExitCode::usage,
-                word + ": is no picture (.jpg, .png, .tif) and no folder; for a project there is `lensprof build`");
+                word
+                    + ": is no picture (.jpg, .png, .tif, camera raw) and no folder; for a project there is `lensprof build`");
         if (one_name(word) == one_name(output))
             throw Failure(ExitCode::usage, output + ": is the folder of the pictures; give another with -o");
     }
@@ -87,14 +89,14 @@ Inputs find_inputs(const std::vector<std::string> &words, const std::string &out
     Inputs inputs;
     inputs.label = list.label;
     inputs.found = named.size();
-    for (const auto &[file, why] : list.copies) inputs.left_out.push_back({file, file + ": " + why});
     std::vector<InputPicture> all(list.files.size());
     std::vector<std::string> reasons(all.size());
     std::vector<char> unreadable(all.size(), 0);
     for_each_parallel(static_cast<uint32_t>(all.size()), "looking at pictures", progress, [&](uint32_t i) {
         InputPicture &picture = all[i];
         picture.file = list.files[i], picture.name = list.names[i];
-        const fs::path name = fs::path(picture.file).filename();
+        fs::path name = fs::path(picture.file).filename();
+        if (raw_kind(picture.file)) name.replace_extension(".tif");
         picture.target = (fs::path(output) / subfolders.at(picture.file) / name).string();
         bool fails = false;
         reasons[i] = look_at(picture, fails);
@@ -107,6 +109,14 @@ Inputs find_inputs(const std::vector<std::string> &words, const std::string &out
         else
             inputs.left_out.push_back({all[i].file, reasons[i]});
     }
+    for (const NamedPicture &picture : named)
+        if (!picture.instead_of.empty()) {
+            const std::string other = fs::path(picture.file).replace_filename(picture.instead_of).string();
+            inputs.left_out.push_back(
+                {other, other + ": " + fs::path(picture.file).filename().string() + " is taken in its place"});
+            inputs.found++;
+        }
+    for (const auto &[file, why] : list.copies) inputs.left_out.push_back({file, file + ": " + why});
     check_targets(inputs, named);
     return inputs;
 }

@@ -35,7 +35,6 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
     std::map<uint64_t, std::vector<size_t>> by_size;
     for (const NamedPicture &picture : pictures) {
         if (!known.insert(file_identity(picture.file)).second) continue;
-        note_instead(picture, streams);
         const uint64_t bytes = file_bytes(picture.file);  // 0 where there is no file
         auto &alike = by_size[bytes];
         const auto copied = !bytes ? alike.end() : std::find_if(alike.begin(), alike.end(), [&](size_t other) {
@@ -50,7 +49,6 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
         list.names.push_back(is_one_folder ? std::filesystem::path(picture.file).lexically_relative(words[0]).string()
                                            : picture.file);
     }
-    demand_one_kind(list.files);
     list.label = words.size() == 1 ? words[0] : counted(list.files.size(), "picture");
     return list;
 }
@@ -143,7 +141,10 @@ bool names_pictures(const std::string &word) { return is_folder(word) || is_pict
 
 Project project_of_pictures(const std::vector<std::string> &words, bool one_lens, Progress &progress,
                             Streams &streams) {
-    const Photographs list = list_photographs(words, named_pictures(words, std::string()));
+    const std::vector<NamedPicture> named = named_pictures(words, std::string());
+    for (const NamedPicture &picture : named) note_instead(picture, streams);
+    const Photographs list = list_photographs(words, named);
+    demand_one_kind(list.files);
     const auto &[label, files, names, copies] = list;
     for (const auto &[file, why] : copies) warn(streams, file + ": left out, " + why);
     if (files.size() < 2)

@@ -92,15 +92,16 @@ std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files, P
     return pictures;
 }
 
-// Pictures of the same camera, lens, focal length and size have one number, in the order they are met.
+// Pictures of the same camera, lens, focal length, processing and size have one number, in the order they are met.
 std::vector<uint32_t> lenses_of(const std::vector<RegisteredPicture> &pictures, const std::vector<uint32_t> &numbers) {
-    using Setting = std::tuple<std::string, std::string, std::string, double, uint32_t, uint32_t>;
+    using Setting = std::tuple<std::string, std::string, std::string, double, uint32_t, uint32_t, uint32_t>;
     std::map<Setting, uint32_t> found;
     std::vector<uint32_t> lenses;
     for (uint32_t i : numbers) {
         const lensprof_profile_key &key = pictures[i].metadata.key;
         const Features &own = pictures[i].features;
-        const Setting setting(key.camera_maker, key.camera_model, key.lens, key.focal_mm, own.width, own.height);
+        const Setting setting(key.camera_maker, key.camera_model, key.lens, key.focal_mm, key.processing, own.width,
+                              own.height);
         lenses.push_back(found.emplace(setting, static_cast<uint32_t>(found.size())).first->second);
     }
     return lenses;
