@@ -145,6 +145,21 @@ void test_frames_of_one_exposure(void **) {
     assert_refused(not_usable, Words{"bracket", "--no-store"} + frames, {"0.00 EV"});
 }
 
+// The light that a first fit finds joins the picture that it left out: exposures are true but for gamma, which is open.
+void test_a_second_look_joins(void **) {
+    must_exit(done, {"simulate", "-o", work("far"), "--size", "480x360", "--images", "4", "--scene", "foliage", "--ev",
+                     "5", "--overlap", "0.35", "--noise", "1", "--seed", "3"});
+    const Json json = json_of({"build", pto("far"), "--no-store", "--stored", "none", "--free", "all", "--json"});
+    assert_int_equal(json["looks"], 2);
+    const Json truth = Json::parse(text_of(work("far/truth.json")))["images"];
+    const auto true_ev = [&](size_t i) { return truth[i]["ev"].get<double>() - truth[0]["ev"].get<double>(); };
+    const double exponent = json["images"][1]["ev"].get<double>() / true_ev(1);
+    for (size_t i = 1; i < 4; i++) {
+        assert_true(json["images"][i]["joined"] == true);
+        assert_true(std::abs(json["images"][i]["ev"].get<double>() / exponent - true_ev(i)) < 0.03);
+    }
+}
+
 }  // namespace
 
 int main() {
@@ -158,6 +173,7 @@ int main() {
         CLI_TEST(test_nothing_to_store),
         CLI_TEST(test_smooth_pictures_join),
         CLI_TEST(test_frames_of_one_exposure),
+        CLI_TEST(test_a_second_look_joins),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

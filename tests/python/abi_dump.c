@@ -168,6 +168,8 @@ static void print_structs(void) {
     FIELD(lensprof_sample_options, link_count);
     FIELD(lensprof_sample_options, link_capacity);
     FIELD(lensprof_sample_options, reserved2);
+    FIELD(lensprof_sample_options, response);
+    FIELD(lensprof_sample_options, vignetting);
     STRUCT(lensprof_fit_image);
     FIELD(lensprof_fit_image, struct_size);
     FIELD(lensprof_fit_image, width);

@@ -90,6 +90,22 @@ class Sampling(unittest.TestCase):
         paper = lp.sample_overlap(images, lp.SampleOptions(pairs=300, sampling=lp.Sampling.PAPER))
         self.assertGreater(len(paper), 100)
 
+    def test_a_known_camera(self):
+        """Linear pictures 40 times apart join by their light alone; the pairs hold their own values."""
+        bright, dark = [array.astype(np.float32) / 255 * 0.9 for array in pictures()[:2]]
+        dark /= 40
+        images = [lp.SampleImage(array, camera, black=1e-4) for array, camera in zip((bright, dark), cameras())]
+        options = lp.SampleOptions(pairs=300, response=lp.Response.linear(), vignetting=lp.Vignetting())
+        self.assertEqual(options.response, lp.Response.linear())
+        pairs = lp.sample_overlap(images, options)
+        self.assertGreater(len(pairs), 100)
+        self.assertLess(pairs["value"].min(), 0.02)
+        self.assertIsNone(lp.SampleOptions().response)
+        with self.assertRaises(TypeError):
+            lp.SampleOptions(response=2.2)
+        with refused(self, lp.Status.ERROR_VIGNETTING):
+            lp.sample_overlap(images, lp.SampleOptions(vignetting=lp.Vignetting(k=(-3, 0, 0))))
+
     def test_views_of_any_kind(self):
         """The same picture in another place, order and type gives the same pairs."""
         arrays = pictures()

@@ -649,6 +649,8 @@ class SampleOptions(Structure):
         ("link_count", POINTER(c_uint32)),
         ("link_capacity", c_uint32),
         ("reserved2", c_uint32),
+        ("response", POINTER(Response)),
+        ("vignetting", POINTER(Vignetting)),
     ]
 
 

@@ -11,8 +11,9 @@ from . import _abi, _arrays
 from ._abi import Layout, Sampling
 from ._library import check, initialised, lib
 from ._progress import WithProgress, calling
-from ._struct import Enumerated, Struct, integer
+from ._struct import Enumerated, OptionalReference, Struct, integer
 from .geometry import Camera
+from .model import Response, Vignetting
 
 
 @dataclass
@@ -50,13 +51,16 @@ class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
     Same seed, same pairs, on any number of threads. progress: called now and then with a fraction 0..1; sampling is
     cancelled when it returns True, and when it raises an exception, which then comes out of sample_overlap.
     links: after a balanced sampling what texture says of the images that overlap, an array of LINK_DTYPE, for
-    FitOptions.links; None before.
+    FitOptions.links; None before. response, vignetting: what a first fit or a profile knows of the camera, or None;
+    places are then compared by the light they received, which joins pictures that are many EV apart.
     """
 
     sampling = Enumerated(Sampling)
     pairs: int
     seed: int
     threads: int
+    response = OptionalReference(Response)
+    vignetting = OptionalReference(Vignetting)
     _links: Optional[np.ndarray] = None
 
     @property

@@ -1,6 +1,8 @@
 #include "cli/fitting/project_fit.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 
 #include "cli/fitting/known_exposures.hpp"
 #include "cli/pictures/named_pictures.hpp"
@@ -44,34 +46,92 @@ bool is_grey(const std::vector<lensprof_pair> &pairs) {
     return true;
 }
 
-// The pairs or tracks that are fitted.
-void get_points(const ProjectFitOptions &o, const Project &project, Progress &progress, BuildReport &report,
-                FitInput &input) {
+using Pictures = std::vector<SamplePicture>;
+
+// Pairs or tracks of the pictures; what `known` says of the camera, where it is not NULL, helps to find them.
+void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &pictures, const Fitted *known,
+                 ProjectFit &done) {
     auto clock = std::chrono::steady_clock::now();
-    uint32_t &channels = input.options.channels;
-    if (!o.points.empty()) {
-        input.pairs = read_points(o.points, project);
-        channels = is_grey(input.pairs) ? 1 : 3;
-        report.load_s = lap(clock);
-        return;
-    }
-    auto pictures = read_pictures(project, o.max_side, progress);
-    channels = channel_count(pictures);
-    report.load_s = lap(clock);
+    FitInput &input = done.input;
+    std::vector<lensprof_link> &links = done.report.links;
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
     options.sampling = o.sampling;
     options.pairs = o.pairs;
     options.seed = o.seed;
+    if (known) options.response = &known->result.response, options.vignetting = &green_falloff(known->result);
     if (o.fit.method == LENSPROF_METHOD_RADIANCE) {
-        input.observations = sample_tracks(project, pictures, options, progress, &report.links);
+        input.observations = sample_tracks(project, pictures, options, done.progress, &links);
         input.pairs = pairs_of_tracks(input.observations);
     } else {
-        input.pairs = sample_pairs(project, pictures, options, {}, progress, &report.links);
+        input.pairs = sample_pairs(project, pictures, options, {}, done.progress, &links);
     }
-    input.options.links = report.links.data();
-    input.options.link_count = static_cast<uint32_t>(report.links.size());
-    report.sample_s = lap(clock);
+    input.options.links = links.data();
+    input.options.link_count = static_cast<uint32_t>(links.size());
+    done.report.sample_s += lap(clock);
+}
+
+// The pairs or tracks that are fitted, and the pictures they were drawn from (none where pairs are given).
+Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectFit &done) {
+    auto clock = std::chrono::steady_clock::now();
+    uint32_t &channels = done.input.options.channels;
+    if (!o.points.empty()) {
+        done.input.pairs = read_points(o.points, project);
+        channels = is_grey(done.input.pairs) ? 1 : 3;
+        done.report.load_s = lap(clock);
+        return {};
+    }
+    Pictures pictures = read_pictures(project, o.max_side, done.progress);
+    channels = channel_count(pictures);
+    done.report.load_s = lap(clock);
+    draw_points(o, project, pictures, nullptr, done);
+    return pictures;
+}
+
+size_t joined_images(const Fitted &fitted) {
+    return static_cast<size_t>(std::count_if(fitted.exposures.begin(), fitted.exposures.end(),
+                                             [](const lensprof_exposure &e) { return !std::isnan(e.ev); }));
+}
+
+size_t links_of_state(const std::vector<lensprof_link> &links, uint32_t state) {
+    return static_cast<size_t>(
+        std::count_if(links.begin(), links.end(), [=](const lensprof_link &link) { return link.state == state; }));
+}
+
+// What a result explains of the pictures: the more, the better.
+using Worth = std::tuple<size_t, bool, bool, size_t>;
+
+Worth worth_of(const Fitted &fitted, const std::vector<lensprof_link> &links) {
+    return {joined_images(fitted), fitted.result.evens != 0, fitted.result.usable != 0,
+            links_of_state(links, LENSPROF_LINK_VERIFIED)};
+}
+
+// Whether links may join once the response and the falloff are known. Not by a result that is refused: the light that
+// it tells is not that of the pictures.
+bool may_join_more(const ProjectFitOptions &o, const Fitted &first, const std::vector<lensprof_link> &links) {
+    const bool is_trusted = first.corrects() || first.result.reason_code == LENSPROF_REASON_IMAGE_GROUPS;
+    const bool is_whole =
+        joined_images(first) == first.exposures.size() && links_of_state(links, LENSPROF_LINK_CONTRADICTED) == 0;
+    return o.sampling == LENSPROF_SAMPLING_BALANCED && is_trusted && !is_whole;
+}
+
+// Draws once more, comparing light in place of grey values, and fits that; kept where it explains more.
+void look_again(const ProjectFitOptions &o, const Project &project, Pictures &pictures, ProjectFit &done) {
+    const std::vector<lensprof_pair> pairs = done.input.pairs;
+    const std::vector<lensprof_observation> observations = done.input.observations;
+    const std::vector<lensprof_link> links = done.report.links;
+    std::vector<lensprof_fit_image_quality> quality;
+    draw_points(o, project, pictures, &done.best, done);
+    const Fitted second = fit(done.input, done.report.reference, done.item, done.progress, &quality);
+    if (worth_of(second, done.report.links) > worth_of(done.best, links)) {
+        done.best = second;
+        done.report.quality = quality;
+        done.report.looks = 2;
+        return;
+    }
+    done.input.pairs = pairs, done.input.observations = observations, done.report.links = links;
+    done.input.options.links = done.report.links.data();
+    done.input.options.link_count = static_cast<uint32_t>(links.size());
 }
 
 // Another reference than the project's: where nothing else is held, it is held in that one's place, so that standard
@@ -145,13 +205,14 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     report.prior_is_composed = prior.is_composed;
     input.options.profile = prior.profile.get();
     check_unknowns(o, project, input.options);
-    get_points(o, project, done.progress, report, input);
+    Pictures pictures = get_points(o, project, done);
     stop_if_interrupted();
     input.images = fit_images(project);
     if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
     refer_to(report.reference, input);
     done.item = o.points.empty() ? project.path : o.points;
     done.best = fit(input, report.reference, done.item, done.progress, &report.quality);
+    if (!pictures.empty() && may_join_more(o, done.best, report.links)) look_again(o, project, pictures, done);
     report.fit = done.best.result;
     report.verdict = verdict_of(done.best.result);
     if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)

@@ -33,6 +33,12 @@ lensprof_status check_options(const lensprof_sample_options &options, uint32_t c
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample options: %s", wrong);
     if (count > kLargestCount / 300)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: %u images; give at most %u", count, kLargestCount / 300);
+    lensprof_status status = options.response ? lensprof_response_validate(options.response) : LENSPROF_OK;
+    if (status != LENSPROF_OK)
+        return fail(status, error, "sample: the response is invalid; see lensprof_response_validate");
+    if (options.vignetting) status = lensprof_vignetting_validate(options.vignetting);
+    if (status != LENSPROF_OK)
+        return fail(status, error, "sample: the falloff is invalid; see lensprof_vignetting_validate");
     return LENSPROF_OK;
 }
 

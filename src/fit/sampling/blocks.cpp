@@ -63,9 +63,17 @@ std::vector<float> mean_about(std::vector<float> values, int width, int height) 
     return values;
 }
 
+void make_light(GreyLevels::Level &level, const Light &light, const lensprof_camera &camera) {
+    for (int v = 0, n = 0; v < level.height; v++)
+        for (int u = 0; u < level.width; u++, n++) {
+            float &grey = level.grey[static_cast<size_t>(n)];
+            grey = light.of(grey, camera, (u + 0.5) * level.pixel - 0.5, (v + 0.5) * level.pixel - 0.5);
+        }
+}
+
 }  // namespace
 
-GreyLevels::GreyLevels(const View &view) {
+GreyLevels::GreyLevels(const View &view, const Light &light) {
     const auto &picture = view.image().view;
     Level full;
     full.width = static_cast<int>(picture.width), full.height = static_cast<int>(picture.height);
@@ -74,6 +82,7 @@ GreyLevels::GreyLevels(const View &view) {
     for (int v = 0; v < full.height; v++)
         view.grey_row(v, full.grey.data() + static_cast<size_t>(v) * static_cast<size_t>(full.width));
     level[1] = halved(full);
+    if (light.is_known()) make_light(level[1], light, view.image().camera);
     level[0] = halved(level[1]);
     wide[0] = halved(level[0]);
     wide[1] = halved(wide[0]);

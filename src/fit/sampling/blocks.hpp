@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "fit/sampling/correction.hpp"
+#include "fit/sampling/light.hpp"
 #include "fit/sampling/view.hpp"
 
 namespace lensprof {
 
 constexpr double kTexture = 0.015;  // standard deviation of a block, grey value 0..1, that can be compared
 
-// Grey levels of a view, at a quarter and at half its size.
+// Grey levels of a view, or the light behind them, at a quarter and at half its size.
 class GreyLevels {
 public:
     struct Level {
@@ -23,7 +24,7 @@ public:
         std::vector<float> grey;
     };
 
-    explicit GreyLevels(const View &view);
+    GreyLevels(const View &view, const Light &light);
 
     // Share of a block's variance that is of the scene: `texture` is its standard deviation on the coarse level, and
     // noise is what two halves of the pixels behind it do not share.
@@ -41,7 +42,6 @@ private:
 template <int reach>
 struct Block {
     static constexpr int kSide = 2 * reach + 1, kCount = kSide * kSide;
-    static constexpr float kBlack = 0.004f, kWhite = 0.98f;
     std::array<float, kCount> value;
     std::array<float, kCount> grey;
     double texture = 0.0;  // standard deviation before
@@ -60,7 +60,7 @@ struct Block {
             const float one =
                 level.grey[static_cast<size_t>(v) * static_cast<size_t>(level.width) + static_cast<size_t>(u)];
             grey[static_cast<size_t>(k)] = one;
-            lost += is_lost(one);
+            lost += is_lost_grey(one);
             sum += one;
         }
         for (size_t k = 0; k < kCount; k++) value[k] = grey[k] - sum / kCount;
@@ -96,7 +96,7 @@ struct Block {
     // Pixels that count in both.
     int shared(const Block &other) const {
         int count = 0;
-        for (size_t k = 0; k < kCount; k++) count += !is_lost(grey[k]) && !is_lost(other.grey[k]);
+        for (size_t k = 0; k < kCount; k++) count += !is_lost_grey(grey[k]) && !is_lost_grey(other.grey[k]);
         return count;
     }
 
@@ -108,12 +108,10 @@ private:
         for (float &one : value) one = square > 0.0f ? one / std::sqrt(square) : 0.0f;
     }
 
-    static bool is_lost(float grey) { return !(grey >= kBlack && grey <= kWhite); }
-
     double correlation_of_rest(const Block &other) const {
         double n = 0.0, a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
         for (size_t k = 0; k < kCount; k++) {
-            if (is_lost(grey[k]) || is_lost(other.grey[k])) continue;
+            if (is_lost_grey(grey[k]) || is_lost_grey(other.grey[k])) continue;
             const double p = grey[k], q = other.grey[k];
             n += 1.0, a += p, b += q, aa += p * p, bb += q * q, ab += p * q;
         }

@@ -128,8 +128,9 @@ void Sampler::register_neighbours() {
     };
     const auto count = static_cast<uint32_t>(views_.size());
     grey_.resize(count);
+    const Light light(options_.response, options_.vignetting);
     each(
-        count, [&](uint32_t i) { grey_[i] = std::make_unique<GreyLevels>(views_[i]); }, [] { return 0.0; });
+        count, [&](uint32_t i) { grey_[i] = std::make_unique<GreyLevels>(views_[i], light); }, [] { return 0.0; });
     std::vector<Edge> edges;
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t j : neighbours_[i])

@@ -84,6 +84,11 @@ typedef struct lensprof_sample_options {
     uint32_t *link_count;   /* and this their number, which may be larger than what there was room for; or NULL */
     uint32_t link_capacity; /* n images have at most n (n - 1) / 2 links */
     uint32_t reserved2;     /* 0 */
+    const lensprof_response *response; /* what a first fit or a profile knows of the camera, or NULL. With it balanced
+                                          sampling compares the light in two pictures in place of their grey values,
+                                          which differ in more than a factor where exposures are far apart, */
+    const lensprof_vignetting *vignetting; /* without the falloff, where that is known; or NULL. The pairs hold the
+                                              pictures' own grey values all the same. */
 } lensprof_sample_options;
 
 /* Balanced, 0 pairs (= 300 per image, or 150 points with tracks; at least 2000), seed 1, threads on all cores, no
@@ -98,8 +103,9 @@ static inline void lensprof_sample_options_init(lensprof_sample_options *options
  * surroundings differ in the two, and all places of two pictures that hardly show the same anywhere. pairs[capacity]
  * and *count as in base.h: the capacity to give is the number wanted, whatever the overlaps hold, and nothing is
  * sampled to find it; then *count receives the number found, which may be smaller. Errors: fewer than two images
- * ARGUMENT; NaN in a float view NOT_FINITE (the text names image and pixel); NO_OVERLAP; NO_SAMPLES when overlaps exist
- * but every sample is masked, black or saturated, or does not show the same; CANCELLED; MEMORY. */
+ * ARGUMENT; RESPONSE and VIGNETTING for a response or falloff that is not valid; NaN in a float view NOT_FINITE (the
+ * text names image and pixel); NO_OVERLAP; NO_SAMPLES when overlaps exist but every sample is masked, black or
+ * saturated, or does not show the same; CANCELLED; MEMORY. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sample_overlap(const lensprof_sample_options *options,
                                                                        const lensprof_sample_image *images,
                                                                        uint32_t image_count, lensprof_pair *pairs,
