@@ -248,6 +248,19 @@ void test_what_is_free(void **) {
     assert_true(std::fabs(falloff["images"][1]["white_balance"][0].get<double>() - 1) > 0.05);
 }
 
+// A project that was only aligned.
+void test_no_photometric_lines(void **) {
+    const std::string copy = copy_of("scene");
+    const Words words = Words{"build", copy + "/pano.pto", "--no-store", "--stored", "none", "--json"} + quick;
+    const std::string all = timeless(must_exit(done, words + Words{"--free", "all"}));
+    edit(copy + "/pano.pto", "\nv [^\n]*", "\nv y1 p1 r1");
+    const Outcome found = run_words(words);
+    assert_int_equal(found.code, done);
+    assert_string_equal(timeless(found.out).c_str(), all.c_str());
+    assert_true(contains(found.err, "its v lines name nothing photometric"));
+    assert_false(contains(run_words(words + Words{"--free", "ev,falloff"}).err, "photometric"));
+}
+
 void test_one_lens(void **) {
     const std::string copy = copy_of("scene");
     edit(copy + "/pano.pto", "Vb=0 Vc=0 Vd=0( .*img002)", "Vb0 Vc0 Vd0$1");
@@ -455,6 +468,7 @@ int main() {
         CLI_TEST(test_project_in_another_folder),
         CLI_TEST(test_reference),
         CLI_TEST(test_what_is_free),
+        CLI_TEST(test_no_photometric_lines),
         CLI_TEST(test_one_lens),
         CLI_TEST(test_variants_of_the_fit),
         CLI_TEST(test_method_radiance),

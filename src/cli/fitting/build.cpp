@@ -28,6 +28,7 @@ struct Options : ProjectFitOptions {
 };
 
 constexpr uint32_t balance_flags = LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
+constexpr uint32_t all_flags = lens_flags | LENSPROF_FREE_EV | balance_flags;
 
 void declare_points(Command &command, Options &o) {
     command.files(
@@ -59,8 +60,9 @@ void declare(Command &command, Options &o) {
                   {"center", LENSPROF_FREE_CENTER},
                   {"ev", LENSPROF_FREE_EV},
                   {"wb", balance_flags},
-                  {"all", lens_flags | LENSPROF_FREE_EV | balance_flags}},
-                 "what is estimated instead of the v lines, the same of every image");
+                  {"all", all_flags}},
+                 "what is estimated instead of the v lines, the same of every image; default of a project without "
+                 "photometric v lines: all");
     command.text("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
     command.flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
     command.choice("--sampling", o.sampling,
@@ -128,6 +130,20 @@ Project open_project(const Options &o, Streams &streams) {
     return project_of_pictures(o.inputs, o.one_lens, progress, streams);
 }
 
+// What is estimated: by --free, else by the v lines; all where these name nothing photometric, as those of a project
+// that was only aligned do not.
+void choose_unknowns(const Options &o, Project &project, Streams &streams) {
+    uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>()), asked = 0;
+    for (const auto &image : project.images) asked |= image.free;
+    if (!free && !asked) {
+        note(streams, project.path
+                          + ": its v lines name nothing photometric; response, falloff, exposures and white balances "
+                            "are estimated, unless --free says else");
+        free = all_flags;
+    }
+    for (auto &image : project.images) image.free = free ? free : image.free;
+}
+
 // The command once its options are read; `names` receives the images as soon as they are known.
 int build_and_store(const Options &o, std::vector<std::string> &names, Streams &streams) {
     Project project = open_project(o, streams);
@@ -137,8 +153,7 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
                       LENSPROF_REASON_FEW_PAIRS);
     check_outputs(o, project);
     if (!o.project_out.empty()) write_project(project, o.project_out);
-    const uint32_t free = std::accumulate(o.free.begin(), o.free.end(), 0u, std::bit_or<>());
-    for (auto &image : project.images) image.free = free ? free : image.free;
+    choose_unknowns(o, project, streams);
     if (o.points.empty()) check_pictures(project, o.max_side);
     auto metadata = picture_metadata(o, project);
     lensprof_profile_key key = profile_key(o, project, metadata, streams);

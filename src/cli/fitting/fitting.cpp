@@ -170,8 +170,7 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
                                                             fitted.exposures.data(), &fitted.result, &error);
     stop_if_interrupted();
     if (status == LENSPROF_ERROR_NO_UNKNOWNS)
-        throw Failure(ExitCode::usage,
-                      item + ": asks for nothing on its v lines; add some in Hugin, or give --free all");
+        throw Failure(ExitCode::usage, item + ": every parameter is held; give --free all");
     check(status, item, &error);
     fitted.result.image_quality = nullptr;
     fitted.reference = std::isnan(fitted.exposures[reference].ev) ? fitted.result.reference : reference;
