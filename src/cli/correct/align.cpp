@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/correct/correction.hpp"
+#include "cli/correct/merged.hpp"
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/known_exposures.hpp"
 #include "cli/fitting/profile_store.hpp"
@@ -35,7 +36,7 @@ const Choices<Target> targets = {
 struct Options {
     FitOptions fit;
     Target to = Target::mean;
-    std::string output = "aligned", pto;
+    std::string output = "aligned", pto, merge;
     CorrectionKind kind;
     uint32_t seed = 1, pairs = 0, max_side = 800;
     bool json = false, progress = false;
@@ -47,6 +48,9 @@ void declare(Command &command, Options &o) {
     command.choice("--to", o.to, targets,
                    "whose exposure and white balance all frames get: first, last, brightest, or mean (geometric)");
     command.folder("-o,--output", o.output, "folder for the frames (aligned)");
+    command.file(
+        "--merge", o.merge,
+        "instead write one picture of the light in all frames (HDR), a 32 bit float TIFF; the camera stood still");
     command.file("--project", o.pto,
                  "Hugin project that says where the camera looked; the falloff is then found and evened out, too. "
                  "Without it the camera stood still");
@@ -128,6 +132,22 @@ lensprof_exposure wanted_exposure(const Options &o, const std::vector<lensprof_e
     return mean_exposure(exposures);
 }
 
+// The merged picture has no frame of its own.
+void check_merge(const Options &o, const Project &project) {
+    check_merged_name(o.merge);
+    std::vector<Correction> job(1);
+    job[0].source = project.files[0], job[0].target = o.merge;
+    check_targets(job, project.files, "");
+    check_older_outputs(job, o.kind, true);
+}
+
+// The frame whose metadata the merged picture has: the one that it looks like.
+size_t frame_like(const std::vector<lensprof_exposure> &exposures, const lensprof_exposure &wanted) {
+    for (size_t i = 0; i < exposures.size(); i++)
+        if (exposures[i].ev == wanted.ev) return i;
+    return 0;
+}
+
 // Outputs beside the frames they come from.
 std::vector<Correction> make_jobs(const Options &o, const Project &project, const std::vector<uint32_t> &frames) {
     std::vector<Correction> jobs;
@@ -144,9 +164,26 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
                         "frames of " + std::filesystem::path(project.files[0]).filename().string() + " on",
                         {}});
     }
+    if (!o.merge.empty()) {
+        check_merge(o, project);
+        return jobs;
+    }
     check_targets(jobs, project.files, "");
     check_older_outputs(jobs, o.kind, true);
     return jobs;
+}
+
+// Frames, or the picture that they are merged into.
+Corrected write_all(const Options &o, const std::vector<Correction> &jobs,
+                    const std::vector<lensprof_exposure> &exposures, Progress &progress) {
+    if (o.merge.empty()) {
+        make_folder(o.output);
+        return write_corrected(jobs, o.kind, nullptr, progress);
+    }
+    write_merged(jobs, frame_like(exposures, jobs[0].wanted), o.merge, progress);
+    Corrected corrected;
+    for (const Correction &job : jobs) corrected.pictures.push_back({{"file", job.source}, {"output", o.merge}});
+    return corrected;
 }
 
 Json report(const Options &o, const lensprof_fit_result &r, const Verdict &verdict,
@@ -189,7 +226,7 @@ int align(const Options &o, Streams &streams) {
     std::vector<uint32_t> frames = frames_of(o, project);
     std::vector<Correction> jobs = make_jobs(o, project, frames);
     check_pictures(project, o.max_side);
-    check_output_folder(o.output);
+    if (o.merge.empty()) check_output_folder(o.output);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     std::vector<double> white_shares;  // of the project's pictures
     Fitted fitted = fit_sequence(o, project, white_shares, progress, streams);
@@ -205,10 +242,10 @@ int align(const Options &o, Streams &streams) {
             jobs[i].model = model;
             jobs[i].own = exposures[i];
             jobs[i].wanted = wanted_exposure(o, exposures);
-            warn_of_limits(jobs[i].source, jobs[i].own.ev, jobs[i].wanted.ev, white_shares[frames[i]], streams);
+            if (o.merge.empty())
+                warn_of_limits(jobs[i].source, jobs[i].own.ev, jobs[i].wanted.ev, white_shares[frames[i]], streams);
         }
-        make_folder(o.output);
-        written = write_corrected(jobs, o.kind, nullptr, progress);
+        written = write_all(o, jobs, exposures, progress);
     }
     progress.clear();
     const std::string &item = o.pto.empty() ? project.files[0] : o.pto;
@@ -220,8 +257,9 @@ int align(const Options &o, Streams &streams) {
             tell(streams, item + ": not usable: " + verdict.text + "; nothing was written");
     }
     if (o.json) print_json(report(o, fitted.result, verdict, exposures, written), streams.out);
+    if (!o.json && !o.merge.empty() && !written.pictures.empty()) streams.out << o.merge << "\n";
     for (const auto &entry : written.pictures)
-        if (!o.json) streams.out << entry["output"].get<std::string>() << "\n";
+        if (!o.json && o.merge.empty()) streams.out << entry["output"].get<std::string>() << "\n";
     return static_cast<int>(written.pictures.empty() ? ExitCode::not_usable : ExitCode::done);
 }
 
@@ -229,6 +267,10 @@ int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
     check_max_side(o.max_side);
     if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no frames to align; name them");
+    if (!o.merge.empty() && !o.pto.empty())
+        throw Failure(ExitCode::usage,
+                      "--merge: takes frames of a camera that stood still, and --project is of one "
+                      "that turned; leave one of the two out");
     try {
         return align(o, streams);
     } catch (const Failure &failure) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cli/correct/correction.hpp"
+#include "cli/correct/picture_plan.hpp"
 #include "cli/correct/strip_pipeline.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/pictures/icc.hpp"
@@ -25,50 +26,6 @@ struct Strip {
     std::vector<uint8_t> before, after;
     lensprof_image written{};
 };
-
-// A plan in memory of its own.
-class Plan {
-public:
-    Plan(const lensprof_apply_options &options, const std::string &item)
-        : memory_(lensprof_plan_bytes(&options) / 8 + 1) {
-        lensprof_error error{};
-        check(lensprof_plan_init(memory_.data(), memory_.size() * 8, &options, &plan_, &error), item, &error);
-    }
-    const lensprof_plan *get() const { return plan_; }
-
-private:
-    std::vector<uint64_t> memory_;
-    const lensprof_plan *plan_ = nullptr;
-};
-
-lensprof_apply_options options_of(const Picture &source, const Correction &job, const CorrectionKind &kind) {
-    lensprof_apply_options options;
-    lensprof_apply_options_init(&options);
-    options.direction = kind.simulate ? LENSPROF_DIRECTION_SIMULATE : LENSPROF_DIRECTION_CORRECT;
-    options.output = kind.linear ? LENSPROF_ENCODING_LINEAR : LENSPROF_ENCODING_RESPONSE;
-    options.strength = kind.strength;
-    options.gain_cap = kind.gain_cap;
-    options.dither = kind.dither;
-    options.frame_width = source.frame_width;
-    options.frame_height = source.frame_height;
-    options.source_sample = source.sample;
-    options.source_layout = source.layout;
-    options.target_sample = kind.linear ? static_cast<uint32_t>(LENSPROF_SAMPLE_F32) : source.sample;
-    check(lensprof_apply_options_set_profile(&options, job.model.get()), job.source);
-    options.source = job.own;
-    options.target = job.wanted;
-    return options;
-}
-
-// The header of what becomes of a picture.
-Picture header_of_result(const Picture &source, uint32_t sample) {
-    Picture result = source;
-    if (source.traits.format == FileFormat::raw) result.icc = linear_profile(source.layout == LENSPROF_LAYOUT_GREY);
-    result.sample = sample;
-    result.row_bytes =
-        static_cast<size_t>(result.width) * lensprof_layout_samples(result.layout) * lensprof_sample_type_bytes(sample);
-    return result;
-}
 
 // A picture that is complete beside its final name.
 struct Finished {
@@ -100,33 +57,6 @@ private:
     const bool thumbnails_;
     uint32_t strip_rows_, next_row_ = 0;
 };
-
-bool has_falloff(const lensprof_profile &model) {
-    const auto is_curved = [](const lensprof_vignetting &v) {
-        return std::any_of(std::begin(v.k), std::end(v.k), [](double k) { return k != 0.0; });
-    };
-    return model.grid.columns != 0 || std::any_of(model.vignetting, model.vignetting + model.vignettings, is_curved);
-}
-
-CorrectionMark mark_of(const Correction &job, const CorrectionKind &kind) {
-    using Falloff = CorrectionMark::Falloff;
-    CorrectionMark mark;
-    if (has_falloff(*job.model) && kind.strength > 0.0)
-        mark.falloff = kind.simulate ? Falloff::added : Falloff::removed;
-    mark.linear = kind.linear;
-    mark.software = std::string("lensprof ") + lensprof_version();
-    mark.model = job.model_name;
-    mark.source = std::filesystem::path(job.source).filename().string();
-    mark.digest = digest_of(job.source);
-    return mark;
-}
-
-WriteOptions write_options(const Correction &job, const CorrectionKind &kind) {
-    WriteOptions options;
-    options.metadata_from = job.source;
-    options.mark = mark_of(job, kind);
-    return options;
-}
 
 PictureCorrection::PictureCorrection(const Correction &job, const CorrectionKind &kind, bool thumbnails)
     : job_(job),

@@ -1,0 +1,169 @@
+#include "cli/correct/merged.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "cli/correct/picture_plan.hpp"
+#include "cli/fitting/project.hpp"
+#include "cli/program/interrupt.hpp"
+#include "cli/program/paths.hpp"
+
+namespace lensprof {
+namespace {
+
+// Grey values, 0..1, from which on a pixel counts, and counts in full; the same below white. Within 2 % of white the
+// coding of JPEG and the noise mix saturated pixels with others.
+constexpr double none_below = 0.01, all_above = 0.06, all_below = 0.9, none_above = 0.98;
+constexpr int steps = 4096;  // of grey values
+constexpr uint32_t strip_rows = 32;
+
+double grey_at(const lensprof_image &rows, uint32_t y, size_t n) {
+    const auto *row = static_cast<const uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes;
+    switch (rows.sample) {
+    case LENSPROF_SAMPLE_U8: return row[n] / 255.0;
+    case LENSPROF_SAMPLE_U16: return reinterpret_cast<const uint16_t *>(row)[n] / 65535.0;
+    default: return static_cast<double>(reinterpret_cast<const float *>(row)[n]);
+    }
+}
+
+// How far a grey value is from black and white: 0 at them, 1 between.
+double trust(double grey) {
+    const double up = (grey - none_below) / (all_above - none_below);
+    const double down = (none_above - grey) / (none_above - all_below);
+    return std::clamp(std::min(up, down), 0.0, 1.0);
+}
+
+// One frame, read from the top.
+class Frame {
+public:
+    Frame(const Correction &job, const CorrectionKind &kind)
+        : job_(job), reader_(job.source), plan_(options_of(reader_.header(), job, kind), job.source) {
+        const Picture &header = reader_.header();
+        samples_ = lensprof_layout_samples(header.layout);
+        if (samples_ != 1 && samples_ != 3)
+            throw Failure(ExitCode::usage,
+                          job.source + ": has transparency, which a merged picture has not; remove it");
+        for (uint32_t c = 0; c < 3; c++) {
+            const lensprof_response &response = job.model->response[job.model->responses == 3 ? c : 0];
+            const double gain =
+                std::exp2(job.own.ev - job.wanted.ev) * job.own.white_balance[c] / job.wanted.white_balance[c];
+            for (int k = 0; k <= steps; k++) {
+                double slope = 0.0;  // of the light over the grey value
+                lensprof_response_invert(&response, static_cast<double>(k) / steps, &slope);
+                weight_[c][static_cast<size_t>(k)] = slope > 0.0 ? std::pow(gain / slope, 2) : 0.0;
+            }
+        }
+    }
+
+    const Picture &header() const { return reader_.header(); }
+    size_t samples() const { return samples_; }
+    double ev() const { return job_.own.ev; }
+
+    // The next rows; `first` is the number of the first.
+    void read(uint32_t first, uint32_t rows) {
+        const Picture &h = header();
+        before_.resize(h.row_bytes * rows);
+        light_.resize(size_t(h.width) * rows * samples_);
+        before_rows_ = {before_.data(), static_cast<ptrdiff_t>(h.row_bytes), h.width, rows, h.sample, h.layout};
+        lensprof_image after{light_.data(),
+                             static_cast<ptrdiff_t>(h.width * samples_ * sizeof(float)),
+                             h.width,
+                             rows,
+                             LENSPROF_SAMPLE_F32,
+                             h.layout};
+        reader_.read(before_rows_);
+        check_finite(before_rows_, first, 1, job_.source);
+        check(lensprof_apply(plan_.get(), &before_rows_, &after, 0, first), job_.source);
+    }
+
+    const float *light(uint32_t x, uint32_t y) const { return &light_[(size_t(y) * header().width + x) * samples_]; }
+
+    // Of each channel; returns how far the pixel is from black and white.
+    double weights(uint32_t x, uint32_t y, double weight[3]) const {
+        double least = 1.0;
+        for (size_t c = 0; c < samples_; c++) {
+            const double grey = grey_at(before_rows_, y, size_t(x) * samples_ + c);
+            least = std::min(least, trust(grey));
+            weight[c] = weight_[c][static_cast<size_t>(std::lround(steps * std::clamp(grey, 0.0, 1.0)))];
+        }
+        return least;
+    }
+
+    bool is_bright(uint32_t x, uint32_t y) const {
+        for (size_t c = 0; c < samples_; c++)
+            if (grey_at(before_rows_, y, size_t(x) * samples_ + c) > 0.5) return true;
+        return false;
+    }
+
+private:
+    const Correction &job_;
+    PictureReader reader_;
+    const Plan plan_;
+    size_t samples_;
+    std::array<std::array<double, steps + 1>, 3> weight_;
+    std::vector<uint8_t> before_;
+    std::vector<float> light_;
+    lensprof_image before_rows_{};
+};
+
+using Frames = std::vector<std::unique_ptr<Frame>>;
+
+// One pixel of all frames, the darkest frame first.
+void merge_pixel(const Frames &frames, uint32_t x, uint32_t y, float *merged) {
+    const size_t samples = frames[0]->samples();
+    double sum[3] = {}, all[3] = {}, weight[3];
+    for (const auto &frame : frames) {
+        const double certain = frame->weights(x, y, weight);
+        if (certain == 0.0) continue;
+        const float *light = frame->light(x, y);
+        for (size_t c = 0; c < samples; c++) {
+            all[c] += certain * weight[c];
+            sum[c] += certain * weight[c] * static_cast<double>(light[c]);
+        }
+    }
+    const Frame &other = *(frames.front()->is_bright(x, y) ? frames.front() : frames.back());
+    for (size_t c = 0; c < samples; c++)
+        merged[c] = all[c] > 0.0 ? static_cast<float>(sum[c] / all[c]) : other.light(x, y)[c];
+}
+
+}  // namespace
+
+void check_merged_name(const std::string &target) {
+    if (format_of_name(target) != FileFormat::tiff)
+        throw Failure(ExitCode::usage, target + ": light has no bounds, and TIFF alone holds it; give a name in .tif");
+}
+
+void write_merged(const std::vector<Correction> &jobs, size_t like, const std::string &target, Progress &progress) {
+    CorrectionKind kind;
+    kind.linear = true;
+    Frames frames;
+    for (const Correction &job : jobs) frames.push_back(std::make_unique<Frame>(job, kind));
+    for (const auto &frame : frames)
+        if (frame->samples() != frames[0]->samples())
+            throw Failure(ExitCode::usage,
+                          jobs[0].source + ": some frames are grey and others are not; give frames of one kind");
+    const Picture header = header_of_result(frames[like]->header(), LENSPROF_SAMPLE_F32);
+    PictureWriter writer(target, header, write_options(jobs[like], kind));
+    std::stable_sort(frames.begin(), frames.end(), [](const auto &a, const auto &b) { return a->ev() < b->ev(); });
+    std::vector<float> merged;
+    for (uint32_t first = 0; first < header.height; first += strip_rows) {
+        stop_if_interrupted();
+        const uint32_t rows = std::min(strip_rows, header.height - first);
+        for (const auto &frame : frames) frame->read(first, rows);
+        merged.resize(size_t(header.width) * rows * frames[0]->samples());
+        for (uint32_t y = 0; y < rows; y++)
+            for (uint32_t x = 0; x < header.width; x++)
+                merge_pixel(frames, x, y, &merged[(size_t(y) * header.width + x) * frames[0]->samples()]);
+        writer.write({merged.data(), static_cast<ptrdiff_t>(header.row_bytes), header.width, rows, header.sample,
+                      header.layout});
+        progress.update("merging", static_cast<double>(first + rows) / header.height);
+    }
+    if (!writer.finish())
+        progress.warn(target + ": written without the metadata of " + jobs[like].source
+                      + ", which are not read from or written to such a file (a BigTIFF); copy them with exiftool");
+    writer.commit();
+}
+
+}  // namespace lensprof

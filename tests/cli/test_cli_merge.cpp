@@ -1,0 +1,134 @@
+// `lensprof align --merge`: frames of known light must give that light, beyond white and down to black.
+#include "cli_runs.hpp"
+
+using namespace cli_runs;
+
+namespace {
+
+constexpr uint32_t width = 200, height = 120;
+
+double encode(double x) { return std::pow(std::min(std::max(x, 0.0), 1.0), 1 / 2.2); }
+
+// Soft blobs over nine stops; 1 is white of a frame at 0 EV.
+double light(uint32_t x, uint32_t y, uint32_t c) {
+    const double u = x / 23.0, v = y / 17.0;
+    return 0.3 * std::exp2(4.5 * std::sin(0.4 * u + 0.1 * c) * std::cos(0.5 * v));
+}
+
+// Frames of 16 bits with noise of half a level of 255.
+Words make_frames(const std::vector<double> &ev, const char *end = ".png") {
+    fs::create_directories(work("in"));
+    Words files;
+    uint64_t random = 1;
+    for (size_t i = 0; i < ev.size(); ++i) {
+        Picture frame = make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+        for (uint32_t y = 0; y < height; ++y)
+            for (uint32_t x = 0; x < width; ++x)
+                for (uint32_t c = 0; c < 3; ++c) {
+                    double noise = 0;
+                    for (int k = 0; k < 12; ++k)
+                        noise +=
+                            static_cast<double>((random = random * 6364136223846793005u + 1442695040888963407u) >> 40)
+                                / 16777216
+                            - 0.5;
+                    const double grey = encode(light(x, y, c) * std::exp2(ev[i])) + noise * 0.5 / 255;
+                    reinterpret_cast<uint16_t *>(frame.pixels.data() + y * frame.row_bytes)[3 * x + c] =
+                        static_cast<uint16_t>(std::lround(65535 * std::min(std::max(grey, 0.0), 1.0)));
+                }
+        files.push_back(work("in/h" + std::to_string(i) + end));
+        write_picture(files.back(), frame);
+    }
+    return files;
+}
+
+const std::vector<double> bracket_ev = {0.0, -2.5, 2.5, -5.0};
+
+// Stops by which a merged picture is off from the truth, pixel by pixel: the largest, and the RMS. Gamma is open, so
+// that the logarithms are fitted by a line first.
+void errors_of(const Picture &merged, double &largest, double &rms, double &brightest) {
+    double n = 0, a = 0, b = 0, aa = 0, ab = 0, bb = 0;
+    brightest = 0;
+    const auto each = [&](auto use) {
+        for (uint32_t y = 0; y < height; ++y)
+            for (uint32_t x = 0; x < width; ++x)
+                for (uint32_t c = 0; c < 3; ++c)
+                    use(std::log2(light(x, y, c)), std::log2(static_cast<double>(reinterpret_cast<const float *>(
+                                                       merged.pixels.data() + y * merged.row_bytes)[3 * x + c])));
+    };
+    each([&](double truth, double found) {
+        assert_true(std::isfinite(found));
+        brightest = std::max(brightest, found);
+        n += 1, a += truth, b += found, aa += truth * truth, ab += truth * found, bb += found * found;
+    });
+    const double slope = (n * ab - a * b) / (n * aa - a * a), level = (b - slope * a) / n;
+    largest = 0;
+    double sum = 0;
+    each([&](double truth, double found) {
+        const double off = (found - level) / slope - truth;
+        largest = std::max(largest, std::fabs(off)), sum += off * off;
+    });
+    rms = std::sqrt(sum / n);
+}
+
+void test_light_beyond_white(void **) {
+    const Words frames = make_frames(bracket_ev);
+    const std::string out = work("hdr.tif");
+    const Json json = json_of(Words{"align", "--merge", out, "--to", "first", "--json"} + frames);
+    assert_int_equal(json["frames"].size(), 4);
+    assert_string_equal(json["frames"][3]["output"].get<std::string>().c_str(), out.c_str());
+    assert_false(fs::exists("aligned"));
+    const Picture merged = read_picture(out);
+    assert_int_equal(merged.sample, LENSPROF_SAMPLE_F32);
+    assert_true(merged.width == width && merged.height == height);
+    double largest, rms, brightest;
+    errors_of(merged, largest, rms, brightest);
+    print_message("off by %.3f stops RMS, %.3f at most; brightest %.2f stops above white\n", rms, largest, brightest);
+    assert_true(rms < 0.02 && largest < 0.2);
+    assert_true(brightest > 1.5);  // of 2.76, up to gamma
+    // Other orders draw other pairs.
+    const Words turned = {frames[0], frames[3], frames[2], frames[1]};
+    must_exit(done, Words{"align", "--merge", work("again.tif"), "--to", "first"} + turned);
+    double again[3];
+    errors_of(read_picture(work("again.tif")), again[0], again[1], again[2]);
+    assert_true(again[0] < 0.2 && again[1] < 0.02);
+    const auto metadata = read_metadata(out);
+    assert_true(metadata.mark && metadata.mark->linear);
+}
+
+// What is white in all frames is what the darkest says; black, what the brightest says.
+void test_beyond_all_frames(void **) {
+    const Words frames = make_frames({0.0, 1.5, 3.0});
+    const std::string out = work("bright.tif");
+    must_exit(done, Words{"align", "--merge", out, "--to", "first"} + frames);
+    double largest, rms, brightest;
+    errors_of(read_picture(out), largest, rms, brightest);
+    assert_close(brightest, 0.0, 0.02);
+    assert_true(largest > 1.0);
+}
+
+void test_refusals(void **) {
+    const Words frames = make_frames({0.0, -2.0});
+    const auto refuse = [&](int code, const Words &words, const char *said) {
+        assert_refused(code, Words{"align"} + words, {said});
+    };
+    refuse(usage, Words{"--merge", work("out.png")} + frames, ".tif");
+    refuse(usage, Words{"--merge", work("out.exr")} + frames, "out.exr");
+    refuse(usage, Words{"--merge", work("out.tif"), "--project", work("x.pto")}, "--project");
+    const Words tiffs = make_frames({0.0, -2.0}, ".tif");
+    refuse(usage, Words{"--merge", tiffs[1]} + tiffs, "h1.tif");
+    Picture alpha = make_noise(width, height, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA);
+    write_picture(work("alpha.png"), alpha);
+    const Outcome transparent = run_words({"align", "--merge", work("t.tif"), work("alpha.png"), frames[0]});
+    assert_true(transparent.code != done && !fs::exists(work("t.tif")));
+}
+
+}  // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        CLI_TEST(test_light_beyond_white),
+        CLI_TEST(test_beyond_all_frames),
+        CLI_TEST(test_refusals),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
