@@ -50,7 +50,7 @@ void declare(Command &command, Options &o) {
     command.folder("-o,--output", o.output, "folder for the frames (aligned)");
     command.file(
         "--merge", o.merge,
-        "instead write one picture of the light in all frames (HDR), a 32 bit float TIFF; the camera stood still");
+        "instead write one picture of the light in all frames (HDR), 32 bit float, as .tif or .exr; the camera stood still");
     command.file("--project", o.pto,
                  "Hugin project that says where the camera looked; the falloff is then found and evened out, too. "
                  "Without it the camera stood still");

@@ -44,6 +44,7 @@ enum class RawOutput {
 struct Options {
     ModelOptions model;
     RawOutput raw_output = RawOutput::by_default;
+    std::string linear_end = ".tif";
     std::string pto, output, sheet;
     Exposure exposure = Exposure::by_default;
     CorrectionKind kind;
@@ -75,6 +76,8 @@ void declare(Command &command, Options &o) {
     o.model.add_options(command);
     declare_exposure(command, o);
     command.flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
+    command.choice("--linear-output", o.linear_end, {{"tif", ".tif"}, {"exr", ".exr"}},
+                   "of --linear: tif (default), or exr, OpenEXR without metadata");
     command.choice(
         "--raw-output", o.raw_output, {{"dng", RawOutput::dng}, {"tif", RawOutput::tif}},
         "of camera raw files: dng, a copy of the DNG with the falloff as an opcode, pixels untouched (default "
@@ -125,7 +128,10 @@ bool becomes_dng(const Options &o, const std::string &raw) {
 std::string target_name(const Options &o, const NamedPicture &picture) {
     std::filesystem::path name = std::filesystem::path(picture.file).filename();
     const auto raw = raw_kind(picture.file);
-    if (o.kind.linear || (raw && !becomes_dng(o, *raw))) name.replace_extension(".tif");
+    if (o.kind.linear)
+        name.replace_extension(o.linear_end);
+    else if (raw && !becomes_dng(o, *raw))
+        name.replace_extension(".tif");
     if (raw && becomes_dng(o, *raw)) name.replace_extension(".dng");
     return (std::filesystem::path(o.output) / picture.subfolder / name).string();
 }

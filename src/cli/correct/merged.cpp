@@ -131,8 +131,10 @@ void merge_pixel(const Frames &frames, uint32_t x, uint32_t y, float *merged) {
 }  // namespace
 
 void check_merged_name(const std::string &target) {
-    if (format_of_name(target) != FileFormat::tiff)
-        throw Failure(ExitCode::usage, target + ": light has no bounds, and TIFF alone holds it; give a name in .tif");
+    const FileFormat format = format_of_name(target);
+    if (format != FileFormat::tiff && format != FileFormat::exr)
+        throw Failure(ExitCode::usage, target + ": light has no bounds, and TIFF and OpenEXR alone hold it; give a name "
+                                                "in .tif or .exr");
 }
 
 void write_merged(const std::vector<Correction> &jobs, size_t like, const std::string &target, Progress &progress) {

@@ -59,6 +59,7 @@ std::unique_ptr<codec::RowSink> create_sink(const std::string &file, FileFormat 
     switch (format) {
     case FileFormat::png: return codec::create_png(file, header);
     case FileFormat::tiff: return codec::create_tiff(file, header);
+    case FileFormat::exr: return codec::create_exr(file, header);
     default: return codec::create_jpeg(file, header, jpeg_quality);
     }
 }
@@ -145,13 +146,20 @@ static std::optional<FileFormat> known_format(const std::string &path) {
     if (extension == "png") return FileFormat::png;
     if (extension == "tif" || extension == "tiff") return FileFormat::tiff;
     if (extension == "jpg" || extension == "jpeg") return FileFormat::jpeg;
+    if (extension == "exr") return FileFormat::exr;
     return std::nullopt;
 }
 
-bool is_picture_name(const std::string &path) { return known_format(path).has_value() || is_raw_name(path); }
+bool is_picture_name(const std::string &path) {
+    return known_format(path).value_or(FileFormat::exr) != FileFormat::exr || is_raw_name(path);
+}
 
 FileFormat format_of_name(const std::string &path) {
-    if (const auto format = known_format(path)) return *format;
+    const auto format = known_format(path);
+    if (format == FileFormat::exr && !can_write_exr())
+        throw Failure(ExitCode::usage, path + ": this lensprof was built without OpenEXR; install libopenexr-dev and "
+                                              "build it again, or give a name in .tif");
+    if (format) return *format;
     throw Failure(ExitCode::usage, path + ": unknown kind of picture; the name must end in .png, .tif or .jpg");
 }
 
@@ -189,6 +197,10 @@ bool PictureWriter::finish() {
         const std::string &file = output_->temporary();
         sink_->finish();
         sink_.reset();
+        if (format_of_name(path_) == FileFormat::exr) {
+            output_->sync();
+            return true;
+        }
         const bool copied = options_.metadata_from.empty()
                             || copy_metadata(options_.metadata_from, file, options_.mark ? &*options_.mark : nullptr);
         const bool written = !options_.metadata || write_metadata(file, *options_.metadata);

@@ -23,7 +23,8 @@ enum class FileFormat {
     png,
     tiff,
     jpeg,
-    raw  // is read, and written as a DNG
+    raw,  // is read, and written as a DNG
+    exr   // is written alone
 };
 
 // What rewriting a picture must keep beside pixels and metadata. Each writer uses what its format can express.
@@ -147,12 +148,17 @@ private:
     uint32_t done_ = 0;
 };
 
-// The format that a file name asks for: .png, .tif, .tiff, .jpg, .jpeg in any case; otherwise Failure (usage).
+// Whether the program was built with OpenEXR.
+bool can_write_exr();
+
+// The format that a file name asks for: .png, .tif, .tiff, .jpg, .jpeg, .exr in any case; otherwise, and for .exr where
+// that cannot be written, Failure (usage).
 FileFormat format_of_name(const std::string &path);
 bool is_picture_name(const std::string &path);  // it has such an end, or that of a camera raw file
 
 // Writes a picture in the format of the name, metadata included, complete or not at all. A sample type or layout that
-// the format cannot hold is a Failure (usage): PNG 8 and 16 bit, JPEG 8 bit without alpha, TIFF everything.
+// the format cannot hold is a Failure (usage): PNG 8 and 16 bit, JPEG 8 bit without alpha, TIFF everything, OpenEXR 32
+// bit float (without metadata, which its readers do not look for).
 // TIFF keeps a lossless compression, other pictures get Deflate. A TIFF of 4 GB or more becomes a BigTIFF.
 // False when the picture is complete but without the metadata, because one of the files is a BigTIFF.
 bool write_picture(const std::string &path, const Picture &picture, const WriteOptions &options = {});

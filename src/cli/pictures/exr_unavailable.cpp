@@ -1,0 +1,16 @@
+// In place of the writer of OpenEXR, where the program is built without that library.
+#include "cli/pictures/codec.hpp"
+
+namespace lensprof {
+
+namespace codec {
+
+std::unique_ptr<RowSink> create_exr(const std::string &path, const Picture &) {
+    fail_to_hold(path, "this lensprof was built without OpenEXR; give a name in .tif");
+}
+
+}  // namespace codec
+
+bool can_write_exr() { return false; }
+
+}  // namespace lensprof

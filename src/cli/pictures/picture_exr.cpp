@@ -1,0 +1,94 @@
+// OpenEXR, written alone: 32 bit float, one part of scan lines.
+#include <array>
+#include <exception>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+
+#include "cli/pictures/codec.hpp"
+#include "cli/program/error.hpp"
+
+namespace lensprof {
+
+namespace codec {
+
+namespace {
+
+using Names = std::vector<const char *>;
+
+// Of every sample of a pixel.
+Names channel_names(uint32_t layout) {
+    switch (layout) {
+    case LENSPROF_LAYOUT_GREY: return {"Y"};
+    case LENSPROF_LAYOUT_GREY_ALPHA: return {"Y", "A"};
+    case LENSPROF_LAYOUT_RGBA: return {"R", "G", "B", "A"};
+    default: return {"R", "G", "B"};
+    }
+}
+
+Imf::Header header_of(const Picture &picture, const Names &names) {
+    Imf::Header header(static_cast<int>(picture.width), static_cast<int>(picture.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const char *name : names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    return header;
+}
+
+class ExrSink final : public RowSink {
+public:
+    ExrSink(const std::string &path, const Picture &header) : path_(path), names_(channel_names(header.layout)) {
+        run([&] { file_ = std::make_unique<Imf::OutputFile>(path.c_str(), header_of(header, names_)); });
+    }
+
+    // The library addresses a pixel by its place in the whole picture: the row is at its own y, and no other is asked
+    // for, whatever y is.
+    void write(const uint8_t *row) override {
+        Imf::FrameBuffer rows;
+        const size_t pixel = names_.size() * sizeof(float);
+        for (size_t c = 0; c < names_.size(); c++) {
+            char *first = const_cast<char *>(reinterpret_cast<const char *>(row)) + c * sizeof(float);
+            rows.insert(names_[c], Imf::Slice(Imf::FLOAT, first, pixel, 0));
+        }
+        run([&] {
+            file_->setFrameBuffer(rows);
+            file_->writePixels(1);
+        });
+    }
+
+    void finish() override {
+        run([&] { file_.reset(); });
+        const File written = open_for_reading(path_);
+        if (file_bytes(written.get()) == 0) fail_to_write(path_, "it is empty", 0);
+    }
+
+private:
+    template <class Body>
+    void run(const Body &body) {
+        try {
+            body();
+        } catch (const std::bad_alloc &) {
+            throw;
+        } catch (const std::exception &failure) {
+            fail_to_write(path_, failure.what(), 0);
+        }
+    }
+
+    std::string path_;
+    Names names_;
+    std::unique_ptr<Imf::OutputFile> file_;
+};
+
+}  // namespace
+
+std::unique_ptr<RowSink> create_exr(const std::string &path, const Picture &header) {
+    if (header.sample != LENSPROF_SAMPLE_F32)
+        fail_to_hold(path, "OpenEXR is written for light, 32 bit float, alone; give a name in .tif or .png");
+    return std::make_unique<ExrSink>(path, header);
+}
+
+}  // namespace codec
+
+bool can_write_exr() { return true; }
+
+}  // namespace lensprof
