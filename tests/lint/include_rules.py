@@ -98,11 +98,15 @@ ROOMS = {
                 "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/cli": ["program", "report", "pictures", "registration", "fitting", "profiles", "correct", "simulate", "calibrate"],
+    "src/cli": ["program", "report", "pictures", "registration", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 
 # Headers that one room alone may use.
-ROOM_HEADERS = {"src/cli/registration": {"Eigen/*", "opencv2/*"}, "src/cli/pictures": {"Imf*.h", "libraw/*"}}
+ROOM_HEADERS = {
+    "src/cli/registration": {"Eigen/*", "opencv2/*"},
+    "src/cli/response": {"Eigen/*"},
+    "src/cli/pictures": {"Imf*.h", "libraw/*"},
+}
 
 # What each public header may include, beside <stddef.h> and <stdint.h>: nothing above its own layer.
 PUBLIC = {

@@ -65,21 +65,6 @@ std::vector<double> given_exposures(const Options &o) {
     return ev;
 }
 
-// A response belongs to the camera, whatever lens, aperture and focus the pictures were taken with.
-lensprof_profile_key camera_key(const Options &o, PictureMetadata metadata, const std::string &file, Streams &streams) {
-    metadata.cut.erase(std::remove(metadata.cut.begin(), metadata.cut.end(), "--lens"), metadata.cut.end());
-    warn_of_cut(metadata, o.store, file, streams);
-    lensprof_profile_key key = metadata.key, unknown;
-    lensprof_profile_key_init(&unknown);
-    set_text(key.lens, sizeof key.lens, "");
-    key.focal_mm = unknown.focal_mm;
-    key.aperture = unknown.aperture;
-    key.distance_m = unknown.distance_m;
-    if (!*key.camera_model && o.store.camera.empty() && o.store.lens.empty() && !o.store.no_store)
-        throw Failure(ExitCode::usage, file + ": no EXIF says which camera it was; give --camera, or --no-store");
-    return override_key(key, metadata.size, o.store, file);
-}
-
 std::vector<lensprof_pair> get_pairs(const Options &o, const Project &project, Progress &progress, BuildReport &report,
                                      uint32_t &channels) {
     auto clock = std::chrono::steady_clock::now();
@@ -255,7 +240,7 @@ int bracket_and_store(const Options &o, Streams &streams) {
     demand_one_kind(project.files);
     std::vector<PictureMetadata> metadata;
     for (const std::string &file : project.files) metadata.push_back(read_metadata(file));
-    lensprof_profile_key key = camera_key(o, metadata[0], project.files[0], streams);
+    lensprof_profile_key key = camera_key(o.store, metadata[0], project.files[0], streams);
     check_store(o.store);
     CameraKind kind = camera_kind_of(o.fit, key, metadata[0]);
     if (kind.kind == LENSPROF_CAMERA_LINEAR && !o.fit.camera_kind && !raw_kind(project.files[0]))

@@ -1,5 +1,6 @@
 #include "cli/fitting/profile_store.hpp"
 
+#include <algorithm>
 #include <ctime>
 #include <filesystem>
 
@@ -87,6 +88,21 @@ lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, co
         throw Failure(ExitCode::usage,
                       file + ": no EXIF says which camera and lens it was; give --camera and --lens, or --no-store");
     return key;
+}
+
+lensprof_profile_key camera_key(const StoreOptions &o, PictureMetadata metadata, const std::string &file,
+                                Streams &streams) {
+    metadata.cut.erase(std::remove(metadata.cut.begin(), metadata.cut.end(), "--lens"), metadata.cut.end());
+    warn_of_cut(metadata, o, file, streams);
+    lensprof_profile_key key = metadata.key, unknown;
+    lensprof_profile_key_init(&unknown);
+    set_text(key.lens, sizeof key.lens, "");
+    key.focal_mm = unknown.focal_mm;
+    key.aperture = unknown.aperture;
+    key.distance_m = unknown.distance_m;
+    if (!*key.camera_model && o.camera.empty() && o.lens.empty() && !o.no_store)
+        throw Failure(ExitCode::usage, file + ": no EXIF says which camera it was; give --camera, or --no-store");
+    return override_key(key, metadata.size, o, file);
 }
 
 void check_store(const StoreOptions &o) {

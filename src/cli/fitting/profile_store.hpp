@@ -41,6 +41,11 @@ void warn_of_cut(const PictureMetadata &metadata, const StoreOptions &o, const s
 lensprof_profile_key override_key(lensprof_profile_key key, PictureSize size, const StoreOptions &o,
                                   const std::string &file);
 
+// The same of a response, which belongs to the camera whatever lens, aperture and focus the pictures were taken with.
+// Warns of what is cut; Failure (usage) that names `file` where nothing says which camera it was.
+lensprof_profile_key camera_key(const StoreOptions &o, PictureMetadata metadata, const std::string &file,
+                                Streams &streams);
+
 // Failure (store) before the work is done when the database cannot be used.
 void check_store(const StoreOptions &o);
 

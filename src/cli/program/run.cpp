@@ -44,6 +44,7 @@ void declare_all(Command root, const Program &program) {
     declare_calibrate(root);
     declare_build(root);
     declare_bracket(root);
+    declare_response(root);
     declare_flat(root);
     declare_apply(root);
     declare_align(root);

@@ -1,0 +1,413 @@
+#include "cli/response/curve_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "cli/program/interrupt.hpp"
+#include "cli/program/library.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr int inner = curve_knots - 1;
+constexpr double power = 2.2;
+constexpr double least_light = 1e-7;
+constexpr double least_noise = 0.25 / 255.0;  // of a mean over a square: JPEG's own
+constexpr double white_edge = 250.0 / 255.0;
+constexpr double robust_at = 3.0;  // noises
+constexpr int of_picture = 12;     // unknowns: 9 of A, 3 of q
+constexpr double colour_sigma = 1.0, falloff_sigma = 1.0;
+constexpr double bend_sigma = 0.06, level_sigma = 1.0;
+
+// f is smooth but at its dark end, where slopes of different cameras differ by orders of magnitude.
+double bend_sigma_at(int i) { return bend_sigma * (1.0 + 24.0 / (1.0 + i)); }
+
+struct Interval {
+    int index;
+    double share, t_slope;  // dt/dx
+};
+
+Interval interval_of(double x) {
+    const double light = std::max(x, least_light), t = std::pow(light, 1.0 / power);
+    const double position = t * curve_knots;
+    const int index = std::min(static_cast<int>(position), curve_knots - 1);
+    return {index, x > 0.0 ? position - index : 0.0, t / (power * light)};
+}
+
+double radial(const Rendering &rendering, double r2) {
+    const auto &q = rendering.falloff;
+    return std::exp(std::clamp(r2 * (q[0] + r2 * (q[1] + r2 * q[2])), -5.0, 5.0));
+}
+
+// Up to 2 knots, 3 of A's row, 3 of q.
+struct Row {
+    std::array<int, 8> at{};
+    std::array<double, 8> slope{};
+    int count = 0;
+    void add(int index, double value) {
+        if (index < 0 || value == 0.0) return;
+        at[static_cast<size_t>(count)] = index;
+        slope[static_cast<size_t>(count++)] = value;
+    }
+};
+
+int chroma_bin(const Place &place) { return std::min(static_cast<int>(place.chroma * chroma_bins), chroma_bins - 1); }
+
+class Solver {
+public:
+    explicit Solver(const FitRequest &request) : request_(request) {
+        size_ = inner + of_picture * static_cast<int>(request.pictures);
+        for (int i = 0; i < curve_knots; i++) {
+            const double from = std::pow(double(i) / curve_knots, power), to = std::pow((i + 1.0) / curve_knots, power);
+            const double rise = lensprof_response_eval(&request.prior, to, nullptr)
+                                - lensprof_response_eval(&request.prior, from, nullptr);
+            prior_rise_[static_cast<size_t>(i)] = std::log(std::max(rise, 1e-6));
+        }
+    }
+
+    CurveFit start() const;
+    void estimate_noise(CurveFit &fit) const;
+    void solve(CurveFit &fit, int rounds) const;
+    void add_covariance(CurveFit &fit) const;
+
+private:
+    bool counts(const Place &place) const { return request_.left_out < 0 || region_of(place) != request_.left_out; }
+    Row row_of(const CurveFit &fit, const Place &place, size_t channel) const;
+    double cost_of(const CurveFit &fit) const;
+    double prior_cost(const CurveFit &fit) const;
+    void equations(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd &g) const;
+    void add_curve_prior(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd &g) const;
+    void add_picture_prior(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd &g) const;
+    CurveFit moved(const CurveFit &fit, const Eigen::VectorXd &step) const;
+
+    const FitRequest &request_;
+    int size_ = 0;
+    std::array<double, curve_knots> prior_rise_{};
+    mutable std::vector<std::array<double, 3>> gains_;  // of every picture, that A is relative to
+};
+
+double rise(const CurveFit &fit, int i) {
+    return fit.knots[static_cast<size_t>(i + 1)] - fit.knots[static_cast<size_t>(i)];
+}
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// The prior's curve, and gains of the channels by the light that it sees.
+CurveFit Solver::start() const {
+    CurveFit fit;
+    for (int i = 0; i <= curve_knots; i++)
+        fit.knots[static_cast<size_t>(i)] =
+            lensprof_response_eval(&request_.prior, std::pow(double(i) / curve_knots, power), nullptr);
+    for (int i = 1; i < curve_knots; i++)
+        fit.knots[static_cast<size_t>(i)] = 0.999 * fit.knots[static_cast<size_t>(i)] + 0.001 * i / curve_knots;
+    fit.noise.fill(2.0 / 255.0);
+    fit.renderings.resize(request_.pictures);
+    for (uint32_t p = 0; p < request_.pictures; p++)
+        for (size_t c = 0; c < 3; c++) {
+            std::vector<double> ratios;
+            for (const Place &place : request_.places)
+                if (place.picture == p && place.use[c] == Place::grey && place.raw[c] > 0.0f)
+                    ratios.push_back(lensprof_response_invert(&request_.prior, place.grey_value[c], nullptr)
+                                     / place.raw[c]);
+            auto &colour = fit.renderings[p].colour;
+            for (size_t k = 0; k < 3; k++) colour[3 * c + k] = 0.0;
+            colour[3 * c + c] = ratios.empty() ? 1.0 : median(ratios);
+        }
+    return fit;
+}
+
+Row Solver::row_of(const CurveFit &fit, const Place &place, size_t channel) const {
+    const double x = fit.light(place, channel);
+    double slope = 0.0;
+    fit.eval(x, &slope);
+    Row row;
+    if (x >= 1.0) {
+        row.add(curve_knots - 2, -(x - 1.0) * slope / std::max(rise(fit, curve_knots - 1), 1e-9));
+    } else {
+        const Interval in = interval_of(x);
+        row.add(in.index - 1, 1.0 - in.share);
+        if (in.index + 1 < curve_knots) row.add(in.index, in.share);
+    }
+    const int first = inner + of_picture * static_cast<int>(place.picture);
+    const double gain = radial(fit.renderings[place.picture], place.r2);
+    for (int k = 0; k < static_cast<int>(request_.channels); k++) {
+        const size_t from = request_.channels == 1 ? channel : static_cast<size_t>(k);
+        row.add(first + 3 * static_cast<int>(channel) + static_cast<int>(from),
+                slope * gain * place.raw[from] * gains_[place.picture][from]);
+    }
+    double r2 = place.r2;
+    for (int n = 0; n < 3; n++, r2 *= place.r2) row.add(first + 9 + n, slope * x * r2);
+    return row;
+}
+
+// ln of every rise: twice its second difference about the prior's, and itself.
+double Solver::prior_cost(const CurveFit &fit) const {
+    double sum = 0.0;
+    std::array<double, curve_knots> off{};
+    for (int i = 0; i < curve_knots; i++) {
+        if (!(rise(fit, i) > 0.0)) return INFINITY;
+        off[static_cast<size_t>(i)] = std::log(rise(fit, i)) - prior_rise_[static_cast<size_t>(i)];
+        sum += std::pow(off[static_cast<size_t>(i)] / level_sigma, 2) / curve_knots;
+    }
+    for (size_t i = 1; i + 1 < off.size(); i++)
+        sum += std::pow((off[i + 1] - 2.0 * off[i] + off[i - 1]) / bend_sigma_at(static_cast<int>(i)), 2);
+    for (size_t p = 0; p < fit.renderings.size(); p++) {
+        const auto &r = fit.renderings[p];
+        for (size_t i = 0; i < 9; i++) {
+            const double about = i % 4 == 0 ? 1.0 : 0.0;
+            sum += std::pow((r.colour[i] / gains_[p][i % 3] - about) / colour_sigma, 2);
+        }
+        for (double q : r.falloff) sum += std::pow(q / falloff_sigma, 2);
+    }
+    return sum;
+}
+
+double Solver::cost_of(const CurveFit &fit) const {
+    double sum = prior_cost(fit);
+    for (const Place &place : request_.places) {
+        if (!counts(place)) continue;
+        for (size_t c = 0; c < request_.channels; c++) {
+            double residual = 0.0;
+            if (fit.weight(place, c, &residual) == 0.0) continue;
+            const double z = residual / fit.noise[static_cast<size_t>(chroma_bin(place))];
+            sum += robust_at * robust_at * std::log1p(z * z / (robust_at * robust_at));
+        }
+    }
+    return sum;
+}
+
+void Solver::add_curve_prior(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd &g) const {
+    const auto off = [&](int i) { return std::log(rise(fit, i)) - prior_rise_[static_cast<size_t>(i)]; };
+    const auto add = [&](const std::array<double, 3> &factors, int first, double residual, double weight) {
+        std::array<double, 4> slope{};  // of knots first .. first + 3, by the rises between them
+        for (int i = 0; i < 3; i++) {
+            if (factors[static_cast<size_t>(i)] == 0.0) continue;
+            const double by_rise = factors[static_cast<size_t>(i)] / rise(fit, first + i);
+            slope[static_cast<size_t>(i + 1)] += by_rise, slope[static_cast<size_t>(i)] -= by_rise;
+        }
+        for (int a = 0; a < 4; a++) {
+            const int row = first + a - 1;
+            if (row < 0 || row >= inner) continue;
+            g(row) += weight * residual * slope[static_cast<size_t>(a)];
+            for (int b = 0; b < 4; b++)
+                if (first + b - 1 >= 0 && first + b - 1 < inner)
+                    h(row, first + b - 1) += weight * slope[static_cast<size_t>(a)] * slope[static_cast<size_t>(b)];
+        }
+    };
+    for (int i = 0; i < curve_knots; i++)
+        add({1.0, 0.0, 0.0}, i, off(i), 1.0 / (level_sigma * level_sigma * curve_knots));
+    for (int i = 1; i + 1 < curve_knots; i++)
+        add({1.0, -2.0, 1.0}, i - 1, off(i + 1) - 2.0 * off(i) + off(i - 1), std::pow(bend_sigma_at(i), -2));
+}
+
+void Solver::add_picture_prior(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd &g) const {
+    for (size_t p = 0; p < fit.renderings.size(); p++) {
+        const auto first = inner + of_picture * static_cast<int>(p);
+        for (int i = 0; i < of_picture; i++) {
+            const auto n = static_cast<size_t>(i);
+            const double sigma = i < 9 ? colour_sigma : falloff_sigma;
+            const double value = i < 9 ? fit.renderings[p].colour[n] / gains_[p][n % 3] - (n % 4 == 0 ? 1.0 : 0.0)
+                                       : fit.renderings[p].falloff[n - 9];
+            h(first + i, first + i) += 1.0 / (sigma * sigma);
+            g(first + i) += value / (sigma * sigma);
+        }
+    }
+}
+
+void Solver::equations(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd &g) const {
+    h.setZero(size_, size_);
+    g.setZero(size_);
+    for (const Place &place : request_.places) {
+        if (!counts(place)) continue;
+        for (size_t c = 0; c < request_.channels; c++) {
+            double residual = 0.0;
+            const double weight = fit.weight(place, c, &residual);
+            if (weight == 0.0) continue;
+            const Row row = row_of(fit, place, c);
+            for (int a = 0; a < row.count; a++) {
+                const double along = weight * row.slope[static_cast<size_t>(a)];
+                g(row.at[static_cast<size_t>(a)]) += along * residual;
+                for (int b = 0; b < row.count; b++)
+                    h(row.at[static_cast<size_t>(a)], row.at[static_cast<size_t>(b)]) +=
+                        along * row.slope[static_cast<size_t>(b)];
+            }
+        }
+    }
+    add_curve_prior(fit, h, g);
+    add_picture_prior(fit, h, g);
+}
+
+// A step that would make f fall is shortened for its knots: each rise keeps a fifth at least.
+CurveFit Solver::moved(const CurveFit &fit, const Eigen::VectorXd &step) const {
+    CurveFit to = fit;
+    const auto change = [&](int knot) { return knot < 1 || knot > inner ? 0.0 : step(knot - 1); };
+    double share = 1.0;
+    for (int i = 0; i < curve_knots; i++) {
+        const double fall = change(i) - change(i + 1);
+        if (fall > 0.8 * rise(fit, i)) share = std::min(share, 0.8 * rise(fit, i) / fall);
+    }
+    for (int i = 1; i <= inner; i++) to.knots[static_cast<size_t>(i)] += share * change(i);
+    for (size_t p = 0; p < fit.renderings.size(); p++)
+        for (int i = 0; i < of_picture; i++) {
+            const auto n = static_cast<size_t>(i);
+            const double by = share * step(inner + of_picture * static_cast<int>(p) + i);
+            if (i < 9)
+                to.renderings[p].colour[n] += by * gains_[p][n % 3];
+            else
+                to.renderings[p].falloff[n - 9] += by;
+        }
+    return to;
+}
+
+void Solver::solve(CurveFit &fit, int rounds) const {
+    if (gains_.empty()) {
+        const CurveFit &from = request_.start ? *request_.start : fit;
+        for (const Rendering &r : from.renderings)
+            gains_.push_back({std::max(r.colour[0], 1e-6), std::max(r.colour[4], 1e-6), std::max(r.colour[8], 1e-6)});
+    }
+    Eigen::MatrixXd h;
+    Eigen::VectorXd g;
+    double damping = 1e-4;
+    fit.cost = cost_of(fit);
+    for (int round = 0; round < rounds; round++) {
+        stop_if_interrupted();
+        equations(fit, h, g);
+        bool better = false;
+        double gained = 0.0;
+        for (int trial = 0; trial < 8 && !better; trial++, damping *= 8.0) {
+            Eigen::MatrixXd damped = h;
+            damped.diagonal() *= 1.0 + damping;
+            CurveFit to = moved(fit, damped.ldlt().solve(-g));
+            to.cost = cost_of(to);
+            better = to.cost < fit.cost;
+            gained = fit.cost - to.cost;
+            if (better) fit = to;
+        }
+        damping = std::max(damping / 64.0, 1e-9);
+        if (!better || gained < 1e-4) return;
+    }
+}
+
+// By the median of what is left, of every chroma no less than of smaller ones.
+void Solver::estimate_noise(CurveFit &fit) const {
+    std::array<std::vector<double>, chroma_bins> left;
+    for (const Place &place : request_.places)
+        for (size_t c = 0; c < request_.channels; c++) {
+            double residual = 0.0;
+            if (fit.weight(place, c, &residual) != 0.0 && place.use[c] == Place::grey)
+                left[static_cast<size_t>(chroma_bin(place))].push_back(std::fabs(residual));
+        }
+    double least = least_noise;
+    for (size_t i = 0; i < left.size(); i++) {
+        if (left[i].size() >= 30) least = std::max(least, 1.4826 * median(left[i]));
+        fit.noise[i] = least;
+    }
+}
+
+void Solver::add_covariance(CurveFit &fit) const {
+    Eigen::MatrixXd h;
+    Eigen::VectorXd g;
+    equations(fit, h, g);
+    const Eigen::MatrixXd covariance =
+        h.ldlt().solve(Eigen::MatrixXd::Identity(size_, size_)).topLeftCorner(inner, inner);
+    fit.knot_covariance.assign(covariance.data(), covariance.data() + covariance.size());
+}
+
+}  // namespace
+
+double CurveFit::eval(double x, double *slope) const {
+    if (x >= 1.0) {
+        const double last = (knots[curve_knots] - knots[curve_knots - 1]) * curve_knots / power;
+        if (slope) *slope = last;
+        return 1.0 + last * (x - 1.0);
+    }
+    const Interval in = interval_of(x);
+    const auto i = static_cast<size_t>(in.index);
+    if (slope) *slope = x > 0.0 ? (knots[i + 1] - knots[i]) * curve_knots * in.t_slope : 0.0;
+    return knots[i] + in.share * (knots[i + 1] - knots[i]);
+}
+
+double CurveFit::light(const Place &place, size_t channel) const {
+    const Rendering &rendering = renderings[place.picture];
+    const double *row = &rendering.colour[3 * channel];
+    return radial(rendering, place.r2) * (row[0] * place.raw[0] + row[1] * place.raw[1] + row[2] * place.raw[2]);
+}
+
+// White says that the response has reached it, and no more.
+double CurveFit::weight(const Place &place, size_t channel, double *residual) const {
+    *residual = 0.0;
+    if (place.use[channel] == Place::none) return 0.0;
+    const double predicted = eval(light(place, channel), nullptr);
+    *residual = predicted - (place.use[channel] == Place::white ? white_edge : place.grey_value[channel]);
+    if (place.use[channel] == Place::white && *residual >= 0.0) return 0.0;
+    const double sigma = noise[static_cast<size_t>(chroma_bin(place))], z = *residual / (robust_at * sigma);
+    return 1.0 / (sigma * sigma * (1.0 + z * z));
+}
+
+lensprof_response CurveFit::response() const {
+    std::array<double, LENSPROF_RESPONSE_SAMPLES> table;
+    for (size_t i = 0; i < table.size(); i++)
+        table[i] = std::min(1.0, eval(double(i) / double(table.size() - 1), nullptr));
+    for (size_t i = 1; i < table.size(); i++) table[i] = std::max(table[i], table[i - 1]);
+    table.back() = 1.0;
+    lensprof_response response;
+    check(lensprof_response_set_table(&response, table.data(), static_cast<uint32_t>(table.size())), "response");
+    return response;
+}
+
+double CurveFit::gauge() const {
+    const auto light_at = [&](double level) {
+        int i = 0;
+        while (i < curve_knots - 1 && knots[static_cast<size_t>(i + 1)] < level) i++;
+        const double from = knots[static_cast<size_t>(i)], to = knots[static_cast<size_t>(i + 1)];
+        const double t = (i + (level - from) / std::max(to - from, 1e-12)) / curve_knots;
+        return power * std::log(std::max(t, 1e-9));
+    };
+    return std::log(std::max(light_at(208.0 / 255.0) - light_at(48.0 / 255.0), 1e-9));
+}
+
+double CurveFit::gauge_sigma() const {
+    std::array<double, inner> slope{};
+    CurveFit moved = *this;
+    for (size_t i = 0; i < slope.size(); i++) {
+        const double by = 1e-6 * (knots[i + 1] - knots[i]);
+        moved.knots[i + 1] = knots[i + 1] - by;
+        slope[i] = (gauge() - moved.gauge()) / by;
+        moved.knots[i + 1] = knots[i + 1];
+    }
+    double variance = 0.0;
+    for (size_t i = 0; i < slope.size(); i++)
+        for (size_t j = 0; j < slope.size(); j++) variance += slope[i] * slope[j] * knot_covariance[i * inner + j];
+    return std::sqrt(std::max(variance, 0.0));
+}
+
+CurveFit fit_curve(const FitRequest &request) {
+    Solver solver(request);
+    if (request.start) {
+        CurveFit fit = *request.start;
+        solver.solve(fit, 6);
+        return fit;
+    }
+    CurveFit fit = solver.start();
+    for (const int rounds : {15, 10, 10, 40}) {
+        solver.solve(fit, rounds);
+        if (rounds != 40) solver.estimate_noise(fit);
+    }
+    solver.add_covariance(fit);
+    return fit;
+}
+
+// 5 x 4 of the frame.
+int region_of(const Place &place) {
+    return std::clamp(static_cast<int>(place.across * 5.0f), 0, 4)
+           + 5 * std::clamp(static_cast<int>(place.down * 4.0f), 0, 3);
+}
+
+}  // namespace lensprof

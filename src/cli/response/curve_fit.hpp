@@ -1,0 +1,66 @@
+// The response between linear raw values and rendered grey values, fitted to places.
+//
+//   B_c = f( exp(q1 r^2 + q2 r^4 + q3 r^6) * sum_k A_ck raw_k )
+//
+// f is one curve for all channels and pictures; A (white balance, exposure and colour matrix in one) and the camera's
+// own correction of the falloff q are each picture's. f is straight between knots that lie evenly in x^(1/2.2), rises
+// by its prior, and f(0) = 0, f(1) = 1: x = 1 is where the rendering reaches white.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <lensprof/model.h>
+
+#include "cli/response/places.hpp"
+
+namespace lensprof {
+
+constexpr int curve_knots = 64;  // intervals of f
+
+struct Rendering {
+    std::array<double, 9> colour = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // A, rows of the rendered channels
+    std::array<double, 3> falloff = {0, 0, 0};                   // q
+};
+
+// Chroma is weighed by how well the model follows it: hues that a camera shifts count for little.
+constexpr int chroma_bins = 5;
+
+struct CurveFit {
+    std::array<double, curve_knots + 1> knots{};  // f at (i / curve_knots)^2.2
+    std::vector<Rendering> renderings;            // of every picture
+    std::array<double, chroma_bins> noise{};      // of a place, grey value 0..1, by chroma
+    double cost = 0.0;
+    std::vector<double> knot_covariance;  // (curve_knots - 1)^2, of the inner knots
+
+    // f(x); beyond white on with its last slope.
+    double eval(double x, double *slope) const;
+    // x of a channel of a place.
+    double light(const Place &place, size_t channel) const;
+    // The weight of a channel's residual, and the residual in grey values; 0 where it does not count.
+    double weight(const Place &place, size_t channel, double *residual) const;
+
+    lensprof_response response() const;
+    // q = ln ln( I(208) / I(48) ), which moves with ln gamma (docs/model.md).
+    double gauge() const;
+    // By the covariance of the knots.
+    double gauge_sigma() const;
+};
+
+// `pictures`: how many there are; `prior`: the typical response that unseen levels lean on. By Levenberg-Marquardt,
+// robust. `start`: of an earlier fit of the same pictures, whose noise stays; or null. `left_out`: of `group`, which
+// gives each place a group; -1: none.
+struct FitRequest {
+    const std::vector<Place> &places;
+    uint32_t pictures = 1, channels = 3;
+    const lensprof_response &prior;
+    const CurveFit *start = nullptr;
+    int left_out = -1;
+};
+CurveFit fit_curve(const FitRequest &request);
+
+// Regions of the frame, for errors by leaving each out in turn: places near each other are wrong alike.
+constexpr int region_count = 20;
+int region_of(const Place &place);
+
+}  // namespace lensprof

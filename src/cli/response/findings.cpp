@@ -1,0 +1,277 @@
+#include "cli/response/findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include <Eigen/Dense>
+
+#include "cli/program/error.hpp"
+#include "cli/program/format.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t least_places = 300;  // with a grey value
+constexpr size_t least_in_region = 20;
+constexpr int map_columns = 12, map_rows = 9;
+constexpr double least_in_cell = 8.0;  // values, of each half
+constexpr double most_scatter = 6.0;   // levels
+constexpr double most_gamma_sigma = 0.1;
+constexpr double least_correction = 0.02;  // of the light
+// What the places have in common, and no leaving out of regions tells: rendering by blocks, rounding of colours, noise
+// that a camera takes out.
+constexpr double common_sigma = 0.004;
+const double gauge_range = std::log(208.0 / 48.0);
+
+double gamma_of(double gauge) { return std::exp(gauge) / gauge_range; }
+
+bool is_used(const Place &place) {
+    return place.use[0] == Place::grey || place.use[1] == Place::grey || place.use[2] == Place::grey;
+}
+
+// Light of the rendering over that of the sensor.
+double radial_gain(const Rendering &rendering, double radius) {
+    const double r2 = radius * radius;
+    return std::exp(r2 * (rendering.falloff[0] + r2 * (rendering.falloff[1] + r2 * rendering.falloff[2])));
+}
+
+// Standard errors by leaving out a region at a time: of the gauge, and of ln of every file's corner.
+struct Spread {
+    double gauge = 0.0;
+    std::vector<double> corners;
+};
+
+Spread leave_out(const FitRequest &request, const CurveFit &fit, const std::vector<double> &radii) {
+    std::array<size_t, region_count> counts{};
+    for (const Place &place : request.places) counts[static_cast<size_t>(region_of(place))]++;
+    std::vector<CurveFit> fits;
+    for (int region = 0; region < region_count; region++) {
+        if (counts[static_cast<size_t>(region)] < least_in_region) continue;
+        FitRequest without{request.places, request.pictures, request.channels, request.prior, &fit, region};
+        fits.push_back(fit_curve(without));
+    }
+    const auto error_of = [&](const auto &value) {
+        double mean = 0.0, sum = 0.0;
+        for (const CurveFit &f : fits) mean += value(f) / double(fits.size());
+        for (const CurveFit &f : fits) sum += std::pow(value(f) - mean, 2);
+        return fits.size() < 2 ? 0.0 : std::sqrt(sum * double(fits.size() - 1) / double(fits.size()));
+    };
+    Spread spread;
+    spread.gauge = error_of([](const CurveFit &f) { return f.gauge(); });
+    for (size_t p = 0; p < radii.size(); p++)
+        spread.corners.push_back(
+            error_of([&](const CurveFit &f) { return std::log(radial_gain(f.renderings[p], radii[p])); }));
+    return spread;
+}
+
+// A map of residuals over the frame, from one half of the places and from the other: what both have is no noise.
+struct HalfMaps {
+    struct Sums {
+        double levels = 0.0, ev = 0.0, weight = 0.0, count = 0.0;
+    };
+    std::array<std::array<Sums, map_columns * map_rows>, 2> half{};
+
+    void add(const CurveFit &fit, const Place &place, size_t which, uint32_t channels) {
+        const int column = std::clamp(static_cast<int>(place.across * map_columns), 0, map_columns - 1);
+        const int row = std::clamp(static_cast<int>(place.down * map_rows), 0, map_rows - 1);
+        Sums &sums = half[which][static_cast<size_t>(row * map_columns + column)];
+        for (size_t c = 0; c < channels; c++) {
+            double residual = 0.0, slope = 0.0;
+            const double weight = fit.weight(place, c, &residual), x = fit.light(place, c);
+            if (weight == 0.0 || place.use[c] != Place::grey) continue;
+            fit.eval(x, &slope);
+            sums.levels -= weight * 255.0 * residual;
+            sums.ev -= weight * residual / std::max(slope * x * std::log(2.0), 1e-3);
+            sums.weight += weight, sums.count++;
+        }
+    }
+
+    // RMS of what both halves show.
+    double rms(double Sums::*value) const {
+        double sum = 0.0, count = 0.0;
+        for (size_t i = 0; i < half[0].size(); i++) {
+            const Sums &a = half[0][i], &b = half[1][i];
+            if (a.count < least_in_cell || b.count < least_in_cell) continue;
+            sum += (a.count + b.count) * (a.*value / a.weight) * (b.*value / b.weight);
+            count += a.count + b.count;
+        }
+        return count > 0.0 ? std::sqrt(std::max(0.0, sum / count)) : 0.0;
+    }
+};
+
+double white_ev_of(const Rendering &rendering, uint32_t channels) {
+    if (channels == 1) return std::log2(std::max(rendering.colour[0], 1e-9));
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> colour(rendering.colour.data());
+    const Eigen::Vector3d neutral = colour.inverse() * Eigen::Vector3d::Ones();
+    const double most = neutral.maxCoeff();
+    return most > 0.0 && std::isfinite(most) ? -std::log2(most) : 0.0;
+}
+
+void describe_file(const CurveFit &fit, const std::vector<Place> &places, uint32_t picture, FileFindings &file) {
+    HalfMaps maps;
+    size_t number = 0;
+    for (Place place : places) {
+        place.picture = picture;
+        maps.add(fit, place, number++ % 2, file.from.channels);
+    }
+    file.rendering = fit.renderings[picture];
+    file.corner = radial_gain(file.rendering, file.radius);
+    file.noise_levels = 255.0 * fit.noise[0];
+    file.pattern_levels = maps.rms(&HalfMaps::Sums::levels);
+    file.pattern_ev = maps.rms(&HalfMaps::Sums::ev);
+    file.white_ev = white_ev_of(file.rendering, file.from.channels);
+}
+
+void describe_levels(const std::vector<Place> &places, uint32_t channels, ResponseReport &report) {
+    std::vector<double> levels;
+    std::array<int, 10> tenths{};
+    size_t white = 0;
+    for (const Place &place : places)
+        for (size_t c = 0; c < channels; c++) {
+            white += place.use[c] == Place::white;
+            if (place.use[c] != Place::grey) continue;
+            levels.push_back(255.0 * place.grey_value[c]);
+            tenths[static_cast<size_t>(std::min(place.grey_value[c], 0.999f) * 10.0f)]++;
+        }
+    std::sort(levels.begin(), levels.end());
+    if (!levels.empty())
+        report.lowest = levels[levels.size() / 200], report.highest = levels[levels.size() - 1 - levels.size() / 200];
+    report.tenths = static_cast<uint32_t>(std::count_if(tenths.begin(), tenths.end(), [](int n) { return n >= 20; }));
+    report.shows_white = white >= 20;
+}
+
+std::string few_text(const FileFindings &file) {
+    const PlacesOf &f = file.from;
+    return file.file
+           + format(
+               ": too few places are smooth and between black and white in both pictures (%u; of %u squares of the "
+               "rendered picture %u are black, %u white and %u saturated in the raw file); take a picture with "
+               "all brightnesses and smooth areas of each",
+               file.places, f.squares, f.black, f.white, f.saturated);
+}
+
+void refuse(ResponseReport &report, uint32_t code, const std::string &text, std::vector<double> values) {
+    report.usable = false;
+    report.verdict.code = code, report.verdict.text = text, report.verdict.values = std::move(values);
+}
+
+const FileFindings &most_patterned(const ResponseReport &report) {
+    return *std::max_element(report.files.begin(), report.files.end(),
+                             [](const auto &a, const auto &b) { return a.pattern_levels < b.pattern_levels; });
+}
+
+double worst_noise(const ResponseReport &report) {
+    double worst = 0.0;
+    for (const FileFindings &file : report.files) worst = std::max(worst, file.noise_levels);
+    return worst;
+}
+
+void judge(ResponseReport &report) {
+    const FileFindings &pattern = most_patterned(report);
+    const double noise = worst_noise(report);
+    report.usable = true;
+    if (report.tenths < 4)
+        return refuse(
+            report, LENSPROF_REASON_FEW_GREYS,
+            format("only %u tenths of the grey values are shown; take a picture with all brightnesses", report.tenths),
+            {double(report.tenths)});
+    if (noise > most_scatter)
+        return refuse(report, LENSPROF_REASON_SCATTER,
+                      format("the rendered picture is %.1f levels away from any curve of the raw values; it may be of "
+                             "another shot, or developed otherwise",
+                             noise),
+                      {noise});
+    if (pattern.pattern_levels > strong_pattern)
+        return refuse(
+            report, LENSPROF_REASON_PATTERNS,
+            pattern.file
+                + format(
+                    ": tones were mapped by their surroundings (a map of %.1f levels over the frame is left); switch "
+                    "D-Lighting, Auto Lighting Optimizer, DRO, HDR and the like off",
+                    pattern.pattern_levels),
+            {pattern.pattern_ev, pattern.pattern_levels});
+    if (report.log_gamma_sigma > most_gamma_sigma)
+        return refuse(report, LENSPROF_REASON_UNDETERMINED,
+                      format("the exponent is known within %.0f %% only; take a picture with all brightnesses",
+                             100.0 * report.log_gamma_sigma),
+                      {});
+    const auto mind = [&](uint32_t code, const std::string &text, std::vector<double> values) {
+        if (!report.verdict.text.empty()) return;
+        report.verdict.code = code, report.verdict.text = text, report.verdict.values = std::move(values);
+    };
+    if (pattern.pattern_levels > weak_pattern)
+        mind(
+            LENSPROF_REASON_WEAK_PATTERNS,
+            pattern.file
+                + format(
+                    ": a map of %.1f levels over the frame is left; the camera may have mapped tones by their surroundings",
+                    pattern.pattern_levels),
+            {pattern.pattern_ev, pattern.pattern_levels});
+    if (report.lowest > 48.0 || report.highest < 208.0)
+        mind(LENSPROF_REASON_MISSING_GREYS,
+             format("grey levels %.0f to %.0f are shown; beyond them the response is that of a typical camera, "
+                    "continued",
+                    report.lowest, report.highest),
+             {report.lowest / 255.0, report.highest / 255.0});
+}
+
+// Of files one by one: their exponents, and what those scatter beyond their errors.
+double scatter_of_files(const std::vector<std::vector<Place>> &places, const lensprof_response &prior,
+                        ResponseReport &report) {
+    double mean = 0.0, scatter = 0.0, stated = 0.0;
+    std::vector<double> gauges;
+    for (size_t i = 0; i < places.size(); i++) {
+        std::vector<Place> alone = places[i];
+        for (Place &place : alone) place.picture = 0;
+        const FitRequest request{alone, 1, report.files[i].from.channels, prior, nullptr, -1};
+        const CurveFit fit = fit_curve(request);
+        const double sigma =
+            std::hypot(std::max(leave_out(request, fit, {1.0}).gauge, fit.gauge_sigma()), common_sigma);
+        gauges.push_back(fit.gauge());
+        report.files[i].gamma = gamma_of(fit.gauge()), report.files[i].gamma_sigma = sigma;
+        mean += fit.gauge() / double(places.size()), stated += sigma * sigma / double(places.size());
+    }
+    for (double gauge : gauges) scatter += std::pow(gauge - mean, 2) / double(std::max<size_t>(gauges.size() - 1, 1));
+    return std::max(0.0, scatter - stated);
+}
+
+}  // namespace
+
+bool FileFindings::is_corrected() const { return std::log(corner) > std::max(3.0 * corner_sigma, least_correction); }
+
+void fit_files(const std::vector<std::vector<Place>> &places, const lensprof_response &prior, ResponseReport &report) {
+    std::vector<Place> all;
+    std::vector<double> radii;
+    for (size_t i = 0; i < places.size(); i++) {
+        FileFindings &file = report.files[i];
+        float r2 = 0.0f;
+        for (const Place &place : places[i]) r2 = std::max(r2, place.r2), file.places += is_used(place);
+        if (file.places < least_places) throw Failure(ExitCode::not_usable, few_text(file), LENSPROF_REASON_FEW_PAIRS);
+        file.radius = std::min(1.0, std::sqrt(double(r2)));
+        radii.push_back(file.radius);
+        all.insert(all.end(), places[i].begin(), places[i].end());
+    }
+    const uint32_t channels = report.files[0].from.channels;
+    const FitRequest request{all, static_cast<uint32_t>(places.size()), channels, prior, nullptr, -1};
+    const CurveFit fit = fit_curve(request);
+    const Spread spread = leave_out(request, fit, radii);
+    report.response = fit.response();
+    report.gamma = gamma_of(fit.gauge());
+    const double own = std::hypot(std::max(spread.gauge, fit.gauge_sigma()), common_sigma);
+    const double scatter = places.size() > 1 ? scatter_of_files(places, prior, report) : 0.0;
+    report.log_gamma_sigma = std::sqrt(own * own + scatter / double(places.size()));
+    if (places.size() == 1) report.files[0].gamma = report.gamma, report.files[0].gamma_sigma = own;
+    size_t corrected = 0;
+    for (size_t i = 0; i < places.size(); i++) {
+        describe_file(fit, places[i], static_cast<uint32_t>(i), report.files[i]);
+        report.files[i].corner_sigma = std::max(spread.corners[i], 0.001);
+        corrected += report.files[i].is_corrected();
+    }
+    report.is_corrected = 2 * corrected > places.size();
+    describe_levels(all, channels, report);
+    judge(report);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,226 @@
+// `lensprof response`: camera raw files and the camera's own JPEGs of them -> the camera's response.
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fitting/fitting.hpp"
+#include "cli/fitting/profile_store.hpp"
+#include "cli/pictures/metadata.hpp"
+#include "cli/pictures/raw_kind.hpp"
+#include "cli/program/commands.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/interrupt.hpp"
+#include "cli/program/message.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/program/progress.hpp"
+#include "cli/response/findings.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr size_t most_files = 64;
+constexpr uint32_t least_raw_side = 64;  // px, of the cells of a frame
+
+struct Options {
+    StoreOptions store;
+    std::vector<std::string> files, jpegs;
+    bool json = false, progress = false;
+};
+
+void declare(Command &command, Options &o) {
+    command.files("FILES", o.files, "camera raw files of one camera, with the JPEG that it has put into each");
+    command.require("FILES");
+    command.words(
+        "--jpeg", "FILE", [&o](const std::string &word) { o.jpegs.push_back(word); },
+        "the camera's JPEG of the same shot, instead of the embedded one; once for each raw file, in their order");
+    declare_store(command, o.store);
+    declare_json(command, o.json);
+    declare_progress(command, o.progress);
+}
+
+void check_options(const Options &o) {
+    check_store_options(o.store);
+    if (!o.jpegs.empty()) demand_count(o.jpegs.size(), "--jpeg", o.files.size(), "raw file");
+    if (o.files.size() > most_files)
+        throw Failure(ExitCode::usage, format("%zu files are too many at once (%zu at most), and a few tell as much; "
+                                              "name fewer",
+                                              o.files.size(), most_files));
+}
+
+// A JPEG in the same folder with the name of the raw file; empty = none.
+std::string jpeg_beside(const std::string &raw) {
+    std::error_code ignored;
+    for (const char *end : {".JPG", ".jpg", ".JPEG", ".jpeg"}) {
+        const std::string file = std::filesystem::path(raw).replace_extension(end).string();
+        if (std::filesystem::is_regular_file(file, ignored)) return file;
+    }
+    return {};
+}
+
+Picture read_jpeg(const std::string &file) {
+    Picture picture = read_picture(file);
+    if (picture.traits.format != FileFormat::jpeg)
+        throw Failure(ExitCode::usage, file + ": is no JPEG, and the response of the camera is in its own JPEGs; give "
+                                              "that of the same shot with --jpeg");
+    return picture;
+}
+
+bool is_large_enough(const Picture &picture) { return std::max(picture.width, picture.height) >= least_rendered_side; }
+
+// What --jpeg names, else what is embedded, else (none there, or hardly more than an icon) the JPEG beside the raw
+// file, whose name `beside` receives.
+Picture read_rendered(const Options &o, size_t i, std::string &beside, Streams &streams) {
+    if (!o.jpegs.empty()) return read_jpeg(beside = o.jpegs[i]);
+    const std::string other = jpeg_beside(o.files[i]);
+    try {
+        Picture picture = read_raw_preview(o.files[i]);
+        if (is_large_enough(picture) || other.empty()) return picture;
+    } catch (const Failure &failure) {
+        if (failure.code != ExitCode::unreadable || other.empty() || !raw_kind(o.files[i]) || !can_read_raw()) throw;
+    }
+    note(streams, o.files[i] + ": has no JPEG preview of a useful size; " + other + " is taken");
+    return read_jpeg(beside = other);
+}
+
+// Cells of 2 x 2 pixels: nothing is interpolated.
+Picture read_cells(const std::string &file) {
+    const Picture header = read_header(file);
+    if (header.traits.format != FileFormat::raw)
+        throw Failure(ExitCode::unreadable, file + ": is no camera raw file; give one, and its JPEG with --jpeg");
+    const uint32_t longer = std::max(header.width, header.height);
+    if (std::min(header.width, header.height) < 2 * least_raw_side)
+        throw Failure(ExitCode::not_usable,
+                      file + format(": %u x %u px are too few; give a larger raw file", header.width, header.height),
+                      LENSPROF_REASON_FEW_PAIRS);
+    return read_picture(file, {longer / 2});
+}
+
+std::string camera_of(const PictureMetadata &metadata) {
+    return camera_name(metadata.key.camera_maker, metadata.key.camera_model);
+}
+
+void demand_one_camera(const Options &o, const std::vector<PictureMetadata> &metadata) {
+    for (size_t i = 1; i < metadata.size(); i++)
+        if (camera_of(metadata[i]) != camera_of(metadata[0]))
+            throw Failure(ExitCode::usage, o.files[i] + ": is by another camera (" + camera_of(metadata[i]) + ") than "
+                                               + o.files[0] + " (" + camera_of(metadata[0])
+                                               + "); name the files of one");
+}
+
+// Picture styles have responses of their own; one that not all files have is none of the profile.
+void keep_common_style(const std::vector<PictureMetadata> &metadata, lensprof_profile_key &key,
+                       const StoreOptions &store) {
+    if (!store.style.empty()) return;
+    for (const PictureMetadata &m : metadata)
+        if (std::string(m.key.style) != key.style) return set_text(key.style, sizeof key.style, "");
+}
+
+lensprof_response prior_of(const lensprof_profile_key &key) {
+    const uint32_t kind = lensprof_camera_kind_of(&key);
+    lensprof_response prior;
+    check(lensprof_response_set_typical(
+              &prior, kind == LENSPROF_CAMERA_PHONE ? LENSPROF_CAMERA_PHONE : LENSPROF_CAMERA_CAMERA, nullptr, nullptr),
+          "response");
+    return prior;
+}
+
+void read_files(const Options &o, Progress &progress, std::vector<std::vector<Place>> &places, ResponseReport &report,
+                Streams &streams) {
+    for (size_t i = 0; i < o.files.size(); i++) {
+        stop_if_interrupted();
+        progress.update("comparing", double(i) / double(o.files.size()));
+        FileFindings file;
+        file.file = o.files[i];
+        Picture rendered = read_rendered(o, i, file.rendered, streams);
+        const Picture raw = read_cells(o.files[i]);
+        file.from = places_of(raw, std::move(rendered), static_cast<uint32_t>(i),
+                              file.rendered.empty() ? o.files[i] + " (its preview)" : file.rendered);
+        if (i > 0 && file.from.channels != report.files[0].from.channels)
+            throw Failure(ExitCode::usage, o.files[i] + ": " + o.files[0] + " has colours and this has none, or the "
+                                               "other way round; name files of one kind");
+        places.push_back(std::move(file.from.places));
+        file.from.places = {};
+        report.files.push_back(std::move(file));
+    }
+    progress.clear();
+}
+
+void measure(const Options &o, const lensprof_response &prior, ResponseReport &report, Streams &streams) {
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    auto clock = std::chrono::steady_clock::now();
+    std::vector<std::vector<Place>> places;
+    read_files(o, progress, places, report, streams);
+    report.load_s = lap(clock);
+    fit_files(places, prior, report);
+    report.solve_s = lap(clock);
+}
+
+int64_t store(const Options &o, const lensprof_profile_key &key, const ResponseReport &report) {
+    auto profile = new_profile();
+    profile->key = key;
+    profile->response[0] = report.response;
+    auto &p = profile->provenance;
+    p.images = static_cast<uint32_t>(report.files.size());
+    for (const FileFindings &file : report.files) p.pairs += file.places;
+    p.gamma_sigma = report.log_gamma_sigma;
+    p.not_usable = !report.usable;
+    set_text(p.software, sizeof p.software, std::string("lensprof ") + lensprof_version());
+    return store_profile(o.store, *profile, {"response", o.files.front(), report.usable});
+}
+
+int finish(const Options &o, lensprof_profile_key key, ResponseReport &report, Streams &streams) {
+    if (!o.store.processing)
+        key.processing = report.is_corrected ? LENSPROF_PROCESSING_CORRECTED : LENSPROF_PROCESSING_JPEG;
+    stop_if_interrupted();
+    if ((report.usable || o.store.force) && !o.store.no_store) report.profile_id = store(o, key, report);
+    if (o.json)
+        print_json(response_report_json(report), streams.out);
+    else
+        print_response_report(report, streams.out);
+    if (report.profile_id && !o.json)
+        streams.out << "stored    profile " << report.profile_id << " in " << store_path(o.store.db) << ": "
+                    << describe_key(key) << "\n";
+    if (report.usable && !report.verdict.text.empty()) warn(streams, o.files.front() + ": " + report.verdict.text);
+    if (!report.usable) tell(streams, not_usable_text(o.files.front(), report.verdict, o.store));
+    return static_cast<int>(report.usable ? ExitCode::done : ExitCode::not_usable);
+}
+
+int run(const Options &o, Streams &streams) {
+    check_options(o);
+    std::vector<PictureMetadata> metadata;
+    for (const std::string &file : o.files) metadata.push_back(read_metadata(file));
+    demand_one_camera(o, metadata);
+    lensprof_profile_key key = camera_key(o.store, metadata[0], o.files[0], streams);
+    keep_common_style(metadata, key, o.store);
+    key.processing = LENSPROF_PROCESSING_JPEG;  // what is stored is of the rendering, not of the raw file
+    check_store(o.store);
+    ResponseReport report;
+    try {
+        measure(o, prior_of(key), report, streams);
+    } catch (const Failure &failure) {
+        if (o.json && failure.code == ExitCode::not_usable) {
+            report.verdict.text = failure.what(), report.verdict.code = failure.reason;
+            report.files.clear();
+            print_json(response_report_json(report), streams.out);
+        }
+        throw;
+    }
+    return finish(o, key, report, streams);
+}
+
+}  // namespace
+
+void declare_response(Command &program) {
+    Command command =
+        program.add("response", "camera raw files with their own JPEGs -> the camera's response",
+                    "Fits the response of a camera to raw files and the JPEGs that it made of them, place by "
+                    "place; docs/raw.md explains which files.");
+    auto o = std::make_shared<Options>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run(*o, streams); });
+}
+
+}  // namespace lensprof
