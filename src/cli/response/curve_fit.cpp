@@ -15,10 +15,10 @@ constexpr int inner = curve_knots - 1;
 constexpr double power = 2.2;
 constexpr double least_light = 1e-7;
 constexpr double least_noise = 0.25 / 255.0;  // of a mean over a square: JPEG's own
-constexpr double white_edge = 250.0 / 255.0;
+constexpr double white_edge = 254.0 / 255.0;
 constexpr double robust_at = 3.0;  // noises
-constexpr int of_picture = 12;     // unknowns: 9 of A, 3 of q
-constexpr double colour_sigma = 1.0, falloff_sigma = 1.0;
+constexpr int of_picture = 13;     // unknowns: 9 of A, 3 of q, s
+constexpr double colour_sigma = 1.0, falloff_sigma = 1.0, saturation_sigma = 0.3;
 constexpr double bend_sigma = 0.06, level_sigma = 1.0;
 
 // f is smooth but at its dark end, where slopes of different cameras differ by orders of magnitude.
@@ -41,10 +41,10 @@ double radial(const Rendering &rendering, double r2) {
     return std::exp(std::clamp(r2 * (q[0] + r2 * (q[1] + r2 * q[2])), -5.0, 5.0));
 }
 
-// Up to 2 knots, 3 of A's row, 3 of q.
+// Up to 2 knots and 3 of A's row for each channel, 3 of q, s.
 struct Row {
-    std::array<int, 8> at{};
-    std::array<double, 8> slope{};
+    std::array<int, 3 * 5 + 4> at{};
+    std::array<double, 3 * 5 + 4> slope{};
     int count = 0;
     void add(int index, double value) {
         if (index < 0 || value == 0.0) return;
@@ -54,6 +54,10 @@ struct Row {
 };
 
 int chroma_bin(const Place &place) { return std::min(static_cast<int>(place.chroma * chroma_bins), chroma_bins - 1); }
+
+double rise(const CurveFit &fit, int i) {
+    return fit.knots[static_cast<size_t>(i + 1)] - fit.knots[static_cast<size_t>(i)];
+}
 
 class Solver {
 public:
@@ -74,7 +78,9 @@ public:
 
 private:
     bool counts(const Place &place) const { return request_.left_out < 0 || region_of(place) != request_.left_out; }
-    Row row_of(const CurveFit &fit, const Place &place, size_t channel) const;
+    void add_curve(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel, double share,
+                   Row &row) const;
+    Row row_of(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel) const;
     double cost_of(const CurveFit &fit) const;
     double prior_cost(const CurveFit &fit) const;
     void equations(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd &g) const;
@@ -87,10 +93,6 @@ private:
     std::array<double, curve_knots> prior_rise_{};
     mutable std::vector<std::array<double, 3>> gains_;  // of every picture, that A is relative to
 };
-
-double rise(const CurveFit &fit, int i) {
-    return fit.knots[static_cast<size_t>(i + 1)] - fit.knots[static_cast<size_t>(i)];
-}
 
 double median(std::vector<double> values) {
     if (values.empty()) return 0.0;
@@ -123,27 +125,37 @@ CurveFit Solver::start() const {
     return fit;
 }
 
-Row Solver::row_of(const CurveFit &fit, const Place &place, size_t channel) const {
-    const double x = fit.light(place, channel);
-    double slope = 0.0;
-    fit.eval(x, &slope);
-    Row row;
+// `share` of the derivatives of f in a channel, without those of q.
+void Solver::add_curve(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel, double share,
+                       Row &row) const {
+    const double x = at.light[channel], slope = at.slope[channel];
     if (x >= 1.0) {
-        row.add(curve_knots - 2, -(x - 1.0) * slope / std::max(rise(fit, curve_knots - 1), 1e-9));
+        row.add(curve_knots - 2, -share * (x - 1.0) * slope / std::max(rise(fit, curve_knots - 1), 1e-9));
     } else {
         const Interval in = interval_of(x);
-        row.add(in.index - 1, 1.0 - in.share);
-        if (in.index + 1 < curve_knots) row.add(in.index, in.share);
+        row.add(in.index - 1, share * (1.0 - in.share));
+        if (in.index + 1 < curve_knots) row.add(in.index, share * in.share);
     }
+    const int first = inner + of_picture * static_cast<int>(place.picture) + 3 * static_cast<int>(channel);
+    const double gain = share * slope * radial(fit.renderings[place.picture], place.r2);
+    for (size_t k = 0; k < request_.channels; k++)
+        row.add(first + static_cast<int>(k), gain * place.raw[k] * gains_[place.picture][k]);
+}
+
+Row Solver::row_of(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel) const {
+    Row row;
+    const double s = fit.renderings[place.picture].saturation;
     const int first = inner + of_picture * static_cast<int>(place.picture);
-    const double gain = radial(fit.renderings[place.picture], place.r2);
-    for (int k = 0; k < static_cast<int>(request_.channels); k++) {
-        const size_t from = request_.channels == 1 ? channel : static_cast<size_t>(k);
-        row.add(first + 3 * static_cast<int>(channel) + static_cast<int>(from),
-                slope * gain * place.raw[from] * gains_[place.picture][from]);
+    double by_gain = 0.0;
+    for (size_t k = 0; k < request_.channels; k++) {
+        const double share = (k == channel ? 1.0 + s : 0.0) - s * grey_weights[k];
+        if (share == 0.0) continue;
+        add_curve(fit, place, at, k, share, row);
+        by_gain += share * at.slope[k] * at.light[k];
     }
     double r2 = place.r2;
-    for (int n = 0; n < 3; n++, r2 *= place.r2) row.add(first + 9 + n, slope * x * r2);
+    for (int n = 0; n < 3; n++, r2 *= place.r2) row.add(first + 9 + n, by_gain * r2);
+    if (request_.channels == 3) row.add(first + 12, at.curve[channel] - at.grey);
     return row;
 }
 
@@ -165,6 +177,7 @@ double Solver::prior_cost(const CurveFit &fit) const {
             sum += std::pow((r.colour[i] / gains_[p][i % 3] - about) / colour_sigma, 2);
         }
         for (double q : r.falloff) sum += std::pow(q / falloff_sigma, 2);
+        sum += std::pow(r.saturation / saturation_sigma, 2);
     }
     return sum;
 }
@@ -173,9 +186,10 @@ double Solver::cost_of(const CurveFit &fit) const {
     double sum = prior_cost(fit);
     for (const Place &place : request_.places) {
         if (!counts(place)) continue;
+        const Prediction at = fit.predict(place);
         for (size_t c = 0; c < request_.channels; c++) {
             double residual = 0.0;
-            if (fit.weight(place, c, &residual) == 0.0) continue;
+            if (fit.weight(place, at, c, &residual) == 0.0) continue;
             const double z = residual / fit.noise[static_cast<size_t>(chroma_bin(place))];
             sum += robust_at * robust_at * std::log1p(z * z / (robust_at * robust_at));
         }
@@ -212,9 +226,11 @@ void Solver::add_picture_prior(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::V
         const auto first = inner + of_picture * static_cast<int>(p);
         for (int i = 0; i < of_picture; i++) {
             const auto n = static_cast<size_t>(i);
-            const double sigma = i < 9 ? colour_sigma : falloff_sigma;
-            const double value = i < 9 ? fit.renderings[p].colour[n] / gains_[p][n % 3] - (n % 4 == 0 ? 1.0 : 0.0)
-                                       : fit.renderings[p].falloff[n - 9];
+            const double sigma = i < 9 ? colour_sigma : i < 12 ? falloff_sigma : saturation_sigma;
+            const Rendering &r = fit.renderings[p];
+            const double value = i < 9    ? r.colour[n] / gains_[p][n % 3] - (n % 4 == 0 ? 1.0 : 0.0)
+                                 : i < 12 ? r.falloff[n - 9]
+                                          : r.saturation;
             h(first + i, first + i) += 1.0 / (sigma * sigma);
             g(first + i) += value / (sigma * sigma);
         }
@@ -226,11 +242,12 @@ void Solver::equations(const CurveFit &fit, Eigen::MatrixXd &h, Eigen::VectorXd 
     g.setZero(size_);
     for (const Place &place : request_.places) {
         if (!counts(place)) continue;
+        const Prediction at = fit.predict(place);
         for (size_t c = 0; c < request_.channels; c++) {
             double residual = 0.0;
-            const double weight = fit.weight(place, c, &residual);
+            const double weight = fit.weight(place, at, c, &residual);
             if (weight == 0.0) continue;
-            const Row row = row_of(fit, place, c);
+            const Row row = row_of(fit, place, at, c);
             for (int a = 0; a < row.count; a++) {
                 const double along = weight * row.slope[static_cast<size_t>(a)];
                 g(row.at[static_cast<size_t>(a)]) += along * residual;
@@ -260,8 +277,10 @@ CurveFit Solver::moved(const CurveFit &fit, const Eigen::VectorXd &step) const {
             const double by = share * step(inner + of_picture * static_cast<int>(p) + i);
             if (i < 9)
                 to.renderings[p].colour[n] += by * gains_[p][n % 3];
-            else
+            else if (i < 12)
                 to.renderings[p].falloff[n - 9] += by;
+            else
+                to.renderings[p].saturation += by;
         }
     return to;
 }
@@ -298,12 +317,14 @@ void Solver::solve(CurveFit &fit, int rounds) const {
 // By the median of what is left, of every chroma no less than of smaller ones.
 void Solver::estimate_noise(CurveFit &fit) const {
     std::array<std::vector<double>, chroma_bins> left;
-    for (const Place &place : request_.places)
+    for (const Place &place : request_.places) {
+        const Prediction at = fit.predict(place);
         for (size_t c = 0; c < request_.channels; c++) {
             double residual = 0.0;
-            if (fit.weight(place, c, &residual) != 0.0 && place.use[c] == Place::grey)
+            if (fit.weight(place, at, c, &residual) != 0.0 && place.use[c] == Place::grey)
                 left[static_cast<size_t>(chroma_bin(place))].push_back(std::fabs(residual));
         }
+    }
     double least = least_noise;
     for (size_t i = 0; i < left.size(); i++) {
         if (left[i].size() >= 30) least = std::max(least, 1.4826 * median(left[i]));
@@ -334,18 +355,25 @@ double CurveFit::eval(double x, double *slope) const {
     return knots[i] + in.share * (knots[i + 1] - knots[i]);
 }
 
-double CurveFit::light(const Place &place, size_t channel) const {
-    const Rendering &rendering = renderings[place.picture];
-    const double *row = &rendering.colour[3 * channel];
-    return radial(rendering, place.r2) * (row[0] * place.raw[0] + row[1] * place.raw[1] + row[2] * place.raw[2]);
+Prediction CurveFit::predict(const Place &place) const {
+    Prediction at;
+    const Rendering &r = renderings[place.picture];
+    const double gain = radial(r, place.r2);
+    for (size_t c = 0; c < 3; c++) {
+        const double *row = &r.colour[3 * c];
+        at.light[c] = gain * (row[0] * place.raw[0] + row[1] * place.raw[1] + row[2] * place.raw[2]);
+        at.curve[c] = eval(at.light[c], &at.slope[c]);
+        at.grey += grey_weights[c] * at.curve[c];
+    }
+    for (size_t c = 0; c < 3; c++) at.grey_value[c] = at.curve[c] + r.saturation * (at.curve[c] - at.grey);
+    return at;
 }
 
 // White says that the response has reached it, and no more.
-double CurveFit::weight(const Place &place, size_t channel, double *residual) const {
+double CurveFit::weight(const Place &place, const Prediction &at, size_t channel, double *residual) const {
     *residual = 0.0;
     if (place.use[channel] == Place::none) return 0.0;
-    const double predicted = eval(light(place, channel), nullptr);
-    *residual = predicted - (place.use[channel] == Place::white ? white_edge : place.grey_value[channel]);
+    *residual = at.grey_value[channel] - (place.use[channel] == Place::white ? white_edge : place.grey_value[channel]);
     if (place.use[channel] == Place::white && *residual >= 0.0) return 0.0;
     const double sigma = noise[static_cast<size_t>(chroma_bin(place))], z = *residual / (robust_at * sigma);
     return 1.0 / (sigma * sigma * (1.0 + z * z));

@@ -1,10 +1,12 @@
 // The response between linear raw values and rendered grey values, fitted to places.
 //
-//   B_c = f( exp(q1 r^2 + q2 r^4 + q3 r^6) * sum_k A_ck raw_k )
+//   y_c = f( exp(q1 r^2 + q2 r^4 + q3 r^6) * sum_k A_ck raw_k )       B_c = y_c + s (y_c - .299 y_r - .587 y_g - .114
+//   y_b)
 //
-// f is one curve for all channels and pictures; A (white balance, exposure and colour matrix in one) and the camera's
-// own correction of the falloff q are each picture's. f is straight between knots that lie evenly in x^(1/2.2), rises
-// by its prior, and f(0) = 0, f(1) = 1: x = 1 is where the rendering reaches white.
+// f is one curve for all channels and pictures; A (white balance, exposure and colour matrix in one), the camera's
+// own correction of the falloff q and a saturation s of colours after the curve are each picture's. f is straight
+// between knots that lie evenly in x^(1/2.2), rises by its prior, and f(0) = 0, f(1) = 1: x = 1 is where the rendering
+// reaches white.
 #pragma once
 
 #include <array>
@@ -21,7 +23,15 @@ constexpr int curve_knots = 64;  // intervals of f
 struct Rendering {
     std::array<double, 9> colour = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // A, rows of the rendered channels
     std::array<double, 3> falloff = {0, 0, 0};                   // q
+    double saturation = 0.0;                                     // s
 };
+
+// Of a place: light and f of every channel, and the rendered grey values.
+struct Prediction {
+    std::array<double, 3> light{}, curve{}, slope{}, grey_value{};
+    double grey = 0.0;  // what saturation is about
+};
+constexpr std::array<double, 3> grey_weights = {0.299, 0.587, 0.114};  // of Y in JPEG (ITU-R BT.601)
 
 // Chroma is weighed by how well the model follows it: hues that a camera shifts count for little.
 constexpr int chroma_bins = 5;
@@ -35,10 +45,9 @@ struct CurveFit {
 
     // f(x); beyond white on with its last slope.
     double eval(double x, double *slope) const;
-    // x of a channel of a place.
-    double light(const Place &place, size_t channel) const;
+    Prediction predict(const Place &place) const;
     // The weight of a channel's residual, and the residual in grey values; 0 where it does not count.
-    double weight(const Place &place, size_t channel, double *residual) const;
+    double weight(const Place &place, const Prediction &predicted, size_t channel, double *residual) const;
 
     lensprof_response response() const;
     // q = ln ln( I(208) / I(48) ), which moves with ln gamma (docs/model.md).

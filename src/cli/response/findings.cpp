@@ -77,13 +77,13 @@ struct HalfMaps {
         const int column = std::clamp(static_cast<int>(place.across * map_columns), 0, map_columns - 1);
         const int row = std::clamp(static_cast<int>(place.down * map_rows), 0, map_rows - 1);
         Sums &sums = half[which][static_cast<size_t>(row * map_columns + column)];
+        const Prediction at = fit.predict(place);
         for (size_t c = 0; c < channels; c++) {
-            double residual = 0.0, slope = 0.0;
-            const double weight = fit.weight(place, c, &residual), x = fit.light(place, c);
+            double residual = 0.0;
+            const double weight = fit.weight(place, at, c, &residual);
             if (weight == 0.0 || place.use[c] != Place::grey) continue;
-            fit.eval(x, &slope);
             sums.levels -= weight * 255.0 * residual;
-            sums.ev -= weight * residual / std::max(slope * x * std::log(2.0), 1e-3);
+            sums.ev -= weight * residual / std::max(at.slope[c] * at.light[c] * std::log(2.0), 1e-3);
             sums.weight += weight, sums.count++;
         }
     }

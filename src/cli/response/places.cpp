@@ -14,7 +14,7 @@ constexpr double squares_across = 240.0;  // of the longer side, where the pictu
 constexpr uint32_t least_square = 4;      // px
 constexpr int level_bins = 24;
 constexpr size_t most_a_bin = 1200;  // places
-constexpr double least_agreement = 0.5, least_texture = 0.02;
+constexpr double least_agreement = 0.4, least_texture = 0.02;
 constexpr uint8_t first_white = 254;                   // JPEG rings at the edge of white
 constexpr double last_grey = 250.0, least_grey = 1.5;  // means of a square
 
