@@ -17,6 +17,7 @@ constexpr double least_light = 1e-7;
 constexpr double least_noise = 0.25 / 255.0;  // of a mean over a square: JPEG's own
 constexpr double white_edge = 254.0 / 255.0;
 constexpr double robust_at = 3.0;  // noises
+constexpr double rough_at = 0.3;   // range over mean, of light in a place
 constexpr int of_picture = 13;     // unknowns: 9 of A, 3 of q, s
 constexpr double colour_sigma = 1.0, falloff_sigma = 1.0, saturation_sigma = 0.3;
 constexpr double bend_sigma = 0.06, level_sigma = 1.0;
@@ -58,6 +59,9 @@ int chroma_bin(const Place &place) { return std::min(static_cast<int>(place.chro
 double rise(const CurveFit &fit, int i) {
     return fit.knots[static_cast<size_t>(i + 1)] - fit.knots[static_cast<size_t>(i)];
 }
+
+// The mean of f over a place differs from f of its mean light by the light's variance.
+double rough_factor(const Place &place) { return 1.0 + std::pow(place.roughness / rough_at, 2); }
 
 class Solver {
 public:
@@ -190,7 +194,7 @@ double Solver::cost_of(const CurveFit &fit) const {
         for (size_t c = 0; c < request_.channels; c++) {
             double residual = 0.0;
             if (fit.weight(place, at, c, &residual) == 0.0) continue;
-            const double z = residual / fit.noise[static_cast<size_t>(chroma_bin(place))];
+            const double z = residual / fit.sigma(place);
             sum += robust_at * robust_at * std::log1p(z * z / (robust_at * robust_at));
         }
     }
@@ -322,7 +326,7 @@ void Solver::estimate_noise(CurveFit &fit) const {
         for (size_t c = 0; c < request_.channels; c++) {
             double residual = 0.0;
             if (fit.weight(place, at, c, &residual) != 0.0 && place.use[c] == Place::grey)
-                left[static_cast<size_t>(chroma_bin(place))].push_back(std::fabs(residual));
+                left[static_cast<size_t>(chroma_bin(place))].push_back(std::fabs(residual) / rough_factor(place));
         }
     }
     double least = least_noise;
@@ -369,14 +373,18 @@ Prediction CurveFit::predict(const Place &place) const {
     return at;
 }
 
+double CurveFit::sigma(const Place &place) const {
+    return noise[static_cast<size_t>(chroma_bin(place))] * rough_factor(place);
+}
+
 // White says that the response has reached it, and no more.
 double CurveFit::weight(const Place &place, const Prediction &at, size_t channel, double *residual) const {
     *residual = 0.0;
     if (place.use[channel] == Place::none) return 0.0;
     *residual = at.grey_value[channel] - (place.use[channel] == Place::white ? white_edge : place.grey_value[channel]);
     if (place.use[channel] == Place::white && *residual >= 0.0) return 0.0;
-    const double sigma = noise[static_cast<size_t>(chroma_bin(place))], z = *residual / (robust_at * sigma);
-    return 1.0 / (sigma * sigma * (1.0 + z * z));
+    const double own = sigma(place), z = *residual / (robust_at * own);
+    return 1.0 / (own * own * (1.0 + z * z));
 }
 
 lensprof_response CurveFit::response() const {

@@ -46,6 +46,8 @@ struct CurveFit {
     // f(x); beyond white on with its last slope.
     double eval(double x, double *slope) const;
     Prediction predict(const Place &place) const;
+    // Of a channel's residual: that of the chroma, more for a rough place, whose mean is not that of its mean light.
+    double sigma(const Place &place) const;
     // The weight of a channel's residual, and the residual in grey values; 0 where it does not count.
     double weight(const Place &place, const Prediction &predicted, size_t channel, double *residual) const;
 

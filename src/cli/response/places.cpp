@@ -22,7 +22,6 @@ constexpr double last_grey = 250.0, least_grey = 1.5;  // means of a square
 struct Candidate {
     Place place;
     uint32_t column, row;
-    float roughness;  // of the raw green, share of its mean
 };
 
 // The part of the raw frame that a square covers.
@@ -131,7 +130,7 @@ private:
         out.place.r2 = static_cast<float>(place[0] * place[0] + place[1] * place[1]);
         out.place.across = static_cast<float>(0.5 + place[0] * raw_rho_ / raw_.width);
         out.place.down = static_cast<float>(0.5 + place[1] * raw_rho_ / raw_.height);
-        out.roughness = static_cast<float>((part.most - part.least) / (65535.0 * out.place.raw[1] + 64.0));
+        out.place.roughness = static_cast<float>((part.most - part.least) / (65535.0 * out.place.raw[1] + 64.0));
         return true;
     }
 
@@ -156,7 +155,7 @@ void add_surroundings(const Grid &grid, std::vector<Candidate> &candidates) {
                 if (v < 0.0f) continue;
                 least = std::min(least, v), most = std::max(most, v);
             }
-        c.roughness = std::max(c.roughness, (most - least) / (c.place.raw[1] + 0.001f));
+        c.place.roughness = std::max(c.place.roughness, (most - least) / (c.place.raw[1] + 0.001f));
     }
 }
 
@@ -168,8 +167,9 @@ std::vector<Place> smoothest(std::vector<Candidate> &candidates, uint32_t &rough
     std::vector<Place> places;
     for (auto &bin : bins) {
         const size_t keep = std::min(most_a_bin, (bin.size() + 1) / 2);
-        std::stable_sort(bin.begin(), bin.end(),
-                         [](const Candidate *a, const Candidate *b) { return a->roughness < b->roughness; });
+        std::stable_sort(bin.begin(), bin.end(), [](const Candidate *a, const Candidate *b) {
+            return a->place.roughness < b->place.roughness;
+        });
         for (size_t i = 0; i < keep; i++) places.push_back(bin[i]->place);
         rough += static_cast<uint32_t>(bin.size() - keep);
     }

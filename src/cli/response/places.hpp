@@ -25,6 +25,7 @@ struct Place {
     float across, down;  // in the raw frame, 0..1
     uint32_t picture;    // of several
     float chroma;        // 0 = rendered neutral, 1 = a channel at 0
+    float roughness;     // of the raw green in the square and those around it: range over mean
 };
 
 // How much there is of a file, and how well the two fit.
