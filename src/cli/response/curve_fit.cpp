@@ -81,7 +81,14 @@ public:
     void add_covariance(CurveFit &fit) const;
 
 private:
-    bool counts(const Place &place) const { return request_.left_out < 0 || region_of(place) != request_.left_out; }
+    bool counts(const Place &place) const {
+        switch (request_.left_out) {
+        case leave_none: return true;
+        case leave_rougher: return !place.is_rougher;
+        case leave_colourful: return !place.is_more_colourful;
+        default: return region_of(place) != request_.left_out;
+        }
+    }
     void add_curve(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel, double share,
                    Row &row) const;
     Row row_of(const CurveFit &fit, const Place &place, const Prediction &at, size_t channel) const;

@@ -58,20 +58,21 @@ struct CurveFit {
     double gauge_sigma() const;
 };
 
+// Regions of the frame, for errors by leaving each out in turn: places near each other are wrong alike.
+constexpr int region_count = 20;
+constexpr int leave_none = -1, leave_rougher = region_count, leave_colourful = region_count + 1;
+int region_of(const Place &place);
+
 // `pictures`: how many there are; `prior`: the typical response that unseen levels lean on. By Levenberg-Marquardt,
-// robust. `start`: of an earlier fit of the same pictures, whose noise stays; or null. `left_out`: of `group`, which
-// gives each place a group; -1: none.
+// robust. `start`: of an earlier fit of the same pictures, whose noise stays; or null. `left_out`: places that do not
+// count: none, or all of a region (0..region_count - 1), the rougher or the more colourful half.
 struct FitRequest {
     const std::vector<Place> &places;
     uint32_t pictures = 1, channels = 3;
     const lensprof_response &prior;
     const CurveFit *start = nullptr;
-    int left_out = -1;
+    int left_out = leave_none;
 };
 CurveFit fit_curve(const FitRequest &request);
-
-// Regions of the frame, for errors by leaving each out in turn: places near each other are wrong alike.
-constexpr int region_count = 20;
-int region_of(const Place &place);
 
 }  // namespace lensprof

@@ -23,6 +23,7 @@ constexpr double least_correction = 0.02;  // of the light
 // What the places have in common, and no leaving out of regions tells: rendering by blocks, rounding of colours, noise
 // that a camera takes out.
 constexpr double common_sigma = 0.004;
+constexpr double scatter_unseen = 0.5;  // of ln gamma, of what is not shown
 const double gauge_range = std::log(208.0 / 48.0);
 
 double gamma_of(double gauge) { return std::exp(gauge) / gauge_range; }
@@ -37,7 +38,8 @@ double radial_gain(const Rendering &rendering, double radius) {
     return std::exp(r2 * (rendering.falloff[0] + r2 * (rendering.falloff[1] + r2 * rendering.falloff[2])));
 }
 
-// Standard errors by leaving out a region at a time: of the gauge, and of ln of every file's corner.
+// Standard errors by leaving out a region at a time: of the gauge, and of ln of every file's corner. The gauge's has in
+// it by how much smooth and neutral places alone give another one: there the model is right, elsewhere nearly.
 struct Spread {
     double gauge = 0.0;
     std::vector<double> corners;
@@ -59,7 +61,13 @@ Spread leave_out(const FitRequest &request, const CurveFit &fit, const std::vect
         return fits.size() < 2 ? 0.0 : std::sqrt(sum * double(fits.size() - 1) / double(fits.size()));
     };
     Spread spread;
-    spread.gauge = error_of([](const CurveFit &f) { return f.gauge(); });
+    double variance = std::pow(error_of([](const CurveFit &f) { return f.gauge(); }), 2);
+    for (const int half : {leave_rougher, leave_colourful}) {
+        const CurveFit without =
+            fit_curve({request.places, request.pictures, request.channels, request.prior, &fit, half});
+        variance += std::pow(without.gauge() - fit.gauge(), 2);
+    }
+    spread.gauge = std::sqrt(variance);
     for (size_t p = 0; p < radii.size(); p++)
         spread.corners.push_back(
             error_of([&](const CurveFit &f) { return std::log(radial_gain(f.renderings[p], radii[p])); }));
@@ -137,7 +145,7 @@ void describe_levels(const std::vector<Place> &places, uint32_t channels, Respon
         }
     std::sort(levels.begin(), levels.end());
     if (!levels.empty())
-        report.lowest = levels[levels.size() / 200], report.highest = levels[levels.size() - 1 - levels.size() / 200];
+        report.lowest = levels[levels.size() / 100], report.highest = levels[levels.size() - 1 - levels.size() / 100];
     report.tenths = static_cast<uint32_t>(std::count_if(tenths.begin(), tenths.end(), [](int n) { return n >= 20; }));
     report.shows_white = white >= 20;
 }
@@ -150,6 +158,16 @@ std::string few_text(const FileFindings &file) {
                "rendered picture %u are black, %u white and %u saturated in the raw file); take a picture with "
                "all brightnesses and smooth areas of each",
                file.places, f.squares, f.black, f.white, f.saturated);
+}
+
+// Of ln gamma, where the darkest or brightest part between levels 48 and 208 is not shown: cameras differ there.
+double unseen_sigma(const ResponseReport &report) {
+    const auto light = [&](double level) {
+        return std::log(std::max(lensprof_response_invert(&report.response, level / 255.0, nullptr), 1e-9));
+    };
+    const double low = std::clamp(report.lowest, 48.0, 208.0), high = std::clamp(report.highest, low, 208.0);
+    const double range = light(208.0) - light(48.0), seen = light(high) - light(low);
+    return range > 0.0 ? scatter_unseen * (1.0 - seen / range) : scatter_unseen;
 }
 
 void refuse(ResponseReport &report, uint32_t code, const std::string &text, std::vector<double> values) {
@@ -225,7 +243,7 @@ double scatter_of_files(const std::vector<std::vector<Place>> &places, const len
     for (size_t i = 0; i < places.size(); i++) {
         std::vector<Place> alone = places[i];
         for (Place &place : alone) place.picture = 0;
-        const FitRequest request{alone, 1, report.files[i].from.channels, prior, nullptr, -1};
+        const FitRequest request{alone, 1, report.files[i].from.channels, prior};
         const CurveFit fit = fit_curve(request);
         const double sigma =
             std::hypot(std::max(leave_out(request, fit, {1.0}).gauge, fit.gauge_sigma()), common_sigma);
@@ -254,12 +272,13 @@ void fit_files(const std::vector<std::vector<Place>> &places, const lensprof_res
         all.insert(all.end(), places[i].begin(), places[i].end());
     }
     const uint32_t channels = report.files[0].from.channels;
-    const FitRequest request{all, static_cast<uint32_t>(places.size()), channels, prior, nullptr, -1};
+    const FitRequest request{all, static_cast<uint32_t>(places.size()), channels, prior};
     const CurveFit fit = fit_curve(request);
     const Spread spread = leave_out(request, fit, radii);
     report.response = fit.response();
     report.gamma = gamma_of(fit.gauge());
-    const double own = std::hypot(std::max(spread.gauge, fit.gauge_sigma()), common_sigma);
+    describe_levels(all, channels, report);
+    const double own = std::hypot(std::max(spread.gauge, fit.gauge_sigma()), common_sigma, unseen_sigma(report));
     const double scatter = places.size() > 1 ? scatter_of_files(places, prior, report) : 0.0;
     report.log_gamma_sigma = std::sqrt(own * own + scatter / double(places.size()));
     if (places.size() == 1) report.files[0].gamma = report.gamma, report.files[0].gamma_sigma = own;
@@ -270,7 +289,6 @@ void fit_files(const std::vector<std::vector<Place>> &places, const lensprof_res
         corrected += report.files[i].is_corrected();
     }
     report.is_corrected = 2 * corrected > places.size();
-    describe_levels(all, channels, report);
     judge(report);
 }
 

@@ -38,7 +38,7 @@ struct ResponseReport {
     lensprof_response response{};
     double gamma = 0.0;  // I of 208 over I of 48 as of the curve x^(1/gamma)
     double log_gamma_sigma = LENSPROF_UNKNOWN;
-    double lowest = 0.0, highest = 0.0;  // grey levels of 255 that places show, 1 in 200 beyond each
+    double lowest = 0.0, highest = 0.0;  // grey levels of 255 that places show, 1 in 100 beyond each
     uint32_t tenths = 0;                 // of the grey values that are shown
     bool shows_white = false;            // the rendering reaches white before the sensor saturates
     bool is_corrected = false;           // of most files

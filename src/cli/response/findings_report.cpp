@@ -31,7 +31,11 @@ Json file_json(const FileFindings &file) {
                          {"texture", f.alignment.texture}};
     json["squares"] = f.squares;
     json["places"] = file.places;
-    json["left_out"] = {{"black", f.black}, {"white", f.white}, {"saturated", f.saturated}, {"rough", f.rough}};
+    json["left_out"] = {{"black", f.black},
+                        {"white", f.white},
+                        {"colourful", f.colourful},
+                        {"saturated", f.saturated},
+                        {"rough", f.rough}};
     json["radius"] = file.radius;
     json["gamma"] = file.gamma;
     json["gamma_sigma"] = file.gamma_sigma;

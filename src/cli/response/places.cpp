@@ -15,7 +15,9 @@ constexpr uint32_t least_square = 4;      // px
 constexpr int level_bins = 24;
 constexpr size_t most_a_bin = 1200;  // places
 constexpr double least_agreement = 0.4, least_texture = 0.02;
-constexpr uint8_t first_white = 254;                   // JPEG rings at the edge of white
+constexpr uint8_t first_white = 254;    // JPEG rings at the edge of white
+constexpr float most_chroma = 0.7f;     // beyond, a channel may have been cut at 0 when colours were made
+constexpr float most_roughness = 1.0f;  // range of the raw green over its mean
 constexpr double last_grey = 250.0, least_grey = 1.5;  // means of a square
 
 // A square that is not left out so far.
@@ -106,7 +108,8 @@ private:
         if (!any) (black ? counts.black : counts.white)++;
         const auto ends = std::minmax_element(place.grey_value.begin(), place.grey_value.end());
         place.chroma = *ends.second > 0.0f ? 1.0f - *ends.first / *ends.second : 0.0f;
-        return any;
+        if (place.chroma > most_chroma) counts.colourful++;
+        return any && place.chroma <= most_chroma;
     }
 
     bool read_raw(Candidate &out, PlacesOf &counts) const {
@@ -162,15 +165,27 @@ void add_surroundings(const Grid &grid, std::vector<Candidate> &candidates) {
 // Of every grey level the smoothest half, and not too many.
 std::vector<Place> smoothest(std::vector<Candidate> &candidates, uint32_t &rough) {
     std::vector<std::vector<const Candidate *>> bins(level_bins);
-    for (const Candidate &c : candidates)
+    for (const Candidate &c : candidates) {
+        if (c.place.roughness > most_roughness) {
+            rough++;
+            continue;
+        }
         bins[static_cast<size_t>(std::min(c.place.grey_value[1], 0.999f) * level_bins)].push_back(&c);
+    }
     std::vector<Place> places;
     for (auto &bin : bins) {
         const size_t keep = std::min(most_a_bin, (bin.size() + 1) / 2);
         std::stable_sort(bin.begin(), bin.end(), [](const Candidate *a, const Candidate *b) {
             return a->place.roughness < b->place.roughness;
         });
-        for (size_t i = 0; i < keep; i++) places.push_back(bin[i]->place);
+        std::vector<float> chroma;
+        for (size_t i = 0; i < keep; i++) chroma.push_back(bin[i]->place.chroma);
+        std::sort(chroma.begin(), chroma.end());
+        for (size_t i = 0; i < keep; i++) {
+            places.push_back(bin[i]->place);
+            places.back().is_rougher = i >= keep / 2;
+            places.back().is_more_colourful = bin[i]->place.chroma > chroma[keep / 2];
+        }
         rough += static_cast<uint32_t>(bin.size() - keep);
     }
     return places;

@@ -21,21 +21,22 @@ struct Place {
     std::array<float, 3> raw;         // linear, 0..1 of the sensor's saturation
     std::array<float, 3> grey_value;  // rendered, 0..1
     std::array<uint8_t, 3> use;
-    float r2;            // squared radius in the raw frame, half diagonals
-    float across, down;  // in the raw frame, 0..1
-    uint32_t picture;    // of several
-    float chroma;        // 0 = rendered neutral, 1 = a channel at 0
-    float roughness;     // of the raw green in the square and those around it: range over mean
+    float r2;                            // squared radius in the raw frame, half diagonals
+    float across, down;                  // in the raw frame, 0..1
+    uint32_t picture;                    // of several
+    float chroma;                        // 0 = rendered neutral, 1 = a channel at 0
+    float roughness;                     // of the raw green in the square and those around it: range over mean
+    bool is_rougher, is_more_colourful;  // than half of the places of its grey level
 };
 
 // How much there is of a file, and how well the two fit.
 struct PlacesOf {
     std::vector<Place> places;
     Alignment alignment;
-    uint32_t squares = 0;                                     // of the rendered picture
-    uint32_t black = 0, white = 0, saturated = 0, rough = 0;  // left out
-    uint32_t width = 0, height = 0;                           // of the rendered picture, px
-    int quarter_turns = 0;                                    // by which it was turned to lie as the frame does
+    uint32_t squares = 0;                                                    // of the rendered picture
+    uint32_t black = 0, white = 0, colourful = 0, saturated = 0, rough = 0;  // left out
+    uint32_t width = 0, height = 0;                                          // of the rendered picture, px
+    int quarter_turns = 0;  // by which it was turned to lie as the frame does
     uint32_t channels = 3;
 };
 

@@ -79,7 +79,9 @@ Picture read_rendered(const Options &o, size_t i, std::string &beside, Streams &
         Picture picture = read_raw_preview(o.files[i]);
         if (is_large_enough(picture) || other.empty()) return picture;
     } catch (const Failure &failure) {
-        if (failure.code != ExitCode::unreadable || other.empty() || !raw_kind(o.files[i]) || !can_read_raw()) throw;
+        const bool is_raw = failure.code == ExitCode::unreadable && can_read_raw() && raw_kind(o.files[i]);
+        if (!is_raw) throw;
+        if (other.empty()) throw Failure(failure.code, failure.what() + std::string(", and give it with --jpeg"));
     }
     note(streams, o.files[i] + ": has no JPEG preview of a useful size; " + other + " is taken");
     return read_jpeg(beside = other);
