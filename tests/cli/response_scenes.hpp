@@ -22,20 +22,20 @@ using Colour = std::array<double, 3>;
 struct Shot {
     uint32_t width = 900, height = 600;  // of the sensor
     lensprof_response response{};
-    double white_ev = 0.3;               // the rendering's white is so far below the sensor's saturation
-    double exposure = 1.0;               // of the scene, 1: its mid-grey is near a sixth of the rendering's white
-    double mixing = 0.5;                 // off-diagonal weight of the colour matrix; 0 = none
-    Colour balance = {2.0, 1.0, 1.6};    // gains of the channels
+    double white_ev = 0.3;             // the rendering's white is so far below the sensor's saturation
+    double exposure = 1.0;             // of the scene, 1: its mid-grey is near a sixth of the rendering's white
+    double mixing = 0.5;               // off-diagonal weight of the colour matrix; 0 = none
+    Colour balance = {2.0, 1.0, 1.6};  // gains of the channels
     Colour falloff = {-0.40, 0.10, -0.05};
-    bool corrects = false;               // the falloff, before the curve
-    double local_ev = 0.0;               // gain of tones by the mean of their surroundings
-    double saturation = 0.0;             // of colours, after the curve
+    bool corrects = false;    // the falloff, before the curve
+    double local_ev = 0.0;    // gain of tones by the mean of their surroundings
+    double saturation = 0.0;  // of colours, after the curve
     double sharpen = 0.3;
     double noise = 0.0015, shot_noise = 0.01;  // of a photosite: constant, and by the square root of the light
-    double crop = 0.01;                  // share left out at every edge
-    double bend = 0.0;                   // k1 of a distortion that is corrected
+    double crop = 0.01;                        // share left out at every edge
+    double bend = 0.0;                         // k1 of a distortion that is corrected
     uint32_t rendered_width = 800;
-    int quarter_turns = 0;               // of the rendering
+    int quarter_turns = 0;  // of the rendering
     JpegKind jpeg = {92, 2, 2};
     lensprof::SceneKind scene = lensprof::SceneKind::landscape;
     uint32_t seed = 1;
@@ -52,7 +52,8 @@ struct Field {
         const double u = x - double(i), v = y - double(j);
         const Colour *a = &values[j * width + i], *b = a + width;
         Colour out;
-        for (size_t c = 0; c < 3; c++) out[c] = (a[0][c] * (1 - u) + a[1][c] * u) * (1 - v) + (b[0][c] * (1 - u) + b[1][c] * u) * v;
+        for (size_t c = 0; c < 3; c++)
+            out[c] = (a[0][c] * (1 - u) + a[1][c] * u) * (1 - v) + (b[0][c] * (1 - u) + b[1][c] * u) * v;
         return out;
     }
 };
@@ -69,7 +70,8 @@ inline double falloff_of(const Shot &shot, double r2) {
 // Neutral stays neutral.
 inline Colour mixed(const Shot &shot, const Colour &in) {
     const double m = shot.mixing;
-    return {(1 + m) * in[0] - 0.8 * m * in[1] - 0.2 * m * in[2], -0.3 * m * in[0] + (1 + 0.6 * m) * in[1] - 0.3 * m * in[2],
+    return {(1 + m) * in[0] - 0.8 * m * in[1] - 0.2 * m * in[2],
+            -0.3 * m * in[0] + (1 + 0.6 * m) * in[1] - 0.3 * m * in[2],
             -0.1 * m * in[0] - 0.9 * m * in[1] + (1 + m) * in[2]};
 }
 
@@ -77,15 +79,15 @@ inline Colour mixed(const Shot &shot, const Colour &in) {
 inline Field sensor_light(const Shot &shot) {
     Field field{shot.width, shot.height, std::vector<Colour>(size_t(shot.width) * shot.height)};
     const lensprof::Scene scene(shot.seed, shot.scene);
-    const double per_px = 1.0 / shot.width, most = *std::max_element(shot.balance.begin(), shot.balance.end());
+    const double per_px = 1.0 / shot.width;
     for (uint32_t y = 0; y < shot.height; y++)
         for (uint32_t x = 0; x < shot.width; x++) {
             Colour &out = field.at(x, y);
             scene.radiance((x - shot.width / 2.0) * per_px + 0.3, (y - shot.height / 2.0) * per_px, out.data());
             // Neutral light is white at 2^-white_ev of the saturation of the channel that saturates first.
-            const double gain = shot.exposure * std::exp2(-shot.white_ev) * falloff_of(shot, radius2(x, y, shot.width, shot.height));
+            const double gain =
+                shot.exposure * std::exp2(-shot.white_ev) * falloff_of(shot, radius2(x, y, shot.width, shot.height));
             const double least = *std::min_element(shot.balance.begin(), shot.balance.end());
-            (void)most;
             if (shot.monochrome) out = {out[1], out[1], out[1]};
             for (size_t c = 0; c < 3; c++) out[c] *= gain * (shot.monochrome ? 1.0 : least / shot.balance[c]);
         }
@@ -102,8 +104,10 @@ inline raw_files::Dng mosaic_of(const Shot &shot, Field light) {
     for (uint32_t y = 0; y < shot.height; y++)
         for (uint32_t x = 0; x < shot.width; x++) {
             const double value = light.at(x, y)[dng.pattern[y % 2 * 2 + x % 2]];
-            const double noisy = value + normal(random) * (shot.noise + shot.shot_noise * std::sqrt(std::max(value, 0.0)) * 0.5);
-            dng.values.push_back(static_cast<uint16_t>(std::clamp(std::lround(512 + noisy * (16383 - 512)), 0l, 16383l)));
+            const double noisy =
+                value + normal(random) * (shot.noise + shot.shot_noise * std::sqrt(std::max(value, 0.0)) * 0.5);
+            dng.values.push_back(
+                static_cast<uint16_t>(std::clamp(std::lround(512 + noisy * (16383 - 512)), 0l, 16383l)));
         }
     return dng;
 }
@@ -141,11 +145,14 @@ inline Field linear_rendering(const Shot &shot, const Field &full) {
                 const double u = (x + 0.5 + (i % steps + 0.5) / steps - 0.5 - out.width / 2.0) * reduction / rho;
                 const double v = (y + 0.5 + (i / steps + 0.5) / steps - 0.5 - out.height / 2.0) * reduction / rho;
                 const double bent = 1.0 + shot.bend * (u * u + v * v);
-                const double fx = (shot.width - 1) / 2.0 + rho * u * bent, fy = (shot.height - 1) / 2.0 + rho * v * bent;
+                const double fx = (shot.width - 1) / 2.0 + rho * u * bent,
+                             fy = (shot.height - 1) / 2.0 + rho * v * bent;
                 const Colour part = full.between(fx, fy);
-                const double gain = shot.corrects ? 1.0 / falloff_of(shot, radius2(fx, fy, shot.width, shot.height)) : 1.0;
+                const double gain =
+                    shot.corrects ? 1.0 / falloff_of(shot, radius2(fx, fy, shot.width, shot.height)) : 1.0;
                 for (size_t c = 0; c < 3; c++)
-                    sum[c] += std::min(part[c], 1.0) * gain * white * (shot.monochrome ? 1.0 : shot.balance[c] / least) / (steps * steps);
+                    sum[c] += std::min(part[c], 1.0) * gain * white * (shot.monochrome ? 1.0 : shot.balance[c] / least)
+                              / (steps * steps);
             }
             out.at(x, y) = shot.monochrome ? sum : mixed(shot, sum);
         }
@@ -240,7 +247,9 @@ inline double contrasty(double x) {
     return y + 0.18 * (y * y * (3 - 2 * y) - y) * 2.0;
 }
 // Bright mid-greys and a long shoulder.
-inline double filmic(double x) { return std::pow(1.0 - std::exp(-3.2 * x), 0.52) / std::pow(1.0 - std::exp(-3.2), 0.52); }
+inline double filmic(double x) {
+    return std::pow(1.0 - std::exp(-3.2 * x), 0.52) / std::pow(1.0 - std::exp(-3.2), 0.52);
+}
 
 inline lensprof_response typical(uint32_t kind) {
     lensprof_response response;

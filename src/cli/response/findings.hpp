@@ -14,7 +14,7 @@ namespace lensprof {
 
 // Of a map of residuals over the frame, levels of 255: above it tones were mapped by their surroundings, or may have
 // been.
-constexpr double strong_pattern = 2.0, weak_pattern = 0.7;
+constexpr double strong_pattern = 1.2, weak_pattern = 0.5;
 
 // Of one raw file.
 struct FileFindings {
@@ -50,6 +50,12 @@ struct ResponseReport {
 
 // Fits all files together, and each alone where there are several. Failure (not_usable) where there are too few places.
 void fit_files(const std::vector<std::vector<Place>> &places, const lensprof_response &prior, ResponseReport &report);
+
+// The file with the strongest map.
+const FileFindings &most_patterned(const ResponseReport &report);
+
+// Whether it is a response to store, and what is to be minded: sets `usable` and `verdict`.
+void judge(ResponseReport &report);
 
 Json response_report_json(const ResponseReport &report);
 void print_response_report(const ResponseReport &report, std::ostream &out);

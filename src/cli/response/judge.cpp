@@ -1,0 +1,85 @@
+// Whether what was found is the response of a camera.
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program/format.hpp"
+#include "cli/response/findings.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double most_scatter = 6.0;  // levels
+constexpr double most_gamma_sigma = 0.1;
+
+void refuse(ResponseReport &report, uint32_t code, const std::string &text, std::vector<double> values) {
+    report.usable = false;
+    report.verdict.code = code, report.verdict.text = text, report.verdict.values = std::move(values);
+}
+
+double worst_noise(const ResponseReport &report) {
+    double worst = 0.0;
+    for (const FileFindings &file : report.files) worst = std::max(worst, file.noise_levels);
+    return worst;
+}
+
+}  // namespace
+
+const FileFindings &most_patterned(const ResponseReport &report) {
+    return *std::max_element(report.files.begin(), report.files.end(),
+                             [](const auto &a, const auto &b) { return a.pattern_levels < b.pattern_levels; });
+}
+
+void judge(ResponseReport &report) {
+    const FileFindings &pattern = most_patterned(report);
+    const double noise = worst_noise(report);
+    const std::string named = report.files.size() > 1 ? pattern.file + ": " : "";
+    report.usable = true;
+    if (report.tenths < 4)
+        return refuse(
+            report, LENSPROF_REASON_FEW_GREYS,
+            format(
+                "only %u of ten parts of the grey values are shown; take a picture with all brightnesses and smooth areas of each",
+                report.tenths),
+            {double(report.tenths)});
+    if (noise > most_scatter)
+        return refuse(report, LENSPROF_REASON_SCATTER,
+                      format("the rendered picture is %.1f levels away from any curve of the raw values; it may be of "
+                             "another shot, or developed otherwise",
+                             noise),
+                      {noise});
+    if (pattern.pattern_levels > strong_pattern)
+        return refuse(
+            report, LENSPROF_REASON_PATTERNS,
+            named
+                + format(
+                    "tones were mapped by their surroundings (a map of %.1f levels over the frame is left); switch "
+                    "D-Lighting, Auto Lighting Optimizer, DRO, HDR and the like off",
+                    pattern.pattern_levels),
+            {pattern.pattern_ev, pattern.pattern_levels});
+    if (report.log_gamma_sigma > most_gamma_sigma)
+        return refuse(report, LENSPROF_REASON_UNDETERMINED,
+                      format("the exponent is known within %.0f %% only; take a picture with all brightnesses",
+                             100.0 * report.log_gamma_sigma),
+                      {});
+    const auto mind = [&](uint32_t code, const std::string &text, std::vector<double> values) {
+        if (!report.verdict.text.empty()) return;
+        report.verdict.code = code, report.verdict.text = text, report.verdict.values = std::move(values);
+    };
+    if (pattern.pattern_levels > weak_pattern)
+        mind(
+            LENSPROF_REASON_WEAK_PATTERNS,
+            named
+                + format(
+                    "a map of %.1f levels over the frame is left; the camera may have mapped tones by their surroundings",
+                    pattern.pattern_levels),
+            {pattern.pattern_ev, pattern.pattern_levels});
+    if (report.lowest > 48.0 || report.highest < 208.0)
+        mind(LENSPROF_REASON_MISSING_GREYS,
+             format("grey levels %.0f to %.0f are shown; beyond them the response is that of a typical camera, "
+                    "continued",
+                    report.lowest, report.highest),
+             {report.lowest / 255.0, report.highest / 255.0});
+}
+
+}  // namespace lensprof
