@@ -36,7 +36,7 @@ struct FileFindings {
 struct ResponseReport {
     std::vector<FileFindings> files;
     lensprof_response response{};
-    double gamma = 0.0;  // I of 208 over I of 48 as of the curve x^(1/gamma)
+    double gamma = 0.0;  // of the curve x^(1/gamma) with its ratio of light at 208 and 48
     double log_gamma_sigma = LENSPROF_UNKNOWN;
     double lowest = 0.0, highest = 0.0;  // grey levels of 255 that places show, 1 in 100 beyond each
     uint32_t tenths = 0;                 // of the grey values that are shown
