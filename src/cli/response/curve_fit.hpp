@@ -1,7 +1,7 @@
 // The response between linear raw values and rendered grey values, fitted to places.
 //
-//   y_c = f( exp(q1 r^2 + q2 r^4 + q3 r^6) * sum_k A_ck raw_k )       B_c = y_c + s (y_c - .299 y_r - .587 y_g - .114
-//   y_b)
+//   y_c = f( exp(q1 r^2 + q2 r^4 + q3 r^6) * sum_k A_ck raw_k )
+//   B_c = y_c + s (y_c - .299 y_r - .587 y_g - .114 y_b)
 //
 // f is one curve for all channels and pictures; A (white balance, exposure and colour matrix in one), the camera's
 // own correction of the falloff q and a saturation s of colours after the curve are each picture's. f is straight
