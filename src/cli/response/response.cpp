@@ -21,7 +21,7 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t most_files = 64;
+constexpr size_t most_files = 16;
 constexpr uint32_t least_raw_side = 64;  // px, of the cells of a frame
 
 struct Options {
