@@ -29,7 +29,8 @@ struct Dng {
     std::array<uint8_t, 4> pattern = {0, 1, 1, 2};
     std::vector<uint32_t> pattern6;        // of 6 x 6 places, in its place; empty = none
     std::vector<uint32_t> active, masked;  // top, left, bottom, right
-    std::string model = "TestCam 1";
+    std::string maker = "TestMaker", model = "TestCam 1";
+    bool is_dng = true;  // else the same structure without the tags of DNG, as of NEF and PEF
     uint16_t orientation = 1;
     uint32_t declared = 0;  // width and height that the header has in place of the true ones; 0 = these
 };
@@ -178,7 +179,7 @@ inline Directory directory_of(const Dng &dng, uint32_t pixels_at, uint32_t pixel
     d.numbers(258, 3, std::vector<uint32_t>(dng.samples, dng.packing == Packing::words ? 16 : dng.bits));
     d.numbers(259, 3, {dng.packing == Packing::lossless ? 7u : 1u});
     d.numbers(262, 3, {dng.samples == 1 ? 32803u : 34892u});
-    d.text(271, "TestMaker"), d.text(272, dng.model), d.numbers(273, 4, {pixels_at});
+    d.text(271, dng.maker), d.text(272, dng.model), d.numbers(273, 4, {pixels_at});
     d.numbers(274, 3, {dng.orientation}), d.numbers(277, 3, {dng.samples}), d.numbers(278, 4, {height});
     d.numbers(279, 4, {pixel_bytes}), d.numbers(284, 3, {1});
     if (!dng.pattern6.empty()) {
@@ -187,6 +188,7 @@ inline Directory directory_of(const Dng &dng, uint32_t pixels_at, uint32_t pixel
         d.numbers(33421, 3, {2, 2});
         d.numbers(33422, 1, {dng.pattern[0], dng.pattern[1], dng.pattern[2], dng.pattern[3]});
     }
+    if (!dng.is_dng) return d;
     d.numbers(50706, 1, {1, 4, 0, 0}), d.numbers(50707, 1, {1, 1, 0, 0}), d.text(50708, "TestMaker " + dng.model);
     add_levels(d, dng);
     return d;

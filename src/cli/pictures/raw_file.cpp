@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <new>
 
 #include <libraw/libraw.h>
 
 #include "cli/pictures/codec.hpp"
+#include "cli/pictures/raw_blocks.hpp"
 #include "cli/program/interrupt.hpp"
 
 namespace lensprof {
@@ -22,7 +24,7 @@ constexpr uint64_t most_expansion = 1024;  // pixels that one byte of a file can
 constexpr uint32_t colour_period = 12;     // columns after which the mosaics repeat: 2 (Bayer) and 6 (X-Trans)
 constexpr uint16_t saturated = 65535;
 
-// Counts reads beyond the end, which LibRaw's bit readers answer with zeros.
+// Notes reads beyond the end, which LibRaw's bit readers answer with zeros, and how much of each block is read.
 class CheckedStream final : public LibRaw_bigfile_datastream {
 public:
     explicit CheckedStream(const std::string &path) : LibRaw_bigfile_datastream(path.c_str()) {}
@@ -37,9 +39,29 @@ public:
         if (c < 0) is_past_end = true;
         return c;
     }
+    int seek(INT64 offset, int whence) override {
+        leave_block();
+        if (before_seek) before_seek();
+        const int status = LibRaw_bigfile_datastream::seek(offset, whence);
+        block_ = blocks.find(static_cast<uint64_t>(tell()));
+        return status;
+    }
 
+    // Forgets the block that the next bytes belong to. One of which less than half was needed is not what it was.
+    void leave_block() {
+        if (block_ != blocks.end() && (static_cast<uint64_t>(tell()) - block_->first) * 2 < block_->second)
+            is_left_early = true;
+        block_ = blocks.end();
+    }
+
+    RawBlocks blocks;
+    std::function<void()> before_seek;
+    bool is_left_early = false;
     bool is_past_end = false;
     bool is_short = false;  // a block was not all there; some decoders ask for more than they need
+
+private:
+    RawBlocks::const_iterator block_ = blocks.end();
 };
 
 int on_progress(void *, LibRaw_progress, int, int) { return interrupted() ? 1 : 0; }
@@ -152,12 +174,31 @@ uint32_t RawFile::orientation() const {
     }
 }
 
+// LibRaw makes the room for the pixels, seeks their place in the file and decodes them. Where a decoder gives up it may
+// state nothing: what it has not written is black then, not what was in memory before.
+void RawFile::decode() {
+    CheckedStream &stream = decoder_->stream;
+    libraw_data_t &d = decoder_->data();
+    stream.blocks = check_raw_blocks(path_, d.sizes.raw_width, d.sizes.raw_height);
+    stream.is_past_end = stream.is_left_early = false;
+    bool is_clear = false;
+    stream.before_seek = [&] {
+        if (is_clear || !d.rawdata.raw_alloc) return;
+        std::memset(d.rawdata.raw_alloc, 0, size_t(d.sizes.raw_pitch) * d.sizes.raw_height);
+        is_clear = true;
+    };
+    const int status = decoder_->libraw.unpack();
+    stream.before_seek = nullptr;
+    stream.leave_block();
+    check(status);
+}
+
 void RawFile::unpack() {
-    decoder_->stream.is_past_end = false;
     const uint32_t declared_width = width(), declared_height = height();
-    check(decoder_->libraw.unpack());
+    decode();
     const bool is_cut = decoder_->data().idata.dng_version != 0 && decoder_->stream.is_past_end;
     if (is_cut || decoder_->libraw.error_count() > 0) fail_damaged(path_, "its pixels end before their time");
+    if (decoder_->stream.is_left_early) fail_damaged(path_, "its pixels need less than half of their bytes");
     if (width() != declared_width || height() != declared_height)
         fail_damaged(path_, size_text(width(), height()) + " where " + size_text(declared_width, declared_height)
                                 + " are declared");

@@ -57,6 +57,7 @@ private:
     // Of the samples of a channel in a square; 65535 where one is saturated.
     uint16_t mean_of(int x0, int y0, int side, uint32_t channel) const;
 
+    void decode();
     void make_linear();
     void make_linear_mosaic();
     void make_linear_pixels();
