@@ -1,26 +1,11 @@
 // `calibrate`: the whole job, its second run, what stands in the way, and bad input.
+#include "calibrate_runs.hpp"
 #include "cli/calibrate/ledger.hpp"
 #include "cli/pictures/picture.hpp"
-#include "cli/registration/registration.hpp"
-#include "cli_runs.hpp"
 
-using namespace cli_runs;
+using namespace calibrate_runs;
 
 namespace {
-
-void simulate(const std::string &name, const Words &more) {
-    must_exit(done, Words{"simulate", "-o", work(name), "--noise", "1", "--size", "480x360", "--exif"} + more);
-}
-
-bool is_missing() {
-    if (can_register()) return false;
-    simulate("none", {"--images", "2"});
-    const Outcome refused = run_words({"calibrate", work("none"), "-o", work("out"), "--no-store"});
-    assert_int_equal(refused.code, usage);
-    assert_true(contains(refused.err, "built without OpenCV"));
-    assert_false(fs::exists(work("out")));
-    return true;
-}
 
 // Two panoramas, a picture of neither in a subfolder, a copy and a damaged file.
 std::string make_folder_of_many() {
@@ -35,16 +20,6 @@ std::string make_folder_of_many() {
     fs::copy_file(work("many/img001.png"), work("many/z_copy.png"));
     save_text(work("many/bad.png"), text_of(work("many/img002.png")).substr(0, 5000));
     return work("many");
-}
-
-Words calibrated(const std::string &input, const Words &more = {}) {
-    return Words{"calibrate", input, "-o", work("out"), "--db", work("p.db"), "--json"} + more;
-}
-
-// What this run did: registered, fitted, corrected.
-void assert_now(const Json &json, bool registered, int fitted, int corrected) {
-    const Json now = {{"registered", registered}, {"fitted", fitted}, {"corrected", corrected}};
-    if (json["now"] != now) fail_msg("did %s, not %s", json["now"].dump().c_str(), now.dump().c_str());
 }
 
 using Stamps = std::map<std::string, std::string>;
@@ -165,27 +140,6 @@ void test_ten_lines(void **) {
     assert_true(contains(text, "profile 1 stored") && contains(text, "left out  2 pictures"));
 }
 
-// A copy that was begun and written before the end of a run is known by the next one; one that was not is not.
-void test_ledger(void **) {
-    const std::string file = work("a.png");
-    save_text(file, "old");
-    {
-        Ledger ledger(work(""));
-        assert_true(ledger.is_in_the_way(file));
-        ledger.begin(file, "1");
-        ledger.save();
-    }
-    assert_false(Ledger(work("")).is_current(file, "1"));
-    assert_false(Ledger(work("")).is_in_the_way(file));
-    save_text(file, "new and longer");
-    assert_true(Ledger(work("")).is_current(file, "1"));
-    assert_false(Ledger(work("")).is_current(file, "2"));
-    const std::string odd = "a %\xff\n\"b";
-    assert_true(path_of_ascii(ascii_path(odd)) == odd);
-    save_text(work(".lensprof-calibrate.json"), "{damaged");
-    assert_true(Ledger(work("")).is_in_the_way(file));
-}
-
 // Ctrl-C in a run of its own process: what is finished stays, nothing is left half written, and the next run goes on.
 void test_interrupted(void **) {
     if (is_missing()) return;
@@ -225,7 +179,6 @@ int main() {
         CLI_TEST(test_what_stands_in_the_way),
         CLI_TEST(test_bad_input),
         CLI_TEST(test_ten_lines),
-        CLI_TEST(test_ledger),
         CLI_TEST(test_interrupted),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);

@@ -84,14 +84,16 @@ int run(const CalibrateOptions &o, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     check_output_folder(o.output);
     check_store(o.store);
+    FolderLock lock(o.output);
     const Inputs inputs = find_inputs(o.inputs, o.output, progress);
-    Ledger ledger(o.output);
+    Ledger ledger(o.output, o.overwrite);
     check_in_the_way(o, inputs, ledger);
-    if (inputs.unreadable == inputs.found - (inputs.left_out.size() - inputs.unreadable) && inputs.unreadable)
+    if (inputs.pictures.empty() && inputs.unreadable)
         throw Failure(ExitCode::unreadable,
                       inputs.label + ": none of the pictures can be read: " + inputs.left_out[0].reason);
     if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, progress);
     make_folder(o.output);
+    lock.take();
     Panoramas panoramas = find_panoramas(o, inputs, ledger, progress);
     forget_panoramas(o, panoramas, ledger);
     fit_panoramas(o, panoramas, ledger, progress);

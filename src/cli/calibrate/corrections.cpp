@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 
+#include "cli/calibrate/attempt.hpp"
 #include "cli/correct/picture_model.hpp"
 #include "cli/correct/project_model.hpp"
 #include "cli/pictures/picture.hpp"
@@ -29,37 +30,45 @@ Correction job_of(const InputPicture &picture) {
 
 using ByFile = std::map<std::string, CorrectedPicture>;
 
-// Of the pictures of a panorama; those that its result is without get a reason.
-void take_panorama(const Panorama &panorama, ByFile &corrected, std::map<std::string, std::string> &reasons) {
-    if (!panorama.evens()) {
-        const Json &result = panorama.summary["result"];
-        const std::string why = result.is_object() ? result["reason"].get<std::string>()
-                                                   : panorama.summary["not_stored"].get<std::string>();
-        for (const InputPicture *picture : panorama.pictures)
-            reasons[picture->file] = picture->file + ": panorama " + panorama.name + " cannot be evened: " + why;
-        return;
-    }
+using Reasons = std::map<std::string, std::string>;  // by file
+
+// By the project, whose images are found by their files: somebody may have edited it.
+void take_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
     const std::string text = read_text(panorama.project, largest_text);
     const Project project = read_project(panorama.project, true);
-    if (project.images.size() != panorama.pictures.size())
-        throw Failure(ExitCode::usage, panorama.project + ": was edited to other pictures; remove it, and calibrate "
-                                                          "writes it again");
+    const ImagesByFile images(project);
     const std::vector<lensprof_exposure> exposures = relative_to_joined(project);
     const lensprof_exposure mean = mean_exposure(joined_exposures(project, exposures));
     const std::shared_ptr<const lensprof_profile> model = model_of_project(project);
-    for (size_t i = 0; i < project.images.size(); i++) {
-        const InputPicture &picture = *panorama.pictures[i];
-        if (project.images[i].left_out) {
-            reasons[picture.file] = picture.file + ": does not agree with the others of panorama " + panorama.name;
+    for (const InputPicture *picture : panorama.pictures) {
+        const auto image = images.find(picture->file);
+        if (!image || project.images[*image].left_out) {
+            reasons[picture->file] = picture->file
+                                     + (image ? ": does not agree with the others of panorama " + panorama.name
+                                              : ": is not in " + panorama.project);
             continue;
         }
-        CorrectedPicture one{&picture, panorama.name, exposures[i].ev - mean.ev, copy_key(picture, text),
-                             job_of(picture)};
+        CorrectedPicture one{picture, panorama.name, exposures[*image].ev - mean.ev, copy_key(*picture, text),
+                             job_of(*picture)};
         one.job.model = model;
-        one.job.own = exposures[i], one.job.wanted = mean;
+        one.job.own = exposures[*image], one.job.wanted = mean;
         one.job.model_name = std::filesystem::path(panorama.project).filename().string();
-        corrected.emplace(picture.file, std::move(one));
+        corrected.emplace(picture->file, std::move(one));
     }
+}
+
+// Of the pictures of a panorama; those that its result is without get a reason.
+void take_panorama(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
+    std::string why;
+    if (panorama.evens()) {
+        why = why_not([&] { take_project(panorama, corrected, reasons); });
+    } else {
+        const Json &result = panorama.summary["result"];
+        why = (result.is_object() ? result["reason"] : panorama.summary["not_stored"]).get<std::string>();
+    }
+    if (why.empty()) return;
+    for (const InputPicture *picture : panorama.pictures)
+        reasons[picture->file] = picture->file + ": panorama " + panorama.name + " cannot be evened: " + why;
 }
 
 // By a profile of the databases; the reason why not, or "".
@@ -83,7 +92,7 @@ std::string take_profile(const PictureModels &models, const InputPicture &pictur
 
 CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas) {
     ByFile corrected;
-    std::map<std::string, std::string> reasons = panoramas.unjoined;
+    Reasons reasons = panoramas.unjoined;
     for (const Panorama &panorama : panoramas.list) take_panorama(panorama, corrected, reasons);
     ModelOptions options;
     options.dbs = o.store.dbs;
@@ -111,9 +120,6 @@ void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, L
     std::vector<Correction> jobs;
     for (const CorrectedPicture &one : pictures.list) {
         if (ledger.is_current(one.picture->target, one.key)) continue;
-        if (!o.overwrite && ledger.is_in_the_way(one.picture->target))
-            throw Failure(ExitCode::usage, one.picture->target + ": was edited since it was written, and its correction "
-                                                                 "has changed; move it away, or give --overwrite");
         jobs.push_back(one.job);
         ledger.begin(one.picture->target, one.key);
     }
@@ -126,7 +132,7 @@ void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, L
         try {
             write_corrected(jobs, kind, nullptr, progress);
         } catch (const Failure &failure) {
-            if (failure.code != ExitCode::unreadable) throw;
+            if (!is_of_pictures(failure)) throw;
             why = failure.what();
         }
         // As many as are written were worked on in this order; the next one is the one that cannot be read.
@@ -134,7 +140,10 @@ void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, L
                                        [&](const Correction &job) { return !ledger.is_written(job.target); });
         pictures.written += static_cast<uint32_t>(next - jobs.begin());
         std::for_each(jobs.begin(), next, [&](const Correction &job) { ledger.finish(job.target); });
-        if (next != jobs.end()) damaged[next->source] = why;
+        if (next != jobs.end()) {
+            damaged[next->source] = why;
+            ledger.abandon(next->target);
+        }
         jobs.erase(jobs.begin(), next == jobs.end() ? next : next + 1);
         ledger.save();
     }

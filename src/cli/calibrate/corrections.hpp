@@ -29,8 +29,8 @@ struct CorrectedPictures {
 // finds, as `apply`.
 CorrectedPictures plan_corrections(const CalibrateOptions &o, const Inputs &inputs, const Panoramas &panoramas);
 
-// Writes the copies that the ledger does not have. A picture that turns out to be damaged is left out. Failure (usage),
-// before the first is written, for a copy that somebody has edited and whose correction is another now.
+// Writes the copies that the ledger does not have. A picture that cannot be corrected is left out. InTheWay, before the
+// first is written, for a copy that somebody has edited and whose correction is another now.
 void write_corrections(const CalibrateOptions &o, CorrectedPictures &pictures, Ledger &ledger, Progress &progress);
 
 }  // namespace lensprof

@@ -4,8 +4,10 @@
 
 #include <lensprof/lensprof.h>
 
+#include "cli/calibrate/attempt.hpp"
 #include "cli/calibrate/panoramas.hpp"
 #include "cli/fitting/photographs.hpp"
+#include "cli/pictures/picture.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/paths.hpp"
 
@@ -21,7 +23,7 @@ struct Group {
 
 struct Groups {
     std::vector<Group> list;
-    std::map<std::string, std::string> unjoined;
+    std::map<std::string, std::string> unjoined, unreadable;  // by file: why
 };
 
 std::string key_of(const std::vector<const InputPicture *> &pictures, const std::string &more) {
@@ -41,63 +43,132 @@ Group group_of(const FoundProject &found, const std::vector<const InputPicture *
     return group;
 }
 
-Groups register_groups(bool one_lens, const std::vector<const InputPicture *> &all, Progress &progress) {
+// A Hugin project cannot state such a name.
+bool has_odd_name(const InputPicture &picture) {
+    const std::string file = absolute_path(picture.file);
+    return std::any_of(file.begin(), file.end(),
+                       [](char c) { return c == '"' || static_cast<unsigned char>(c) < ' '; });
+}
+
+// Camera raw files and others have no common response, whatever lens they are taken as of.
+std::vector<FoundProject> split_by_kind(const FoundProject &project, const std::vector<const InputPicture *> &all) {
+    FoundProject marked = project;
+    std::map<uint32_t, uint32_t> lenses;
+    for (size_t n = 0; n < project.pictures.size(); n++) {
+        lenses[project.pictures[n]] = project.lenses[n];
+        marked.lenses[n] = all[project.pictures[n]]->is_raw;
+    }
+    std::vector<FoundProject> parts = split_by_lens(marked);
+    for (FoundProject &part : parts)
+        for (size_t n = 0; n < part.pictures.size(); n++) part.lenses[n] = lenses.at(part.pictures[n]);
+    return parts;
+}
+
+void add_parts(const std::vector<FoundProject> &parts, const std::string &others,
+               const std::vector<const InputPicture *> &all, Groups &groups) {
+    for (const FoundProject &part : parts) {
+        if (part.pictures.size() >= 2 && part.links > 0) {
+            groups.list.push_back(group_of(part, all));
+            continue;
+        }
+        for (const uint32_t number : part.pictures) {
+            const std::string &file = all[number]->file;
+            groups.unjoined[file] = file + ": overlaps with pictures " + others;
+        }
+    }
+}
+
+Groups register_groups(bool one_lens, const std::vector<const InputPicture *> &given, Progress &progress) {
     std::vector<std::string> files;
-    for (const InputPicture *picture : all) files.push_back(picture->file);
+    std::vector<const InputPicture *> all;
     Groups groups;
+    for (const InputPicture *picture : given) {
+        if (has_odd_name(*picture)) {
+            groups.unjoined[picture->file] = picture->file + ": has a quote or a line break in its path, which a Hugin "
+                                                             "project cannot state; rename it";
+            continue;
+        }
+        files.push_back(picture->file);
+        all.push_back(picture);
+    }
     if (files.empty()) return groups;
     const Registration found = register_pictures(files, progress);
-    for (const auto &[number, why] : found.unreadable) groups.unjoined[files[number]] = why;
+    for (const auto &[number, why] : found.unreadable) groups.unreadable[files[number]] = why;
     for (const uint32_t number : found.alone)
         groups.unjoined[files[number]] = files[number] + ": no overlap with another picture was found";
     for (const FoundProject &project : found.projects) {
-        std::vector<FoundProject> parts{project};
-        if (!one_lens) parts = split_by_lens(project);
-        for (const FoundProject &part : parts) {
-            if (part.pictures.size() >= 2 && part.links > 0) {
-                groups.list.push_back(group_of(part, all));
-                continue;
-            }
-            for (const uint32_t number : part.pictures)
-                groups.unjoined[files[number]] = files[number] + ": overlaps with pictures " + of_another_lens;
-        }
+        if (one_lens)
+            add_parts(split_by_kind(project, all), "that are camera raw files, or that are none where it is one", all,
+                      groups);
+        else
+            add_parts(split_by_lens(project), of_another_lens, all, groups);
     }
     std::stable_sort(groups.list.begin(), groups.list.end(),
                      [](const Group &a, const Group &b) { return a.pictures.size() > b.pictures.size(); });
     return groups;
 }
 
-Json json_of(const Groups &groups, const std::string &key) {
-    Json list = Json::array(), unjoined = Json::array();
-    for (const Group &group : groups.list) {
-        Json files = Json::array();
-        for (const InputPicture *picture : group.pictures) files.push_back(ascii_path(picture->file));
-        list.push_back({{"files", files}, {"geometry", group.geometry}, {"facts", group.facts}});
-    }
-    for (const auto &[file, why] : groups.unjoined) unjoined.push_back({ascii_path(file), ascii_path(why)});
-    return {{"key", key}, {"groups", list}, {"unjoined", unjoined}};
+std::string noted(const std::string &file) { return ascii_path(one_name(file)); }
+
+Json json_of(const std::map<std::string, std::string> &reasons) {
+    Json list = Json::array();
+    for (const auto &[file, why] : reasons) list.push_back({noted(file), ascii_path(why)});
+    return list;
 }
 
-// What the ledger has of these pictures; false where it has none.
+Json json_of(const Groups &groups, const std::string &key) {
+    Json list = Json::array();
+    for (const Group &group : groups.list) {
+        Json files = Json::array();
+        for (const InputPicture *picture : group.pictures) files.push_back(noted(picture->file));
+        list.push_back({{"files", files}, {"geometry", group.geometry}, {"facts", group.facts}});
+    }
+    return {{"key", key},
+            {"groups", list},
+            {"unjoined", json_of(groups.unjoined)},
+            {"unreadable", json_of(groups.unreadable)}};
+}
+
+using ByNotedFile = std::map<std::string, const InputPicture *>;
+
+bool recall_reasons(const Json &list, const ByNotedFile &by_file, std::map<std::string, std::string> &reasons) {
+    for (const Json &one : list) {
+        const auto picture = by_file.find(one[0].get<std::string>());
+        if (picture == by_file.end()) return false;
+        reasons[picture->second->file] = path_of_ascii(one[1].get<std::string>());
+    }
+    return true;
+}
+
+// A disk or network may have failed for a moment.
+bool is_readable_now(const std::string &file) {
+    ReadOptions options;
+    options.max_side = 256;
+    return why_not([&] { read_picture(file, options); }).empty();
+}
+
+// What the ledger has of these pictures; false where it has none, or where one can be read that could not be.
 bool recall(const Json &notes, const std::string &key, const std::vector<const InputPicture *> &all, Groups &groups) {
     if (!notes.is_object() || !notes.contains("registration") || notes["registration"].value("key", "") != key)
         return false;
-    std::map<std::string, const InputPicture *> by_file;
-    for (const InputPicture *picture : all) by_file[ascii_path(picture->file)] = picture;
-    for (const Json &known : notes["registration"]["groups"]) {
+    const Json &registration = notes["registration"];
+    ByNotedFile by_file;
+    for (const InputPicture *picture : all) by_file[noted(picture->file)] = picture;
+    for (const Json &known : registration["groups"]) {
         Group group;
         for (const Json &file : known["files"]) {
             const auto picture = by_file.find(file.get<std::string>());
-            if (picture == by_file.end()) return false;  // the same files by other names
+            if (picture == by_file.end()) return false;
             group.pictures.push_back(picture->second);
         }
         group.geometry = known["geometry"].get<std::string>();
         group.facts = known["facts"];
         groups.list.push_back(std::move(group));
     }
-    for (const Json &one : notes["registration"]["unjoined"])
-        groups.unjoined[path_of_ascii(one[0].get<std::string>())] = path_of_ascii(one[1].get<std::string>());
-    return true;
+    return recall_reasons(registration["unjoined"], by_file, groups.unjoined)
+           && recall_reasons(registration["unreadable"], by_file, groups.unreadable)
+           && std::none_of(groups.unreadable.begin(), groups.unreadable.end(),
+                           [](const auto &one) { return is_readable_now(one.first); });
 }
 
 // The name of an earlier panorama that has the key, or with `key` empty any of the pictures; "" where there is none.
@@ -109,7 +180,7 @@ std::string earlier_name(const Json &notes, const std::string &key, const Group 
         if (!key.empty() && result.value("key", "") == key) return path_of_ascii(name);
         for (const InputPicture *picture : group.pictures)
             for (const Json &file : result["files"])
-                if (key.empty() && file == ascii_path(picture->file)) return path_of_ascii(name);
+                if (key.empty() && file == noted(picture->file)) return path_of_ascii(name);
     }
     return {};
 }
@@ -138,6 +209,36 @@ std::string new_name(const CalibrateOptions &o, const Group &group, const std::s
     }
 }
 
+// The names of earlier runs where they can be kept: by the pictures and what is asked for, then by any of the pictures.
+std::vector<std::string> names_of(const CalibrateOptions &o, const std::vector<Group> &groups,
+                                  const std::vector<std::string> &keys, const std::set<std::string> &targets,
+                                  const Ledger &ledger) {
+    std::set<std::string> taken;
+    std::vector<std::string> names(groups.size());
+    for (const bool is_exact : {true, false})
+        for (size_t n = 0; n < names.size(); n++) {
+            if (!names[n].empty()) continue;
+            const std::string name = earlier_name(ledger.notes, is_exact ? keys[n] : "", groups[n], taken);
+            const bool is_copy = targets.count(file_of(o, name, ".pto")) || targets.count(file_of(o, name, ".jpg"));
+            if (name.empty() || is_copy) continue;  // a new picture has that name
+            names[n] = name;
+            taken.insert(name);
+        }
+    for (size_t n = 0; n < names.size(); n++) {
+        if (names[n].empty()) names[n] = new_name(o, groups[n], taken, targets, ledger);
+        taken.insert(names[n]);
+    }
+    return names;
+}
+
+// A picture of its own; that of an earlier run, whose profile must not count for it a second time.
+std::string source_of(const Json &notes, const Group &group, const std::string &name) {
+    const std::string known = ascii_path(name);
+    if (notes.is_object() && notes.contains("results") && notes["results"].contains(known))
+        return path_of_ascii(notes["results"][known].value("source", noted(group.pictures[0]->file)));
+    return one_name(group.pictures[0]->file);
+}
+
 }  // namespace
 
 bool Panorama::evens() const {
@@ -147,7 +248,7 @@ bool Panorama::evens() const {
 
 Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger &ledger, Progress &progress) {
     std::vector<const InputPicture *> all;
-    std::set<std::string> targets, taken;
+    std::set<std::string> targets;
     for (const InputPicture &picture : inputs.pictures) {
         all.push_back(&picture);
         targets.insert(picture.target);
@@ -162,25 +263,20 @@ Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger
         ledger.save();
     }
     panoramas.unjoined = groups.unjoined;
+    panoramas.unjoined.insert(groups.unreadable.begin(), groups.unreadable.end());
     std::string asked = o.one_lens ? "one lens\n" : "\n";
     if (o.store.no_store) asked += "no store\n";
     for (const std::string &db : o.store.dbs) asked += one_name(db) + "\n";
-    std::vector<std::string> names(groups.list.size()), keys;
+    std::vector<std::string> keys;
     for (const Group &group : groups.list) keys.push_back(key_of(group.pictures, asked));
-    for (const bool is_exact : {true, false})
-        for (size_t n = 0; n < names.size(); n++) {
-            if (names[n].empty()) names[n] = earlier_name(ledger.notes, is_exact ? keys[n] : "", groups.list[n], taken);
-            if (!names[n].empty()) taken.insert(names[n]);
-        }
+    const std::vector<std::string> names = names_of(o, groups.list, keys, targets, ledger);
     for (size_t n = 0; n < names.size(); n++) {
         const Group &group = groups.list[n];
         Panorama panorama;
-        panorama.name = names[n].empty() ? new_name(o, group, taken, targets, ledger) : names[n];
-        taken.insert(panorama.name);
+        panorama.name = names[n];
         panorama.project = file_of(o, panorama.name, ".pto"), panorama.preview = file_of(o, panorama.name, ".jpg");
         panorama.pictures = group.pictures, panorama.geometry = group.geometry, panorama.key = keys[n];
-        // What `build` of the folder fits is the largest, and these pictures must not count twice.
-        panorama.source = n == 0 && o.inputs.size() == 1 ? o.inputs[0] : group.pictures[0]->file;
+        panorama.source = source_of(ledger.notes, group, names[n]);
         panorama.summary = {{"name", panorama.name}, {"project", panorama.project}, {"preview", nullptr}};
         panorama.summary["pictures"] = group.pictures.size();
         panorama.summary.update(group.facts);

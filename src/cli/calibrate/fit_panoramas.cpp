@@ -1,6 +1,7 @@
 // Fit, profile, project and mosaic of each panorama.
 #include <sstream>
 
+#include "cli/calibrate/attempt.hpp"
 #include "cli/calibrate/panoramas.hpp"
 #include "cli/correct/project_model.hpp"
 #include "cli/fitting/photographs.hpp"
@@ -72,15 +73,18 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     panorama.summary["result"] = result;
 }
 
-// A panorama that cannot be fitted is no reason to leave the others.
+// A panorama that cannot be fitted is no reason to leave the others. Whether it can be may change where a picture could
+// not be read, so the next run asks again, and does not where the pictures do not serve.
 void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Progress &progress) {
     Project project = project_of(panorama);
     ledger.begin(panorama.project, panorama.key);
     ledger.save();
+    bool is_final = true;
     try {
         fit_and_store(o, panorama, project, progress);
     } catch (const Failure &failure) {
-        if (failure.code != ExitCode::not_usable && failure.code != ExitCode::unreadable) throw;
+        if (!is_of_pictures(failure)) throw;
+        is_final = failure.code == ExitCode::not_usable;
         panorama.summary["result"] = nullptr;
         panorama.summary["not_stored"] = failure.what();
         panorama.summary["warnings"] = Json::array();
@@ -88,13 +92,14 @@ void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Prog
     }
     ledger.finish(panorama.project);
     Json files = Json::array();
-    for (const InputPicture *picture : panorama.pictures) files.push_back(ascii_path(picture->file));
+    for (const InputPicture *picture : panorama.pictures) files.push_back(ascii_path(one_name(picture->file)));
     std::ostringstream valid;  // names of files need not be UTF-8
     print_json(panorama.summary, valid);
     panorama.summary = Json::parse(valid.str());
     ledger.notes["results"][ascii_path(panorama.name)] = {
-        {"key", panorama.key},
+        {"key", is_final ? panorama.key : std::string()},
         {"files", files},
+        {"source", ascii_path(panorama.source)},
         {"summary", panorama.summary},
         {"project", ascii_path(read_text(panorama.project, largest_text))}};
     ledger.save();
@@ -118,6 +123,7 @@ bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
     const Json &known = notes["results"][name];
     if (known.value("key", "") != panorama.key || !is_stored(o, known["summary"])) return false;
     panorama.summary = known["summary"];
+    panorama.summary["project"] = panorama.project;  // the folder may be written in another way
     if (ledger.is_current(panorama.project, panorama.key)) return true;
     const std::string text = path_of_ascii(known["project"].get<std::string>());
     ledger.begin(panorama.project, panorama.key);
@@ -131,7 +137,6 @@ bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
 // The mosaic shows what the project says, which may have been edited since it was fitted.
 void draw_preview(Panorama &panorama, Ledger &ledger, Progress &progress) {
     const std::string text = read_text(panorama.project, largest_text), key = digest_of_text("preview\n" + text);
-    panorama.summary["preview"] = panorama.preview;
     if (ledger.is_current(panorama.preview, key)) return;
     const Project project = read_project(panorama.project, true);
     Fitted fitted;
@@ -156,13 +161,15 @@ void fit_panoramas(const CalibrateOptions &o, Panoramas &panoramas, Ledger &ledg
     for (Panorama &panorama : panoramas.list) {
         stop_if_interrupted();
         if (!recall(o, panorama, ledger)) {
-            if (!o.overwrite && ledger.is_in_the_way(panorama.project))
-                throw Failure(ExitCode::usage, panorama.project + ": was edited since it was written, and its pictures "
-                                                                  "have changed; move it away, or give --overwrite");
             fit_one(o, panorama, ledger, progress);
             panoramas.fitted++;
         }
-        if (panorama.evens()) draw_preview(panorama, ledger, progress);
+        if (!panorama.evens()) continue;
+        const std::string why = why_not([&] { draw_preview(panorama, ledger, progress); });
+        panorama.summary["preview"] = why.empty() ? Json(panorama.preview) : Json();
+        if (why.empty()) continue;
+        ledger.abandon(panorama.preview);
+        panorama.summary["warnings"].push_back(panorama.preview + ": not drawn: " + why);
     }
 }
 

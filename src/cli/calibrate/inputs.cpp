@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 
+#include "cli/calibrate/attempt.hpp"
 #include "cli/fitting/photographs.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/pictures/picture.hpp"
@@ -34,14 +35,34 @@ bool is_output(const NamedPicture &picture, std::map<std::string, bool> &known) 
     fs::path place = fs::path(picture.file).parent_path();
     for (fs::path below = picture.subfolder; !below.empty(); below = below.parent_path()) {
         const auto [entry, is_new] = known.try_emplace(place.string(), false);
-        if (is_new) entry->second = is_regular_file((place / summary_name).string());
+        if (is_new) entry->second = has_ledger(place.string());
         if (entry->second) return true;
         place = place.parent_path();
     }
     return false;
 }
 
-// Two pictures would have the same copy, or one would be written over a picture.
+// Of pictures of one folder that would have one copy the first is taken: img000.dng and img000.nef are both img000.tif.
+void leave_out_doubles(Inputs &inputs) {
+    std::map<std::string, const InputPicture *> first;
+    std::vector<InputPicture> kept;
+    kept.reserve(inputs.pictures.size());
+    for (InputPicture &picture : inputs.pictures) {
+        const fs::path file = picture.file;
+        const auto [other, is_new] = first.try_emplace(one_name(picture.target), nullptr);
+        if (!is_new && fs::path(other->second->file).parent_path() == file.parent_path()) {
+            inputs.left_out.push_back({picture.file, picture.file + ": its corrected copy would be " + picture.target
+                                                         + ", as that of " + other->second->name
+                                                         + ", which is taken in its place; rename one"});
+            continue;
+        }
+        kept.push_back(std::move(picture));
+        other->second = &kept.back();
+    }
+    inputs.pictures = std::move(kept);
+}
+
+// Pictures of two folders would have the same copy, or one would be written over a picture.
 void check_targets(const Inputs &inputs, const std::vector<NamedPicture> &named) {
     std::set<std::string> read;
     for (const NamedPicture &picture : named) read.insert(one_name(picture.file));
@@ -59,13 +80,36 @@ void check_targets(const Inputs &inputs, const std::vector<NamedPicture> &named)
     }
 }
 
-// Metadata and identity; the reason to leave it out, or "".
-std::string look_at(InputPicture &picture, bool &is_unreadable) {
+// The name of the copy: with another end where the file's does not state what is in it.
+std::string copy_name(const InputPicture &picture) {
+    fs::path name = fs::path(picture.file).filename();
+    if (picture.is_raw) return name.replace_extension(".tif").string();
+    const FileFormat format = read_header(picture.file).traits.format;
+    if (is_picture_name(name.string()) && !is_raw_name(name.string()) && format_of_name(name.string()) == format)
+        return name.string();
+    const char *end = format == FileFormat::png ? ".png" : format == FileFormat::jpeg ? ".jpg" : ".tif";
+    return name.replace_extension(end).string();
+}
+
+// Whether the copy would take the place of a contact sheet.
+bool is_sheet(const InputPicture &picture, const std::string &output) {
+    const fs::path target = one_name(picture.target);
+    const std::string name = target.filename().string();
+    if (name.rfind("calibrate_sheet", 0) != 0 || target.parent_path() != fs::path(one_name(output))) return false;
+    for (size_t page = 0; page < 1000; page++)
+        if (name == sheet_name(page)) return true;
+    return false;
+}
+
+// Metadata, identity and copy in `folder`; the reason to leave it out, or "".
+std::string look_at(InputPicture &picture, const fs::path &folder, bool &is_unreadable) {
     try {
+        picture.is_raw = raw_kind(picture.file).has_value();
+        picture.target = (folder / copy_name(picture)).string();
         picture.metadata = read_metadata(picture.file);
         picture.identity = stamp_of(picture.file) + ":" + digest_of(picture.file);
     } catch (const Failure &failure) {
-        if (failure.code != ExitCode::unreadable) throw;
+        if (!is_of_pictures(failure)) throw;
         is_unreadable = true;
         return failure.what();
     }
@@ -77,29 +121,22 @@ std::string look_at(InputPicture &picture, bool &is_unreadable) {
 
 }  // namespace
 
-Inputs find_inputs(const std::vector<std::string> &words, const std::string &output, Progress &progress) {
-    check_output(words, output);
-    std::vector<NamedPicture> named = named_pictures(words, output);
-    std::map<std::string, bool> known;
-    named.erase(std::remove_if(named.begin(), named.end(), [&](const auto &one) { return is_output(one, known); }),
-                named.end());
+namespace {
+
+// Looks at them, several at once.
+void look_at_all(const Photographs &list, const std::vector<NamedPicture> &named, const std::string &output,
+                 Inputs &inputs, Progress &progress) {
     std::map<std::string, std::string> subfolders;
     for (const NamedPicture &picture : named) subfolders.emplace(picture.file, picture.subfolder);
-    const Photographs list = list_photographs(words, named);
-    Inputs inputs;
-    inputs.label = list.label;
-    inputs.found = named.size();
     std::vector<InputPicture> all(list.files.size());
     std::vector<std::string> reasons(all.size());
     std::vector<char> unreadable(all.size(), 0);
     for_each_parallel(static_cast<uint32_t>(all.size()), "looking at pictures", progress, [&](uint32_t i) {
-        InputPicture &picture = all[i];
-        picture.file = list.files[i], picture.name = list.names[i];
-        fs::path name = fs::path(picture.file).filename();
-        if (raw_kind(picture.file)) name.replace_extension(".tif");
-        picture.target = (fs::path(output) / subfolders.at(picture.file) / name).string();
+        all[i].file = list.files[i], all[i].name = list.names[i];
         bool fails = false;
-        reasons[i] = look_at(picture, fails);
+        reasons[i] = look_at(all[i], fs::path(output) / subfolders.at(all[i].file), fails);
+        if (reasons[i].empty() && is_sheet(all[i], output))
+            reasons[i] = all[i].file + ": has the name of a contact sheet of this command; rename it";
         unreadable[i] = fails;
     });
     for (size_t i = 0; i < all.size(); i++) {
@@ -109,14 +146,43 @@ Inputs find_inputs(const std::vector<std::string> &words, const std::string &out
         else
             inputs.left_out.push_back({all[i].file, reasons[i]});
     }
+}
+
+// Files in whose place another one of their name is taken.
+void name_replaced(const std::vector<NamedPicture> &named, Inputs &inputs) {
+    std::set<std::string> known;
     for (const NamedPicture &picture : named)
-        if (!picture.instead_of.empty()) {
-            const std::string other = fs::path(picture.file).replace_filename(picture.instead_of).string();
+        for (const std::string &name : picture.instead_of) {
+            const std::string other = fs::path(picture.file).replace_filename(name).string();
+            if (!known.insert(other).second) continue;
             inputs.left_out.push_back(
                 {other, other + ": " + fs::path(picture.file).filename().string() + " is taken in its place"});
             inputs.found++;
         }
+}
+
+}  // namespace
+
+std::string sheet_name(size_t page) {
+    return "calibrate_sheet" + (page ? std::to_string(page + 1) : std::string()) + ".jpg";
+}
+
+Inputs find_inputs(const std::vector<std::string> &words, const std::string &output, Progress &progress) {
+    check_output(words, output);
+    std::vector<UnlistedFolder> unlisted;
+    std::vector<NamedPicture> named = named_pictures(words, output, &unlisted);
+    std::map<std::string, bool> known;
+    named.erase(std::remove_if(named.begin(), named.end(), [&](const auto &one) { return is_output(one, known); }),
+                named.end());
+    const Photographs list = list_photographs(words, named);
+    Inputs inputs;
+    inputs.label = list.label;
+    inputs.found = list.files.size() + list.copies.size();
+    look_at_all(list, named, output, inputs, progress);
+    leave_out_doubles(inputs);
+    name_replaced(named, inputs);
     for (const auto &[file, why] : list.copies) inputs.left_out.push_back({file, file + ": " + why});
+    for (const UnlistedFolder &one : unlisted) inputs.left_out.push_back({one.folder, one.reason});
     check_targets(inputs, named);
     return inputs;
 }

@@ -1,12 +1,18 @@
 #include "cli/calibrate/ledger.hpp"
 
+#include <algorithm>
+#include <cerrno>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli/program/format.hpp"
 #include "cli/program/input_file.hpp"
-#include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
 
 namespace lensprof {
@@ -41,61 +47,154 @@ std::string path_of_ascii(const std::string &text) {
     return path;
 }
 
-Ledger::Ledger(const std::string &folder)
-    : path_((std::filesystem::path(folder) / ".lensprof-calibrate.json").string()) {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char *ledger_name = ".lensprof-calibrate.json";
+constexpr int schema = 2;
+
+std::string without_slash(std::string path) {
+    while (path.size() > 1 && path.back() == '/') path.pop_back();
+    return path;
+}
+
+std::string digest_of_notes(const Json &notes) { return digest_of_text(lensprof_version() + notes.dump()); }
+
+// The first line of a ledger, which is an object; null for what is no ledger.
+Json object_of(const std::string &text) {
+    const Json json = Json::parse(text.substr(0, text.find('\n')), nullptr, false);
+    const bool is_own = json.is_object() && json.contains("schema") && json["schema"] == schema;
+    return is_own ? json : Json();
+}
+
+}  // namespace
+
+bool has_ledger(const std::string &folder) {
+    const std::string path = (fs::path(folder) / ledger_name).string();
+    return is_regular_file(path) && file_bytes(path) <= largest_text
+           && !object_of(read_text(path, largest_text)).is_null();
+}
+
+FolderLock::FolderLock(const std::string &folder) : folder_(folder) {
+    if (is_folder(folder)) take();
+}
+
+FolderLock::~FolderLock() {
+    if (file_ >= 0) close(file_);
+}
+
+void FolderLock::take() {
+    if (file_ >= 0) return;
+    file_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)  // not all file systems have locks
+        throw Failure(ExitCode::failed, folder_ + ": another calibrate is at work in it; wait for its end, or give "
+                                                  "another folder with -o");
+}
+
+Ledger::Ledger(const std::string &folder, bool overwrite)
+    : folder_(without_slash(absolute_path(folder))),
+      path_((fs::path(folder) / ledger_name).string()),
+      overwrite_(overwrite) {
     if (!is_regular_file(path_)) return;
-    const std::string text = read_text(path_, largest_text);
-    const Json json = Json::parse(text, nullptr, false);
     try {
-        if (json.at("schema") != 1) return;
-        for (const auto &[file, entry] : json.at("files").items())
-            files_[file] = {entry.at("of").get<std::string>(), entry.at("stamp").get<std::string>(),
-                            entry.at("begun").get<bool>()};
-        notes = json.at("notes");
-        saved_ = text;
+        read(read_text(path_, largest_text));
     } catch (const Json::exception &) {
         files_.clear();
+        notes = Json();
     }
 }
 
+void Ledger::read(const std::string &text) {
+    const Json json = object_of(text);
+    if (json.is_null()) return;
+    std::map<std::string, Entry> files;
+    for (const auto &[file, entry] : json.at("files").items())
+        files[file] = {entry.at("of").get<std::string>(), entry.at("stamp").get<std::string>()};
+    files_ = std::move(files);
+    settle(json.at("begun"), text.substr(std::min(text.find('\n'), text.size())));
+    if (json.at("digest") == digest_of_notes(json.at("notes"))) notes = json.at("notes");
+    saved_ = text;
+}
+
+// Files that a run has begun and not finished are its own where they have the stamp of a line; else what is there is
+// what was there before.
+void Ledger::settle(const Json &begun, const std::string &lines) {
+    std::istringstream in(lines);
+    std::map<std::string, std::string> stamps;
+    for (std::string file, stamp; in >> file >> stamp;) stamps[file] = stamp;
+    for (const auto &[file, key] : begun.items()) {
+        const auto stamp = stamps.find(file);
+        if (stamp != stamps.end() && stamp->second == stamp_of((fs::path(folder_) / path_of_ascii(file)).string()))
+            files_[file] = {key.get<std::string>(), stamp->second};
+    }
+}
+
+std::string Ledger::name_of(const std::string &file) const {
+    return ascii_path(fs::path(absolute_path(file)).lexically_relative(folder_).string());
+}
+
 bool Ledger::is_current(const std::string &file, const std::string &key) const {
-    const auto entry = files_.find(ascii_path(file));
-    if (entry == files_.end() || entry->second.key != key || !is_regular_file(file)) return false;
-    return !entry->second.is_begun || stamp_of(file) != entry->second.stamp;
+    const auto entry = files_.find(name_of(file));
+    return entry != files_.end() && entry->second.key == key && is_regular_file(file);
 }
 
 bool Ledger::is_in_the_way(const std::string &file) const {
     if (!path_exists(file)) return false;
-    const auto entry = files_.find(ascii_path(file));
-    return entry == files_.end() || (!entry->second.is_begun && stamp_of(file) != entry->second.stamp);
+    const auto entry = files_.find(name_of(file));
+    return entry == files_.end() || stamp_of(file) != entry->second.stamp;
 }
 
 void Ledger::begin(const std::string &file, const std::string &key) {
-    files_[ascii_path(file)] = {key, stamp_of(file), true};
+    if (!overwrite_ && is_in_the_way(file))
+        throw InTheWay(ExitCode::usage, file + ": "
+                                            + (knows(file) ? "was edited since it was written, and is another now"
+                                                           : "is there already and not of an earlier calibrate")
+                                            + "; move it away, or give --overwrite");
+    std::error_code ignored;
+    if (fs::is_symlink(file, ignored)) fs::remove(file, ignored);
+    begun_[name_of(file)] = {key, ""};
+    if (!watch_)
+        watch_ = std::make_unique<CommitWatch>(
+            [this](const std::string &path, const std::string &temporary) { note_commit(path, temporary); });
+}
+
+void Ledger::note_commit(const std::string &file, const std::string &temporary) {
+    const std::lock_guard<std::mutex> lock(writing_);
+    const std::string name = name_of(file);
+    const auto begun = begun_.find(name);
+    if (begun == begun_.end()) return;
+    begun->second.stamp = stamp_of(temporary);
+    std::ofstream(path_, std::ios::app) << name << ' ' << begun->second.stamp << std::endl;
+    saved_.clear();
 }
 
 bool Ledger::is_written(const std::string &file) const {
-    const auto entry = files_.find(ascii_path(file));
-    return entry != files_.end() && path_exists(file) && stamp_of(file) != entry->second.stamp;
+    const auto begun = begun_.find(name_of(file));
+    return begun != begun_.end() && !begun->second.stamp.empty() && path_exists(file);
 }
 
 void Ledger::finish(const std::string &file) {
-    Entry &entry = files_[ascii_path(file)];
-    entry.stamp = stamp_of(file);
-    entry.is_begun = false;
+    const auto begun = begun_.find(name_of(file));
+    if (begun == begun_.end()) return;
+    files_[begun->first] = begun->second;
+    begun_.erase(begun);
 }
+
+void Ledger::abandon(const std::string &file) { begun_.erase(name_of(file)); }
 
 void Ledger::remove(const std::string &file) {
     std::error_code ignored;
-    if (knows(file) && !is_in_the_way(file)) std::filesystem::remove(file, ignored);
-    files_.erase(ascii_path(file));
+    if (knows(file) && !is_in_the_way(file)) fs::remove(file, ignored);
+    files_.erase(name_of(file));
 }
 
 void Ledger::save() {
-    Json files = Json::object();
-    for (const auto &[file, entry] : files_)
-        files[file] = {{"of", entry.key}, {"stamp", entry.stamp}, {"begun", entry.is_begun}};
-    const Json json = {{"schema", 1}, {"files", files}, {"notes", notes}};
+    Json files = Json::object(), begun = Json::object();
+    for (const auto &[file, entry] : files_) files[file] = {{"of", entry.key}, {"stamp", entry.stamp}};
+    for (const auto &[file, entry] : begun_) begun[file] = entry.key;
+    const Json json = {
+        {"schema", schema}, {"files", files}, {"begun", begun}, {"digest", digest_of_notes(notes)}, {"notes", notes}};
     const std::string text = json.dump() + "\n";
     if (text == saved_) return;
     write_file(path_, text.data(), text.size());

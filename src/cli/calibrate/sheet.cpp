@@ -7,6 +7,7 @@
 
 #include <cairo.h>
 
+#include "cli/calibrate/attempt.hpp"
 #include "cli/pictures/contact_sheet.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
@@ -41,10 +42,12 @@ std::pair<uint32_t, uint32_t> stored_place(uint16_t orientation, uint32_t w, uin
     }
 }
 
+// Empty for a file that cannot be read: the copy may have been edited since.
 Small small_of(const std::string &file, uint16_t orientation) {
     ReadOptions read;
     read.max_side = cell;
-    Picture picture = read_picture(file, read);
+    Picture picture;
+    if (!why_not([&] { picture = read_picture(file, read); }).empty()) return {};
     Thumbnail thumbnail(picture.width, picture.height);
     thumbnail.add(picture.view());
     Small small;
@@ -157,9 +160,7 @@ void write_sheet(const std::string &path, const CorrectedPicture *first, size_t 
 std::vector<std::string> sheet_names(const CalibrateOptions &o, size_t pictures) {
     std::vector<std::string> names;
     for (size_t page = 0; page * per_page < pictures; page++)
-        names.push_back((std::filesystem::path(o.output)
-                         / ("calibrate_sheet" + (page ? std::to_string(page + 1) : std::string()) + ".jpg"))
-                            .string());
+        names.push_back((std::filesystem::path(o.output) / sheet_name(page)).string());
     return names;
 }
 

@@ -154,9 +154,13 @@ ImagesByFile::ImagesByFile(const Project &project) : project_(&project) {
     for (uint32_t i = 0; i < project.files.size(); i++) images_.emplace(file_identity(project.files[i]), i);
 }
 
-uint32_t ImagesByFile::at(const std::string &file, const std::string &option) const {
+std::optional<uint32_t> ImagesByFile::find(const std::string &file) const {
     const auto found = images_.find(file_identity(file));
-    if (found != images_.end()) return found->second;
+    return found == images_.end() ? std::nullopt : std::optional<uint32_t>(found->second);
+}
+
+uint32_t ImagesByFile::at(const std::string &file, const std::string &option) const {
+    if (const auto found = find(file)) return *found;
     throw Failure(ExitCode::usage,
                   file + ": is not a picture of " + project_->path + "; leave it out or leave " + option + " out");
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ uint32_t image_of_word(const Project &project, const std::string &word);
 class ImagesByFile {
 public:
     explicit ImagesByFile(const Project &project);
+
+    std::optional<uint32_t> find(const std::string &file) const;
 
     // Failure (usage) for a file that is none of them, which says to leave `option` out.
     uint32_t at(const std::string &file, const std::string &option) const;

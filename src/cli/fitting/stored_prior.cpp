@@ -5,11 +5,21 @@
 #include <set>
 #include <vector>
 
+#include "cli/pictures/picture.hpp"
 #include "cli/program/databases.hpp"
 #include "cli/program/paths.hpp"
 
 namespace lensprof {
 namespace {
+
+// Whether two sources may have pictures in common: `build FOLDER` names the folder, and `calibrate FOLDER` a picture of
+// each of its panoramas.
+bool may_share(const std::string &one, const std::string &other) {
+    const auto is_in = [](const std::string &picture, const std::string &folder) {
+        return is_picture_name(picture) && picture.compare(0, folder.size() + 1, folder + "/") == 0;
+    };
+    return one == other || is_in(one, other) || is_in(other, one);
+}
 
 // Whether a profile that is in this one was made from `source`.
 bool holds(lensprof_store *store, const lensprof_profile &profile, const std::string &source) {
@@ -19,7 +29,7 @@ bool holds(lensprof_store *store, const lensprof_profile &profile, const std::st
         const int64_t id = next->provenance.prior_id;
         if (id <= 0 || !seen.insert(id).second || lensprof_store_get(store, id, next.get(), nullptr) != LENSPROF_OK)
             return false;
-        if (source == next->provenance.source) return true;
+        if (may_share(source, next->provenance.source)) return true;
     }
 }
 
@@ -71,7 +81,7 @@ EarlierProfile composed_prior(const Databases &databases, const lensprof_store *
     double gamma_sigma = 0.0;
     for (const auto &[store, id] : rows) {
         if (lensprof_store_get(store, id, row.get(), nullptr) != LENSPROF_OK) continue;
-        if (row->provenance.source == own || holds(store, *row, own))
+        if (may_share(row->provenance.source, own) || holds(store, *row, own))
             return {0, nullptr, "profile " + std::to_string(id) + " holds these pictures already"};
         if (row->provenance.forced)
             return {0, nullptr,
@@ -93,13 +103,14 @@ EarlierProfile one_prior(lensprof_store *store, int64_t id, std::unique_ptr<lens
     const std::string named = "profile " + std::to_string(id);
     if (!says_how_sure(*profile)) return {0, nullptr, named + " has no covariance"};
     if (profile->provenance.forced) return {0, nullptr, named + " was stored by --force, of a fit that was not usable"};
-    if (own == profile->provenance.source) {  // fitted again: what it was given then is the prior again
+    if (may_share(own, profile->provenance.source)) {  // fitted again: what it was given then is the prior again
         id = profile->provenance.prior_id;
         if (id <= 0 || lensprof_store_get(store, id, profile.get(), nullptr) != LENSPROF_OK || !says_how_sure(*profile)
             || profile->provenance.forced)
             return {0, nullptr, named + " is of these pictures alone, which are fitted again"};
     }
-    if (own != profile->provenance.source && !holds(store, *profile, own)) return {id, std::move(profile), ""};
+    if (!may_share(own, profile->provenance.source) && !holds(store, *profile, own))
+        return {id, std::move(profile), ""};
     const std::string reason =
         "profile " + std::to_string(id) + " holds these pictures already, and others that came later";
     if (is_asked)

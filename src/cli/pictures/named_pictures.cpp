@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 // The pictures of a folder and its subfolders.
 class FolderWalk {
 public:
-    FolderWalk(const std::string &root, const std::string &output) : root_(root) {
+    FolderWalk(const std::string &root, const std::string &output, std::vector<UnlistedFolder> *unlisted)
+        : root_(root), unlisted_(unlisted) {
         if (one_name(root) != one_name(output)) entered_.insert(file_identity(output));
         folders_.push_back("");
         while (!folders_.empty() || !links_.empty()) {
@@ -42,15 +43,13 @@ public:
         std::vector<NamedPicture> chosen;
         for (const NamedPicture &picture : found_) {
             const std::vector<NamedPicture> &group = groups[stem(picture)];
-            const auto other = std::find_if(group.begin(), group.end(), [&](const NamedPicture &one) {
-                return is_raw_name(one.file) != is_raw_name(picture.file);
-            });
-            if (other == group.end())
-                chosen.push_back(picture);
-            else if (is_raw_name(picture.file) == can_read_raw()) {
-                chosen.push_back(picture);
-                chosen.back().instead_of = fs::path(other->file).filename().string();
-            }
+            std::vector<std::string> others;
+            for (const NamedPicture &one : group)
+                if (is_raw_name(one.file) != is_raw_name(picture.file))
+                    others.push_back(fs::path(one.file).filename().string());
+            if (!others.empty() && is_raw_name(picture.file) != can_read_raw()) continue;
+            chosen.push_back(picture);
+            chosen.back().instead_of = others;
         }
         found_ = std::move(chosen);
     }
@@ -71,10 +70,14 @@ private:
             else if (is_picture_name(name))
                 found_.push_back({path, subfolder, true});
         }
-        if (error) throw Failure(ExitCode::unreadable, folder + ": cannot be listed: " + error.message());
+        if (!error) return;
+        const std::string why = folder + ": cannot be listed: " + error.message();
+        if (!unlisted_ || subfolder.empty()) throw Failure(ExitCode::unreadable, why);
+        unlisted_->push_back({folder, why});
     }
 
     const std::string root_;
+    std::vector<UnlistedFolder> *const unlisted_;
     std::deque<std::string> folders_, links_;  // subfolders that are to be entered
     std::set<std::string> entered_;            // by file_identity
     std::vector<NamedPicture> found_;
@@ -82,7 +85,8 @@ private:
 
 }  // namespace
 
-std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, const std::string &output) {
+std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, const std::string &output,
+                                         std::vector<UnlistedFolder> *unlisted) {
     std::vector<NamedPicture> pictures;
     for (const std::string &name : names) {
         if (name.empty()) throw Failure(ExitCode::usage, "FILES: a name is empty; name a picture or a folder");
@@ -90,7 +94,7 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
             pictures.push_back({name, "", false});
             continue;
         }
-        const FolderWalk walk(name, output);
+        const FolderWalk walk(name, output, unlisted);
         if (walk.found().empty())
             throw Failure(ExitCode::usage,
                           name + ": is a folder without pictures (.jpg, .png, .tif, camera raw); name another");
@@ -101,8 +105,10 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
 
 void note_instead(const NamedPicture &picture, Streams &streams) {
     if (picture.instead_of.empty()) return;
+    std::string others;
+    for (const std::string &other : picture.instead_of) others += (others.empty() ? "" : " and ") + other;
     note(streams,
-         picture.file + ": is taken in place of " + picture.instead_of
+         picture.file + ": is taken in place of " + others
              + (is_raw_name(picture.file) ? ", since raw values are linear and the camera has corrected nothing in them"
                                           : ", since this lensprof was built without LibRaw")
              + "; name the other to take that");

@@ -12,7 +12,12 @@ struct NamedPicture {
     std::string file;
     std::string subfolder;   // of a folder that was named, "a/b"; empty where the picture is right in it, or was named
     bool in_folder = false;  // found in a folder, not named itself
-    std::string instead_of = {};  // of the same name but its end, in the same folder: left out; empty = none
+    std::vector<std::string> instead_of = {};  // of the same name but its end, in the same folder: left out
+};
+
+// A subfolder that cannot be listed, and why.
+struct UnlistedFolder {
+    std::string folder, reason;
 };
 
 // Names as they are, and in the place of a folder's all pictures in it and its subfolders by their names' ends (.jpg,
@@ -20,7 +25,9 @@ struct NamedPicture {
 // entered once, and `output`, where it is a subfolder, not at all. Failure (usage) for a folder without pictures.
 // Of a camera raw file and rendered ones of its name (IMG_1.NEF, IMG_1.JPG) in a folder the raw file is taken where the
 // program reads such files, since its values are linear and the camera has corrected nothing, else the rendered ones.
-std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, const std::string &output);
+// A subfolder that cannot be listed goes to `unlisted`, where that is not NULL, else it is a Failure (unreadable).
+std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, const std::string &output,
+                                         std::vector<UnlistedFolder> *unlisted = nullptr);
 
 // States which one of such a pair is taken, and why.
 void note_instead(const NamedPicture &picture, Streams &streams);

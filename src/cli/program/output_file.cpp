@@ -64,7 +64,13 @@ int sync_path(const std::string &path, int flags) {
     return error_number;
 }
 
+CommitWatch::Note commit_note;  // set while no other thread writes files
+
 }  // namespace
+
+CommitWatch::CommitWatch(Note note) { commit_note = std::move(note); }
+
+CommitWatch::~CommitWatch() { commit_note = nullptr; }
 
 int open_nameless(const std::string &beside) {
 #ifdef O_TMPFILE
@@ -126,6 +132,7 @@ void OutputFile::sync() {
 
 void OutputFile::commit() {
     if (!synced_) sync();
+    if (commit_note) commit_note(path_, temporary_);
     if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, errno);
     temporary_.clear();
     // The data are safe and in place; that the new name survives a power cut is a bonus not all file systems give.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,6 +42,17 @@ private:
     std::string path_;    // as given, for texts
     std::string target_;  // with symbolic links followed
     std::string temporary_;
+};
+
+// While it lives, every commit() calls `note`, before the file takes its name, with the path as it was given and the
+// temporary file: on the thread that commits. The last one that was made counts.
+class CommitWatch {
+public:
+    using Note = std::function<void(const std::string &path, const std::string &temporary)>;
+    explicit CommitWatch(Note note);
+    ~CommitWatch();
+    CommitWatch(const CommitWatch &) = delete;
+    CommitWatch &operator=(const CommitWatch &) = delete;
 };
 
 // Files that are complete beside their final names until everything else has worked.
