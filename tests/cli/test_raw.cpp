@@ -1,14 +1,12 @@
 // Camera raw files: values against the formula and against LibRaw's own programs, falloffs that are recovered and
 // corrected, and every kind of file that cannot be read.
 #include "cli/registration/registration.hpp"
-#include "cli_runs.hpp"
-#include "raw_files.hpp"
+#include "raw_runs.hpp"
 
 #include <cstring>
 #include <random>
 
-using namespace cli_runs;
-using namespace raw_files;
+using namespace raw_runs;
 
 namespace {
 
@@ -85,12 +83,6 @@ void assert_cells(const Dng &dng, const std::string &path) {
             }
         }
     assert_true(saturated > 0);
-}
-
-void needs_libraw() {
-    if (can_read_raw()) return;
-    print_message("built without LibRaw\n");
-    skip();
 }
 
 // 12, 14 and 16 bits, packed in every way, each mosaic, black of each place, saturated corners.
@@ -288,29 +280,6 @@ void test_card(void **) {
         }
     assert_refused(not_found, {"apply", work("tif/card.tif"), "--db", db, "--profile", "1", "-o", work("again")},
                    {"is corrected already"});
-}
-
-// Overlapping pictures as simulate renders them, linear, made mosaics.
-void make_mosaics(const std::string &folder) {
-    must_exit(done, {"simulate", "-o", folder, "--images", "6", "--size", "480x360", "--response", "linear",
-                     "--vignetting", "-0.4,0.1,-0.05", "--format", "png16", "--test-points", "2000"});
-    for (const auto &entry : fs::directory_iterator(folder)) {
-        if (entry.path().extension() != ".png") continue;
-        const Picture picture = read_picture(entry.path().string());
-        Dng dng;
-        dng.width = picture.width, dng.height = picture.height, dng.bits = 14, dng.packing = Packing::lossless;
-        dng.white = 16383, dng.black = {512, 510, 514, 512};
-        for (uint32_t y = 0; y < dng.height; y++)
-            for (uint32_t x = 0; x < dng.width; x++) {
-                const size_t place = y % 2 * 2 + x % 2;
-                const auto *row = reinterpret_cast<const uint16_t *>(picture.pixels.data() + y * picture.row_bytes);
-                const double value = row[3 * x + dng.pattern[place]] / 65535.0;
-                dng.values.push_back(
-                    static_cast<uint16_t>(std::lround(dng.black[place] + value * (dng.white - dng.black[place]))));
-            }
-        save(fs::path(entry.path()).replace_extension(".dng").string(), dng_bytes(dng));
-        fs::remove(entry.path());
-    }
 }
 
 void test_build(void **) {

@@ -1,19 +1,11 @@
 // Camera raw files that are damaged where LibRaw reports nothing: each is refused, whatever was in memory before.
-#include "cli_runs.hpp"
-#include "raw_files.hpp"
+#include "raw_runs.hpp"
 
 #include <random>
 
-using namespace cli_runs;
-using namespace raw_files;
+using namespace raw_runs;
 
 namespace {
-
-void needs_libraw() {
-    if (can_read_raw()) return;
-    print_message("built without LibRaw\n");
-    skip();
-}
 
 Dng noise(uint16_t bits, Packing packing) {
     Dng dng;
