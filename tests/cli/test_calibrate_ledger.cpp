@@ -215,14 +215,46 @@ void test_edited_records(void **) {
     }
 }
 
+// What a killed run has left is removed; what a living process is writing is not.
+void test_left_over(void **) {
+    if (is_missing()) return;
+    simulate("row", {"--images", "2", "--seed", "21"});
+    run_words(calibrated(work("row")));
+    const pid_t child = fork();
+    if (child == 0) _exit(0);
+    waitpid(child, nullptr, 0);
+    const std::string start = work("out/.lensprof-"), dead = start + std::to_string(child) + "-1.png",
+                      alive = start + std::to_string(getpid()) + "-999999.png", other = start + "notes-1.png";
+    for (const std::string &file : {dead, alive, other}) save_text(file, "x");
+    run_words(calibrated(work("row")));
+    assert_true(!fs::exists(dead) && fs::exists(alive) && fs::exists(other));
+}
+
+// The database may be in the output folder, before that is there.
+void test_database_inside(void **) {
+    if (is_missing()) return;
+    simulate("row", {"--images", "4", "--seed", "21"});
+    json_of({"calibrate", work("row"), "-o", work("out"), "--db", work("out/p.db"), "--json"});
+    assert_true(fs::exists(work("out/p.db")));
+    assert_refused(store_failed, {"calibrate", work("row"), "-o", work("new"), "--db", work("none/p.db")}, {"p.db"});
+}
+
 }  // namespace
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_ended_within),    CLI_TEST(test_begun_and_not_written), CLI_TEST(test_names),
-        CLI_TEST(test_damaged_records), CLI_TEST(test_edited_files),          CLI_TEST(test_forgotten),
-        CLI_TEST(test_links),           CLI_TEST(test_two_at_once),           CLI_TEST(test_spellings_of_the_folder),
+        CLI_TEST(test_ended_within),
+        CLI_TEST(test_begun_and_not_written),
+        CLI_TEST(test_names),
+        CLI_TEST(test_damaged_records),
+        CLI_TEST(test_edited_files),
+        CLI_TEST(test_forgotten),
+        CLI_TEST(test_links),
+        CLI_TEST(test_two_at_once),
+        CLI_TEST(test_spellings_of_the_folder),
         CLI_TEST(test_edited_records),
+        CLI_TEST(test_left_over),
+        CLI_TEST(test_database_inside),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -80,12 +80,19 @@ void write_summary(const CalibrateOptions &o, const Json &json, Ledger &ledger) 
     ledger.save();
 }
 
+// A database in the output folder needs no check before that is made.
+void check_database(const CalibrateOptions &o) {
+    const std::string folder = std::filesystem::path(absolute_path(o.store.db)).parent_path().string();
+    if (o.store.db.empty() || is_folder(o.output) || one_name(folder) != one_name(o.output)) check_store(o.store);
+}
+
 int run(const CalibrateOptions &o, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     check_output_folder(o.output);
-    check_store(o.store);
+    check_database(o);
     FolderLock lock(o.output);
     const Inputs inputs = find_inputs(o.inputs, o.output, progress);
+    if (has_ledger(o.output)) sweep_temporaries(o.output);
     Ledger ledger(o.output, o.overwrite);
     check_in_the_way(o, inputs, ledger);
     if (inputs.pictures.empty() && inputs.unreadable)

@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cli/calibrate/attempt.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/input_file.hpp"
 #include "cli/program/paths.hpp"
@@ -72,8 +73,12 @@ Json object_of(const std::string &text) {
 
 bool has_ledger(const std::string &folder) {
     const std::string path = (fs::path(folder) / ledger_name).string();
-    return is_regular_file(path) && file_bytes(path) <= largest_text
-           && !object_of(read_text(path, largest_text)).is_null();
+    if (!is_regular_file(path)) return false;
+    return why_not([&] {
+               if (object_of(read_text(path, largest_text)).is_null())
+                   throw Failure(ExitCode::unreadable, path + ": is no record of calibrate");
+           })
+        .empty();
 }
 
 FolderLock::FolderLock(const std::string &folder) : folder_(folder) {

@@ -23,8 +23,8 @@ enum class FileFormat {
     png,
     tiff,
     jpeg,
-    raw,  // is read, and written as a DNG
-    exr   // is written alone
+    raw,  // is read
+    exr   // is written
 };
 
 // What rewriting a picture must keep beside pixels and metadata. Each writer uses what its format can express.

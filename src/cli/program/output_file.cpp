@@ -1,7 +1,9 @@
 #include "cli/program/output_file.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -67,6 +69,36 @@ int sync_path(const std::string &path, int flags) {
 CommitWatch::Note commit_note;  // set while no other thread writes files
 
 }  // namespace
+
+namespace {
+
+// ".lensprof-PID-NUMBER.png", as create_beside() makes them, of a process that is no more.
+bool is_left_over(const std::string &name) {
+    const std::string start = ".lensprof-";
+    const size_t dash = name.find('-', start.size()), end = std::min(name.find('.', start.size()), name.size());
+    if (name.compare(0, start.size(), start) != 0 || dash == std::string::npos || dash > end) return false;
+    const std::string pid = name.substr(start.size(), dash - start.size()),
+                      number = name.substr(dash + 1, end - dash - 1);
+    for (const std::string &digits : {pid, number})
+        if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos)
+            return false;
+    return kill(static_cast<pid_t>(std::atol(pid.c_str())), 0) != 0 && errno == ESRCH;
+}
+
+}  // namespace
+
+void sweep_temporaries(const std::string &folder) {
+    namespace fs = std::filesystem;
+    std::error_code error, ignored;
+    std::vector<fs::path> left_over;
+    const auto options = fs::directory_options::skip_permission_denied;
+    for (fs::recursive_directory_iterator entry(folder, options, error), end; !error && entry != end;
+         entry.increment(error))
+        if (entry->is_regular_file(ignored) && !entry->is_symlink(ignored)
+            && is_left_over(entry->path().filename().string()))
+            left_over.push_back(entry->path());
+    for (const fs::path &file : left_over) fs::remove(file, ignored);
+}
 
 CommitWatch::CommitWatch(Note note) { commit_note = std::move(note); }
 

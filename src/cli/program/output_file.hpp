@@ -44,6 +44,9 @@ private:
     std::string temporary_;
 };
 
+// Removes from a folder and its subfolders temporary files of processes that were killed.
+void sweep_temporaries(const std::string &folder);
+
 // While it lives, every commit() calls `note`, before the file takes its name, with the path as it was given and the
 // temporary file: on the thread that commits. The last one that was made counts.
 class CommitWatch {
