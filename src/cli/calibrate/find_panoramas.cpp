@@ -43,10 +43,11 @@ Group group_of(const FoundProject &found, const std::vector<const InputPicture *
     return group;
 }
 
-// A Hugin project cannot state such a name.
-bool has_odd_name(const InputPicture &picture) {
-    const std::string file = absolute_path(picture.file);
-    return std::any_of(file.begin(), file.end(),
+// A Hugin project, which states paths from its folder on, cannot state such a name.
+bool has_odd_name(const InputPicture &picture, const std::string &output) {
+    const auto stated =
+        std::filesystem::path(absolute_path(picture.file)).lexically_proximate(absolute_path(output)).string();
+    return std::any_of(stated.begin(), stated.end(),
                        [](char c) { return c == '"' || static_cast<unsigned char>(c) < ' '; });
 }
 
@@ -78,12 +79,12 @@ void add_parts(const std::vector<FoundProject> &parts, const std::string &others
     }
 }
 
-Groups register_groups(bool one_lens, const std::vector<const InputPicture *> &given, Progress &progress) {
+Groups register_groups(const CalibrateOptions &o, const std::vector<const InputPicture *> &given, Progress &progress) {
     std::vector<std::string> files;
     std::vector<const InputPicture *> all;
     Groups groups;
     for (const InputPicture *picture : given) {
-        if (has_odd_name(*picture)) {
+        if (has_odd_name(*picture, o.output)) {
             groups.unjoined[picture->file] = picture->file + ": has a quote or a line break in its path, which a Hugin "
                                                              "project cannot state; rename it";
             continue;
@@ -97,7 +98,7 @@ Groups register_groups(bool one_lens, const std::vector<const InputPicture *> &g
     for (const uint32_t number : found.alone)
         groups.unjoined[files[number]] = files[number] + ": no overlap with another picture was found";
     for (const FoundProject &project : found.projects) {
-        if (one_lens)
+        if (o.one_lens)
             add_parts(split_by_kind(project, all), "that are camera raw files, or that are none where it is one", all,
                       groups);
         else
@@ -257,7 +258,7 @@ Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger
     Groups groups;
     const std::string key = key_of(all, o.one_lens ? "one lens" : "");
     if (!recall(ledger.notes, key, all, groups)) {
-        groups = register_groups(o.one_lens, all, progress);
+        groups = register_groups(o, all, progress);
         panoramas.is_registered = true;
         ledger.notes["registration"] = json_of(groups, key);
         ledger.save();

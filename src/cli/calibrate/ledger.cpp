@@ -92,9 +92,10 @@ FolderLock::~FolderLock() {
 void FolderLock::take() {
     if (file_ >= 0) return;
     file_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)  // not all file systems have locks
-        throw Failure(ExitCode::failed, folder_ + ": another calibrate is at work in it; wait for its end, or give "
-                                                  "another folder with -o");
+    if (file_ < 0 || flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;  // not all have locks
+    close(file_);
+    throw Failure(ExitCode::failed, folder_ + ": another calibrate is at work in it; wait for its end, or give another "
+                                              "folder with -o");
 }
 
 Ledger::Ledger(const std::string &folder, bool overwrite)
