@@ -135,13 +135,6 @@ void test_one_picture(void **) {
     assert_refused(not_usable, build_of(pto), {pto, "one image"});
 }
 
-void test_nothing_to_estimate(void **) {
-    const std::string pto = copy_of("scene") + "/pano.pto";
-    edit(pto, "\nv[^\n]*", "");
-    assert_refused(usage, build_of(pto), {pto});
-    must_exit(done, build_of(pto) + Words{"--free", "all"});
-}
-
 void test_damaged_projects(void **) {
     const std::string pto = copy_of("scene") + "/pano.pto";
     const struct {
@@ -397,7 +390,6 @@ int main() {
         FAULT_TEST(test_pictures_apart),
         FAULT_TEST(test_pictures_in_the_wrong_place),
         FAULT_TEST(test_one_picture),
-        FAULT_TEST(test_nothing_to_estimate),
         FAULT_TEST(test_damaged_projects),
         FAULT_TEST(test_not_a_project),
         FAULT_TEST(test_bad_points),

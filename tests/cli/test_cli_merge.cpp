@@ -1,9 +1,9 @@
 // `lensprof align --merge`: frames of known light must give that light, beyond white and down to black.
 #ifdef LENSPROF_HAS_OPENEXR  // before cmocka, which defines a macro skip
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfInputFile.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
 #endif
 
 #include "cli_runs.hpp"

@@ -84,7 +84,7 @@ LAYERS = {
         C_LIBRARY
         | CPP_LIBRARY
         | POSIX
-        | {"CLI/*", "cairo-svg.h", "cairo.h", "exiv2/*", "jerror.h", "jpeglib.h", "Imf*.h", "libraw/*", "nlohmann/*", "png.h",
+        | {"CLI/*", "cairo-svg.h", "cairo.h", "exiv2/*", "jerror.h", "jpeglib.h", "OpenEXR/*", "libraw/*", "nlohmann/*", "png.h",
            "tiffio.h"},
         ["threads"],
     ),
@@ -105,7 +105,7 @@ ROOMS = {
 ROOM_HEADERS = {
     "src/cli/registration": {"Eigen/*", "opencv2/*"},
     "src/cli/response": {"Eigen/*"},
-    "src/cli/pictures": {"Imf*.h", "libraw/*"},
+    "src/cli/pictures": {"OpenEXR/*", "libraw/*"},
 }
 
 # What each public header may include, beside <stddef.h> and <stdint.h>: nothing above its own layer.
