@@ -6,7 +6,7 @@
  *
  * Method `transfer` (d'Angelo 2007): minimise the symmetric grey value transfer error
  *     B1 - f( g(B2) s1/s2 )   and   B2 - f( g(B1) s2/s1 ),      s = M e w            (equations 5, 8, 10)
- * over one response f (EMoR), one vignetting M and the exposure and white balance of every image.
+ * over one response f (EMoR), one vignetting M per lens setting and the exposure and white balance of every image.
  *
  * Method `transfer-function` (Kim & Pollefeys 2004): the most likely brightness transfer function of every image pair
  * and channel, from its joint histogram; then linear least squares for ln f^-1 and the log exposures (equations 5 to
@@ -44,6 +44,8 @@ extern "C" {
 #define LENSPROF_FREE_RED 0x40u
 #define LENSPROF_FREE_BLUE 0x80u
 
+#define LENSPROF_SETTINGS_MAX 64
+
 /* How the unknowns are told from the correspondences. All give the same kind of result. */
 typedef enum lensprof_fit_method {
     LENSPROF_METHOD_TRANSFER = 0, /* default: d'Angelo 2007, grey values transferred from one image to the other */
@@ -79,15 +81,17 @@ typedef struct lensprof_fit_image {
     uint32_t free;              /* LENSPROF_FREE_EV | _RED | _BLUE */
     uint32_t ev_of;             /* index of the image whose ev this one shares (links); own index = its own */
     uint32_t red_of, blue_of;   /* the same for the white balance factors */
-    uint32_t reserved;          /* 0 */
+    uint32_t setting;           /* 0..LENSPROF_SETTINGS_MAX - 1: images of one lens at one focal length, aperture and
+                                   focus have the same. Every setting has a vignetting of its own, TRANSFER and RADIANCE
+                                   alone; all have one response */
     lensprof_exposure exposure; /* the value where fixed, else unused */
     double known_ev;            /* exposure from elsewhere (EXIF), EV up to a common offset: a soft observation */
     double known_ev_sigma;      /* its standard error, 0.001..100 EV; 0 = not known. Rounded EXIF: about 0.1; below
                                    0.02 counts as 0.02. One alone says nothing: only differences do */
 } lensprof_fit_image;
 
-/* Image `index` of the array, of a frame of width x height px: exposure and white balance of its own, free, 0 EV and 1,
- * 1, 1 where fixed, and not known from elsewhere. */
+/* Image `index` of the array, of a frame of width x height px: setting 0, exposure and white balance of its own, free,
+ * 0 EV and 1, 1, 1 where fixed, and not known from elsewhere. */
 LENSPROF_API void lensprof_fit_image_init_sized(lensprof_fit_image *image, size_t size, uint32_t index, uint32_t width,
                                                 uint32_t height);
 static inline void lensprof_fit_image_init(lensprof_fit_image *image, uint32_t index, uint32_t width, uint32_t height) {
@@ -138,9 +142,10 @@ typedef struct lensprof_fit_options {
                                         have; one of these it must have. TRANSFER and RADIANCE, a prior_weight above
                                         0. Response and falloff are each overruled where held-out pairs are clearly
                                         worse for them (three standard errors), or the falloff or the response's
-                                        shape is far from theirs (five). NULL = none. Read during the call */
+                                        shape is far from theirs (five). Its falloff is that of the reference's setting.
+                                        NULL = none. Read during the call */
     const lensprof_response *response; /* the response where it is fixed; NULL = EMoR mean. Read during the call */
-    lensprof_vignetting vignetting;    /* the value where fixed */
+    lensprof_vignetting vignetting;    /* the value where fixed, of all settings */
     lensprof_progress progress;        /* or NULL */
     void *progress_user;
     const lensprof_link *links; /* what sampling said of the links: a usable result warns of images that only links
@@ -174,6 +179,31 @@ typedef struct lensprof_fit_image_quality {
 
 #define LENSPROF_COVERAGE_BINS 10
 
+/* What a fit found of one lens setting: as the members of lensprof_fit_result with these names. */
+typedef struct lensprof_fit_setting {
+    uint32_t struct_size;
+    uint32_t images;  /* of this setting that joined; 0: the rest means nothing */
+    uint32_t pairs;   /* with an end in them */
+    uint32_t usable;  /* 1: the response and this vignetting are a profile to store */
+    char reason[256]; /* why not, or what to mind */
+    lensprof_vignetting vignetting[3];
+    uint32_t radius_ends[LENSPROF_COVERAGE_BINS];
+    uint32_t reason_code;
+    uint32_t reason_values;
+    lensprof_item reason_item;
+    double reason_value[2];
+    double covariance[LENSPROF_COVARIANCE_MAX * LENSPROF_COVARIANCE_MAX]; /* covariance_size is the result's */
+    double gamma_direction[LENSPROF_COVARIANCE_MAX];
+} lensprof_fit_setting;
+
+/* No falloff, not usable. */
+LENSPROF_API void lensprof_fit_setting_init_sized(lensprof_fit_setting *setting, size_t size);
+static inline void lensprof_fit_setting_init(lensprof_fit_setting *setting) {
+    lensprof_fit_setting_init_sized(setting, sizeof *setting);
+}
+
+/* Of several lens settings, that of the reference stands in vignetting, radius_ends, usable, reason, covariance and
+ * gamma_direction; `settings` has all. */
 typedef struct lensprof_fit_result {
     uint32_t struct_size;
     uint32_t usable;             /* 1: a profile to store; 0: not one, with the reason in words */
@@ -219,6 +249,10 @@ typedef struct lensprof_fit_result {
     uint32_t response_from; /* lensprof_fit_response */
     double light_spread_ev; /* root mean square difference of the light at the two ends of a pair, EV: what shows the
                                response */
+    lensprof_fit_setting *settings; /* the caller's array of setting_count initialised elements, by setting, set before
+                                       the call; or NULL */
+    uint32_t setting_count;
+    uint32_t reserved2; /* 0 */
 } lensprof_fit_result;
 
 /* No result, a linear response. */
@@ -231,6 +265,7 @@ static inline void lensprof_fit_result_init(lensprof_fit_result *result) {
  * relative to the reference. A fit that ran returns OK even when the result is poor: see `usable` and `evens`.
  * Where images do not all agree, the fit is of the largest group that does; the ev of an image that was left out is NaN
  * (image_quality.joined 0). Pictures of a camera that did not move are one group or none.
+ * Method TRANSFER_FUNCTION or DEBEVEC with several settings UNSUPPORTED; a setting beyond `settings` ARGUMENT.
  * Method DEBEVEC: an image whose exposure is not known, a falloff that is free or a response that is not ARGUMENT.
  * Method RADIANCE: pairs that have an end in common (image, position and values) are joined to a track.
  * Errors: indices, values outside 0..1, unusable options ARGUMENT; NaN NOT_FINITE; no pairs NO_SAMPLES;
@@ -261,8 +296,16 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_from_fit(lenspro
                                                                          const lensprof_fit_options *options,
                                                                          uint32_t image_count, lensprof_error *error);
 
+/* Puts what a fit found of a lens setting in the place of the reference's, so that lensprof_profile_from_fit makes its
+ * profile (give that function setting->images as the number of images). Vignetting, radius_ends, pairs, covariance,
+ * gamma_direction, usable and reason are the setting's then, and left_out is 0. Errors: ARGUMENT, also for a setting
+ * without images; STRUCT_SIZE. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_result_take_setting(lensprof_fit_result *result,
+                                                                                const lensprof_fit_setting *setting,
+                                                                                lensprof_error *error);
+
 /* Root mean square of the symmetric transfer residual (levels of 255) and, when not NULL, its median absolute
- * value, of pairs under a given model (vignetting of the three channels): the figure that
+ * value, of pairs under a given model (vignetting of the three channels, of all settings): the figure that
  * lensprof_fit_result.heldout_rms states. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_transfer_rms(
     const lensprof_response *response, const lensprof_vignetting vignetting[3], const lensprof_fit_image *images,

@@ -18,6 +18,8 @@ struct Simulation {
     lensprof_response response;
     lensprof_vignetting vignetting{{-0.30, 0.05, -0.15}, {0.02, -0.015}};
     std::vector<lensprof_vignetting> chromatic;  // one falloff curve a channel; empty = `vignetting` for all
+    std::vector<lensprof_vignetting>
+        of_setting;         // of each lens setting, which images have in turn; empty = one for all
     double local_ev = 0.0;  // largest local tone error, EV: waves over the frame that start elsewhere in each image
     double frame_ev = 0.0;  // the same at the same place of every image, EV
     double tilt_ev = 0.0;   // from the left edge of every frame to the right, EV: no lens does it, and it adds up
@@ -40,6 +42,7 @@ struct Simulation {
             if (!is_given) exposures.push_back(e);
             lensprof_fit_image image;
             lensprof_fit_image_init(&image, i, width, height);
+            image.setting = of_setting.empty() ? 0 : i % static_cast<uint32_t>(of_setting.size());
             fit_images.push_back(image);
         }
         while (pairs.size() < count) {
@@ -67,10 +70,11 @@ struct Simulation {
 
     bool see(lensprof_pair &pair, const double radiance[3], double noise_levels, uint64_t &random) const {
         for (int side = 0; side < 2; side++) {
-            double r2 = lensprof_vignetting_r2(&vignetting, width, height, pair.xy[side][0], pair.xy[side][1], nullptr);
+            const lensprof_vignetting &own = falloff_of(pair.image[side], 1);
+            double r2 = lensprof_vignetting_r2(&own, width, height, pair.xy[side][0], pair.xy[side][1], nullptr);
             double local = local_factor(pair.image[side], pair.xy[side]);
             for (uint32_t c = 0; c < 3; c++) {
-                double m = lensprof_vignetting_eval(&falloff(c), r2, nullptr) * local;
+                double m = lensprof_vignetting_eval(&falloff_of(pair.image[side], c), r2, nullptr) * local;
                 double e = lensprof_exposure_factor(&exposures[pair.image[side]], c);
                 double b = lensprof_response_eval(&response, radiance[channels == 1 ? 0 : c] * m * e, nullptr);
                 if (b > 250.0 / 255.0 || b < 3.0 / 255.0) return false;
@@ -82,6 +86,9 @@ struct Simulation {
         return true;
     }
 
+    const lensprof_vignetting &falloff_of(uint32_t image, uint32_t channel) const {
+        return of_setting.empty() ? falloff(channel) : of_setting[image % of_setting.size()];
+    }
     const lensprof_vignetting &falloff(uint32_t channel) const {
         return chromatic.empty() ? vignetting : chromatic[channel];
     }

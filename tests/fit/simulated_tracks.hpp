@@ -57,9 +57,9 @@ private:
             o.image = (first + n) % images;
             o.xy[0] = lp_random(&random) * (width - 1);
             o.xy[1] = lp_random(&random) * (height - 1);
-            double r2 = lensprof_vignetting_r2(&vignetting, width, height, o.xy[0], o.xy[1], nullptr);
+            double r2 = lensprof_vignetting_r2(&falloff_of(o.image, 1), width, height, o.xy[0], o.xy[1], nullptr);
             for (uint32_t c = 0; c < 3; c++) {
-                double m = lensprof_vignetting_eval(&falloff(c), r2, nullptr);
+                double m = lensprof_vignetting_eval(&falloff_of(o.image, c), r2, nullptr);
                 double e = lensprof_exposure_factor(&exposures[o.image], c);
                 double b = lensprof_response_eval(&response, radiance[channels == 1 ? 0 : c] * m * e, nullptr);
                 double noisy = b + noise_levels / 255.0 * (noise_levels > 0.0 ? lp_normal(&random) : 0.0);

@@ -59,7 +59,7 @@ void test_step_is_optimal(void **) {
     uint64_t random = 11;
     for (int trial = 0; trial < 20; trial++) {
         const int n = 6;
-        Region region{n, 1, {0, 1, 2, 3, 4, 5}, Eigen::VectorXd::Zero(kMaxShared)};
+        Region region{n, 1, 1, {0, 1, 2, 3, 4, 5}, Eigen::VectorXd::Zero(kOneSetting)};
         Eigen::MatrixXd a(n, n);
         for (int i = 0; i < n * n; i++) a.data()[i] = lp_normal(&random);
         Eigen::MatrixXd S = a * a.transpose() + 0.1 * Eigen::MatrixXd::Identity(n, n);
@@ -85,13 +85,13 @@ void test_step_is_optimal(void **) {
 }
 
 void test_falloff_stays_positive(void **) {
-    Region region{-1, 1, {kFalloff, kFalloff + 1, kFalloff + 2, kCenter}, Eigen::VectorXd::Zero(kMaxShared)};
+    Region region{-1, 1, 1, {kFalloff, kFalloff + 1, kFalloff + 2, kCenter}, Eigen::VectorXd::Zero(kOneSetting)};
     Eigen::VectorXd b(4);
     b << -8.0, 3.0, -5.0, 4.0;
     Eigen::VectorXd d = constrained_step(region, Eigen::MatrixXd::Identity(4, 4), b);
     lensprof_vignetting v{{d[0], d[1], d[2]}, {d[3], 0.0}};
     assert_ok(lensprof_vignetting_validate(&v));
-    Region center{-1, 1, {kCenter, kCenter + 1}, Eigen::VectorXd::Zero(kMaxShared)};
+    Region center{-1, 1, 1, {kCenter, kCenter + 1}, Eigen::VectorXd::Zero(kOneSetting)};
     d = constrained_step(center, Eigen::MatrixXd::Identity(2, 2), Eigen::Vector2d(4.0, -0.1));
     assert_close(d[0], 0.5, 1e-6);  // the centre's bound
     assert_close(d[1], -0.1, 1e-9);

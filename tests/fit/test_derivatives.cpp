@@ -18,7 +18,8 @@ struct Setting {
     Problem problem;
     Estimate estimate;
 
-    explicit Setting(uint32_t channels, uint32_t count = 60) {
+    // With two lens settings, images 1 and 3 are of the second.
+    explicit Setting(uint32_t channels, uint32_t count = 60, int settings = 1) {
         simulation.response = srgb_response();
         simulation.channels = channels;
         simulation.images = 4;
@@ -27,12 +28,16 @@ struct Setting {
         options.channels = channels;
         simulation.fit_images[3].ev_of = 2;  // a linked exposure
         simulation.fit_images[2].free &= ~LENSPROF_FREE_RED;
+        for (uint32_t i = 0; i < 4 && settings == 2; i++) simulation.fit_images[i].setting = 7 * (i % 2);
         std::vector<uint32_t> keep;
         for (uint32_t p = 0; p < count; p++) keep.push_back(p);
         problem = make_problem(options, simulation.fit_images.data(), 4, simulation.pairs.data(), keep);
         const double emor[6] = {0.7, -0.4, 0.1, 0.05, -0.02, 0.01};
         set_response(estimate, emor, 6);
-        estimate.vignetting.fill({{-0.2, 0.1, -0.1}, {0.05, -0.03}});
+        const lensprof_vignetting first{{-0.2, 0.1, -0.1}, {0.05, -0.03}}, second{{-0.4, 0.2, -0.1}, {-0.02, 0.04}};
+        estimate.vignetting = {{first, first, first}};
+        if (settings == 2) estimate.vignetting.push_back({second, second, second});
+        assert_int_equal(problem.settings, settings);
         uint64_t random = 3;
         for (int i = 0; i < 4; i++)
             estimate.log_exposure.push_back(
@@ -84,32 +89,49 @@ void test_residual_by_response(void **) {
     }
 }
 
-// One curve for all channels, and one a channel: unknown u of curve `curve`.
-void test_residual_by_falloff(void **) {
+// d ln(M1/M2) by unknown u of the falloff curves of a lens setting.
+double by_unknown(const Problem &problem, const lensprof_pair &pair, const Falloff &fall, int setting, int u) {
+    double by = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const Attenuation &end = fall.end[side];
+        if (problem.setting_of[pair.image[side]] == setting)
+            by += (side ? -1.0 : 1.0) * (u < 3 ? end.by_k[u] : end.by_center[u - 3]);
+    }
+    return by;
+}
+
+// One curve for all channels, and one per channel: unknown u of curve `curve` of one lens setting.
+void check_residual_by_falloff(int vignettings, int settings, int setting) {
     const double h = 1e-7;
-    for (int vignettings : {1, 3}) {
-        Setting s(3);
-        s.problem.vignettings = vignettings;
-        for (int curve = 0; curve < vignettings; curve++)
-            for (int u = 0; u < 5; u++) {
-                std::vector<double> analytic;
-                for_each_transfer(s.problem, s.estimate, [&](size_t, const PairTransfer &t) {
-                    for (int c = 0; c < 3; c++)
-                        for (int side = 0; side < 2; side++) {
-                            const Falloff &fall = t.fall[vignettings == 3 ? c : 0];
-                            double by = u < 3 ? fall.by_k[u] : fall.by_center[u - 3];
-                            bool own = u >= 3 || vignettings == 1 || c == curve;
-                            analytic.push_back(own ? -t.channel[c].by_delta[side] * by : 0.0);
-                        }
-                });
-                Estimate low = s.estimate, high = s.estimate;
-                for (int c = 0; c < 3; c++) {
-                    if (u < 3 && vignettings == 3 && c != curve) continue;
-                    (u < 3 ? low.vignetting[c].k[u] : low.vignetting[c].center[u - 3]) -= h;
-                    (u < 3 ? high.vignetting[c].k[u] : high.vignetting[c].center[u - 3]) += h;
-                }
-                compare(analytic, residuals(s.problem, low), residuals(s.problem, high), h, "falloff");
+    Setting s(3, 60, settings);
+    s.problem.vignettings = vignettings;
+    for (int curve = 0; curve < vignettings; curve++)
+        for (int u = 0; u < 5; u++) {
+            std::vector<double> analytic;
+            for_each_transfer(s.problem, s.estimate, [&](size_t p, const PairTransfer &t) {
+                for (int c = 0; c < 3; c++)
+                    for (int side = 0; side < 2; side++) {
+                        const Falloff &fall = t.fall[vignettings == 3 ? c : 0];
+                        double by = by_unknown(s.problem, s.problem.pairs[p], fall, setting, u);
+                        bool own = u >= 3 || vignettings == 1 || c == curve;
+                        analytic.push_back(own ? -t.channel[c].by_delta[side] * by : 0.0);
+                    }
+            });
+            Estimate low = s.estimate, high = s.estimate;
+            for (int c = 0; c < 3; c++) {
+                if (u < 3 && vignettings == 3 && c != curve) continue;
+                lensprof_vignetting &below = low.vignetting[setting][c], &above = high.vignetting[setting][c];
+                (u < 3 ? below.k[u] : below.center[u - 3]) -= h;
+                (u < 3 ? above.k[u] : above.center[u - 3]) += h;
             }
+            compare(analytic, residuals(s.problem, low), residuals(s.problem, high), h, "falloff");
+        }
+}
+
+void test_residual_by_falloff(void **) {
+    for (int vignettings : {1, 3}) {
+        check_residual_by_falloff(vignettings, 1, 0);
+        for (int setting : {0, 1}) check_residual_by_falloff(vignettings, 2, setting);
     }
 }
 
@@ -122,7 +144,7 @@ void test_residual_by_exposure_and_value(void **) {
         for (size_t p = edge.first; p < edge.last; p++) {
             const auto &pair = s.problem.pairs[p];
             for (int c = 0; c < 3; c++) {
-                double ratio = falloff(s.problem, s.estimate.vignetting[0], pair).ratio * exposure[c];
+                double ratio = falloff(s.problem, s.estimate, 0, pair).ratio * exposure[c];
                 double b1 = pair.value[0][c], b2 = pair.value[1][c];
                 by_value.push_back(transfer(s.estimate, b1, b2, ratio).by_value[0]);
                 value_low.push_back(-transfer(s.estimate, b1, b2 - h, ratio).residual[0]);
@@ -160,7 +182,7 @@ double objective(const Problem &problem, const Prior &prior, const Loss &loss, c
 
 // A prior with everything in it: response, falloff, a held gamma and known exposures.
 Prior full_prior(double weight, const Problem &problem) {
-    Prior prior = make_prior(weight, problem.vignettings);
+    Prior prior = make_prior(weight, problem.vignettings, problem.settings);
     for (int l = 0; l < 6; l++) prior.pin[l] = 0.3 - 0.1 * l;
     prior.pin_value = 0.2;
     prior.pin_precision = 50.0;
@@ -174,7 +196,7 @@ Prior full_prior(double weight, const Problem &problem) {
 void test_objective_gradient(void **) {
     for (uint32_t kind : {LENSPROF_LOSS_ROBUST, LENSPROF_LOSS_HUBER, LENSPROF_LOSS_SQUARED})
         for (uint32_t channels : {1u, 3u}) {
-            Setting s(channels, 400);
+            Setting s(channels, 400, channels == 3 ? 2 : 1);
             Loss loss;
             loss.kind = kind;
             s.problem.vignettings = static_cast<int>(channels);

@@ -124,7 +124,8 @@ struct Setting {
         for (uint32_t p = 0; p < 400; p++) keep[p] = p;
         problem = make_problem(options, simulation.fit_images.data(), simulation.images, simulation.pairs.data(), keep);
         set_response(estimate, project_curve(simulation.response.table, 12).data(), 12);
-        estimate.vignetting.fill(simulation.vignetting);
+        const lensprof_vignetting &own = simulation.vignetting;
+        estimate.vignetting = {{own, own, own}};
         for (const auto &e : simulation.exposures) {
             double log_ev = e.ev * std::log(2.0);
             estimate.log_exposure.push_back(
@@ -156,9 +157,9 @@ void test_the_exponent_does_not_show_in_the_pictures(void **) {
                     assert_close(moved.log_exposure[i][c], zero + gamma * (from - zero), 1e-12);
                 }
             for (double r2 : {0.25, 1.0})
-                assert_close(lensprof_vignetting_eval(&moved.vignetting[1], r2, nullptr),
+                assert_close(lensprof_vignetting_eval(&moved.vignetting[0][1], r2, nullptr),
                              std::pow(lensprof_vignetting_eval(&s.simulation.vignetting, r2, nullptr), gamma), 0.002);
-            assert_memory_equal(moved.vignetting[0].center, s.estimate.vignetting[0].center, 2 * sizeof(double));
+            assert_memory_equal(moved.vignetting[0][0].center, s.estimate.vignetting[0][0].center, 2 * sizeof(double));
             assert_close(gamma_position(moved.curve.table.data()) - gamma_position(s.estimate.curve.table.data()),
                          std::log(gamma), 0.02);
         }
@@ -168,11 +169,11 @@ void test_the_exponent_does_not_show_in_the_pictures(void **) {
 void test_parameters_held_do_not_move(void **) {
     Setting s(mean_response());
     s.problem.free &= ~(LENSPROF_FREE_K2 | LENSPROF_FREE_K3);
-    for (auto &v : s.estimate.vignetting) v.k[1] = v.k[2] = 0.0;
+    for (auto &v : s.estimate.vignetting[0]) v.k[1] = v.k[2] = 0.0;
     Estimate moved = with_exponent(s.problem, s.estimate, 0.2);
-    assert_close(moved.vignetting[0].k[1], 0.0, 0.0);
-    assert_close(moved.vignetting[0].k[2], 0.0, 0.0);
-    assert_true(moved.vignetting[0].k[0] < s.estimate.vignetting[0].k[0]);
+    assert_close(moved.vignetting[0][0].k[1], 0.0, 0.0);
+    assert_close(moved.vignetting[0][0].k[2], 0.0, 0.0);
+    assert_true(moved.vignetting[0][0].k[0] < s.estimate.vignetting[0][0].k[0]);
 }
 
 void test_direction_is_the_derivative(void **) {

@@ -31,6 +31,7 @@ struct Setting {
         options.channels = channels;
         simulation.fit_images[3].ev_of = 2;  // a linked exposure
         simulation.fit_images[2].free &= ~LENSPROF_FREE_RED;
+        simulation.fit_images[1].setting = simulation.fit_images[3].setting = channels == 3 ? 5 : 0;
         const auto &all = simulation.observations;
         Tracks tracks = tracks_of(all.data(), static_cast<uint32_t>(all.size()));
         std::vector<uint32_t> keep;
@@ -40,7 +41,9 @@ struct Setting {
         std::vector<double> emor = project_curve(simulation.response.table, 6);
         emor[0] += 0.05, emor[1] -= 0.02;
         set_response(estimate, emor.data(), 6);
-        estimate.vignetting.fill({{-0.28, 0.06, -0.16}, {0.03, -0.02}});
+        const lensprof_vignetting first{{-0.28, 0.06, -0.16}, {0.03, -0.02}}, second{{-0.2, 0.0, -0.1}, {0.0, 0.01}};
+        estimate.vignetting = {{first, first, first}};
+        if (problem.settings == 2) estimate.vignetting.push_back({second, second, second});
         uint64_t random = 3;
         for (uint32_t i = 0; i < 4; i++) {
             estimate.log_exposure.push_back({});
@@ -101,7 +104,7 @@ void test_radiances_are_at_their_minimum(void **) {
 
 // A prior with everything in it.
 Prior full_prior(const Problem &problem) {
-    Prior prior = prior_of(make_prior(1.0, problem.vignettings, true), 6);
+    Prior prior = prior_of(make_prior(1.0, problem.vignettings, problem.settings, true), 6);
     for (int l = 0; l < 6; l++) prior.pin[l] = 0.3 - 0.1 * l;
     prior.pin_value = 0.2;
     prior.pin_precision = 50.0;
@@ -277,7 +280,8 @@ void test_distrusts_what_is_wrong(void **) {
     for (uint32_t i = 0; i < 4; i++)
         for (uint32_t c = 0; c < 3; c++)
             s.estimate.log_exposure[i][c] = std::log(lensprof_exposure_factor(&s.simulation.exposures[i], c));
-    s.estimate.vignetting.fill(s.simulation.vignetting);
+    const lensprof_vignetting &own = s.simulation.vignetting;
+    s.estimate.vignetting.assign(static_cast<size_t>(s.problem.settings), {own, own, own});
     s.estimate.modes = -1;
     s.estimate.fixed = s.simulation.response;
     auto &tracks = s.problem.tracks;
@@ -304,7 +308,7 @@ void test_distrusts_what_is_wrong(void **) {
 
 // The prior's covariance is that of measured curves: positive definite, and its first block is what few modes see.
 void test_prior_covariance(void **) {
-    Prior prior = make_prior(1.0, 1, true);
+    Prior prior = make_prior(1.0, 1, 1, true);
     Estimate estimate;
     for (int modes : {1, 5, 25}) {
         Eigen::MatrixXd precision = prior_of(prior, modes).precision.topLeftCorner(modes, modes);
@@ -317,7 +321,7 @@ void test_prior_covariance(void **) {
         }
         assert_true(is_positive_definite(precision));
     }
-    assert_true(prior_of(make_prior(1.0, 1), 5).precision == make_prior(1.0, 1).precision);  // transfer's stays
+    assert_true(prior_of(make_prior(1.0, 1, 1), 5).precision == make_prior(1.0, 1, 1).precision);  // transfer's stays
 }
 
 }  // namespace

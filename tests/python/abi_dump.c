@@ -178,7 +178,7 @@ static void print_structs(void) {
     FIELD(lensprof_fit_image, ev_of);
     FIELD(lensprof_fit_image, red_of);
     FIELD(lensprof_fit_image, blue_of);
-    FIELD(lensprof_fit_image, reserved);
+    FIELD(lensprof_fit_image, setting);
     FIELD(lensprof_fit_image, exposure);
     FIELD(lensprof_fit_image, known_ev);
     FIELD(lensprof_fit_image, known_ev_sigma);
@@ -221,6 +221,20 @@ static void print_structs(void) {
     FIELD(lensprof_fit_image_quality, known_ev_left_out);
     FIELD(lensprof_fit_image_quality, joined);
     FIELD(lensprof_fit_image_quality, reserved);
+    STRUCT(lensprof_fit_setting);
+    FIELD(lensprof_fit_setting, struct_size);
+    FIELD(lensprof_fit_setting, images);
+    FIELD(lensprof_fit_setting, pairs);
+    FIELD(lensprof_fit_setting, usable);
+    FIELD(lensprof_fit_setting, reason);
+    FIELD(lensprof_fit_setting, vignetting);
+    FIELD(lensprof_fit_setting, radius_ends);
+    FIELD(lensprof_fit_setting, reason_code);
+    FIELD(lensprof_fit_setting, reason_values);
+    FIELD(lensprof_fit_setting, reason_item);
+    FIELD(lensprof_fit_setting, reason_value);
+    FIELD(lensprof_fit_setting, covariance);
+    FIELD(lensprof_fit_setting, gamma_direction);
     STRUCT(lensprof_fit_result);
     FIELD(lensprof_fit_result, struct_size);
     FIELD(lensprof_fit_result, usable);
@@ -260,6 +274,9 @@ static void print_structs(void) {
     FIELD(lensprof_fit_result, reference);
     FIELD(lensprof_fit_result, response_from);
     FIELD(lensprof_fit_result, light_spread_ev);
+    FIELD(lensprof_fit_result, settings);
+    FIELD(lensprof_fit_result, setting_count);
+    FIELD(lensprof_fit_result, reserved2);
     STRUCT(lensprof_flat_image);
     FIELD(lensprof_flat_image, struct_size);
     FIELD(lensprof_flat_image, width);
@@ -496,6 +513,7 @@ static void print_values(void) {
     VALUE(LENSPROF_GRID_SIDE);
     VALUE(LENSPROF_UNKNOWN);
     VALUE(LENSPROF_COVARIANCE_MAX);
+    VALUE(LENSPROF_SETTINGS_MAX);
     VALUE(LENSPROF_MODES_AUTO);
     VALUE(LENSPROF_COVERAGE_BINS);
     VALUE(LENSPROF_FLAT_IMAGES);

@@ -105,6 +105,23 @@ class Fits(unittest.TestCase):
         self.assertEqual(result.exposures["ev"][1], result.exposures["ev"][2])
         self.assertAlmostEqual(result.exposures["ev"][1], np.log2(1.5), places=4)
 
+    def test_lens_settings(self):
+        images = two_images()
+        images[1].setting = 4
+        result = lp.fit_overlap(images, simple_pairs(), linear_options(free=lp.Free.K1))
+        self.assertEqual([s.images for s in result.settings], [1, 0, 0, 0, 1])
+        self.assertEqual(result.settings[0].vignetting, result.vignetting)
+        np.testing.assert_array_equal(result.settings[0].covariance, result.covariance)
+        self.assertEqual(result.settings[4].pairs, len(simple_pairs()))
+        key = lp.ProfileKey(camera_model="c")
+        self.assertEqual(result.profile(key, setting=4).vignetting[0], result.settings[4].vignetting[0])
+        self.assertEqual(result.profile(key).vignetting[0], result.vignetting[0])
+        with self.assertRaisesRegex(lp.Error, "no image of it joined"):
+            result.profile(key, setting=2)
+        with self.assertRaises(lp.Error):
+            images[1].setting = lp.SETTINGS_MAX
+            lp.fit_overlap(images, simple_pairs(), linear_options())
+
     def test_pairs_are_not_copied(self):
         from lensprof import _arrays
         import ctypes

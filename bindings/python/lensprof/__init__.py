@@ -5,7 +5,7 @@ with a `status`; what it could not be asked (an array of a wrong type, shape or 
 ValueError.
 """
 from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
-                   RESPONSE_SAMPLES, UNKNOWN, CameraKind, CurveKind, Direction, DistanceRule, DngForm, Encoding,
+                   RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CurveKind, Direction, DistanceRule, DngForm, Encoding,
                    FitResponse, FlatGrid, FlatLight, Format, Free, GammaFrom, Holds, ItemKind, Layout, LinkState, Loss,
                    MapSense, Method, Pack, Processing, ProfilePrior, Projection, Reason, ResponseFrom, ResponseKind,
                    SampleType, Sampling, Saturated, Status, StoreMode)
@@ -14,7 +14,7 @@ from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE
                       OBSERVATION_DTYPE, PAIR_DTYPE)
 from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_type_bytes, simulate
-from .fit import FitImage, FitOptions, FitResult, fit_overlap, fit_radiance, transfer_rms
+from .fit import FitImage, FitOptions, FitResult, FitSetting, fit_overlap, fit_radiance, transfer_rms
 from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
 from .formats import (FormatInfo, FrameTime, Pto, PtoImage, alsc_read, alsc_write, curves_read, curves_write,
                       detect_format, dng_opcodes_read, dng_opcodes_write, drone_xmp_read, export_profiles,
@@ -34,11 +34,11 @@ __all__ = [
     "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel", "CurveKind", "Direction",
     "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES",
     "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResponse", "FitResult",
-    "FixedPlan", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime",
+    "FitSetting", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime",
     "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE",
     "Layout", "LinkState", "Lookup", "LookupOptions", "Loss", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE",
     "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance",
-    "Pto", "PtoImage", "RESPONSE_SAMPLES", "Reason", "Response", "ResponseFrom", "ResponseKind", "SampleImage",
+    "Pto", "PtoImage", "RESPONSE_SAMPLES", "Reason", "Response", "ResponseFrom", "ResponseKind", "SETTINGS_MAX", "SampleImage",
     "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreName",
     "StoreRow", "StoreStats", "StoreSummary", "UNKNOWN", "Vignetting", "alsc_read", "alsc_write", "correct",
     "curves_read", "curves_write", "detect_format", "dng_opcodes_read", "dng_opcodes_write", "drone_xmp_read",

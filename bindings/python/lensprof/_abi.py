@@ -17,6 +17,7 @@ EMOR_MODES = 25
 GRID_SIDE = 32
 UNKNOWN = -1.0
 COVARIANCE_MAX = 36
+SETTINGS_MAX = 64
 MODES_AUTO = 4294967295
 COVERAGE_BINS = 10
 FLAT_IMAGES = 128
@@ -663,7 +664,7 @@ class FitImage(Structure):
         ("ev_of", c_uint32),
         ("red_of", c_uint32),
         ("blue_of", c_uint32),
-        ("reserved", c_uint32),
+        ("setting", c_uint32),
         ("exposure", Exposure),
         ("known_ev", c_double),
         ("known_ev_sigma", c_double),
@@ -717,6 +718,24 @@ class FitImageQuality(Structure):
     ]
 
 
+class FitSetting(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("images", c_uint32),
+        ("pairs", c_uint32),
+        ("usable", c_uint32),
+        ("reason", c_char * 256),
+        ("vignetting", Vignetting * 3),
+        ("radius_ends", c_uint32 * 10),
+        ("reason_code", c_uint32),
+        ("reason_values", c_uint32),
+        ("reason_item", Item),
+        ("reason_value", c_double * 2),
+        ("covariance", c_double * 1296),
+        ("gamma_direction", c_double * 36),
+    ]
+
+
 class FitResult(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -757,6 +776,9 @@ class FitResult(Structure):
         ("reference", c_uint32),
         ("response_from", c_uint32),
         ("light_spread_ev", c_double),
+        ("settings", POINTER(FitSetting)),
+        ("setting_count", c_uint32),
+        ("reserved2", c_uint32),
     ]
 
 
@@ -1143,6 +1165,7 @@ STRUCTS = {
     "lensprof_fit_image": FitImage,
     "lensprof_fit_options": FitOptions,
     "lensprof_fit_image_quality": FitImageQuality,
+    "lensprof_fit_setting": FitSetting,
     "lensprof_fit_result": FitResult,
     "lensprof_flat_image": FlatImage,
     "lensprof_flat_options": FlatOptions,
@@ -1191,6 +1214,7 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     SampleImage: ("lensprof_sample_image_init_sized", [SampleImage]),
     SampleOptions: ("lensprof_sample_options_init_sized", [SampleOptions]),
     FitOptions: ("lensprof_fit_options_init_sized", [FitOptions]),
+    FitSetting: ("lensprof_fit_setting_init_sized", [FitSetting]),
     FitResult: ("lensprof_fit_result_init_sized", [FitResult, FitImageQuality]),
     FlatImage: ("lensprof_flat_image_init_sized", [FlatImage]),
     FlatOptions: ("lensprof_flat_options_init_sized", [FlatOptions]),
@@ -1274,6 +1298,7 @@ FUNCTIONS = {
     # fit.h
     "lensprof_fit_image_init_sized": (None, [POINTER(FitImage), c_size_t, c_uint32, c_uint32, c_uint32]),
     "lensprof_fit_options_init_sized": (None, [POINTER(FitOptions), c_size_t]),
+    "lensprof_fit_setting_init_sized": (None, [POINTER(FitSetting), c_size_t]),
     "lensprof_fit_result_init_sized": (None, [POINTER(FitResult), c_size_t, c_size_t]),
     "lensprof_fit_overlap": (c_int, [POINTER(FitOptions), POINTER(FitImage), c_uint32, POINTER(Pair), c_uint32,
                                      POINTER(Exposure), POINTER(FitResult), POINTER(ErrorText)]),
@@ -1281,6 +1306,7 @@ FUNCTIONS = {
                                       POINTER(Exposure), POINTER(FitResult), POINTER(ErrorText)]),
     "lensprof_profile_from_fit": (c_int, [POINTER(Profile), POINTER(FitResult), POINTER(FitOptions), c_uint32,
                                           POINTER(ErrorText)]),
+    "lensprof_fit_result_take_setting": (c_int, [POINTER(FitResult), POINTER(FitSetting), POINTER(ErrorText)]),
     "lensprof_transfer_rms": (c_int, [POINTER(Response), POINTER(Vignetting), POINTER(FitImage), POINTER(Exposure),
                                       c_uint32, POINTER(Pair), c_uint32, c_uint32, POINTER(c_double), POINTER(c_double),
                                       POINTER(ErrorText)]),

@@ -1,6 +1,7 @@
 """Recovering response, vignetting, exposure and white balance from correspondences; see lensprof/fit.h."""
 from __future__ import annotations
 
+import ctypes
 from ctypes import byref, c_double, sizeof
 from typing import Any, Iterable, Optional, Sequence, Union
 
@@ -23,7 +24,8 @@ class FitImage(Value, _abi.FitImage):
     index: its own place among the images. width, height: full frame, px. exposure: the value where fixed. free:
     Free.EV, RED, BLUE, all by default. ev_of, red_of, blue_of: index of the image whose ev or white balance factor this one shares;
     its own unless told. known_ev: exposure from elsewhere (EXIF), EV up to a common offset, a soft observation;
-    known_ev_sigma: its standard error, EV, 0 = not known.
+    known_ev_sigma: its standard error, EV, 0 = not known. setting: number of the lens setting (lens, focal length, aperture
+    and focus), 0..SETTINGS_MAX - 1, each of which has a vignetting of its own.
     """
 
     width: int
@@ -33,6 +35,7 @@ class FitImage(Value, _abi.FitImage):
     ev_of: int
     red_of: int
     blue_of: int
+    setting: int
     known_ev: float
     known_ev_sigma: float
 
@@ -94,6 +97,32 @@ class FitOptions(WithProgress, Struct, _abi.FitOptions):
         return [name for name in super()._names() if not name.startswith("link")]
 
 
+class FitSetting(Struct, _abi.FitSetting):
+    """What a fit found of one lens setting; the fields are those of FitResult with these names.
+
+    images: of this setting that joined; where 0, the rest means nothing. pairs: with an end in them.
+    """
+
+    images: int
+    pairs: int
+    usable = Flag()
+    reason = Text()
+    vignetting = Curves(Vignetting, "_vignettings")
+    radius_ends = Vector(writable=False)
+    reason_code = Enumerated(Reason)
+    reason_values: int
+    reason_item = Nested(Item)
+    reason_value = Numbers("reason_values")
+    covariance = Covariance()
+    gamma_direction = Vector(writable=False)
+    _vignettings = 1
+    _covariance_size = 0
+
+    @property
+    def covariance_size(self) -> int:
+        return self._covariance_size
+
+
 class FitResult(Struct, _abi.FitResult):
     """What a fit found. Arrays are views on this object.
 
@@ -108,6 +137,8 @@ class FitResult(Struct, _abi.FitResult):
     gamma_direction: change of each parameter per unit of it. before_rms, heldout_rms, heldout_median, noise_levels: levels of
     255. frame_share, image_share: residual variance that follows a map over the frame, or of each image's own. inlier_share: 0..1. seconds: time taken. radius_ends, grey_ends: pair ends by tenths of
     the half diagonal and of the grey range. covariance: n x n as in Profile; parameters held fixed have zero rows.
+    settings: tuple of FitSetting by FitImage.setting; where there are several, vignetting, radius_ends, usable, reason,
+    covariance and gamma_direction of the result are those of the reference's.
     """
 
     usable = Flag()
@@ -145,16 +176,24 @@ class FitResult(Struct, _abi.FitResult):
     response_from = Enumerated(FitResponse)
     light_spread_ev: float
 
-    def __init__(self, image_count: int, options: Optional[FitOptions] = None):
+    def __init__(self, image_count: int, options: Optional[FitOptions] = None, setting_count: int = 1):
         super().__init__()
         given = options or FitOptions()
         self._options = FitOptions(method=given.method, profile=given.profile)
         self._exposures = np.zeros(image_count, dtype=_arrays.EXPOSURE_DTYPE)
         self._quality = np.zeros(image_count, dtype=_arrays.IMAGE_QUALITY_DTYPE)
+        self._settings = (FitSetting * setting_count)(*(FitSetting() for _ in range(setting_count)))
 
     @classmethod
     def _names(cls) -> list[str]:
-        return [name for name in super()._names() if name != "image_quality"]
+        return [name for name in super()._names() if name not in ("image_quality", "settings", "setting_count")]
+
+    @property
+    def settings(self) -> tuple[FitSetting, ...]:
+        settings = tuple(self._settings)
+        for setting in settings:
+            setting._vignettings, setting._covariance_size = self.vignettings, self.covariance_size
+        return settings
 
     @property
     def exposures(self) -> np.ndarray:
@@ -168,10 +207,18 @@ class FitResult(Struct, _abi.FitResult):
         """What image `index` got."""
         return Exposure.from_buffer_copy(self._exposures[index])
 
-    def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0) -> Profile:
-        """A profile of this result, to be stored or applied. source: file that it was made from. Time 0 = unknown."""
-        profile, error = Profile(key=key), _abi.ErrorText()
-        check(lib.lensprof_profile_from_fit(byref(profile), byref(self), byref(self._options), len(self._exposures),
+    def profile(self, key: ProfileKey, source: str = "", created_unix_s: int = 0,
+                setting: Optional[int] = None) -> Profile:
+        """A profile of this result, to be stored or applied. source: file that it was made from. Time 0 = unknown.
+        setting: number of the lens setting that it is of; None = that of the reference."""
+        profile, error, count = Profile(key=key), _abi.ErrorText(), len(self._exposures)
+        result: _abi.FitResult = self
+        if setting is not None:
+            result, found = _abi.FitResult.from_buffer_copy(self), self._settings[setting]
+            check(lib.lensprof_fit_result_take_setting(byref(result), byref(found), byref(error)),
+                  f"no profile of setting {setting}", error)
+            count = found.images
+        check(lib.lensprof_profile_from_fit(byref(profile), byref(result), byref(self._options), count,
                                             byref(error)), "no profile", error)
         profile.provenance.source, profile.provenance.created_unix_s = source, created_unix_s
         return profile
@@ -182,8 +229,10 @@ def _fit_images(images: Sequence[FitImage]) -> Any:
 
 
 def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], options: FitOptions) -> FitResult:
-    error, result = _abi.ErrorText(), FitResult(len(images), options)
+    error, result = _abi.ErrorText(), FitResult(len(images), options, 1 + max((i.setting for i in images), default=0))
     out = _abi.FitResult.from_buffer(result)
+    out.settings = ctypes.cast(result._settings, ctypes.POINTER(_abi.FitSetting))
+    out.setting_count = len(result._settings)
     out.image_quality = _arrays.address(result.image_quality, _abi.FitImageQuality)
     with calling(options) as call:
         status = function(byref(call), _fit_images(images), len(images), *data,

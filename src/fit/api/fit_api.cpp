@@ -25,6 +25,7 @@ constexpr uint32_t kImageFlags = LENSPROF_FREE_EV | LENSPROF_FREE_RED | LENSPROF
 constexpr size_t kFirstOptions = LP_END_OF(lensprof_fit_options, progress_user);
 constexpr size_t kFirstImage = LP_END_OF(lensprof_fit_image, known_ev_sigma);
 constexpr size_t kFirstResult = LP_END_OF(lensprof_fit_result, image_quality);
+constexpr size_t kFirstSetting = sizeof(lensprof_fit_setting);
 constexpr size_t kFirstQuality = LP_END_OF(lensprof_fit_image_quality, known_ev_left_out);
 
 // The profile that is to be the prior.
@@ -111,9 +112,12 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
             && !(image.known_ev_sigma >= 1e-3 && image.known_ev_sigma <= 100.0 && std::abs(image.known_ev) <= 64.0))
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_EXPOSURE, error,
                            "known exposure beyond 64 EV, or its sigma neither 0 nor 0.001..100");
-        if ((image.free & ~kImageFlags) || image.reserved)
+        if (image.free & ~kImageFlags)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
-                           "only EV, RED and BLUE can be free in an image, and reserved is 0");
+                           "only EV, RED and BLUE can be free in an image");
+        if (image.setting >= LENSPROF_SETTINGS_MAX)
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "setting must be 0..%d",
+                           LENSPROF_SETTINGS_MAX - 1);
         for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})
             if (of >= count)
                 return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "linked to image %u of %u", of,
@@ -221,6 +225,7 @@ struct Call {
     std::vector<lensprof_fit_image> images;
     lensprof_fit_result result;
     std::vector<lensprof_fit_image_quality> quality;
+    std::vector<lensprof_fit_setting> settings;  // none where all images are of setting 0
 
     uint32_t count() const { return static_cast<uint32_t>(images.size()); }
     int channels() const { return static_cast<int>(options.channels); }
@@ -231,6 +236,48 @@ lensprof_status take_images(const lensprof_fit_image *given, uint32_t count, std
     auto init = [](lensprof_fit_image &image, uint32_t i) { lensprof_fit_image_init(&image, i, 0, 0); };
     lensprof_status status = take_all(given, count, kFirstImage, LENSPROF_ITEM_IMAGE, init, own, error);
     return status == LENSPROF_OK ? check_images(own.data(), count, error) : status;
+}
+
+// Room for what is found of the lens settings, where there are several or the caller asks for them.
+lensprof_status take_settings(const lensprof_fit_result &given, Call &call, lensprof_error *error) {
+    lensprof_fit_result taken;
+    lensprof_fit_result_init(&taken);
+    lp_sized_copy(&taken, &given);
+    const bool is_by_pairs =
+        call.options.method == LENSPROF_METHOD_TRANSFER_FUNCTION || call.options.method == LENSPROF_METHOD_DEBEVEC;
+    uint32_t last = 0;
+    for (uint32_t i = 0; i < call.count(); i++) {
+        last = std::max(last, call.images[i].setting);
+        if (is_by_pairs && call.images[i].setting != call.images[0].setting)
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_UNSUPPORTED, error,
+                           "is of another lens setting, which the methods transfer and radiance fit together");
+        if (taken.settings && call.images[i].setting >= taken.setting_count)
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                           "its setting is %u, and the result has room for %u", call.images[i].setting,
+                           taken.setting_count);
+    }
+    std::vector<lensprof_fit_setting> checked;
+    const auto init = [](lensprof_fit_setting &setting, uint32_t) { lensprof_fit_setting_init(&setting); };
+    const uint32_t count = taken.settings ? std::min<uint32_t>(taken.setting_count, LENSPROF_SETTINGS_MAX) : 0;
+    const lensprof_status status =
+        take_all(taken.settings, count, kFirstSetting, LENSPROF_ITEM_NONE, init, checked, error);
+    if (status != LENSPROF_OK || (last == 0 && !taken.settings)) return status;
+    call.settings.resize(std::max(last + 1, count));
+    for (auto &setting : call.settings) lensprof_fit_setting_init(&setting);
+    call.result.settings = call.settings.data();
+    call.result.setting_count = static_cast<uint32_t>(call.settings.size());
+    return LENSPROF_OK;
+}
+
+// Into the caller's array, which may have fewer elements than this library's.
+void give_settings(const Call &call, const lensprof_fit_result &given) {
+    lensprof_fit_result taken;
+    lensprof_fit_result_init(&taken);
+    lp_sized_copy(&taken, &given);
+    auto *bytes = reinterpret_cast<char *>(taken.settings);
+    const size_t step = bytes ? lp_sized_bytes(bytes) : 0;
+    for (size_t n = 0; bytes && n < std::min<size_t>(taken.setting_count, call.settings.size()); n++)
+        lp_sized_copy(bytes + n * step, &call.settings[n]);
 }
 
 // What both fits ask of everything but the pairs or observations.
@@ -258,7 +305,7 @@ lensprof_status take_call(const lensprof_fit_options *options, const lensprof_fi
     lensprof_fit_result_init(&call.result);
     if (status == LENSPROF_OK && result->image_quality) call.quality.resize(image_count);
     call.result.image_quality = call.quality.empty() ? nullptr : call.quality.data();
-    return status;
+    return status == LENSPROF_OK ? take_settings(*result, call, error) : status;
 }
 
 // The exception fence around a fit, which returns a status.
@@ -287,6 +334,11 @@ lensprof_status run(Call &call, lensprof_fit_result *result, lensprof_error *err
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - began;
     if (status != LENSPROF_OK) return status;
     call.result.seconds = taken.count();
+    give_settings(call, *result);
+    lensprof_fit_result given;  // whose pointer and count stay
+    lensprof_fit_result_init(&given);
+    lp_sized_copy(&given, result);
+    call.result.settings = given.settings, call.result.setting_count = given.setting_count;
     give_result(call.result, call.quality, result);
     return LENSPROF_OK;
 }
@@ -469,6 +521,40 @@ lensprof_status lensprof_profile_from_fit(lensprof_profile *profile, const lensp
         own.provenance.pairs = sum_of(fit.pairs, options.profile->provenance.pairs);
     };
     return change_given_profile(profile, change, error);
+}
+
+void lensprof_fit_setting_init_sized(lensprof_fit_setting *setting, size_t size) {
+    lp_sized_begin(setting, size, kFirstSetting);
+}
+
+lensprof_status lensprof_fit_result_take_setting(lensprof_fit_result *result, const lensprof_fit_setting *given,
+                                                 lensprof_error *error) {
+    clear(error);
+    if (!result || !given) return fail(LENSPROF_ERROR_ARGUMENT, error, "result or setting is NULL");
+    lensprof_fit_setting setting;
+    lensprof_fit_setting_init(&setting);
+    if (const char *wrong = lp_sized_take(&setting, given, kFirstSetting))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "setting: %s", wrong);
+    lensprof_fit_result own;
+    lensprof_fit_result_init(&own);
+    if (const char *wrong = lp_sized_take(&own, result, kFirstResult))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
+    if (!setting.images)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "setting: no image of it joined; take one that has images");
+    own.usable = setting.usable;
+    std::copy_n(setting.reason, sizeof own.reason, own.reason);
+    std::copy_n(setting.vignetting, 3, own.vignetting);
+    std::copy_n(setting.radius_ends, LENSPROF_COVERAGE_BINS, own.radius_ends);
+    own.pairs = setting.pairs;
+    own.left_out = 0;
+    own.reason_code = setting.reason_code;
+    own.reason_values = setting.reason_values;
+    own.reason_item = setting.reason_item;
+    std::copy_n(setting.reason_value, 2, own.reason_value);
+    std::copy(std::begin(setting.covariance), std::end(setting.covariance), own.covariance);
+    std::copy(std::begin(setting.gamma_direction), std::end(setting.gamma_direction), own.gamma_direction);
+    lp_sized_copy(result, &own);
+    return LENSPROF_OK;
 }
 
 lensprof_status lensprof_transfer_rms(const lensprof_response *response, const lensprof_vignetting vignetting[3],

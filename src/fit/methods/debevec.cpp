@@ -51,7 +51,7 @@ size_t add_pairs(const Problem &problem, const Estimate &given, NormalRows &rows
         const auto ratios = exposure_ratios(problem, given, edge);
         for (size_t p = edge.first; p < edge.last; p++) {
             const lensprof_pair &pair = problem.pairs[p];
-            double fall = falloff(problem, given.vignetting[0], pair).ratio;
+            double fall = falloff(problem, given, 0, pair).ratio;
             for (int c = 0; c < problem.channels; c++)
                 count += add_equation(pair.value[0][c], pair.value[1][c],
                                       std::log(fall * ratios[static_cast<size_t>(c)]), rows);

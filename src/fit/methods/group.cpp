@@ -32,11 +32,17 @@ private:
     Problem problem() const;
     void join_all();
     bool take_largest(const Problem &all);
+    void choose_reference();
     bool leave_out(const lensprof_exposure *exposures, const lensprof_fit_result &r);
     bool break_links(const lensprof_exposure *exposures, const lensprof_fit_result &r);
     void note_quality(const lensprof_fit_result &r);
     void describe(lensprof_exposure *exposures, lensprof_fit_result &r) const;
+    template <class Verdict>
+    void warn_of_links(const lensprof_fit_result &r, Verdict &verdict) const;
     uint32_t count_unverified(uint32_t &first) const;
+    bool is_within(const std::array<uint32_t, 2> &link) const {
+        return group_.joined[link[0]] && group_.joined[link[1]];
+    }
 
     const lensprof_fit_options &options_;
     const lensprof_fit_image *images_;
@@ -99,16 +105,37 @@ bool GroupFit::take_largest(const Problem &all) {
     }
     if (members[best] < 2) return false;
     for (uint32_t i = 0; i < count_; i++) group_.joined[i] = component_[i] == best && !is_out[i];
-    group_.reference = options_.reference;
-    while (!group_.joined[group_.reference]) group_.reference = (group_.reference + 1) % count_;
+    choose_reference();
     return true;
+}
+
+// That of the options, else the next image of its setting, else the next image.
+void GroupFit::choose_reference() {
+    const auto next = [&](const auto &is_good) {
+        for (uint32_t n = 0; n < count_; n++)
+            if (const uint32_t i = (options_.reference + n) % count_; group_.joined[i] && is_good(i))
+                return group_.reference = i, true;
+        return false;
+    };
+    const uint32_t setting = images_[options_.reference].setting;
+    if (!next([&](uint32_t i) { return images_[i].setting == setting; })) next([](uint32_t) { return true; });
+}
+
+// Of each setting of the problem.
+std::vector<Falloffs> falloffs_of(const Problem &problem, const lensprof_fit_result &r) {
+    std::vector<Falloffs> falloffs;
+    for (uint32_t number : problem.setting_number) {
+        const lensprof_vignetting *own = r.settings ? r.settings[number].vignetting : r.vignetting;
+        falloffs.push_back({own[0], own[1], own[2]});
+    }
+    return falloffs;
 }
 
 // Breaks the links of which hardly a pair agrees with the result. Returns whether there are any.
 bool GroupFit::break_links(const lensprof_exposure *exposures, const lensprof_fit_result &r) {
     Problem judged = problem();
     judged.vignettings = static_cast<int>(r.vignettings);
-    const Estimate estimate = estimate_of(r.response, r.vignetting, exposures, count_, judged.channels);
+    const Estimate estimate = estimate_of(r.response, falloffs_of(judged, r), exposures, count_, judged.channels);
     const std::vector<double> chi2 = all_chi2(judged, estimate, std::max(r.noise_levels, 0.5) / 255.0);
     bool any = false;
     for (const Edge &edge : judged.edges) {
@@ -171,27 +198,34 @@ void GroupFit::describe(lensprof_exposure *exposures, lensprof_fit_result &r) co
         }
         if (!group_.joined[i]) exposures[i].ev = std::numeric_limits<double>::quiet_NaN();
     }
+    const bool has_broken =
+        std::any_of(group_.broken.begin(), group_.broken.end(), [&](const auto &link) { return is_within(link); });
+    if (2 * r.left_out >= count_ || has_broken) r.evens = 0;
+    for_each_verdict(r, [&](auto &verdict) { warn_of_links(r, verdict); });
+}
+
+// Refuses a group that is too small; else warns of what does not hold together.
+template <class Verdict>
+void GroupFit::warn_of_links(const lensprof_fit_result &all, Verdict &r) const {
     const auto first = std::find(group_.joined.begin(), group_.joined.end(), false) - group_.joined.begin();
     const auto image = static_cast<uint32_t>(first);
-    const auto is_within = [&](const auto &link) { return group_.joined[link[0]] && group_.joined[link[1]]; };
-    const auto broken = std::find_if(group_.broken.begin(), group_.broken.end(), is_within);
-    if (2 * r.left_out >= count_) {
-        refuse(r, of_image(LENSPROF_REASON_IMAGE_GROUPS, image, {double(std::max(r.components, 2u))}));
-        r.evens = 0;
+    if (2 * all.left_out >= count_) {
+        refuse(r, of_image(LENSPROF_REASON_IMAGE_GROUPS, image, {double(std::max(all.components, 2u))}));
         return;
     }
-    if (broken != group_.broken.end()) r.evens = 0;
     if (!r.usable) return;
+    const auto is_own = [&](const auto &link) { return is_within(link); };
+    const auto broken = std::find_if(group_.broken.begin(), group_.broken.end(), is_own);
     // Which greys were seen is worth less than which images hold together.
     const bool is_of_greys =
         r.reason_code == LENSPROF_REASON_MISSING_GREYS || r.reason_code == LENSPROF_REASON_RESPONSE_NOT_SHOWN;
     if (r.reason_code != LENSPROF_REASON_NONE && !is_of_greys) return;
     uint32_t unverified = 0;
-    if (r.left_out)
-        warn(r, of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, image, {double(r.left_out)}));
+    if (all.left_out)
+        warn(r, of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, image, {double(all.left_out)}));
     else if (broken != group_.broken.end())
         warn(r, of_image(LENSPROF_REASON_LINKS_CONTRADICT, (*broken)[0],
-                         {double(std::count_if(group_.broken.begin(), group_.broken.end(), is_within))}));
+                         {double(std::count_if(group_.broken.begin(), group_.broken.end(), is_own))}));
     else if (const uint32_t count = count_unverified(unverified))
         warn(r, of_image(LENSPROF_REASON_LINKS_UNVERIFIED, unverified, {double(count)}));
 }
@@ -205,6 +239,8 @@ void GroupFit::run(const FitGroup &fit, lensprof_exposure *exposures, lensprof_f
     lensprof_fit_options own = options_;
     for (int n = 1;; n++) {
         own.reference = group_.reference;
+        const bool is_same_setting = images_[own.reference].setting == images_[options_.reference].setting;
+        own.profile = is_same_setting ? options_.profile : nullptr;  // whose falloff is of that one
         fit(own, group_, exposures, result);
         note_quality(result);
         const Group before = group_;

@@ -56,7 +56,7 @@ protected:
 
     void set_vignettings(int count) {
         for (Problem *p : {&all_, &train_, &heldout_}) p->vignettings = count;
-        prior_ = make_prior(options_.prior_weight, count, all_.by_radiance);
+        prior_ = make_prior(options_.prior_weight, count, all_.settings, all_.by_radiance);
     }
 
     // Whether held-out error may choose between one falloff curve and three.

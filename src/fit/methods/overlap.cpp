@@ -15,6 +15,7 @@
 #include "fit/solver/objective.hpp"
 #include "fit/solver/start.hpp"
 #include "fit/verdict/finish.hpp"
+#include "fit/verdict/output.hpp"
 #include "fit/verdict/reason.hpp"
 
 namespace lensprof {
@@ -364,31 +365,21 @@ public:
         const Contradiction all = attempt(kParts[0], exposures, r, r);
         if (!all.is_one()) return;
         const bool has_both = part_of(*options_.profile, kParts[1]) && part_of(*options_.profile, kParts[2]);
-        auto best = std::make_unique<lensprof_fit_result>(r);
-        std::vector<lensprof_exposure> found(exposures, exposures + image_count_);
-        std::vector<lensprof_fit_image_quality> quality(image_count_);
+        std::unique_ptr<Output> best;
         Contradiction least{HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
         for (const Part &part : {kParts[1], kParts[2]}) {
             if (!has_both) break;
-            auto own = std::make_unique<lensprof_fit_result>(r);
-            std::vector<lensprof_exposure> own_exposures(found);
-            std::vector<lensprof_fit_image_quality> own_quality(image_count_);
-            own->image_quality = own_quality.data();
-            const Contradiction some = attempt(part, own_exposures.data(), r, *own);
+            auto own = std::make_unique<Output>(r, exposures, image_count_);
+            const Contradiction some = attempt(part, own->exposures.data(), r, *own->result);
             if (some.is_one() || some.in_all() >= least.in_all()) continue;
             least = some;
-            *best = *own, found = own_exposures, quality = own_quality;
+            best = std::move(own);
         }
-        const bool is_part = !least.is_one();
-        if (is_part) {
-            best->image_quality = r.image_quality;
-            std::copy(quality.begin(), quality.end(), r.image_quality);
-            std::copy(found.begin(), found.end(), exposures);
-            r = *best;
-        } else {
-            r.profile_prior = LENSPROF_PROFILE_PRIOR_OVERRULED;
-        }
-        if (r.usable) warn(r, reason_of(r.profile_prior, all));
+        r.profile_prior = LENSPROF_PROFILE_PRIOR_OVERRULED;
+        if (best) best->give(r, exposures);
+        for_each_verdict(r, [&](auto &verdict) {
+            if (verdict.usable) warn(verdict, reason_of(r.profile_prior, all));
+        });
     }
 
 private:
@@ -425,16 +416,10 @@ private:
 
 void run_fits(const lensprof_fit_options &options, uint32_t image_count, const Fit::Make &make, uint32_t count,
               lensprof_exposure *exposures, lensprof_fit_result &result) {
-    std::vector<lensprof_exposure> found(image_count);  // the caller's stay as they are until all is done
-    std::vector<lensprof_fit_image_quality> quality(image_count);
-    auto r = std::make_unique<lensprof_fit_result>(result);
-    r->image_quality = quality.data();
-    r->profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
-    InformedFit(options, image_count, make, count).run(found.data(), *r);
-    r->image_quality = result.image_quality;
-    if (r->image_quality) std::copy(quality.begin(), quality.end(), r->image_quality);
-    std::copy(found.begin(), found.end(), exposures);
-    result = *r;
+    Output own(result, exposures, image_count);  // the caller's stay as they are until all is done
+    own.result->profile_prior = LENSPROF_PROFILE_PRIOR_NONE;
+    InformedFit(options, image_count, make, count).run(own.exposures.data(), *own.result);
+    own.give(result, exposures);
 }
 
 }  // namespace
@@ -478,7 +463,9 @@ Summary transfer_summary(const lensprof_response &response, const lensprof_vigne
     std::iota(keep.begin(), keep.end(), 0u);
     Problem problem = make_problem(options, images, image_count, pairs, keep);
     problem.vignettings = channels;
-    return summarise(residual_levels(problem, estimate_of(response, vignetting, exposures, image_count, channels)));
+    const std::vector<Falloffs> curves(static_cast<size_t>(problem.settings),
+                                       {vignetting[0], vignetting[1], vignetting[2]});
+    return summarise(residual_levels(problem, estimate_of(response, curves, exposures, image_count, channels)));
 }
 
 }  // namespace lensprof

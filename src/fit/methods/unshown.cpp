@@ -22,17 +22,20 @@ constexpr double kSmallestSpread = 0.06;
 constexpr double kFewestGreys = 2.0;  // tenths of the grey values: one shows nothing at all
 
 // The covariance of the response is the kind's; gamma, which is in it, moves the falloff as well.
-void state_errors(const double *covariance, double gamma_sigma, lensprof_fit_result &r) {
+template <class Part>  // the result, or one of its settings
+void state_errors(const double *covariance, const lensprof_fit_result &r, Part &part) {
     const uint32_t n = r.covariance_size, modes = LENSPROF_EMOR_MODES;
-    for (uint32_t i = 0; i < modes && n; i++) std::copy_n(covariance + i * modes, modes, r.covariance + i * n);
-    std::fill_n(r.gamma_direction, LENSPROF_COVARIANCE_MAX, 0.0);
+    const double gamma_sigma = r.gamma_sigma;
+    for (uint32_t i = 0; i < modes && n; i++) std::copy_n(covariance + i * modes, modes, part.covariance + i * n);
+    std::fill_n(part.gamma_direction, LENSPROF_COVARIANCE_MAX, 0.0);
     for (uint32_t curve = 0; curve < r.vignettings && n; curve++)
         for (int k = 0; k < 3; k++)
-            r.gamma_direction[lp_covariance_index(modes, curve) + static_cast<uint32_t>(k)] =
-                r.vignetting[curve].k[k];  // of M^gamma, where M is near 1
+            part.gamma_direction[lp_covariance_index(modes, curve) + static_cast<uint32_t>(k)] =
+                part.vignetting[curve].k[k];  // of M^gamma, where M is near 1
     for (uint32_t i = modes; i < n; i++)
         for (uint32_t j = modes; j < n; j++)
-            r.covariance[i * n + j] += gamma_sigma * gamma_sigma * (r.gamma_direction[i] * r.gamma_direction[j]);
+            part.covariance[i * n + j] +=
+                gamma_sigma * gamma_sigma * (part.gamma_direction[i] * part.gamma_direction[j]);
 }
 
 // Whether the profile says something of the response, and the pictures do not contradict it.
@@ -59,7 +62,7 @@ void hold_typical(const lensprof_fit_options &options, uint32_t image_count, con
     r.response_from = LENSPROF_FIT_RESPONSE_KIND;
     r.gamma_from = LENSPROF_GAMMA_PRIOR;
     r.gamma_sigma = sigma;
-    state_errors(covariance.data(), sigma, r);
+    for_each_verdict(r, [&](auto &part) { state_errors(covariance.data(), r, part); });
     for (uint32_t i = 0; i < image_count && r.image_quality; i++) {
         auto &q = r.image_quality[i];
         if (q.ev_sigma > 0.0)
@@ -80,8 +83,10 @@ void settle_unshown_response(const lensprof_fit_options &options, uint32_t image
         r.response_from = LENSPROF_FIT_RESPONSE_PROFILE;
     else
         hold_typical(options, image_count, fit, exposures, r);
-    if (r.usable && r.reason_code == LENSPROF_REASON_NONE)
-        warn(r, {LENSPROF_REASON_RESPONSE_NOT_SHOWN, {r.light_spread_ev, r.gamma_sigma}});
+    for_each_verdict(r, [&](auto &verdict) {
+        if (verdict.usable && verdict.reason_code == LENSPROF_REASON_NONE)
+            warn(verdict, {LENSPROF_REASON_RESPONSE_NOT_SHOWN, {r.light_spread_ev, r.gamma_sigma}});
+    });
 }
 
 }  // namespace lensprof

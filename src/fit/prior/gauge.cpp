@@ -75,7 +75,8 @@ Estimate with_exponent(const Problem &problem, const Estimate &estimate, double 
         set_response(moved, project_curve(curve, estimate.modes).data(), estimate.modes);
     else
         set_table(moved, curve);
-    for (auto &v : moved.vignetting) raise_falloff(problem, gamma, v);
+    for (Falloffs &curves : moved.vignetting)
+        for (auto &v : curves) raise_falloff(problem, gamma, v);
     const auto &reference = estimate.log_exposure[problem.reference];
     for (auto &a : moved.log_exposure)
         for (size_t c = 0; c < 3; c++) a[c] = reference[c] + gamma * (a[c] - reference[c]);

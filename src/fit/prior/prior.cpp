@@ -25,29 +25,32 @@ constexpr double kChannelSigma = 0.1;
 
 }  // namespace
 
-Prior make_prior(double weight, int vignettings, bool by_covariance) {
+Prior make_prior(double weight, int vignettings, int settings, bool by_covariance) {
+    const int size = shared_size(settings);
     Prior prior;
     prior.covariance_weight = by_covariance ? weight : 0.0;
-    prior.mean = Eigen::VectorXd::Zero(kMaxShared);
-    prior.precision = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
+    prior.mean = Eigen::VectorXd::Zero(size);
+    prior.precision = Eigen::MatrixXd::Zero(size, size);
     for (int l = 0; l < kMaxModes; l++) prior.precision(l, l) = weight / (kEmorSigma[l] * kEmorSigma[l]);
     Eigen::Matrix3d covariance;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) covariance(i, j) = kFalloffCovariance[i][j];
-    int green = green_falloff(vignettings);
-    prior.precision.block<3, 3>(green, green) = weight * covariance.inverse();
-    for (int c = 0; c < vignettings; c++)
-        for (int i = 0; i < 3; i++) prior.mean(kFalloff + 3 * c + i) = kFalloffMean[i];
-    tie_channels(weight, vignettings, prior);
-    for (int d = 0; d < 2; d++) prior.precision(kCenter + d, kCenter + d) = weight / (kCenterSigma * kCenterSigma);
+    for (int s = 0; s < settings; s++) {
+        const int green = green_falloff(vignettings, s), center = center_column(s);
+        prior.precision.block<3, 3>(green, green) = weight * covariance.inverse();
+        for (int c = 0; c < vignettings; c++)
+            for (int i = 0; i < 3; i++) prior.mean(falloff_column(s) + 3 * c + i) = kFalloffMean[i];
+        tie_channels(weight, vignettings, s, prior);
+        for (int d = 0; d < 2; d++) prior.precision(center + d, center + d) = weight / (kCenterSigma * kCenterSigma);
+    }
     return prior;
 }
 
-void tie_channels(double weight, int vignettings, Prior &prior) {
-    const int green = green_falloff(vignettings);
+void tie_channels(double weight, int vignettings, int setting, Prior &prior) {
+    const int first = falloff_column(setting), green = green_falloff(vignettings, setting);
     const double tie = weight / (kChannelSigma * kChannelSigma);
-    for (int own = kFalloff; own < kFalloff + 3 * vignettings; own++) {
-        const int of_green = green + (own - kFalloff) % 3;
+    for (int own = first; own < first + 3 * vignettings; own++) {
+        const int of_green = green + (own - first) % 3;
         if (own == of_green) continue;
         prior.precision(own, own) += tie;
         prior.precision(of_green, of_green) += tie;
@@ -56,7 +59,7 @@ void tie_channels(double weight, int vignettings, Prior &prior) {
 }
 
 Eigen::MatrixXd scatter_of_all() {
-    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
+    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(kOneSetting, kOneSetting);
     for (int l = 0; l < kMaxModes; l++) scatter(l, l) = kEmorSigma[l] * kEmorSigma[l];
     for (int a = 0; a < 9; a++)
         for (int b = 0; b < 9; b++) scatter(kFalloff + a, kFalloff + b) = kFalloffCovariance[a % 3][b % 3];
@@ -78,7 +81,7 @@ Prior prior_of(const Prior &prior, int modes) {
 
 double prior_cost(const Prior &prior, const Problem &problem, const std::vector<int> &columns,
                   const Estimate &estimate) {
-    Eigen::VectorXd full = shared_vector(estimate), d = Eigen::VectorXd::Zero(kMaxShared);
+    Eigen::VectorXd full = shared_vector(estimate), d = Eigen::VectorXd::Zero(full.size());
     for (int column : columns) d[column] = full[column] - prior.mean[column];
     double cost = 0.5 * d.dot(prior.precision * d);
     if (prior.pin_precision > 0.0) {

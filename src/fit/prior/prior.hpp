@@ -35,20 +35,23 @@ struct Prior {
     std::vector<KnownExposure> known;
 };
 
-// Response and falloff of measured cameras and lenses, times `weight`; `by_covariance` as above.
-Prior make_prior(double weight, int vignettings, bool by_covariance = false);
+// Response and falloff of measured cameras and lenses, times `weight`, the same of every setting; `by_covariance` as
+// above.
+Prior make_prior(double weight, int vignettings, int settings, bool by_covariance = false);
 
 // The prior where `modes` coefficients are estimated: what the others may be has no part in it.
 Prior prior_of(const Prior &prior, int modes);
 
-// Ties the falloff curves of the channels to that of green, where there are three.
-void tie_channels(double weight, int vignettings, Prior &prior);
+// Ties the falloff curves of a setting's channels to that of green, where there are three.
+void tie_channels(double weight, int vignettings, int setting, Prior &prior);
 
 // Column of the full shared vector where k1..k3 of green's falloff begin.
-inline int green_falloff(int vignettings) { return kFalloff + (vignettings == 3 ? 3 : 0); }
+inline int green_falloff(int vignettings, int setting = 0) {
+    return falloff_column(setting) + (vignettings == 3 ? 3 : 0);
+}
 
-// Covariance of the full shared vector over all measured cameras and lenses; modes as independent, curves of the
-// channels alike.
+// Covariance of the full shared vector of one setting over all measured cameras and lenses; modes as independent,
+// curves of the channels alike.
 Eigen::MatrixXd scatter_of_all();
 
 // Its share of the objective; of the shared unknowns those in `columns` alone.

@@ -117,7 +117,7 @@ void StoredPrior::take_curve_error(const Problem &problem, const lensprof_profil
 Estimate StoredPrior::estimate_of(const Problem &problem, const lensprof_profile &profile) const {
     Estimate stored;
     set_response(stored, mean_.data(), modes_);
-    for (size_t c = 0; c < 3; c++) stored.vignetting[c] = profile.vignetting[profile.vignettings == 3 ? c : 0];
+    for (size_t c = 0; c < 3; c++) stored.vignetting[0][c] = profile.vignetting[profile.vignettings == 3 ? c : 0];
     stored.log_exposure.assign(problem.image_count, {});
     return stored;
 }
@@ -139,7 +139,7 @@ double StoredPrior::falloff_ratio(const lensprof_vignetting &v) const {
 void StoredPrior::settle_gamma(const Problem &problem, const lensprof_profile &profile) {
     const Estimate stored = estimate_of(problem, profile);
     response_position_ = gamma_position(stored.curve.table.data());
-    Eigen::VectorXd by_response = Eigen::VectorXd::Zero(kMaxShared), by_falloff = by_response;
+    Eigen::VectorXd by_response = Eigen::VectorXd::Zero(kOneSetting), by_falloff = by_response;
     by_response.head(kMaxModes) = gamma_slope(stored);
     const int own = green_falloff(vignettings_);
     for (int n = 0; n < 3; n++) {
@@ -158,14 +158,14 @@ void StoredPrior::settle_gamma(const Problem &problem, const lensprof_profile &p
         gamma_covariance_ = std::pow(std::min(response_sigma_, falloff_sigma_), 2);
     if (!has_response() && !has_falloff()) return;
     gamma_direction_ = Gauge::direction(problem, stored);
-    for (Eigen::Index i = 0; i < kMaxShared; i++)
+    for (Eigen::Index i = 0; i < kOneSetting; i++)
         if (covariance_(i, i) <= 0.0) gamma_direction_[i] = 0.0;
 }
 
 double StoredPrior::gamma_offset(const Estimate &estimate, double &sigma, bool &by_falloff) const {
     constexpr double kLeast = 0.05;  // of the ratio: falloffs that have nothing to do with each other
     const double of_response = gamma_position(estimate.curve.table.data()) - response_position_,
-                 of_falloff = std::log(std::max(falloff_ratio(estimate.vignetting[1]), kLeast));
+                 of_falloff = std::log(std::max(falloff_ratio(estimate.vignetting[0][1]), kLeast));
     by_falloff = !has_response() || (has_falloff() && falloff_sigma_ < response_sigma_);
     sigma = by_falloff ? falloff_sigma_ : response_sigma_;
     if (!has_response() || !has_falloff()) return by_falloff ? of_falloff : of_response;
@@ -265,7 +265,7 @@ void StoredPrior::put_into(Prior &prior, int vignettings, double weight, bool se
     }
     const bool has_falloff =
         std::any_of(places.to.begin(), places.to.end(), [](int row) { return row >= kFalloff && row < kCenter; });
-    if (tied && has_falloff) tie_channels(weight, vignettings, prior);
+    if (tied && has_falloff) tie_channels(weight, vignettings, 0, prior);
     const Eigen::MatrixXd precision = precision_of(places.from, settles_gamma);
     for (size_t i = 0; i < places.to.size(); i++)
         for (size_t j = 0; j < places.to.size(); j++)

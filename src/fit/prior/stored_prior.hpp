@@ -58,8 +58,8 @@ private:
     void settle_gamma(const Problem &problem, const lensprof_profile &profile);
 
     int modes_ = 0, vignettings_ = 1;
-    Eigen::VectorXd mean_ = Eigen::VectorXd::Zero(kMaxShared), gamma_direction_ = Eigen::VectorXd::Zero(kMaxShared);
-    Eigen::MatrixXd covariance_ = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);  // zero where nothing is known
+    Eigen::VectorXd mean_ = Eigen::VectorXd::Zero(kOneSetting), gamma_direction_ = Eigen::VectorXd::Zero(kOneSetting);
+    Eigen::MatrixXd covariance_ = Eigen::MatrixXd::Zero(kOneSetting, kOneSetting);  // zero where nothing is known
     double response_position_ = 0.0;
     double response_sigma_ = 0.0, falloff_sigma_ = 0.0;  // standard errors of ln gamma; 0 where it says nothing
     double gamma_covariance_ = 0.0;                      // of the two

@@ -52,8 +52,9 @@ bool is_positive(const double *k, const double *center) {
 }
 
 bool is_feasible(const Estimate &estimate, int vignettings) {
-    for (int c = 0; c < vignettings; c++)
-        if (!is_positive(estimate.vignetting[static_cast<size_t>(c)].k, estimate.vignetting[0].center)) return false;
+    for (const Falloffs &curves : estimate.vignetting)
+        for (int c = 0; c < vignettings; c++)
+            if (!is_positive(curves[static_cast<size_t>(c)].k, curves[0].center)) return false;
     return estimate.modes < 0 || is_rising(estimate.emor.data(), estimate.modes);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -116,6 +117,17 @@ void number_unknowns(Problem &problem) {
     }
 }
 
+// Numbers the settings as they come, that of the reference first.
+void number_settings(Problem &problem) {
+    std::map<uint32_t, int> numbers{{problem.images[problem.reference].setting, 0}};
+    problem.setting_number.push_back(problem.images[problem.reference].setting);
+    for (uint32_t i = 0; i < problem.image_count; i++) {
+        const auto [found, is_new] = numbers.try_emplace(problem.images[i].setting, problem.settings);
+        if (is_new) problem.settings++, problem.setting_number.push_back(problem.images[i].setting);
+        problem.setting_of.push_back(found->second);
+    }
+}
+
 Problem empty_problem(const lensprof_fit_options &options, const lensprof_fit_image *images, uint32_t image_count) {
     Problem problem;
     problem.channels = static_cast<int>(options.channels);
@@ -124,6 +136,7 @@ Problem empty_problem(const lensprof_fit_options &options, const lensprof_fit_im
     problem.images = images;
     problem.image_count = image_count;
     problem.threads = options.threads;
+    number_settings(problem);
     return problem;
 }
 
@@ -232,11 +245,11 @@ void set_fixed(Estimate &estimate, const lensprof_response &response) {
     estimate.curve.renew_guide();
 }
 
-Estimate estimate_of(const lensprof_response &response, const lensprof_vignetting vignetting[3],
+Estimate estimate_of(const lensprof_response &response, const std::vector<Falloffs> &vignetting,
                      const lensprof_exposure *exposures, uint32_t image_count, int channels) {
     Estimate estimate;
     set_fixed(estimate, response);
-    std::copy(vignetting, vignetting + 3, estimate.vignetting.begin());
+    estimate.vignetting = vignetting;
     for (uint32_t i = 0; i < image_count; i++) {
         std::array<double, 3> a{};
         for (size_t c = 0; c < 3; c++)
@@ -254,21 +267,27 @@ lensprof_response table_response(const Estimate &estimate) {
 }
 
 Eigen::VectorXd shared_vector(const Estimate &estimate) {
-    Eigen::VectorXd full(kMaxShared);
+    const int settings = static_cast<int>(estimate.vignetting.size());
+    Eigen::VectorXd full(shared_size(settings));
     std::copy(estimate.emor.begin(), estimate.emor.end(), full.data());
-    for (int c = 0; c < 3; c++)
-        std::copy(estimate.vignetting[c].k, estimate.vignetting[c].k + 3, full.data() + kFalloff + 3 * c);
-    std::copy(estimate.vignetting[0].center, estimate.vignetting[0].center + 2, full.data() + kCenter);
+    for (int s = 0; s < settings; s++) {
+        const Falloffs &curves = estimate.vignetting[static_cast<size_t>(s)];
+        for (int c = 0; c < 3; c++) std::copy(curves[c].k, curves[c].k + 3, full.data() + falloff_column(s) + 3 * c);
+        std::copy(curves[0].center, curves[0].center + 2, full.data() + center_column(s));
+    }
     return full;
 }
 
 void set_shared(Estimate &estimate, const Eigen::VectorXd &full, int vignettings) {
     if (estimate.modes >= 0) set_response(estimate, full.data(), estimate.modes);
-    for (int c = 0; c < 3; c++) {
-        const double *k = full.data() + kFalloff + (vignettings == 3 ? 3 * c : 0);
-        std::copy(k, k + 3, estimate.vignetting[c].k);
-        std::copy(full.data() + kCenter, full.data() + kCenter + 2, estimate.vignetting[c].center);
-    }
+    for (int s = 0; s < static_cast<int>(estimate.vignetting.size()); s++)
+        for (int c = 0; c < 3; c++) {
+            lensprof_vignetting &curve = estimate.vignetting[static_cast<size_t>(s)][c];
+            const double *k = full.data() + falloff_column(s) + (vignettings == 3 ? 3 * c : 0);
+            const double *center = full.data() + center_column(s);
+            std::copy(k, k + 3, curve.k);
+            std::copy(center, center + 2, curve.center);
+        }
 }
 
 std::vector<int> free_columns(const Problem &problem, int modes) {
@@ -276,11 +295,13 @@ std::vector<int> free_columns(const Problem &problem, int modes) {
     if (problem.free & LENSPROF_FREE_RESPONSE)
         for (int l = 0; l < modes; l++) columns.push_back(l);
     const uint32_t flags[3] = {LENSPROF_FREE_K1, LENSPROF_FREE_K2, LENSPROF_FREE_K3};
-    for (int c = 0; c < problem.vignettings; c++)
-        for (int n = 0; n < 3; n++)
-            if (problem.free & flags[n]) columns.push_back(kFalloff + 3 * c + n);
-    if (problem.free & LENSPROF_FREE_CENTER)
-        for (int d = 0; d < 2; d++) columns.push_back(kCenter + d);
+    for (int s = 0; s < problem.settings; s++) {
+        for (int c = 0; c < problem.vignettings; c++)
+            for (int n = 0; n < 3; n++)
+                if (problem.free & flags[n]) columns.push_back(falloff_column(s) + 3 * c + n);
+        if (problem.free & LENSPROF_FREE_CENTER)
+            for (int d = 0; d < 2; d++) columns.push_back(center_column(s) + d);
+    }
     return columns;
 }
 

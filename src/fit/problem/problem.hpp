@@ -13,12 +13,27 @@
 
 namespace lensprof {
 
-// The full shared vector: EMoR coefficients, k1..k3 of up to three falloff curves, centre x, y. Where one curve serves
-// all channels it is the first.
+// The full shared vector: EMoR coefficients; then of each lens setting k1..k3 of up to three falloff curves, and centre
+// x, y. Where one curve serves all channels it is the first. kFalloff and kCenter are those of the first setting.
 constexpr int kMaxModes = LENSPROF_EMOR_MODES;
 constexpr int kFalloff = kMaxModes;
 constexpr int kCenter = kFalloff + 9;
-constexpr int kMaxShared = kCenter + 2;
+constexpr int kOneSetting = kCenter + 2;          // size of the vector where there is one setting
+constexpr int kSetting = kOneSetting - kFalloff;  // from one setting to the next
+
+constexpr int falloff_column(int setting) { return kFalloff + kSetting * setting; }
+constexpr int center_column(int setting) { return kCenter + kSetting * setting; }
+constexpr int shared_size(int settings) { return falloff_column(settings); }
+
+// What a column of the vector is, from kFalloff on.
+struct LensColumn {
+    int setting;
+    int offset;  // from the setting's first: as column - kFalloff where there is one setting
+    bool is_center() const { return offset >= kCenter - kFalloff; }
+};
+constexpr LensColumn lens_column(int column) {
+    return {(column - kFalloff) / kSetting, (column - kFalloff) % kSetting};
+}
 
 constexpr double kLargestLogExposure = 20.0 * kLn2;  // 20 EV beside the reference
 
@@ -47,7 +62,10 @@ struct Chunk {
 
 struct Problem {
     int channels = 3;
-    int vignettings = 1;  // falloff curves: 1, or one a channel
+    int vignettings = 1;                   // falloff curves of a setting: 1, or one per channel
+    int settings = 1;                      // lens settings, each with falloff curves and a centre
+    std::vector<int> setting_of;           // of each image; that of the reference is 0
+    std::vector<uint32_t> setting_number;  // the caller's, of each setting here
     uint32_t reference = 0;
     uint32_t free = 0;  // LENSPROF_FREE_RESPONSE .. _CENTER
     const lensprof_fit_image *images = nullptr;
@@ -101,6 +119,9 @@ struct Curve {
     double invert(double b, double *slope) const;
 };
 
+// Falloff curves of a setting, of the channels; the first alone where one curve serves all. They share a centre.
+using Falloffs = std::array<lensprof_vignetting, 3>;
+
 // The current estimate.
 struct Estimate {
     int modes = 0;            // EMoR modes in use; -1 where the response is `fixed`
@@ -108,12 +129,12 @@ struct Estimate {
     std::array<double, kMaxModes> emor{};
     Curve curve;                                      // f; follows emor
     lensprof_response fixed;                          // modes == -1: the response, a table where refined
-    std::array<lensprof_vignetting, 3> vignetting{};  // of the channels; the first alone when one curve serves all
+    std::vector<Falloffs> vignetting{Falloffs{}};     // of each setting
     std::vector<std::array<double, 3>> log_exposure;  // a_ic
 };
 
-// An estimate that holds a model. `vignetting`: of the channels.
-Estimate estimate_of(const lensprof_response &response, const lensprof_vignetting vignetting[3],
+// An estimate that holds a model. `vignetting`: of each setting of the problem that it is for.
+Estimate estimate_of(const lensprof_response &response, const std::vector<Falloffs> &vignetting,
                      const lensprof_exposure *exposures, uint32_t image_count, int channels);
 
 // Sets emor and curve.

@@ -99,7 +99,7 @@ void TrackEvaluator::evaluate(const Range &track, const uint8_t *trust, TrackFit
     for (size_t i = 0; i < count; i++) {
         const auto &o = problem_.tracks.observations[track.first + i];
         for (size_t curve = 0; curve < static_cast<size_t>(problem_.vignettings); curve++)
-            fit.lens[i][curve] = attenuation(problem_, estimate_.vignetting[curve], o.image, o.xy);
+            fit.lens[i][curve] = attenuation(problem_, estimate_, curve, o.image, o.xy);
     }
     for (int c = 0; c < problem_.channels; c++) {
         auto &sightings = fit.channel[static_cast<size_t>(c)];

@@ -16,10 +16,11 @@ double irradiance_of(const Estimate &estimate, double b, double *slope) {
     return estimate.modes < 0 ? lensprof_response_invert(&estimate.fixed, b, slope) : estimate.curve.invert(b, slope);
 }
 
-Attenuation attenuation(const Problem &problem, const lensprof_vignetting &vignetting, uint32_t image,
+Attenuation attenuation(const Problem &problem, const Estimate &estimate, size_t curve, uint32_t image,
                         const double xy[2]) {
     Attenuation result{};
     const auto &frame = problem.images[image];
+    const lensprof_vignetting &vignetting = estimate.vignetting[static_cast<size_t>(problem.setting_of[image])][curve];
     double gradient[2], slope;
     double r2 = lensprof_vignetting_r2(&vignetting, frame.width, frame.height, xy[0], xy[1], gradient);
     result.m = std::max(lensprof_vignetting_eval(&vignetting, r2, &slope), 1e-6);
@@ -29,13 +30,11 @@ Attenuation attenuation(const Problem &problem, const lensprof_vignetting &vigne
     return result;
 }
 
-Falloff falloff(const Problem &problem, const lensprof_vignetting &vignetting, const lensprof_pair &pair) {
-    const Attenuation first = attenuation(problem, vignetting, pair.image[0], pair.xy[0]);
-    const Attenuation second = attenuation(problem, vignetting, pair.image[1], pair.xy[1]);
+Falloff falloff(const Problem &problem, const Estimate &estimate, size_t curve, const lensprof_pair &pair) {
     Falloff result{};
-    result.ratio = first.m / second.m;
-    for (int n = 0; n < 3; n++) result.by_k[n] = first.by_k[n] - second.by_k[n];
-    for (int d = 0; d < 2; d++) result.by_center[d] = first.by_center[d] - second.by_center[d];
+    for (int side = 0; side < 2; side++)
+        result.end[side] = attenuation(problem, estimate, curve, pair.image[side], pair.xy[side]);
+    result.ratio = result.end[0].m / result.end[1].m;
     return result;
 }
 
@@ -56,7 +55,8 @@ Transfer transfer(const Estimate &estimate, double value1, double value2, double
 
 void evaluate_pair(const Problem &problem, const Estimate &estimate, const lensprof_pair &pair,
                    const double exposure_ratio[3], PairTransfer &result) {
-    for (int c = 0; c < problem.vignettings; c++) result.fall[c] = falloff(problem, estimate.vignetting[c], pair);
+    for (size_t c = 0; c < static_cast<size_t>(problem.vignettings); c++)
+        result.fall[c] = falloff(problem, estimate, c, pair);
     for (int c = 0; c < problem.channels; c++) {
         double m = result.fall[problem.vignettings == 3 ? c : 0].ratio;
         result.channel[c] = transfer(estimate, pair.value[0][c], pair.value[1][c], m * exposure_ratio[c]);

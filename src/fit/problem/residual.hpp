@@ -24,20 +24,19 @@ struct Transfer {
 double response_at(const Estimate &estimate, double x, double *slope);
 double irradiance_of(const Estimate &estimate, double b, double *slope);
 
-// M at a place, and the derivatives of its logarithm: by_k[n], by_center[0..1].
+// M at a place of an image, and the derivatives of its logarithm: by_k[n], by_center[0..1].
 struct Attenuation {
     double m;
     double by_k[3];
     double by_center[2];
 };
-Attenuation attenuation(const Problem &problem, const lensprof_vignetting &vignetting, uint32_t image,
+Attenuation attenuation(const Problem &problem, const Estimate &estimate, size_t curve, uint32_t image,
                         const double xy[2]);
 
-// M(p1) / M(p2) of a pair, and the derivatives of its logarithm: by_k[n], by_center[0..1].
+// M(p1) / M(p2) of a pair, and what it is made of.
 struct Falloff {
     double ratio;
-    double by_k[3];
-    double by_center[2];
+    Attenuation end[2];
 };
 
 // ratio: s1/s2.
@@ -51,8 +50,8 @@ struct PairTransfer {
 void evaluate_pair(const Problem &problem, const Estimate &estimate, const lensprof_pair &pair,
                    const double exposure_ratio[3], PairTransfer &result);
 
-// M1/M2 of one falloff curve.
-Falloff falloff(const Problem &problem, const lensprof_vignetting &vignetting, const lensprof_pair &pair);
+// M1/M2 by one of the falloff curves of each image's setting.
+Falloff falloff(const Problem &problem, const Estimate &estimate, size_t curve, const lensprof_pair &pair);
 
 inline std::array<double, 3> exposure_ratios(const Problem &problem, const Estimate &estimate, const Edge &edge) {
     std::array<double, 3> ratio{1.0, 1.0, 1.0};

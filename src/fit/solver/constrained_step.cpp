@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "fit/base/inequality.hpp"
 #include "fit/problem/curve_shape.hpp"
@@ -13,9 +14,11 @@ constexpr int kRadii = 33;  // samples of r^2 at which M is held positive
 constexpr double kSmallestM = 0.01;
 constexpr double kReach2 = 1.8 * 1.8;  // (1 + largest |centre|)^2 that the bound below leaves
 
-// The r^2 up to which M must be positive for a centre: the farthest corner, with a margin for the centre's own step.
-double reach2(const Eigen::VectorXd &value) {
-    double reach = 1.0 + std::hypot(value[kCenter], value[kCenter + 1]) + 0.02;
+// The r^2 up to which M must be positive for the centre of a setting: the farthest corner, with a margin for the
+// centre's own step.
+double reach2(const Eigen::VectorXd &value, int setting) {
+    const int center = center_column(setting);
+    double reach = 1.0 + std::hypot(value[center], value[center + 1]) + 0.02;
     return std::min(reach * reach, kReach2);
 }
 
@@ -25,18 +28,22 @@ Eigen::VectorXd moved(const Region &region, const Eigen::VectorXd &d) {
     return value;
 }
 
-// In this order: rises of f, values of each M, bounds of the centre.
+// In this order: rises of f; then of each setting values of each M, and bounds of the centre.
 class CameraInequalities : public Inequalities {
 public:
-    explicit CameraInequalities(const Region &r) : region(r), limit2(reach2(r.value)) {}
+    explicit CameraInequalities(const Region &r) : region(r) {
+        for (int s = 0; s < r.settings; s++) limit2.push_back(reach2(r.value, s));
+    }
 
-    int count() const override { return first_center() + 4; }
+    int count() const override { return kRises + region.settings * of_setting(); }
     double tolerance(int i) const override { return i < kRises ? 0.25 * kSmallestRise : 1e-6; }
 
     bool is_kept(const Eigen::VectorXd &d) const override {
         const Eigen::VectorXd value = moved(region, d);
-        for (int c = 0; c < region.vignettings; c++)
-            if (!is_positive(value.data() + kFalloff + 3 * c, value.data() + kCenter)) return false;
+        for (int s = 0; s < region.settings; s++)
+            for (int c = 0; c < region.vignettings; c++)
+                if (!is_positive(value.data() + falloff_column(s) + 3 * c, value.data() + center_column(s)))
+                    return false;
         return region.modes < 0 || is_rising(value.data(), region.modes);
     }
 
@@ -44,14 +51,13 @@ public:
         const Eigen::VectorXd value = moved(region, d);
         std::vector<double> gap(static_cast<size_t>(count()), -1.0);
         if (!region.columns.empty() && region.columns[0] < kMaxModes) rise_gaps(value.data(), region.modes, gap.data());
-        for (int i = kRises; i < first_center(); i++) {
-            const double *k = value.data() + kFalloff + 3 * ((i - kRises) / kRadii);
+        for (int i = kRises; i < count(); i++) {
+            const Place at = place(i);
+            const double *k = value.data() + at.column;
             const lensprof_vignetting v{{k[0], k[1], k[2]}, {0.0, 0.0}};
-            gap[static_cast<size_t>(i)] = kSmallestM - lensprof_vignetting_eval(&v, radius2(i), nullptr);
+            gap[static_cast<size_t>(i)] = at.is_center ? (at.is_upper ? k[0] : -k[0]) - kLargestCenter
+                                                       : kSmallestM - lensprof_vignetting_eval(&v, at.radius2, nullptr);
         }
-        for (int b = 0; b < 4; b++)
-            gap[static_cast<size_t>(first_center() + b)] =
-                (b % 2 ? value[kCenter + b / 2] : -value[kCenter + b / 2]) - kLargestCenter;
         return gap;
     }
 
@@ -61,23 +67,35 @@ public:
             int column = region.columns[static_cast<size_t>(u)];
             if (i < kRises) {
                 if (column < kMaxModes) row[u] = rise_of_mode(column, i);
-            } else if (i < first_center()) {
-                int power = column - kFalloff - 3 * ((i - kRises) / kRadii);
-                if (column >= kFalloff && power >= 0 && power < 3) row[u] = std::pow(radius2(i), power + 1);
-            } else {
-                int b = i - first_center();
-                if (column == kCenter + b / 2) row[u] = b % 2 ? -1.0 : 1.0;
+                continue;
             }
+            const Place at = place(i);
+            const int power = column - at.column;
+            if (at.is_center && power == 0) row[u] = at.is_upper ? -1.0 : 1.0;
+            if (!at.is_center && power >= 0 && power < 3) row[u] = std::pow(at.radius2, power + 1);
         }
         return row;
     }
 
 private:
-    int first_center() const { return kRises + kRadii * region.vignettings; }
-    double radius2(int i) const { return limit2 * ((i - kRises) % kRadii + 1) / kRadii; }
+    // What an inequality from kRises on is about: M of the curve that begins in `column` at radius2, or the coordinate
+    // of a centre in `column`.
+    struct Place {
+        int column;
+        bool is_center, is_upper;
+        double radius2;
+    };
+    Place place(int i) const {
+        const int setting = (i - kRises) / of_setting(), n = (i - kRises) % of_setting();
+        const int bound = n - kRadii * region.vignettings;
+        if (bound >= 0) return {center_column(setting) + bound / 2, true, bound % 2 == 1, 0.0};
+        return {falloff_column(setting) + 3 * (n / kRadii), false, false,
+                limit2[static_cast<size_t>(setting)] * (n % kRadii + 1) / kRadii};
+    }
+    int of_setting() const { return kRadii * region.vignettings + 4; }
 
     const Region &region;
-    double limit2;
+    std::vector<double> limit2;  // of each setting
 };
 
 }  // namespace

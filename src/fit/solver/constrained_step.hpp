@@ -11,7 +11,7 @@ namespace lensprof {
 // `value` is the full vector at which steps start, itself feasible.
 struct Region {
     int modes;
-    int vignettings;
+    int vignettings, settings;
     std::vector<int> columns;
     Eigen::VectorXd value;
 };

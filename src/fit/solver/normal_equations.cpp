@@ -42,10 +42,16 @@ NormalEquations::NormalEquations(const Problem &problem, const Estimate &estimat
       columns_(free_columns(problem, estimate.modes)),
       modes_(static_cast<size_t>(std::lower_bound(columns_.begin(), columns_.end(), kMaxModes) - columns_.begin())) {}
 
-void NormalEquations::by_lens(const double by_k[3], const double by_center[2], int curve, double *by) const {
+void NormalEquations::add_by_lens(const Attenuation &place, uint32_t image, int curve, double sign, double *by) const {
+    const int setting = problem_.setting_of[image];
     for (size_t u = modes_; u < columns_.size(); u++) {
-        int column = columns_[u], k = column - kFalloff - 3 * curve;
-        by[u] = column >= kCenter ? by_center[column - kCenter] : k >= 0 && k < 3 ? by_k[k] : 0.0;
+        const LensColumn column = lens_column(columns_[u]);
+        if (column.setting != setting) continue;
+        const int k = column.offset - 3 * curve;
+        if (column.is_center())
+            by[u] += sign * place.by_center[columns_[u] - center_column(setting)];
+        else if (k >= 0 && k < 3)
+            by[u] += sign * place.by_k[k];
     }
 }
 

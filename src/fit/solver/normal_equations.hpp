@@ -13,6 +13,7 @@
 
 #include "fit/prior/prior.hpp"
 #include "fit/problem/problem.hpp"
+#include "fit/problem/residual.hpp"
 
 namespace lensprof {
 
@@ -56,8 +57,9 @@ protected:
 
     NormalEquations(const Problem &problem, const Estimate &estimate);
 
-    // Derivatives by the lens, after those by the modes, from those by k and centre of a falloff curve.
-    void by_lens(const double by_k[3], const double by_center[2], int curve, double *by) const;
+    // Adds `sign` times the derivatives of ln M at a place of an image, by a falloff curve, to those by the lens, which
+    // come after those by the modes.
+    void add_by_lens(const Attenuation &place, uint32_t image, int curve, double sign, double *by) const;
 
     void complete(const Sums &sums, const Prior &prior, const Estimate &estimate);
 

@@ -1,5 +1,6 @@
 #include "fit/solver/radiance_equations.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lensprof {
@@ -66,7 +67,9 @@ void RadianceEquations::add_channel(const Range &track, int channel, const Track
         double weight = factor * s.weight, *row = part.by_shared.col(i).data();
         size_t curve = problem_.vignettings == 3 ? c : 0;
         const Attenuation &lens = fit.lens[static_cast<size_t>(i)][curve];
-        by_lens(lens.by_k, lens.by_center, static_cast<int>(curve), row);
+        std::fill(row + modes_, row + n, 0.0);
+        add_by_lens(lens, problem_.tracks.observations[track.first + static_cast<size_t>(i)].image,
+                    static_cast<int>(curve), 1.0, row);
         for (size_t u = modes_; u < columns_.size(); u++) row[u] *= s.by_log;
         if (modes_) modes.response_by_emor(s.x, 1.0, row);
         mixed += weight * s.by_log * part.by_shared.col(i);

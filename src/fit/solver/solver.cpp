@@ -51,7 +51,7 @@ struct Stepper {
     bool step(Estimate &estimate, double &cost) {
         is_solved = false;
         if (!model) model = objective.model_at(estimate);
-        Region region{estimate.modes, problem.vignettings, model->columns(), shared_vector(estimate)};
+        Region region{estimate.modes, problem.vignettings, problem.settings, model->columns(), shared_vector(estimate)};
         for (int attempt = 0; attempt < 12; attempt++, lambda *= 8.0) {
             if (!model->reduce(lambda)) continue;
             Eigen::VectorXd d = constrained_step(region, model->reduced_hessian(), model->reduced_gradient());
@@ -86,12 +86,14 @@ double largest_change(const Estimate &a, const Estimate &b) {
     double largest = 0.0;
     for (size_t j = 0; j < a.curve.table.size(); j += 31)
         largest = std::max(largest, std::abs(a.curve.table[j] - b.curve.table[j]));
-    for (size_t c = 0; c < 3; c++)
-        for (double r2 : {0.25, 0.5, 1.0})
-            largest = std::max(largest, std::abs(lensprof_vignetting_eval(&a.vignetting[c], r2, nullptr)
-                                                 - lensprof_vignetting_eval(&b.vignetting[c], r2, nullptr)));
-    for (int d = 0; d < 2; d++)
-        largest = std::max(largest, std::abs(a.vignetting[0].center[d] - b.vignetting[0].center[d]));
+    for (size_t s = 0; s < a.vignetting.size(); s++) {
+        const Falloffs &of_a = a.vignetting[s], &of_b = b.vignetting[s];
+        for (size_t c = 0; c < 3; c++)
+            for (double r2 : {0.25, 0.5, 1.0})
+                largest = std::max(largest, std::abs(lensprof_vignetting_eval(&of_a[c], r2, nullptr)
+                                                     - lensprof_vignetting_eval(&of_b[c], r2, nullptr)));
+        for (int d = 0; d < 2; d++) largest = std::max(largest, std::abs(of_a[0].center[d] - of_b[0].center[d]));
+    }
     for (size_t i = 0; i < a.log_exposure.size(); i++)
         for (size_t c = 0; c < 3; c++)
             largest = std::max(largest, std::abs(a.log_exposure[i][c] - b.log_exposure[i][c]));
@@ -129,7 +131,7 @@ Outcome solve(const Problem &problem, const Prior &prior, Gauge &gauge, Loss &lo
 Covariance covariance(const Problem &problem, const Prior &prior, Gauge &gauge, const Loss &loss,
                       const Estimate &estimate) {
     Covariance result;
-    result.shared = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
+    result.shared = Eigen::MatrixXd::Zero(shared_size(problem.settings), shared_size(problem.settings));
     result.images = Eigen::VectorXd::Zero(problem.image_unknowns);
     Prior renewed = prior_of(prior, estimate.modes);
     gauge.renew(problem, estimate, renewed);

@@ -88,7 +88,7 @@ std::vector<Vote> votes_of(const Problem &problem, const Estimate &estimate, con
     std::vector<Vote> votes;
     for (size_t p = edge.first; p < edge.last; p++) {
         const auto &pair = problem.pairs[p];
-        double fall = falloff(problem, estimate.vignetting[0], pair).ratio;
+        double fall = falloff(problem, estimate, 0, pair).ratio;
         Vote vote;
         vote.colour = colour_of(pair, problem.channels);
         bool good = true;
@@ -191,7 +191,8 @@ void start_exposures(const Problem &problem, double width, Estimate &estimate) {
 
 std::vector<Estimate> start_estimates(const Problem &problem, const lensprof_fit_options &options, int modes) {
     Estimate base;
-    base.vignetting.fill(options.vignetting);
+    const lensprof_vignetting &given = options.vignetting;
+    base.vignetting.assign(static_cast<size_t>(problem.settings), Falloffs{given, given, given});
     const lensprof_exposure reference = given_exposure(problem.images, problem.reference);
     for (uint32_t i = 0; i < problem.image_count; i++) {
         const lensprof_exposure exposure = given_exposure(problem.images, i);

@@ -62,18 +62,21 @@ void TransferEquations::add_edge(const Edge &edge, const Loss &loss, const Noise
     auto emor = static_cast<Eigen::Index>(modes_);
     part.links.push_back({{edge.image[0], edge.image[1]}, {0.0, 0.0, 0.0}});
     PairTransfer t;
-    double lens[3][kMaxShared];  // d delta / d shared, after the modes, of each falloff curve
+    std::array<std::vector<double>, 3> lens;  // d delta / d shared, after the modes, of each falloff curve
     for (size_t p = edge.first; p < edge.last; p++) {
         evaluate_pair(problem_, estimate, problem_.pairs[p], ratio.data(), t);
         PairResiduals factor, residuals = weighted_residuals(t, problem_.channels, weights[p]);
         part.objective += 0.5 * pair_cost(residuals, problem_.channels, loss, &factor);
         for (int curve = 0; curve < problem_.vignettings; curve++) {
             const Falloff &fall = t.fall[static_cast<size_t>(curve)];
-            by_lens(fall.by_k, fall.by_center, curve, lens[curve]);
+            std::vector<double> &by = lens[static_cast<size_t>(curve)];
+            by.assign(columns_.size(), 0.0);
+            for (int side = 0; side < 2; side++)
+                add_by_lens(fall.end[side], edge.image[side], curve, side ? -1.0 : 1.0, by.data());
         }
         for (int c = 0; c < problem_.channels; c++) {
             const Transfer &one = t.channel[static_cast<size_t>(c)];
-            const double *by = lens[problem_.vignettings == 3 ? c : 0];
+            const double *by = lens[problem_.vignettings == 3 ? static_cast<size_t>(c) : 0].data();
             for (int side = 0; side < 2; side++) {
                 double by_delta = one.by_delta[side], root = weights[p][c][side] * std::sqrt(factor[c][side]);
                 if (by_delta == 0.0 && one.by_value[side] == 0.0) continue;  // saturated prediction

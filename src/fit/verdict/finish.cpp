@@ -1,10 +1,52 @@
 #include "fit/verdict/finish.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
 #include "fit/verdict/evenness.hpp"
 #include "fit/verdict/quality.hpp"
 #include "fit/verdict/reason.hpp"
 
 namespace lensprof {
+
+namespace {
+
+// Of a result that holds one setting's numbers: the verdict.
+void judge_all(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_own,
+               lensprof_fit_result &r) {
+    judge(found.problem, found.estimate, r);
+    if (r.usable && r.reason_code == LENSPROF_REASON_NONE && found.gauge.oddness() > 1.0)
+        warn(r, {LENSPROF_REASON_UNUSUAL_RESPONSE, {found.gauge.oddness(), r.gamma_sigma}});
+    if (judge_own) judge_own(r);
+    judge_evenness(found, r);
+}
+
+// What a result holds of a setting, into the caller's array.
+void give_setting(const Problem &problem, int number, const lensprof_fit_result &r) {
+    lensprof_fit_setting &setting = r.settings[problem.setting_number[static_cast<size_t>(number)]];
+    setting.images = setting.pairs = 0;
+    std::vector<bool> has_pairs(problem.image_count);
+    for (const Edge &edge : problem.edges) {
+        has_pairs[edge.image[0]] = has_pairs[edge.image[1]] = true;
+        if (problem.setting_of[edge.image[0]] == number || problem.setting_of[edge.image[1]] == number)
+            setting.pairs += static_cast<uint32_t>(edge.last - edge.first);
+    }
+    for (uint32_t i = 0; i < problem.image_count; i++)
+        setting.images += has_pairs[i] && problem.setting_of[i] == number;
+    setting.usable = r.usable;
+    std::copy_n(r.reason, sizeof r.reason, setting.reason);
+    std::copy_n(r.vignetting, 3, setting.vignetting);
+    std::copy_n(r.radius_ends, LENSPROF_COVERAGE_BINS, setting.radius_ends);
+    setting.reason_code = r.reason_code;
+    setting.reason_values = r.reason_values;
+    setting.reason_item = r.reason_item;
+    std::copy_n(r.reason_value, 2, setting.reason_value);
+    std::copy(std::begin(r.covariance), std::end(r.covariance), setting.covariance);
+    std::copy(std::begin(r.gamma_direction), std::end(r.gamma_direction), setting.gamma_direction);
+}
+
+}  // namespace
 
 void finish(const Found &found, const std::function<void(lensprof_fit_result &)> &judge_own,
             lensprof_exposure *exposures, lensprof_fit_result &result) {
@@ -16,11 +58,14 @@ void finish(const Found &found, const std::function<void(lensprof_fit_result &)>
     describe_model(found.problem, found.estimate, r);
     describe_heldout(found.tested, found.train, found.has_heldout, r);
     describe_quality(found.problem, found.gauge, found.noise, found.covariance, found.estimate, r);
-    judge(found.problem, found.estimate, r);
-    if (r.usable && r.reason_code == LENSPROF_REASON_NONE && found.gauge.oddness() > 1.0)
-        warn(r, {LENSPROF_REASON_UNUSUAL_RESPONSE, {found.gauge.oddness(), r.gamma_sigma}});
-    if (judge_own) judge_own(r);
-    judge_evenness(found, r);
+    uint32_t evens = 0;
+    for (int s = found.problem.settings - 1; s >= 0; s--) {  // the first one last: it stays in the result
+        describe_setting(found.problem, found.gauge, found.covariance, found.estimate, s, r);
+        judge_all(found, judge_own, r);
+        evens = std::max(evens, r.evens);
+        if (r.settings) give_setting(found.problem, s, r);
+    }
+    r.evens = evens;
     r.image_quality = result.image_quality;
     write_exposures(found.problem, found.estimate, exposures);
     result = r;

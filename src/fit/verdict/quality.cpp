@@ -12,20 +12,20 @@
 namespace lensprof {
 namespace {
 
-double radius(const Problem &problem, const lensprof_vignetting &vignetting, const lensprof_pair &pair, int side) {
+double radius(const Problem &problem, const Estimate &estimate, const lensprof_pair &pair, int side) {
     const auto &image = problem.images[pair.image[side]];
+    const auto setting = static_cast<size_t>(problem.setting_of[pair.image[side]]);
+    const lensprof_vignetting &vignetting = estimate.vignetting[setting][0];
     return std::sqrt(
         lensprof_vignetting_r2(&vignetting, image.width, image.height, pair.xy[side][0], pair.xy[side][1], nullptr));
 }
 
 uint32_t bin_of(double value) { return static_cast<uint32_t>(std::clamp(value, 0.0, 0.999) * LENSPROF_COVERAGE_BINS); }
 
-void count_coverage(const Problem &problem, const Estimate &estimate, lensprof_fit_result &r) {
-    std::fill_n(r.radius_ends, LENSPROF_COVERAGE_BINS, 0u);
+void count_greys(const Problem &problem, lensprof_fit_result &r) {
     std::fill_n(r.grey_ends, LENSPROF_COVERAGE_BINS, 0u);
     for (const auto &pair : problem.pairs)
         for (int side = 0; side < 2; side++) {
-            r.radius_ends[bin_of(radius(problem, estimate.vignetting[0], pair, side))]++;
             for (int c = 0; c < problem.channels; c++) r.grey_ends[bin_of(pair.value[side][c])]++;
         }
 }
@@ -98,7 +98,7 @@ void describe_images(const Problem &problem, const Gauge &gauge, const Estimate 
         for (int side = 0; side < 2; side++) {
             auto &q = r.image_quality[pair.image[side]];
             q.pairs++;
-            q.radius = std::max(q.radius, radius(problem, estimate.vignetting[0], pair, side));
+            q.radius = std::max(q.radius, radius(problem, estimate, pair, side));
             for (int c = 0; c < problem.channels; c++) greys[pair.image[side]].push_back(pair.value[side][c]);
         }
     for (uint32_t i = 0; i < problem.image_count; i++) {
@@ -107,18 +107,20 @@ void describe_images(const Problem &problem, const Gauge &gauge, const Estimate 
     }
 }
 
-// The covariance of the data, gamma held, and that of gamma, which moves all parameters together.
+// The covariance of the data, gamma held, and that of gamma, which moves all parameters together: of the response and
+// one setting.
 void describe_covariance(const Problem &problem, const Gauge &gauge, const Estimate &estimate, const Covariance &found,
-                         lensprof_fit_result &r) {
+                         int setting, lensprof_fit_result &r) {
     int modes = static_cast<int>(r.response.modes), curves = 3 * problem.vignettings, n = modes + curves + 2;
     auto column = [&](int i) {
-        return i < modes ? i : i < modes + curves ? kFalloff + i - modes : kCenter + i - modes - curves;
+        if (i < modes) return i;
+        return i < modes + curves ? falloff_column(setting) + i - modes : center_column(setting) + i - modes - curves;
     };
     r.covariance_size = found.is_determined ? static_cast<uint32_t>(n) : 0;
     std::fill_n(r.gamma_direction, LENSPROF_COVARIANCE_MAX, 0.0);
     if (!found.is_determined) return;
     bool moves = gauge.sigma() > 0.0 && estimate.modes > 0;
-    Eigen::VectorXd direction = Eigen::VectorXd::Zero(kMaxShared);
+    Eigen::VectorXd direction = Eigen::VectorXd::Zero(shared_size(problem.settings));
     if (moves) direction = Gauge::direction(problem, estimate);
     for (int i = 0; i < n; i++)
         if (found.shared(column(i), column(i)) > 0.0) r.gamma_direction[i] = direction[column(i)];
@@ -156,7 +158,6 @@ void describe_model(const Problem &problem, const Estimate &estimate, lensprof_f
              != LENSPROF_OK)
         throw std::runtime_error("the fitted response is not monotone");
     r.vignettings = static_cast<uint32_t>(problem.vignettings);
-    for (size_t c = 0; c < 3; c++) r.vignetting[c] = estimate.vignetting[problem.vignettings == 3 ? c : 0];
     r.pairs = static_cast<uint32_t>(problem.pairs.size());
 }
 
@@ -181,9 +182,20 @@ void describe_quality(const Problem &problem, const Gauge &gauge, double noise, 
     r.light_spread_ev = light_spread(problem, estimate);
     r.response_from = fits_response(problem, estimate) ? LENSPROF_FIT_RESPONSE_PICTURES : LENSPROF_FIT_RESPONSE_OPTIONS;
     describe_residuals(problem, estimate, noise, r);
-    count_coverage(problem, estimate, r);
+    count_greys(problem, r);
     describe_images(problem, gauge, estimate, found, r);
-    describe_covariance(problem, gauge, estimate, found, r);
+}
+
+void describe_setting(const Problem &problem, const Gauge &gauge, const Covariance &found, const Estimate &estimate,
+                      int setting, lensprof_fit_result &r) {
+    const Falloffs &curves = estimate.vignetting[static_cast<size_t>(setting)];
+    for (size_t c = 0; c < 3; c++) r.vignetting[c] = curves[problem.vignettings == 3 ? c : 0];
+    std::fill_n(r.radius_ends, LENSPROF_COVERAGE_BINS, 0u);
+    for (const auto &pair : problem.pairs)
+        for (int side = 0; side < 2; side++)
+            if (problem.setting_of[pair.image[side]] == setting)
+                r.radius_ends[bin_of(radius(problem, estimate, pair, side))]++;
+    describe_covariance(problem, gauge, estimate, found, setting, r);
 }
 
 double exposure_spread(const Problem &problem, const Estimate &estimate) {
@@ -204,8 +216,8 @@ double light_spread(const Problem &problem, const Estimate &estimate) {
         const auto ratios = exposure_ratios(problem, estimate, edge);
         for (size_t p = edge.first; p < edge.last; p++)
             for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++) {
-                const auto &curve = estimate.vignetting[problem.vignettings == 3 ? c : 0];
-                sum += std::pow(std::log(ratios[c] * falloff(problem, curve, problem.pairs[p]).ratio), 2);
+                const size_t curve = problem.vignettings == 3 ? c : 0;
+                sum += std::pow(std::log(ratios[c] * falloff(problem, estimate, curve, problem.pairs[p]).ratio), 2);
                 count += 1.0;
             }
     }

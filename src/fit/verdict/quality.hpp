@@ -15,15 +15,19 @@ Summary summarise(std::vector<double> values);
 // Absolute transfer residuals of all pairs, channels and directions, levels of 255.
 std::vector<double> residual_levels(const Problem &problem, const Estimate &estimate);
 
-// Fills response, vignetting and the number of pairs.
+// Fills the response and the numbers of pairs and falloff curves.
 void describe_model(const Problem &problem, const Estimate &estimate, lensprof_fit_result &result);
 
 // Fills what pairs leave that the estimate has not seen; without such pairs only how different they were before.
 void describe_heldout(const Problem &tested, const Estimate &train, bool is_heldout, lensprof_fit_result &result);
 
-// Fills noise (from that of a grey value, 0..1), inlier share, patterns, covariance, coverage and the images' quality.
+// Fills noise (from that of a grey value, 0..1), inlier share, patterns, coverage of the greys and the images' quality.
 void describe_quality(const Problem &problem, const Gauge &gauge, double noise, const Covariance &found,
                       const Estimate &estimate, lensprof_fit_result &result);
+
+// Fills what a result has of one lens setting: vignetting, covariance and coverage of the frame.
+void describe_setting(const Problem &problem, const Gauge &gauge, const Covariance &found, const Estimate &estimate,
+                      int setting, lensprof_fit_result &result);
 
 // Root mean square difference, EV, of pictures that overlap, over pairs and channels. Below kSmallestSpread they show
 // no response without falloff: their transfer functions are the identity.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <lensprof/reason.h>
+#include <lensprof/fit.h>
 
 namespace lensprof {
 
@@ -51,6 +51,14 @@ bool refuse(Result &r, const Reason &reason) {
 template <class Result>
 bool warn(Result &r, const Reason &reason) {
     return give_reason(r, reason, true);
+}
+
+// change(verdict) for that of a result and those of its lens settings.
+template <class Change>
+void for_each_verdict(lensprof_fit_result &r, Change change) {
+    change(r);
+    for (uint32_t n = 0; n < r.setting_count; n++)
+        if (r.settings[n].images) change(r.settings[n]);
 }
 
 // Usable, and nothing to add.

@@ -50,12 +50,12 @@ Covariance jackknife(const Problem &problem, uint32_t pair_count,
         cancelled);
     if (!is_done) throw Cancelled();
     Covariance result;
-    result.shared = Eigen::MatrixXd::Zero(kMaxShared, kMaxShared);
+    result.shared = Eigen::MatrixXd::Zero(kOneSetting, kOneSetting);
     result.images = Eigen::VectorXd::Zero(problem.image_unknowns);
     for (const Estimate &one : found)
         if (one.log_exposure.empty()) return result;
     constexpr double n = kJackknifeGroups, scale = (n - 1.0) / n;
-    Eigen::VectorXd shared = Eigen::VectorXd::Zero(kMaxShared), images = result.images;
+    Eigen::VectorXd shared = Eigen::VectorXd::Zero(kOneSetting), images = result.images;
     for (const Estimate &one : found) {
         shared += shared_vector(one) / n;
         images += image_vector(problem, one) / n;

@@ -34,14 +34,15 @@ double evened(const Estimate &estimate, double value, double ratio) {
 // falloffs. Pairs without a value between black and white say nothing.
 std::vector<LevelPair> levels_of(const Problem &problem, const Estimate &estimate, const Edge &edge, int channel) {
     std::vector<LevelPair> levels;
-    const auto &vignetting = estimate.vignetting[problem.vignettings == 3 ? static_cast<size_t>(channel) : 0];
+    const size_t curve = problem.vignettings == 3 ? static_cast<size_t>(channel) : 0;
+    const lensprof_vignetting &vignetting = estimate.vignetting[0][curve];  // of one setting
     bool even = vignetting.k[0] != 0.0 || vignetting.k[1] != 0.0 || vignetting.k[2] != 0.0;
     for (size_t p = edge.first; p < edge.last; p++) {
         const auto &pair = problem.pairs[p];
         double value[2] = {pair.value[0][channel], pair.value[1][channel]};
         if (std::max(value[0], value[1]) >= 1.0 || std::min(value[0], value[1]) <= 0.0) continue;
         if (even) {
-            double root = std::sqrt(falloff(problem, vignetting, pair).ratio);
+            double root = std::sqrt(falloff(problem, estimate, curve, pair).ratio);
             value[0] = evened(estimate, value[0], 1.0 / root);
             value[1] = evened(estimate, value[1], root);
             if (std::max(value[0], value[1]) >= 1.0) continue;

@@ -1,0 +1,41 @@
+// What a fit gives, with room of its own: where several fits are tried and one of them becomes the caller's.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include <lensprof/fit.h>
+
+namespace lensprof {
+
+struct Output {
+    std::unique_ptr<lensprof_fit_result> result;
+    std::vector<lensprof_exposure> exposures;
+    std::vector<lensprof_fit_image_quality> quality;
+    std::vector<lensprof_fit_setting> settings;
+
+    // Begins as what the caller's holds.
+    Output(const lensprof_fit_result &given, const lensprof_exposure *given_exposures, uint32_t image_count)
+        : result(std::make_unique<lensprof_fit_result>(given)),
+          exposures(given_exposures, given_exposures + image_count),
+          quality(image_count),
+          settings(given.settings, given.settings + given.setting_count) {
+        if (given.image_quality) std::copy_n(given.image_quality, image_count, quality.begin());
+        result->image_quality = quality.data();
+        result->settings = settings.empty() ? nullptr : settings.data();
+    }
+
+    void give(lensprof_fit_result &to, lensprof_exposure *to_exposures) const {
+        lensprof_fit_image_quality *to_quality = to.image_quality;
+        lensprof_fit_setting *to_settings = to.settings;
+        to = *result;
+        to.image_quality = to_quality;
+        to.settings = to_settings;
+        if (to_quality) std::copy(quality.begin(), quality.end(), to_quality);
+        std::copy(settings.begin(), settings.end(), to_settings);
+        std::copy(exposures.begin(), exposures.end(), to_exposures);
+    }
+};
+
+}  // namespace lensprof
