@@ -263,7 +263,7 @@ void test_no_photometric_lines(void **) {
 
 void test_one_lens(void **) {
     const std::string copy = copy_of("scene");
-    edit(copy + "/pano.pto", "Vb=0 Vc=0 Vd=0( .*img002)", "Vb0 Vc0 Vd0$1");
+    edit(copy + "/pano.pto", "Ra=0 (.*img002)", "Ra0 $1");
     const Words words = Words{"build", copy + "/pano.pto", "--no-store"} + quick;
     assert_refused(usage, words, {"pano.pto", "img002.png", "--one-lens"});
     must_exit(done, words + Words{"--one-lens"});

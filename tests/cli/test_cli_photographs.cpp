@@ -92,7 +92,7 @@ void test_a_folder_of_many_things(void **) {
     assert_true(contains(run.err, "y.png: left out, no overlap"));
     assert_true(contains(run.err, "damaged.png"));
     assert_true(contains(run.err, "it is a copy of copy.png"));
-    assert_true(contains(run.err, "small.png: left out, of another camera, lens, focal length or size"));
+    assert_true(contains(run.err, "small.png: left out, of another camera or size"));
 }
 
 // Standard deviation of the logarithm of one panel over another: 0 where they differ by a factor alone. Places without

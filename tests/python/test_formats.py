@@ -107,6 +107,22 @@ class Projects(unittest.TestCase):
         again.set_result(response, vignetting, array, reference=1)
         self.assertEqual([again.image(index).exposure.ev for index in (0, 1)], [-8, -10])
 
+    def test_set_settings(self):
+        pto = lp.Pto("i w800 h600 f0 v50 Va1 Vb0 Vc0 Vd0 Vx0 Vy0 Vm5 n\"a\"\ni w800 h600 f0 v=0 Va=0 Vb=0 Vc=0 Vd=0 Vx=0 Vy=0 "
+                     "Vm5 n\"b\"\ni w800 h600 f0 v=0 Va=0 Vb=0 Vc=0 Vd=0 Vx=0 Vy=0 Vm5 n\"c\"\n")
+        curves = [lp.Vignetting(k=(-0.1, 0, 0)), lp.Vignetting(k=(-0.4, 0.1, 0), center=(0.1, 0))]
+        pto.set_settings([0, 1, 1], curves)
+        text = pto.write().decode()
+        self.assertIn("Va=1 Vb=1 Vc=1 Vd=1 Vx=1 Vy=1", text)
+        self.assertIn("Vb-0.4 ", text)
+        again = lp.Pto(text)
+        self.assertEqual([again.image(i).vignetting.k[0] for i in range(3)], [-0.1, -0.4, -0.4])
+        self.assertEqual([again.image(i).vignetting_of for i in range(3)], [0, 1, 1])
+        for arguments in ([0, 1], curves), ([0, 2, 1], curves), ([0, 0, 0], [lp.Vignetting(k=(-2, 0, 0))]):
+            with self.assertRaises(lp.Error):
+                pto.set_settings(*arguments)
+        self.assertEqual(pto.write().decode(), text)
+
     def test_set_result_refused(self):
         pto, good = lp.Pto(PROJECT), [lp.Exposure()] * 2
         curves = lp.Response(), lp.Vignetting()

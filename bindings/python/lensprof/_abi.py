@@ -1338,6 +1338,8 @@ FUNCTIONS = {
                                        POINTER(ErrorText)]),
     "lensprof_pto_set_result": (c_int, [POINTER(Pto), POINTER(Response), POINTER(Vignetting), POINTER(Exposure),
                                         c_uint32, c_uint32, POINTER(ErrorText)]),
+    "lensprof_pto_set_settings": (c_int, [POINTER(Pto), POINTER(c_uint32), c_uint32, POINTER(Vignetting), c_uint32,
+                                          POINTER(ErrorText)]),
     "lensprof_pto_write": (c_int, [POINTER(Pto), c_void_p, c_size_t, POINTER(c_size_t), POINTER(ErrorText)]),
     "lensprof_points_read": (c_int, [c_void_p, c_size_t, POINTER(Pair), c_uint32, POINTER(c_uint32),
                                      POINTER(ErrorText)]),

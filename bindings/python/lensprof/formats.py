@@ -156,6 +156,17 @@ class Pto(Handle):
                                               integer(reference, "reference"), byref(error)),
                   f"{count} exposures, reference {reference}", error)
 
+    def set_settings(self, settings: Iterable[int], vignetting: Iterable[Vignetting]) -> None:
+        """Gives every lens setting a falloff. settings: number of that of each image, 0 .. len(vignetting) - 1. The first
+        image of each receives it, and the others are linked to that one."""
+        numbers = [integer(number, "a setting") for number in settings]
+        curves = list(vignetting)
+        error = _abi.ErrorText()
+        with self._use() as pto:
+            check(lib.lensprof_pto_set_settings(pto, (c_uint32 * len(numbers))(*numbers), len(numbers),
+                                                (_abi.Vignetting * len(curves))(*curves), len(curves), byref(error)),
+                  f"{len(numbers)} settings, {len(curves)} vignettings", error)
+
     def write(self) -> bytes:
         """The project as text: what was read, unchanged but for what was set."""
         with self._use() as pto:

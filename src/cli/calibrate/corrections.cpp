@@ -39,7 +39,6 @@ void take_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons)
     const ImagesByFile images(project);
     const std::vector<lensprof_exposure> exposures = relative_to_joined(project);
     const lensprof_exposure mean = mean_exposure(joined_exposures(project, exposures));
-    const std::shared_ptr<const lensprof_profile> model = model_of_project(project);
     for (const InputPicture *picture : panorama.pictures) {
         const auto image = images.find(picture->file);
         if (!image || project.images[*image].left_out) {
@@ -50,7 +49,7 @@ void take_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons)
         }
         CorrectedPicture one{picture, panorama.name, exposures[*image].ev - mean.ev, copy_key(*picture, text),
                              job_of(*picture)};
-        one.job.model = model;
+        one.job.model = model_of_project(project, *image);
         one.job.own = exposures[*image], one.job.wanted = mean;
         one.job.model_name = std::filesystem::path(panorama.project).filename().string();
         corrected.emplace(picture->file, std::move(one));

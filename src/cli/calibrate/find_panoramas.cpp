@@ -54,15 +54,8 @@ bool has_odd_name(const InputPicture &picture, const std::string &output) {
 // Camera raw files and others have no common response, whatever lens they are taken as of.
 std::vector<FoundProject> split_by_kind(const FoundProject &project, const std::vector<const InputPicture *> &all) {
     FoundProject marked = project;
-    std::map<uint32_t, uint32_t> lenses;
-    for (size_t n = 0; n < project.pictures.size(); n++) {
-        lenses[project.pictures[n]] = project.lenses[n];
-        marked.lenses[n] = all[project.pictures[n]]->is_raw;
-    }
-    std::vector<FoundProject> parts = split_by_lens(marked);
-    for (FoundProject &part : parts)
-        for (size_t n = 0; n < part.pictures.size(); n++) part.lenses[n] = lenses.at(part.pictures[n]);
-    return parts;
+    for (size_t n = 0; n < project.pictures.size(); n++) marked.bodies[n] = all[project.pictures[n]]->is_raw;
+    return split_by_body(marked);
 }
 
 void add_parts(const std::vector<FoundProject> &parts, const std::string &others,
@@ -102,7 +95,7 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
             add_parts(split_by_kind(project, all), "that are camera raw files, or that are none where it is one", all,
                       groups);
         else
-            add_parts(split_by_lens(project), of_another_lens, all, groups);
+            add_parts(split_by_body(project), of_another_body, all, groups);
     }
     std::stable_sort(groups.list.begin(), groups.list.end(),
                      [](const Group &a, const Group &b) { return a.pictures.size() > b.pictures.size(); });

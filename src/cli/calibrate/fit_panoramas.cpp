@@ -42,6 +42,7 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     Streams streams{out, err};
     ProjectFitOptions options;
     options.store = o.store;
+    options.one_lens = o.one_lens;
     check_pictures(project, options.max_side);
     const std::vector<PictureMetadata> metadata = picture_metadata(options, project);
     const lensprof_profile_key &exif = metadata[project.reference].key;
@@ -141,10 +142,13 @@ void draw_preview(Panorama &panorama, Ledger &ledger, Progress &progress) {
     const Project project = read_project(panorama.project, true);
     Fitted fitted;
     lensprof_fit_result_init(&fitted.result);
-    const auto model = model_of_project(project);
-    fitted.result.response = model->response[0];
+    fitted.result.response = model_of_project(project, project.reference)->response[0];
     fitted.result.vignettings = 1;
-    fitted.result.vignetting[0] = model->vignetting[0];
+    for (uint32_t i = 0; i < project.images.size(); i++) {
+        fitted.setting_of.push_back(i);
+        fitted.settings.emplace_back();
+        fitted.settings[i].vignetting[0] = project.images[i].vignetting;
+    }
     fitted.exposures = relative_to_joined(project);
     for (size_t i = 0; i < project.images.size(); i++)
         if (project.images[i].left_out) fitted.exposures[i].ev = NAN;

@@ -149,16 +149,14 @@ void check_shape(const Project &project, uint32_t image, const std::string &file
                                    camera.height));
 }
 
-// One response and one falloff are applied to all images.
-void check_one_result(const Project &project) {
+// One response is applied to all images, and to each the falloff of its lens setting.
+void check_one_response(const Project &project) {
     const auto &first = project.images[project.reference];
     for (uint32_t i = 0; i < project.images.size(); i++) {
         const auto &image = project.images[i];
-        bool same = image.response_type == first.response_type && std::equal(image.emor, image.emor + 5, first.emor)
-                    && std::equal(image.vignetting.k, image.vignetting.k + 3, first.vignetting.k);
-        if (!same)
+        if (image.response_type != first.response_type || !std::equal(image.emor, image.emor + 5, first.emor))
             throw Failure(ExitCode::usage, project.path + ": image " + std::to_string(i) + " (" + project.names[i]
-                                               + ") has a response or falloff of its own; correct one lens at a time");
+                                               + ") has a response of its own; correct one camera at a time");
     }
 }
 
@@ -179,7 +177,7 @@ struct Source {
     std::unique_ptr<Project> project;
     std::unique_ptr<ImagesByFile> images;
     std::vector<lensprof_exposure> exposures;
-    std::shared_ptr<const lensprof_profile> model;
+    bool has_model = false;
     std::unique_ptr<PictureModels> models;
 };
 
@@ -196,7 +194,7 @@ Source open_source(const Options &o) {
         source.project = std::make_unique<Project>(read_project(o.pto, true));
         source.images = std::make_unique<ImagesByFile>(*source.project);
         source.exposures = relative_to_joined(*source.project);
-        if (!from_store) source.model = model_of_project(*source.project);
+        source.has_model = !from_store;
     } else if (o.exposure == Exposure::mean || o.exposure == Exposure::reference) {
         throw Failure(ExitCode::usage, std::string("--output-exposure ")
                                            + (o.exposure == Exposure::mean ? "mean" : "reference")
@@ -236,12 +234,13 @@ void check_opcodes(const Options &o, const std::string &file) {
 }
 
 Correction make_job(const Options &o, const Source &source, const NamedPicture &picture) {
-    Correction job{picture.file, target_name(o, picture), source.model, {}, {}, 0, nullptr, 0, {}, {}};
+    Correction job{picture.file, target_name(o, picture), nullptr, {}, {}, 0, nullptr, 0, {}, {}};
     lensprof_exposure_init(&job.own);
     if (source.project) {
         const uint32_t image = source.images->at(picture.file, "--pto");
         check_shape(*source.project, image, picture.file);
         job.own = source.exposures[image];
+        if (source.has_model) job.model = model_of_project(*source.project, image);
         job.model_name = std::filesystem::path(o.pto).filename().string();
     }
     const PictureMetadata metadata = metadata_of(o, picture.file);
@@ -297,9 +296,9 @@ Work plan_work(const Options &o, Streams &streams) {
     if (!refused.empty()) fail_refused(refused, pictures.size(), streams);
     check_targets(work.jobs, inputs, o.sheet);
     check_older_outputs(work.jobs, o.kind, o.has_output);
-    if (source.model) {
+    if (source.has_model) {
         check_has_result(*source.project);
-        check_one_result(*source.project);
+        check_one_response(*source.project);
     }
     return work;
 }

@@ -2,12 +2,11 @@
 
 namespace lensprof {
 
-std::shared_ptr<lensprof_profile> model_of_project(const Project &project) {
+std::shared_ptr<lensprof_profile> model_of_project(const Project &project, uint32_t image) {
     auto profile = std::shared_ptr<lensprof_profile>(new_profile());
     lensprof_error error{};
-    check(lensprof_pto_get_response(project.pto.get(), project.reference, &profile->response[0], &error), project.path,
-          &error);
-    profile->vignetting[0] = project.images[project.reference].vignetting;
+    check(lensprof_pto_get_response(project.pto.get(), image, &profile->response[0], &error), project.path, &error);
+    profile->vignetting[0] = project.images[image].vignetting;
     return profile;
 }
 

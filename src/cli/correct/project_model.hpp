@@ -8,8 +8,8 @@
 
 namespace lensprof {
 
-// Response and falloff of its reference.
-std::shared_ptr<lensprof_profile> model_of_project(const Project &project);
+// Response and falloff of an image.
+std::shared_ptr<lensprof_profile> model_of_project(const Project &project, uint32_t image);
 
 // The project's exposures, relative to its reference, or where the result is without that to the first image that it
 // has.

@@ -24,7 +24,7 @@ struct Options : ProjectFitOptions {
     std::vector<std::string> inputs;
     std::string points_out, pto_out, project_out, preview, compare;
     std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
-    bool json = false, one_lens = false, progress = false;
+    bool json = false, progress = false;
 };
 
 constexpr uint32_t balance_flags = LENSPROF_FREE_RED | LENSPROF_FREE_BLUE;
@@ -64,7 +64,8 @@ void declare(Command &command, Options &o) {
                  "what is estimated instead of the v lines, the same of every image; default of a project without "
                  "photometric v lines: all");
     command.text("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
-    command.flag("--one-lens", o.one_lens, "take images that are not linked as one lens");
+    command.flag("--one-lens", o.one_lens,
+                 "estimate one falloff for all pictures, whatever lens, focal length, aperture and focus they state");
     command.choice("--sampling", o.sampling,
                    {{"balanced", LENSPROF_SAMPLING_BALANCED}, {"paper", LENSPROF_SAMPLING_PAPER}},
                    "balanced or paper (d'Angelo 5.1)");

@@ -159,6 +159,15 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
         quality->resize(count);
         fitted.result.image_quality = quality->data();
     }
+    uint32_t last = 0;
+    for (const lensprof_fit_image &image : input.images) {
+        fitted.setting_of.push_back(image.setting);
+        last = std::max(last, image.setting);
+    }
+    fitted.settings.resize(last + 1);
+    for (auto &setting : fitted.settings) lensprof_fit_setting_init(&setting);
+    fitted.result.settings = fitted.settings.data();
+    fitted.result.setting_count = last + 1;
     input.options.progress = on_progress;
     input.options.progress_user = &progress;
     lensprof_error error{};
@@ -173,9 +182,17 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
         throw Failure(ExitCode::usage, item + ": every parameter is held; give --free all");
     check(status, item, &error);
     fitted.result.image_quality = nullptr;
+    fitted.result.settings = nullptr, fitted.result.setting_count = 0;
     fitted.reference = std::isnan(fitted.exposures[reference].ev) ? fitted.result.reference : reference;
     fitted.exposures = relative_exposures(fitted.exposures, fitted.reference);
     return fitted;
+}
+
+lensprof_fit_result result_of(const lensprof_fit_result &result, const lensprof_fit_setting &setting) {
+    lensprof_fit_result own = result;
+    lensprof_error error{};
+    check(lensprof_fit_result_take_setting(&own, &setting, &error), "fit", &error);
+    return own;
 }
 
 BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure) {
@@ -220,37 +237,82 @@ std::string not_usable_text(const std::string &source, const Verdict &verdict, c
            + (store.force || store.no_store ? "" : "; nothing was stored (--force stores it all the same)");
 }
 
+namespace {
+
+// `own` is a result with one setting's numbers. The prior is of the setting of the reference.
+int64_t store_setting(const lensprof_fit_result &own, size_t images, const lensprof_profile_key &key, bool is_reference,
+                      const StoreOptions &store, const Finish &finish) {
+    lensprof_fit_options options;
+    lensprof_fit_options_init(&options);
+    const EarlierProfile *prior = is_reference ? finish.prior : nullptr;
+    if (prior) options.profile = prior->profile.get();
+    auto profile = profile_of(own, &options, images);
+    profile->key = key;
+    const int64_t held = prior && holds_prior(own) && prior->is_own ? prior->id : 0;
+    return store_profile(store, *profile, {finish.method, finish.source, own.usable != 0, held});
+}
+
+// Profiles of every lens setting that is usable, or of all with --force.
+void store_result(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store,
+                  const Finish &finish) {
+    const bool is_wanted = report.fit.usable || store.force;
+    if (report.settings.empty() && is_wanted)
+        report.profile_id = store_setting(report.fit, report.names.size(), key, true, store, finish);
+    for (SettingReport &setting : report.settings) {
+        if (!setting.found.images || !(setting.found.usable || store.force)) continue;
+        setting.profile_id = store_setting(result_of(report.fit, setting.found), setting.found.images, setting.key,
+                                           setting.is_reference, store, finish);
+        if (setting.is_reference) report.profile_id = setting.profile_id;
+    }
+}
+
+// Prints where profiles were stored.
+void print_stored(const BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store,
+                  std::ostream &out) {
+    const auto print = [&](int64_t id, const lensprof_profile_key &own) {
+        if (id)
+            out << "stored    profile " << id << " in " << store_path(store.db) << ": " << describe_key(own) << "\n";
+    };
+    if (report.settings.empty()) print(report.profile_id, key);
+    for (const SettingReport &setting : report.settings) print(setting.profile_id, setting.key);
+}
+
+// Says which of several settings give no profile, and why.
+void name_unusable(const BuildReport &report, const std::string &source, Streams &streams) {
+    for (const SettingReport &setting : report.settings)
+        if (!setting.found.usable && !setting.is_reference)
+            warn(streams, source + ": " + setting.label
+                              + (setting.found.images ? ": not a profile to store: " + setting.verdict.text
+                                                      : ": none of its pictures agrees with the others"));
+}
+
+bool is_any_usable(const BuildReport &report) {
+    return report.fit.usable || std::any_of(report.settings.begin(), report.settings.end(), [](const auto &setting) {
+               return setting.found.images && setting.found.usable;
+           });
+}
+
+}  // namespace
+
 int finish_fit(BuildReport &report, const lensprof_profile_key &key, const StoreOptions &store, const Finish &finish,
                Streams &streams) {
-    bool good = report.fit.usable || store.force;
     stop_if_interrupted();
-    if (good && !store.no_store) {
-        lensprof_fit_options options;
-        lensprof_fit_options_init(&options);
-        if (finish.prior) options.profile = finish.prior->profile.get();
-        auto profile = profile_of(report.fit, &options, report.names.size());
-        profile->key = key;
-        const bool holds = finish.prior && holds_prior(report.fit);
-        const int64_t held = holds && finish.prior->is_own ? finish.prior->id : 0;
-        report.profile_id =
-            store_profile(store, *profile, {finish.method, finish.source, report.fit.usable != 0, held});
-    }
+    if (!store.no_store) store_result(report, key, store, finish);
     if (finish.outputs) finish.outputs->commit();
     if (finish.json)
         print_json(build_json(report), streams.out);
     else
         print_build(report, streams.out);
-    if (report.profile_id && !finish.json)
-        streams.out << "stored    profile " << report.profile_id << " in " << store_path(store.db) << ": "
-                    << describe_key(key) << "\n";
+    if (!finish.json) print_stored(report, key, store, streams.out);
     if (report.fit.usable && !report.verdict.text.empty()) warn(streams, finish.source + ": " + report.verdict.text);
     const bool evens = finish.evens_pictures && report.fit.evens;
     if (report.fit.usable) name_left_out(report, streams);
     if (report.fit.usable || evens) name_unjoined(report, streams);
-    const bool is_good = report.fit.usable || (store.no_store && evens);
+    const bool is_good = is_any_usable(report) || (store.no_store && evens);
     if (!report.fit.usable && is_good)
         warn(streams,
              finish.source + ": evens out these pictures, but is not a profile to store: " + report.verdict.text);
+    if (is_good) name_unusable(report, finish.source, streams);
     if (!is_good)
         tell(streams, not_usable_text(finish.source, report.verdict, store)
                           + (evens ? "; it evens out these pictures, which --no-store accepts" : ""));

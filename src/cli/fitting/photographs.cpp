@@ -64,18 +64,20 @@ std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::
     return text;
 }
 
-// Its pictures of one lens.
-FoundProject of_lens(const FoundProject &found, uint32_t lens) {
+// Its pictures of one camera.
+FoundProject of_body(const FoundProject &found, uint32_t body) {
     FoundProject kept = found;
-    kept.pictures.clear(), kept.cameras.clear(), kept.lenses.clear(), kept.points.clear();
+    kept.pictures.clear(), kept.cameras.clear(), kept.points.clear();
+    kept.lenses.clear(), kept.bodies.clear();
     std::set<std::pair<uint32_t, uint32_t>> links;
     std::vector<uint32_t> number(found.pictures.size(), UINT32_MAX);
     for (size_t n = 0; n < found.pictures.size(); n++) {
-        if (found.lenses[n] != lens) continue;
+        if (found.bodies[n] != body) continue;
         number[n] = static_cast<uint32_t>(kept.pictures.size());
         kept.pictures.push_back(found.pictures[n]);
         kept.cameras.push_back(found.cameras[n]);
-        kept.lenses.push_back(0);
+        kept.lenses.push_back(found.lenses[n]);
+        kept.bodies.push_back(0);
     }
     for (ControlPoint point : found.points) {
         for (uint32_t &image : point.image) image = number[image];
@@ -89,12 +91,12 @@ FoundProject of_lens(const FoundProject &found, uint32_t lens) {
 
 }  // namespace
 
-std::vector<FoundProject> split_by_lens(const FoundProject &found) {
+std::vector<FoundProject> split_by_body(const FoundProject &found) {
     std::map<uint32_t, size_t> count;
-    for (uint32_t lens : found.lenses) count[lens]++;
+    for (uint32_t body : found.bodies) count[body]++;
     if (count.size() == 1) return {found};
     std::vector<FoundProject> parts;
-    for (const auto &[lens, pictures] : count) parts.push_back(of_lens(found, lens));
+    for (const auto &[body, pictures] : count) parts.push_back(of_body(found, body));
     std::stable_sort(parts.begin(), parts.end(), [](const FoundProject &a, const FoundProject &b) {
         return a.pictures.size() > b.pictures.size();
     });
@@ -103,15 +105,15 @@ std::vector<FoundProject> split_by_lens(const FoundProject &found) {
 
 namespace {
 
-// Leaves the pictures of the lens that took most of them.
-void keep_one_lens(FoundProject &found, const std::vector<std::string> &names, Streams &streams) {
-    const FoundProject kept = split_by_lens(found)[0];
+// Leaves the pictures of the camera that took most of them.
+void keep_one_body(FoundProject &found, const std::vector<std::string> &names, Streams &streams) {
+    const FoundProject kept = split_by_body(found)[0];
     std::vector<uint32_t> others;
     std::set_difference(found.pictures.begin(), found.pictures.end(), kept.pictures.begin(), kept.pictures.end(),
                         std::back_inserter(others));
     found = kept;
     if (others.empty()) return;
-    warn(streams, listed(others, names) + ": left out, " + of_another_lens);
+    warn(streams, listed(others, names) + ": left out, " + of_another_body);
 }
 
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
@@ -160,10 +162,10 @@ Project project_of_pictures(const std::vector<std::string> &words, bool one_lens
                       label + ": no two of the pictures overlap, or too little in them can be recognised; give pictures "
                               "that share a third, or a Hugin project",
                       LENSPROF_REASON_FEW_PAIRS);
-    if (!one_lens) keep_one_lens(found.projects[0], names, streams);
+    if (!one_lens) keep_one_body(found.projects[0], names, streams);
     if (found.projects[0].pictures.size() < 2 || found.projects[0].links == 0)
         throw Failure(ExitCode::not_usable,
-                      label + ": no two pictures of one camera, lens, focal length and size overlap; give --one-lens to "
+                      label + ": no two pictures of one camera and size overlap; give --one-lens to "
                               "take all as one",
                       LENSPROF_REASON_FEW_PAIRS);
     report_found(found, names, label, streams);

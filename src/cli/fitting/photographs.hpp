@@ -14,7 +14,7 @@ namespace lensprof {
 // Whether a word of the command line names a picture or a folder, and not a project.
 bool names_pictures(const std::string &word);
 
-// Finds the overlaps of pictures and folders of them. The project is that of the largest group of one lens; what it
+// Finds the overlaps of pictures and folders of them. The project is that of the largest group of one camera; what it
 // leaves out is named on standard error. With `one_lens` all pictures are taken as of one. All unknowns are asked for.
 // Failure (not usable) where no two overlap.
 Project project_of_pictures(const std::vector<std::string> &words, bool one_lens, Progress &progress, Streams &streams);
@@ -29,11 +29,10 @@ struct Photographs {
 Photographs list_photographs(const std::vector<std::string> &words, const std::vector<NamedPicture> &pictures);
 
 // Why a picture is not part of a project that it overlaps with.
-constexpr const char *of_another_lens =
-    "of another camera, lens, focal length or size than most (--one-lens takes all as one)";
+constexpr const char *of_another_body = "of another camera or size than most (--one-lens takes all as one)";
 
-// The pictures of each lens of a project, those of the lens that took most first. Links are those that fit.
-std::vector<FoundProject> split_by_lens(const FoundProject &found);
+// The pictures of each camera of a project, those of the one that took most first. Links are those that fit.
+std::vector<FoundProject> split_by_body(const FoundProject &found);
 
 // The project of a group of pictures, whose images are called image0, image1 and so on; and the same as a project,
 // whose path, names and files are known.

@@ -55,7 +55,7 @@ Tile tile_of(const Project &project, uint32_t i, const Fitted &fitted, const len
     tile.before = applied(source, options, project.files[i]);
     options.input = options.output = LENSPROF_ENCODING_RESPONSE;
     options.response = &fitted.result.response;
-    options.vignettings = fitted.result.vignettings, options.vignetting = fitted.result.vignetting;
+    options.vignettings = fitted.result.vignettings, options.vignetting = fitted.falloff_of(i);
     options.source = fitted.exposures[i], options.target = wanted;
     tile.after = applied(source, options, project.files[i]);
     tile.camera = project.images[i].camera;

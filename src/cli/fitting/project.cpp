@@ -23,16 +23,13 @@ uint32_t find_reference(const Project &project) {
     return 0;
 }
 
-// The fit knows one lens.
-void check_one_lens(const Project &project) {
-    for (uint32_t i = 1; i < project.images.size(); i++) {
-        const auto &image = project.images[i];
-        if (image.response_of != project.images[0].response_of
-            || image.vignetting_of != project.images[0].vignetting_of)
+// The fit knows one response.
+void check_one_camera(const Project &project) {
+    for (uint32_t i = 1; i < project.images.size(); i++)
+        if (project.images[i].response_of != project.images[0].response_of)
             throw Failure(ExitCode::usage, project.path + ": image " + std::to_string(i) + " (" + project.names[i]
-                          + ") is not linked to image 0 in Ra..Re and Va..Vd, which makes it another lens; link them in "
-                            "Hugin (or give build --one-lens)");
-    }
+                          + ") is not linked to image 0 in Ra..Re, which makes it another camera; link them in Hugin (or "
+                            "give build --one-lens)");
 }
 
 // Failure where the frame of a picture is not the one of the project.
@@ -127,7 +124,7 @@ Project read_project(const std::string &path, bool one_lens) {
         project.files.push_back((folder / project.names[i]).string());
         check_name(project, i);
     }
-    if (!one_lens) check_one_lens(project);
+    if (!one_lens) check_one_camera(project);
     project.reference = find_reference(project);
     return project;
 }

@@ -23,7 +23,7 @@ struct Project {
 };
 
 // Reads a project. The reference is the first image whose Eev is not asked for, else image 0. With `one_lens`, images
-// that are not linked are taken as one lens; otherwise that is a Failure.
+// that are not linked in their response are taken as of one camera; otherwise that is a Failure.
 Project read_project(const std::string &path, bool one_lens);
 
 // Takes the next image of the Pto; its name and file are the caller's to add.

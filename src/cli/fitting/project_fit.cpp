@@ -6,6 +6,7 @@
 
 #include "cli/fitting/known_exposures.hpp"
 #include "cli/pictures/named_pictures.hpp"
+#include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/paths.hpp"
@@ -148,6 +149,39 @@ void refer_to(uint32_t reference, FitInput &input) {
     own = reference;
 }
 
+// The images' settings, where the method fits several.
+void set_settings(const ProjectFitOptions &o, ProjectFit &done, Streams &streams) {
+    LensSettings &settings = done.settings;
+    if (settings.are_several() && o.fit.method == LENSPROF_METHOD_TRANSFER_FUNCTION) {
+        warn(streams, "--method transfer-function: estimates one falloff, and these pictures are at "
+                          + counted(settings.first.size(), "lens setting") + "; transfer and radiance estimate each");
+        settings = {std::vector<uint32_t>(settings.of_image.size(), 0), {settings.first[0]}};
+    }
+    for (size_t i = 0; i < done.input.images.size(); i++) done.input.images[i].setting = settings.of_image[i];
+}
+
+// What was found of each setting, where there are several.
+void report_settings(const ProjectFitOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
+                     ProjectFit &done) {
+    BuildReport &report = done.report;
+    const LensSettings &settings = done.settings;
+    if (!settings.are_several()) return;
+    report.setting_of = settings.of_image;
+    for (uint32_t s = 0; s < settings.first.size(); s++) {
+        const uint32_t first = settings.first[s];
+        SettingReport setting;
+        setting.key = override_key(metadata[first].key, metadata[first].size, o.store, project.files[first]);
+        setting.label = describe_setting(setting.key, project.names[first]);
+        for (const SettingReport &other : report.settings)
+            if (other.label == setting.label) setting.label += ", from " + project.names[first];
+        setting.is_reference = s == settings.of_image[done.best.result.reference];
+        setting.found = done.best.settings[s];
+        setting.verdict = verdict_of(setting.found);
+        name_image(project.names, setting.verdict);
+        report.settings.push_back(setting);
+    }
+}
+
 constexpr uint32_t project_modes = 5;  // Ra..Re
 
 // A project holds five modes and one falloff: what is best with these, not what is left of something better.
@@ -162,8 +196,6 @@ Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, 
 
 }  // namespace
 
-// What the pictures say about themselves. Beside given pairs they may be anything: only what the profile's key needs is
-// read.
 std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const Project &project) {
     std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
     if (o.points.empty()) demand_one_kind(project.files);
@@ -174,21 +206,20 @@ std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const 
     return metadata;
 }
 
-// The key of the profile: EXIF of the reference picture, then what the command line says.
 lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &project,
                                  const std::vector<PictureMetadata> &metadata, Streams &streams) {
     const std::string &file = project.files[project.reference];
     warn_of_cut(metadata[project.reference], o.store, file, streams);
     const PictureMetadata &reference = metadata[project.reference];
     lensprof_profile_key key = override_key(reference.key, reference.size, o.store, file);
-    for (size_t i = 0; i < project.files.size() && o.store.aperture == LENSPROF_UNKNOWN && o.points.empty(); i++) {
-        const lensprof_profile_key &other = metadata[i].key;
-        auto differ = [](double a, double b) { return a != b && a != LENSPROF_UNKNOWN && b != LENSPROF_UNKNOWN; };
-        if (path_exists(project.files[i])
-            && (differ(other.aperture, key.aperture) || differ(other.focal_mm, key.focal_mm)))
-            warn(streams, project.files[i] + ": aperture or focal length differ from " + file
-                              + "; one falloff is estimated for both");
-    }
+    if (!o.one_lens) return key;
+    const LensSettings settings = lens_settings(project, metadata, o.store, false);
+    for (uint32_t first : settings.first)
+        if (settings.of_image[first] != settings.of_image[project.reference]) {
+            warn(streams, project.files[first] + ": lens, focal length, aperture or focus differ from " + file
+                              + format("; one falloff is estimated for all %zu settings", settings.first.size()));
+            break;
+        }
     return key;
 }
 
@@ -205,9 +236,11 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     report.prior_is_composed = prior.is_composed;
     input.options.profile = prior.profile.get();
     check_unknowns(o, project, input.options);
+    done.settings = lens_settings(project, metadata, o.store, o.one_lens);
     Pictures pictures = get_points(o, project, done);
     stop_if_interrupted();
     input.images = fit_images(project);
+    set_settings(o, done, streams);
     if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
     refer_to(report.reference, input);
     done.item = o.points.empty() ? project.path : o.points;
@@ -218,6 +251,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)
         report.verdict.text += " (Er and Eb on the v lines, or --free all)";
     name_image(project.names, report.verdict);
+    report_settings(o, project, metadata, done);
     report.exposures = done.best.exposures;
     if (done.best.reference != report.reference)
         warn(streams, project.names[report.reference] + ": the reference was left out; exposures are relative to "
@@ -232,6 +266,15 @@ std::string result_text(ProjectFit &done, Project &project, const std::string &p
                                   written.exposures.data(), static_cast<uint32_t>(written.exposures.size()),
                                   written.reference, &error),
           project.path, &error);
+    if (done.settings.are_several()) {
+        std::vector<lensprof_vignetting> falloffs;
+        for (const lensprof_fit_setting &setting : written.settings)
+            falloffs.push_back(green_falloff(setting.images ? result_of(written.result, setting) : written.result));
+        check(lensprof_pto_set_settings(project.pto.get(), done.settings.of_image.data(),
+                                        static_cast<uint32_t>(done.settings.of_image.size()), falloffs.data(),
+                                        static_cast<uint32_t>(falloffs.size()), &error),
+              project.path, &error);
+    }
     return project_text_at(project, path);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/fitting/fitting.hpp"
+#include "cli/fitting/lens_settings.hpp"
 #include "cli/fitting/project.hpp"
 
 namespace lensprof {
@@ -19,6 +20,7 @@ struct ProjectFitOptions {
     std::string points, reference;
     uint32_t sampling = LENSPROF_SAMPLING_BALANCED, falloff_curves = 0;  // 0: held-out error decides
     uint32_t seed = 1, pairs = 0, max_side = 800;
+    bool one_lens = false;  // all images are taken as at one lens setting
 };
 
 // What is fitted and found. Not to be copied: the options of `input` point to its other members.
@@ -29,6 +31,7 @@ struct ProjectFit {
 
     Progress &progress;
     BuildReport report;  // its camera_kind is given
+    LensSettings settings;
     FitInput input;
     Fitted best;
     std::string item;  // the input's name in a Failure
@@ -38,7 +41,8 @@ struct ProjectFit {
 // read.
 std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const Project &project);
 
-// The key of the profile: EXIF of the reference picture, then what the command line says.
+// The key of the profile: EXIF of the reference picture, then what the command line says. With one_lens, warns of
+// pictures at other settings.
 lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &project,
                                  const std::vector<PictureMetadata> &metadata, Streams &streams);
 

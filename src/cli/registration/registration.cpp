@@ -37,11 +37,12 @@ void add_points(const PictureLink &link, std::vector<ControlPoint> &points) {
 }
 
 // The project of the pictures of one group; `links` are numbered as they are in the group.
-FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<PictureOptics> &optics,
-                        const std::vector<PictureLink> &links) {
+FoundProject project_of(std::vector<uint32_t> numbers, std::vector<uint32_t> bodies,
+                        const std::vector<PictureOptics> &optics, const std::vector<PictureLink> &links) {
     FoundProject project;
     project.pictures = std::move(numbers);
     for (const PictureOptics &o : optics) project.lenses.push_back(o.lens);
+    project.bodies = std::move(bodies);
     FoundCameras found = find_cameras(optics, links);
     project.kind = found.kind;
     project.cameras = std::move(found.cameras);
@@ -92,6 +93,19 @@ std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files, P
     return pictures;
 }
 
+// Pictures of the same camera, processing and size, upright or not, have one number, in the order they are met.
+std::vector<uint32_t> bodies_of(const std::vector<RegisteredPicture> &pictures, const std::vector<uint32_t> &numbers) {
+    std::map<std::tuple<std::string, std::string, uint32_t, uint32_t, uint32_t>, uint32_t> found;
+    std::vector<uint32_t> bodies;
+    for (uint32_t i : numbers) {
+        const lensprof_profile_key &key = pictures[i].metadata.key;
+        const auto [shorter, longer] = std::minmax(pictures[i].features.width, pictures[i].features.height);
+        const std::tuple body(key.camera_maker, key.camera_model, key.processing, shorter, longer);
+        bodies.push_back(found.emplace(body, static_cast<uint32_t>(found.size())).first->second);
+    }
+    return bodies;
+}
+
 // Pictures of the same camera, lens, focal length, processing and size have one number, in the order they are met.
 std::vector<uint32_t> lenses_of(const std::vector<RegisteredPicture> &pictures, const std::vector<uint32_t> &numbers) {
     using Setting = std::tuple<std::string, std::string, std::string, double, uint32_t, uint32_t, uint32_t>;
@@ -138,7 +152,8 @@ Registration registered(const std::vector<std::string> &files, Progress &progres
         if (numbers.size() == 1)
             result.alone.push_back(numbers[0]);
         else
-            result.projects.push_back(project_of(numbers, optics_of(pictures, numbers), links_within(links, numbers)));
+            result.projects.push_back(project_of(numbers, bodies_of(pictures, numbers), optics_of(pictures, numbers),
+                                                 links_within(links, numbers)));
     }
     std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {
         return a.pictures.size() > b.pictures.size();

@@ -196,6 +196,7 @@ Json images_json(const BuildReport &report) {
         Json image = {{"file", report.names[i]},
                       {"ev", std::isnan(e.ev) ? Json() : Json(e.ev)},
                       {"white_balance", is_left_out(report, i) ? Json() : numbers(e.white_balance, 3)}};
+        if (!report.settings.empty()) image["setting"] = report.setting_of[i];
         if (i < report.quality.size()) {
             const auto &q = report.quality[i];
             image["ev_sigma"] = q.ev_sigma;
@@ -243,6 +244,29 @@ const char *describe_kind_from(KindFrom from) {
                                         : "as no picture says which; --camera-kind does";
 }
 
+// Of several lens settings what was found of each.
+Json settings_json(const BuildReport &report) {
+    Json list = Json::array();
+    const auto &fit = report.fit;
+    for (const SettingReport &setting : report.settings) {
+        const lensprof_fit_setting &found = setting.found;
+        Json json;
+        json["label"] = setting.label;
+        json["key"] = key_json(setting.key);
+        json["reference"] = setting.is_reference;
+        json["images"] = found.images;
+        json["pairs"] = found.pairs;
+        json["usable"] = found.images && found.usable;
+        add_verdict(setting.verdict, json);
+        json["vignetting"] = found.images ? vignetting_json(found.vignetting, fit.vignettings) : Json();
+        json["coverage"] = std::vector<uint32_t>(found.radius_ends, found.radius_ends + LENSPROF_COVERAGE_BINS);
+        json["covariance"] = found.images ? covariance_json(found.covariance, fit.covariance_size) : Json();
+        json["profile"] = setting.profile_id ? Json(setting.profile_id) : Json();
+        list.push_back(json);
+    }
+    return list;
+}
+
 // Where the exponent comes from, its standard error, and how strongly every parameter hangs on it.
 Json gamma_json(const BuildReport &report) {
     const auto &fit = report.fit;
@@ -285,6 +309,7 @@ Json build_json(const BuildReport &report) {
     json["reference"] = report.reference;
     json["images"] = images_json(report);
     if (report.has_falloff) json["vignetting"] = vignetting_json(fit.vignetting, fit.vignettings);
+    json["settings"] = settings_json(report);
     json["response"] = response_json(&fit.response, 1);
     json["response"]["from"] = response_from_name(fit.response_from);
     json["response"]["light_spread_ev"] = fit.light_spread_ev;
@@ -377,12 +402,25 @@ std::string links_row(const std::vector<lensprof_link> &links) {
     return row + "\n";
 }
 
+// Of one lens setting, or of each.
+void print_falloffs(const BuildReport &report, std::ostream &out) {
+    if (report.settings.empty()) print_vignettings(*profile_of(report.fit), out);
+    for (const SettingReport &setting : report.settings) {
+        if (!setting.found.images) continue;
+        lensprof_fit_result own = report.fit;
+        check(lensprof_fit_result_take_setting(&own, &setting.found, nullptr), "fit");
+        out << "setting   " << setting.label << format(", %s", counted(setting.found.images, "picture").c_str())
+            << (setting.found.usable ? "" : "; not a profile to store") << "\n";
+        print_vignettings(*profile_of(own), out);
+    }
+}
+
 }  // namespace
 
 void print_build(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_exposures(report, out);
-    if (report.has_falloff) print_vignettings(*profile_of(fit), out);
+    if (report.has_falloff) print_falloffs(report, out);
     if (fit.response_from == LENSPROF_FIT_RESPONSE_KIND)
         out << "response  typical of the kind of camera: the pictures do not show it\n";
     print_response(fit.response, out);

@@ -28,14 +28,26 @@ struct CameraKind {
     KindFrom from = KindFrom::none;
 };
 
+// What was found of one of several lens settings.
+struct SettingReport {
+    std::string label;  // "50 mm, f/2.8"
+    lensprof_profile_key key;
+    bool is_reference = false;  // the setting of the reference, whose numbers the fit has too
+    lensprof_fit_setting found{};
+    Verdict verdict;
+    int64_t profile_id = 0;  // 0 = not stored
+};
+
 // Everything `build` found out.
 struct BuildReport {
     std::vector<std::string> names;
     std::vector<lensprof_exposure> exposures;  // relative to the reference
     std::vector<lensprof_fit_image_quality> quality;
     lensprof_fit_result fit{};
-    Verdict verdict;                   // of it
-    std::vector<lensprof_link> links;  // between the images, as far as they were looked for
+    Verdict verdict;                      // of it
+    std::vector<SettingReport> settings;  // none where all images are at one lens setting
+    std::vector<uint32_t> setting_of;     // of each image; empty: one setting
+    std::vector<lensprof_link> links;     // between the images, as far as they were looked for
     uint32_t reference = 0;
     bool has_falloff = true;       // else it cancels in these pictures
     bool exposures_given = false;  // on the command line, and not by EXIF

@@ -14,6 +14,7 @@ constexpr uint32_t kHuginModes = 5;
 struct Edit {
     std::string_view name;
     std::string value;
+    bool replaces_link = false;
 };
 
 // The EMoR coefficients that Hugin can hold. The modes are orthonormal on the grid, so that the least squares
@@ -40,7 +41,7 @@ std::string edit_line(std::string_view line, size_t number, const std::vector<Ed
         const PtoToken *token = find_pto_token(tokens, edit.name);
         if (!token)
             added += " " + std::string(edit.name) + edit.value;
-        else if (token->value.empty() || token->value[0] != '=')
+        else if (edit.replaces_link || token->value.empty() || token->value[0] != '=')
             changes.push_back({token, &edit});
     }
     std::sort(changes.begin(), changes.end(),
@@ -67,19 +68,25 @@ std::vector<Edit> exposure_edits(const lensprof_exposure &exposure, const lenspr
             {"Eb", number_text(value[kBlue] * balance(2))}};
 }
 
-// Vm5: radial falloff, corrected by division. Rt0: EMoR, which is also what a line without Rt means.
+// Vm5: radial falloff, corrected by division.
+std::vector<Edit> falloff_edits(const lensprof_vignetting &vignetting, const PtoImage &image) {
+    const lensprof_camera &camera = image.result.camera;
+    const double rho = lensprof_half_diagonal(camera.width, camera.height);
+    std::vector<Edit> edits{{"Va", "1"}};
+    for (size_t i = 0; i < 3; i++)
+        edits.push_back({kPtoParameterInfo[kVignettingB + i].name, number_text(vignetting.k[i])});
+    for (size_t i = 0; i < 2; i++)
+        edits.push_back({kPtoParameterInfo[kCenterX + i].name, number_text(vignetting.center[i] * rho)});
+    return edits;
+}
+
+// Rt0: EMoR, which is also what a line without Rt means.
 std::vector<Edit> model_edits(const std::array<double, kHuginModes> &modes, const lensprof_vignetting &vignetting,
                               const PtoImage &image) {
     std::vector<Edit> edits;
     for (size_t i = 0; i < kHuginModes; i++)
         edits.push_back({kPtoParameterInfo[kResponseA + i].name, number_text(modes[i])});
-    const lensprof_camera &camera = image.result.camera;
-    double rho = lensprof_half_diagonal(camera.width, camera.height);
-    edits.push_back({"Va", "1"});
-    for (size_t i = 0; i < 3; i++)
-        edits.push_back({kPtoParameterInfo[kVignettingB + i].name, number_text(vignetting.k[i])});
-    for (size_t i = 0; i < 2; i++)
-        edits.push_back({kPtoParameterInfo[kCenterX + i].name, number_text(vignetting.center[i] * rho)});
+    for (const Edit &edit : falloff_edits(vignetting, image)) edits.push_back(edit);
     edits.push_back({"Vm", "5"});
     if (image.result.response_type != 0) edits.push_back({"Rt", "0"});
     return edits;
@@ -192,6 +199,33 @@ lensprof_status lensprof_pto_set_result(lensprof_pto *pto, const lensprof_respon
         });
         // Parsed again, so that reading and writing cannot disagree.
         *pto = parse_pto(mark_left_out(text, exposures, image_count));
+    });
+}
+
+lensprof_status lensprof_pto_set_settings(lensprof_pto *pto, const uint32_t *setting, uint32_t image_count,
+                                          const lensprof_vignetting *vignetting, uint32_t setting_count,
+                                          lensprof_error *error) {
+    if (!pto || !setting || !vignetting || image_count != pto->images.size()
+        || std::any_of(setting, setting + image_count, [&](uint32_t s) { return s >= setting_count; })) {
+        set_error(error,
+                  "lensprof_pto_set_settings: give a project, a setting of each image, and a vignetting of each "
+                  "setting");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return at_boundary(error, [&] {
+        for (uint32_t s = 0; s < setting_count; s++)
+            if (const auto status = lensprof_vignetting_validate(&vignetting[s]); status != LENSPROF_OK)
+                throw FormatFailure{
+                    status, "vignetting " + std::to_string(s) + " is invalid; see lensprof_vignetting_validate"};
+        *pto = parse_pto(edit_lines(*pto, [&](uint32_t i) {
+            const auto first = static_cast<uint32_t>(std::find(setting, setting + i, setting[i]) - setting);
+            std::vector<Edit> edits = falloff_edits(vignetting[setting[i]], pto->images[i]);
+            for (Edit &edit : edits) {
+                if (first < i) edit.value = '=' + std::to_string(first);
+                edit.replaces_link = true;
+            }
+            return edits;
+        }));
     });
 }
 

@@ -85,6 +85,14 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_result(
     lensprof_pto *pto, const lensprof_response *response, const lensprof_vignetting *vignetting,
     const lensprof_exposure *exposures, uint32_t image_count, uint32_t reference, lensprof_error *error);
 
+/* Gives every lens setting a falloff: of the images with setting[i] = s the first one receives vignetting[s], and the
+ * others are linked to it. setting[image_count] are less than setting_count. Errors: ARGUMENT, what
+ * lensprof_vignetting_validate says, MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_settings(lensprof_pto *pto, const uint32_t *setting,
+                                                                         uint32_t image_count,
+                                                                         const lensprof_vignetting *vignetting,
+                                                                         uint32_t setting_count, lensprof_error *error);
+
 /* The project as text: everything that was read, unchanged but for what was set. data[capacity] and
  * *count (bytes) as in base.h. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_write(const lensprof_pto *pto, void *data, size_t capacity,

@@ -1,0 +1,169 @@
+// Pictures at several lens settings: a falloff and a profile for each.
+#include "cli/pictures/metadata.hpp"
+#include "cli/pictures/picture.hpp"
+#include "cli_runs.hpp"
+
+namespace {
+
+using namespace cli_runs;
+
+constexpr double kOpen = 2.8, kStopped = 8.0;
+const std::vector<double> kOpenFalloff{-0.55, 0.15, -0.12}, kStoppedFalloff{-0.12, 0.02, -0.03};
+const Words quietly{"--no-store", "--stored", "none", "--json"};
+
+std::string numbered(size_t i) { return "img00" + std::to_string(i) + ".png"; }
+
+// The exposure stays, so that a smaller aperture takes longer.
+void state_aperture(const std::string &file, double f_number) {
+    PictureMetadata metadata = read_metadata(file);
+    metadata.exposure_time_s = *metadata.exposure_time_s * std::pow(f_number / *metadata.f_number, 2);
+    metadata.key.aperture = metadata.f_number.emplace(f_number);
+    assert_true(write_metadata(file, metadata));
+}
+
+// Pictures of one scene in turn at two apertures.
+std::string two_apertures(const char *overlap = "0.4") {
+    const Words same = Words{"--images", "6", "--seed", "5", "--exif", "--overlap", overlap, "--noise", "1"};
+    must_exit(done, Words{"simulate", "-o", work("open"), "--vignetting=-0.55,0.15,-0.12"} + same);
+    must_exit(done, Words{"simulate", "-o", work("stopped"), "--vignetting=-0.12,0.02,-0.03"} + same);
+    for (size_t i = 1; i < 6; i += 2) {
+        fs::copy_file(work("stopped/" + numbered(i)), work("open/" + numbered(i)),
+                      fs::copy_options::overwrite_existing);
+        state_aperture(work("open/" + numbered(i)), kStopped);
+    }
+    return work("open/pano.pto");
+}
+
+double falloff_error(const Json &k, const std::vector<double> &truth) {
+    double worst = 0.0;
+    for (double r = 0.0; r <= 1.0; r += 0.05) {
+        double difference = 0.0;
+        for (int n = 0; n < 3; n++) difference += (k[n].get<double>() - truth[n]) * std::pow(r * r, n + 1);
+        worst = std::max(worst, std::abs(difference));
+    }
+    return worst;
+}
+
+void assert_both_found(const Json &json) {
+    assert_true(json["usable"] == true && json["evens"] == true);
+    assert_int_equal(json["settings"].size(), 2);
+    for (size_t n = 0; n < 2; n++) {
+        const Json &setting = json["settings"][n];
+        assert_true(setting["usable"] == true);
+        assert_int_equal(setting["images"], 3);
+        assert_close(setting["key"]["aperture"].get<double>(), n ? kStopped : kOpen, 1e-6);
+        assert_true(setting["reference"] == (n == 0));
+        const double error = falloff_error(setting["vignetting"]["k"][0], n ? kStoppedFalloff : kOpenFalloff);
+        print_message("%s: falloff within %.4f\n", setting["label"].get<std::string>().c_str(), error);
+        assert_true(error < 0.01);
+    }
+    for (size_t i = 0; i < 6; i++) assert_int_equal(json["images"][i]["setting"], i % 2);
+    assert_true(json["settings"][0]["vignetting"] == json["vignetting"]);
+}
+
+void test_two_apertures(void **) {
+    const std::string pto = two_apertures();
+    assert_both_found(json_of(Words{"build", pto} + quietly));
+    assert_both_found(json_of(Words{"build", pto, "--method", "radiance"} + quietly));
+    const std::string text = must_exit(done, {"build", pto, "--no-store"});
+    assert_true(contains(text, "f/2.8, 3 pictures\n") && contains(text, "f/8, 3 pictures\n"));
+}
+
+void test_one_lens(void **) {
+    const std::string pto = two_apertures();
+    const Json each = json_of(Words{"build", pto} + quietly);
+    const Outcome one = run_words(Words{"build", pto, "--one-lens"} + quietly);
+    const Json json = Json::parse(one.out);
+    assert_true(json["settings"].empty() && !json["images"][0].contains("setting"));
+    assert_true(contains(one.err, "img001.png: lens, focal length, aperture or focus differ from"));
+    assert_true(json["residual"]["heldout_median"].get<double>()
+                > 2.0 * each["residual"]["heldout_median"].get<double>());
+    // What the command line states holds for all pictures.
+    assert_true(json_of(Words{"build", pto, "--aperture", "4"} + quietly, one.code)["settings"].empty());
+    // A method of one falloff.
+    const Outcome other = run_words(Words{"build", pto, "--method", "transfer-function"} + quietly);
+    assert_true(contains(other.err, "2 lens settings"));
+    assert_true(Json::parse(other.out)["settings"].empty());
+}
+
+// A profile for each, under its own aperture, which lookups find.
+void test_profiles(void **) {
+    const std::string pto = two_apertures(), db = work("p.db");
+    const Json json = json_of({"build", pto, "--db", db, "--json"});
+    assert_int_equal(json["settings"][0]["profile"], 1);
+    assert_int_equal(json["settings"][1]["profile"], 2);
+    assert_int_equal(json["profile"], 1);
+    for (size_t n = 0; n < 2; n++) {
+        const Json stored = json_of({"profile", "show", std::to_string(n + 1), "--db", db, "--json"});
+        assert_close(stored["key"]["aperture"].get<double>(), n ? kStopped : kOpen, 1e-6);
+        assert_true(stored["vignetting"]["k"][0] == json["settings"][n]["vignetting"]["k"][0]);
+        assert_int_equal(stored["provenance"]["images"], 3);
+    }
+}
+
+// The project with the result has both falloffs, and apply takes for each picture its own.
+void test_project_with_both(void **) {
+    const std::string pto = two_apertures(), out = work("open/result.pto");
+    const Json json = json_of(Words{"build", pto, "--pto-out", out} + quietly);
+    const std::string text = text_of(out);
+    for (const char *part : {" Vb=0 Vc=0 Vd=0", " Vb=1 Vc=1 Vd=1"}) {
+        size_t count = 0;
+        for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) count++;
+        assert_int_equal(count, 2);
+    }
+    // A picture without falloff, from the same scene.
+    must_exit(done, {"simulate", "-o", work("none"), "--vignetting=0,0,0", "--images", "6", "--seed", "5", "--exif",
+                     "--overlap", "0.4", "--noise", "1"});
+    must_exit(done, {"apply", "--pto", out, "--output-exposure", "keep", "-o", work("even")});
+    for (size_t i = 0; i < 2; i++) {
+        const Picture even = read_picture(work("even/" + numbered(i))),
+                      truth = read_picture(work("none/" + numbered(i)));
+        double square = 0.0, count = 0.0;
+        for (size_t n = 0; n < even.pixels.size(); n++)
+            if (truth.pixels[n] < 240) square += std::pow(even.pixels[n] - truth.pixels[n], 2), count++;
+        const double rms = std::sqrt(square / count);
+        print_message("%s: %.2f levels from the picture without falloff\n", numbered(i).c_str(), rms);
+        assert_true(rms < 3.0);
+    }
+    // Read again, each is estimated again.
+    assert_both_found(json_of(Words{"build", out, "--free", "all"} + quietly));
+}
+
+// Settings by the project's links alone, without EXIF.
+void test_links_of_a_project(void **) {
+    const std::string copy = copy_of("scene");
+    edit(copy + "/pano.pto", "Vb=0 Vc=0 Vd=0( .*img002)", "Vb0 Vc0 Vd0$1");
+    const Json json = json_of(Words{"build", copy + "/pano.pto", "--no-store", "--json"} + quick);
+    assert_int_equal(json["settings"].size(), 2);
+    assert_int_equal(json["images"][2]["setting"], 1);
+    assert_true(contains(json["settings"][1]["label"], "f/2.8, from img002.png"));
+}
+
+// A setting that its pictures do not show is named and not stored; the other one is.
+void test_a_setting_that_is_not_shown(void **) {
+    const std::string pto = two_apertures("0.75"), db = work("one.db");
+    // What is left of the stopped down pictures is their middle.
+    std::string text = text_of(pto);
+    for (size_t i = 1; i < 6; i += 2) {
+        const size_t name = text.find("n\"" + numbered(i));
+        text.insert(name, "S200,440,150,330 ");
+    }
+    save_text(pto, text);
+    const Outcome run = run_words({"build", pto, "--db", db, "--json"});
+    const Json json = Json::parse(run.out);
+    assert_int_equal(run.code, done);
+    assert_true(json["settings"][0]["usable"] == true && json["settings"][0]["profile"] == 1);
+    assert_true(json["settings"][1]["usable"] == false);
+    assert_true(json["settings"][1]["profile"].is_null());
+    assert_true(contains(run.err, "f/8: not a profile to store"));
+}
+
+}  // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        CLI_TEST(test_two_apertures),     CLI_TEST(test_one_lens),           CLI_TEST(test_profiles),
+        CLI_TEST(test_project_with_both), CLI_TEST(test_links_of_a_project), CLI_TEST(test_a_setting_that_is_not_shown),
+    };
+    return cmocka_run_group_tests(tests, make_scene, remove_folder);
+}
