@@ -132,7 +132,20 @@ void test_openexr(void **) {
     const Words linear = {"apply", "--profile", "1", "--db", work("c.db"), "--linear", frames[0], "-o", work("light")};
     must_exit(done, linear);
     must_exit(done, linear + Words{"--linear-output", "exr"});
-    assert_refused(usage, {"align", "-o", work("x"), "--merge", work("y.png"), frames[0], frames[1]}, {"y.png"});
+    assert_refused(usage, {"align", "--merge", work("y.png"), frames[0], frames[1]}, {"y.png"});
+    assert_refused(usage, {"apply", "--profile", "1", "--db", work("c.db"), "--linear-output", "exr", frames[0]},
+                   {"--linear"});
+    // A light of other pictures is not replaced, one of the same is.
+    must_exit(done, to_exr);
+    must_exit(done, linear + Words{"--linear-output", "exr"});
+    const std::string other = work("other/h0.png");
+    fs::create_directories(work("other"));
+    fs::copy_file(frames[1], other);
+    assert_refused(usage,
+                   {"apply", "--profile", "1", "--db", work("c.db"), "--linear", "--linear-output", "exr", other, "-o",
+                    work("light")},
+                   {"light/h0.exr", "made of another picture (h0.png)", "--overwrite"});
+    assert_refused(usage, {"align", "--merge", work("hdr.exr"), other, frames[0]}, {"hdr.exr", "--overwrite"});
 #ifdef LENSPROF_HAS_OPENEXR
     for (const std::string &name : {work("hdr"), work("light/h0")}) {
         const Picture tiff = read_picture(name + ".tif");
@@ -152,6 +165,37 @@ void test_beyond_all_frames(void **) {
     assert_true(largest > 1.0);
 }
 
+// Saturated colours: where red is next to nothing, or alone, the frames that show the pixel well decide.
+void test_saturated_colours(void **) {
+    Words frames = make_frames({0.0, -2.0, 3.0});
+    for (size_t i = 0; i < frames.size(); i++) {
+        Picture frame = read_picture(frames[i]);
+        const double gain = std::exp2(std::vector<double>{0.0, -2.0, 3.0}[i]);
+        for (uint32_t y = 40; y < 60; ++y)
+            for (uint32_t x = 50; x < 90; ++x) {
+                auto *pixel = reinterpret_cast<uint16_t *>(frame.pixels.data() + y * frame.row_bytes) + 3 * x;
+                const bool is_red = x < 70;
+                for (uint32_t c = 0; c < 3; ++c)
+                    pixel[c] = (c == 0) == is_red ? static_cast<uint16_t>(std::lround(65535 * encode(0.5 * gain))) : 0;
+            }
+        write_picture(frames[i], frame);
+    }
+    const std::string out = work("red.tif");
+    must_exit(done, Words{"align", "--merge", out, "--to", "first"} + frames);
+    const Picture merged = read_picture(out);
+    const auto at = [&](uint32_t x, uint32_t c) {
+        return reinterpret_cast<const float *>(merged.pixels.data() + 50 * merged.row_bytes)[3 * x + c];
+    };
+    // What is half of white in the frame at 0 EV, up to gamma; the brightest frame has white there.
+    const double half = at(60, 0);
+    print_message("red %.3f, green and blue next to it %.3f\n", half, double(at(80, 1)));
+    assert_true(half > 0.3 && half < 0.7);
+    assert_close(at(80, 1), half, 0.05);
+    assert_close(at(80, 2), half, 0.05);
+    for (uint32_t c : {1u, 2u}) assert_true(at(60, c) < 0.01);
+    assert_true(at(80, 0) < 0.01);
+}
+
 void test_refusals(void **) {
     const Words frames = make_frames({0.0, -2.0});
     const auto refuse = [&](int code, const Words &words, const char *said) {
@@ -159,6 +203,8 @@ void test_refusals(void **) {
     };
     refuse(usage, Words{"--merge", work("out.png")} + frames, ".tif");
     refuse(usage, Words{"--merge", work("out.tif"), "--project", work("x.pto")}, "--project");
+    refuse(usage, Words{"--merge", work("out.tif"), "-o", work("frames")} + frames, "--output");
+    refuse(usage, Words{"--merge", work("none/out.tif")} + frames, "none/out.tif");
     const Words tiffs = make_frames({0.0, -2.0}, ".tif");
     refuse(usage, Words{"--merge", tiffs[1]} + tiffs, "h1.tif");
     Picture alpha = make_noise(width, height, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA);
@@ -171,10 +217,8 @@ void test_refusals(void **) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        CLI_TEST(test_light_beyond_white),
-        CLI_TEST(test_openexr),
-        CLI_TEST(test_beyond_all_frames),
-        CLI_TEST(test_refusals),
+        CLI_TEST(test_light_beyond_white), CLI_TEST(test_openexr),  CLI_TEST(test_beyond_all_frames),
+        CLI_TEST(test_saturated_colours),  CLI_TEST(test_refusals),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -250,6 +250,7 @@ void test_bad_input(void **) {
     const Bytes whole = load(save_shot("shot.dng", good));
     save(work("cut.dng"), Bytes(whole.begin(), whole.begin() + 20000));
     assert_refused(unreadable, {"response", work("cut.dng"), "--no-store"}, {"cut.dng"});
+    assert_refused(usage, {"response", work("shot.dng"), work("shot.dng"), "--no-store"}, {"shot.dng", "given twice"});
     write_jpeg_file(work("plain.jpg"), good.rendered, {95, 1, 1});
     assert_refused(unreadable, {"response", work("plain.jpg"), "--no-store"}, {"is no camera raw file"});
     assert_refused(unreadable, {"response", work("missing.dng"), "--no-store"}, {"missing.dng"});

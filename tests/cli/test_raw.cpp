@@ -356,6 +356,29 @@ void test_mixed_and_pairs(void **) {
     assert_true(fs::exists(work("out/a.dng")) && !fs::exists(work("out/a.tif")));
 }
 
+// Frames of a raw sequence become TIFF, all alike; a DNG is no place for that.
+void test_align(void **) {
+    needs_libraw();
+    Words frames;
+    for (double gain : {1.0, 0.25}) {
+        frames.push_back(save_dng(gain < 1.0 ? "dark.dng" : "bright.dng", card(300, 200, 14, Packing::words, gain)));
+    }
+    const Json json = json_of(Words{"align", "-o", work("al"), "--to", "first", "--json"} + frames);
+    assert_true(json["frames"][1]["output"] == work("al/dark.tif"));
+    const Picture bright = read_picture(work("al/bright.tif")), dark = read_picture(work("al/dark.tif"));
+    assert_int_equal(dark.sample, LENSPROF_SAMPLE_U16);
+    double off = 0.0, most = 0.0;
+    const auto *a = reinterpret_cast<const uint16_t *>(bright.pixels.data());
+    const auto *b = reinterpret_cast<const uint16_t *>(dark.pixels.data());
+    for (size_t n = 0; n < bright.pixels.size() / 2; n++) {
+        off += std::abs(a[n] - b[n]), most = std::max<double>(most, a[n]);
+    }
+    assert_true(off / (double(bright.pixels.size()) / 2) < 0.02 * most);
+    must_exit(done, {"simulate", "-o", work("other"), "--images", "2", "--size", "300x200"});
+    assert_refused(usage, {"align", frames[0], work("other/img000.png"), "-o", work("no")},
+                   {"bright.dng", "img000.png"});
+}
+
 // The name does not count; nor does it make a raw file of something else.
 void test_content_counts(void **) {
     needs_libraw();
@@ -451,6 +474,7 @@ int main() {
         CLI_TEST(test_calibrate),
         CLI_TEST(test_opcodes_are_not_doubled),
         CLI_TEST(test_mixed_and_pairs),
+        CLI_TEST(test_align),
         CLI_TEST(test_content_counts),
         CLI_TEST(test_preview),
         CLI_TEST(test_truncated),

@@ -13,6 +13,8 @@
 #include "cli/fitting/project.hpp"
 #include "cli/fitting/static_camera.hpp"
 #include "cli/pictures/clipping.hpp"
+#include "cli/pictures/named_pictures.hpp"
+#include "cli/pictures/raw_kind.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
@@ -36,7 +38,9 @@ const Choices<Target> targets = {
 struct Options {
     FitOptions fit;
     Target to = Target::mean;
-    std::string output = "aligned", pto, merge;
+    std::string output, pto, merge;
+
+    std::string folder() const { return output.empty() ? "aligned" : output; }
     CorrectionKind kind;
     uint32_t seed = 1, pairs = 0, max_side = 800;
     bool json = false, progress = false;
@@ -47,7 +51,7 @@ void declare(Command &command, Options &o) {
     command.files("FRAMES", o.files, "pictures of one camera, in order; with --project default all of it");
     command.choice("--to", o.to, targets,
                    "whose exposure and white balance all frames get: first, last, brightest, or mean (geometric)");
-    command.folder("-o,--output", o.output, "folder for the frames (aligned)");
+    command.folder("-o,--output", o.output, "folder for the frames; aligned where none is given");
     command.file(
         "--merge", o.merge,
         "instead write one picture of the light in all frames (HDR), 32 bit float, as .tif or .exr; the camera stood still");
@@ -78,6 +82,7 @@ Project sequence(const Options &o) {
                       (o.pto.empty() ? project.files[0] : o.pto)
                           + ": one frame alone has nothing to be aligned to; give at least two",
                       LENSPROF_REASON_FEW_PAIRS);
+    demand_one_kind(project.files);
     project.reference = 0;
     for (uint32_t i = 0; i < project.images.size(); i++) {
         auto &image = project.images[i];
@@ -135,6 +140,9 @@ lensprof_exposure wanted_exposure(const Options &o, const std::vector<lensprof_e
 // The merged picture has no frame of its own.
 void check_merge(const Options &o, const Project &project) {
     check_merged_name(o.merge);
+    const std::string folder = std::filesystem::path(absolute_path(o.merge)).parent_path().string();
+    if (!is_folder(folder))
+        throw Failure(ExitCode::usage, o.merge + ": its folder is not there; make it, or give another name");
     std::vector<Correction> job(1);
     job[0].source = project.files[0], job[0].target = o.merge;
     check_targets(job, project.files, "");
@@ -153,8 +161,9 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
     std::vector<Correction> jobs;
     for (uint32_t i : frames) {
         std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
+        if (raw_kind(project.files[i])) name.replace_extension(".tif");
         jobs.push_back({project.files[i],
-                        (std::filesystem::path(o.output) / name).string(),
+                        (std::filesystem::path(o.folder()) / name).string(),
                         nullptr,
                         {},
                         {},
@@ -162,7 +171,8 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
                         nullptr,
                         0,
                         "frames of " + std::filesystem::path(project.files[0]).filename().string() + " on",
-                        {}});
+                        {},
+                        false});
     }
     if (!o.merge.empty()) {
         check_merge(o, project);
@@ -177,7 +187,7 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
 Corrected write_all(const Options &o, const std::vector<Correction> &jobs,
                     const std::vector<lensprof_exposure> &exposures, Progress &progress) {
     if (o.merge.empty()) {
-        make_folder(o.output);
+        make_folder(o.folder());
         return write_corrected(jobs, o.kind, nullptr, progress);
     }
     write_merged(jobs, frame_like(exposures, jobs[0].wanted), o.merge, progress);
@@ -226,7 +236,7 @@ int align(const Options &o, Streams &streams) {
     std::vector<uint32_t> frames = frames_of(o, project);
     std::vector<Correction> jobs = make_jobs(o, project, frames);
     check_pictures(project, o.max_side);
-    if (o.merge.empty()) check_output_folder(o.output);
+    if (o.merge.empty()) check_output_folder(o.folder());
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     std::vector<double> white_shares;  // of the project's pictures
     Fitted fitted = fit_sequence(o, project, white_shares, progress, streams);
@@ -267,6 +277,10 @@ int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
     check_max_side(o.max_side);
     if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no frames to align; name them");
+    if (!o.merge.empty() && !o.output.empty())
+        throw Failure(ExitCode::usage,
+                      "--merge: writes one picture, and --output names a folder for frames; leave one of "
+                      "the two out");
     if (!o.merge.empty() && !o.pto.empty())
         throw Failure(ExitCode::usage,
                       "--merge: takes frames of a camera that stood still, and --project is of one "

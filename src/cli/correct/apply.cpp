@@ -44,7 +44,7 @@ enum class RawOutput {
 struct Options {
     ModelOptions model;
     RawOutput raw_output = RawOutput::by_default;
-    std::string linear_end = ".tif";
+    std::string linear_end;  // of --linear-output; empty: not given
     std::string pto, output, sheet;
     Exposure exposure = Exposure::by_default;
     CorrectionKind kind;
@@ -129,7 +129,7 @@ std::string target_name(const Options &o, const NamedPicture &picture) {
     std::filesystem::path name = std::filesystem::path(picture.file).filename();
     const auto raw = raw_kind(picture.file);
     if (o.kind.linear)
-        name.replace_extension(o.linear_end);
+        name.replace_extension(o.linear_end.empty() ? ".tif" : o.linear_end);
     else if (raw && !becomes_dng(o, *raw))
         name.replace_extension(".tif");
     if (raw && becomes_dng(o, *raw)) name.replace_extension(".dng");
@@ -234,7 +234,7 @@ void check_opcodes(const Options &o, const std::string &file) {
 }
 
 Correction make_job(const Options &o, const Source &source, const NamedPicture &picture) {
-    Correction job{picture.file, target_name(o, picture), nullptr, {}, {}, 0, nullptr, 0, {}, {}};
+    Correction job{picture.file, target_name(o, picture), nullptr, {}, {}, 0, nullptr, 0, {}, {}, false};
     lensprof_exposure_init(&job.own);
     if (source.project) {
         const uint32_t image = source.images->at(picture.file, "--pto");
@@ -246,7 +246,8 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
     const PictureMetadata metadata = metadata_of(o, picture.file);
     check_mark(o, picture.file, metadata);
     if (source.models->are_used()) source.models->choose(metadata, job);
-    if (is_dng_name(job.target)) check_opcodes(o, picture.file);
+    job.copies_dng = is_dng_name(job.target);
+    if (job.copies_dng) check_opcodes(o, picture.file);
     return job;
 }
 
@@ -366,6 +367,13 @@ Corrected correct(const Options &o, Work &work, Streams &streams) {
 }
 
 int run(Options &o, Streams &streams) {
+    if (!o.linear_end.empty() && !o.kind.linear)
+        throw Failure(ExitCode::usage,
+                      "--linear-output: is for --linear, which writes irradiance; give both or neither");
+    if (!o.sheet.empty() && format_of_name(o.sheet) == FileFormat::exr)
+        throw Failure(
+            ExitCode::usage,
+            o.sheet + ": OpenEXR holds light, and a contact sheet is a picture; give a name in .jpg, .png or .tif");
     o.model.puts_in = o.kind.simulate;
     o.has_output = !o.output.empty();
     if (!o.has_output) o.output = "corrected";

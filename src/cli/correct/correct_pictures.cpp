@@ -134,7 +134,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
     std::vector<Finished> finished(count);
     auto work = [&](uint32_t i) {
         make_folder(std::filesystem::path(absolute_path(jobs[i].target)).parent_path().string());
-        if (is_dng_name(jobs[i].target)) {
+        if (jobs[i].copies_dng) {
             finished[i] = copy_dng(jobs[i]);
             return;
         }
@@ -147,6 +147,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         finished[i].copy ? finished[i].copy->commit() : finished[i].writer->commit();
         finished[i] = {nullptr, nullptr, finished[i].with_metadata};
         throughput.add_picture();
+        if (is_turned_in_exr(jobs[i])) progress.warn(turned_in_exr(jobs[i].target));
         if (!finished[i].with_metadata)
             progress.warn(jobs[i].target + ": written without the metadata of " + jobs[i].source
                           + ", which are not read from or written to such a file (a BigTIFF); copy them with exiftool");

@@ -40,6 +40,7 @@ void check_targets(std::vector<Correction> &jobs, const std::vector<std::string>
 static std::optional<CorrectionMark> mark_of_older(const std::string &file) {
     if (!is_regular_file(file)) return std::nullopt;
     try {
+        if (const std::string packet = exr_xmp_of(file); !packet.empty()) return mark_of_packet(packet);
         return read_metadata(file).mark;
     } catch (const Failure &) {
         return std::nullopt;
@@ -57,6 +58,16 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
         throw Failure(ExitCode::usage, job.target + ": is there already and was made of another picture ("
                                            + mark->source + "); give another folder with -o, or --overwrite");
     }
+}
+
+bool is_turned_in_exr(const Correction &job) {
+    return !job.copies_dng && format_of_name(job.target) == FileFormat::exr
+           && read_metadata(job.source).orientation > 1;
+}
+
+std::string turned_in_exr(const std::string &target) {
+    return target + ": lies as the sensor saw it, for OpenEXR has no EXIF orientation; turn it in your program, or write "
+                    "TIFF";
 }
 
 void add_speed(const Corrected &corrected, Json &json) {

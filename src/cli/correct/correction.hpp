@@ -27,6 +27,7 @@ struct Correction {
     uint64_t pixels = 0;                  // of the source
     std::string model_name;               // for the output's mark
     std::string note;                     // what is to be said of it; empty = nothing
+    bool copies_dng = false;              // the target is the source with the falloff as an opcode, pixels untouched
 };
 
 struct CorrectionKind {
@@ -47,6 +48,11 @@ struct Corrected {
     Json pictures = Json::array();  // file, output and, where one was used, profile or lookup
     double seconds = 0, megapixels = 0;
 };
+
+// Whether the source is to be shown turned, as its EXIF says, and the target is OpenEXR, which cannot say so; and that
+// as a warning.
+bool is_turned_in_exr(const Correction &job);
+std::string turned_in_exr(const std::string &target);
 
 // Adds `seconds` and `megapixels_per_second` (null when nothing was written) to a command's object.
 void add_speed(const Corrected &corrected, Json &json);

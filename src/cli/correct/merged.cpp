@@ -28,10 +28,11 @@ double grey_at(const lensprof_image &rows, uint32_t y, size_t n) {
     }
 }
 
-// How far a grey value is from black and white: 0 at them, 1 between.
-double trust(double grey) {
-    const double up = (grey - none_below) / (all_above - none_below);
-    const double down = (none_above - grey) / (none_above - all_below);
+// How far a pixel is from black and white: 0 at them, 1 between. By its largest channel: where that is well within, the
+// others are what the light is, be it next to none of red.
+double trust(double largest) {
+    const double up = (largest - none_below) / (all_above - none_below);
+    const double down = (none_above - largest) / (none_above - all_below);
     return std::clamp(std::min(up, down), 0.0, 1.0);
 }
 
@@ -82,22 +83,22 @@ public:
 
     // Of each channel; returns how far the pixel is from black and white.
     double weights(uint32_t x, uint32_t y, double weight[3]) const {
-        double least = 1.0;
         for (size_t c = 0; c < samples_; c++) {
             const double grey = grey_at(before_rows_, y, size_t(x) * samples_ + c);
-            least = std::min(least, trust(grey));
             weight[c] = weight_[c][static_cast<size_t>(std::lround(steps * std::clamp(grey, 0.0, 1.0)))];
         }
-        return least;
+        return trust(largest(x, y));
     }
 
-    bool is_bright(uint32_t x, uint32_t y) const {
-        for (size_t c = 0; c < samples_; c++)
-            if (grey_at(before_rows_, y, size_t(x) * samples_ + c) > 0.5) return true;
-        return false;
-    }
+    bool is_white(uint32_t x, uint32_t y) const { return largest(x, y) >= none_above; }
 
 private:
+    double largest(uint32_t x, uint32_t y) const {
+        double most = 0.0;
+        for (size_t c = 0; c < samples_; c++) most = std::max(most, grey_at(before_rows_, y, size_t(x) * samples_ + c));
+        return most;
+    }
+
     const Correction &job_;
     PictureReader reader_;
     const Plan plan_;
@@ -123,9 +124,11 @@ void merge_pixel(const Frames &frames, uint32_t x, uint32_t y, float *merged) {
             sum[c] += certain * weight[c] * static_cast<double>(light[c]);
         }
     }
-    const Frame &other = *(frames.front()->is_bright(x, y) ? frames.front() : frames.back());
+    // Where no frame is certain of a channel: the brightest that is not white there, or the darkest of all.
+    size_t other = frames.size() - 1;
+    while (other > 0 && frames[other]->is_white(x, y)) other--;
     for (size_t c = 0; c < samples; c++)
-        merged[c] = all[c] > 0.0 ? static_cast<float>(sum[c] / all[c]) : other.light(x, y)[c];
+        merged[c] = all[c] > 0.0 ? static_cast<float>(sum[c] / all[c]) : frames[other]->light(x, y)[c];
 }
 
 }  // namespace
@@ -162,6 +165,9 @@ void write_merged(const std::vector<Correction> &jobs, size_t like, const std::s
                       header.layout});
         progress.update("merging", static_cast<double>(first + rows) / header.height);
     }
+    Correction merged_job = jobs[like];
+    merged_job.target = target;
+    if (is_turned_in_exr(merged_job)) progress.warn(turned_in_exr(target));
     if (!writer.finish())
         progress.warn(target + ": written without the metadata of " + jobs[like].source
                       + ", which are not read from or written to such a file (a BigTIFF); copy them with exiftool");

@@ -169,7 +169,11 @@ void paint(const Canvas &canvas, const Tile &tile, std::vector<float> &nearest, 
 
 }  // namespace
 
-void check_preview(const std::string &path) { format_of_name(path); }
+void check_preview(const std::string &path) {
+    if (format_of_name(path) == FileFormat::exr)
+        throw Failure(ExitCode::usage, path + ": OpenEXR holds light, and a mosaic is a picture; give a name in .jpg, .png "
+                                              "or .tif");
+}
 
 void write_preview(const std::string &path, const Project &project, const Fitted &fitted, Progress &progress) {
     const lensprof_exposure wanted = mean_exposure(fitted.exposures);  // as `apply --pto` has it

@@ -99,12 +99,17 @@ size_t links_of_state(const std::vector<lensprof_link> &links, uint32_t state) {
         std::count_if(links.begin(), links.end(), [=](const lensprof_link &link) { return link.state == state; }));
 }
 
-// What a result explains of the pictures: the more, the better.
-using Worth = std::tuple<size_t, bool, bool, size_t>;
-
-Worth worth_of(const Fitted &fitted, const std::vector<lensprof_link> &links) {
-    return {joined_images(fitted), fitted.result.evens != 0, fitted.result.usable != 0,
-            links_of_state(links, LENSPROF_LINK_VERIFIED)};
+// Whether a second result explains more of the pictures: in nothing less, and more of them, better, or by more links
+// that are verified.
+bool explains_more(const Fitted &second, const std::vector<lensprof_link> &second_links, const Fitted &first,
+                   const std::vector<lensprof_link> &first_links) {
+    const auto worth_of = [](const Fitted &fitted, const std::vector<lensprof_link> &links) {
+        return std::tuple(joined_images(fitted), fitted.result.evens != 0, fitted.result.usable != 0,
+                          links_of_state(links, LENSPROF_LINK_VERIFIED));
+    };
+    const bool is_less = joined_images(second) < joined_images(first) || second.result.evens < first.result.evens
+                         || second.result.usable < first.result.usable;
+    return !is_less && worth_of(second, second_links) > worth_of(first, first_links);
 }
 
 // Whether links may join once the response and the falloff are known. Not by a result that is refused: the light that
@@ -122,13 +127,17 @@ void look_again(const ProjectFitOptions &o, const Project &project, Pictures &pi
     const std::vector<lensprof_observation> observations = done.input.observations;
     const std::vector<lensprof_link> links = done.report.links;
     std::vector<lensprof_fit_image_quality> quality;
-    draw_points(o, project, pictures, &done.best, done);
-    const Fitted second = fit(done.input, done.report.reference, done.item, done.progress, &quality);
-    if (worth_of(second, done.report.links) > worth_of(done.best, links)) {
-        done.best = second;
-        done.report.quality = quality;
-        done.report.looks = 2;
-        return;
+    try {
+        draw_points(o, project, pictures, &done.best, done);
+        const Fitted second = fit(done.input, done.report.reference, done.item, done.progress, &quality);
+        if (explains_more(second, done.report.links, done.best, links)) {
+            done.best = second;
+            done.report.quality = quality;
+            done.report.looks = 2;
+            return;
+        }
+    } catch (const Failure &failure) {
+        if (failure.code == ExitCode::interrupted) throw;  // else the first look stands
     }
     done.input.pairs = pairs, done.input.observations = observations, done.report.links = links;
     done.input.options.links = done.report.links.data();

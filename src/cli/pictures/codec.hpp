@@ -68,7 +68,8 @@ protected:
 
 std::unique_ptr<RowSink> create_png(const std::string &path, const Picture &header);
 std::unique_ptr<RowSink> create_tiff(const std::string &path, const Picture &header);
-std::unique_ptr<RowSink> create_exr(const std::string &path, const Picture &header);
+// `xmp`: a packet that stands in the attribute "xmp"; or empty.
+std::unique_ptr<RowSink> create_exr(const std::string &path, const Picture &header, const std::string &xmp);
 std::unique_ptr<RowSink> create_jpeg(const std::string &path, const Picture &header, int quality);
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE *)>;

@@ -5,12 +5,14 @@ namespace lensprof {
 
 namespace codec {
 
-std::unique_ptr<RowSink> create_exr(const std::string &path, const Picture &) {
+std::unique_ptr<RowSink> create_exr(const std::string &path, const Picture &, const std::string &) {
     fail_to_hold(path, "this lensprof was built without OpenEXR; give a name in .tif");
 }
 
 }  // namespace codec
 
 bool can_write_exr() { return false; }
+
+std::string exr_xmp_of(const std::string &) { return {}; }
 
 }  // namespace lensprof

@@ -478,4 +478,19 @@ bool write_metadata(const std::string &path, const PictureMetadata &metadata) {
     return true;
 }
 
+std::string packet_of_mark(const CorrectionMark &mark) {
+    prepare_exiv2();
+    Exiv2::XmpData xmp;
+    set_correction_mark(mark, xmp);
+    std::string packet;
+    return Exiv2::XmpParser::encode(packet, xmp, Exiv2::XmpParser::useCompactFormat) == 0 ? packet : std::string();
+}
+
+std::optional<CorrectionMark> mark_of_packet(const std::string &packet) {
+    prepare_exiv2();
+    Exiv2::XmpData xmp;
+    if (Exiv2::XmpParser::decode(xmp, packet) != 0) return std::nullopt;
+    return correction_mark_of(xmp);
+}
+
 }  // namespace lensprof

@@ -74,4 +74,8 @@ bool copy_metadata(const std::string &source, const std::string &target, const C
 // nothing could be done because the file is a BigTIFF. Throws Failure.
 bool write_metadata(const std::string &path, const PictureMetadata &metadata);
 
+// A mark as an XMP packet by itself, for files that Exiv2 does not know, and back.
+std::string packet_of_mark(const CorrectionMark &mark);
+std::optional<CorrectionMark> mark_of_packet(const std::string &packet);
+
 }  // namespace lensprof

@@ -55,12 +55,13 @@ std::unique_ptr<codec::RowSource> open_source(const codec::ReadRequest &request)
 }
 
 std::unique_ptr<codec::RowSink> create_sink(const std::string &file, FileFormat format, const Picture &header,
-                                            int jpeg_quality) {
+                                            const WriteOptions &options) {
     switch (format) {
     case FileFormat::png: return codec::create_png(file, header);
     case FileFormat::tiff: return codec::create_tiff(file, header);
-    case FileFormat::exr: return codec::create_exr(file, header);
-    default: return codec::create_jpeg(file, header, jpeg_quality);
+    case FileFormat::exr:
+        return codec::create_exr(file, header, options.mark ? packet_of_mark(*options.mark) : std::string());
+    default: return codec::create_jpeg(file, header, options.jpeg_quality);
     }
 }
 
@@ -160,7 +161,8 @@ FileFormat format_of_name(const std::string &path) {
         throw Failure(ExitCode::usage, path + ": this lensprof was built without OpenEXR; install libopenexr-dev and "
                                               "build it again, or give a name in .tif");
     if (format) return *format;
-    throw Failure(ExitCode::usage, path + ": unknown kind of picture; the name must end in .png, .tif or .jpg");
+    throw Failure(ExitCode::usage, path + ": unknown kind of picture; the name must end in .png, .tif, .jpg or, for "
+                                                "light, .exr");
 }
 
 // The user knows the wanted name, not the temporary one.
@@ -180,7 +182,7 @@ PictureWriter::PictureWriter(const std::string &path, const Picture &header, con
     : path_(path), options_(options) {
     const FileFormat format = format_of_name(path);
     output_ = std::make_unique<OutputFile>(path);
-    sink_ = named([&] { return create_sink(output_->temporary(), format, header, options.jpeg_quality); });
+    sink_ = named([&] { return create_sink(output_->temporary(), format, header, options); });
 }
 
 PictureWriter::~PictureWriter() = default;

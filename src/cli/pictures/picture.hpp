@@ -151,6 +151,9 @@ private:
 // Whether the program was built with OpenEXR.
 bool can_write_exr();
 
+// The XMP packet in an OpenEXR file that this program wrote; empty for any other file.
+std::string exr_xmp_of(const std::string &path);
+
 // The format that a file name asks for: .png, .tif, .tiff, .jpg, .jpeg, .exr in any case; otherwise, and for .exr where
 // that cannot be written, Failure (usage).
 FileFormat format_of_name(const std::string &path);

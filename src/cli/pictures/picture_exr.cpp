@@ -5,7 +5,10 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTestFile.h>
 
 #include "cli/pictures/codec.hpp"
 #include "cli/program/error.hpp"
@@ -28,17 +31,21 @@ Names channel_names(uint32_t layout) {
     }
 }
 
-Imf::Header header_of(const Picture &picture, const Names &names) {
+constexpr const char *xmp_attribute = "xmp";
+
+Imf::Header header_of(const Picture &picture, const Names &names, const std::string &xmp) {
     Imf::Header header(static_cast<int>(picture.width), static_cast<int>(picture.height));
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const char *name : names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    if (!xmp.empty()) header.insert(xmp_attribute, Imf::StringAttribute(xmp));
     return header;
 }
 
 class ExrSink final : public RowSink {
 public:
-    ExrSink(const std::string &path, const Picture &header) : path_(path), names_(channel_names(header.layout)) {
-        run([&] { file_ = std::make_unique<Imf::OutputFile>(path.c_str(), header_of(header, names_)); });
+    ExrSink(const std::string &path, const Picture &header, const std::string &xmp)
+        : path_(path), names_(channel_names(header.layout)), width_(header.width) {
+        run([&] { file_ = std::make_unique<Imf::OutputFile>(path.c_str(), header_of(header, names_, xmp)); });
     }
 
     // The library addresses a pixel by its place in the whole picture: the row is at its own y, and no other is asked
@@ -46,6 +53,8 @@ public:
     void write(const uint8_t *row) override {
         Imf::FrameBuffer rows;
         const size_t pixel = names_.size() * sizeof(float);
+        const bool has_alpha = names_.size() % 2 == 0;
+        if (has_alpha) row = premultiplied(row);
         for (size_t c = 0; c < names_.size(); c++) {
             char *first = const_cast<char *>(reinterpret_cast<const char *>(row)) + c * sizeof(float);
             rows.insert(names_[c], Imf::Slice(Imf::FLOAT, first, pixel, 0));
@@ -63,6 +72,16 @@ public:
     }
 
 private:
+    // Colour times alpha, which is what OpenEXR files hold.
+    const uint8_t *premultiplied(const uint8_t *row) {
+        const auto *values = reinterpret_cast<const float *>(row);
+        const size_t samples = names_.size();
+        row_.assign(values, values + width_ * samples);
+        for (size_t n = 0; n < row_.size(); n++)
+            if (n % samples != samples - 1) row_[n] *= row_[n - n % samples + samples - 1];
+        return reinterpret_cast<const uint8_t *>(row_.data());
+    }
+
     template <class Body>
     void run(const Body &body) {
         try {
@@ -76,19 +95,32 @@ private:
 
     std::string path_;
     Names names_;
+    const size_t width_;
+    std::vector<float> row_;
     std::unique_ptr<Imf::OutputFile> file_;
 };
 
 }  // namespace
 
-std::unique_ptr<RowSink> create_exr(const std::string &path, const Picture &header) {
+std::unique_ptr<RowSink> create_exr(const std::string &path, const Picture &header, const std::string &xmp) {
     if (header.sample != LENSPROF_SAMPLE_F32)
         fail_to_hold(path, "OpenEXR is written for light, 32 bit float, alone; give a name in .tif or .png");
-    return std::make_unique<ExrSink>(path, header);
+    return std::make_unique<ExrSink>(path, header, xmp);
 }
 
 }  // namespace codec
 
 bool can_write_exr() { return true; }
+
+std::string exr_xmp_of(const std::string &path) {
+    try {
+        if (!Imf::isOpenExrFile(path.c_str())) return {};
+        const Imf::InputFile file(path.c_str());
+        const auto *xmp = file.header().findTypedAttribute<Imf::StringAttribute>(codec::xmp_attribute);
+        return xmp ? xmp->value() : std::string();
+    } catch (const std::exception &) {
+        return {};  // no such file, or a damaged one: without a mark
+    }
+}
 
 }  // namespace lensprof

@@ -44,6 +44,10 @@ void declare(Command &command, Options &o) {
 void check_options(const Options &o) {
     check_store_options(o.store);
     if (!o.jpegs.empty()) demand_count(o.jpegs.size(), "--jpeg", o.files.size(), "raw file");
+    for (size_t i = 0; i < o.files.size(); i++)
+        for (size_t k = 0; k < i; k++)
+            if (is_same_file(o.files[i], o.files[k]))
+                throw Failure(ExitCode::usage, o.files[i] + ": is given twice; give it once");
     if (o.files.size() > most_files)
         throw Failure(ExitCode::usage, format("%zu files are too many at once (%zu at most), and a few tell as much; "
                                               "name fewer",
@@ -65,6 +69,9 @@ Picture read_jpeg(const std::string &file) {
     if (picture.traits.format != FileFormat::jpeg)
         throw Failure(ExitCode::usage, file + ": is no JPEG, and the response of the camera is in its own JPEGs; give "
                                               "that of the same shot with --jpeg");
+    if (read_metadata(file).mark)
+        throw Failure(ExitCode::usage, file + ": was made by lensprof, and the response of the camera is in its own "
+                                              "JPEGs; give the original");
     return picture;
 }
 
