@@ -13,6 +13,7 @@
 #include "cli/fitting/project.hpp"
 #include "cli/fitting/static_camera.hpp"
 #include "cli/pictures/clipping.hpp"
+#include "cli/pictures/coded_kind.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
@@ -153,6 +154,7 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
     std::vector<Correction> jobs;
     for (uint32_t i : frames) {
         std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
+        if (is_read_alone(project.files[i])) name.replace_extension(".tif");
         jobs.push_back({project.files[i],
                         (std::filesystem::path(o.output) / name).string(),
                         nullptr,

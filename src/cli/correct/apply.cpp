@@ -11,6 +11,7 @@
 #include "cli/correct/correction.hpp"
 #include "cli/correct/picture_model.hpp"
 #include "cli/correct/project_model.hpp"
+#include "cli/pictures/coded_kind.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/profiles/foreign_file.hpp"
@@ -130,7 +131,7 @@ std::string target_name(const Options &o, const NamedPicture &picture) {
     const auto raw = raw_kind(picture.file);
     if (o.kind.linear)
         name.replace_extension(o.linear_end);
-    else if (raw && !becomes_dng(o, *raw))
+    else if ((raw && !becomes_dng(o, *raw)) || (!raw && is_read_alone(picture.file)))
         name.replace_extension(".tif");
     if (raw && becomes_dng(o, *raw)) name.replace_extension(".dng");
     return (std::filesystem::path(o.output) / picture.subfolder / name).string();
