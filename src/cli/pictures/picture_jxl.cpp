@@ -7,6 +7,7 @@
 #include <jxl/decode.h>
 
 #include "cli/pictures/coded_file.hpp"
+#include "cli/pictures/picture_excerpt.hpp"
 #include "cli/program/interrupt.hpp"
 
 namespace lensprof {
@@ -19,6 +20,26 @@ constexpr size_t part_bytes = size_t(1) << 18;
 constexpr uint64_t working_max_bytes = uint64_t(2) << 30;  // libjxl decodes to floats, whatever it delivers
 constexpr size_t box_max_bytes = size_t(64) << 20;         // of EXIF or XMP, which may be compressed
 constexpr size_t box_first_bytes = size_t(64) << 10;
+
+uint64_t big_endian(const uint8_t *bytes, size_t count) {
+    uint64_t value = 0;
+    for (size_t i = 0; i < count; ++i) value = value << 8 | bytes[i];
+    return value;
+}
+
+// Whether a container has what restores a JPEG file (ISO/IEC 18181-2, box jbrd), which may follow the picture's header.
+bool has_jpeg(std::FILE *file) {
+    std::vector<uint8_t> head;
+    if (!read_at(file, 0, 4, head) || big_endian(head.data(), 4) != 12) return false;
+    for (uint64_t at = 12; read_at(file, at, 16, head);) {
+        if (std::memcmp(&head[4], "jbrd", 4) == 0) return true;
+        uint64_t size = big_endian(head.data(), 4);
+        if (size == 1) size = big_endian(&head[8], 8);
+        if (size < 8 || size > UINT64_MAX / 4 - at) return false;  // 0: up to the end
+        at += size;
+    }
+    return false;
+}
 
 class JxlFile {
 public:
@@ -69,6 +90,8 @@ private:
 JxlFile::JxlFile(const std::string &path, int events) : path_(path), file_(open_for_reading(path)) {
     decoder_.reset(JxlDecoderCreate(nullptr));
     if (!decoder_) throw std::bad_alloc();
+    keeps_jpeg_ = has_jpeg(file_.get());
+    std::rewind(file_.get());
     check(JxlDecoderSubscribeEvents(decoder(), events | JXL_DEC_BASIC_INFO | JXL_DEC_COLOR_ENCODING | JXL_DEC_BOX));
     check(JxlDecoderSetKeepOrientation(decoder(), JXL_TRUE));
     JxlDecoderSetDecompressBoxes(decoder(), JXL_TRUE);  // fails where libjxl is built without Brotli
@@ -112,7 +135,6 @@ JxlDecoderStatus JxlFile::next() {
 void JxlFile::note_box() {
     JxlBoxType type = {};
     check(JxlDecoderGetBoxType(decoder(), type, JXL_TRUE));
-    if (is_box("jbrd", type)) keeps_jpeg_ = true;
     if (exif_ && exif_->empty() && is_box("Exif", type)) open_box(*exif_);
     if (xmp_ && xmp_->empty() && is_box("xml ", type)) open_box(*xmp_);
 }
