@@ -19,6 +19,10 @@
 
 #include "picture_files.hpp"
 
+// x265 keeps some memory.
+extern "C" const char *__lsan_default_suppressions();
+extern "C" const char *__lsan_default_suppressions() { return "leak:libx265\nleak:libfontconfig"; }
+
 namespace coded_files {
 
 using namespace picture_files;
@@ -47,9 +51,10 @@ inline Bytes make_exif(uint16_t orientation) {
 }
 
 inline Bytes make_xmp() {
-    const std::string text = "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF "
-                             "xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description rdf:about=\"\" "
-                             "xmlns:xmp=\"http://ns.adobe.com/xap/1.0/\" xmp:Rating=\"4\"/></rdf:RDF></x:xmpmeta>";
+    const std::string text =
+        "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF "
+        "xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description rdf:about=\"\" "
+        "xmlns:xmp=\"http://ns.adobe.com/xap/1.0/\" xmp:Rating=\"4\"/></rdf:RDF></x:xmpmeta>";
     return {text.begin(), text.end()};
 }
 
@@ -145,17 +150,20 @@ inline bool can_write_heif(heif_compression_format format) {
 inline heif_image *heif_pixels(const Picture &picture, int bits) {
     const int width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
     const bool is_grey = picture.layout == LENSPROF_LAYOUT_GREY, has_alpha = picture.layout == LENSPROF_LAYOUT_RGBA;
-    const heif_chroma chroma = is_grey    ? heif_chroma_monochrome
-                               : bits > 8 ? (has_alpha ? heif_chroma_interleaved_RRGGBBAA_LE : heif_chroma_interleaved_RRGGBB_LE)
-                                          : (has_alpha ? heif_chroma_interleaved_RGBA : heif_chroma_interleaved_RGB);
+    const heif_chroma chroma =
+        is_grey    ? heif_chroma_monochrome
+        : bits > 8 ? (has_alpha ? heif_chroma_interleaved_RRGGBBAA_LE : heif_chroma_interleaved_RRGGBB_LE)
+                   : (has_alpha ? heif_chroma_interleaved_RGBA : heif_chroma_interleaved_RGB);
     heif_image *image = nullptr;
-    assert_heif(heif_image_create(width, height, is_grey ? heif_colorspace_monochrome : heif_colorspace_RGB, chroma, &image));
+    assert_heif(
+        heif_image_create(width, height, is_grey ? heif_colorspace_monochrome : heif_colorspace_RGB, chroma, &image));
     const heif_channel channel = is_grey ? heif_channel_Y : heif_channel_interleaved;
     assert_heif(heif_image_add_plane(image, channel, width, height, bits));
     int stride = 0;
     uint8_t *plane = heif_image_get_plane(image, channel, &stride);
     for (uint32_t y = 0; y < picture.height; ++y)
-        std::memcpy(plane + size_t(y) * size_t(stride), picture.pixels.data() + y * picture.row_bytes, picture.row_bytes);
+        std::memcpy(plane + size_t(y) * size_t(stride), picture.pixels.data() + y * picture.row_bytes,
+                    picture.row_bytes);
     return image;
 }
 
@@ -165,8 +173,7 @@ inline void add_heif(heif_context *context, heif_encoder *encoder, const Picture
     heif_image *image = heif_pixels(picture, bits);
     heif_color_profile_nclx *nclx = heif_nclx_color_profile_alloc();
     nclx->color_primaries = heif_color_primaries_ITU_R_BT_709_5;
-    nclx->transfer_characteristics =
-        static_cast<heif_transfer_characteristics>(extras.transfer ? extras.transfer : 13);
+    nclx->transfer_characteristics = static_cast<heif_transfer_characteristics>(extras.transfer ? extras.transfer : 13);
     nclx->matrix_coefficients = picture.layout == LENSPROF_LAYOUT_GREY ? heif_matrix_coefficients_ITU_R_BT_601_6
                                                                        : heif_matrix_coefficients_RGB_GBR;
     nclx->full_range_flag = 1;

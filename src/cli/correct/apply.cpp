@@ -296,6 +296,7 @@ Work plan_work(const Options &o, Streams &streams) {
         }
     }
     if (!refused.empty()) fail_refused(refused, pictures.size(), streams);
+    if (!o.sheet.empty()) format_of_name(o.sheet);  // for its errors, before anything is written
     check_targets(work.jobs, inputs, o.sheet);
     check_older_outputs(work.jobs, o.kind, o.has_output);
     if (source.model) {

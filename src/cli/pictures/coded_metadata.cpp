@@ -9,10 +9,8 @@ namespace lensprof {
 namespace {
 
 #if EXIV2_TEST_VERSION(0, 28, 0)
-using IoPointer = Exiv2::BasicIo::UniquePtr;
 constexpr auto no_type = Exiv2::ImageType::none;
 #else
-using IoPointer = Exiv2::BasicIo::AutoPtr;
 constexpr int no_type = Exiv2::ImageType::none;
 #endif
 
@@ -33,7 +31,8 @@ codec::CodedMetadata read_blocks(const std::string &path, const CodedKind &kind)
 class CodedImage final : public Exiv2::Image {
 public:
     CodedImage(const CodedKind &kind, const codec::CodedMetadata &blocks)
-        : Exiv2::Image(no_type, Exiv2::mdExif | Exiv2::mdXmp | Exiv2::mdIccProfile, IoPointer(new Exiv2::MemIo)),
+        : Exiv2::Image(no_type, Exiv2::mdExif | Exiv2::mdXmp | Exiv2::mdIccProfile,
+                       Exiv2::ImageFactory::createIo("a picture that Exiv2 does not open", false)),
           mime_type_(mime_type_of(kind)),
           is_of_camera_(kind.format == FileFormat::heif ? mime_type_ == "image/heic" : blocks.is_camera_jpeg) {
         // 0.28 of Exiv2 has unsigned sizes

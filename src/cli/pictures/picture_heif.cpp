@@ -1,6 +1,7 @@
 // HEIC and AVIF through libheif: the primary picture, put together of its tiles.
 #include <algorithm>
 #include <cstring>
+#include <exception>
 #include <mutex>
 #include <new>
 
@@ -27,6 +28,20 @@ void release_image(const heif_image *image) { heif_image_release(image); }
 class HeifErrors {
 public:
     HeifErrors(const std::string &path, const std::string &kind) : path_(path), kind_(kind) {}
+
+    // libheif is written in C++, and what its parts throw may come through.
+    template <class Call>
+    void run(const Call &call) const {
+        heif_error error = {};
+        try {
+            error = call();
+        } catch (const std::bad_alloc &) {
+            throw;
+        } catch (const std::exception &thrown) {
+            fail_damaged(path_, kind_ + ": " + thrown.what());
+        }
+        check(error);
+    }
 
     void check(const heif_error &error) const {
         if (error.code == heif_error_Ok) return;
@@ -67,7 +82,7 @@ public:
         context_.reset(heif_context_alloc());
         if (!context_) throw std::bad_alloc();
         heif_context_set_max_decoding_threads(context_.get(), 0);  // several pictures at once are enough
-        errors_.check(heif_context_read_from_file(context_.get(), path.c_str(), nullptr));
+        errors_.run([&] { return heif_context_read_from_file(context_.get(), path.c_str(), nullptr); });
         heif_image_handle *handle = nullptr;
         errors_.check(heif_context_get_primary_image_handle(context_.get(), &handle));
         handle_.reset(handle);
@@ -144,7 +159,7 @@ Owned<const heif_image> HeifFile::decode(heif_chroma chroma) {
     if (!options) throw std::bad_alloc();
     if (options->version >= 3) options->strict_decoding = 1;
     heif_image *image = nullptr;
-    errors_.check(heif_decode_image(handle(), &image, heif_colorspace_RGB, chroma, options.get()));
+    errors_.run([&] { return heif_decode_image(handle(), &image, heif_colorspace_RGB, chroma, options.get()); });
     Owned<const heif_image> decoded(image, release_image);
     heif_color_profile_nclx *nclx = nullptr;  // that of the coded picture, where the file has none of its own
     if (heif_image_get_nclx_color_profile(image, &nclx).code == heif_error_Ok) take_transfer(nclx);

@@ -75,6 +75,7 @@ private:
     void note_box();
     void open_box(std::vector<uint8_t> &box);
     void close_box();
+    JxlDecoderStatus end_boxes();
     void refuse_odd_kinds() const;
 
     std::string path_;
@@ -108,7 +109,6 @@ void JxlFile::take_more() {
     part_.resize(rest + got);
     is_at_end_ = got < part_bytes;
     check(JxlDecoderSetInput(decoder(), part_.data(), part_.size()));
-    if (is_at_end_) JxlDecoderCloseInput(decoder());
 }
 
 JxlDecoderStatus JxlFile::next() {
@@ -117,7 +117,10 @@ JxlDecoderStatus JxlFile::next() {
         if (box_ && (status == JXL_DEC_BOX || status == JXL_DEC_SUCCESS)) close_box();
         switch (status) {
         case JXL_DEC_ERROR: fail("libjxl cannot decode it");
-        case JXL_DEC_NEED_MORE_INPUT: take_more(); break;
+        case JXL_DEC_NEED_MORE_INPUT:
+            if (is_at_end_ && exif_ && info_.xsize > 0) return end_boxes();
+            take_more();
+            break;
         case JXL_DEC_BOX: note_box(); break;
         case JXL_DEC_BOX_NEED_MORE_OUTPUT: {
             std::vector<uint8_t> &box = *box_;
@@ -148,6 +151,12 @@ void JxlFile::open_box(std::vector<uint8_t> &box) {
 void JxlFile::close_box() {
     box_->resize(box_->size() - JxlDecoderReleaseBoxBuffer(decoder()));
     box_ = nullptr;
+}
+
+// The last box may have no size. Whether the picture before it is complete shows when it is decoded.
+JxlDecoderStatus JxlFile::end_boxes() {
+    if (box_) close_box();
+    return JXL_DEC_SUCCESS;
 }
 
 void JxlFile::read_boxes(std::vector<uint8_t> &exif, std::vector<uint8_t> &xmp) {
