@@ -4,20 +4,22 @@
 
 #include "cli/pictures/coded_kind.hpp"
 
+#include "heif_grid.hpp"
+
 using namespace coded_files;
 
 namespace {
 
-void needs(bool is_there, const char *what) {
+[[maybe_unused]] void needs(bool is_there, const char *what) {
     if (is_there) return;
     print_message("without %s\n", what);
     skip();
 }
 
 // A colour profile that encoders look into: what libpng-made files of this program have.
-Bytes some_profile() { return make_profile(false, 300); }
+[[maybe_unused]] Bytes some_profile() { return make_profile(false, 300); }
 
-void assert_reads(const std::string &path, const Picture &expected, FileFormat format) {
+[[maybe_unused]] void assert_reads(const std::string &path, const Picture &expected, FileFormat format) {
     const Picture got = read_picture(path);
     assert_int_equal(got.traits.format, format);
     assert_same_pixels(got, expected);
@@ -31,7 +33,7 @@ void assert_reads(const std::string &path, const Picture &expected, FileFormat f
     assert_int_equal(small.pixels.size(), small.row_bytes * small.height);
 }
 
-void assert_metadata(const std::string &path, uint16_t orientation) {
+[[maybe_unused]] void assert_metadata(const std::string &path, uint16_t orientation) {
     const PictureMetadata metadata = read_metadata(path);
     assert_string_equal(metadata.key.camera_maker, "Example Works");
     assert_string_equal(metadata.key.camera_model, "Example One");
@@ -46,7 +48,7 @@ void assert_metadata(const std::string &path, uint16_t orientation) {
 }
 
 // Both go to a TIFF: pixels by the writer, EXIF by a copy.
-void assert_copied(const std::string &path, uint16_t orientation, const Bytes &icc) {
+[[maybe_unused]] void assert_copied(const std::string &path, uint16_t orientation, const Bytes &icc) {
     const Picture picture = read_picture(path);
     WriteOptions options;
     options.metadata_from = path;
@@ -216,6 +218,32 @@ void test_heif_primary(void **) {
     });
 }
 
+// Two tiles below each other and three side by side, the last ones cut off, turned as a phone held upright does.
+void test_heif_grid(void **) {
+    needs(can_write_heif(heif_compression_HEVC), "an encoder of HEIC in libheif");
+    constexpr uint32_t tile = 64, width = 170, height = 100;
+    const Picture picture = make_noise(3 * tile, 2 * tile, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
+    std::vector<Bytes> tiles;
+    for (uint32_t i = 0; i < 6; ++i) {
+        Picture part = make_noise(tile, tile, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
+        for (uint32_t y = 0; y < tile; ++y)
+            std::memcpy(part.pixels.data() + y * part.row_bytes,
+                        picture.pixels.data() + (i / 3 * tile + y) * picture.row_bytes + i % 3 * tile * 3,
+                        part.row_bytes);
+        write_heif(in_folder("tile.heic"), heif_compression_HEVC, part, 8);
+        tiles.push_back(load(in_folder("tile.heic")));
+    }
+    Picture shown = make_noise(width, height, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
+    for (uint32_t y = 0; y < height; ++y)
+        std::memcpy(shown.pixels.data() + y * shown.row_bytes, picture.pixels.data() + y * picture.row_bytes,
+                    shown.row_bytes);
+    for (const unsigned quarters : {0u, 3u}) {
+        save(in_folder("a.heic"), heif_grid::bytes_of(tiles, {3, 2, tile, width, height, quarters}));
+        assert_reads(in_folder("a.heic"), shown, FileFormat::heif);
+        assert_int_equal(read_metadata(in_folder("a.heic")).orientation, quarters ? 6 : 1);
+    }
+}
+
 void test_heif_transfer(void **) {
     const Picture picture = make_noise(84, 62, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGB);
     for_each_coding([&](heif_compression_format coding, const std::string &path) {
@@ -336,6 +364,7 @@ int main() {
         cmocka_unit_test_setup(test_heif_orientation, empty_folder),
         cmocka_unit_test_setup(test_heif_primary, empty_folder),
         cmocka_unit_test_setup(test_heif_transfer, empty_folder),
+        cmocka_unit_test_setup(test_heif_grid, empty_folder),
 #endif
 #ifdef LENSPROF_HAS_JXL
         cmocka_unit_test_setup(test_jxl_values, empty_folder),
