@@ -37,7 +37,7 @@ void test_curves(void **) {
         {function_curve(1, {1.0, 2.0, -0.5}), ToneCurve::other},
         {function_curve(2, {1.0, 1.0, 0.0, 0.0}), ToneCurve::linear},
         {function_curve(2, {1.0, 0.9, 0.0, 0.1}), ToneCurve::other},
-        {function_curve(3, {1.0, 1.0, 0.0, 1.0, 0.0}), ToneCurve::linear},  // as libjxl writes it
+        {function_curve(3, {1.0, 1.0, 0.0, 1.0, 0.0}), ToneCurve::linear},            // as libjxl writes it
         {function_curve(4, {2.4, 1.0, 0.0, 1.0, 1.5, 0.0, 0.0}), ToneCurve::linear},  // the straight part alone
         {function_curve(4, {1.0, 1.0, 0.0, 1.0, 0.0, 0.1, 0.0}), ToneCurve::other},
         {function_curve(5, {1.0}), ToneCurve::unknown},
