@@ -90,7 +90,8 @@ void mind_jpeg(const FlatCommand &o, FlatInput &input, Streams &streams) {
         const bool is_jpeg = input.pictures[i].traits.format == FileFormat::jpeg;
         warn(
             streams,
-            o.files[i] + (is_jpeg ? ": JPEG" : ": its lossy compression") + " rounds grey values and colours over blocks of pixels, so that the falloff may be farther off "
+            o.files[i] + (is_jpeg ? ": JPEG" : ": its lossy compression") + " rounds grey values and colours over blocks of pixels, so that "
+               "the falloff may be farther off "
                "than stated (by half a level of the card's grey); RAW, or TIFF or PNG of 16 bit, is better");
         return;
     }

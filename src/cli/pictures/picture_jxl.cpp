@@ -19,6 +19,7 @@ namespace {
 constexpr size_t part_bytes = size_t(1) << 18;
 constexpr uint64_t working_max_bytes = uint64_t(2) << 30;  // libjxl decodes to floats, whatever it delivers
 constexpr size_t box_max_bytes = size_t(64) << 20;         // of EXIF or XMP, which may be compressed
+constexpr int most_boxes = 1000;                           // that are looked through for a JPEG
 constexpr size_t box_first_bytes = size_t(64) << 10;
 
 uint64_t big_endian(const uint8_t *bytes, size_t count) {
@@ -31,7 +32,8 @@ uint64_t big_endian(const uint8_t *bytes, size_t count) {
 bool has_jpeg(std::FILE *file) {
     std::vector<uint8_t> head;
     if (!read_at(file, 0, 4, head) || big_endian(head.data(), 4) != 12) return false;
-    for (uint64_t at = 12; read_at(file, at, 16, head);) {
+    uint64_t at = 12;
+    for (int boxes = 0; boxes < most_boxes && read_at(file, at, 16, head); ++boxes) {
         if (std::memcmp(&head[4], "jbrd", 4) == 0) return true;
         uint64_t size = big_endian(head.data(), 4);
         if (size == 1) size = big_endian(&head[8], 8);
