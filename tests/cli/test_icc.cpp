@@ -33,6 +33,14 @@ void test_curves(void **) {
         {samples_curve(ramp(1.8)), ToneCurve::other},
         {function_curve(0, {1.0}), ToneCurve::linear},
         {function_curve(0, {2.4}), ToneCurve::other},
+        {function_curve(1, {1.0, 1.0, 0.0}), ToneCurve::linear},
+        {function_curve(1, {1.0, 2.0, -0.5}), ToneCurve::other},
+        {function_curve(2, {1.0, 1.0, 0.0, 0.0}), ToneCurve::linear},
+        {function_curve(2, {1.0, 0.9, 0.0, 0.1}), ToneCurve::other},
+        {function_curve(3, {1.0, 1.0, 0.0, 1.0, 0.0}), ToneCurve::linear},            // as libjxl writes it
+        {function_curve(4, {2.4, 1.0, 0.0, 1.0, 1.5, 0.0, 0.0}), ToneCurve::linear},  // the straight part alone
+        {function_curve(4, {1.0, 1.0, 0.0, 1.0, 0.0, 0.1, 0.0}), ToneCurve::other},
+        {function_curve(5, {1.0}), ToneCurve::unknown},
         {function_curve(3, {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045}), ToneCurve::other},  // sRGB
     };
     for (const auto &one : cases) assert_int_equal(int(told(profile_of(one.curve))), int(one.wanted));

@@ -130,6 +130,67 @@ void test_padded_bombs(void **) {
     }
 }
 
+// Bits, the lowest of each byte first.
+struct LowBits {
+    Bytes bytes;
+    unsigned used = 0;
+
+    void put(uint64_t value, unsigned count) {
+        for (unsigned i = 0; i < count; ++i, ++used) {
+            if (used % 8 == 0) bytes.push_back(0);
+            bytes.back() = static_cast<uint8_t>(bytes.back() | (value >> i & 1) << used % 8);
+        }
+    }
+};
+
+// A lossless WebP of 14 bits each side, whose picture is junk.
+Bytes make_webp_bomb(uint32_t side, size_t data) {
+    LowBits picture;
+    picture.put(0x2f, 8);
+    picture.put(side - 1, 14);
+    picture.put(side - 1, 14);
+    picture.put(0, 4);  // no alpha, version 0
+    picture.bytes.resize(picture.bytes.size() + data, 0x55);
+    Bytes bytes = {'R', 'I', 'F', 'F'};
+    put_little_endian(bytes, static_cast<uint32_t>(12 + picture.bytes.size()), 4);
+    for (const char c : {'W', 'E', 'B', 'P', 'V', 'P', '8', 'L'}) bytes.push_back(static_cast<uint8_t>(c));
+    put_little_endian(bytes, static_cast<uint32_t>(picture.bytes.size()), 4);
+    bytes.insert(bytes.end(), picture.bytes.begin(), picture.bytes.end());
+    return bytes;
+}
+
+void test_webp_bombs(void **) {
+    if (!can_read_webp() || claims_cost_memory) skip();
+    assert_harmless("a.webp", make_webp_bomb(16383, 0), "");
+    assert_harmless("a.webp", make_webp_bomb(16383, 4 << 20), "");
+}
+
+// A JPEG XL codestream: sizes of 30 bits, all else as usual, and junk (ISO/IEC 18181-1, annex D).
+Bytes make_jxl_bomb(uint32_t side, size_t data) {
+    LowBits bits;
+    bits.put(0x0aff, 16);
+    bits.put(0, 1);  // no multiple of 8
+    bits.put(3, 2);
+    bits.put(side - 1, 30);
+    bits.put(0, 3);  // no ratio
+    bits.put(3, 2);
+    bits.put(side - 1, 30);
+    bits.put(3, 2);  // metadata as usual: 8 bit, sRGB; no weights of its own
+    bits.bytes.resize(bits.bytes.size() + data, 0x55);
+    return bits.bytes;
+}
+
+void test_jxl_bombs(void **) {
+    if (!can_read_jxl() || claims_cost_memory) skip();
+    assert_harmless("a.jxl", make_jxl_bomb(13000, 100), "");
+    assert_harmless("a.jxl", make_jxl_bomb(13000, 1 << 20), "");
+    for (const uint32_t side : {16000u, 1000000u}) {
+        save(work("a.jxl"), make_jxl_bomb(side, 100));
+        const std::string size = std::to_string(side) + " x " + std::to_string(side) + " pixels are too many";
+        assert_refused(unreadable, corrected_into("out", {work("a.jxl")}), {"a.jxl: cannot read: " + size});
+    }
+}
+
 void test_tiff_bombs(void **) {
     for (uint16_t compression :
          {COMPRESSION_NONE, COMPRESSION_PACKBITS, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PIXARLOG,
@@ -324,7 +385,8 @@ int main() {
         CLI_TEST(test_tiff_bombs),     CLI_TEST(test_tiff_bombs_without_ratio),
         CLI_TEST(test_tiff_of_no_use), CLI_TEST(test_constant_png),
         CLI_TEST(test_constant_tiff),  CLI_TEST(test_shared_strips),
-        CLI_TEST(test_constant_jpeg),
+        CLI_TEST(test_constant_jpeg),  CLI_TEST(test_webp_bombs),
+        CLI_TEST(test_jxl_bombs),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

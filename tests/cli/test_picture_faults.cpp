@@ -197,7 +197,7 @@ void test_not_pictures(void **) {
     save(in_folder("raw.cr2"), {'I', 'I', '*', 0, 16, 0, 0, 0, 'C', 'R', 2, 0, 0, 0, 0, 0});
     const auto read = [](const char *name) { return [name] { read_picture(in_folder(name)); }; };
     assert_failure(ExitCode::unreadable, "empty.png: cannot read: file is truncated", read("empty.png"));
-    assert_failure(ExitCode::unreadable, "is not a PNG, TIFF or JPEG", read("text.jpg"));
+    assert_failure(ExitCode::unreadable, "is not a PNG, TIFF, JPEG, HEIC, AVIF, WebP or JPEG XL", read("text.jpg"));
     assert_failure(ExitCode::unreadable, "camera raw", read("raw.cr2"));
     assert_failure(ExitCode::unreadable, "no.png: cannot read: No such file", read("no.png"));
     assert_failure(ExitCode::unreadable, "is a folder", read("."));

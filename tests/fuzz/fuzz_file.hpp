@@ -7,6 +7,12 @@
 #include "cli/program/error.hpp"
 #include "fuzz_main.hpp"
 
+// What libheif and its decoders lose of damaged files.
+extern "C" const char *__lsan_default_suppressions();
+extern "C" const char *__lsan_default_suppressions() {
+    return "leak:libheif\nleak:libdav1d\nleak:libaom\nleak:libde265";
+}
+
 namespace {
 
 class MemoryFile {

@@ -1,5 +1,6 @@
-// Fuzzing PNG, TIFF and JPEG files. What must hold for any bytes: the header, the picture and the reduced picture are
-// read, or Failure says why not; where the picture is read, its header is, too, and promises the same sizes.
+// Fuzzing PNG, TIFF, JPEG, HEIC, AVIF, WebP and JPEG XL files. What must hold for any bytes: the header, the picture
+// and the reduced picture are read, or Failure says why not; where the picture is read, its header is, too, and
+// promises the same sizes.
 #include "cli/pictures/picture.hpp"
 #include "fuzz_file.hpp"
 
@@ -26,7 +27,12 @@ const std::vector<std::string> kWords = {std::string(4, '\0'),
                                          "\x01\x03",
                                          "\x01\x1C",
                                          "\x80",
-                                         "\x7F"};
+                                         "\x7F",
+                                         "irot",
+                                         "ispe",
+                                         "VP8X",
+                                         "ALPH",
+                                         "jxlp"};
 
 constexpr uint64_t kLargestFrame = 1 << 20;  // px; larger ones only take time
 

@@ -84,8 +84,8 @@ LAYERS = {
         C_LIBRARY
         | CPP_LIBRARY
         | POSIX
-        | {"CLI/*", "cairo-svg.h", "cairo.h", "exiv2/*", "jerror.h", "jpeglib.h", "OpenEXR/*", "libraw/*", "nlohmann/*", "png.h",
-           "tiffio.h"},
+        | {"CLI/*", "cairo-svg.h", "cairo.h", "exiv2/*", "jerror.h", "jpeglib.h", "jxl/*", "OpenEXR/*", "libheif/*",
+           "libraw/*", "nlohmann/*", "png.h", "tiffio.h", "webp/*"},
         ["threads"],
     ),
     "examples": Layer(WHOLE_API, C_LIBRARY),
@@ -105,7 +105,7 @@ ROOMS = {
 ROOM_HEADERS = {
     "src/cli/registration": {"Eigen/*", "opencv2/*"},
     "src/cli/response": {"Eigen/*"},
-    "src/cli/pictures": {"OpenEXR/*", "libraw/*"},
+    "src/cli/pictures": {"OpenEXR/*", "jxl/*", "libheif/*", "libraw/*", "webp/*"},
 }
 
 # What each public header may include, beside <stddef.h> and <stdint.h>: nothing above its own layer.

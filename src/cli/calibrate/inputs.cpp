@@ -6,6 +6,7 @@
 
 #include "cli/calibrate/attempt.hpp"
 #include "cli/fitting/photographs.hpp"
+#include "cli/pictures/coded_kind.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/pictures/picture.hpp"
 #include "cli/pictures/raw_kind.hpp"
@@ -85,7 +86,8 @@ std::string copy_name(const InputPicture &picture) {
     fs::path name = fs::path(picture.file).filename();
     if (picture.is_raw) return name.replace_extension(".tif").string();
     const FileFormat format = read_header(picture.file).traits.format;
-    if (is_picture_name(name.string()) && !is_raw_name(name.string()) && format_of_name(name.string()) == format)
+    if (is_picture_name(name.string()) && !is_raw_name(name.string()) && !coded_kind_of_name(name.string())
+        && format_of_name(name.string()) == format)
         return name.string();
     const char *end = format == FileFormat::png ? ".png" : format == FileFormat::jpeg ? ".jpg" : ".tif";
     return name.replace_extension(end).string();

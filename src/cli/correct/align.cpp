@@ -13,6 +13,7 @@
 #include "cli/fitting/project.hpp"
 #include "cli/fitting/static_camera.hpp"
 #include "cli/pictures/clipping.hpp"
+#include "cli/pictures/coded_kind.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/program/commands.hpp"
@@ -161,7 +162,7 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
     std::vector<Correction> jobs;
     for (uint32_t i : frames) {
         std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
-        if (raw_kind(project.files[i])) name.replace_extension(".tif");
+        if (raw_kind(project.files[i]) || is_read_alone(project.files[i])) name.replace_extension(".tif");
         jobs.push_back({project.files[i],
                         (std::filesystem::path(o.folder()) / name).string(),
                         nullptr,

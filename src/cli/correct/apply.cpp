@@ -11,6 +11,7 @@
 #include "cli/correct/correction.hpp"
 #include "cli/correct/picture_model.hpp"
 #include "cli/correct/project_model.hpp"
+#include "cli/pictures/coded_kind.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/profiles/foreign_file.hpp"
@@ -130,7 +131,7 @@ std::string target_name(const Options &o, const NamedPicture &picture) {
     const auto raw = raw_kind(picture.file);
     if (o.kind.linear)
         name.replace_extension(o.linear_end.empty() ? ".tif" : o.linear_end);
-    else if (raw && !becomes_dng(o, *raw))
+    else if ((raw && !becomes_dng(o, *raw)) || (!raw && is_read_alone(picture.file)))
         name.replace_extension(".tif");
     if (raw && becomes_dng(o, *raw)) name.replace_extension(".dng");
     return (std::filesystem::path(o.output) / picture.subfolder / name).string();
@@ -295,6 +296,7 @@ Work plan_work(const Options &o, Streams &streams) {
         }
     }
     if (!refused.empty()) fail_refused(refused, pictures.size(), streams);
+    if (!o.sheet.empty()) format_of_name(o.sheet);  // for its errors, before anything is written
     check_targets(work.jobs, inputs, o.sheet);
     check_older_outputs(work.jobs, o.kind, o.has_output);
     if (source.has_model) {

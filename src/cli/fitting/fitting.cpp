@@ -144,7 +144,7 @@ CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const P
     if (o.camera_kind) return {*o.camera_kind, KindFrom::option};
     key.processing = metadata.processing_before;
     const uint32_t kind = lensprof_camera_kind_of(&key);
-    const bool is_own = kind == LENSPROF_CAMERA_LINEAR || (kind != LENSPROF_CAMERA_ANY && metadata.is_jpeg);
+    const bool is_own = kind == LENSPROF_CAMERA_LINEAR || (kind != LENSPROF_CAMERA_ANY && metadata.is_of_camera);
     if (!is_own) return {};  // what is not the camera's JPEG was developed by something else
     return {kind, KindFrom::pictures};
 }

@@ -85,11 +85,13 @@ int on_progress(double done, void *progress) {
 // their own from that.
 void mind_jpeg(const FlatCommand &o, FlatInput &input, Streams &streams) {
     for (size_t i = 0; i < input.pictures.size(); i++) {
-        if (input.pictures[i].traits.format != FileFormat::jpeg) continue;
+        if (!input.pictures[i].traits.is_lossy) continue;
         if (o.falloff_curves == 0) input.options.vignettings = 1;
+        const bool is_jpeg = input.pictures[i].traits.format == FileFormat::jpeg;
         warn(
             streams,
-            o.files[i] + ": JPEG rounds grey values and colours over blocks of pixels, so that the falloff may be farther off "
+            o.files[i] + (is_jpeg ? ": JPEG" : ": its lossy compression") + " rounds grey values and colours over blocks of pixels, so that "
+               "the falloff may be farther off "
                "than stated (by half a level of the card's grey); RAW, or TIFF or PNG of 16 bit, is better");
         return;
     }

@@ -75,7 +75,7 @@ std::vector<lensprof_pair> sample_still(const Project &project, std::vector<Samp
     if (!options.pairs) options.pairs = pairs_a_picture * static_cast<uint32_t>(pictures.size());
     bool any_jpeg = false;
     for (SamplePicture &own : pictures) {
-        if (own.picture.traits.format != FileFormat::jpeg) continue;
+        if (!own.picture.traits.is_lossy || own.picture.sample != LENSPROF_SAMPLE_U8) continue;
         mask_ringing(own);
         any_jpeg = true;
     }

@@ -75,6 +75,14 @@ std::string maker_notes(const Exiv2::Image &image) {
     return {};
 }
 
+// Formats of finished pictures. A TIFF or PNG with the notes of a camera was developed.
+bool is_rendered(const Exiv2::Image &image) {
+    static const char *const types[] = {"image/jpeg", "image/heic", "image/heif",
+                                        "image/avif", "image/webp", "image/jxl"};
+    const std::string own = image.mimeType();
+    return std::any_of(std::begin(types), std::end(types), [&](const char *type) { return own == type; });
+}
+
 // Programs that make JPEGs of raw files without regard to the camera's switches, and copy its notes. Those of the
 // makers follow the switches.
 bool is_of_converter(const Exiv2::Image &image) {
@@ -126,7 +134,7 @@ std::string falloff_corrected_by(const Exiv2::Image &image, const lensprof_profi
     if (has_adobe_profile(image.xmpData())) return "by the raw converter (Adobe: lens profile)";
     const bool is_dng = exif.findKey(Exiv2::ExifKey("Exif.Image.DNGVersion")) != exif.end();
     if (!is_dng && has_falloff_opcodes(exif)) return "by the raw converter (opcodes of DNG)";
-    if (image.mimeType() != "image/jpeg" || is_of_converter(image)) return {};
+    if (!is_rendered(image) || is_of_converter(image)) return {};
     const std::string note = maker_notes(image);
     if (!note.empty()) return "in camera (" + note + ")";
     lensprof_profile_key jpeg = key;

@@ -51,6 +51,10 @@ std::unique_ptr<RowSource> open_tiff(const ReadRequest &request);
 std::unique_ptr<RowSource> open_jpeg(const ReadRequest &request);
 // `kind` as raw_kind names it.
 std::unique_ptr<RowSource> open_raw(const ReadRequest &request, const std::string &kind);
+// `kind` as coded_kind names it.
+std::unique_ptr<RowSource> open_heif(const ReadRequest &request, const std::string &kind);
+std::unique_ptr<RowSource> open_webp(const ReadRequest &request);
+std::unique_ptr<RowSource> open_jxl(const ReadRequest &request);
 
 // A picture file that is being written.
 class RowSink {

@@ -1,6 +1,7 @@
 // ICC.1:2010: the header has 128 bytes, then the count of tags and for each its name, offset and size; all numbers are
 // big-endian. A curve is of type `curv` (10.5: no entry, one u8Fixed8 exponent, or samples of 16 bit) or `para` (10.15:
-// function 0 is Y = X^g; those with more parameters are linear only where g is 1 and they add nothing).
+// function 0 is Y = X^g; the others are Y = (aX + b)^g + e from X = d on and cX + f before, of which they state a
+// part).
 #include "cli/pictures/icc.hpp"
 
 #include <cmath>
@@ -41,9 +42,19 @@ ToneCurve of_samples(const Bytes &curve) {
 
 ToneCurve of_function(const Bytes &curve) {
     if (!curve.has(8, 8)) return ToneCurve::unknown;
-    const double exponent = double(static_cast<int32_t>(curve.u32(12))) / 65536.0;
-    if (curve.u16(8) == 0) return told(std::fabs(exponent - 1.0) < kLinear);
-    return ToneCurve::other;
+    static const size_t counts[] = {1, 3, 4, 5, 7};
+    const size_t function = curve.u16(8);
+    if (function >= 5 || !curve.has(12, 4 * counts[function])) return ToneCurve::unknown;
+    double p[7] = {1.0, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0};  // g a b c d e f
+    for (size_t i = 0; i < counts[function]; i++) p[i] = double(static_cast<int32_t>(curve.u32(12 + 4 * i))) / 65536.0;
+    if (function == 2) p[5] = p[6] = p[3];
+    if (function == 1 || function == 2) p[3] = 0.0, p[4] = p[1] != 0.0 ? -p[2] / p[1] : 2.0;
+    for (int i = 0; i <= 32; i++) {
+        const double x = i / 32.0,
+                     y = x >= p[4] ? std::pow(std::fmax(p[1] * x + p[2], 0.0), p[0]) + p[5] : p[3] * x + p[6];
+        if (!(std::fabs(y - x) < kLinear)) return ToneCurve::other;
+    }
+    return ToneCurve::linear;
 }
 
 ToneCurve of_curve(const Bytes &curve) {

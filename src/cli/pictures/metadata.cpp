@@ -15,6 +15,8 @@
 
 #include "cli/pictures/camera_correction.hpp"
 #include "cli/pictures/codec.hpp"
+#include "cli/pictures/coded_kind.hpp"
+#include "cli/pictures/coded_metadata.hpp"
 #include "cli/pictures/correction_mark.hpp"
 #include "cli/pictures/exif_exposure.hpp"
 #include "cli/pictures/exif_value.hpp"
@@ -85,10 +87,17 @@ void read_once(Exiv2::Image &image) {
 ExivImage open_image(const std::string &path) {
     prepare_exiv2();
     codec::open_for_reading(path);  // for its errors, which say more than Exiv2's
+    const auto coded = coded_kind(path);
     try {
+        if (coded && !raw_kind(path)) {
+            const std::lock_guard<std::recursive_mutex> alone(exiv2_mutex());
+            return open_coded_image(path, *coded);
+        }
         ExivImage image(Exiv2::ImageFactory::open(path).release());
         read_once(*image);
         return image;
+    } catch (const Failure &) {
+        throw;
     } catch (const std::exception &error) {
         fail_reading(path, error);
     }
@@ -423,7 +432,7 @@ PictureMetadata read_metadata(const std::string &path) {
         store_text(read_unit(exif), metadata.key.unit, "--unit", metadata);
         store_text(read_style(exif), metadata.key.style, "--style", metadata);
         read_processing(path, *image, metadata);
-        metadata.is_jpeg = image->mimeType() == "image/jpeg";
+        metadata.is_of_camera = is_of_camera(*image);
         metadata.mark = correction_mark_of(image->xmpData());
         metadata.orientation =
             static_cast<uint16_t>(in_range(read_number(exif, {"Exif.Image.Orientation"}), 9.0).value_or(1.0));

@@ -28,8 +28,8 @@ struct PictureMetadata {
     // Nothing says whether it is rendered: a 16 bit TIFF without colour profile, as raw converters write linear ones.
     bool may_be_linear = false;
 
-    PictureSize size;      // pixels, as they are stored; 0 = not known
-    bool is_jpeg = false;  // the file: as cameras write them
+    PictureSize size;           // pixels, as they are stored; 0 = not known
+    bool is_of_camera = false;  // the file: a JPEG or HEIC, as cameras write them
 
     std::optional<CorrectionMark> mark;  // what lensprof did to the picture, if it did
 

@@ -96,8 +96,10 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
         }
         const FolderWalk walk(name, output, unlisted);
         if (walk.found().empty())
-            throw Failure(ExitCode::usage,
-                          name + ": is a folder without pictures (.jpg, .png, .tif, camera raw); name another");
+            throw Failure(
+                ExitCode::usage,
+                name
+                    + ": is a folder without pictures (.jpg, .png, .tif, .heic, .avif, .webp, .jxl, camera raw); name another");
         pictures.insert(pictures.end(), walk.found().begin(), walk.found().end());
     }
     return pictures;

@@ -20,12 +20,12 @@ struct UnlistedFolder {
     std::string folder, reason;
 };
 
-// Names as they are, and in the place of a folder's all pictures in it and its subfolders by their names' ends (.jpg,
-// .jpeg, .png, .tif, .tiff), in the order of the alphabet, without hidden ones. Links are followed, but every folder is
-// entered once, and `output`, where it is a subfolder, not at all. Failure (usage) for a folder without pictures.
-// Of a camera raw file and rendered ones of its name (IMG_1.NEF, IMG_1.JPG) in a folder the raw file is taken where the
-// program reads such files, since its values are linear and the camera has corrected nothing, else the rendered ones.
-// A subfolder that cannot be listed goes to `unlisted`, where that is not NULL, else it is a Failure (unreadable).
+// Names as they are, and in the place of a folder's all pictures in it and its subfolders by their names' ends
+// (is_picture_name), in the order of the alphabet, without hidden ones. Links are followed, but every folder is entered
+// once, and `output`, where it is a subfolder, not at all. Failure (usage) for a folder without pictures. Of a camera
+// raw file and rendered ones of its name (IMG_1.NEF, IMG_1.JPG) in a folder the raw file is taken where the program
+// reads such files, since its values are linear and the camera has corrected nothing, else the rendered ones. A
+// subfolder that cannot be listed goes to `unlisted`, where that is not NULL, else it is a Failure (unreadable).
 std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, const std::string &output,
                                          std::vector<UnlistedFolder> *unlisted = nullptr);
 

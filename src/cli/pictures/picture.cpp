@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "cli/pictures/codec.hpp"
+#include "cli/pictures/coded_kind.hpp"
 #include "cli/pictures/raw_file.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/pictures/row_reducer.hpp"
@@ -19,7 +20,7 @@ namespace lensprof {
 
 namespace {
 
-// Of pictures that are no camera raw files.
+// Of pictures that are no camera raw files and none of coded_kind.
 FileFormat format_of_content(const std::string &path) {
     const codec::File file = codec::open_for_reading(path);
     unsigned char start[12] = {};
@@ -32,7 +33,10 @@ FileFormat format_of_content(const std::string &path) {
     using namespace std::string_view_literals;
     if (begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv)) return FileFormat::tiff;
     if (count < 8) codec::fail_damaged(path, count == 0 ? "it is empty" : "it has " + std::to_string(count) + " bytes");
-    codec::fail_unsupported(path, "is not a PNG, TIFF or JPEG picture, nor a camera raw file; convert it first");
+    codec::fail_unsupported(
+        path,
+        "is not a PNG, TIFF, JPEG, HEIC, AVIF, WebP or JPEG XL picture, nor a camera raw file; convert it "
+        "first");
 }
 
 // What `read` does, with a text of its own where memory is not enough.
@@ -45,8 +49,17 @@ auto reading(const std::string &path, const Read &read) -> decltype(read()) {
     }
 }
 
+std::unique_ptr<codec::RowSource> open_coded(const codec::ReadRequest &request, const CodedKind &kind) {
+    switch (kind.format) {
+    case FileFormat::webp: return codec::open_webp(request);
+    case FileFormat::jxl: return codec::open_jxl(request);
+    default: return codec::open_heif(request, kind.name);
+    }
+}
+
 std::unique_ptr<codec::RowSource> open_source(const codec::ReadRequest &request) {
     if (const auto kind = raw_kind(request.path)) return codec::open_raw(request, *kind);
+    if (const auto coded = coded_kind(request.path)) return open_coded(request, *coded);
     switch (format_of_content(request.path)) {
     case FileFormat::png: return codec::open_png(request);
     case FileFormat::tiff: return codec::open_tiff(request);
@@ -152,7 +165,8 @@ static std::optional<FileFormat> known_format(const std::string &path) {
 }
 
 bool is_picture_name(const std::string &path) {
-    return known_format(path).value_or(FileFormat::exr) != FileFormat::exr || is_raw_name(path);
+    return known_format(path).value_or(FileFormat::exr) != FileFormat::exr || is_raw_name(path)
+           || coded_kind_of_name(path);
 }
 
 FileFormat format_of_name(const std::string &path) {
@@ -161,6 +175,9 @@ FileFormat format_of_name(const std::string &path) {
         throw Failure(ExitCode::usage, path + ": this lensprof was built without OpenEXR; install libopenexr-dev and "
                                               "build it again, or give a name in .tif");
     if (format) return *format;
+    if (const auto coded = coded_kind_of_name(path))
+        throw Failure(ExitCode::usage, path + ": lensprof reads " + coded->name
+                                           + " and does not write it; give a name in .tif, .png or .jpg");
     throw Failure(ExitCode::usage, path + ": unknown kind of picture; the name must end in .png, .tif, .jpg or, for "
                                                 "light, .exr");
 }

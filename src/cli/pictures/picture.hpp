@@ -1,4 +1,4 @@
-// Picture files: PNG, TIFF and JPEG in and out.
+// Picture files: PNG, TIFF and JPEG in and out; camera raw files, HEIC, AVIF, WebP and JPEG XL in.
 //
 // Pixels come as the file stores them: pixel (0, 0) is the first one of the file, the EXIF orientation is kept but
 // not applied, no colour management. All functions throw Failure; its text names the file and the next step.
@@ -23,8 +23,11 @@ enum class FileFormat {
     png,
     tiff,
     jpeg,
-    raw,  // is read
-    exr   // is written
+    raw,   // is read
+    exr,   // is written
+    heif,  // is read, as are the next two: HEIC, AVIF
+    webp,
+    jxl
 };
 
 // What rewriting a picture must keep beside pixels and metadata. Each writer uses what its format can express.
@@ -55,6 +58,9 @@ struct PictureTraits {
     // TIFF: numbers of the format.
     uint16_t compression = 0;  // 0 = not a TIFF
     uint16_t orientation = 1;
+
+    // Values were rounded over blocks of pixels: JPEG, and HEIF, WebP and JPEG XL unless they are known to be lossless.
+    bool is_lossy = false;
 
     // JPEG: the tables are kept as they are, which is the source's quality exactly.
     std::vector<std::array<uint16_t, 64>> quantisation;  // luminance, then chrominance; natural order
@@ -109,13 +115,19 @@ constexpr uint64_t jpeg_memory_bytes = uint64_t(16) << 20;
 // Camera raw files (with LibRaw) are 16 bit RGB, or grey, of linear light in the camera's own colours, without white
 // balance: 0 is black, and exactly what is saturated is 65535. The frame is the sensor's visible area, unturned. A
 // mosaic that is reduced has channels of its 2 x 2 cells; at full size they are interpolated.
+// HEIC and AVIF (with libheif), WebP (libwebp) and JPEG XL (libjxl) have 8 bit, or 16 where the file has more, of the
+// full scale, or 32 bit float (JPEG XL); the primary one of several pictures, as it was before the file's own rotation
+// and mirroring, which are in traits.orientation. Animations and values of PQ and HLG are Failures.
 Picture read_picture(const std::string &path, const ReadOptions &options = {});
 
 // The same without pixels: sizes (for these options), sample, layout, profile, traits.
 Picture read_header(const std::string &path, const ReadOptions &options = {});
 
-// Whether the program was built with LibRaw.
+// Whether the program was built with LibRaw, libheif, libwebp, libjxl.
 bool can_read_raw();
+bool can_read_heif();
+bool can_read_webp();
+bool can_read_jxl();
 
 // The largest JPEG that a camera raw file has in it, as a picture. Failure (unreadable) where there is none.
 Picture read_raw_preview(const std::string &path, const ReadOptions &options = {});
@@ -130,7 +142,8 @@ class RowSink;
 
 // A picture read from the top in strips of whole rows, full size. Held in memory is what the format's smallest unit
 // asks for, whatever the picture's height: a row of PNG, of JPEG those of a block, a strip of TIFF (compressed) or a
-// row of its tiles. An interlaced PNG is decoded as a whole, and of a progressive JPEG all coefficients are.
+// row of its tiles. An interlaced PNG is decoded as a whole, as are HEIC, AVIF, WebP and JPEG XL; of a progressive JPEG
+// all coefficients are.
 class PictureReader {
 public:
     explicit PictureReader(const std::string &path);
@@ -157,7 +170,7 @@ std::string exr_xmp_of(const std::string &path);
 // The format that a file name asks for: .png, .tif, .tiff, .jpg, .jpeg, .exr in any case; otherwise, and for .exr where
 // that cannot be written, Failure (usage).
 FileFormat format_of_name(const std::string &path);
-bool is_picture_name(const std::string &path);  // it has such an end, or that of a camera raw file
+bool is_picture_name(const std::string &path);  // it has the end of a picture that can be read
 
 // Writes a picture in the format of the name, metadata included, complete or not at all. A sample type or layout that
 // the format cannot hold is a Failure (usage): PNG 8 and 16 bit, JPEG 8 bit without alpha, TIFF everything, OpenEXR 32

@@ -193,6 +193,7 @@ private:
 
 JpegSource::JpegSource(const ReadRequest &request) : path_(request.path), reader_(request) {
     header_.traits.format = FileFormat::jpeg;
+    header_.traits.is_lossy = true;
     run([&] { read_start(reader_, header_); });
     const int components = reader_.info.num_components;
     if ((components != 1 && components != 3) || reader_.info.jpeg_color_space == JCS_UNKNOWN)

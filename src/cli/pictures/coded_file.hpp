@@ -1,0 +1,67 @@
+// HEIF, WebP and JPEG XL files, which are decoded as a whole: private to picture_*.cpp, *_unavailable.cpp and
+// coded_*.cpp.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/pictures/codec.hpp"
+#include "cli/pictures/coded_kind.hpp"
+
+namespace lensprof {
+
+namespace codec {
+
+// Most bytes of decoded pixels, as of a WebP in a TIFF: a few bytes may be a whole frame of one grey, so that a
+// header's size cannot be checked against the bytes that follow it.
+constexpr uint64_t coded_max_bytes = uint64_t(1) << 30;
+
+// What a file has besides its pixels.
+struct CodedMetadata {
+    std::vector<uint8_t> exif, xmp, icc;  // exif: from its TIFF header on; empty where there is none
+    uint32_t width = 0, height = 0;       // as PictureReader gives them
+    uint16_t orientation = 0;             // the format's own, in EXIF's numbers, in place of EXIF's; 0 = it has none
+    bool is_camera_jpeg = false;          // holds a JPEG file that can be restored
+};
+
+CodedMetadata webp_metadata(const std::string &path);
+CodedMetadata heif_metadata(const std::string &path, const std::string &kind);
+CodedMetadata jxl_metadata(const std::string &path);
+
+// Rows of a picture that is decoded when the first one is asked for.
+class DecodedSource : public RowSource {
+public:
+    void read(uint8_t *row) override;
+
+protected:
+    explicit DecodedSource(const std::string &path) : path_(path) {}
+
+    virtual void decode(uint8_t *pixels, size_t bytes) = 0;  // the whole frame, without gaps
+
+    std::string path_;
+
+private:
+    LazyBytes pixels_{nullptr, std::free};
+    uint32_t next_ = 0;
+};
+
+// set_frame, with the limits of these formats.
+void set_coded_frame(Picture &picture, uint32_t width, uint32_t height, const ReadRequest &request);
+
+// PQ and HLG (ITU-R BT.2100) code light for a display or a scene of absolute or very wide range.
+[[noreturn]] void fail_hdr(const std::string &path, const std::string &kind, const std::string &transfer);
+[[noreturn]] void fail_animated(const std::string &path, const std::string &kind);
+
+// The EXIF block from its TIFF header on: some writers put the six bytes before it that stand there in a JPEG.
+std::vector<uint8_t> without_exif_mark(const uint8_t *bytes, size_t count);
+
+// The same of an item of HEIF or a box of JPEG XL (ISO/IEC 23008-12, annex A.2.1): its first four bytes state how many
+// others precede the TIFF header. Empty where these do not lie within it.
+std::vector<uint8_t> exif_of_item(const std::vector<uint8_t> &item);
+
+}  // namespace codec
+
+}  // namespace lensprof

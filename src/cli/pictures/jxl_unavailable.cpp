@@ -1,0 +1,26 @@
+// In place of the reader of JPEG XL, where the program is built without libjxl.
+#include "cli/pictures/coded_file.hpp"
+
+namespace lensprof {
+
+namespace codec {
+
+namespace {
+
+[[noreturn]] void fail_without(const std::string &path) {
+    fail_unsupported(path,
+                     "is a JPEG XL picture, and this lensprof was built without libjxl; install libjxl-dev and "
+                     "build it again, or convert the file to PNG, for instance with djxl");
+}
+
+}  // namespace
+
+std::unique_ptr<RowSource> open_jxl(const ReadRequest &request) { fail_without(request.path); }
+
+CodedMetadata jxl_metadata(const std::string &path) { fail_without(path); }
+
+}  // namespace codec
+
+bool can_read_jxl() { return false; }
+
+}  // namespace lensprof
