@@ -1,6 +1,9 @@
 // `build` of pictures and folders that are in no project.
+#include <map>
+
 #include "cli/pictures/picture.hpp"
 #include "cli/registration/registration.hpp"
+
 #include "cli_runs.hpp"
 
 using namespace cli_runs;
@@ -88,11 +91,17 @@ void test_a_folder_of_many_things(void **) {
     assert_int_equal(run.code, done);
     const Json json = Json::parse(run.out);
     assert_int_equal(json["images"].size(), 5);
-    assert_true(contains(run.err, "x0.png, x1.png, x2.png: another group"));
+    assert_true(contains(run.err, "x0.png, x1.png, x2.png: left out, another group"));
     assert_true(contains(run.err, "y.png: left out, no overlap"));
     assert_true(contains(run.err, "damaged.png"));
     assert_true(contains(run.err, "it is a copy of copy.png"));
     assert_true(contains(run.err, "small.png: left out, of another camera or size"));
+    std::map<std::string, std::string> left_out;
+    for (const Json &one : json["left_out"]) left_out[one["file"]] = one["reason"];
+    assert_int_equal(left_out.size(), 7);
+    assert_true(contains(left_out["x1.png"], "another group") && contains(left_out["y.png"], "no overlap"));
+    assert_true(contains(left_out["small.png"], "another camera") && contains(left_out["damaged.png"], "damaged.png"));
+    assert_true(json["seconds"]["register"].get<double>() > 0.0);
 }
 
 // Standard deviation of the logarithm of one panel over another: 0 where they differ by a factor alone. Places without

@@ -1,11 +1,13 @@
 #include "cli/fitting/photographs.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
 
+#include "cli/fitting/fitting.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/output_file.hpp"
@@ -105,19 +107,27 @@ std::vector<FoundProject> split_by_body(const FoundProject &found) {
 
 namespace {
 
+using LeftOut = std::vector<std::pair<std::string, std::string>>;  // names, and why
+
+// Names pictures that are not part of the project, for one reason.
+void leave_out(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names, const std::string &reason,
+               LeftOut &left_out, Streams &streams) {
+    for (uint32_t number : numbers) left_out.emplace_back(names[number], reason);
+    warn(streams, listed(numbers, names) + ": left out, " + reason);
+}
+
 // Leaves the pictures of the camera that took most of them.
-void keep_one_body(FoundProject &found, const std::vector<std::string> &names, Streams &streams) {
+void keep_one_body(FoundProject &found, const std::vector<std::string> &names, LeftOut &left_out, Streams &streams) {
     const FoundProject kept = split_by_body(found)[0];
     std::vector<uint32_t> others;
     std::set_difference(found.pictures.begin(), found.pictures.end(), kept.pictures.begin(), kept.pictures.end(),
                         std::back_inserter(others));
     found = kept;
-    if (others.empty()) return;
-    warn(streams, listed(others, names) + ": left out, " + of_another_body);
+    if (!others.empty()) leave_out(others, names, of_another_body, left_out, streams);
 }
 
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
-                  Streams &streams) {
+                  LeftOut &left_out, Streams &streams) {
     const FoundProject &project = found.projects[0];
     const std::string unfit = project.unfit ? format(", %u more do not fit the cameras", project.unfit) : "";
     note(streams,
@@ -131,10 +141,10 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
         warn(streams, label + ": no cameras fit the pictures well: distortion, parallax, or things that moved; a Hugin "
                               "project may do better");
     for (size_t n = 1; n < found.projects.size(); n++)
-        warn(streams, listed(found.projects[n].pictures, names)
-                          + ": another group, which overlaps with none of these; give its pictures alone");
+        leave_out(found.projects[n].pictures, names,
+                  "another group, which overlaps with none of these; give its pictures alone", left_out, streams);
     if (!found.alone.empty())
-        warn(streams, listed(found.alone, names) + ": left out, no overlap with another picture was found");
+        leave_out(found.alone, names, "no overlap with another picture was found", left_out, streams);
 }
 
 }  // namespace
@@ -148,13 +158,22 @@ Project project_of_pictures(const std::vector<std::string> &words, bool one_lens
     const Photographs list = list_photographs(words, named);
     demand_one_kind(list.files);
     const auto &[label, files, names, copies] = list;
-    for (const auto &[file, why] : copies) warn(streams, file + ": left out, " + why);
+    Project project;
+    for (const auto &[file, why] : copies) {
+        project.left_out.emplace_back(file, why);
+        warn(streams, file + ": left out, " + why);
+    }
     if (files.size() < 2)
         throw Failure(ExitCode::not_usable, label + ": has one picture; at least two overlapping ones are needed",
                       LENSPROF_REASON_FEW_PAIRS);
+    auto clock = std::chrono::steady_clock::now();
     Registration found = register_pictures(files, progress);
+    project.register_s = lap(clock);
     progress.clear();
-    for (const auto &[number, why] : found.unreadable) warn(streams, why + "; left out");
+    for (const auto &[number, why] : found.unreadable) {
+        project.left_out.emplace_back(names[number], why);
+        warn(streams, why + "; left out");
+    }
     if (found.unreadable.size() == files.size())
         throw Failure(ExitCode::unreadable, label + ": none of the pictures can be read; give others");
     if (found.projects.empty())
@@ -162,16 +181,15 @@ Project project_of_pictures(const std::vector<std::string> &words, bool one_lens
                       label + ": no two of the pictures overlap, or too little in them can be recognised; give pictures "
                               "that share a third, or a Hugin project",
                       LENSPROF_REASON_FEW_PAIRS);
-    if (!one_lens) keep_one_body(found.projects[0], names, streams);
+    if (!one_lens) keep_one_body(found.projects[0], names, project.left_out, streams);
     if (found.projects[0].pictures.size() < 2 || found.projects[0].links == 0)
         throw Failure(ExitCode::not_usable,
                       label + ": no two pictures of one camera and size overlap; give --one-lens to "
                               "take all as one",
                       LENSPROF_REASON_FEW_PAIRS);
-    report_found(found, names, label, streams);
+    report_found(found, names, label, project.left_out, streams);
 
     const FoundProject &own = found.projects[0];
-    Project project;
     project.path = label;
     for (const uint32_t picture : own.pictures) {
         project.names.push_back(names[picture]);

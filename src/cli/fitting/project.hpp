@@ -20,6 +20,10 @@ struct Project {
     std::vector<std::string> names;  // as written in the project
     std::vector<std::string> files;  // path of each picture
     uint32_t reference = 0;          // image that the fit holds
+
+    // Of pictures that were in no project: those that are not part of it, and why; and how long finding it took.
+    std::vector<std::pair<std::string, std::string>> left_out;
+    double register_s = 0.0;
 };
 
 // Reads a project. The reference is the first image whose Eev is not asked for, else image 0. With `one_lens`, images

@@ -237,6 +237,8 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     BuildReport &report = done.report;
     FitInput &input = done.input;
     report.names = project.names;
+    report.left_out = project.left_out;
+    report.register_s = project.register_s;
     report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
     input.options = project_options(o, project, input.fixed);
     input.options.camera_kind = report.camera_kind.kind;

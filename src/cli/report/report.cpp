@@ -244,6 +244,12 @@ const char *describe_kind_from(KindFrom from) {
                                         : "as no picture says which; --camera-kind does";
 }
 
+Json left_out_json(const BuildReport &report) {
+    Json list = Json::array();
+    for (const auto &[file, reason] : report.left_out) list.push_back({{"file", file}, {"reason", reason}});
+    return list;
+}
+
 // Of several lens settings what was found of each.
 Json settings_json(const BuildReport &report) {
     Json list = Json::array();
@@ -330,7 +336,9 @@ Json build_json(const BuildReport &report) {
     json["components"] = fit.components;
     json["iterations"] = fit.iterations;
     json["covariance"] = covariance_json(fit.covariance, fit.covariance_size);
-    json["seconds"] = {{"load", report.load_s}, {"sample", report.sample_s}, {"solve", fit.seconds}};
+    json["left_out"] = left_out_json(report);
+    json["seconds"] = {
+        {"register", report.register_s}, {"load", report.load_s}, {"sample", report.sample_s}, {"solve", fit.seconds}};
     json["prior"] = prior_json(report);
     json["profile"] = report.profile_id ? Json(report.profile_id) : Json();
     return json;
@@ -432,6 +440,7 @@ void print_build(const BuildReport &report, std::ostream &out) {
     out << format("residual  before %.2f, after %s, levels of 255; %.1f %% inliers of %u pairs\n", fit.before_rms,
                   heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
     if (!report.links.empty()) out << links_row(report.links);
+    if (report.register_s > 0.0) out << format("time      find overlaps %.2f s\n", report.register_s);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);
     if (!fit.usable && fit.evens && report.has_falloff)
         out << "EVENS OUT these pictures; not a profile to store: " << report.verdict.text << "\n";

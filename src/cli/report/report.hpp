@@ -52,7 +52,8 @@ struct BuildReport {
     bool has_falloff = true;       // else it cancels in these pictures
     bool exposures_given = false;  // on the command line, and not by EXIF
     uint32_t looks = 1;            // 2: pairs were drawn again, by the light that the first fit found
-    double load_s = 0, sample_s = 0;
+    std::vector<std::pair<std::string, std::string>> left_out;  // pictures that are not among the images, and why
+    double register_s = 0, load_s = 0, sample_s = 0;
     CameraKind camera_kind;          // whose exponent the prior on gamma is
     int64_t profile_id = 0;          // 0 = not stored
     int64_t prior_id = 0;            // of the profile that was the prior; 0 = none

@@ -213,7 +213,9 @@ bool contradicts_model(const Problem &problem, const Estimate &estimate, lenspro
         return refuse(r, {LENSPROF_REASON_STILL_FEW_AGREE, {r.inlier_share}});
     if (r.inlier_share < 0.3) return refuse(r, {LENSPROF_REASON_FEW_AGREE, {r.inlier_share}});
     double pattern = r.noise_levels * std::sqrt(r.image_share);
-    if (r.image_share > kLargestImageShare && pattern > (still ? kHarmfulStillPattern : kHarmfulPattern))
+    // A response or falloff that is held and does not fit leaves patterns, too, and is wrong however small they are.
+    const double harmful = still ? kHarmfulStillPattern : is_free ? kHarmfulPattern : kSmallestPattern;
+    if (r.image_share > kLargestImageShare && pattern > harmful)
         return refuse(r, {still     ? LENSPROF_REASON_STILL_PATTERNS
                           : is_free ? LENSPROF_REASON_PATTERNS
                                     : LENSPROF_REASON_PATTERNS_HELD,
