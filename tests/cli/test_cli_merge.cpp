@@ -205,6 +205,9 @@ void test_refusals(void **) {
     refuse(usage, Words{"--merge", work("out.tif"), "--project", work("x.pto")}, "--project");
     refuse(usage, Words{"--merge", work("out.tif"), "-o", work("frames")} + frames, "--output");
     refuse(usage, Words{"--merge", work("none/out.tif")} + frames, "none/out.tif");
+    save_text(work("mine.tif"), "not a picture of lensprof's");
+    refuse(usage, Words{"--merge", work("mine.tif")} + frames, "--overwrite");
+    must_exit(done, Words{"align", "--overwrite", "--merge", work("mine.tif")} + frames);
     const Words tiffs = make_frames({0.0, -2.0}, ".tif");
     refuse(usage, Words{"--merge", tiffs[1]} + tiffs, "h1.tif");
     Picture alpha = make_noise(width, height, LENSPROF_SAMPLE_U8, LENSPROF_LAYOUT_RGBA);

@@ -129,6 +129,23 @@ void test_project_with_both(void **) {
     assert_both_found(json_of(Words{"build", out, "--free", "all"} + quietly));
 }
 
+// A picture that does not state its aperture joins neither of two, wherever it stands, and no others through it.
+void test_an_aperture_that_is_not_known(void **) {
+    for (size_t unknown : {0, 5}) {
+        empty_work(nullptr);
+        const std::string pto = two_apertures(), file = work("open/" + numbered(unknown));
+        assert_true(write_picture(file, read_picture(file)));  // without EXIF
+        const Json json = json_of(Words{"build", pto} + quietly);
+        assert_int_equal(json["settings"].size(), 3);
+        for (size_t i = 0; i < 6; i++) {
+            if (i == unknown) continue;
+            const Json &setting = json["settings"][json["images"][i]["setting"].get<size_t>()];
+            assert_close(setting["key"]["aperture"].get<double>(), i % 2 ? kStopped : kOpen, 1e-6);
+            assert_true(falloff_error(setting["vignetting"]["k"][0], i % 2 ? kStoppedFalloff : kOpenFalloff) < 0.02);
+        }
+    }
+}
+
 // Settings by the project's links alone, without EXIF.
 void test_links_of_a_project(void **) {
     const std::string copy = copy_of("scene");
@@ -162,8 +179,13 @@ void test_a_setting_that_is_not_shown(void **) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        CLI_TEST(test_two_apertures),     CLI_TEST(test_one_lens),           CLI_TEST(test_profiles),
-        CLI_TEST(test_project_with_both), CLI_TEST(test_links_of_a_project), CLI_TEST(test_a_setting_that_is_not_shown),
+        CLI_TEST(test_an_aperture_that_is_not_known),
+        CLI_TEST(test_two_apertures),
+        CLI_TEST(test_one_lens),
+        CLI_TEST(test_profiles),
+        CLI_TEST(test_project_with_both),
+        CLI_TEST(test_links_of_a_project),
+        CLI_TEST(test_a_setting_that_is_not_shown),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

@@ -229,7 +229,8 @@ def _fit_images(images: Sequence[FitImage]) -> Any:
 
 
 def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], options: FitOptions) -> FitResult:
-    error, result = _abi.ErrorText(), FitResult(len(images), options, 1 + max((i.setting for i in images), default=0))
+    error, result = _abi.ErrorText(), FitResult(
+        len(images), options, min(1 + max((i.setting for i in images), default=0), _abi.SETTINGS_MAX))
     out = _abi.FitResult.from_buffer(result)
     out.settings = ctypes.cast(result._settings, ctypes.POINTER(_abi.FitSetting))
     out.setting_count = len(result._settings)

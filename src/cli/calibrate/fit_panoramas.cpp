@@ -113,7 +113,13 @@ bool is_stored(const CalibrateOptions &o, const Json &summary) {
     if (!path_exists(store_path(o.store.db))) return false;
     const Store store = open_store(o.store.db, LENSPROF_STORE_READ);
     auto profile = new_profile();
-    return lensprof_store_get(store.get(), result["profile"].get<int64_t>(), profile.get(), nullptr) == LENSPROF_OK;
+    const auto is_there = [&](const Json &id) {
+        return id.is_null()
+               || lensprof_store_get(store.get(), id.get<int64_t>(), profile.get(), nullptr) == LENSPROF_OK;
+    };
+    bool all = is_there(result["profile"]);
+    for (const Json &setting : result["settings"]) all = all && is_there(setting["profile"]);
+    return all;
 }
 
 // The result of an earlier run, with its project, which is written again where somebody has removed it.

@@ -147,7 +147,7 @@ void check_merge(const Options &o, const Project &project) {
     std::vector<Correction> job(1);
     job[0].source = project.files[0], job[0].target = o.merge;
     check_targets(job, project.files, "");
-    check_older_outputs(job, o.kind, true);
+    check_older_outputs(job, o.kind, false);
 }
 
 // The frame whose metadata the merged picture has: the one that it looks like.

@@ -53,7 +53,7 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
         const auto mark = mark_of_older(job.target);
         if (!mark && !replaces_unmarked && path_exists(job.target))
             throw Failure(ExitCode::usage, job.target + ": is there already and is not by lensprof; give a folder "
-                                                        "with -o, or --overwrite");
+                                                        "with -o or another name, or --overwrite");
         if (!mark || mark->digest.empty() || mark->digest == digest_of(job.source)) continue;
         throw Failure(ExitCode::usage, job.target + ": is there already and was made of another picture ("
                                            + mark->source + "); give another folder with -o, or --overwrite");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -244,8 +245,8 @@ int64_t store_setting(const lensprof_fit_result &own, size_t images, const lensp
                       const StoreOptions &store, const Finish &finish) {
     lensprof_fit_options options;
     lensprof_fit_options_init(&options);
-    const EarlierProfile *prior = is_reference ? finish.prior : nullptr;
-    if (prior) options.profile = prior->profile.get();
+    const EarlierProfile *prior = finish.prior;  // the response holds it in all settings, and the falloff in one
+    if (prior && is_reference) options.profile = prior->profile.get();
     auto profile = profile_of(own, &options, images);
     profile->key = key;
     const int64_t held = prior && holds_prior(own) && prior->is_own ? prior->id : 0;
@@ -258,8 +259,15 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
     const bool is_wanted = report.fit.usable || store.force;
     if (report.settings.empty() && is_wanted)
         report.profile_id = store_setting(report.fit, report.names.size(), key, true, store, finish);
-    for (SettingReport &setting : report.settings) {
+    std::vector<SettingReport *> order;  // the reference's first
+    for (SettingReport &setting : report.settings) order.push_back(&setting);
+    std::stable_partition(order.begin(), order.end(), [](const SettingReport *s) { return s->is_reference; });
+    std::set<std::string> keys;
+    for (SettingReport *one : order) {
+        SettingReport &setting = *one;
         if (!setting.found.images || !(setting.found.usable || store.force)) continue;
+        setting.has_same_key = !keys.insert(describe_key(setting.key)).second;
+        if (setting.has_same_key) continue;  // a lookup could not tell them apart
         setting.profile_id = store_setting(result_of(report.fit, setting.found), setting.found.images, setting.key,
                                            setting.is_reference, store, finish);
         if (setting.is_reference) report.profile_id = setting.profile_id;
@@ -280,10 +288,27 @@ void print_stored(const BuildReport &report, const lensprof_profile_key &key, co
 // Says which of several settings give no profile, and why.
 void name_unusable(const BuildReport &report, const std::string &source, Streams &streams) {
     for (const SettingReport &setting : report.settings)
+        if (setting.has_same_key)
+            warn(streams,
+                 source + ": " + setting.label
+                     + ": not stored, for another setting has the same camera, lens, focal length and aperture");
+    for (const SettingReport &setting : report.settings)
         if (!setting.found.usable && !setting.is_reference)
             warn(streams, source + ": " + setting.label
                               + (setting.found.images ? ": not a profile to store: " + setting.verdict.text
                                                       : ": none of its pictures agrees with the others"));
+}
+
+// Of a result that evens pictures and is no profile: how much of them it does not explain, where that is a lot.
+void name_misfit(const BuildReport &report, const std::string &source, Streams &streams) {
+    constexpr double most_outliers = 0.3, most_levels = 15.0;  // as the verdict has them for profiles
+    const double outliers = 1.0 - report.fit.inlier_share, rms = report.fit.heldout_rms;
+    if (outliers <= most_outliers && rms <= most_levels) return;
+    warn(streams,
+         source
+             + format(": %.0f %% of the pairs do not agree with the result, and %.1f levels RMS are left: parallax, "
+                      "or things that moved; look at the seams (--preview)",
+                      100.0 * outliers, rms));
 }
 
 bool is_any_usable(const BuildReport &report) {
@@ -310,9 +335,12 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
     if (report.fit.usable || evens) name_unjoined(report, streams);
     const bool is_good = is_any_usable(report) || (store.no_store && evens);
     if (!report.fit.usable && is_good)
-        warn(streams,
-             finish.source + ": evens out these pictures, but is not a profile to store: " + report.verdict.text);
+        warn(streams, finish.source
+                          + (report.fit.evens ? ": evens out these pictures, but is not a profile to store: "
+                                              : ": the setting of the reference: not a profile to store: ")
+                          + report.verdict.text);
     if (is_good) name_unusable(report, finish.source, streams);
+    if (!report.fit.usable && is_good) name_misfit(report, finish.source, streams);
     if (!is_good)
         tell(streams, not_usable_text(finish.source, report.verdict, store)
                           + (evens ? "; it evens out these pictures, which --no-store accepts" : ""));

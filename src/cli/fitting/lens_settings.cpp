@@ -1,7 +1,9 @@
 #include "cli/fitting/lens_settings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "cli/report/report.hpp"
 
@@ -25,6 +27,12 @@ bool is_same_setting(const lensprof_profile_key &a, const lensprof_profile_key &
     return !are_known(a.distance_m, b.distance_m) || std::fabs(extension(a) - extension(b)) < kSameExtension;
 }
 
+// How much a key says of the setting.
+int stated(const lensprof_profile_key &key) {
+    return (key.aperture != LENSPROF_UNKNOWN) + (key.focal_mm != LENSPROF_UNKNOWN)
+           + (key.distance_m != LENSPROF_UNKNOWN) + (*key.lens != '\0');
+}
+
 // What the command line states of all pictures tells none apart.
 lensprof_profile_key stated_key(lensprof_profile_key key, const StoreOptions &store) {
     if (store.aperture != LENSPROF_UNKNOWN) key.aperture = store.aperture;
@@ -36,28 +44,59 @@ lensprof_profile_key stated_key(lensprof_profile_key key, const StoreOptions &st
 
 }  // namespace
 
+namespace {
+
+// Numbers settings in the order of their images.
+LensSettings in_order(const std::vector<uint32_t> &found, const std::vector<uint32_t> &first) {
+    LensSettings settings;
+    std::vector<uint32_t> number(first.size(), UINT32_MAX);
+    for (uint32_t own : found) {
+        if (number[own] == UINT32_MAX) {
+            number[own] = static_cast<uint32_t>(settings.first.size());
+            settings.first.push_back(first[own]);
+        }
+        settings.of_image.push_back(number[own]);
+    }
+    return settings;
+}
+
+}  // namespace
+
+// Images that state most come first, and one that states less joins the only setting that it may be of; where there are
+// several, that of those that state as little.
 LensSettings lens_settings(const Project &project, const std::vector<PictureMetadata> &metadata,
                            const StoreOptions &store, bool one_lens) {
-    LensSettings settings;
+    const auto count = static_cast<uint32_t>(project.images.size());
+    if (one_lens) return {std::vector<uint32_t>(count, 0), {project.reference}};
     std::vector<lensprof_profile_key> keys;
     for (const PictureMetadata &own : metadata) keys.push_back(stated_key(own.key, store));
-    for (uint32_t i = 0; i < project.images.size(); i++) {
-        uint32_t number = 0;
-        const auto is_own = [&](uint32_t first) {
-            return one_lens
-                   || (project.images[i].vignetting_of == project.images[first].vignetting_of
-                       && is_same_setting(keys[i], keys[first]));
+    std::vector<uint32_t> order(count), found(count), first;
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return stated(keys[a]) > stated(keys[b]); });
+    for (uint32_t i : order) {
+        const auto is_possible = [&](uint32_t other) {
+            const auto &a = project.images[i], &b = project.images[other];
+            const bool is_upright = a.camera.height > a.camera.width;  // centres are in the frame's own axes
+            return a.vignetting_of == b.vignetting_of && is_upright == (b.camera.height > b.camera.width)
+                   && is_same_setting(keys[i], keys[other]);
         };
-        while (number < settings.first.size() && !is_own(settings.first[number])) number++;
-        if (number == settings.first.size()) settings.first.push_back(i);
-        settings.of_image.push_back(number);
+        std::vector<uint32_t> possible;
+        for (uint32_t n = 0; n < first.size(); n++)
+            if (is_possible(first[n])) possible.push_back(n);
+        const auto alike = std::find_if(possible.begin(), possible.end(),
+                                        [&](uint32_t n) { return stated(keys[first[n]]) == stated(keys[i]); });
+        found[i] = possible.size() == 1      ? possible[0]
+                   : alike != possible.end() ? *alike
+                                             : static_cast<uint32_t>(first.size());
+        if (found[i] == first.size()) first.push_back(i);
     }
-    if (settings.first.size() > LENSPROF_SETTINGS_MAX)
+    if (first.size() > LENSPROF_SETTINGS_MAX)
         throw Failure(ExitCode::usage,
-                      project.path + ": its pictures have " + std::to_string(settings.first.size())
-                          + " lens settings, and " + std::to_string(LENSPROF_SETTINGS_MAX)
+                      project.path + ": its pictures have " + std::to_string(first.size()) + " lens settings, and "
+                          + std::to_string(LENSPROF_SETTINGS_MAX)
                           + " are the most of one fit; give fewer pictures, or --one-lens to take all as one");
-    return settings;
+    return in_order(found, first);
 }
 
 std::string describe_setting(const lensprof_profile_key &key, const std::string &first_image) {

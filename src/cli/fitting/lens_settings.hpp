@@ -12,12 +12,13 @@ namespace lensprof {
 
 struct LensSettings {
     std::vector<uint32_t> of_image;  // number of each image's
-    std::vector<uint32_t> first;     // of each setting its first image
+    std::vector<uint32_t> first;     // of each setting the image that states most of it
     bool are_several() const { return first.size() > 1; }
 };
 
 // By the project's links (Va..Vd) and by EXIF: lens, focal length, aperture and focus, as far as both pictures state
-// them and `store` does not for all. With `one_lens` there is one setting. Failure (usage) for more than a fit takes.
+// them and `store` does not for all; upright and other frames are apart. With `one_lens` there is one setting. Failure
+// (usage) for more than a fit takes.
 LensSettings lens_settings(const Project &project, const std::vector<PictureMetadata> &metadata,
                            const StoreOptions &store, bool one_lens);
 

@@ -254,6 +254,11 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     set_settings(o, done, streams);
     if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);
     refer_to(report.reference, input);
+    const auto setting_of = [&](uint32_t image) { return done.settings.of_image[image]; };
+    if (prior.profile && setting_of(input.options.reference) != setting_of(project.reference)) {
+        input.options.profile = nullptr, report.prior_id = 0;
+        report.no_prior = "the reference is at another lens setting than " + project.names[project.reference];
+    }
     done.item = o.points.empty() ? project.path : o.points;
     done.best = fit(input, report.reference, done.item, done.progress, &report.quality);
     if (!pictures.empty() && may_join_more(o, done.best, report.links)) look_again(o, project, pictures, done);

@@ -35,7 +35,8 @@ struct SettingReport {
     bool is_reference = false;  // the setting of the reference, whose numbers the fit has too
     lensprof_fit_setting found{};
     Verdict verdict;
-    int64_t profile_id = 0;  // 0 = not stored
+    int64_t profile_id = 0;     // 0 = not stored
+    bool has_same_key = false;  // as a setting that is stored
 };
 
 // Everything `build` found out.

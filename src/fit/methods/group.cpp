@@ -220,12 +220,21 @@ void GroupFit::warn_of_links(const lensprof_fit_result &all, Verdict &r) const {
     const bool is_of_greys =
         r.reason_code == LENSPROF_REASON_MISSING_GREYS || r.reason_code == LENSPROF_REASON_RESPONSE_NOT_SHOWN;
     if (r.reason_code != LENSPROF_REASON_NONE && !is_of_greys) return;
+    // Links that sampling found to show something else have no pairs that could contradict the result.
+    const auto is_contradicted = [&](const lensprof_link &link) {
+        return link.state == LENSPROF_LINK_CONTRADICTED && group_.joined[link.image[0]] && group_.joined[link.image[1]];
+    };
+    const auto *links = options_.links, *end = links + options_.link_count;
+    const auto *contradicted = std::find_if(links, end, is_contradicted);
     uint32_t unverified = 0;
     if (all.left_out)
         warn(r, of_image(LENSPROF_REASON_IMAGES_LEFT_OUT, image, {double(all.left_out)}));
     else if (broken != group_.broken.end())
         warn(r, of_image(LENSPROF_REASON_LINKS_CONTRADICT, (*broken)[0],
                          {double(std::count_if(group_.broken.begin(), group_.broken.end(), is_own))}));
+    else if (contradicted != end)
+        warn(r, of_image(LENSPROF_REASON_LINKS_CONTRADICT, contradicted->image[0],
+                         {double(std::count_if(links, end, is_contradicted))}));
     else if (const uint32_t count = count_unverified(unverified))
         warn(r, of_image(LENSPROF_REASON_LINKS_UNVERIFIED, unverified, {double(count)}));
 }

@@ -54,9 +54,12 @@ public:
         for (int i = kRises; i < count(); i++) {
             const Place at = place(i);
             const double *k = value.data() + at.column;
+            if (at.is_center) {
+                gap[static_cast<size_t>(i)] = (at.is_upper ? *k : -*k) - kLargestCenter;
+                continue;
+            }
             const lensprof_vignetting v{{k[0], k[1], k[2]}, {0.0, 0.0}};
-            gap[static_cast<size_t>(i)] = at.is_center ? (at.is_upper ? k[0] : -k[0]) - kLargestCenter
-                                                       : kSmallestM - lensprof_vignetting_eval(&v, at.radius2, nullptr);
+            gap[static_cast<size_t>(i)] = kSmallestM - lensprof_vignetting_eval(&v, at.radius2, nullptr);
         }
         return gap;
     }

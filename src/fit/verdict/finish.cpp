@@ -22,6 +22,12 @@ void judge_all(const Found &found, const std::function<void(lensprof_fit_result 
     judge_evenness(found, r);
 }
 
+bool has_pairs(const Problem &problem, int setting) {
+    return std::any_of(problem.edges.begin(), problem.edges.end(), [&](const Edge &edge) {
+        return problem.setting_of[edge.image[0]] == setting || problem.setting_of[edge.image[1]] == setting;
+    });
+}
+
 // What a result holds of a setting, into the caller's array.
 void give_setting(const Problem &problem, int number, const lensprof_fit_result &r) {
     lensprof_fit_setting &setting = r.settings[problem.setting_number[static_cast<size_t>(number)]];
@@ -58,11 +64,11 @@ void finish(const Found &found, const std::function<void(lensprof_fit_result &)>
     describe_model(found.problem, found.estimate, r);
     describe_heldout(found.tested, found.train, found.has_heldout, r);
     describe_quality(found.problem, found.gauge, found.noise, found.covariance, found.estimate, r);
-    uint32_t evens = 0;
+    uint32_t evens = 1;                                      // all settings that have pictures do
     for (int s = found.problem.settings - 1; s >= 0; s--) {  // the first one last: it stays in the result
         describe_setting(found.problem, found.gauge, found.covariance, found.estimate, s, r);
         judge_all(found, judge_own, r);
-        evens = std::max(evens, r.evens);
+        if (has_pairs(found.problem, s)) evens = std::min(evens, r.evens);
         if (r.settings) give_setting(found.problem, s, r);
     }
     r.evens = evens;
