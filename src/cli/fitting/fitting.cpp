@@ -189,13 +189,6 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
     return fitted;
 }
 
-lensprof_fit_result result_of(const lensprof_fit_result &result, const lensprof_fit_setting &setting) {
-    lensprof_fit_result own = result;
-    lensprof_error error{};
-    check(lensprof_fit_result_take_setting(&own, &setting, &error), "fit", &error);
-    return own;
-}
-
 BuildReport no_fit(const std::vector<std::string> &names, const Failure &failure) {
     BuildReport report;
     report.names = names;

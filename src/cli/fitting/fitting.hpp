@@ -68,21 +68,17 @@ struct Fitted {
     lensprof_fit_result result{};
     std::vector<lensprof_exposure> exposures;    // relative to the reference; ev is NaN of images that were left out
     std::vector<lensprof_fit_setting> settings;  // by the images' `setting`; `result` has that of the reference
+    std::vector<uint32_t> setting_of;            // of each image
     uint32_t reference = 0;                      // the one asked for, or where that was left out the result's own
 
     // Whether the pictures may be corrected with it; a profile to store has to be usable.
     bool corrects() const { return result.usable || result.evens; }
-
-    std::vector<uint32_t> setting_of;  // of each image
 
     // The curves of an image, as many as the result has.
     const lensprof_vignetting *falloff_of(uint32_t image) const {
         return settings.empty() ? result.vignetting : settings[setting_of[image]].vignetting;
     }
 };
-
-// A result with what was found of a setting in the place of what it has of the reference's.
-lensprof_fit_result result_of(const lensprof_fit_result &result, const lensprof_fit_setting &setting);
 
 // Fits, with `progress` shown. `item` names the input in a Failure. `quality` may be NULL.
 Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,

@@ -42,10 +42,6 @@ lensprof_profile_key stated_key(lensprof_profile_key key, const StoreOptions &st
     return key;
 }
 
-}  // namespace
-
-namespace {
-
 // Numbers settings in the order of their images.
 LensSettings in_order(const std::vector<uint32_t> &found, const std::vector<uint32_t> &first) {
     LensSettings settings;

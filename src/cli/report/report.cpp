@@ -415,11 +415,9 @@ void print_falloffs(const BuildReport &report, std::ostream &out) {
     if (report.settings.empty()) print_vignettings(*profile_of(report.fit), out);
     for (const SettingReport &setting : report.settings) {
         if (!setting.found.images) continue;
-        lensprof_fit_result own = report.fit;
-        check(lensprof_fit_result_take_setting(&own, &setting.found, nullptr), "fit");
         out << "setting   " << setting.label << format(", %s", counted(setting.found.images, "picture").c_str())
             << (setting.found.usable ? "" : "; not a profile to store") << "\n";
-        print_vignettings(*profile_of(own), out);
+        print_vignettings(*profile_of(result_of(report.fit, setting.found)), out);
     }
 }
 

@@ -14,6 +14,7 @@
 #include "fit/prior/stored_prior.hpp"
 #include "fit/problem/residual.hpp"
 #include "fit/problem/tracks.hpp"
+#include "fit/verdict/output.hpp"
 
 using namespace lensprof;
 
@@ -225,7 +226,9 @@ struct Call {
     std::vector<lensprof_fit_image> images;
     lensprof_fit_result result;
     std::vector<lensprof_fit_image_quality> quality;
-    std::vector<lensprof_fit_setting> settings;  // none where all images are of setting 0
+    std::vector<lensprof_fit_setting> settings;      // none where all images are of setting 0
+    lensprof_fit_setting *given_settings = nullptr;  // the caller's array, or NULL
+    uint32_t given_setting_count = 0;
 
     uint32_t count() const { return static_cast<uint32_t>(images.size()); }
     int channels() const { return static_cast<int>(options.channels); }
@@ -240,9 +243,10 @@ lensprof_status take_images(const lensprof_fit_image *given, uint32_t count, std
 
 // Room for what is found of the lens settings, where there are several or the caller asks for them.
 lensprof_status take_settings(const lensprof_fit_result &given, Call &call, lensprof_error *error) {
-    lensprof_fit_result taken;
+    lensprof_fit_result taken;  // without these members where the caller's is older
     lensprof_fit_result_init(&taken);
     lp_sized_copy(&taken, &given);
+    call.given_settings = taken.settings, call.given_setting_count = taken.setting_count;
     const bool is_by_pairs =
         call.options.method == LENSPROF_METHOD_TRANSFER_FUNCTION || call.options.method == LENSPROF_METHOD_DEBEVEC;
     uint32_t last = 0;
@@ -269,15 +273,13 @@ lensprof_status take_settings(const lensprof_fit_result &given, Call &call, lens
     return LENSPROF_OK;
 }
 
-// Into the caller's array, which may have fewer elements than this library's.
-void give_settings(const Call &call, const lensprof_fit_result &given) {
-    lensprof_fit_result taken;
-    lensprof_fit_result_init(&taken);
-    lp_sized_copy(&taken, &given);
-    auto *bytes = reinterpret_cast<char *>(taken.settings);
+// Into the caller's array, which may have fewer elements than this library's. Its place and size stay in the result.
+void give_settings(Call &call) {
+    auto *bytes = reinterpret_cast<char *>(call.given_settings);
     const size_t step = bytes ? lp_sized_bytes(bytes) : 0;
-    for (size_t n = 0; bytes && n < std::min<size_t>(taken.setting_count, call.settings.size()); n++)
+    for (size_t n = 0; bytes && n < std::min<size_t>(call.given_setting_count, call.settings.size()); n++)
         lp_sized_copy(bytes + n * step, &call.settings[n]);
+    call.result.settings = call.given_settings, call.result.setting_count = call.given_setting_count;
 }
 
 // What both fits ask of everything but the pairs or observations.
@@ -334,11 +336,7 @@ lensprof_status run(Call &call, lensprof_fit_result *result, lensprof_error *err
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - began;
     if (status != LENSPROF_OK) return status;
     call.result.seconds = taken.count();
-    give_settings(call, *result);
-    lensprof_fit_result given;  // whose pointer and count stay
-    lensprof_fit_result_init(&given);
-    lp_sized_copy(&given, result);
-    call.result.settings = given.settings, call.result.setting_count = given.setting_count;
+    give_settings(call);
     give_result(call.result, call.quality, result);
     return LENSPROF_OK;
 }
@@ -541,18 +539,9 @@ lensprof_status lensprof_fit_result_take_setting(lensprof_fit_result *result, co
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
     if (!setting.images)
         return fail(LENSPROF_ERROR_ARGUMENT, error, "setting: no image of it joined; take one that has images");
-    own.usable = setting.usable;
-    std::copy_n(setting.reason, sizeof own.reason, own.reason);
-    std::copy_n(setting.vignetting, 3, own.vignetting);
-    std::copy_n(setting.radius_ends, LENSPROF_COVERAGE_BINS, own.radius_ends);
+    copy_setting(setting, own);
     own.pairs = setting.pairs;
     own.left_out = 0;
-    own.reason_code = setting.reason_code;
-    own.reason_values = setting.reason_values;
-    own.reason_item = setting.reason_item;
-    std::copy_n(setting.reason_value, 2, own.reason_value);
-    std::copy(std::begin(setting.covariance), std::end(setting.covariance), own.covariance);
-    std::copy(std::begin(setting.gamma_direction), std::end(setting.gamma_direction), own.gamma_direction);
     lp_sized_copy(result, &own);
     return LENSPROF_OK;
 }

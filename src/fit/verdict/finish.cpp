@@ -1,10 +1,10 @@
 #include "fit/verdict/finish.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <vector>
 
 #include "fit/verdict/evenness.hpp"
+#include "fit/verdict/output.hpp"
 #include "fit/verdict/quality.hpp"
 #include "fit/verdict/reason.hpp"
 
@@ -40,16 +40,7 @@ void give_setting(const Problem &problem, int number, const lensprof_fit_result 
     }
     for (uint32_t i = 0; i < problem.image_count; i++)
         setting.images += has_pairs[i] && problem.setting_of[i] == number;
-    setting.usable = r.usable;
-    std::copy_n(r.reason, sizeof r.reason, setting.reason);
-    std::copy_n(r.vignetting, 3, setting.vignetting);
-    std::copy_n(r.radius_ends, LENSPROF_COVERAGE_BINS, setting.radius_ends);
-    setting.reason_code = r.reason_code;
-    setting.reason_values = r.reason_values;
-    setting.reason_item = r.reason_item;
-    std::copy_n(r.reason_value, 2, setting.reason_value);
-    std::copy(std::begin(r.covariance), std::end(r.covariance), setting.covariance);
-    std::copy(std::begin(r.gamma_direction), std::end(r.gamma_direction), setting.gamma_direction);
+    copy_setting(r, setting);
 }
 
 }  // namespace

@@ -2,12 +2,28 @@
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <vector>
 
 #include <lensprof/fit.h>
 
 namespace lensprof {
+
+// What a result and each of its lens settings have in common: the verdict, and the numbers of one setting.
+template <class From, class To>
+void copy_setting(const From &from, To &to) {
+    to.usable = from.usable;
+    std::copy(std::begin(from.reason), std::end(from.reason), to.reason);
+    to.reason_code = from.reason_code;
+    to.reason_values = from.reason_values;
+    to.reason_item = from.reason_item;
+    std::copy(std::begin(from.reason_value), std::end(from.reason_value), to.reason_value);
+    std::copy(std::begin(from.vignetting), std::end(from.vignetting), to.vignetting);
+    std::copy(std::begin(from.radius_ends), std::end(from.radius_ends), to.radius_ends);
+    std::copy(std::begin(from.covariance), std::end(from.covariance), to.covariance);
+    std::copy(std::begin(from.gamma_direction), std::end(from.gamma_direction), to.gamma_direction);
+}
 
 struct Output {
     std::unique_ptr<lensprof_fit_result> result;
