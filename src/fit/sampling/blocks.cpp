@@ -117,9 +117,9 @@ std::optional<double> wide_likeness(const GreyLevels &first, double x, double y,
     for (size_t n = 0; n < first.wide.size(); n++) {
         Block<3> a, b;
         const double pixel = first.wide[n].pixel;
-        if (!a.cut(first.wide[n], x, y, pixel, kUpright) || !b.cut(second.wide[n], sight.x, sight.y, pixel, sight.map))
+        if (!a.cut_flat(first.wide[n], x, y, pixel, kUpright)
+            || !b.cut_flat(second.wide[n], sight.x, sight.y, pixel, sight.map))
             return std::nullopt;
-        a.take_out_gradient(), b.take_out_gradient();
         if (std::max(a.texture, b.texture) < kTexture || 2 * a.shared(b) < Block<3>::kCount) continue;
         return a.correlation(b);
     }

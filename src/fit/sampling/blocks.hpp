@@ -49,40 +49,16 @@ struct Block {
 
     // (x, y): full frame. `map` turns and scales the square, given in px of the full frame `pixel` apart.
     bool cut(const GreyLevels::Level &level, double x, double y, double pixel, const double map[2][2]) {
-        const double u0 = (x + 0.5) / level.pixel, v0 = (y + 0.5) / level.pixel, step = pixel / level.pixel;
-        float sum = 0.0f;
-        lost = 0;
-        for (int k = 0; k < kCount; k++) {
-            const double a = step * (k % kSide - reach), b = step * (k / kSide - reach);
-            const double u = std::floor(u0 + map[0][0] * a + map[0][1] * b);
-            const double v = std::floor(v0 + map[1][0] * a + map[1][1] * b);
-            if (!(u >= 0.0 && v >= 0.0 && u < level.width && v < level.height)) return false;
-            const float one =
-                level.grey[static_cast<size_t>(v) * static_cast<size_t>(level.width) + static_cast<size_t>(u)];
-            grey[static_cast<size_t>(k)] = one;
-            lost += is_lost_grey(one);
-            sum += one;
-        }
-        for (size_t k = 0; k < kCount; k++) value[k] = grey[k] - sum / kCount;
-        normalise();
-        return true;
+        const bool is_seen = gather(level, x, y, pixel, map);
+        if (is_seen) normalise();
+        return is_seen;
     }
 
-    // Takes out the gradient over the block, which is that of light or falloff and shows no place.
-    void take_out_gradient() {
-        const auto length = static_cast<float>(texture * std::sqrt(double(kCount)));
-        for (float &one : value) one *= length;
-        float along[2] = {0.0f, 0.0f}, squares = 0.0f;
-        for (int k = 0; k < kCount; k++) {
-            const auto a = static_cast<float>(k % kSide - reach), b = static_cast<float>(k / kSide - reach);
-            along[0] += a * value[static_cast<size_t>(k)], along[1] += b * value[static_cast<size_t>(k)];
-            squares += a * a;
-        }
-        for (int k = 0; k < kCount; k++)
-            value[static_cast<size_t>(k)] -=
-                (along[0] * static_cast<float>(k % kSide - reach) + along[1] * static_cast<float>(k / kSide - reach))
-                / squares;
-        normalise();
+    // The same without the gradient over the block, which is that of light or falloff and shows no place.
+    bool cut_flat(const GreyLevels::Level &level, double x, double y, double pixel, const double map[2][2]) {
+        const bool is_seen = gather(level, x, y, pixel, map);
+        if (is_seen) take_out_gradient(), normalise();
+        return is_seen;
     }
 
     // 0 where too few pixels count.
@@ -101,6 +77,39 @@ struct Block {
     }
 
 private:
+    // `value` less its mean.
+    bool gather(const GreyLevels::Level &level, double x, double y, double pixel, const double map[2][2]) {
+        const double u0 = (x + 0.5) / level.pixel, v0 = (y + 0.5) / level.pixel, step = pixel / level.pixel;
+        float sum = 0.0f;
+        lost = 0;
+        for (int k = 0; k < kCount; k++) {
+            const double a = step * (k % kSide - reach), b = step * (k / kSide - reach);
+            const double u = std::floor(u0 + map[0][0] * a + map[0][1] * b);
+            const double v = std::floor(v0 + map[1][0] * a + map[1][1] * b);
+            if (!(u >= 0.0 && v >= 0.0 && u < level.width && v < level.height)) return false;
+            const float one =
+                level.grey[static_cast<size_t>(v) * static_cast<size_t>(level.width) + static_cast<size_t>(u)];
+            grey[static_cast<size_t>(k)] = one;
+            lost += is_lost_grey(one);
+            sum += one;
+        }
+        for (size_t k = 0; k < kCount; k++) value[k] = grey[k] - sum / kCount;
+        return true;
+    }
+
+    void take_out_gradient() {
+        float along[2] = {0.0f, 0.0f}, squares = 0.0f;
+        for (int k = 0; k < kCount; k++) {
+            const auto a = static_cast<float>(k % kSide - reach), b = static_cast<float>(k / kSide - reach);
+            along[0] += a * value[static_cast<size_t>(k)], along[1] += b * value[static_cast<size_t>(k)];
+            squares += a * a;
+        }
+        for (int k = 0; k < kCount; k++)
+            value[static_cast<size_t>(k)] -=
+                (along[0] * static_cast<float>(k % kSide - reach) + along[1] * static_cast<float>(k / kSide - reach))
+                / squares;
+    }
+
     void normalise() {
         float square = 0.0f;
         for (const float one : value) square += one * one;

@@ -60,6 +60,8 @@ constexpr double kFarMatch = 0.6;        // and of those found far about: the be
 constexpr double kOfCoarse = 0.5;        // texture of a block on the fine level, in that on the coarse one,
 constexpr double kFineTexture = 0.0075;  // or standard deviation, grey value 0..1
 constexpr double kRight = 0.85;          // mean correlation of a project that is right
+constexpr double kInPlace = 0.6;         // the same, where blocks say that no small correction is needed
+constexpr double kSmallestShift = 0.5;   // fine pixels: corrections that move places by less are none
 constexpr double kBetter = 0.02;         // mean correlation by which a correction must be better than none,
 constexpr double kClearlyBetter = 0.1;   // the same, where many blocks show what moved or lies at other distances
 constexpr double kPreferred = 0.05;      // difference of correlations that tells
@@ -147,6 +149,7 @@ struct Matcher {
     bool is_better(const Correction &correction, const Correlations &by, const Correction &than,
                    const Correlations &without) const;
     double median_shift(const Correction &from, const Correction &to) const;
+    bool is_in_place(const Correlations &alike) const;
 };
 
 // What of the first frame the second sees, about: shares of its width and height. False where it sees nothing.
@@ -184,8 +187,7 @@ void Matcher::find_places() {
             Sight at;
             bool good = sight(first, second, {}, Way::forward, p.x, p.y, at);
             for (size_t n = 0; n < 2 && good; n++)
-                good = p.block[n].cut(first_grey.level[n], p.x, p.y, first_grey.level[n].pixel, kUpright);
-            for (auto &block : p.block) block.take_out_gradient();
+                good = p.block[n].cut_flat(first_grey.level[n], p.x, p.y, first_grey.level[n].pixel, kUpright);
             if (good && is_textured(p)) places.push_back(p);
         }
     std::stable_sort(places.begin(), places.end(),
@@ -198,10 +200,7 @@ void Matcher::find_places() {
 // The second image's block, (du, dv) level pixels beside where it is expected.
 bool Matcher::cut(size_t n, const Sight &at, double du, double dv, Block<4> &out) const {
     const auto &level = second_grey.level[n];
-    const bool is_seen =
-        out.cut(level, at.x + du * level.pixel, at.y + dv * level.pixel, first_grey.level[n].pixel, at.map);
-    if (is_seen) out.take_out_gradient();
-    return is_seen;
+    return out.cut_flat(level, at.x + du * level.pixel, at.y + dv * level.pixel, first_grey.level[n].pixel, at.map);
 }
 
 Correlations Matcher::correlations(size_t n, const Correction &correction) const {
@@ -421,7 +420,19 @@ bool Matcher::is_better(const Correction &correction, const Correlations &by, co
     const double before = mean_of(without, compared), found = mean_of(by, found_in);
     const bool is_match = found_in < kFewest ? found > kMatchOfFew : found > kMatch || found > before + kClearlyBetter;
     return 2 * found_in > compared && is_match && found > before + kBetter && most_prefer(by, without)
-           && median_shift(than, correction) > 0.5 * second_grey.level[1].pixel;
+           && median_shift(than, correction) > kSmallestShift * second_grey.level[1].pixel;
+}
+
+// Whether blocks match where the project has them, and no better a little off: noise keeps their correlations low where
+// it is right, too. `alike`: without a correction.
+bool Matcher::is_in_place(const Correlations &alike) const {
+    size_t compared;
+    const double mean = mean_of(alike, compared);
+    Rotation turned{};
+    Correction bent{turned, Bend(Eigen::Matrix3d::Identity())};
+    if (compared < kFewest || !(mean > kInPlace) || !refine(1, kNoShift, turned) || !refine_bend(1, bent)) return false;
+    const double most = kSmallestShift * second_grey.level[1].pixel;
+    return median_shift({}, {turned, {}}) < most && median_shift({}, bent) < most;
 }
 
 std::optional<Rotation> Matcher::rotation(const double shift[2]) const {
@@ -457,7 +468,7 @@ Correction registration(const lensprof_camera &first, const GreyLevels &first_gr
         const Correlations own = matcher.correlations(1, other);
         if (matcher.is_better(other, own, found, alike)) found = other, alike = own;
     };
-    if (is_right()) return found;
+    if (is_right() || matcher.is_in_place(alike)) return found;
     double shift[2];  // where both rotations begin
     matcher.common_shift(shift);
     if (const auto rotation = matcher.rotation(shift)) take_if_better({*rotation, {}});
