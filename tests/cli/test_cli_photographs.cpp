@@ -1,10 +1,13 @@
 // `build` of pictures and folders that are in no project.
+#include <cmath>
 #include <map>
+#include <random>
 
 #include "cli/pictures/picture.hpp"
 #include "cli/registration/registration.hpp"
 
 #include "cli_runs.hpp"
+#include "picture_files.hpp"
 
 using namespace cli_runs;
 
@@ -174,6 +177,81 @@ void test_odd_files_among_good_ones(void **) {
     assert_true(contains(run.err, "empty1.jpg") && contains(run.err, "empty2.jpg") && !contains(run.err, "a copy of"));
 }
 
+// Pictures by a camera that moved above the ground, which it sees from aside: sRGB of radiances, falloff, exposures.
+constexpr double moved_ev[] = {0.0, 0.5, -0.4, 0.3, -0.2}, moved_k1 = -0.35;
+constexpr uint32_t moved_width = 640, moved_height = 480, ground = 2400;
+
+std::vector<float> make_ground() {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    const auto below = [&](double most) { return static_cast<uint32_t>(most * uniform(random)); };
+    std::vector<float> canvas(size_t{ground} * ground, 0.2f);
+    for (int n = 0; n < 9000; n++) {
+        const auto light = static_cast<float>(0.03 + 0.5 * uniform(random));
+        const uint32_t x0 = below(ground), y0 = below(ground), w = 12 + below(60), h = 12 + below(60);
+        for (uint32_t y = y0; y < std::min(ground, y0 + h); y++)
+            for (uint32_t x = x0; x < std::min(ground, x0 + w); x++) canvas[size_t{y} * ground + x] = light;
+    }
+    return canvas;
+}
+
+void write_moved(const std::string &folder) {
+    fs::create_directories(folder);
+    const std::vector<float> canvas = make_ground();
+    for (uint32_t i = 0; i < 5; i++) {
+        Picture picture;
+        picture.width = moved_width, picture.height = moved_height, picture.row_bytes = 3 * moved_width;
+        picture.layout = LENSPROF_LAYOUT_RGB, picture.sample = LENSPROF_SAMPLE_U8;
+        picture.pixels.resize(size_t{3} * moved_width * moved_height);
+        for (uint32_t y = 0; y < moved_height; y++)
+            for (uint32_t x = 0; x < moved_width; x++) {
+                const double away = 1.0 / (0.6 + y / 480.0), u = x - 319.5, v = y - 239.5;
+                const auto across = static_cast<size_t>(600.0 + u * away + 110.0 * i);
+                const size_t at = static_cast<size_t>(1200.0 * away) * ground + across;
+                const double light =
+                    std::exp2(moved_ev[i]) * (1.0 + moved_k1 * (u * u + v * v) / (400.0 * 400.0)) * double(canvas[at]);
+                const double grey = light < 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+                for (size_t c = 0; c < 3; c++)
+                    picture.pixels[(size_t{y} * moved_width + x) * 3 + c] =
+                        static_cast<uint8_t>(std::lround(255.0 * std::min(grey, 1.0)));
+            }
+        write_tiff_file(folder + "/moved" + std::to_string(i) + ".tif", picture, {});
+    }
+}
+
+// They are compared where they match, and again so from the records of `calibrate`.
+void test_a_camera_that_moved(void **) {
+    if (is_missing()) return;
+    write_moved(work("moved"));
+    const auto is_right = [](const Json &json) {
+        double both = 0.0, squares = 0.0;  // of the exponent that pictures leave open
+        for (size_t i = 0; i < 5; i++) {
+            const double ev = json["images"][i]["ev"].get<double>();
+            both += ev * moved_ev[i], squares += ev * ev;
+        }
+        const double slope = both / squares;
+        assert_true(slope > 0.6 && slope < 1.6);
+        for (size_t i = 0; i < 5; i++) assert_close(slope * json["images"][i]["ev"].get<double>(), moved_ev[i], 0.02);
+        assert_close(std::pow(corner_of(json), slope), 1.0 + moved_k1, 0.03);
+    };
+    const Outcome run = run_words(Words{"build", work("moved")} + quietly);
+    if (run.code != done) print_error("%s\n", run.err.c_str());
+    assert_int_equal(run.code, done);
+    assert_true(contains(run.err, "compared where they match"));
+    is_right(Json::parse(run.out));
+    assert_true(Json::parse(run.out)["images"] == json_of(Words{"build", work("moved")} + quietly)["images"]);
+    is_right(json_of(Words{"build", work("moved"), "--method", "radiance"} + quietly));
+
+    const Words calibrate{"calibrate", work("moved"), "-o", work("moved_out"), "--no-store"};
+    must_exit(done, calibrate);
+    const Json first = Json::parse(text_of(work("moved_out/calibrate.json")));
+    is_right(first["panoramas"][0]["result"]);
+    fs::remove(work("moved_out/panorama_moved0.pto"));  // fitted again, by what the records have of the registration
+    must_exit(done, calibrate);
+    const Json second = Json::parse(text_of(work("moved_out/calibrate.json")));
+    assert_true(second["panoramas"][0]["result"]["images"] == first["panoramas"][0]["result"]["images"]);
+}
+
 void test_refused(void **) {
     if (is_missing()) return;
     simulate("one", {"--images", "2", "--seed", "31"});
@@ -211,6 +289,7 @@ int main() {
         CLI_TEST(test_the_preview_is_even),
         CLI_TEST(test_one_lens_keeps_the_geometry),
         CLI_TEST(test_odd_files_among_good_ones),
+        CLI_TEST(test_a_camera_that_moved),
         CLI_TEST(test_refused),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -170,6 +170,10 @@ static void print_structs(void) {
     FIELD(lensprof_sample_options, reserved2);
     FIELD(lensprof_sample_options, response);
     FIELD(lensprof_sample_options, vignetting);
+    STRUCT(lensprof_match);
+    FIELD(lensprof_match, image);
+    FIELD(lensprof_match, xy);
+    FIELD(lensprof_match, map);
     STRUCT(lensprof_fit_image);
     FIELD(lensprof_fit_image, struct_size);
     FIELD(lensprof_fit_image, width);
@@ -556,6 +560,7 @@ static void print_values(void) {
     VALUE(LENSPROF_ITEM_SHOT);
     VALUE(LENSPROF_ITEM_PROFILE);
     VALUE(LENSPROF_ITEM_FRAME);
+    VALUE(LENSPROF_ITEM_MATCH);
     VALUE(LENSPROF_RESPONSE_LINEAR);
     VALUE(LENSPROF_RESPONSE_GAMMA);
     VALUE(LENSPROF_RESPONSE_EMOR);

@@ -24,6 +24,24 @@ class Sampling(unittest.TestCase):
                     there = other.unproject(others[at, 0], others[at, 1])
                     np.testing.assert_allclose(here[at], there, atol=1e-9)
 
+    def test_matches(self):
+        true = lp.sample_overlap(sample_images(pictures()), lp.SampleOptions(pairs=900))
+        matches = np.zeros(len(true), lp.MATCH_DTYPE)
+        matches["image"], matches["xy"] = true["image"], true["xy"]
+        options = lp.SampleOptions(pairs=500)
+        pairs = lp.sample_matches(sample_images(pictures()), matches, options)
+        self.assertEqual(pairs.dtype, lp.PAIR_DTYPE)
+        self.assertGreater(len(pairs), 400)
+        known = {tuple(xy) for xy in true["xy"].reshape(-1, 4)}
+        self.assertTrue(all(tuple(xy) in known for xy in pairs["xy"].reshape(-1, 4)))
+        self.assertTrue((options.links["state"] == lp.LinkState.VERIFIED).all())
+        with self.assertRaises(TypeError):
+            lp.sample_matches(sample_images(pictures()), true)
+        matches["image"][3] = 7
+        with refused(self, lp.Status.ERROR_ARGUMENT) as caught:
+            lp.sample_matches(sample_images(pictures()), matches)
+        self.assertEqual((caught.exception.item_kind, caught.exception.item_index), (lp.ItemKind.MATCH, 3))
+
     def test_tracks(self):
         tracks = lp.sample_tracks(sample_images(pictures()), lp.SampleOptions(pairs=500))
         self.assertEqual(tracks.dtype, lp.OBSERVATION_DTYPE)

@@ -18,6 +18,7 @@ static lensprof_pto *pto;
 static lensprof_store *store;
 static const lensprof_profile *const profiles[1] = {&here.profile};
 static const lensprof_pair one_pair = {{0, 1}, {{10, 10}, {20, 20}}, {{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}}};
+static const lensprof_match one_match = {{0, 1}, {{40, 30}, {40, 30}}, {{0}}};
 static const lensprof_camera cameras[2] = {{.width = WIDTH, .height = HEIGHT}, {.width = WIDTH, .height = HEIGHT}};
 static lensprof_export_options as_json;
 static const lensprof_frame_time frames[2] = {{"00000", 0.0, 1.5}, {"00001", 0.5, 2.0}};
@@ -59,6 +60,8 @@ ELEMENTS(store_list_lenses, lensprof_store_list_lenses(store, NULL, b, capacity,
 ELEMENTS(store_list_cameras, lensprof_store_list_cameras(store, NULL, b, capacity, count, error))
 ELEMENTS(store_list_camera_models, lensprof_store_list_camera_models(store, b, capacity, count, error))
 ELEMENTS(sample_overlap, lensprof_sample_overlap(&here.sample, here.samples, 2, b, capacity, count, error))
+ELEMENTS(sample_matches,
+         lensprof_sample_matches(&here.sample, here.samples, 2, &one_match, 1, b, capacity, count, error))
 ELEMENTS(sample_tracks, lensprof_sample_tracks(&here.sample, here.samples, 2, b, capacity, count, error))
 
 #define ROW(name, element, kind) \
@@ -96,6 +99,7 @@ static const struct {
     ROW(store_list_cameras, sizeof(lensprof_store_summary), OTHERS),
     ROW(store_list_camera_models, sizeof(lensprof_camera_model), OTHERS),
     ROW(sample_overlap, sizeof(lensprof_pair), UP_TO),
+    ROW(sample_matches, sizeof(lensprof_pair), UP_TO),
     ROW(sample_tracks, sizeof(lensprof_observation), UP_TO),
 };
 #define ROWS (sizeof table / sizeof *table)

@@ -11,7 +11,7 @@ from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_
                    SampleType, Sampling, Saturated, Status, StoreMode)
 from ._abi import VERSION as __version__  # noqa: F401
 from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE_QUALITY_DTYPE, LINK_DTYPE,
-                      OBSERVATION_DTYPE, PAIR_DTYPE)
+                      MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE)
 from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_type_bytes, simulate
 from .fit import FitImage, FitOptions, FitResult, FitSetting, fit_overlap, fit_radiance, transfer_rms
@@ -27,7 +27,7 @@ from .geometry import Camera
 from .model import Exposure, GainGrid, Response, Vignetting, emor_table, half_diagonal
 from .profile import CameraModel, Profile, ProfileKey, Provenance
 from .reason import Item, reason_name, reason_text
-from .sample import SampleImage, SampleOptions, sample_overlap, sample_tracks
+from .sample import SampleImage, SampleOptions, sample_matches, sample_overlap, sample_tracks
 from .store import Lookup, LookupOptions, Store, StoreFault, StoreName, StoreRow, StoreStats, StoreSummary, lookup_in
 
 __all__ = [
@@ -36,7 +36,7 @@ __all__ = [
     "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResponse", "FitResult",
     "FitSetting", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime",
     "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE",
-    "Layout", "LinkState", "Lookup", "LookupOptions", "Loss", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE",
+    "Layout", "LinkState", "Lookup", "LookupOptions", "Loss", "MATCH_DTYPE", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE",
     "PAIR_DTYPE", "Pack", "Plan", "Processing", "Profile", "ProfileKey", "ProfilePrior", "Projection", "Provenance",
     "Pto", "PtoImage", "RESPONSE_SAMPLES", "Reason", "Response", "ResponseFrom", "ResponseKind", "SETTINGS_MAX", "SampleImage",
     "SampleOptions", "SampleType", "Sampling", "Saturated", "Status", "Store", "StoreFault", "StoreMode", "StoreName",
@@ -46,7 +46,7 @@ __all__ = [
     "import_profiles", "json_read", "json_write", "layout_channels", "layout_samples", "lcp_read", "lcp_write",
     "lensfun_read", "lensfun_read_cameras", "lensfun_write", "lookup_in", "map_read", "map_write", "pcalib_read",
     "pcalib_write", "points_read", "points_write", "radical_response_read", "radical_response_write",
-    "radical_vignetting_read", "radical_vignetting_write", "reason_name", "reason_text", "sample_overlap",
+    "radical_vignetting_read", "radical_vignetting_write", "reason_name", "reason_text", "sample_matches", "sample_overlap",
     "sample_tracks", "sample_type_bytes", "simulate", "status_name", "times_read", "times_write", "transfer_rms",
     "version",
 ]

@@ -68,6 +68,7 @@ class ItemKind(IntEnum):
     SHOT = 5
     PROFILE = 6
     FRAME = 7
+    MATCH = 8
 
 
 class ResponseKind(IntEnum):
@@ -655,6 +656,14 @@ class SampleOptions(Structure):
     ]
 
 
+class Match(Structure):
+    _fields_ = [
+        ("image", c_uint32 * 2),
+        ("xy", c_double * 2 * 2),
+        ("map", c_double * 2 * 2),
+    ]
+
+
 class FitImage(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -1162,6 +1171,7 @@ STRUCTS = {
     "lensprof_sample_image": SampleImage,
     "lensprof_link": Link,
     "lensprof_sample_options": SampleOptions,
+    "lensprof_match": Match,
     "lensprof_fit_image": FitImage,
     "lensprof_fit_options": FitOptions,
     "lensprof_fit_image_quality": FitImageQuality,
@@ -1295,6 +1305,8 @@ FUNCTIONS = {
                                         POINTER(c_uint32), POINTER(ErrorText)]),
     "lensprof_sample_tracks": (c_int, [POINTER(SampleOptions), POINTER(SampleImage), c_uint32, POINTER(Observation),
                                        c_uint32, POINTER(c_uint32), POINTER(ErrorText)]),
+    "lensprof_sample_matches": (c_int, [POINTER(SampleOptions), POINTER(SampleImage), c_uint32, POINTER(Match),
+                                        c_uint32, POINTER(Pair), c_uint32, POINTER(c_uint32), POINTER(ErrorText)]),
     # fit.h
     "lensprof_fit_image_init_sized": (None, [POINTER(FitImage), c_size_t, c_uint32, c_uint32, c_uint32]),
     "lensprof_fit_options_init_sized": (None, [POINTER(FitOptions), c_size_t]),

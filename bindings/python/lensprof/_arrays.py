@@ -34,6 +34,9 @@ IMAGE_QUALITY_DTYPE = _dtype(_abi.FitImageQuality)
 """Layout of an image's quality: ev_sigma, white_balance_sigma[3], median_residual, known_ev_residual, radius, grey_low,
 grey_high, pairs, inliers, component, known_ev_left_out, joined."""
 
+MATCH_DTYPE = _dtype(_abi.Match)
+"""Layout of two places that show the same: image[2], xy[2][2] (px of the full frame), map[2][2] (d xy[1] / d xy[0])."""
+
 LINK_DTYPE = _dtype(_abi.Link)
 """Layout of two images that overlap: image[2], state (LinkState), pairs."""
 
@@ -146,6 +149,11 @@ def pairs(array: np.ndarray) -> tuple[Any, int]:
 def observations(array: np.ndarray) -> tuple[Any, int]:
     """Pointer and length of an array of OBSERVATION_DTYPE."""
     return structured(array, OBSERVATION_DTYPE, _abi.Observation, "observations")
+
+
+def matches(array: np.ndarray) -> tuple[Any, int]:
+    """Pointer and length of an array of MATCH_DTYPE."""
+    return structured(array, MATCH_DTYPE, _abi.Match, "matches")
 
 
 def links(array: np.ndarray) -> tuple[Any, int]:

@@ -73,17 +73,17 @@ class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
 
 
 def _sample(function: Any, images: Sequence[SampleImage], options: Optional[SampleOptions], dtype: np.dtype,
-            data: Callable[[np.ndarray], tuple[Any, int]]) -> np.ndarray:
+            data: Callable[[np.ndarray], tuple[Any, int]], *more: Any) -> np.ndarray:
     images, options, error = list(images), options or SampleOptions(), _abi.ErrorText()
     views = (_abi.SampleImage * len(images))(*[image._view(i) for i, image in enumerate(images)])
     room, found = c_uint32(), c_uint32()
-    check(function(byref(options), views, len(views), None, 0, byref(room), byref(error)), "sampling failed", error)
+    check(function(byref(options), views, len(views), *more, None, 0, byref(room), byref(error)), "sampling failed", error)
     out = np.empty(room.value, dtype=dtype)
     links, link_count = np.zeros(min(len(views) * (len(views) - 1) // 2, 1 << 20), dtype=_arrays.LINK_DTYPE), c_uint32()
     with calling(options) as call:
         call.links, call.link_capacity = _arrays.address(links, _abi.Link), len(links)
         call.link_count = pointer(link_count)
-        status = function(byref(call), views, len(views), *data(out), byref(found), byref(error))
+        status = function(byref(call), views, len(views), *more, *data(out), byref(found), byref(error))
     check(status, "sampling failed", error)
     options._links = links[:link_count.value]
     return out[:found.value]
@@ -103,3 +103,15 @@ def sample_tracks(images: Sequence[SampleImage], options: Optional[SampleOptions
     There are at most options.pairs points (0 = 150 per image, at least 2000), each with up to 16 observations.
     """
     return _sample(lib.lensprof_sample_tracks, images, options, _arrays.OBSERVATION_DTYPE, _arrays.observations)
+
+
+def sample_matches(images: Sequence[SampleImage], matches: np.ndarray,
+                   options: Optional[SampleOptions] = None) -> np.ndarray:
+    """Measures correspondences at places that are known to match, an array of MATCH_DTYPE: an array of PAIR_DTYPE.
+
+    For pictures by a camera that moved; only width and height of the cameras are looked at. `map` of a match, how its
+    surroundings are turned and scaled, may be all 0: the pair then comes from the match itself, else from the quietest
+    place near it.
+    """
+    address, count = _arrays.matches(matches)
+    return _sample(lib.lensprof_sample_matches, images, options, _arrays.PAIR_DTYPE, _arrays.pairs, address, count)

@@ -1,5 +1,6 @@
 // Which pictures belong together.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include <lensprof/lensprof.h>
@@ -18,7 +19,7 @@ namespace {
 struct Group {
     std::vector<const InputPicture *> pictures;
     std::string geometry;
-    Json facts;
+    Json matches, facts;
 };
 
 struct Groups {
@@ -32,10 +33,24 @@ std::string key_of(const std::vector<const InputPicture *> &pictures, const std:
     return digest_of_text(text);
 }
 
+// Flat, to the hundredth of a px: image, image, x, y, x, y, and the four numbers of the map.
+Json json_of_matches(const std::vector<lensprof_match> &matches) {
+    Json list = Json::array();
+    for (const lensprof_match &m : matches) {
+        for (uint32_t image : m.image) list.push_back(image);
+        for (const auto &xy : m.xy)
+            for (double coordinate : xy) list.push_back(std::round(100.0 * coordinate) / 100.0);
+        for (const auto &row : m.map)
+            for (double by : row) list.push_back(std::round(1e4 * by) / 1e4);
+    }
+    return list;
+}
+
 Group group_of(const FoundProject &found, const std::vector<const InputPicture *> &all) {
     Group group;
     for (const uint32_t number : found.pictures) group.pictures.push_back(all[number]);
     group.geometry = text_of_found(found);
+    group.matches = {{"are_all", found.by_matches}, {"list", json_of_matches(found.matches)}};
     group.facts = {{"camera", found.kind == SceneKind::plane ? "moved over a plane" : "turned about one point"},
                    {"links", found.links},
                    {"links_unfit", found.unfit},
@@ -115,7 +130,8 @@ Json json_of(const Groups &groups, const std::string &key) {
     for (const Group &group : groups.list) {
         Json files = Json::array();
         for (const InputPicture *picture : group.pictures) files.push_back(noted(picture->file));
-        list.push_back({{"files", files}, {"geometry", group.geometry}, {"facts", group.facts}});
+        list.push_back(
+            {{"files", files}, {"geometry", group.geometry}, {"matches", group.matches}, {"facts", group.facts}});
     }
     return {{"key", key},
             {"groups", list},
@@ -155,7 +171,9 @@ bool recall(const Json &notes, const std::string &key, const std::vector<const I
             if (picture == by_file.end()) return false;
             group.pictures.push_back(picture->second);
         }
+        if (!known.contains("matches")) return false;  // of an older version
         group.geometry = known["geometry"].get<std::string>();
+        group.matches = known["matches"];
         group.facts = known["facts"];
         groups.list.push_back(std::move(group));
     }
@@ -270,6 +288,7 @@ Panoramas find_panoramas(const CalibrateOptions &o, const Inputs &inputs, Ledger
         panorama.name = names[n];
         panorama.project = file_of(o, panorama.name, ".pto"), panorama.preview = file_of(o, panorama.name, ".jpg");
         panorama.pictures = group.pictures, panorama.geometry = group.geometry, panorama.key = keys[n];
+        panorama.matches = group.matches;
         panorama.source = source_of(ledger.notes, group, names[n]);
         panorama.summary = {{"name", panorama.name}, {"project", panorama.project}, {"preview", nullptr}};
         panorama.summary["pictures"] = group.pictures.size();

@@ -69,7 +69,7 @@ std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::
 // Its pictures of one camera.
 FoundProject of_body(const FoundProject &found, uint32_t body) {
     FoundProject kept = found;
-    kept.pictures.clear(), kept.cameras.clear(), kept.points.clear();
+    kept.pictures.clear(), kept.cameras.clear(), kept.points.clear(), kept.matches.clear();
     kept.lenses.clear(), kept.bodies.clear();
     std::set<std::pair<uint32_t, uint32_t>> links;
     std::vector<uint32_t> number(found.pictures.size(), UINT32_MAX);
@@ -81,13 +81,20 @@ FoundProject of_body(const FoundProject &found, uint32_t body) {
         kept.lenses.push_back(found.lenses[n]);
         kept.bodies.push_back(0);
     }
-    for (ControlPoint point : found.points) {
-        for (uint32_t &image : point.image) image = number[image];
-        if (std::max(point.image[0], point.image[1]) == UINT32_MAX) continue;
-        kept.points.push_back(point);
-        links.emplace(point.image[0], point.image[1]);
-    }
-    kept.links = static_cast<uint32_t>(links.size()), kept.unfit = 0;
+    std::set<std::pair<uint32_t, uint32_t>> unfit;
+    // Renumbers the images of a point; false where one is not kept.
+    const auto keep = [&](uint32_t *image, auto &of) {
+        for (int side = 0; side < 2; side++) image[side] = number[image[side]];
+        const bool is_kept = std::max(image[0], image[1]) != UINT32_MAX;
+        if (is_kept) of.emplace(image[0], image[1]);
+        return is_kept;
+    };
+    for (ControlPoint point : found.points)
+        if (keep(point.image, links)) kept.points.push_back(point);
+    for (lensprof_match match : found.matches)
+        if (keep(match.image, unfit)) kept.matches.push_back(match);
+    for (const auto &link : links) unfit.erase(link);
+    kept.links = static_cast<uint32_t>(links.size() + unfit.size()), kept.unfit = static_cast<uint32_t>(unfit.size());
     return kept;
 }
 
@@ -129,17 +136,20 @@ void keep_one_body(FoundProject &found, const std::vector<std::string> &names, L
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
                   LeftOut &left_out, Streams &streams) {
     const FoundProject &project = found.projects[0];
-    const std::string unfit = project.unfit ? format(", %u more do not fit the cameras", project.unfit) : "";
+    const std::string unfit =
+        project.unfit ? format(", %u more do not fit the cameras and are compared where they match", project.unfit)
+                      : "";
     note(streams,
          label
              + format(": %zu pictures overlap (%u links that fit%s; %.2f %% of the longer side is left; %s); "
                       "response, falloff, exposures and white balances are estimated, unless --free says else",
                       project.pictures.size(), project.links - project.unfit, unfit.c_str(), 100.0 * project.residual,
-                      project.kind == SceneKind::plane ? "a camera that moved over a plane"
+                      project.kind == SceneKind::plane ? "a camera that moved over a plane, compared where they match"
                                                        : "a camera that turned about one point"));
-    if (project.unfit == project.links)
-        warn(streams, label + ": no cameras fit the pictures well: distortion, parallax, or things that moved; a Hugin "
-                              "project may do better");
+    if (!project.cameras_fit())
+        warn(streams, label + ": no cameras fit the pictures well: parallax of a camera that moved, distortion, or "
+                              "things that moved. The pictures are compared where they match; a project or preview of "
+                              "them does not show the scene");
     for (size_t n = 1; n < found.projects.size(); n++)
         leave_out(found.projects[n].pictures, names,
                   "another group, which overlaps with none of these; give its pictures alone", left_out, streams);
@@ -195,6 +205,7 @@ Project project_of_pictures(const std::vector<std::string> &words, bool one_lens
         project.names.push_back(names[picture]);
         project.files.push_back(files[picture]);
     }
+    project.matches = own.matches, project.by_matches = own.by_matches;
     read_found(text_of_found(own), project);
     return project;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <set>
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -241,9 +242,51 @@ std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pic
 
 }  // namespace
 
+namespace {
+
+using ImagePair = std::pair<uint32_t, uint32_t>;
+
+template <class Item>
+ImagePair images_of(const Item &item) {
+    return std::minmax(item.image[0], item.image[1]);
+}
+
+// Pairs at the project's matches, as many as their links' share, and those of the cameras between other images.
+std::vector<lensprof_pair> sample_matches(const Project &project, std::vector<SamplePicture> &pictures,
+                                          lensprof_sample_options options, const GreyRange &range, Progress &progress,
+                                          std::vector<lensprof_link> &links) {
+    std::set<ImagePair> matched;
+    for (const lensprof_match &match : project.matches) matched.insert(images_of(match));
+    std::vector<lensprof_pair> pairs;
+    if (!project.by_matches)
+        pairs = sample<lensprof_pair>(project, pictures, options, range, progress, &links, lensprof_sample_overlap);
+    const auto is_matched = [&](const auto &item) { return matched.count(images_of(item)) > 0; };
+    pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_matched), pairs.end());
+    links.erase(std::remove_if(links.begin(), links.end(), is_matched), links.end());
+    const size_t wanted = options.pairs ? options.pairs : std::max<size_t>(2000, 300 * pictures.size());
+    options.pairs =
+        static_cast<uint32_t>(std::max<size_t>(1, wanted * matched.size() / (matched.size() + links.size())));
+    std::vector<lensprof_link> own_links;
+    const auto by_matches = [&](const lensprof_sample_options *o, const lensprof_sample_image *images, uint32_t count,
+                                lensprof_pair *own, uint32_t capacity, uint32_t *found, lensprof_error *error) {
+        return lensprof_sample_matches(o, images, count, project.matches.data(),
+                                       static_cast<uint32_t>(project.matches.size()), own, capacity, found, error);
+    };
+    const auto own = sample<lensprof_pair>(project, pictures, options, range, progress, &own_links, by_matches);
+    pairs.insert(pairs.end(), own.begin(), own.end());
+    links.insert(links.end(), own_links.begin(), own_links.end());
+    std::sort(links.begin(), links.end(), [](const auto &a, const auto &b) { return images_of(a) < images_of(b); });
+    return pairs;
+}
+
+}  // namespace
+
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
                                         lensprof_sample_options options, const GreyRange &range, Progress &progress,
                                         std::vector<lensprof_link> *links) {
+    std::vector<lensprof_link> unasked;
+    if (!project.matches.empty() && options.sampling == LENSPROF_SAMPLING_BALANCED)
+        return sample_matches(project, pictures, options, range, progress, links ? *links : unasked);
     return sample<lensprof_pair>(project, pictures, options, range, progress, links, lensprof_sample_overlap);
 }
 

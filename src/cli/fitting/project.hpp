@@ -21,7 +21,10 @@ struct Project {
     std::vector<std::string> files;  // path of each picture
     uint32_t reference = 0;          // image that the fit holds
 
-    // Of pictures that were in no project: those that are not part of it, and why; and how long finding it took.
+    // Of pictures that were in no project: where they show the same, of links that the cameras do not fit or of all
+    // (`by_matches`); those that are not part of it, and why; and how long finding it took.
+    std::vector<lensprof_match> matches;
+    bool by_matches = false;
     std::vector<std::pair<std::string, std::string>> left_out;
     double register_s = 0.0;
 };
@@ -86,7 +89,7 @@ struct GreyRange {
 };
 
 // The progress function of the options is set here.
-// `links` receives those of the pictures; or NULL.
+// `links` receives those of the pictures; or NULL. Pictures with matches give pairs there, and not by their cameras.
 std::vector<lensprof_pair> sample_pairs(const Project &project, std::vector<SamplePicture> &pictures,
                                         lensprof_sample_options options, const GreyRange &range, Progress &progress,
                                         std::vector<lensprof_link> *links);

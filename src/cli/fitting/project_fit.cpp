@@ -61,7 +61,8 @@ void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &p
     options.pairs = o.pairs;
     options.seed = o.seed;
     if (known) options.response = &known->result.response, options.vignetting = &green_falloff(known->result);
-    if (o.fit.method == LENSPROF_METHOD_RADIANCE) {
+    // The method radiance makes tracks of pairs where there are no cameras that would find more.
+    if (o.fit.method == LENSPROF_METHOD_RADIANCE && project.matches.empty()) {
         input.observations = sample_tracks(project, pictures, options, done.progress, &links);
         input.pairs = pairs_of_tracks(input.observations);
     } else {

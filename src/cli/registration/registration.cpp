@@ -18,6 +18,7 @@ namespace {
 
 constexpr double unfit = 0.005;         // median residual of a link that the cameras do not fit, of the longer side
 constexpr size_t points_per_link = 10;  // that a project is given
+constexpr size_t most_matches = 200;    // of a link whose pictures are compared where they match
 
 std::optional<double> hfov_by_metadata(const PictureMetadata &metadata, const Features &picture) {
     const lensprof_profile_key &key = metadata.key;
@@ -36,6 +37,21 @@ void add_points(const PictureLink &link, std::vector<ControlPoint> &points) {
     }
 }
 
+// The matches of a link, with the homography's derivative at each: how the surroundings are turned and scaled.
+void add_matches(const PictureLink &link, std::vector<lensprof_match> &matches) {
+    const cv::Matx33d &h = link.homography;
+    const size_t count = link.matches.size(), wanted = std::min(count, most_matches);
+    for (size_t n = 0; n < wanted; n++) {
+        const auto &[from, to] = link.matches[n * count / wanted];
+        const cv::Vec3d at = h * cv::Vec3d(from.x, from.y, 1.0);
+        lensprof_match match{{link.picture[0], link.picture[1]}, {{from.x, from.y}, {to.x, to.y}}, {}};
+        for (int e = 0; e < 2; e++)
+            for (int d = 0; d < 2; d++) match.map[e][d] = (h(e, d) - at[e] / at[2] * h(2, d)) / at[2];
+        const double turns = match.map[0][0] * match.map[1][1] - match.map[0][1] * match.map[1][0];
+        if (turns > 0.0) matches.push_back(match);
+    }
+}
+
 // The project of the pictures of one group; `links` are numbered as they are in the group.
 FoundProject project_of(std::vector<uint32_t> numbers, std::vector<uint32_t> bodies,
                         const std::vector<PictureOptics> &optics, const std::vector<PictureLink> &links) {
@@ -48,10 +64,14 @@ FoundProject project_of(std::vector<uint32_t> numbers, std::vector<uint32_t> bod
     project.cameras = std::move(found.cameras);
     project.links = static_cast<uint32_t>(links.size());
     std::vector<double> residuals;
+    const auto fits_link = [&](size_t n) { return found.link_residuals[n] <= unfit; };
+    for (size_t n = 0; n < links.size(); n++) project.unfit += !fits_link(n);
+    // Scenes are planes only nearly: what stands out of one is elsewhere, and matches know where.
+    project.by_matches = found.kind == SceneKind::plane || !project.cameras_fit();
     for (size_t n = 0; n < links.size(); n++) {
-        const bool fits = found.link_residuals[n] <= unfit;
-        project.unfit += !fits;
+        const bool fits = fits_link(n);
         if (fits) residuals.push_back(found.link_residuals[n]), add_points(links[n], project.points);
+        if (!fits || project.by_matches) add_matches(links[n], project.matches);
     }
     project.residual = median(residuals);
     return project;

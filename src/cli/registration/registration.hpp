@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <lensprof/geometry.h>
+#include <lensprof/sample.h>
 
 #include "cli/program/progress.hpp"
 #include "cli/registration/project_text.hpp"
@@ -23,11 +24,15 @@ struct FoundProject {
     std::vector<uint32_t> pictures;  // their numbers, ascending; the members below are in this order
     SceneKind kind = SceneKind::panorama;
     std::vector<lensprof_camera> cameras;
-    std::vector<uint32_t> bodies;      // those of one camera and size, upright or not, have one number,
-    std::vector<uint32_t> lenses;      // and those with one lens at one focal length besides
-    std::vector<ControlPoint> points;  // a few of every link that the cameras fit
-    uint32_t links = 0, unfit = 0;     // pictures that show the same; those of them that the cameras do not fit
-    double residual = 0.0;             // median over the links that fit, as a share of the longer side
+    std::vector<uint32_t> bodies;         // those of one camera and size, upright or not, have one number,
+    std::vector<uint32_t> lenses;         // and those with one lens at one focal length besides
+    std::vector<ControlPoint> points;     // a few of every link that the cameras fit
+    std::vector<lensprof_match> matches;  // of the links that they do not fit, or of all
+    bool by_matches = false;              // these, and not the cameras, say where pictures show the same
+    uint32_t links = 0, unfit = 0;        // pictures that show the same; those of them that the cameras do not fit
+    double residual = 0.0;                // median over the links that fit, as a share of the longer side
+
+    bool cameras_fit() const { return 2 * unfit <= links; }
 };
 
 struct Registration {

@@ -1,5 +1,6 @@
 // The C functions of sampling, and what they refuse.
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <vector>
 
@@ -14,9 +15,10 @@ constexpr uint32_t kLargestCount = 1u << 24;
 constexpr size_t kFirstOptions = LP_END_OF(lensprof_sample_options, progress_user);
 constexpr size_t kFirstImage = LP_END_OF(lensprof_sample_image, white);
 
-lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, lensprof_error *error) {
+// `by_cameras`: else only their width and height are looked at.
+lensprof_status check_image(const lensprof_sample_image &image, uint32_t i, bool by_cameras, lensprof_error *error) {
     if (image.reserved) return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "reserved is not 0");
-    lensprof_status status = lensprof_camera_validate(&image.camera);
+    const lensprof_status status = by_cameras ? lensprof_camera_validate(&image.camera) : LENSPROF_OK;
     if (status != LENSPROF_OK) return fail_at(LENSPROF_ITEM_IMAGE, i, status, error, "not a valid camera");
     return check_view(image, i, error);
 }
@@ -57,21 +59,59 @@ void give_links(const lensprof_sample_options &options, const std::vector<lenspr
     if (options.link_count) *options.link_count = static_cast<uint32_t>(links.size());
 }
 
-// draw(sampler) -> what was found.
+struct Matches {
+    const lensprof_match *list = nullptr;
+    uint32_t count = 0;
+};
+
+lensprof_status check_matches(const Matches &matches, const std::vector<lensprof_sample_image> &images,
+                              lensprof_error *error) {
+    for (uint32_t m = 0; m < matches.count; m++) {
+        const lensprof_match &match = matches.list[m];
+        const auto wrong = [&](const char *text) {
+            return fail_at(LENSPROF_ITEM_MATCH, m, LENSPROF_ERROR_ARGUMENT, error, "%s", text);
+        };
+        if (match.image[0] == match.image[1] || std::max(match.image[0], match.image[1]) >= images.size())
+            return wrong("image must be two different images of images[]");
+        for (int side = 0; side < 2; side++) {
+            const lensprof_camera &camera = images[match.image[side]].camera;
+            const double *xy = match.xy[side];
+            if (!(xy[0] >= -1.0 && xy[1] >= -1.0 && xy[0] <= camera.width && xy[1] <= camera.height))
+                return wrong("xy is outside of its image");
+        }
+        const auto &map = match.map;
+        const double turns = map[0][0] * map[1][1] - map[0][1] * map[1][0];
+        const bool is_given = map[0][0] != 0.0 || map[0][1] != 0.0 || map[1][0] != 0.0 || map[1][1] != 0.0;
+        if (is_given && !(turns > 0.0 && turns < HUGE_VAL))
+            return wrong("map must have a positive determinant, or be all 0");
+    }
+    return LENSPROF_OK;
+}
+
+Sampler sampler_of(const lensprof_sample_options &options, const std::vector<lensprof_sample_image> &images,
+                   const Matches *matches) {
+    const auto count = static_cast<uint32_t>(images.size());
+    return matches ? Sampler(options, images.data(), count, matches->list, matches->count)
+                   : Sampler(options, images.data(), count);
+}
+
+// draw(sampler) -> what was found; by `matches`, or by the cameras where that is NULL.
 template <class Item, class Draw>
 lensprof_status sample(const lensprof_sample_options &options, const lensprof_sample_image *given, uint32_t count,
-                       Draw draw, std::vector<Item> &items, lensprof_error *error) {
+                       const Matches *matches, Draw draw, std::vector<Item> &items, lensprof_error *error) {
     try {
         std::vector<lensprof_sample_image> images;
         auto init = [](lensprof_sample_image &image, uint32_t) { lensprof_sample_image_init(&image); };
         lensprof_status status = take_all(given, count, kFirstImage, LENSPROF_ITEM_IMAGE, init, images, error);
-        for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++) status = check_image(images[i], i, error);
+        for (uint32_t i = 0; i < count && status == LENSPROF_OK; i++)
+            status = check_image(images[i], i, !matches, error);
+        if (matches && status == LENSPROF_OK) status = check_matches(*matches, images, error);
         if (status != LENSPROF_OK) return status;
         auto stop = [&] { return options.progress && options.progress(0.0, options.progress_user) != 0; };
         auto image = [&](uint32_t i) { return images[i]; };
         status = check_finite(image, count, options.threads, stop, error);
         if (status != LENSPROF_OK) return status;
-        Sampler sampler(options, images.data(), count);
+        Sampler sampler = sampler_of(options, images, matches);
         items = draw(sampler);
         if (items.empty() && options.sampling == LENSPROF_SAMPLING_BRACKET)
             return fail(LENSPROF_ERROR_NO_SAMPLES, error,
@@ -97,19 +137,23 @@ lensprof_status sample(const lensprof_sample_options &options, const lensprof_sa
 // Both samplings: `room` for what is wanted, what `draw` finds into `items`.
 template <class Item, class Draw>
 lensprof_status sample_into(const lensprof_sample_options &options, const lensprof_sample_image *images,
-                            uint32_t image_count, uint64_t room, Item *items, uint32_t capacity, uint32_t *count,
-                            Draw draw, lensprof_error *error) {
+                            uint32_t image_count, const Matches *matches, uint64_t room, Item *items, uint32_t capacity,
+                            uint32_t *count, Draw draw, lensprof_error *error) {
     if (options.link_count) *options.link_count = 0;
     if (capacity < room) *count = static_cast<uint32_t>(room);
     if (capacity == 0) return LENSPROF_OK;
     if (capacity < room)
         return fail(LENSPROF_ERROR_CAPACITY, error, "sample: room for %u items is needed", static_cast<uint32_t>(room));
     std::vector<Item> result;
-    const lensprof_status status = sample(options, images, image_count, draw, result, error);
+    const lensprof_status status = sample(options, images, image_count, matches, draw, result, error);
     if (status != LENSPROF_OK) return status;
     std::copy(result.begin(), result.end(), items);
     *count = static_cast<uint32_t>(result.size());
     return LENSPROF_OK;
+}
+
+uint32_t wanted_pairs(const lensprof_sample_options &options, uint32_t image_count) {
+    return options.pairs ? options.pairs : std::max(2000u, 300 * image_count);
 }
 
 }  // namespace
@@ -136,11 +180,11 @@ lensprof_status lensprof_sample_overlap(const lensprof_sample_options *given, co
     lensprof_sample_options options;
     lensprof_status status = take_options(given, image_count, options, error);
     if (status != LENSPROF_OK) return status;
-    uint32_t wanted = options.pairs ? options.pairs : std::max(2000u, 300 * image_count);
+    const uint32_t wanted = wanted_pairs(options, image_count);
     auto draw = [&](Sampler &sampler) {
         return options.sampling == LENSPROF_SAMPLING_PAPER ? sampler.paper(wanted) : sampler.balanced(wanted);
     };
-    return sample_into(options, images, image_count, wanted, pairs, capacity, count, draw, error);
+    return sample_into(options, images, image_count, nullptr, wanted, pairs, capacity, count, draw, error);
 }
 
 lensprof_status lensprof_sample_tracks(const lensprof_sample_options *given, const lensprof_sample_image *images,
@@ -158,7 +202,25 @@ lensprof_status lensprof_sample_tracks(const lensprof_sample_options *given, con
                                                            : sampler.balanced_tracks(wanted);
     };
     uint64_t room = uint64_t{wanted} * std::min(image_count, kLongestTrack);
-    return sample_into(options, images, image_count, room, observations, capacity, count, draw, error);
+    return sample_into(options, images, image_count, nullptr, room, observations, capacity, count, draw, error);
+}
+
+lensprof_status lensprof_sample_matches(const lensprof_sample_options *given, const lensprof_sample_image *images,
+                                        uint32_t image_count, const lensprof_match *matches, uint32_t match_count,
+                                        lensprof_pair *pairs, uint32_t capacity, uint32_t *count,
+                                        lensprof_error *error) {
+    clear(error);
+    if (!given || !images || !count || (capacity && !pairs) || (match_count && !matches))
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: a pointer is NULL");
+    lensprof_sample_options options;
+    const lensprof_status status = take_options(given, image_count, options, error);
+    if (status != LENSPROF_OK) return status;
+    if (options.sampling == LENSPROF_SAMPLING_PAPER)
+        return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: paper sampling takes no matches; use balanced");
+    const uint32_t wanted = wanted_pairs(options, image_count);
+    const Matches own{matches, match_count};
+    auto draw = [&](Sampler &sampler) { return sampler.of_matches(matches, match_count, wanted); };
+    return sample_into(options, images, image_count, &own, wanted, pairs, capacity, count, draw, error);
 }
 
 }  // extern "C"

@@ -31,7 +31,8 @@ lensprof_status fail_at(lensprof_item_kind kind, uint32_t index, lensprof_status
 }
 
 const char *item_word(uint32_t kind) {
-    static const char *const words[] = {"", "image", "pair", "observation", "point", "shot", "profile", "frame"};
+    static const char *const words[] = {"",     "image",   "pair",  "observation", "point",
+                                        "shot", "profile", "frame", "match"};
     return kind < sizeof words / sizeof *words ? words[kind] : "";
 }
 

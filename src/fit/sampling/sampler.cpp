@@ -89,6 +89,10 @@ void Sampler::find_neighbours() {
             neighbours_[i].push_back(j);
             neighbours_[j].push_back(i);
         }
+    number_edges();
+}
+
+void Sampler::number_edges() {
     for (const auto &list : neighbours_) {
         first_edge_.push_back(edge_numbers_);
         edge_numbers_ += static_cast<uint32_t>(list.size());
@@ -116,6 +120,14 @@ void Sampler::each(uint32_t count, const std::function<void(uint32_t)> &work, co
     if (!for_each_parallel(count, options_.threads, work, stop)) throw Cancelled();
 }
 
+void Sampler::read_grey_levels() {
+    const auto count = static_cast<uint32_t>(views_.size());
+    grey_.resize(count);
+    const Light light(options_.response, options_.vignetting);
+    each(
+        count, [&](uint32_t i) { grey_[i] = std::make_unique<GreyLevels>(views_[i], light); }, [] { return 0.0; });
+}
+
 // Where the project is off between neighbours, as the pictures show. A camera that stands still is not off: pictures
 // that are mostly white, or mostly black, would only seem to be.
 void Sampler::register_neighbours() {
@@ -126,11 +138,8 @@ void Sampler::register_neighbours() {
         uint32_t i, j;
         int overlap;
     };
+    read_grey_levels();
     const auto count = static_cast<uint32_t>(views_.size());
-    grey_.resize(count);
-    const Light light(options_.response, options_.vignetting);
-    each(
-        count, [&](uint32_t i) { grey_[i] = std::make_unique<GreyLevels>(views_[i], light); }, [] { return 0.0; });
     std::vector<Edge> edges;
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t j : neighbours_[i])
@@ -174,6 +183,11 @@ bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
     if (!sight(views_[i].image().camera, views_[j].image().camera, correction(i, j), i < j ? Way::forward : Way::back,
                x, y, at))
         return false;
+    return is_alike(i, x, y, j, at);
+}
+
+// The same of a place and the one that is to show the same.
+bool Sampler::is_alike(uint32_t i, double x, double y, uint32_t j, Sight at) {
     Likenesses &edge = likenesses_[edge_of(i, j)];
     edge.seen++;
     std::optional<double> told = likeness(*grey_[i], x, y, *grey_[j], at);
@@ -195,18 +209,20 @@ bool Sampler::is_the_same(uint32_t i, uint32_t j, double x, double y) {
 lensprof_link_state Sampler::state_of(uint32_t number) const {
     const Likenesses &edge = likenesses_[number];
     const double surely = edge.surely, told = edge.told, chance = edge.chance, beside = edge.beside;
-    if (told < kFewestTold) return LENSPROF_LINK_UNVERIFIED;
+    const lensprof_link_state by_word = by_matches_ ? LENSPROF_LINK_VERIFIED : LENSPROF_LINK_UNVERIFIED;
+    if (told < kFewestTold) return by_word;
     if (edge.alike > kEnoughAlike * told) return LENSPROF_LINK_VERIFIED;
     if (surely > kFewestSurely * told && surely * beside > kAboveChance * chance * told) return LENSPROF_LINK_VERIFIED;
-    return told < kMostlySmooth * edge.seen ? LENSPROF_LINK_UNVERIFIED : LENSPROF_LINK_CONTRADICTED;
+    return told < kMostlySmooth * edge.seen ? by_word : LENSPROF_LINK_CONTRADICTED;
 }
 
 std::vector<lensprof_link> Sampler::links() const {
     std::vector<lensprof_link> links;
     for (uint32_t i = 0; i < views_.size() && !likenesses_.empty(); i++)
         for (uint32_t j : neighbours_[i]) {
-            if (j < i || likenesses_[edge_of(i, j)].seen == 0) continue;
-            links.push_back({{i, j}, static_cast<uint32_t>(state_of(edge_of(i, j))), likenesses_[edge_of(i, j)].pairs});
+            const uint32_t number = edge_of(i, j);
+            if (j < i || (likenesses_[number].seen == 0 && likenesses_[number].pairs == 0)) continue;
+            links.push_back({{i, j}, static_cast<uint32_t>(state_of(number)), likenesses_[number].pairs});
         }
     return links;
 }

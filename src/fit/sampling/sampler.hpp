@@ -1,5 +1,5 @@
 // Finding correspondences: candidates from image to image through the geometry, then a choice among them. What looks
-// for tracks stands in track_sampler.cpp.
+// for tracks stands in track_sampler.cpp, what starts from matches in match_sampler.cpp.
 #pragma once
 
 #include <atomic>
@@ -21,11 +21,18 @@ class Sampler {
 public:
     Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count);
 
+    // For of_matches: images with matches are neighbours, and no camera is looked at. Stands in match_sampler.cpp.
+    Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count,
+            const lensprof_match *matches, uint32_t match_count);
+
     // The quietest candidates first, balanced over image pairs, radius and grey level.
     std::vector<lensprof_pair> balanced(uint32_t wanted);
 
     // d'Angelo 5.1: 5n random points, binned by radius; from each of 10 bins the n/10 of lowest gradient.
     std::vector<lensprof_pair> paper(uint32_t wanted);
+
+    // At places that match: the quietest near each match, balanced as above.
+    std::vector<lensprof_pair> of_matches(const lensprof_match *matches, uint32_t count, uint32_t wanted);
 
     // Points spread evenly over what the pictures see, each in every picture that sees it (kLongestTrack at most),
     // saturated channels with the value 1; of those near each other the quietest, balanced over radius and grey level.
@@ -56,6 +63,13 @@ private:
     struct Look {
         double x, y;
         uint32_t image[2];
+    };
+
+    // A pair near a match.
+    struct MatchCandidate {
+        lensprof_pair pair;
+        float gradient;  // both ends together
+        uint8_t radius[2], grey[2];
     };
 
     // One image's part of a candidate for a track.
@@ -91,15 +105,19 @@ private:
 
     static Cone cone_of(const lensprof_camera &camera);
     void find_neighbours();
+    void number_edges();
+    void read_grey_levels();
     void register_neighbours();
     const Correction &correction(uint32_t i, uint32_t j) const;
     bool correspond(uint32_t i, uint32_t j, double x, double y, double xy[2]) const;
     bool is_the_same(uint32_t i, uint32_t j, double x, double y);
+    bool is_alike(uint32_t i, double x, double y, uint32_t j, Sight at);
     lensprof_link_state state_of(uint32_t number) const;
     bool measure(uint32_t i, double x, double y, End &end) const;
     void look(uint32_t i, double x, double y, const uint32_t *others, size_t count, std::vector<Candidate> &found);
     Look draw(Random &random) const;
     std::vector<Candidate> candidates(size_t wanted);
+    bool quiet_place(const lensprof_match &match, MatchCandidate &found);
     std::vector<lensprof_pair> pairs_of(const std::vector<Candidate> &chosen);
     bool are_neighbours(uint32_t i, uint32_t j) const;
     uint32_t edge_of(uint32_t i, uint32_t j) const;  // of neighbours
@@ -121,6 +139,7 @@ private:
     std::vector<Likenesses> likenesses_;             // of every pair of neighbours
     std::atomic<size_t> refused_{0};                 // pairs of places that do not show the same
     bool patches_ = true;                            // else single points
+    bool by_matches_ = false;                        // which verify links
     bool keep_white_ = false;                        // saturated channels are samples, too
     std::atomic<bool> overlaps_{false};
     double shown_ = 0.0;  // the last fraction that the caller saw

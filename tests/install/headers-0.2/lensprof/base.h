@@ -86,7 +86,8 @@ typedef enum lensprof_item_kind {
     LENSPROF_ITEM_POINT = 4,       /* lensprof_observation.point */
     LENSPROF_ITEM_SHOT = 5,        /* lensprof_flat_image.shot */
     LENSPROF_ITEM_PROFILE = 6,     /* index into the profiles */
-    LENSPROF_ITEM_FRAME = 7        /* index into the frames */
+    LENSPROF_ITEM_FRAME = 7,       /* index into the frames */
+    LENSPROF_ITEM_MATCH = 8        /* index into the matches */
 } lensprof_item_kind;
 
 /* What a text names by its number, "image 3": programs that have a better name put it in its place. Frozen value

@@ -122,6 +122,26 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_sample_tracks(
     const lensprof_sample_options *options, const lensprof_sample_image *images, uint32_t image_count,
     lensprof_observation *observations, uint32_t capacity, uint32_t *count, lensprof_error *error);
 
+/* Two places of two images that show the same, as feature matching finds them. Frozen value struct. */
+typedef struct lensprof_match {
+    uint32_t image[2]; /* indices of two different images */
+    double xy[2][2];   /* position in each, px of the full frame; the middle of the first pixel is (0, 0) */
+    double map[2][2];  /* d xy[1] / d xy[0]: how the surroundings are turned and scaled from the first image to the
+                          second, as by a homography or the shapes of two features; all 0: not known */
+} lensprof_match;
+
+/* Measures correspondences at places that are known to match: of a camera that moved, where no cameras of images[]
+ * explain all overlaps. Only width and height of the cameras are looked at. Where a match has a map, the pair comes
+ * from the quietest of several places up to 8 view pixels about it, and only where the surroundings are alike;
+ * otherwise from the match itself. The choice among matches is balanced as lensprof_sample_overlap's, whatever
+ * options->sampling says except paper, which is refused. pairs[capacity], *count and links as there. Errors: as there;
+ * ITEM of an ARGUMENT error is the match: its images or places are not of images[], or its map is not finite or turns
+ * the picture over. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status
+lensprof_sample_matches(const lensprof_sample_options *options, const lensprof_sample_image *images,
+                        uint32_t image_count, const lensprof_match *matches, uint32_t match_count, lensprof_pair *pairs,
+                        uint32_t capacity, uint32_t *count, lensprof_error *error);
+
 #ifdef __cplusplus
 }
 #endif

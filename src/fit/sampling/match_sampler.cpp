@@ -1,0 +1,138 @@
+// Correspondences at places that are known to match: the quietest place near each match, where both pictures show the
+// same.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "fit/sampling/balance.hpp"
+#include "fit/sampling/sampler.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint32_t kPiece = 32;    // matches that a thread looks at in one go
+constexpr size_t kPerWanted = 16;  // matches that are looked at for one wanted pair
+// Features lie on edges and corners, where a pixel of misplacement shows. Places this far off, view pixels, may be
+// quieter; the map of the surroundings holds at that distance, whatever the scene is behind.
+constexpr int kRings = 2;
+constexpr double kRing = 4.0;
+
+// At most `most` of every link, evenly chosen, in their order.
+std::vector<uint32_t> thinned(const lensprof_match *matches, uint32_t count, size_t most,
+                              const std::function<uint32_t(const lensprof_match &)> &link_of, uint32_t links) {
+    std::vector<size_t> of_link(links), seen(links);
+    for (uint32_t m = 0; m < count; m++) of_link[link_of(matches[m])]++;
+    std::vector<uint32_t> kept;
+    for (uint32_t m = 0; m < count; m++) {
+        const uint32_t link = link_of(matches[m]);
+        const size_t n = seen[link]++, all = of_link[link];
+        if (all <= most || n * most / all != (n + 1) * most / all) kept.push_back(m);
+    }
+    return kept;
+}
+
+}  // namespace
+
+Sampler::Sampler(const lensprof_sample_options &options, const lensprof_sample_image *images, uint32_t count,
+                 const lensprof_match *matches, uint32_t match_count)
+    : options_(options), by_matches_(true) {
+    for (uint32_t i = 0; i < count; i++) views_.emplace_back(images[i]);
+    neighbours_.resize(count);
+    for (uint32_t m = 0; m < match_count; m++)
+        for (const int side : {0, 1}) neighbours_[matches[m].image[side]].push_back(matches[m].image[1 - side]);
+    for (auto &list : neighbours_) {
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+    number_edges();
+}
+
+// The quietest place about a match, of those that show the same; false where there is none.
+bool Sampler::quiet_place(const lensprof_match &match, MatchCandidate &found) {
+    const bool has_map = match.map[0][0] != 0.0 || match.map[0][1] != 0.0;
+    const int rings = has_map ? kRings : 0;
+    const double step = kRing * views_[match.image[0]].image().reduction;
+    struct Place {
+        double xy[2][2];
+        End end[2];
+        double gradient() const { return end[0].patch.gradient + end[1].patch.gradient; }
+    };
+    std::vector<Place> places;
+    for (int b = -rings; b <= rings; b++)
+        for (int a = -rings; a <= rings; a++) {
+            const double off[2] = {a * step, b * step};
+            Place p{};
+            bool good = true;
+            for (int d = 0; d < 2; d++) {
+                p.xy[0][d] = match.xy[0][d] + off[d];
+                p.xy[1][d] = match.xy[1][d] + match.map[d][0] * off[0] + match.map[d][1] * off[1];
+            }
+            for (int side = 0; side < 2 && good; side++) {
+                const double *xy = p.xy[side];
+                good = views_[match.image[side]].holds(xy[0], xy[1])
+                       && measure(match.image[side], xy[0], xy[1], p.end[side]);
+            }
+            if (good) places.push_back(p);
+        }
+    std::stable_sort(places.begin(), places.end(),
+                     [](const Place &a, const Place &b) { return a.gradient() < b.gradient(); });
+    for (const Place &p : places) {
+        const Sight sight{
+            p.xy[1][0], p.xy[1][1], {{match.map[0][0], match.map[0][1]}, {match.map[1][0], match.map[1][1]}}};
+        if (has_map && !is_alike(match.image[0], p.xy[0][0], p.xy[0][1], match.image[1], sight)) continue;
+        found.gradient = static_cast<float>(p.gradient());
+        found.pair = {{match.image[0], match.image[1]}, {}, {}};
+        for (int side = 0; side < 2; side++) {
+            std::copy(p.xy[side], p.xy[side] + 2, found.pair.xy[side]);
+            std::copy(p.end[side].patch.value, p.end[side].patch.value + 3, found.pair.value[side]);
+            found.radius[side] = p.end[side].radius, found.grey[side] = p.end[side].grey;
+        }
+        return true;
+    }
+    return false;
+}
+
+std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, uint32_t count, uint32_t wanted) {
+    overlaps_ = count > 0;
+    likenesses_ = std::vector<Likenesses>(edge_numbers_);
+    read_grey_levels();
+    size_t links = 0;
+    for (const auto &list : neighbours_) links += list.size();
+    const size_t most = std::max<size_t>(1, kPerWanted * wanted / std::max<size_t>(1, links / 2));
+    const auto link_of = [&](const lensprof_match &m) { return edge_of(m.image[0], m.image[1]); };
+    const std::vector<uint32_t> looked = thinned(matches, count, most, link_of, edge_numbers_);
+    const auto pieces = static_cast<uint32_t>((looked.size() + kPiece - 1) / kPiece);
+    std::vector<std::vector<MatchCandidate>> found(pieces);
+    std::atomic<uint32_t> done{0};
+    const auto work = [&](uint32_t piece) {
+        for (size_t n = size_t{piece} * kPiece; n < std::min(looked.size(), (size_t{piece} + 1) * kPiece); n++) {
+            MatchCandidate candidate;
+            if (quiet_place(matches[looked[n]], candidate)) found[piece].push_back(candidate);
+        }
+        done++;
+    };
+    each(pieces, work, [&] { return 0.95 * done / std::max(pieces, 1u); });
+    std::vector<MatchCandidate> all;
+    for (auto &list : found) std::move(list.begin(), list.end(), std::back_inserter(all));
+    const auto is_contradicted = [&](const MatchCandidate &c) {
+        return state_of(edge_of(c.pair.image[0], c.pair.image[1])) == LENSPROF_LINK_CONTRADICTED;
+    };
+    all.erase(std::remove_if(all.begin(), all.end(), is_contradicted), all.end());
+    const auto edge = [&](uint32_t i) { return edge_of(all[i].pair.image[0], all[i].pair.image[1]); };
+    const auto chosen = balance(
+        all.size(), wanted, 2.0 * wanted, edge_numbers_, [&](uint32_t i) { return all[i].gradient; }, edge,
+        [&](uint32_t i, auto use) {
+            for (int side = 0; side < 2; side++) use(all[i].radius[side], all[i].grey[side]);
+        });
+    std::vector<lensprof_pair> pairs;
+    for (uint32_t index : chosen) {
+        pairs.push_back(all[index].pair);
+        likenesses_[edge(index)].pairs++;
+    }
+    each(
+        1, [](uint32_t) {}, [] { return 1.0; });
+    return pairs;
+}
+
+}  // namespace lensprof
