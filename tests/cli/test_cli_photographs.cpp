@@ -107,6 +107,21 @@ void test_a_folder_of_many_things(void **) {
     assert_true(json["seconds"]["register"].get<double>() > 0.0);
 }
 
+// What joins two parts of a row is of another size: the larger part is taken, and the reasons name the size.
+void test_another_camera_in_a_chain(void **) {
+    if (is_missing()) return;
+    simulate("chain", {"--images", "6", "--seed", "61"});
+    simulate("chain_small", {"--images", "6", "--seed", "61", "--size", "400x300"});
+    fs::remove(work("chain/img002.png"));
+    fs::copy_file(work("chain_small/img002.png"), work("chain/img002.png"));
+    const Outcome run = run_words(Words{"build", work("chain")} + quietly);
+    assert_int_equal(run.code, done);
+    assert_int_equal(Json::parse(run.out)["images"].size(), 3);
+    assert_true(
+        contains(run.err, "img000.png, img001.png: left out, another group, which only pictures of another camera"));
+    assert_true(contains(run.err, "img002.png: left out, of another camera or size"));
+}
+
 // Standard deviation of the logarithm of one panel over another: 0 where they differ by a factor alone. Places without
 // a picture, near black and near white do not count.
 double spread(const Picture &one, uint32_t one_top, const Picture &other, uint32_t other_top, uint32_t height) {
@@ -286,6 +301,7 @@ int main() {
         CLI_TEST(test_a_folder_is_as_good_as_its_project),
         CLI_TEST(test_pictures_that_look_unlike),
         CLI_TEST(test_a_folder_of_many_things),
+        CLI_TEST(test_another_camera_in_a_chain),
         CLI_TEST(test_the_preview_is_even),
         CLI_TEST(test_one_lens_keeps_the_geometry),
         CLI_TEST(test_odd_files_among_good_ones),

@@ -98,7 +98,7 @@ int run(const CalibrateOptions &o, Streams &streams) {
     if (inputs.pictures.empty() && inputs.unreadable)
         throw Failure(ExitCode::unreadable,
                       inputs.label + ": none of the pictures can be read: " + inputs.left_out[0].reason);
-    if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, progress);
+    if (!can_register() && !inputs.pictures.empty()) register_pictures({inputs.pictures[0].file}, false, progress);
     make_folder(o.output);
     lock.take();
     Panoramas panoramas = find_panoramas(o, inputs, ledger, progress);

@@ -66,27 +66,6 @@ bool has_odd_name(const InputPicture &picture, const std::string &output) {
                        [](char c) { return c == '"' || static_cast<unsigned char>(c) < ' '; });
 }
 
-// Camera raw files and others have no common response, whatever lens they are taken as of.
-std::vector<FoundProject> split_by_kind(const FoundProject &project, const std::vector<const InputPicture *> &all) {
-    FoundProject marked = project;
-    for (size_t n = 0; n < project.pictures.size(); n++) marked.bodies[n] = all[project.pictures[n]]->is_raw;
-    return split_by_body(marked);
-}
-
-void add_parts(const std::vector<FoundProject> &parts, const std::string &others,
-               const std::vector<const InputPicture *> &all, Groups &groups) {
-    for (const FoundProject &part : parts) {
-        if (part.pictures.size() >= 2 && part.links > 0) {
-            groups.list.push_back(group_of(part, all));
-            continue;
-        }
-        for (const uint32_t number : part.pictures) {
-            const std::string &file = all[number]->file;
-            groups.unjoined[file] = file + ": overlaps with pictures " + others;
-        }
-    }
-}
-
 Groups register_groups(const CalibrateOptions &o, const std::vector<const InputPicture *> &given, Progress &progress) {
     std::vector<std::string> files;
     std::vector<const InputPicture *> all;
@@ -101,17 +80,15 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
         all.push_back(picture);
     }
     if (files.empty()) return groups;
-    const Registration found = register_pictures(files, progress);
+    const Registration found = register_pictures(files, o.one_lens, progress);
     for (const auto &[number, why] : found.unreadable) groups.unreadable[files[number]] = why;
     for (const uint32_t number : found.alone)
         groups.unjoined[files[number]] = files[number] + ": no overlap with another picture was found";
-    for (const FoundProject &project : found.projects) {
-        if (o.one_lens)
-            add_parts(split_by_kind(project, all), "that are camera raw files, or that are none where it is one", all,
-                      groups);
-        else
-            add_parts(split_by_body(project), of_another_body, all, groups);
-    }
+    for (const uint32_t number : found.foreign)
+        groups.unjoined[files[number]] =
+            files[number] + ": overlaps with pictures "
+            + (o.one_lens ? "that are camera raw files, or that are none where it is one" : of_another_body);
+    for (const FoundProject &project : found.projects) groups.list.push_back(group_of(project, all));
     std::stable_sort(groups.list.begin(), groups.list.end(),
                      [](const Group &a, const Group &b) { return a.pictures.size() > b.pictures.size(); });
     return groups;

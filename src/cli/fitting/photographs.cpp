@@ -66,54 +66,6 @@ std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::
     return text;
 }
 
-// Its pictures of one camera.
-FoundProject of_body(const FoundProject &found, uint32_t body) {
-    FoundProject kept = found;
-    kept.pictures.clear(), kept.cameras.clear(), kept.points.clear(), kept.matches.clear();
-    kept.lenses.clear(), kept.bodies.clear();
-    std::set<std::pair<uint32_t, uint32_t>> links;
-    std::vector<uint32_t> number(found.pictures.size(), UINT32_MAX);
-    for (size_t n = 0; n < found.pictures.size(); n++) {
-        if (found.bodies[n] != body) continue;
-        number[n] = static_cast<uint32_t>(kept.pictures.size());
-        kept.pictures.push_back(found.pictures[n]);
-        kept.cameras.push_back(found.cameras[n]);
-        kept.lenses.push_back(found.lenses[n]);
-        kept.bodies.push_back(0);
-    }
-    std::set<std::pair<uint32_t, uint32_t>> unfit;
-    // Renumbers the images of a point; false where one is not kept.
-    const auto keep = [&](uint32_t *image, auto &of) {
-        for (int side = 0; side < 2; side++) image[side] = number[image[side]];
-        const bool is_kept = std::max(image[0], image[1]) != UINT32_MAX;
-        if (is_kept) of.emplace(image[0], image[1]);
-        return is_kept;
-    };
-    for (ControlPoint point : found.points)
-        if (keep(point.image, links)) kept.points.push_back(point);
-    for (lensprof_match match : found.matches)
-        if (keep(match.image, unfit)) kept.matches.push_back(match);
-    for (const auto &link : links) unfit.erase(link);
-    kept.links = static_cast<uint32_t>(links.size() + unfit.size()), kept.unfit = static_cast<uint32_t>(unfit.size());
-    return kept;
-}
-
-}  // namespace
-
-std::vector<FoundProject> split_by_body(const FoundProject &found) {
-    std::map<uint32_t, size_t> count;
-    for (uint32_t body : found.bodies) count[body]++;
-    if (count.size() == 1) return {found};
-    std::vector<FoundProject> parts;
-    for (const auto &[body, pictures] : count) parts.push_back(of_body(found, body));
-    std::stable_sort(parts.begin(), parts.end(), [](const FoundProject &a, const FoundProject &b) {
-        return a.pictures.size() > b.pictures.size();
-    });
-    return parts;
-}
-
-namespace {
-
 using LeftOut = std::vector<std::pair<std::string, std::string>>;  // names, and why
 
 // Names pictures that are not part of the project, for one reason.
@@ -123,14 +75,12 @@ void leave_out(const std::vector<uint32_t> &numbers, const std::vector<std::stri
     warn(streams, listed(numbers, names) + ": left out, " + reason);
 }
 
-// Leaves the pictures of the camera that took most of them.
-void keep_one_body(FoundProject &found, const std::vector<std::string> &names, LeftOut &left_out, Streams &streams) {
-    const FoundProject kept = split_by_body(found)[0];
-    std::vector<uint32_t> others;
-    std::set_difference(found.pictures.begin(), found.pictures.end(), kept.pictures.begin(), kept.pictures.end(),
-                        std::back_inserter(others));
-    found = kept;
-    if (!others.empty()) leave_out(others, names, of_another_body, left_out, streams);
+std::string why_apart(const FoundProject &other, const FoundProject &project) {
+    if (!other.meets_another || !project.meets_another)
+        return "another group, which overlaps with none of these; give its pictures alone";
+    if (other.body != project.body) return std::string("another group, ") + of_another_body;
+    return "another group, which only pictures of another camera or size join to these; give its pictures alone, or "
+           "--one-lens to take all as one";
 }
 
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
@@ -151,8 +101,8 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
                               "things that moved. The pictures are compared where they match; a project or preview of "
                               "them does not show the scene");
     for (size_t n = 1; n < found.projects.size(); n++)
-        leave_out(found.projects[n].pictures, names,
-                  "another group, which overlaps with none of these; give its pictures alone", left_out, streams);
+        leave_out(found.projects[n].pictures, names, why_apart(found.projects[n], project), left_out, streams);
+    if (!found.foreign.empty()) leave_out(found.foreign, names, of_another_body, left_out, streams);
     if (!found.alone.empty())
         leave_out(found.alone, names, "no overlap with another picture was found", left_out, streams);
 }
@@ -177,7 +127,7 @@ Project project_of_pictures(const std::vector<std::string> &words, bool one_lens
         throw Failure(ExitCode::not_usable, label + ": has one picture; at least two overlapping ones are needed",
                       LENSPROF_REASON_FEW_PAIRS);
     auto clock = std::chrono::steady_clock::now();
-    Registration found = register_pictures(files, progress);
+    const Registration found = register_pictures(files, one_lens, progress);
     project.register_s = lap(clock);
     progress.clear();
     for (const auto &[number, why] : found.unreadable) {
@@ -186,16 +136,15 @@ Project project_of_pictures(const std::vector<std::string> &words, bool one_lens
     }
     if (found.unreadable.size() == files.size())
         throw Failure(ExitCode::unreadable, label + ": none of the pictures can be read; give others");
+    if (found.projects.empty() && !found.foreign.empty())
+        throw Failure(ExitCode::not_usable,
+                      label + ": no two pictures of one camera and size overlap; give --one-lens to "
+                              "take all as one",
+                      LENSPROF_REASON_FEW_PAIRS);
     if (found.projects.empty())
         throw Failure(ExitCode::not_usable,
                       label + ": no two of the pictures overlap, or too little in them can be recognised; give pictures "
                               "that share a third, or a Hugin project",
-                      LENSPROF_REASON_FEW_PAIRS);
-    if (!one_lens) keep_one_body(found.projects[0], names, project.left_out, streams);
-    if (found.projects[0].pictures.size() < 2 || found.projects[0].links == 0)
-        throw Failure(ExitCode::not_usable,
-                      label + ": no two pictures of one camera and size overlap; give --one-lens to "
-                              "take all as one",
                       LENSPROF_REASON_FEW_PAIRS);
     report_found(found, names, label, project.left_out, streams);
 

@@ -31,9 +31,6 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
 // Why a picture is not part of a project that it overlaps with.
 constexpr const char *of_another_body = "of another camera or size than most (--one-lens takes all as one)";
 
-// The pictures of each camera of a project, those of the one that took most first. Links are those that fit.
-std::vector<FoundProject> split_by_body(const FoundProject &found);
-
 // The project of a group of pictures, whose images are called image0, image1 and so on; and the same as a project,
 // whose path, names and files are known.
 std::string text_of_found(const FoundProject &found);

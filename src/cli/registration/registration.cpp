@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "cli/pictures/metadata.hpp"
+#include "cli/pictures/raw_kind.hpp"
 #include "cli/program/error.hpp"
 #include "cli/program/parallel.hpp"
 #include "cli/registration/cameras.hpp"
@@ -53,12 +54,11 @@ void add_matches(const PictureLink &link, std::vector<lensprof_match> &matches) 
 }
 
 // The project of the pictures of one group; `links` are numbered as they are in the group.
-FoundProject project_of(std::vector<uint32_t> numbers, std::vector<uint32_t> bodies,
-                        const std::vector<PictureOptics> &optics, const std::vector<PictureLink> &links) {
+FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<PictureOptics> &optics,
+                        const std::vector<PictureLink> &links) {
     FoundProject project;
     project.pictures = std::move(numbers);
     for (const PictureOptics &o : optics) project.lenses.push_back(o.lens);
-    project.bodies = std::move(bodies);
     FoundCameras found = find_cameras(optics, links);
     project.kind = found.kind;
     project.cameras = std::move(found.cameras);
@@ -113,14 +113,18 @@ std::vector<RegisteredPicture> read_all(const std::vector<std::string> &files, P
     return pictures;
 }
 
-// Pictures of the same camera, processing and size, upright or not, have one number, in the order they are met.
-std::vector<uint32_t> bodies_of(const std::vector<RegisteredPicture> &pictures, const std::vector<uint32_t> &numbers) {
-    std::map<std::tuple<std::string, std::string, uint32_t, uint32_t, uint32_t>, uint32_t> found;
+// Pictures of the same camera, processing and size, upright or not, have one number, in the order they are met; with
+// `as_one` all raw files, and all others.
+std::vector<uint32_t> bodies_of(const std::vector<std::string> &files, const std::vector<RegisteredPicture> &pictures,
+                                bool as_one) {
+    std::map<std::tuple<bool, std::string, std::string, uint32_t, uint32_t, uint32_t>, uint32_t> found;
     std::vector<uint32_t> bodies;
-    for (uint32_t i : numbers) {
+    for (size_t i = 0; i < pictures.size(); i++) {
         const lensprof_profile_key &key = pictures[i].metadata.key;
         const auto [shorter, longer] = std::minmax(pictures[i].features.width, pictures[i].features.height);
-        const std::tuple body(key.camera_maker, key.camera_model, key.processing, shorter, longer);
+        std::tuple body(raw_kind(files[i]).has_value(), std::string(key.camera_maker), std::string(key.camera_model),
+                        key.processing, shorter, longer);
+        if (as_one) body = {std::get<0>(body), "", "", 0, 0, 0};
         bodies.push_back(found.emplace(body, static_cast<uint32_t>(found.size())).first->second);
     }
     return bodies;
@@ -154,7 +158,19 @@ std::vector<PictureOptics> optics_of(const std::vector<RegisteredPicture> &pictu
     return optics;
 }
 
-Registration registered(const std::vector<std::string> &files, Progress &progress) {
+// Takes links between cameras away; returns which pictures have one.
+std::vector<bool> part_cameras(const std::vector<uint32_t> &bodies, std::vector<PictureLink> &links) {
+    std::vector<bool> meets(bodies.size());
+    const auto parts = [&](const PictureLink &link) {
+        const bool differ = bodies[link.picture[0]] != bodies[link.picture[1]];
+        if (differ) meets[link.picture[0]] = meets[link.picture[1]] = true;
+        return differ;
+    };
+    links.erase(std::remove_if(links.begin(), links.end(), parts), links.end());
+    return meets;
+}
+
+Registration registered(const std::vector<std::string> &files, bool as_one, Progress &progress) {
     const std::vector<RegisteredPicture> pictures = read_all(files, progress);
     Registration result;
     std::vector<Features> features;
@@ -162,18 +178,23 @@ Registration registered(const std::vector<std::string> &files, Progress &progres
         features.push_back(pictures[i].features);  // shares the descriptors
         if (!pictures[i].failure.empty()) result.unreadable.emplace_back(i, pictures[i].failure);
     }
-    const std::vector<PictureLink> links = find_links(features, progress);
+    std::vector<PictureLink> links = find_links(features, progress);
+    const std::vector<uint32_t> bodies = bodies_of(files, pictures, as_one);
+    const std::vector<bool> meets = part_cameras(bodies, links);
     const std::vector<uint32_t> groups = groups_of(pictures.size(), links);
     std::map<uint32_t, std::vector<uint32_t>> members;
     for (uint32_t i = 0; i < pictures.size(); i++)
         if (pictures[i].failure.empty()) members[groups[i]].push_back(i);
     for (const auto &[group, numbers] : members) {
         progress.update("finding cameras", static_cast<double>(group) / static_cast<double>(members.size()));
-        if (numbers.size() == 1)
-            result.alone.push_back(numbers[0]);
-        else
-            result.projects.push_back(project_of(numbers, bodies_of(pictures, numbers), optics_of(pictures, numbers),
-                                                 links_within(links, numbers)));
+        if (numbers.size() == 1) {
+            (meets[numbers[0]] ? result.foreign : result.alone).push_back(numbers[0]);
+            continue;
+        }
+        result.projects.push_back(project_of(numbers, optics_of(pictures, numbers), links_within(links, numbers)));
+        result.projects.back().body = bodies[numbers[0]];
+        result.projects.back().meets_another =
+            std::any_of(numbers.begin(), numbers.end(), [&](uint32_t number) { return meets[number]; });
     }
     std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {
         return a.pictures.size() > b.pictures.size();
@@ -185,10 +206,10 @@ Registration registered(const std::vector<std::string> &files, Progress &progres
 
 bool can_register() { return true; }
 
-Registration register_pictures(const std::vector<std::string> &files, Progress &progress) {
+Registration register_pictures(const std::vector<std::string> &files, bool as_one, Progress &progress) {
     cv::setNumThreads(1);  // every thread of ours has a picture of its own
     try {
-        return registered(files, progress);
+        return registered(files, as_one, progress);
     } catch (const cv::Exception &error) {
         if (error.code == cv::Error::StsNoMem) throw std::bad_alloc();
         throw Failure(ExitCode::failed,

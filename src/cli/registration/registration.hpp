@@ -19,32 +19,36 @@ enum class SceneKind {
     plane      // it moved, over a scene that is nearly a plane
 };
 
-// Pictures that overlap, directly or through others.
+// Pictures of one camera that overlap, directly or through others.
 struct FoundProject {
     std::vector<uint32_t> pictures;  // their numbers, ascending; the members below are in this order
     SceneKind kind = SceneKind::panorama;
     std::vector<lensprof_camera> cameras;
-    std::vector<uint32_t> bodies;         // those of one camera and size, upright or not, have one number,
-    std::vector<uint32_t> lenses;         // and those with one lens at one focal length besides
+    std::vector<uint32_t> lenses;  // those of one camera and size, with one lens at one focal length, have one number
     std::vector<ControlPoint> points;     // a few of every link that the cameras fit
     std::vector<lensprof_match> matches;  // of the links that they do not fit, or of all
     bool by_matches = false;              // these, and not the cameras, say where pictures show the same
     uint32_t links = 0, unfit = 0;        // pictures that show the same; those of them that the cameras do not fit
     double residual = 0.0;                // median over the links that fit, as a share of the longer side
 
+    uint32_t body = 0;           // number of their camera
+    bool meets_another = false;  // some overlap with pictures of another
+
     bool cameras_fit() const { return 2 * unfit <= links; }
 };
 
 struct Registration {
     std::vector<FoundProject> projects;                        // the one with most pictures first
-    std::vector<uint32_t> alone;                               // pictures that overlap with no other
+    std::vector<uint32_t> alone;                               // pictures that overlap with no other,
+    std::vector<uint32_t> foreign;                             // and with pictures of another camera alone
     std::vector<std::pair<uint32_t, std::string>> unreadable;  // and why
 };
 
 // Whether this program was built with what registration needs.
 bool can_register();
 
-// Failure (usage) without OpenCV.
-Registration register_pictures(const std::vector<std::string> &files, Progress &progress);
+// Pictures of several cameras, processings or sizes (upright or not) are several projects, unless `as_one` takes all as
+// of one camera; raw files and others always are. Failure (usage) without OpenCV.
+Registration register_pictures(const std::vector<std::string> &files, bool as_one, Progress &progress);
 
 }  // namespace lensprof
