@@ -6,7 +6,7 @@ namespace lensprof {
 
 bool can_register() { return false; }
 
-Registration register_pictures(const std::vector<std::string> &files, Progress &) {
+Registration register_pictures(const std::vector<std::string> &files, bool, Progress &) {
     throw Failure(ExitCode::usage,
                   (files.empty() ? std::string("pictures") : files[0])
                       + ": this lensprof was built without OpenCV, which finds the overlaps of pictures; install "
