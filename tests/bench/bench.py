@@ -57,7 +57,8 @@ def main():
     skipped = "" if tools.VIG_OPTIMIZE else "vig_optimize is not installed (package hugin-tools); lensprof is alone"
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
                "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "scale": [], "speed": {},
-               "verdicts": {}, "radiance": {}, "knowledge": [], "photographs": [], "real": [], "brackets": [], "skipped": skipped}
+               "verdicts": {}, "radiance": {}, "knowledge": [], "photographs": [], "moving": [],
+               "real": [], "brackets": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
     if "speed" in options.only:
@@ -84,6 +85,7 @@ def main():
                                                  options.jobs, say)
     if "photographs" in options.only:
         results["photographs"] = photographs.run_all(options.real, options.quick, say)
+        results["moving"] = photographs.run_moving(options.real, say)
     if options.real and "real" in options.only:
         results["real"] = real.run_all(options.real, options.jobs, say)
         results["brackets"] = gallery.run_brackets(options.real, say)

@@ -71,6 +71,54 @@ def measure(name, files, folder):
     return record
 
 
+def moving(root):
+    """{name: files} of folders below root/reconstruction: pictures by a camera that moved."""
+    sets = {}
+    for folder in sorted(p for p in (pathlib.Path(root) / "reconstruction").glob("*") if p.is_dir()):
+        own = folder / "images" if (folder / "images").is_dir() else folder
+        files = sorted(p for p in own.iterdir() if p.suffix.lower() in gallery.PICTURES)
+        if len(files) > 2:
+            sets["%s/%s" % (folder.parent.name, folder.name)] = files
+    return sets
+
+
+def exif_ev(files, folder):
+    """Exposures by the metadata, as Hugin's pto_gen reads them, EV; None where they do not differ."""
+    if not HAS_HUGIN or tools.measured(["pto_gen", "-o", "exif.pto", *files], folder, folder / "exif")["code"]:
+        return None
+    ev = -np.array([line["Eev"] for line in tools.parse_pto((folder / "exif.pto").read_text())])
+    return ev if np.ptp(ev) > 0.1 else None
+
+
+def measure_moving(name, files, folder):
+    """Exposures from pictures alone compared with EXIF's, which the fit is not given."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    files = [str(f) for f in files]
+    used, model, _ = fit(files, folder / "lensprof", ["--exif-sigma", "0"])
+    record = {"name": name, "pictures": len(files), **used}
+    known = exif_ev(files, folder)
+    if model is None or known is None or len(model.ev) != len(files):
+        return record
+    joined = np.array([n not in used["left_out"] for n in range(len(files))])
+    found, known = model.ev[joined], known[joined]
+    off = found - known
+    return dict(record, joined=int(joined.sum()), correlation=float(np.corrcoef(found, known)[0, 1]),
+                slope=float(np.polyfit(known, found, 1)[0]), off_ev=float(np.std(off)), exif_ev=float(np.ptp(known)))
+
+
+def run_moving(root, say):
+    sets = moving(root) if root else {}
+    for name, project in (real.projects_below(root) if root else {}).items():
+        if name.endswith("brighton_beach"):
+            sets[name] = sorted(p for p in project.parent.iterdir() if p.suffix.lower() in gallery.PICTURES)
+    records = []
+    for name, files in sets.items():
+        records.append(measure_moving(name, files, tools.WORK / "photographs" / ("moved-" + name.replace("/", "-"))))
+        say("photographs: %d of %d sets of a camera that moved" % (len(records), len(sets)))
+    return records
+
+
 def seam_of(model, names, left_out, pairs, files):
     """Median over the links of which the tool joined both pictures; None where there is no model."""
     place = {name: n for n, name in enumerate(names) if n not in left_out}

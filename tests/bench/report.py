@@ -465,6 +465,21 @@ def photographs(records):
     return lines + [""]
 
 
+def moving(records):
+    """Pictures by a camera that moved: exposures compared with EXIF's, which the fit was not given."""
+    if not records:
+        return []
+    lines = ["## A camera that moved", "", "Exposures from pictures alone (`build FOLDER --exif-sigma 0`) compared with those of EXIF: correlation, slope,"
+             " standard deviation of the difference.", ""]
+    lines += header("pictures", "number", "joined", "EXIF spans, EV", "correlation", "slope", "difference, EV", "wall, s",
+                    "verdict: usable, evens")
+    for r in records:
+        lines.append(row(r["name"], r["pictures"], r.get("joined", "–"), number(r.get("exif_ev")), number(r.get("correlation")),
+                         number(r.get("slope")), number(r.get("off_ev")), number(r["wall_s"]),
+                         "%s, %s" % (r.get("usable"), r.get("evens"))))
+    return lines + [""]
+
+
 def ratio_of(ours, theirs, key):
     return ours[key] / theirs[key] if theirs.get(key) else None
 
@@ -483,6 +498,6 @@ def document(results):
     lines += flat(results["flat"])
     lines += static(results["static"]) + scale(results["scale"]) + speed(results["speed"])
     lines += radiance(results["radiance"]) + knowledge(results["knowledge"]) + real(results["real"])
-    lines += photographs(results["photographs"])
+    lines += photographs(results["photographs"]) + moving(results["moving"])
     lines += gallery(results["real"]) + brackets(results["brackets"])
     return "\n".join(lines).rstrip() + "\n"
