@@ -133,7 +133,7 @@ typedef struct lensprof_match {
 /* Measures correspondences at places that are known to match: of a camera that moved, where no cameras of images[]
  * explain all overlaps. Only width and height of the cameras are looked at. Where a match has a map, the pair comes
  * from the quietest of several places up to 8 view pixels about it, and only where the surroundings are alike;
- * otherwise from the match itself. The choice among matches is balanced as lensprof_sample_overlap's, whatever
+ * otherwise from the match itself. A link of matches without maps or texture is verified by the matches' word. The choice among matches is balanced as lensprof_sample_overlap's, whatever
  * options->sampling says except paper, which is refused. pairs[capacity], *count and links as there. Errors: as there;
  * ITEM of an ARGUMENT error is the match: its images or places are not of images[], or its map is not finite or turns
  * the picture over. */

@@ -46,6 +46,17 @@ Json json_of_matches(const std::vector<lensprof_match> &matches) {
     return list;
 }
 
+// Whether the records hold what json_of_matches writes, of so many images.
+bool are_matches(const Json &matches, size_t images) {
+    if (!matches.is_object() || !matches.contains("are_all") || !matches["are_all"].is_boolean()
+        || !matches.contains("list") || !matches["list"].is_array() || matches["list"].size() % 10)
+        return false;
+    size_t n = 0;
+    return std::all_of(matches["list"].begin(), matches["list"].end(), [&](const Json &number) {
+        return n++ % 10 > 1 ? number.is_number() : number.is_number_unsigned() && number.get<uint64_t>() < images;
+    });
+}
+
 Group group_of(const FoundProject &found, const std::vector<const InputPicture *> &all) {
     Group group;
     for (const uint32_t number : found.pictures) group.pictures.push_back(all[number]);
@@ -148,7 +159,7 @@ bool recall(const Json &notes, const std::string &key, const std::vector<const I
             if (picture == by_file.end()) return false;
             group.pictures.push_back(picture->second);
         }
-        if (!known.contains("matches")) return false;  // of an older version
+        if (!are_matches(known.value("matches", Json()), known["files"].size())) return false;
         group.geometry = known["geometry"].get<std::string>();
         group.matches = known["matches"];
         group.facts = known["facts"];

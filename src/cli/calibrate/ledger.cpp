@@ -53,7 +53,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char *ledger_name = ".lensprof-calibrate.json";
-constexpr int schema = 2;
+constexpr int schema = 3;
 
 std::string without_slash(std::string path) {
     while (path.size() > 1 && path.back() == '/') path.pop_back();

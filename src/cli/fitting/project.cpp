@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include <sys/resource.h>
@@ -198,7 +199,7 @@ uint32_t channel_count(const std::vector<SamplePicture> &pictures) {
 
 namespace {
 
-// By lensprof_sample_overlap or lensprof_sample_tracks.
+// By lensprof_sample_overlap, lensprof_sample_tracks or lensprof_sample_matches.
 template <class Item, class Function>
 std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pictures, lensprof_sample_options options,
                          const GreyRange &range, Progress &progress, std::vector<lensprof_link> *links,
@@ -240,15 +241,25 @@ std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pic
     return items;
 }
 
-}  // namespace
-
-namespace {
-
 using ImagePair = std::pair<uint32_t, uint32_t>;
 
 template <class Item>
 ImagePair images_of(const Item &item) {
     return std::minmax(item.image[0], item.image[1]);
+}
+
+// The pairs and links of one way of sampling; none where it finds nothing, which `nothing` then holds.
+template <class Draw>
+std::vector<lensprof_pair> drawn_or_none(const Draw &draw, std::vector<lensprof_link> &links,
+                                         std::optional<Failure> &nothing) {
+    try {
+        return draw();
+    } catch (const Failure &failure) {
+        if (failure.code != ExitCode::not_usable) throw;
+        nothing = failure;
+        links.clear();
+        return {};
+    }
 }
 
 // Pairs at the project's matches, as many as their links' share, and those of the cameras between other images.
@@ -257,9 +268,12 @@ std::vector<lensprof_pair> sample_matches(const Project &project, std::vector<Sa
                                           std::vector<lensprof_link> &links) {
     std::set<ImagePair> matched;
     for (const lensprof_match &match : project.matches) matched.insert(images_of(match));
+    std::optional<Failure> nothing;
     std::vector<lensprof_pair> pairs;
-    if (!project.by_matches)
-        pairs = sample<lensprof_pair>(project, pictures, options, range, progress, &links, lensprof_sample_overlap);
+    const auto by_cameras = [&] {
+        return sample<lensprof_pair>(project, pictures, options, range, progress, &links, lensprof_sample_overlap);
+    };
+    if (!project.by_matches) pairs = drawn_or_none(by_cameras, links, nothing);
     const auto is_matched = [&](const auto &item) { return matched.count(images_of(item)) > 0; };
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_matched), pairs.end());
     links.erase(std::remove_if(links.begin(), links.end(), is_matched), links.end());
@@ -272,7 +286,11 @@ std::vector<lensprof_pair> sample_matches(const Project &project, std::vector<Sa
         return lensprof_sample_matches(o, images, count, project.matches.data(),
                                        static_cast<uint32_t>(project.matches.size()), own, capacity, found, error);
     };
-    const auto own = sample<lensprof_pair>(project, pictures, options, range, progress, &own_links, by_matches);
+    const auto draw_own = [&] {
+        return sample<lensprof_pair>(project, pictures, options, range, progress, &own_links, by_matches);
+    };
+    const auto own = drawn_or_none(draw_own, own_links, nothing);
+    if (pairs.empty() && own.empty() && nothing) throw *nothing;
     pairs.insert(pairs.end(), own.begin(), own.end());
     links.insert(links.end(), own_links.begin(), own_links.end());
     std::sort(links.begin(), links.end(), [](const auto &a, const auto &b) { return images_of(a) < images_of(b); });

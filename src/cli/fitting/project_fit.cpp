@@ -61,8 +61,9 @@ void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &p
     options.pairs = o.pairs;
     options.seed = o.seed;
     if (known) options.response = &known->result.response, options.vignetting = &green_falloff(known->result);
-    // The method radiance makes tracks of pairs where there are no cameras that would find more.
-    if (o.fit.method == LENSPROF_METHOD_RADIANCE && project.matches.empty()) {
+    // The method radiance makes tracks of pairs where no cameras find more.
+    const bool by_matches = project.by_matches && o.sampling == LENSPROF_SAMPLING_BALANCED;
+    if (o.fit.method == LENSPROF_METHOD_RADIANCE && !by_matches) {
         input.observations = sample_tracks(project, pictures, options, done.progress, &links);
         input.pairs = pairs_of_tracks(input.observations);
     } else {
@@ -251,6 +252,10 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     done.settings = lens_settings(project, metadata, o.store, o.one_lens);
     Pictures pictures = get_points(o, project, done);
     stop_if_interrupted();
+    if (project.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
+        warn(streams,
+             "--sampling paper: goes by the cameras, which fit pictures of a camera that moved badly; leave it "
+             "out");
     input.images = fit_images(project);
     set_settings(o, done, streams);
     if (o.points.empty()) add_known_exposures(o.fit, project.files, metadata, input.images, streams);

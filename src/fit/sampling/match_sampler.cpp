@@ -48,7 +48,7 @@ Sampler::Sampler(const lensprof_sample_options &options, const lensprof_sample_i
     number_edges();
 }
 
-// The quietest place about a match, of those that show the same; false where there is none.
+// The quietest place about a match; false where none can be measured, or the two pictures do not show the same there.
 bool Sampler::quiet_place(const lensprof_match &match, MatchCandidate &found) {
     const bool has_map = match.map[0][0] != 0.0 || match.map[0][1] != 0.0;
     const int rings = has_map ? kRings : 0;
@@ -75,22 +75,23 @@ bool Sampler::quiet_place(const lensprof_match &match, MatchCandidate &found) {
             }
             if (good) places.push_back(p);
         }
-    std::stable_sort(places.begin(), places.end(),
-                     [](const Place &a, const Place &b) { return a.gradient() < b.gradient(); });
-    for (const Place &p : places) {
-        const Sight sight{
-            p.xy[1][0], p.xy[1][1], {{match.map[0][0], match.map[0][1]}, {match.map[1][0], match.map[1][1]}}};
-        if (has_map && !is_alike(match.image[0], p.xy[0][0], p.xy[0][1], match.image[1], sight)) continue;
-        found.gradient = static_cast<float>(p.gradient());
-        found.pair = {{match.image[0], match.image[1]}, {}, {}};
-        for (int side = 0; side < 2; side++) {
-            std::copy(p.xy[side], p.xy[side] + 2, found.pair.xy[side]);
-            std::copy(p.end[side].patch.value, p.end[side].patch.value + 3, found.pair.value[side]);
-            found.radius[side] = p.end[side].radius, found.grey[side] = p.end[side].grey;
-        }
-        return true;
+    const auto quietest = std::min_element(places.begin(), places.end(),
+                                           [](const Place &a, const Place &b) { return a.gradient() < b.gradient(); });
+    if (quietest == places.end()) return false;
+    const Place &p = *quietest;
+    if (has_map) {
+        const auto &map = match.map;
+        const Sight sight{p.xy[1][0], p.xy[1][1], {{map[0][0], map[0][1]}, {map[1][0], map[1][1]}}};
+        if (!is_alike(match.image[0], p.xy[0][0], p.xy[0][1], match.image[1], sight)) return false;
     }
-    return false;
+    found.gradient = static_cast<float>(p.gradient());
+    found.pair = {{match.image[0], match.image[1]}, {}, {}};
+    for (int side = 0; side < 2; side++) {
+        std::copy(p.xy[side], p.xy[side] + 2, found.pair.xy[side]);
+        std::copy(p.end[side].patch.value, p.end[side].patch.value + 3, found.pair.value[side]);
+        found.radius[side] = p.end[side].radius, found.grey[side] = p.end[side].grey;
+    }
+    return true;
 }
 
 std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, uint32_t count, uint32_t wanted) {
