@@ -132,11 +132,12 @@ typedef struct lensprof_match {
 
 /* Measures correspondences at places that are known to match: of a camera that moved, where no cameras of images[]
  * explain all overlaps. Only width and height of the cameras are looked at. Where a match has a map, the pair comes
- * from the quietest of several places up to 8 view pixels about it, and only where the surroundings are alike;
- * otherwise from the match itself. A link of matches without maps or texture is verified by the matches' word. The choice among matches is balanced as lensprof_sample_overlap's, whatever
- * options->sampling says except paper, which is refused. pairs[capacity], *count and links as there. Errors: as there;
- * ITEM of an ARGUMENT error is the match: its images or places are not of images[], or its map is not finite or turns
- * the picture over. */
+ * from the quietest of the places within 8 pixels of the first view along each axis, and only where the surroundings
+ * are alike; otherwise from the match itself. Links are verified by their matches, unless their surroundings contradict
+ * them. The choice among matches is balanced as lensprof_sample_overlap's, whatever options->sampling says except
+ * paper, which is refused. Equal matches give equal pairs. pairs[capacity], *count and links as there. Errors: as
+ * there; an ARGUMENT error about a match names it as its ITEM: its images or places are not of images[], or its map has
+ * a determinant that is not positive and finite. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status
 lensprof_sample_matches(const lensprof_sample_options *options, const lensprof_sample_image *images,
                         uint32_t image_count, const lensprof_match *matches, uint32_t match_count, lensprof_pair *pairs,

@@ -122,6 +122,39 @@ void test_another_camera_in_a_chain(void **) {
     assert_true(contains(run.err, "img002.png: left out, of another camera or size"));
 }
 
+void test_corrected_copies_are_not_read(void **) {
+    if (is_missing()) return;
+    simulate("copies", {"--images", "3", "--seed", "71"});
+    must_exit(done, {"calibrate", work("copies"), "-o", work("copies/even"), "--no-store"});
+    const Outcome run = run_words(Words{"build", work("copies")} + quietly);
+    assert_int_equal(run.code, done);
+    assert_int_equal(Json::parse(run.out)["images"].size(), 3);
+    assert_true(contains(run.err, "img000.png: left out, it is in a folder that calibrate has written"));
+}
+
+// A logo in the same place of all frames matches everywhere, and says nothing of the scene.
+void test_what_is_fixed_to_the_frame(void **) {
+    if (is_missing()) return;
+    simulate("stamped", {"--images", "5", "--seed", "81", "--size", "640x480"});
+    const Json plain = json_of(Words{"build", work("stamped")} + quietly);
+    for (int i = 0; i < 5; i++) {
+        const std::string file = work("stamped/img00" + std::to_string(i) + ".png");
+        ReadOptions options;
+        Picture picture = read_picture(file, options);
+        std::mt19937 random(9);
+        for (uint32_t y = 420; y < 470; y += 5)
+            for (uint32_t x = 20; x < 240; x += 5) {
+                const auto grey = static_cast<uint8_t>(60 + random() % 120);
+                for (uint32_t p = 0; p < 25; p++) {
+                    uint8_t *pixel = picture.pixels.data() + (y + p / 5) * picture.row_bytes + 3 * size_t(x + p % 5);
+                    std::fill(pixel, pixel + 3, grey);
+                }
+            }
+        write_picture(file, picture);
+    }
+    assert_alike(plain, json_of(Words{"build", work("stamped")} + quietly));
+}
+
 // Standard deviation of the logarithm of one panel over another: 0 where they differ by a factor alone. Places without
 // a picture, near black and near white do not count.
 double spread(const Picture &one, uint32_t one_top, const Picture &other, uint32_t other_top, uint32_t height) {
@@ -302,6 +335,8 @@ int main() {
         CLI_TEST(test_pictures_that_look_unlike),
         CLI_TEST(test_a_folder_of_many_things),
         CLI_TEST(test_another_camera_in_a_chain),
+        CLI_TEST(test_corrected_copies_are_not_read),
+        CLI_TEST(test_what_is_fixed_to_the_frame),
         CLI_TEST(test_the_preview_is_even),
         CLI_TEST(test_one_lens_keeps_the_geometry),
         CLI_TEST(test_odd_files_among_good_ones),

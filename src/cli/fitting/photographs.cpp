@@ -28,6 +28,17 @@ bool is_copy(const std::string &one, const std::string &other) {
     }
 }
 
+// Whether a picture of a folder lies in a subfolder of corrected copies, where calibrate keeps its records.
+bool is_calibrated(const NamedPicture &picture) {
+    namespace fs = std::filesystem;
+    fs::path place = fs::path(picture.file).parent_path();
+    for (fs::path below = picture.subfolder; picture.in_folder && !below.empty(); below = below.parent_path()) {
+        if (path_exists((place / ".lensprof-calibrate.json").string())) return true;
+        place = place.parent_path();
+    }
+    return false;
+}
+
 }  // namespace
 
 Photographs list_photographs(const std::vector<std::string> &words, const std::vector<NamedPicture> &pictures) {
@@ -36,6 +47,10 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
     std::set<std::string> known;
     std::map<uint64_t, std::vector<size_t>> by_size;
     for (const NamedPicture &picture : pictures) {
+        if (is_calibrated(picture)) {
+            list.copies.emplace_back(picture.file, "it is in a folder that calibrate has written");
+            continue;
+        }
         if (!known.insert(file_identity(picture.file)).second) continue;
         const uint64_t bytes = file_bytes(picture.file);  // 0 where there is no file
         auto &alike = by_size[bytes];
