@@ -20,6 +20,7 @@ constexpr double tolerance = 0.003;  // of the longer side: how far a match may 
 // matches; of related ones with little overlap 10 to 20.
 constexpr size_t fewest_matches = 10;
 constexpr double fewest_by_chance = 6.0, share_of_matches = 0.1;
+constexpr double still = 0.002;   // of the longer side: less than a camera that moves or turns moves the picture
 constexpr int most_draws = 3000;  // of four matches for a homography
 constexpr int most_rounds = 5;    // of matching: what is linked says what to look at next
 
@@ -56,27 +57,53 @@ std::vector<Match> match(const Features &first, const Features &second) {
     return found;
 }
 
+using Places = std::vector<std::pair<cv::Point2d, cv::Point2d>>;
+
 // The homography that most matches follow; empty where chance explains as many.
-std::optional<PictureLink> link(const std::vector<Features> &pictures, const PicturePair &pair) {
-    const Features &a = pictures[pair.first], &b = pictures[pair.second];
-    const std::vector<Match> matches = match(a, b);
+std::optional<PictureLink> link_by(const PicturePair &pair, const Places &matches, double longer_side) {
     if (matches.size() < fewest_matches) return std::nullopt;
     std::vector<cv::Point2d> from, to;
-    for (const Match &m : matches) {
-        from.push_back(a.places[static_cast<size_t>(m.first)]);
-        to.push_back(b.places[static_cast<size_t>(m.second)]);
-    }
-    const double reach = tolerance * std::max(std::max(a.width, a.height), std::max(b.width, b.height));
+    for (const auto &[a, b] : matches) from.push_back(a), to.push_back(b);
     std::vector<uint8_t> follows;
-    const cv::Mat homography = cv::findHomography(from, to, cv::USAC_MAGSAC, reach, follows, most_draws, 0.999);
+    const cv::Mat homography =
+        cv::findHomography(from, to, cv::USAC_MAGSAC, tolerance * longer_side, follows, most_draws, 0.999);
     if (homography.empty()) return std::nullopt;
-    PictureLink found{{pair.first, pair.second}, {}, homography};
+    PictureLink found{{pair.first, pair.second}, {}, homography, false};
     for (size_t m = 0; m < matches.size(); m++)
-        if (follows[m]) found.matches.emplace_back(from[m], to[m]);
+        if (follows[m]) found.matches.push_back(matches[m]);
     const auto count = static_cast<double>(found.matches.size());
     const bool is_chance = found.matches.size() < fewest_matches
                            || count <= fewest_by_chance + share_of_matches * static_cast<double>(matches.size());
     return is_chance ? std::nullopt : std::optional(std::move(found));
+}
+
+// By what moved from frame to frame; or, where that shows nothing, by all: what is fixed to the frame, a date stamp, a
+// logo or dirt, matches in every pair of pictures.
+std::optional<PictureLink> link(const std::vector<Features> &pictures, const PicturePair &pair) {
+    const Features &a = pictures[pair.first], &b = pictures[pair.second];
+    const double longer_side = std::max(std::max(a.width, a.height), std::max(b.width, b.height));
+    Places all, moved;
+    for (const Match &m : match(a, b)) {
+        const cv::Point2d from = a.places[static_cast<size_t>(m.first)], to = b.places[static_cast<size_t>(m.second)];
+        all.emplace_back(from, to);
+        if (cv::norm(to - from) > still * longer_side) moved.push_back(all.back());
+    }
+    if (auto found = link_by(pair, moved, longer_side)) return found;
+    auto found = link_by(pair, all, longer_side);
+    if (found) found->is_still = moved.size() < all.size();
+    return found;
+}
+
+// Still links of pictures that are linked by what moves: the camera did not stand still.
+void drop_still(size_t pictures, std::vector<PictureLink> &links) {
+    std::vector<bool> moves(pictures);
+    for (const PictureLink &link : links)
+        for (uint32_t picture : link.picture)
+            if (!link.is_still) moves[picture] = true;
+    const auto is_fixed = [&](const PictureLink &link) {
+        return link.is_still && (moves[link.picture[0]] || moves[link.picture[1]]);
+    };
+    links.erase(std::remove_if(links.begin(), links.end(), is_fixed), links.end());
 }
 
 }  // namespace
@@ -94,6 +121,7 @@ std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Progr
         std::sort(tried.begin(), tried.end());
         pairs = further_pairs(static_cast<uint32_t>(pictures.size()), linked, tried);
     }
+    drop_still(pictures.size(), links);
     std::sort(links.begin(), links.end(), [](const PictureLink &a, const PictureLink &b) {
         return std::tie(a.picture[0], a.picture[1]) < std::tie(b.picture[0], b.picture[1]);
     });

@@ -22,7 +22,6 @@ constexpr size_t points_per_link = 10;  // that a project is given
 // Matches of a link whose pictures are compared where they match, and of all links of a project.
 constexpr size_t fewest_matches_kept = 20, most_matches = 200, most_in_all = 200000;
 constexpr double smallest_turn = 0.05;  // determinant of a map that two pictures of a scene may have, or its inverse
-constexpr double still = 0.002;         // of the longer side: less than a moved camera moves the picture
 
 std::optional<double> hfov_by_metadata(const PictureMetadata &metadata, const Features &picture) {
     const lensprof_profile_key &key = metadata.key;
@@ -56,13 +55,6 @@ void add_matches(const PictureLink &link, size_t most, std::vector<lensprof_matc
     }
 }
 
-// Whether what a link follows does not move with the scene: a date stamp, a logo, dirt on the sensor.
-bool is_fixed_to_frame(const PictureLink &link, const PictureOptics &first) {
-    std::vector<double> moved;
-    for (const auto &[from, to] : link.matches) moved.push_back(std::hypot(to.x - from.x, to.y - from.y));
-    return median(moved) < still * std::max(first.width, first.height);
-}
-
 // The project of the pictures of one group; `links` are numbered as they are in the group.
 FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<PictureOptics> &optics,
                         const std::vector<PictureLink> &links) {
@@ -72,21 +64,17 @@ FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<Picture
     FoundCameras found = find_cameras(optics, links);
     project.kind = found.kind;
     project.cameras = std::move(found.cameras);
+    project.links = static_cast<uint32_t>(links.size());
     std::vector<double> residuals;
     const auto fits_link = [&](size_t n) { return found.link_residuals[n] <= unfit; };
-    std::vector<bool> is_unfit;  // what is fixed to the frame says nothing of the scene
-    for (size_t n = 0; n < links.size(); n++)
-        is_unfit.push_back(!fits_link(n) && !is_fixed_to_frame(links[n], optics[links[n].picture[0]]));
-    project.unfit = static_cast<uint32_t>(std::count(is_unfit.begin(), is_unfit.end(), true));
-    project.links = project.unfit;
-    for (size_t n = 0; n < links.size(); n++) project.links += fits_link(n);
+    for (size_t n = 0; n < links.size(); n++) project.unfit += !fits_link(n);
     const size_t most = std::clamp(most_in_all / std::max<size_t>(1, links.size()), fewest_matches_kept, most_matches);
     // Scenes are planes only nearly: what stands out of one is elsewhere, and matches know where.
     project.by_matches = found.kind == SceneKind::plane || !project.cameras_fit();
     for (size_t n = 0; n < links.size(); n++) {
-        const bool fits = fits_link(n), is_fixed = !fits && !is_unfit[n];
+        const bool fits = fits_link(n);
         if (fits) residuals.push_back(found.link_residuals[n]), add_points(links[n], project.points);
-        if (is_unfit[n] || (project.by_matches && !is_fixed)) add_matches(links[n], most, project.matches);
+        if (!fits || project.by_matches) add_matches(links[n], most, project.matches);
     }
     project.residual = median(residuals);
     return project;
