@@ -69,8 +69,8 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     if (!o.store.no_store && !*exif.camera_model && !*exif.lens) {
         options.store.no_store = true;
         panorama.summary["not_stored"] =
-            "no EXIF says which camera and lens it was; `lensprof build` of the project "
-            "takes --camera and --lens";
+            std::string("no EXIF says which camera and lens it was; `lensprof build` of the ")
+            + (project.by_matches ? "pictures" : "project") + " takes --camera and --lens";
     }
     const lensprof_profile_key key = profile_key(options, project, metadata, streams);
     const EarlierProfile prior = find_stored_prior(options.store, 0, false, key, project.path);

@@ -171,6 +171,16 @@ void set_settings(const ProjectFitOptions &o, ProjectFit &done, Streams &streams
     for (size_t i = 0; i < done.input.images.size(); i++) done.input.images[i].setting = settings.of_image[i];
 }
 
+// Things look different from another side, which in few pictures is taken for falloff.
+void warn_of_few(const Project &project, const Fitted &fitted, Streams &streams) {
+    constexpr size_t enough = 12;
+    if (!project.by_matches || !fitted.corrects() || joined_images(fitted) >= enough) return;
+    warn(streams, project.path
+                      + format(": the falloff is of %zu pictures of a camera that moved, and its error may be several "
+                               "times the stated one; give %zu pictures or more, or --no-store",
+                               joined_images(fitted), enough));
+}
+
 // What was found of each setting, where there are several.
 void report_settings(const ProjectFitOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
                      ProjectFit &done) {
@@ -270,6 +280,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     if (!pictures.empty() && may_join_more(o, done.best, report.links)) look_again(o, project, pictures, done);
     report.fit = done.best.result;
     report.verdict = verdict_of(done.best.result);
+    warn_of_few(project, done.best, streams);
     if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)
         report.verdict.text += " (Er and Eb on the v lines, or --free all)";
     name_image(project.names, report.verdict);
