@@ -71,12 +71,16 @@ def measure(name, files, folder):
     return record
 
 
+def pictures_in(folder):
+    return sorted(p for p in folder.iterdir() if p.suffix.lower() in gallery.PICTURES)
+
+
 def moving(root):
     """{name: files} of folders below root/reconstruction: pictures by a camera that moved."""
     sets = {}
     for folder in sorted(p for p in (pathlib.Path(root) / "reconstruction").glob("*") if p.is_dir()):
         own = folder / "images" if (folder / "images").is_dir() else folder
-        files = sorted(p for p in own.iterdir() if p.suffix.lower() in gallery.PICTURES)
+        files = pictures_in(own)
         if len(files) > 2:
             sets["%s/%s" % (folder.parent.name, folder.name)] = files
     return sets
@@ -107,16 +111,20 @@ def measure_moving(name, files, folder):
                 slope=float(np.polyfit(known, found, 1)[0]), off_ev=float(np.std(off)), exif_ev=float(np.ptp(known)))
 
 
+def measure_all(sets, measure_one, prefix, what, say):
+    records = []
+    for name, files in sets.items():
+        records.append(measure_one(name, files, tools.WORK / "photographs" / (prefix + name.replace("/", "-"))))
+        say("photographs: %d of %d %s" % (len(records), len(sets), what))
+    return records
+
+
 def run_moving(root, say):
     sets = moving(root) if root else {}
     for name, project in (real.projects_below(root) if root else {}).items():
         if name.endswith("brighton_beach"):
-            sets[name] = sorted(p for p in project.parent.iterdir() if p.suffix.lower() in gallery.PICTURES)
-    records = []
-    for name, files in sets.items():
-        records.append(measure_moving(name, files, tools.WORK / "photographs" / ("moved-" + name.replace("/", "-"))))
-        say("photographs: %d of %d sets of a camera that moved" % (len(records), len(sets)))
-    return records
+            sets[name] = pictures_in(project.parent)
+    return measure_all(sets, measure_moving, "moved-", "sets of a camera that moved", say)
 
 
 def seam_of(model, names, left_out, pairs, files):
@@ -142,9 +150,5 @@ def run_all(root, quick, say):
                    stdout=subprocess.DEVNULL)
     sets = {"rendered": sorted(rendered.glob("img*"))}
     for name, project in (real.projects_below(root) if root else {}).items():
-        sets[name] = sorted(p for p in project.parent.iterdir() if p.suffix.lower() in gallery.PICTURES)
-    records = []
-    for name, files in sets.items():
-        records.append(measure(name, files, tools.WORK / "photographs" / ("of-" + name.replace("/", "-"))))
-        say("photographs: %d of %d sets" % (len(records), len(sets)))
-    return records
+        sets[name] = pictures_in(project.parent)
+    return measure_all(sets, measure, "of-", "sets", say)

@@ -30,19 +30,6 @@ void check_output(const std::vector<std::string> &words, const std::string &outp
     }
 }
 
-// Whether a picture of a folder lies in a subfolder that calibrate has written.
-bool is_output(const NamedPicture &picture, std::map<std::string, bool> &known) {
-    if (!picture.in_folder) return false;
-    fs::path place = fs::path(picture.file).parent_path();
-    for (fs::path below = picture.subfolder; !below.empty(); below = below.parent_path()) {
-        const auto [entry, is_new] = known.try_emplace(place.string(), false);
-        if (is_new) entry->second = has_ledger(place.string());
-        if (entry->second) return true;
-        place = place.parent_path();
-    }
-    return false;
-}
-
 // Of pictures of one folder that would have one copy the first is taken: img000.dng and img000.nef are both img000.tif.
 void leave_out_doubles(Inputs &inputs) {
     std::map<std::string, const InputPicture *> first;
@@ -173,9 +160,7 @@ Inputs find_inputs(const std::vector<std::string> &words, const std::string &out
     check_output(words, output);
     std::vector<UnlistedFolder> unlisted;
     std::vector<NamedPicture> named = named_pictures(words, output, &unlisted);
-    std::map<std::string, bool> known;
-    named.erase(std::remove_if(named.begin(), named.end(), [&](const auto &one) { return is_output(one, known); }),
-                named.end());
+    take_out_below(named, has_ledger);
     const Photographs list = list_photographs(words, named);
     Inputs inputs;
     inputs.label = list.label;

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "cli/calibrate/attempt.hpp"
+#include "cli/pictures/named_pictures.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/input_file.hpp"
 #include "cli/program/paths.hpp"
@@ -52,7 +53,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *ledger_name = ".lensprof-calibrate.json";
 constexpr int schema = 3;
 
 std::string without_slash(std::string path) {
@@ -72,7 +72,7 @@ Json object_of(const std::string &text) {
 }  // namespace
 
 bool has_ledger(const std::string &folder) {
-    const std::string path = (fs::path(folder) / ledger_name).string();
+    const std::string path = (fs::path(folder) / calibrate_records).string();
     if (!is_regular_file(path)) return false;
     return why_not([&] {
                if (object_of(read_text(path, largest_text)).is_null())
@@ -100,7 +100,7 @@ void FolderLock::take() {
 
 Ledger::Ledger(const std::string &folder, bool overwrite)
     : folder_(without_slash(absolute_path(folder))),
-      path_((fs::path(folder) / ledger_name).string()),
+      path_((fs::path(folder) / calibrate_records).string()),
       overwrite_(overwrite) {
     if (!is_regular_file(path_)) return;
     try {

@@ -28,17 +28,6 @@ bool is_copy(const std::string &one, const std::string &other) {
     }
 }
 
-// Whether a picture of a folder lies in a subfolder of corrected copies, where calibrate keeps its records.
-bool is_calibrated(const NamedPicture &picture) {
-    namespace fs = std::filesystem;
-    fs::path place = fs::path(picture.file).parent_path();
-    for (fs::path below = picture.subfolder; picture.in_folder && !below.empty(); below = below.parent_path()) {
-        if (path_exists((place / ".lensprof-calibrate.json").string())) return true;
-        place = place.parent_path();
-    }
-    return false;
-}
-
 }  // namespace
 
 Photographs list_photographs(const std::vector<std::string> &words, const std::vector<NamedPicture> &pictures) {
@@ -47,10 +36,6 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
     std::set<std::string> known;
     std::map<uint64_t, std::vector<size_t>> by_size;
     for (const NamedPicture &picture : pictures) {
-        if (is_calibrated(picture)) {
-            list.copies.emplace_back(picture.file, "it is in a folder that calibrate has written");
-            continue;
-        }
         if (!known.insert(file_identity(picture.file)).second) continue;
         const uint64_t bytes = file_bytes(picture.file);  // 0 where there is no file
         auto &alike = by_size[bytes];
@@ -128,16 +113,21 @@ bool names_pictures(const std::string &word) { return is_folder(word) || is_pict
 
 Project project_of_pictures(const std::vector<std::string> &words, bool one_lens, Progress &progress,
                             Streams &streams) {
-    const std::vector<NamedPicture> named = named_pictures(words, std::string());
+    std::vector<NamedPicture> named = named_pictures(words, std::string());
+    const std::vector<NamedPicture> outputs =
+        take_out_below(named, [](const std::string &folder) { return path_exists(folder + "/" + calibrate_records); });
     for (const NamedPicture &picture : named) note_instead(picture, streams);
     const Photographs list = list_photographs(words, named);
     demand_one_kind(list.files);
     const auto &[label, files, names, copies] = list;
     Project project;
-    for (const auto &[file, why] : copies) {
+    const auto leave_out_file = [&](const std::string &file, const std::string &why) {
         project.left_out.emplace_back(file, why);
         warn(streams, file + ": left out, " + why);
-    }
+    };
+    for (const NamedPicture &picture : outputs)
+        leave_out_file(picture.file, "it is in a folder that calibrate has written");
+    for (const auto &[file, why] : copies) leave_out_file(file, why);
     if (files.size() < 2)
         throw Failure(ExitCode::not_usable, label + ": has one picture; at least two overlapping ones are needed",
                       LENSPROF_REASON_FEW_PAIRS);

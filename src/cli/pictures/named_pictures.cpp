@@ -105,6 +105,24 @@ std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, 
     return pictures;
 }
 
+std::vector<NamedPicture> take_out_below(std::vector<NamedPicture> &pictures,
+                                         const std::function<bool(const std::string &)> &is_output) {
+    std::map<std::string, bool> known;
+    const auto is_kept = [&](const NamedPicture &picture) {
+        std::filesystem::path place = std::filesystem::path(picture.file).parent_path(), below = picture.subfolder;
+        for (; picture.in_folder && !below.empty(); below = below.parent_path(), place = place.parent_path()) {
+            const auto [entry, is_new] = known.try_emplace(place.string(), false);
+            if (is_new) entry->second = is_output(place.string());
+            if (entry->second) return false;
+        }
+        return true;
+    };
+    const auto out = std::stable_partition(pictures.begin(), pictures.end(), is_kept);
+    std::vector<NamedPicture> taken(out, pictures.end());
+    pictures.erase(out, pictures.end());
+    return taken;
+}
+
 void note_instead(const NamedPicture &picture, Streams &streams) {
     if (picture.instead_of.empty()) return;
     std::string others;

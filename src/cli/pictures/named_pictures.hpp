@@ -1,6 +1,7 @@
 // The pictures that a call names: files, and folders of them.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,14 @@ struct UnlistedFolder {
 // subfolder that cannot be listed goes to `unlisted`, where that is not NULL, else it is a Failure (unreadable).
 std::vector<NamedPicture> named_pictures(const std::vector<std::string> &names, const std::string &output,
                                          std::vector<UnlistedFolder> *unlisted = nullptr);
+
+// File of the records that calibrate keeps in the folder of its outputs.
+constexpr const char *calibrate_records = ".lensprof-calibrate.json";
+
+// Takes out, and returns, the pictures that lie in a subfolder for which is_output(folder) holds, or below one. Every
+// folder is asked once; those that were named are not.
+std::vector<NamedPicture> take_out_below(std::vector<NamedPicture> &pictures,
+                                         const std::function<bool(const std::string &)> &is_output);
 
 // States which one of such a pair is taken, and why.
 void note_instead(const NamedPicture &picture, Streams &streams);

@@ -5,7 +5,6 @@
 #include <iterator>
 #include <utility>
 
-#include "fit/sampling/balance.hpp"
 #include "fit/sampling/sampler.hpp"
 
 namespace lensprof {
@@ -86,6 +85,8 @@ bool Sampler::quiet_place(const lensprof_match &match, MatchCandidate &found) {
     }
     found.gradient = static_cast<float>(p.gradient());
     found.pair = {{match.image[0], match.image[1]}, {}, {}};
+    std::copy(match.image, match.image + 2, found.image);
+    found.x = p.xy[0][0], found.y = p.xy[0][1];
     for (int side = 0; side < 2; side++) {
         std::copy(p.xy[side], p.xy[side] + 2, found.pair.xy[side]);
         std::copy(p.end[side].patch.value, p.end[side].patch.value + 3, found.pair.value[side]);
@@ -116,23 +117,9 @@ std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, ui
     each(pieces, work, [&] { return 0.95 * done / std::max(pieces, 1u); });
     std::vector<MatchCandidate> all;
     for (auto &list : found) std::move(list.begin(), list.end(), std::back_inserter(all));
-    const auto is_contradicted = [&](const MatchCandidate &c) {
-        return state_of(edge_of(c.pair.image[0], c.pair.image[1])) == LENSPROF_LINK_CONTRADICTED;
-    };
-    all.erase(std::remove_if(all.begin(), all.end(), is_contradicted), all.end());
-    const auto edge = [&](uint32_t i) { return edge_of(all[i].pair.image[0], all[i].pair.image[1]); };
-    const auto chosen = balance(
-        all.size(), wanted, 2.0 * wanted, edge_numbers_, [&](uint32_t i) { return all[i].gradient; }, edge,
-        [&](uint32_t i, auto use) {
-            for (int side = 0; side < 2; side++) use(all[i].radius[side], all[i].grey[side]);
-        });
     std::vector<lensprof_pair> pairs;
-    for (uint32_t index : chosen) {
-        pairs.push_back(all[index].pair);
-        likenesses_[edge(index)].pairs++;
-    }
-    each(
-        1, [](uint32_t) {}, [] { return 1.0; });
+    for (const MatchCandidate &chosen : balanced_choice(std::move(all), wanted)) pairs.push_back(chosen.pair);
+    show_done();
     return pairs;
 }
 

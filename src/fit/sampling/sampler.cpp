@@ -5,7 +5,6 @@
 #include <iterator>
 
 #include "fit/base/parallel.hpp"
-#include "fit/sampling/balance.hpp"
 
 namespace lensprof {
 namespace {
@@ -128,6 +127,11 @@ void Sampler::read_grey_levels() {
         count, [&](uint32_t i) { grey_[i] = std::make_unique<GreyLevels>(views_[i], light); }, [] { return 0.0; });
 }
 
+void Sampler::show_done() {
+    each(
+        1, [](uint32_t) {}, [] { return 1.0; });
+}
+
 // Where the project is off between neighbours, as the pictures show. A camera that stands still is not off: pictures
 // that are mostly white, or mostly black, would only seem to be.
 void Sampler::register_neighbours() {
@@ -209,11 +213,11 @@ bool Sampler::is_alike(uint32_t i, double x, double y, uint32_t j, Sight at) {
 lensprof_link_state Sampler::state_of(uint32_t number) const {
     const Likenesses &edge = likenesses_[number];
     const double surely = edge.surely, told = edge.told, chance = edge.chance, beside = edge.beside;
-    const lensprof_link_state by_word = by_matches_ ? LENSPROF_LINK_VERIFIED : LENSPROF_LINK_UNVERIFIED;
-    if (told < kFewestTold) return by_word;
+    const lensprof_link_state without_texture = by_matches_ ? LENSPROF_LINK_VERIFIED : LENSPROF_LINK_UNVERIFIED;
+    if (told < kFewestTold) return without_texture;
     if (edge.alike > kEnoughAlike * told) return LENSPROF_LINK_VERIFIED;
     if (surely > kFewestSurely * told && surely * beside > kAboveChance * chance * told) return LENSPROF_LINK_VERIFIED;
-    return told < kMostlySmooth * edge.seen ? by_word : LENSPROF_LINK_CONTRADICTED;
+    return told < kMostlySmooth * edge.seen ? without_texture : LENSPROF_LINK_CONTRADICTED;
 }
 
 std::vector<lensprof_link> Sampler::links() const {
@@ -316,30 +320,14 @@ std::vector<lensprof_pair> Sampler::pairs_of(const std::vector<Candidate> &chose
         }
     };
     each(pieces, work, [] { return 0.97; });
-    each(
-        1, [](uint32_t) {}, [] { return 1.0; });
+    show_done();
     return pairs;
 }
 
-// As long as no image pair, radius or grey level has had more than its share; the shares grow until enough are found.
 std::vector<lensprof_pair> Sampler::balanced(uint32_t wanted) {
     patches_ = true;
     register_neighbours();
-    std::vector<Candidate> all = candidates(8 * static_cast<size_t>(wanted));
-    auto out_of_place = [&](const Candidate &c) {
-        return state_of(edge_of(c.image[0], c.image[1])) == LENSPROF_LINK_CONTRADICTED;
-    };
-    all.erase(std::remove_if(all.begin(), all.end(), out_of_place), all.end());
-    auto chosen = balance(
-        all.size(), wanted, 2.0 * wanted, edge_numbers_, [&](uint32_t i) { return all[i].gradient; },
-        [&](uint32_t i) { return edge_of(all[i].image[0], all[i].image[1]); },
-        [&](uint32_t i, auto use) {
-            for (int side = 0; side < 2; side++) use(all[i].radius[side], all[i].grey[side]);
-        });
-    std::vector<Candidate> best;
-    for (uint32_t index : chosen) best.push_back(all[index]);
-    for (const Candidate &c : best) likenesses_[edge_of(c.image[0], c.image[1])].pairs++;
-    return pairs_of(best);
+    return pairs_of(balanced_choice(candidates(8 * static_cast<size_t>(wanted)), wanted));
 }
 
 // A random place of a random image, and one of its neighbours; the image itself when it has none.

@@ -2,6 +2,7 @@
 // for tracks stands in track_sampler.cpp, what starts from matches in match_sampler.cpp.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include "fit/base/parallel.hpp"
 #include "fit/base/random.hpp"
+#include "fit/sampling/balance.hpp"
 #include "fit/sampling/registration.hpp"
 #include "fit/sampling/view.hpp"
 
@@ -65,11 +67,9 @@ private:
         uint32_t image[2];
     };
 
-    // A pair near a match.
-    struct MatchCandidate {
+    // One near a match, where its pair is measured.
+    struct MatchCandidate : Candidate {
         lensprof_pair pair;
-        float gradient;  // both ends together
-        uint8_t radius[2], grey[2];
     };
 
     // One image's part of a candidate for a track.
@@ -117,6 +117,8 @@ private:
     void look(uint32_t i, double x, double y, const uint32_t *others, size_t count, std::vector<Candidate> &found);
     Look draw(Random &random) const;
     std::vector<Candidate> candidates(size_t wanted);
+    template <class Any>
+    std::vector<Any> balanced_choice(std::vector<Any> all, uint32_t wanted);
     bool quiet_place(const lensprof_match &match, MatchCandidate &found);
     std::vector<lensprof_pair> pairs_of(const std::vector<Candidate> &chosen);
     bool are_neighbours(uint32_t i, uint32_t j) const;
@@ -126,6 +128,7 @@ private:
     std::vector<TrackCandidate> track_candidates(size_t wanted, const std::function<Aim(uint32_t)> &aim);
     std::vector<TrackCandidate> in_place(std::vector<TrackCandidate> all) const;
     std::vector<lensprof_observation> observations_of(const std::vector<TrackCandidate> &chosen);
+    void show_done();
     void each(uint32_t count, const std::function<void(uint32_t)> &work, const std::function<double()> &done);
 
     const lensprof_sample_options &options_;
@@ -144,5 +147,24 @@ private:
     std::atomic<bool> overlaps_{false};
     double shown_ = 0.0;  // the last fraction that the caller saw
 };
+
+// The quietest candidates of links that are not contradicted, as long as no image pair, radius or grey level has had
+// more than its share; the shares grow until enough are found.
+template <class Any>
+std::vector<Any> Sampler::balanced_choice(std::vector<Any> all, uint32_t wanted) {
+    const auto edge = [&](const Candidate &c) { return edge_of(c.image[0], c.image[1]); };
+    const auto out_of_place = [&](const Candidate &c) { return state_of(edge(c)) == LENSPROF_LINK_CONTRADICTED; };
+    all.erase(std::remove_if(all.begin(), all.end(), out_of_place), all.end());
+    const auto chosen = balance(
+        all.size(), wanted, 2.0 * wanted, edge_numbers_, [&](uint32_t i) { return all[i].gradient; },
+        [&](uint32_t i) { return edge(all[i]); },
+        [&](uint32_t i, auto use) {
+            for (int side = 0; side < 2; side++) use(all[i].radius[side], all[i].grey[side]);
+        });
+    std::vector<Any> best;
+    for (uint32_t index : chosen) best.push_back(all[index]);
+    for (const Candidate &c : best) likenesses_[edge(c)].pairs++;
+    return best;
+}
 
 }  // namespace lensprof

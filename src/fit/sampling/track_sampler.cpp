@@ -128,8 +128,7 @@ std::vector<lensprof_observation> Sampler::observations_of(const std::vector<Tra
         }
     };
     each(static_cast<uint32_t>(chosen.size()), work, [] { return 0.97; });
-    each(
-        1, [](uint32_t) {}, [] { return 1.0; });
+    show_done();
     std::vector<lensprof_observation> all;
     for (const auto &track : tracks) all.insert(all.end(), track.begin(), track.end());
     return all;
