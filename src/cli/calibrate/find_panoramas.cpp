@@ -1,6 +1,5 @@
 // Which pictures belong together.
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include <lensprof/lensprof.h>
@@ -19,7 +18,8 @@ namespace {
 struct Group {
     std::vector<const InputPicture *> pictures;
     std::string geometry;
-    Json matches, facts;
+    NotedMatches matches;
+    Json facts;
 };
 
 struct Groups {
@@ -33,35 +33,12 @@ std::string key_of(const std::vector<const InputPicture *> &pictures, const std:
     return digest_of_text(text);
 }
 
-// Flat, to the hundredth of a px: image, image, x, y, x, y, and the four numbers of the map.
-Json json_of_matches(const std::vector<lensprof_match> &matches) {
-    Json list = Json::array();
-    for (const lensprof_match &m : matches) {
-        for (uint32_t image : m.image) list.push_back(image);
-        for (const auto &xy : m.xy)
-            for (double coordinate : xy) list.push_back(std::round(100.0 * coordinate) / 100.0);
-        for (const auto &row : m.map)
-            for (double by : row) list.push_back(std::round(1e4 * by) / 1e4);
-    }
-    return list;
-}
-
-// Whether the records hold what json_of_matches writes, of so many images.
-bool are_matches(const Json &matches, size_t images) {
-    if (!matches.is_object() || !matches.contains("are_all") || !matches["are_all"].is_boolean()
-        || !matches.contains("list") || !matches["list"].is_array() || matches["list"].size() % 10)
-        return false;
-    size_t n = 0;
-    return std::all_of(matches["list"].begin(), matches["list"].end(), [&](const Json &number) {
-        return n++ % 10 > 1 ? number.is_number() : number.is_number_unsigned() && number.get<uint64_t>() < images;
-    });
-}
-
 Group group_of(const FoundProject &found, const std::vector<const InputPicture *> &all) {
     Group group;
     for (const uint32_t number : found.pictures) group.pictures.push_back(all[number]);
     group.geometry = text_of_found(found);
-    group.matches = {{"are_all", found.by_matches}, {"list", json_of_matches(found.matches)}};
+    // Through the ledger's text, so that a fit of recalled matches is the same to the byte.
+    read_noted(json_of(NotedMatches{found.matches, found.by_matches}), found.pictures.size(), group.matches);
     group.facts = {{"camera", found.kind == SceneKind::plane ? "moved over a plane" : "turned about one point"},
                    {"links", found.links},
                    {"links_unfit", found.unfit},
@@ -118,8 +95,10 @@ Json json_of(const Groups &groups, const std::string &key) {
     for (const Group &group : groups.list) {
         Json files = Json::array();
         for (const InputPicture *picture : group.pictures) files.push_back(noted(picture->file));
-        list.push_back(
-            {{"files", files}, {"geometry", group.geometry}, {"matches", group.matches}, {"facts", group.facts}});
+        list.push_back({{"files", files},
+                        {"geometry", group.geometry},
+                        {"matches", json_of(group.matches)},
+                        {"facts", group.facts}});
     }
     return {{"key", key},
             {"groups", list},
@@ -159,9 +138,8 @@ bool recall(const Json &notes, const std::string &key, const std::vector<const I
             if (picture == by_file.end()) return false;
             group.pictures.push_back(picture->second);
         }
-        if (!are_matches(known.value("matches", Json()), known["files"].size())) return false;
+        if (!read_noted(known.value("matches", Json()), known["files"].size(), group.matches)) return false;
         group.geometry = known["geometry"].get<std::string>();
-        group.matches = known["matches"];
         group.facts = known["facts"];
         groups.list.push_back(std::move(group));
     }

@@ -25,22 +25,6 @@ Json warnings_in(const std::string &lines) {
     return warnings;
 }
 
-std::vector<lensprof_match> matches_of_json(const Json &list) {
-    std::vector<lensprof_match> matches;
-    auto next = list.begin();
-    const auto take = [&](auto &value) { (next++)->get_to(value); };
-    while (next != list.end()) {
-        lensprof_match m{};
-        for (uint32_t &image : m.image) take(image);
-        for (auto &xy : m.xy)
-            for (double &coordinate : xy) take(coordinate);
-        for (auto &row : m.map)
-            for (double &by : row) take(by);
-        matches.push_back(m);
-    }
-    return matches;
-}
-
 Project project_of(const Panorama &panorama) {
     Project project;
     project.path = panorama.source;
@@ -49,8 +33,8 @@ Project project_of(const Panorama &panorama) {
         project.names.push_back(picture->name);
     }
     read_found(panorama.geometry, project);
-    project.by_matches = panorama.matches["are_all"].get<bool>();
-    project.matches = matches_of_json(panorama.matches["list"]);
+    project.by_matches = panorama.matches.are_all;
+    project.matches = panorama.matches.list;
     return project;
 }
 

@@ -7,6 +7,7 @@
 
 #include "cli/calibrate/inputs.hpp"
 #include "cli/calibrate/ledger.hpp"
+#include "cli/calibrate/noted_matches.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/program/progress.hpp"
 
@@ -25,7 +26,7 @@ struct Panorama {
     std::string project, preview;  // files in the output folder
     std::vector<const InputPicture *> pictures;
     std::string geometry;  // as a project without a result
-    Json matches;          // where pictures show the same that the cameras do not fit
+    NotedMatches matches;  // where pictures show the same that the cameras do not fit
     std::string source;    // as provenances name it
     std::string key;       // of its pictures and of what is asked for
     Json summary;          // docs/json.md; `result` is null where no fit could be made
