@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/correct/correction.hpp"
+#include "cli/correct/overlaps.hpp"
 #include "cli/correct/picture_model.hpp"
 #include "cli/correct/project_model.hpp"
 #include "cli/pictures/coded_kind.hpp"
@@ -49,7 +50,7 @@ struct Options {
     std::string pto, output, sheet;
     Exposure exposure = Exposure::by_default;
     CorrectionKind kind;
-    bool skip = false, json = false, progress = false, has_output = true;
+    bool merge = false, skip = false, json = false, progress = false, has_output = true;
     std::vector<std::string> files;
 };
 
@@ -61,8 +62,9 @@ struct LeftOut {
 struct Work {
     std::vector<Correction> jobs;
     std::vector<LeftOut> left_out;
-    std::vector<LeftOut> unjoined;  // that the result of the project is without
-    lensprof_exposure mean{};       // what --output-exposure mean makes the pictures like
+    std::vector<LeftOut> unjoined;      // that the result of the project is without
+    std::vector<PlacedCorrection> lit;  // of --merge: all images that say something of the light
+    lensprof_exposure mean{};           // what --output-exposure mean makes the pictures like
 };
 
 void declare_exposure(Command &command, Options &o) {
@@ -79,6 +81,10 @@ void declare(Command &command, Options &o) {
     command.flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
     command.choice("--linear-output", o.linear_end, {{"tif", ".tif"}, {"exr", ".exr"}},
                    "of --linear: tif (default), or exr, OpenEXR without metadata");
+    command.flag(
+        "--merge", o.merge,
+        "of --linear with --pto: the light of each picture in its own frame from all pictures of the project that "
+        "overlap it, also where it is white or black itself (HDR)");
     command.choice(
         "--raw-output", o.raw_output, {{"dng", RawOutput::dng}, {"tif", RawOutput::tif}},
         "of camera raw files: dng, a copy of the DNG with the falloff as an opcode, pixels untouched (default "
@@ -262,8 +268,22 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
                                        + " cannot be corrected, and none is; leave them out with --skip");
 }
 
-Work plan_work(const Options &o, Streams &streams) {
-    const Source source = open_source(o);
+// Each image of the project that is part of its result.
+std::vector<PlacedCorrection> placed_images(const Source &source) {
+    std::vector<PlacedCorrection> placed;
+    const Project &project = *source.project;
+    for (uint32_t i = 0; i < project.images.size(); i++) {
+        if (project.images[i].left_out) continue;
+        check_shape(project, i, project.files[i]);
+        Correction job;
+        job.source = project.files[i], job.own = source.exposures[i], job.model = model_of_project(project, i);
+        placed.push_back({job, i});
+    }
+    check_overlaps(placed);
+    return placed;
+}
+
+Work plan_work(const Options &o, const Source &source, Streams &streams) {
     std::vector<NamedPicture> pictures;
     if (o.files.empty() && source.project)
         for (const std::string &file : source.project->files) pictures.push_back({file, "", false});
@@ -303,6 +323,7 @@ Work plan_work(const Options &o, Streams &streams) {
         check_has_result(*source.project);
         check_one_response(*source.project);
     }
+    if (o.merge) work.lit = placed_images(source);
     return work;
 }
 
@@ -349,7 +370,13 @@ void say_notes(const std::vector<Correction> &jobs, Streams &streams) {
     }
 }
 
-Corrected correct(const Options &o, Work &work, Streams &streams) {
+Corrected merge(const Options &o, const Source &source, const Work &work, Progress &progress) {
+    std::vector<PlacedCorrection> placed;
+    for (const Correction &job : work.jobs) placed.push_back({job, source.images->at(job.source, "--pto")});
+    return write_from_overlaps(*source.project, placed, work.lit, o.kind, progress);
+}
+
+Corrected correct(const Options &o, const Source &source, Work &work, Streams &streams) {
     if (work.jobs.empty()) return {};
     lensprof_exposure reference;
     lensprof_exposure_init(&reference);
@@ -362,10 +389,25 @@ Corrected correct(const Options &o, Work &work, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;
     say_notes(work.jobs, streams);
-    Corrected written = write_corrected(work.jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);
+    Corrected written = o.merge ? merge(o, source, work, progress)
+                                : write_corrected(work.jobs, o.kind, o.sheet.empty() ? nullptr : &sheet, progress);
     progress.clear();
     if (!o.sheet.empty()) sheet.write(o.sheet);
     return written;
+}
+
+void check_merge(const Options &o) {
+    if (o.pto.empty() || !o.kind.linear)
+        throw Failure(ExitCode::usage,
+                      "--merge: takes light from overlapping pictures; give their project with --pto, and --linear");
+    if (o.model.profile || o.model.from_db || o.model.response)
+        throw Failure(ExitCode::usage,
+                      "--merge: takes response and falloff of the project; leave out --profile, --from-db and the "
+                      "response");
+    if (o.kind.simulate || o.kind.strength != 1.0 || o.kind.gain_cap != 0.0 || !o.sheet.empty())
+        throw Failure(ExitCode::usage,
+                      "--merge: takes the falloff out as a whole; leave out --simulate, --strength, --gain-cap and "
+                      "--contact-sheet");
 }
 
 int run(Options &o, Streams &streams) {
@@ -376,11 +418,13 @@ int run(Options &o, Streams &streams) {
         throw Failure(
             ExitCode::usage,
             o.sheet + ": OpenEXR holds light, and a contact sheet is a picture; give a name in .jpg, .png or .tif");
+    if (o.merge) check_merge(o);
     o.model.puts_in = o.kind.simulate;
     o.has_output = !o.output.empty();
     if (!o.has_output) o.output = "corrected";
-    Work work = plan_work(o, streams);
-    const Corrected written = correct(o, work, streams);
+    const Source source = open_source(o);
+    Work work = plan_work(o, source, streams);
+    const Corrected written = correct(o, source, work, streams);
     if (o.json) {
         Json json = {{"schema", 1}, {"pictures", written.pictures}, {"left_out", left_out_json(work)}};
         add_speed(written, json);

@@ -147,10 +147,7 @@ Corrected write_corrected(const std::vector<Correction> &jobs, const CorrectionK
         finished[i].copy ? finished[i].copy->commit() : finished[i].writer->commit();
         finished[i] = {nullptr, nullptr, finished[i].with_metadata};
         throughput.add_picture();
-        if (is_turned_in_exr(jobs[i])) progress.warn(turned_in_exr(jobs[i].target));
-        if (!finished[i].with_metadata)
-            progress.warn(jobs[i].target + ": written without the metadata of " + jobs[i].source
-                          + ", which are not read from or written to such a file (a BigTIFF); copy them with exiftool");
+        warn_of_written(jobs[i], finished[i].with_metadata, progress);
         Json entry = {{"file", jobs[i].source}, {"output", jobs[i].target}};
         if (jobs[i].profile_id) entry["profile"] = jobs[i].profile_id;
         if (jobs[i].lookup) entry["lookup"] = lookup_json(*jobs[i].lookup);

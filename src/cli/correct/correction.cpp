@@ -60,14 +60,13 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
     }
 }
 
-bool is_turned_in_exr(const Correction &job) {
-    return !job.copies_dng && format_of_name(job.target) == FileFormat::exr
-           && read_metadata(job.source).orientation > 1;
-}
-
-std::string turned_in_exr(const std::string &target) {
-    return target + ": lies as the sensor saw it, for OpenEXR has no EXIF orientation; turn it in your program, or write "
-                    "TIFF";
+void warn_of_written(const Correction &job, bool with_metadata, Progress &progress) {
+    if (!job.copies_dng && format_of_name(job.target) == FileFormat::exr && read_metadata(job.source).orientation > 1)
+        progress.warn(job.target + ": lies as the sensor saw it, for OpenEXR has no EXIF orientation; turn it in your "
+                                   "program, or write TIFF");
+    if (!with_metadata)
+        progress.warn(job.target + ": written without the metadata of " + job.source
+                      + ", which are not read from or written to such a file (a BigTIFF); copy them with exiftool");
 }
 
 void add_speed(const Corrected &corrected, Json &json) {

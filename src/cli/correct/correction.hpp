@@ -49,10 +49,8 @@ struct Corrected {
     double seconds = 0, megapixels = 0;
 };
 
-// Whether the source is to be shown turned, as its EXIF says, and the target is OpenEXR, which cannot say so; and that
-// as a warning.
-bool is_turned_in_exr(const Correction &job);
-std::string turned_in_exr(const std::string &target);
+// Warns of what the written target is without: the turn of EXIF in OpenEXR, which cannot state it, and metadata.
+void warn_of_written(const Correction &job, bool with_metadata, Progress &progress);
 
 // Adds `seconds` and `megapixels_per_second` (null when nothing was written) to a command's object.
 void add_speed(const Corrected &corrected, Json &json);

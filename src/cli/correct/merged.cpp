@@ -1,10 +1,10 @@
 #include "cli/correct/merged.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 
+#include "cli/correct/light_weights.hpp"
 #include "cli/correct/picture_plan.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/program/interrupt.hpp"
@@ -13,49 +13,18 @@
 namespace lensprof {
 namespace {
 
-// Grey values, 0..1, from which on a pixel counts, and counts in full; the same below white. Within 2 % of white the
-// coding of JPEG and the noise mix saturated pixels with others.
-constexpr double none_below = 0.01, all_above = 0.06, all_below = 0.9, none_above = 0.98;
-constexpr int steps = 4096;  // of grey values
 constexpr uint32_t strip_rows = 32;
-
-double grey_at(const lensprof_image &rows, uint32_t y, size_t n) {
-    const auto *row = static_cast<const uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes;
-    switch (rows.sample) {
-    case LENSPROF_SAMPLE_U8: return row[n] / 255.0;
-    case LENSPROF_SAMPLE_U16: return reinterpret_cast<const uint16_t *>(row)[n] / 65535.0;
-    default: return static_cast<double>(reinterpret_cast<const float *>(row)[n]);
-    }
-}
-
-// How far a pixel is from black and white: 0 at them, 1 between. By its largest channel: where that is well within, the
-// others are what the light is, be it next to none of red.
-double trust(double largest) {
-    const double up = (largest - none_below) / (all_above - none_below);
-    const double down = (none_above - largest) / (none_above - all_below);
-    return std::clamp(std::min(up, down), 0.0, 1.0);
-}
 
 // One frame, read from the top.
 class Frame {
 public:
     Frame(const Correction &job, const CorrectionKind &kind)
-        : job_(job), reader_(job.source), plan_(options_of(reader_.header(), job, kind), job.source) {
+        : job_(job), reader_(job.source), plan_(options_of(reader_.header(), job, kind), job.source), weights_(job) {
         const Picture &header = reader_.header();
         samples_ = lensprof_layout_samples(header.layout);
         if (samples_ != 1 && samples_ != 3)
             throw Failure(ExitCode::usage,
                           job.source + ": has transparency, which a merged picture has not; remove it");
-        for (uint32_t c = 0; c < 3; c++) {
-            const lensprof_response &response = job.model->response[job.model->responses == 3 ? c : 0];
-            const double gain =
-                std::exp2(job.own.ev - job.wanted.ev) * job.own.white_balance[c] / job.wanted.white_balance[c];
-            for (int k = 0; k <= steps; k++) {
-                double slope = 0.0;  // of the light over the grey value
-                lensprof_response_invert(&response, static_cast<double>(k) / steps, &slope);
-                weight_[c][static_cast<size_t>(k)] = slope > 0.0 ? std::pow(gain / slope, 2) : 0.0;
-            }
-        }
     }
 
     const Picture &header() const { return reader_.header(); }
@@ -83,27 +52,19 @@ public:
 
     // Of each channel; returns how far the pixel is from black and white.
     double weights(uint32_t x, uint32_t y, double weight[3]) const {
-        for (size_t c = 0; c < samples_; c++) {
-            const double grey = grey_at(before_rows_, y, size_t(x) * samples_ + c);
-            weight[c] = weight_[c][static_cast<size_t>(std::lround(steps * std::clamp(grey, 0.0, 1.0)))];
-        }
-        return trust(largest(x, y));
+        for (size_t c = 0; c < samples_; c++)
+            weight[c] = weights_.at(c, grey_at(before_rows_, y, size_t(x) * samples_ + c));
+        return trust_of(largest_grey(before_rows_, x, y));
     }
 
-    bool is_white(uint32_t x, uint32_t y) const { return largest(x, y) >= none_above; }
+    bool is_white(uint32_t x, uint32_t y) const { return lensprof::is_white(largest_grey(before_rows_, x, y)); }
 
 private:
-    double largest(uint32_t x, uint32_t y) const {
-        double most = 0.0;
-        for (size_t c = 0; c < samples_; c++) most = std::max(most, grey_at(before_rows_, y, size_t(x) * samples_ + c));
-        return most;
-    }
-
     const Correction &job_;
     PictureReader reader_;
     const Plan plan_;
     size_t samples_;
-    std::array<std::array<double, steps + 1>, 3> weight_;
+    const LightWeights weights_;
     std::vector<uint8_t> before_;
     std::vector<float> light_;
     lensprof_image before_rows_{};
@@ -167,11 +128,9 @@ void write_merged(const std::vector<Correction> &jobs, size_t like, const std::s
     }
     Correction merged_job = jobs[like];
     merged_job.target = target;
-    if (is_turned_in_exr(merged_job)) progress.warn(turned_in_exr(target));
-    if (!writer.finish())
-        progress.warn(target + ": written without the metadata of " + jobs[like].source
-                      + ", which are not read from or written to such a file (a BigTIFF); copy them with exiftool");
+    const bool with_metadata = writer.finish();
     writer.commit();
+    warn_of_written(merged_job, with_metadata, progress);
 }
 
 }  // namespace lensprof
