@@ -122,6 +122,46 @@ void test_another_camera_in_a_chain(void **) {
     assert_true(contains(run.err, "img002.png: left out, of another camera or size"));
 }
 
+// A picture that only one of another size joins to the others is not itself of another size.
+void test_one_picture_behind_another_camera(void **) {
+    if (is_missing()) return;
+    simulate("behind", {"--images", "5", "--seed", "62"});
+    simulate("behind_small", {"--images", "5", "--seed", "62", "--size", "400x300"});
+    fs::remove(work("behind/img001.png"));
+    fs::copy_file(work("behind_small/img001.png"), work("behind/img001.png"));
+    const Outcome run = run_words(Words{"build", work("behind")} + quietly);
+    assert_int_equal(run.code, done);
+    assert_true(contains(run.err, "img001.png: left out, of another camera or size"));
+    assert_true(contains(run.err, "img000.png: left out, which only pictures of another camera or size join to these"));
+}
+
+// What cannot be written is said before the overlaps are found, and no picture that is named is written over, be it
+// part of the result or not.
+void test_outputs_are_checked_first(void **) {
+    if (is_missing()) return;
+    simulate("first", {"--images", "3", "--seed", "63"});
+    fs::copy_file(work("first/img001.png"), work("first/copy.png"));
+    simulate("alone", {"--images", "2", "--seed", "64"});
+    fs::copy_file(work("alone/img000.png"), work("first/z.png"));
+    const auto refused = [](const Words &more, const std::string &said) {
+        const Outcome run = run_words(Words{"build", work("first")} + more);
+        assert_int_equal(run.code, usage);
+        assert_true(contains(run.err, said) && !contains(run.err, "pictures overlap"));
+    };
+    for (const char *picture : {"first/copy.png", "first/z.png", "first/img001.png"}) {
+        const std::string before = text_of(work(picture));
+        refused({"--no-store", "--preview", work(picture)}, work(picture) + ": would be written over");
+        assert_true(text_of(work(picture)) == before);
+    }
+    refused({"--no-store", "--preview", work("nowhere/p.jpg")}, "its folder is not there");
+    refused({"--no-store", "--project-out", work("nowhere/p.pto")}, "its folder is not there");
+    for (const char *picture :
+         {"first/img000.png", "first/img001.png", "first/img002.png", "first/copy.png", "first/z.png"})
+        write_picture(work(picture), read_picture(work(picture)));  // without metadata
+    refused({"--db", work("first.db")}, "no EXIF says which camera");
+    assert_true(!fs::exists(work("first.db")));
+}
+
 void test_corrected_copies_are_not_read(void **) {
     if (is_missing()) return;
     simulate("copies", {"--images", "3", "--seed", "71"});
@@ -335,6 +375,8 @@ int main() {
         CLI_TEST(test_pictures_that_look_unlike),
         CLI_TEST(test_a_folder_of_many_things),
         CLI_TEST(test_another_camera_in_a_chain),
+        CLI_TEST(test_one_picture_behind_another_camera),
+        CLI_TEST(test_outputs_are_checked_first),
         CLI_TEST(test_corrected_copies_are_not_read),
         CLI_TEST(test_what_is_fixed_to_the_frame),
         CLI_TEST(test_the_preview_is_even),

@@ -42,6 +42,7 @@ Group group_of(const FoundProject &found, const std::vector<const InputPicture *
     group.facts = {{"camera", found.kind == SceneKind::plane ? "moved over a plane" : "turned about one point"},
                    {"links", found.links},
                    {"links_unfit", found.unfit},
+                   {"by_matches", found.by_matches},
                    {"residual", found.residual}};
     return group;
 }
@@ -76,6 +77,8 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
         groups.unjoined[files[number]] =
             files[number] + ": overlaps with pictures "
             + (o.one_lens ? "that are camera raw files, or that are none where it is one" : of_another_body);
+    for (const uint32_t number : found.apart)
+        groups.unjoined[files[number]] = files[number] + ": " + joined_by_another_body;
     for (const FoundProject &project : found.projects) groups.list.push_back(group_of(project, all));
     std::stable_sort(groups.list.begin(), groups.list.end(),
                      [](const Group &a, const Group &b) { return a.pictures.size() > b.pictures.size(); });

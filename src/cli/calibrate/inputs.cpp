@@ -164,11 +164,11 @@ Inputs find_inputs(const std::vector<std::string> &words, const std::string &out
     const Photographs list = list_photographs(words, named);
     Inputs inputs;
     inputs.label = list.label;
-    inputs.found = list.files.size() + list.copies.size();
+    inputs.found = list.files.size() + list.left_out.size();
     look_at_all(list, named, output, inputs, progress);
     leave_out_doubles(inputs);
     name_replaced(named, inputs);
-    for (const auto &[file, why] : list.copies) inputs.left_out.push_back({file, file + ": " + why});
+    for (const auto &[file, why] : list.left_out) inputs.left_out.push_back({file, file + ": " + why});
     for (const UnlistedFolder &one : unlisted) inputs.left_out.push_back({one.folder, one.reason});
     check_targets(inputs, named);
     return inputs;

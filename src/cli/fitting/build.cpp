@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <numeric>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -81,12 +82,12 @@ void declare(Command &command, Options &o) {
 }
 
 // No output may take the place of an input, of the database or of another output.
-void check_outputs(const Options &o, const Project &project) {
-    std::vector<std::string> taken{project.path, o.points, o.compare};
-    taken.insert(taken.end(), project.files.begin(), project.files.end());
+void check_outputs(const Options &o, std::vector<std::string> taken) {
+    taken.insert(taken.end(), {o.points, o.compare});
     if (!o.store.no_store) taken.push_back(store_path(o.store.db));
     for (const std::string &output : {o.points_out, o.pto_out, o.project_out, o.preview}) {
         if (output.empty()) continue;
+        check_output_file(output);
         for (const std::string &other : taken)
             if (is_same_file(output, other))
                 throw Failure(ExitCode::usage, output + ": would be written over; give the output another name");
@@ -113,6 +114,27 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     return std::move(report);
 }
 
+// What can be said before the overlaps of pictures are found, which takes time.
+void check_photographs(const Options &o, const Photographs &list) {
+    std::vector<std::string> inputs = list.files;
+    for (const auto &[file, why] : list.left_out) inputs.push_back(file);
+    check_outputs(o, inputs);
+    check_store(o.store);
+    if (o.store.no_store) return;
+    // One picture that states camera or lens may be the reference; where none does, the first says so.
+    std::optional<Failure> unnamed;
+    for (const std::string &file : list.files) {
+        try {
+            const PictureMetadata metadata = read_metadata(file);
+            override_key(metadata.key, metadata.size, o.store, file);
+            return;
+        } catch (const Failure &failure) {
+            if (!unnamed && failure.code == ExitCode::usage) unnamed = failure;  // others are left out, and named then
+        }
+    }
+    if (unnamed) throw *unnamed;
+}
+
 // A project, or the pictures that take its place.
 Project open_project(const Options &o, Streams &streams) {
     const bool is_project = o.inputs.size() == 1 && !names_pictures(o.inputs[0]);
@@ -128,7 +150,9 @@ Project open_project(const Options &o, Streams &streams) {
         throw Failure(ExitCode::usage,
                       "--points: needs the project that its pairs belong to; give that in place of pictures");
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
-    return project_of_pictures(o.inputs, o.one_lens, progress, streams);
+    const Photographs list = find_photographs(o.inputs, streams);
+    check_photographs(o, list);
+    return project_of_pictures(list, o.one_lens, progress, streams);
 }
 
 // What is estimated: by --free, else by the v lines; all where these name nothing photometric, as those of a project
@@ -152,7 +176,9 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     if (project.images.size() < 2)
         throw Failure(ExitCode::not_usable, project.path + ": has one image; at least two overlapping ones are needed",
                       LENSPROF_REASON_FEW_PAIRS);
-    check_outputs(o, project);
+    std::vector<std::string> inputs = project.files;
+    inputs.push_back(project.path);
+    check_outputs(o, inputs);
     if (!o.project_out.empty()) write_project(project, o.project_out);
     choose_unknowns(o, project, streams);
     if (o.points.empty()) check_pictures(project, o.max_side);

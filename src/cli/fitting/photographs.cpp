@@ -43,7 +43,7 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
             return is_copy(list.files[other], picture.file);
         });
         if (copied != alike.end()) {
-            list.copies.emplace_back(picture.file, "it is a copy of " + list.names[*copied]);
+            list.left_out.emplace_back(picture.file, "it is a copy of " + list.names[*copied]);
             continue;
         }
         alike.push_back(list.files.size());
@@ -79,30 +79,29 @@ std::string why_apart(const FoundProject &other, const FoundProject &project) {
     if (!other.meets_another || !project.meets_another)
         return "another group, which overlaps with none of these; give its pictures alone";
     if (other.body != project.body) return std::string("another group, ") + of_another_body;
-    return "another group, which only pictures of another camera or size join to these; give its pictures alone, or "
-           "--one-lens to take all as one";
+    return std::string("another group, ") + joined_by_another_body;
 }
 
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
                   LeftOut &left_out, Streams &streams) {
     const FoundProject &project = found.projects[0];
     const std::string unfit =
-        project.unfit ? format(", %u more do not fit the cameras and are compared where they match", project.unfit)
-                      : "";
+        project.unfit
+            ? format(" that fit, %u more do not fit the cameras and are compared where they match", project.unfit)
+            : "";
     note(streams,
          label
-             + format(": %zu pictures overlap (%u links that fit%s; %.2f %% of the longer side is left; %s); "
-                      "response, falloff, exposures and white balances are estimated, unless --free says else",
-                      project.pictures.size(), project.links - project.unfit, unfit.c_str(), 100.0 * project.residual,
+             + format(": %zu pictures overlap (%s%s; %.2f %% of the longer side is left; %s); response, falloff, "
+                      "exposures and white balances are estimated, unless --free says else",
+                      project.pictures.size(), counted(project.links - project.unfit, "link").c_str(), unfit.c_str(),
+                      100.0 * project.residual,
                       project.kind == SceneKind::plane ? "a camera that moved over a plane, compared where they match"
                                                        : "a camera that turned about one point"));
-    if (!project.cameras_fit())
-        warn(streams, label + ": no cameras fit the pictures well: parallax of a camera that moved, distortion, or "
-                              "things that moved. The pictures are compared where they match; a project or preview of "
-                              "them does not show the scene");
+    if (!project.cameras_fit()) warn(streams, label + no_cameras_fit);
     for (size_t n = 1; n < found.projects.size(); n++)
         leave_out(found.projects[n].pictures, names, why_apart(found.projects[n], project), left_out, streams);
     if (!found.foreign.empty()) leave_out(found.foreign, names, of_another_body, left_out, streams);
+    if (!found.apart.empty()) leave_out(found.apart, names, joined_by_another_body, left_out, streams);
     if (!found.alone.empty())
         leave_out(found.alone, names, "no overlap with another picture was found", left_out, streams);
 }
@@ -111,26 +110,26 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
 
 bool names_pictures(const std::string &word) { return is_folder(word) || is_picture_name(word); }
 
-Project project_of_pictures(const std::vector<std::string> &words, bool one_lens, Progress &progress,
-                            Streams &streams) {
+Photographs find_photographs(const std::vector<std::string> &words, Streams &streams) {
     std::vector<NamedPicture> named = named_pictures(words, std::string());
     const std::vector<NamedPicture> outputs =
         take_out_below(named, [](const std::string &folder) { return path_exists(folder + "/" + calibrate_records); });
     for (const NamedPicture &picture : named) note_instead(picture, streams);
-    const Photographs list = list_photographs(words, named);
-    demand_one_kind(list.files);
-    const auto &[label, files, names, copies] = list;
-    Project project;
-    const auto leave_out_file = [&](const std::string &file, const std::string &why) {
-        project.left_out.emplace_back(file, why);
-        warn(streams, file + ": left out, " + why);
-    };
+    Photographs list = list_photographs(words, named);
     for (const NamedPicture &picture : outputs)
-        leave_out_file(picture.file, "it is in a folder that calibrate has written");
-    for (const auto &[file, why] : copies) leave_out_file(file, why);
+        list.left_out.emplace_back(picture.file, "it is in a folder that calibrate has written");
+    for (const auto &[file, why] : list.left_out) warn(streams, file + ": left out, " + why);
+    return list;
+}
+
+Project project_of_pictures(const Photographs &list, bool one_lens, Progress &progress, Streams &streams) {
+    const auto &[label, files, names, left_out] = list;
+    demand_one_kind(files);
     if (files.size() < 2)
         throw Failure(ExitCode::not_usable, label + ": has one picture; at least two overlapping ones are needed",
                       LENSPROF_REASON_FEW_PAIRS);
+    Project project;
+    project.left_out = left_out;
     auto clock = std::chrono::steady_clock::now();
     const Registration found = register_pictures(files, one_lens, progress);
     project.register_s = lap(clock);

@@ -14,22 +14,33 @@ namespace lensprof {
 // Whether a word of the command line names a picture or a folder, and not a project.
 bool names_pictures(const std::string &word);
 
-// Finds the overlaps of pictures and folders of them. The project is that of the largest group of one camera; what it
-// leaves out is named on standard error. With `one_lens` all pictures are taken as of one. All unknowns are asked for.
-// Failure (not usable) where no two overlap.
-Project project_of_pictures(const std::vector<std::string> &words, bool one_lens, Progress &progress, Streams &streams);
-
 // Every picture once, whatever its names; copies of a picture are left out. Within a folder that is the only word
 // reports call a picture by the rest of its path.
 struct Photographs {
     std::string label;  // of all
     std::vector<std::string> files, names;
-    std::vector<std::pair<std::string, std::string>> copies;  // and of which picture, as a reason
+    std::vector<std::pair<std::string, std::string>> left_out;  // files, and why
 };
 Photographs list_photographs(const std::vector<std::string> &words, const std::vector<NamedPicture> &pictures);
 
-// Why a picture is not part of a project that it overlaps with.
+// The pictures that are named, and those of folders that are. What calibrate has written is left out. What is left out
+// is named on standard error.
+Photographs find_photographs(const std::vector<std::string> &words, Streams &streams);
+
+// Finds the overlaps. The project is that of the largest group of one camera; what it leaves out is named on standard
+// error. With `one_lens` all pictures are taken as of one. All unknowns are asked for. Failure (not usable) where no
+// two overlap.
+Project project_of_pictures(const Photographs &list, bool one_lens, Progress &progress, Streams &streams);
+
+// Why a picture is not part of a project that it overlaps with, directly or through others.
 constexpr const char *of_another_body = "of another camera or size than most (--one-lens takes all as one)";
+constexpr const char *joined_by_another_body =
+    "which only pictures of another camera or size join to these (--one-lens takes all as one)";
+
+// What is to be said of a project whose cameras do not fit.
+constexpr const char *no_cameras_fit =
+    ": no cameras fit the pictures well: parallax of a camera that moved, distortion, or things that moved. The pictures "
+    "are compared where they match; a project or preview of them does not show the scene";
 
 // The project of a group of pictures, whose images are called image0, image1 and so on; and the same as a project,
 // whose path, names and files are known.

@@ -202,6 +202,12 @@ Registration registered(const std::vector<std::string> &files, bool as_one, Prog
     std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {
         return a.pictures.size() > b.pictures.size();
     });
+    const auto is_foreign = [&](uint32_t number) {
+        return result.projects.empty() || bodies[number] != result.projects[0].body;
+    };
+    const auto of_first = std::stable_partition(result.foreign.begin(), result.foreign.end(), is_foreign);
+    result.apart.assign(of_first, result.foreign.end());
+    result.foreign.erase(of_first, result.foreign.end());
     return result;
 }
 

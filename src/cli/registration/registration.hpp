@@ -38,9 +38,10 @@ struct FoundProject {
 };
 
 struct Registration {
-    std::vector<FoundProject> projects;                        // the one with most pictures first
-    std::vector<uint32_t> alone;                               // pictures that overlap with no other,
-    std::vector<uint32_t> foreign;                             // and with pictures of another camera alone
+    std::vector<FoundProject> projects;    // the one with most pictures first
+    std::vector<uint32_t> alone;           // pictures that overlap with no other,
+    std::vector<uint32_t> foreign, apart;  // and with pictures of another camera alone: of another than that of the
+                                           // first project, and of that one
     std::vector<std::pair<uint32_t, std::string>> unreadable;  // and why
 };
 
