@@ -272,6 +272,21 @@ void test_bad_thread_counts(void **) {
     }
 }
 
+void test_time_left(void **) {
+    TimeLeft left;
+    assert_close(left.seconds("reading", 0.0, 100.0), 0.0, 0.0);
+    assert_close(left.seconds("reading", 0.1, 101.0), 0.0, 0.0);  // too soon to know
+    assert_close(left.seconds("reading", 0.25, 110.0), 30.0, 1e-9);
+    assert_close(left.seconds("reading", 0.5, 110.0), 10.0, 1e-9);
+    assert_close(left.seconds("sampling", 0.2, 111.0), 0.0, 0.0);   // other work begins anew,
+    assert_close(left.seconds("sampling", 0.6, 115.0), 4.0, 1e-9);  // from what was done of it then
+    assert_close(left.seconds("sampling", 0.1, 116.0), 0.0, 0.0);   // and so does work that is done once more
+    assert_true(describe_time_left(4.0).empty());
+    assert_string_equal(describe_time_left(41.2).c_str(), ", 42 s left");
+    assert_string_equal(describe_time_left(61.0).c_str(), ", 2 min left");
+    assert_string_equal(describe_time_left(7501.0).c_str(), ", 2 h 6 min left");
+}
+
 }  // namespace
 
 int main() {
@@ -283,6 +298,7 @@ int main() {
         CLI_TEST(test_full_disk_among_pictures),
         CLI_TEST(test_speed_is_said),
         CLI_TEST(test_bad_thread_counts),
+        CLI_TEST(test_time_left),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

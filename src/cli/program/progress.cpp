@@ -1,6 +1,7 @@
 #include "cli/program/progress.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include <unistd.h>
@@ -19,6 +20,24 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 }  // namespace
 
+double TimeLeft::seconds(const std::string &what, double fraction, double now) {
+    constexpr double soonest = 2.0, least = 0.01;  // s, and share, from which on the rate is known
+    if (what != what_ || fraction < first_) {
+        what_ = what;
+        begin_ = now, first_ = fraction;
+    }
+    const double taken = now - begin_, done = fraction - first_;
+    return taken < soonest || done < least ? 0.0 : taken * std::max(1.0 - fraction, 0.0) / done;
+}
+
+std::string describe_time_left(double seconds) {
+    if (seconds < 5.0) return {};
+    if (seconds <= 60.0) return format(", %.0f s left", std::ceil(seconds));
+    const double minutes = std::ceil(seconds / 60.0);
+    if (minutes < 60.0) return format(", %.0f min left", minutes);
+    return format(", %.0f h %.0f min left", std::floor(minutes / 60.0), std::fmod(minutes, 60.0));
+}
+
 Progress::Progress(std::ostream &err, ShowProgress show)
     : err_(err),
       shown_(show == ShowProgress::always
@@ -31,12 +50,16 @@ void Progress::update(const std::string &what, double fraction, const std::strin
     std::lock_guard<std::mutex> lock(mutex_);
     int percent = std::clamp(static_cast<int>(100.0 * fraction), 0, 100);
     auto now = std::chrono::steady_clock::now();
-    bool same = percent == percent_ && what == what_;
-    if (same && (detail.empty() || now - drawn_ < between_details)) return;
+    const double left = left_.seconds(what, fraction, std::chrono::duration<double>(now.time_since_epoch()).count());
+    const bool same = percent == percent_ && what == what_;
+    if (same && now - drawn_ < between_details) return;
+    const std::string text = what + format(" %d %%", percent) + detail + describe_time_left(left);
+    if (same && text == text_) return;
     percent_ = percent;
     what_ = what;
+    text_ = text;
     drawn_ = now;
-    err_ << "\r\033[K" << what << " " << percent << " %" << detail << std::flush;
+    err_ << "\r\033[K" << text << std::flush;
 }
 
 void Progress::clear() {

@@ -15,6 +15,21 @@ enum class ShowProgress {
     never
 };
 
+// How long a piece of work will take yet, by how much of it was done in the time since it began.
+class TimeLeft {
+public:
+    // Seconds, of work called `what` of which `fraction` is done at the time `now`, in seconds; 0 where that is not
+    // known: at the beginning, and where nothing is done yet.
+    double seconds(const std::string &what, double fraction, double now);
+
+private:
+    std::string what_;
+    double begin_ = 0.0, first_ = 0.0;
+};
+
+// ", 40 s left", ", 3 min left", ", 2 h 5 min left"; empty where it is short.
+std::string describe_time_left(double seconds);
+
 // Threads: all methods may be called by any thread.
 class Progress {
 public:
@@ -22,7 +37,8 @@ public:
     Progress(std::ostream &err, ShowProgress show);
     ~Progress();
 
-    // `detail` follows the percentage; where it alone changes the line is drawn again a few times a second.
+    // `detail` follows the percentage, and the time left that; where they alone change the line is drawn again a few
+    // times a second.
     void update(const std::string &what, double fraction, const std::string &detail = std::string());
     void clear();
 
@@ -38,7 +54,8 @@ private:
     std::ostream &err_;
     bool shown_;
     int percent_ = -1;
-    std::string what_;
+    std::string what_, text_;
+    TimeLeft left_;
     std::chrono::steady_clock::time_point drawn_;
     std::mutex mutex_;
 };

@@ -20,9 +20,10 @@ constexpr double kSurely = 0.8;      // and of those that clearly do
 constexpr double kEnoughAlike = 0.4, kFewestSurely = 0.05, kAboveChance = 2.8;
 constexpr double kBeside = 12.0;  // coarse pixels
 constexpr uint32_t kFewestTold = 20;
-constexpr double kMostlySmooth = 0.25;  // of the places has texture: what has none does not care for a few pixels
-constexpr size_t kMostNeighbours = 8;   // of an image that are registered, those with the largest overlap
-constexpr size_t kMostRefused = 4;      // pairs of places for one wanted candidate, before the search ends
+constexpr double kMostlySmooth = 0.25;        // of the places has texture: what has none does not care for a few pixels
+constexpr size_t kMostNeighbours = 8;         // of an image that are registered, those with the largest overlap
+constexpr double kShareOfRegistration = 0.5;  // of the progress that is shown
+constexpr size_t kMostRefused = 4;            // pairs of places for one wanted candidate, before the search ends
 
 double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -161,11 +162,13 @@ void Sampler::register_neighbours() {
         return !wanted;
     };
     edges.erase(std::remove_if(edges.begin(), edges.end(), is_left_out), edges.end());
+    std::atomic<uint32_t> done{0};
     auto work = [&](uint32_t e) {
         auto [i, j, overlap] = edges[e];
         corrections_[edge_of(i, j)] = registration(camera(i), *grey_[i], camera(j), *grey_[j]);
+        done++;
     };
-    each(static_cast<uint32_t>(edges.size()), work, [] { return 0.0; });
+    each(static_cast<uint32_t>(edges.size()), work, [&] { return kShareOfRegistration * done / edges.size(); });
 }
 
 const Correction &Sampler::correction(uint32_t i, uint32_t j) const {
