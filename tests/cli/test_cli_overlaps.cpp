@@ -1,6 +1,8 @@
 // `lensprof apply --linear --merge`: light of overlapping pictures against the light they were rendered from.
 #include "cli_runs.hpp"
 
+#include "cli/program/format.hpp"
+
 #include <lensprof/geometry.h>
 
 using namespace cli_runs;
@@ -76,7 +78,7 @@ double light_in(const Picture &picture, uint32_t x, uint32_t y, size_t c) {
     return double(reinterpret_cast<const float *>(picture.pixels.data())[(size_t(y) * width + x) * 3 + c]);
 }
 
-// Largest grey value, of the image's own camera, that another image has of the pixel; 2 where none shows it.
+// Whether another image shows a pixel well within black and white.
 bool is_well_seen_by(size_t other, size_t image, uint32_t x, uint32_t y) {
     const lensprof_camera own = camera_of(image), camera = camera_of(other);
     double direction[2], xy[2];
@@ -146,7 +148,7 @@ void test_moving_things_stay_out(void **) {
         }
 }
 
-// A mask excludes the only picture that shows the light of white pixels.
+// Masks exclude both other pictures: nothing of them, be it light or white, comes into this one.
 void test_masks_are_respected(void **) {
     make_project();
     must_exit(done, merging + Words{work("in/pano.pto"), "-o", work("all")});
@@ -155,7 +157,10 @@ void test_masks_are_respected(void **) {
     must_exit(done,
               {"apply", "--linear", "--output-exposure", "reference", "--pto", work("in/pano.pto"), "-o", work("one")});
     assert_true(read_picture(work("masked/p1.tif")).pixels != read_picture(work("all/p1.tif")).pixels);
-    assert_true(compare(1, work("masked/p1.tif")).worst > 0.3);
+    const Picture masked = read_picture(work("masked/p1.tif")), one = read_picture(work("one/p1.tif"));
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++)
+            assert_true(std::fabs(light_in(masked, x, y, 1) / light_in(one, x, y, 1) - 1) < 1e-5);
 }
 
 void test_threads_and_json(void **) {
@@ -168,8 +173,166 @@ void test_threads_and_json(void **) {
     must_exit(done, words + Words{"-o", work("four"), "--threads", "4"});
     assert_true(read_picture(work("one/p1.tif")).pixels == read_picture(work("four/p1.tif")).pixels);
     must_exit(done, words + Words{"--linear-output", "exr", "-o", work("exr"), file_of(0)});
-    assert_true(read_picture(work("four/p0.tif")).pixels.size() > 0);
     assert_true(fs::exists(work("exr/p0.exr")));
+}
+
+// A picture of one grey value, or two: from column `from` on another.
+void write_even(const std::string &file, uint32_t w, uint32_t h, double left, double right, uint32_t from) {
+    Picture picture = make_noise(w, h, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+    auto *codes = reinterpret_cast<uint16_t *>(picture.pixels.data());
+    for (uint32_t n = 0; n < w * h * 3; n++)
+        codes[n] = static_cast<uint16_t>(std::lround(65535 * (n / 3 % w < from ? left : right)));
+    fs::create_directories(fs::path(file).parent_path());
+    write_picture(file, picture);
+}
+
+std::string image_line(uint32_t w, uint32_t h, const std::string &lens, double ev, const std::string &file) {
+    return format(
+        "i w%u h%u %s Rt1 Ra0 Rb0 Rc0 Rd0 Re0 Eev%g Er1 Eb1 r0 p0 TrX0 TrY0 TrZ0 Tpy0 Tpp0 j0 a0 b0 c0 d0 e0 g0 "
+        "t0 Va1 Vb-0.0001 Vc0 Vd0 Vx0 Vy0 Vm5 n\"%s\"\n",
+        w, h, lens.c_str(), 9 - ev, file.c_str());
+}
+
+std::string two_images(const std::string &one, const std::string &other) {
+    save_text(work("two/pano.pto"),
+              "p f2 w300 h150 v360 n\"TIFF_m\"\nm g1 i0 f0 m2 p0.00784314\n" + one + other + "v Eev1\nv\n");
+    return work("two/pano.pto");
+}
+
+double middle_of(const std::string &file, uint32_t x, uint32_t y) {
+    const Picture picture = read_picture(file);
+    const auto *light = reinterpret_cast<const float *>(picture.pixels.data());
+    return double(light[(size_t(y) * picture.width + x) * 3 + 1]);
+}
+
+// What is almost white agrees with what is brighter among white pixels alone.
+void test_almost_white(void **) {
+    fs::remove_all(work("two"));
+    for (const double grey : {0.96, 0.975, 0.979}) {
+        write_even(work("two/p0.tif"), 60, 40, grey, 1.0, 40);
+        write_even(work("two/p1.tif"), 60, 40, 0.5, 0.5, 0);
+        fs::remove_all(work("out"));
+        must_exit(done, merging
+                            + Words{two_images(image_line(60, 40, "f0 v40 y0", 0, "p0.tif"),
+                                               image_line(60, 40, "f0 v40 y0", -3, "p1.tif")),
+                                    "-o", work("out")});
+        assert_close(middle_of(work("out/p0.tif"), 20, 20), grey, 0.001);
+        assert_close(middle_of(work("out/p0.tif"), 39, 20), 4.0, 0.03);
+        assert_close(middle_of(work("out/p0.tif"), 50, 20), 4.0, 0.001);
+    }
+}
+
+// Cameras that are the same show the same to the outermost pixel.
+void test_to_the_edges(void **) {
+    write_even(work("two/p0.tif"), 120, 80, 1.0, 1.0, 0);
+    write_even(work("two/p1.tif"), 120, 80, 0.5, 0.5, 0);
+    must_exit(done, merging
+                        + Words{two_images(image_line(120, 80, "f0 v40 y0", 0, "p0.tif"),
+                                           image_line(120, 80, "f0 v40 y0", -3, "p1.tif")),
+                                "-o", work("out")});
+    for (uint32_t y = 0; y < 80; y++)
+        for (uint32_t x = 0; x < 120; x++) assert_close(middle_of(work("out/p0.tif"), x, y), 4.0, 0.01);
+}
+
+// A tele picture within one all around, which is cut behind it: light is that of its own side of the cut.
+void test_all_around(void **) {
+    write_even(work("two/p0.tif"), 400, 300, 1.0, 1.0, 0);
+    write_even(work("two/p1.tif"), 2000, 1000, 0.25, 0.75, 1000);
+    const std::string around = image_line(2000, 1000, "f4 v360 y0", -3, "p1.tif");
+    for (const char *tele : {"f0 v60 y180", "f0 v8 y7"}) {
+        const bool is_at_cut = contains(tele, "180");
+        const Json json = json_of(
+            merging + Words{two_images(image_line(400, 300, tele, 0, "p0.tif"), around), "--json", "-o", work("out")});
+        for (const Json &picture : json["pictures"]) assert_int_equal(picture["overlapping"].get<int>(), 1);
+        const Picture merged = read_picture(work("out/p0.tif"));
+        const auto *light = reinterpret_cast<const float *>(merged.pixels.data());
+        for (uint32_t x = 0; x < 400; x++) {
+            const double expected = is_at_cut && x >= 200 ? 2.0 : 6.0;
+            if (x == 199 || x == 200) continue;
+            for (uint32_t y : {0u, 150u, 299u})
+                assert_close(double(light[(size_t(y) * 400 + x) * 3 + 1]), expected, 0.02);
+        }
+    }
+}
+
+// In shadows what moved differs by less than .03 of full scale, and by more than noise.
+void test_moving_shadows_stay_out(void **) {
+    const auto dark = [](size_t image, uint32_t from) {
+        Picture picture = make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGB);
+        auto *codes = reinterpret_cast<uint16_t *>(picture.pixels.data());
+        uint64_t state = image + 1;
+        for (uint32_t n = 0; n < width * height * 3; n++) {
+            const uint32_t x = n / 3 % width, y = n / 3 / width;
+            const bool is_thing = x >= from && x < from + 20 && y > 20 && y < 60;
+            const double light = (is_thing ? 0.025 : 0.05) * std::exp2(image ? 2.0 : 0.0);
+            codes[n] = static_cast<uint16_t>(std::lround(65535 * (light + 0.012 * (lp_random(&state) - 0.5))));
+        }
+        fs::create_directories(work("two"));
+        write_picture(work("two/p" + std::to_string(image) + ".tif"), picture);
+    };
+    dark(0, 30), dark(1, 70);
+    must_exit(done, merging
+                        + Words{two_images(image_line(width, height, "f0 v40 y0", 0, "p0.tif"),
+                                           image_line(width, height, "f0 v40 y0", 2, "p1.tif")),
+                                "-o", work("out")});
+    const Picture merged = read_picture(work("out/p0.tif"));
+    const auto mean = [&](uint32_t left, uint32_t right) {
+        double sum = 0.0;
+        for (uint32_t y = 24; y < 56; y++)
+            for (uint32_t x = left; x < right; x++) sum += light_in(merged, x, y, 1);
+        return sum / ((right - left) * 32.0);
+    };
+    assert_close(mean(33, 47), 0.025, 0.0015);
+    assert_close(mean(73, 87), 0.05, 0.0015);
+    assert_close(mean(100, 115), 0.05, 0.0005);
+    double spread = 0.0;  // of noise, which another picture of four times the light has a quarter of
+    for (uint32_t y = 24; y < 56; y++)
+        for (uint32_t x = 100; x < 115; x++) spread += std::pow(light_in(merged, x, y, 1) - 0.05, 2);
+    assert_true(std::sqrt(spread / (15 * 32)) < 0.35 * 0.012 / std::sqrt(12.0));
+}
+
+// A picture that is another one than the project was fitted to says so.
+void test_changed_pictures_are_named(void **) {
+    make_project();
+    const Json right = json_of(merging + Words{work("in/pano.pto"), "--json", "-o", work("right")})["pictures"];
+    for (const Json &picture : right) assert_true(picture["agreement"] > 0.9);
+    Picture turned = read_picture(file_of(0));
+    auto *codes = reinterpret_cast<uint16_t *>(turned.pixels.data());
+    std::reverse(codes, codes + size_t(width) * height * 3);
+    write_picture(file_of(0), turned);
+    const Outcome run = run_words(merging + Words{work("in/pano.pto"), "--json", "-o", work("out")});
+    assert_int_equal(run.code, done);
+    assert_true(contains(run.err, "p0.tif: agrees with the pictures that overlap it"));
+    const Json pictures = Json::parse(run.out)["pictures"];
+    assert_true(pictures[0]["agreement"] < 0.5);
+}
+
+// Outputs in the folder of their sources replace what lensprof has made alone.
+void test_pictures_beside_are_kept(void **) {
+    make_project();
+    for (size_t i = 0; i < 3; i++) {
+        write_picture(work("in/p" + std::to_string(i) + ".png"), render(i, {}));
+        edit(work("in/pano.pto"), "p" + std::to_string(i) + "\\.tif", "p" + std::to_string(i) + ".png");
+    }
+    const std::string before = text_of(file_of(1));
+    must_exit(usage, merging + Words{work("in/pano.pto"), "-o", work("in")});
+    assert_true(text_of(file_of(1)) == before);
+    for (size_t i = 0; i < 3; i++) fs::remove(file_of(i));
+    must_exit(done, merging + Words{work("in/pano.pto"), "-o", work("in")});
+    must_exit(done, merging + Words{work("in/pano.pto"), "-o", work("in")});
+}
+
+// Light of a picture whose falloff is taken out already would be wrong.
+void test_corrected_pictures_give_no_light(void **) {
+    make_project();
+    must_exit(done, {"apply", "--pto", work("in/pano.pto"), "-o", work("even")});
+    fs::copy_file(work("even/p1.tif"), file_of(1), fs::copy_options::overwrite_existing);
+    must_exit(not_found, merging + Words{work("in/pano.pto"), "-o", work("none")});
+    assert_true(!fs::exists(work("none")));
+    const Outcome other = run_words(merging + Words{work("in/pano.pto"), "-o", work("out"), "--json", file_of(0)});
+    assert_int_equal(other.code, done);
+    assert_true(contains(other.err, "its light is not used"));
+    assert_int_equal(Json::parse(other.out)["pictures"][0]["overlapping"].get<int>(), 1);
 }
 
 void test_bad_merges(void **) {
@@ -186,22 +349,40 @@ void test_bad_merges(void **) {
         must_exit(usage, words + Words{"-o", work("none")});
         assert_true(!fs::exists(work("none")));
     }
+    // A picture that cannot be merged is refused, and where another one is asked for gives it no light.
+    const auto only_others = [&](int code) {
+        must_exit(code, merging + Words{project, "-o", work("none")});
+        assert_true(!fs::exists(work("none")));
+        const Outcome run = run_words(merging + Words{project, "--json", "-o", work("others"), file_of(0)});
+        assert_int_equal(run.code, done);
+        assert_true(contains(run.err, "p1.tif: ") && contains(run.err, "its light is not used"));
+        assert_int_equal(Json::parse(run.out)["pictures"][0]["overlapping"].get<int>(), 1);
+    };
     write_picture(file_of(1), make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_RGBA));
-    must_exit(usage, merging + Words{project, "-o", work("none")});
+    only_others(usage);
     write_picture(file_of(1), make_noise(width, height, LENSPROF_SAMPLE_U16, LENSPROF_LAYOUT_GREY));
-    must_exit(usage, merging + Words{project, "-o", work("none")});
-    fs::remove(file_of(1));  // that is not asked for itself
-    must_exit(unreadable, merging + Words{project, "-o", work("none"), file_of(0)});
-    assert_true(!fs::exists(work("none")));
+    only_others(usage);
+    fs::remove(file_of(1));
+    only_others(unreadable);
 }
 
 }  // namespace
 
 int main() {
     const CMUnitTest tests[] = {
-        CLI_TEST(test_white_is_filled),        CLI_TEST(test_own_light_is_not_enough),
-        CLI_TEST(test_moving_things_stay_out), CLI_TEST(test_masks_are_respected),
-        CLI_TEST(test_threads_and_json),       CLI_TEST(test_bad_merges),
+        CLI_TEST(test_white_is_filled),
+        CLI_TEST(test_own_light_is_not_enough),
+        CLI_TEST(test_moving_things_stay_out),
+        CLI_TEST(test_masks_are_respected),
+        CLI_TEST(test_threads_and_json),
+        CLI_TEST(test_bad_merges),
+        CLI_TEST(test_almost_white),
+        CLI_TEST(test_to_the_edges),
+        CLI_TEST(test_all_around),
+        CLI_TEST(test_moving_shadows_stay_out),
+        CLI_TEST(test_changed_pictures_are_named),
+        CLI_TEST(test_pictures_beside_are_kept),
+        CLI_TEST(test_corrected_pictures_give_no_light),
     };
     return cmocka_run_group_tests(tests, make_scene, remove_folder);
 }

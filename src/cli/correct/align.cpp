@@ -142,6 +142,9 @@ lensprof_exposure wanted_exposure(const Options &o, const std::vector<lensprof_e
 // The merged picture has no frame of its own.
 void check_merge(const Options &o, const Project &project) {
     check_merged_name(o.merge);
+    const std::string folder = std::filesystem::path(absolute_path(o.merge)).parent_path().string();
+    if (!is_folder(folder))
+        throw Failure(ExitCode::usage, o.merge + ": its folder is not there; make it, or give another name");
     check_output_file(o.merge);
     std::vector<Correction> job(1);
     job[0].source = project.files[0], job[0].target = o.merge;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -268,18 +269,34 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
                                        + " cannot be corrected, and none is; leave them out with --skip");
 }
 
-// Each image of the project that is part of its result.
-std::vector<PlacedCorrection> placed_images(const Source &source) {
+// Each image of the project that is part of its result. What keeps one that is not to be written itself from giving
+// light is said, and the others give theirs.
+std::vector<PlacedCorrection> placed_images(const Options &o, const Source &source, const Work &work,
+                                            Streams &streams) {
     std::vector<PlacedCorrection> placed;
+    std::optional<uint32_t> layout;
     const Project &project = *source.project;
+    std::set<uint32_t> written;
+    for (const Correction &job : work.jobs) {
+        written.insert(source.images->at(job.source, "--pto"));
+        check_mergeable(job.source, layout);
+    }
     for (uint32_t i = 0; i < project.images.size(); i++) {
+        const std::string &file = project.files[i];
         if (project.images[i].left_out) continue;
-        check_shape(project, i, project.files[i]);
+        try {
+            check_shape(project, i, file);
+            check_mark(o, file, metadata_of(o, file));
+            check_mergeable(file, layout);
+        } catch (const Failure &failure) {
+            if (written.count(i) || failure.code == ExitCode::interrupted) throw;
+            warn(streams, failure.what() + std::string("; its light is not used"));
+            continue;
+        }
         Correction job;
-        job.source = project.files[i], job.own = source.exposures[i], job.model = model_of_project(project, i);
+        job.source = file, job.own = source.exposures[i], job.model = model_of_project(project, i);
         placed.push_back({job, i});
     }
-    check_overlaps(placed);
     return placed;
 }
 
@@ -298,6 +315,10 @@ Work plan_work(const Options &o, const Source &source, Streams &streams) {
     for (const NamedPicture &picture : pictures) {
         inputs.push_back(picture.file);
         note_instead(picture, streams);
+        if (source.project && picture.in_folder && !source.images->find(picture.file)) {
+            work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.pto, false});
+            continue;
+        }
         if (source.project && source.project->images[source.images->at(picture.file, "--pto")].left_out) {
             const std::string reason =
                 picture.file
@@ -323,7 +344,7 @@ Work plan_work(const Options &o, const Source &source, Streams &streams) {
         check_has_result(*source.project);
         check_one_response(*source.project);
     }
-    if (o.merge) work.lit = placed_images(source);
+    if (o.merge) work.lit = placed_images(o, source, work, streams);
     return work;
 }
 

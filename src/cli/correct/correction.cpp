@@ -51,7 +51,11 @@ void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKi
     for (const Correction &job : jobs) {
         if (kind.overwrite) return;
         const auto mark = mark_of_older(job.target);
-        if (!mark && !replaces_unmarked && path_exists(job.target))
+        const auto folder_of = [](const std::string &file) {
+            return one_name(std::filesystem::path(absolute_path(file)).parent_path().string());
+        };
+        const bool is_beside = folder_of(job.target) == folder_of(job.source);  // among somebody's pictures
+        if (!mark && (!replaces_unmarked || is_beside) && path_exists(job.target))
             throw Failure(ExitCode::usage, job.target + ": is there already and is not by lensprof; give a folder "
                                                         "with -o or another name, or --overwrite");
         if (!mark || mark->digest.empty() || mark->digest == digest_of(job.source)) continue;

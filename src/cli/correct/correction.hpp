@@ -64,7 +64,7 @@ void declare_writing(Command &command, CorrectionKind &kind);
 void check_targets(std::vector<Correction> &jobs, const std::vector<std::string> &inputs, const std::string &sheet);
 
 // Failure (usage) for an output that is there and was made of another picture, as its mark says, or, unless
-// `replaces_unmarked`, not by lensprof.
+// `replaces_unmarked` and it is in another folder than its source, not by lensprof.
 void check_older_outputs(const std::vector<Correction> &jobs, const CorrectionKind &kind, bool replaces_unmarked);
 
 // Corrects and writes all pictures; `sheet` (NULL = none) receives them before and after. Several pictures are worked

@@ -8,6 +8,7 @@
 
 #include "cli/correct/light_weights.hpp"
 #include "cli/correct/picture_plan.hpp"
+#include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/parallel.hpp"
 #include "cli/program/paths.hpp"
@@ -15,9 +16,19 @@
 namespace lensprof {
 namespace {
 
-constexpr double same_grey = 0.03;                 // difference of grey values that one light may have
-constexpr uint32_t node_px = 16, strip_rows = 64;  // between places that are computed; rows that a thread takes
-constexpr int sight_steps = 24;                    // of the places by which pictures are found to overlap
+constexpr double edge_px = 0.05;    // beyond the middles of the outermost pixels
+constexpr double same_grey = 0.03;  // difference of grey values that one light may have at a pixel at most,
+constexpr double same_dark = 0.01, same_share = 0.04;  // and about it, in black and more for a grey value
+constexpr double most_agree = 0.6;                     // share of the places about a pixel
+constexpr int about_px = 2;
+constexpr uint32_t block_px = 16;      // side of the blocks whose means are compared, which a few px do not matter to,
+constexpr double same_block = 0.04;    // difference of grey values that they may have
+constexpr double enough_agree = 0.5;   // share of what pictures have in common, below which something is wrong
+constexpr double almost_white = 0.95;  // of a grey value next to white ones: noise and coding leave it below them
+constexpr double bent_px = 0.05;       // by which places between nodes may be off the straight line
+constexpr uint32_t node_px = 8,
+                   strip_rows = 4 * block_px;  // between places that are computed; rows that a thread takes
+constexpr int sight_steps = 24;                // of the places by which pictures are found to overlap
 
 // Full frame of the project -> pixels of a picture, which may be of another size.
 struct PixelScale {
@@ -48,8 +59,8 @@ public:
 
     const std::vector<float> &all_light() const { return light_; }
 
-    // 0 where a mask excludes the pixel.
-    double trust(uint32_t x, uint32_t y) const { return is_masked(x, y) ? 0.0 : trust_of(largest(x, y)); }
+    bool is_masked(uint32_t x, uint32_t y) const { return !mask_.empty() && !mask_[size_t(y) * width() + x]; }
+    double trust(uint32_t x, uint32_t y) const { return trust_of(largest(x, y)); }
     void weights(uint32_t x, uint32_t y, double trust, double weight[3]) const;
 
     double falloff(uint32_t x, uint32_t y) const {
@@ -57,15 +68,15 @@ public:
             &vignetting_, lensprof_vignetting_r2(&vignetting_, width(), height(), x, y, nullptr), nullptr);
     }
 
-    // The grey value that a pixel would have, of the falloff, with so much light.
+    // The grey value that a pixel would have, of the falloff, with so much light; above 1 for more light than white.
+    // Projects have one response.
     double recorded(size_t c, double light, double falloff) const {
-        const double share = std::clamp(light * gain_[c] * falloff, 0.0, 1.0);
+        const double share = std::max(light * gain_[c] * falloff, 0.0);
+        if (share > 1.0) return share;  // more than white, which is no grey value
         return curve_[static_cast<size_t>(std::lround(curve_steps * std::sqrt(share)))];
     }
 
 private:
-    bool is_masked(uint32_t x, uint32_t y) const { return !mask_.empty() && !mask_[size_t(y) * width() + x]; }
-
     static constexpr int curve_steps = 8192;  // of the square root of light, since responses are steepest next to black
     const LightWeights weights_;
     const lensprof_camera camera_;
@@ -111,40 +122,74 @@ void LitPicture::weights(uint32_t x, uint32_t y, double trust, double weight[3])
     for (size_t c = 0; c < samples_; c++) weight[c] = trust * m * m * weights_.at(c, grey(x, y, c));
 }
 
-// Where another picture shows the pixels of one: computed at nodes, linear between them, which is within .02 px.
+// Where another picture shows the pixels of one: computed at nodes, and between four of them where places lie on a
+// plane to bent_px; else, at the cut of a picture all around for one, for every pixel.
 class PlaceMap {
 public:
     PlaceMap(const LitPicture &from, const LitPicture &to)
-        : columns_(from.width() / node_px + 2), nodes_(size_t(columns_) * (from.height() / node_px + 2)) {
-        const PixelScale out = from.scale(), in = to.scale();
+        : from_(from.camera()),
+          to_(to.camera()),
+          out_(from.scale()),
+          in_(to.scale()),
+          columns_(from.width() / node_px + 2),
+          nodes_(size_t(columns_) * (from.height() / node_px + 2)) {
         for (size_t n = 0; n < nodes_.size(); n++) {
-            const double x = static_cast<double>(n % columns_) * node_px,
-                         y = static_cast<double>(n / columns_) * node_px;
-            double direction[2], xy[2];
             Node &node = nodes_[n];
-            node.is_seen = lensprof_camera_unproject(&from.camera(), PixelScale::to_frame(x, out.x),
-                                                     PixelScale::to_frame(y, out.y), direction)
-                           && lensprof_camera_project(&to.camera(), direction[0], direction[1], xy);
-            if (!node.is_seen) continue;
-            node.x = PixelScale::to_picture(xy[0], in.x), node.y = PixelScale::to_picture(xy[1], in.y);
+            node.is_seen = compute(x_of(n), y_of(n), node.xy);
         }
+        for (size_t n = 0; n + columns_ < nodes_.size(); n++)
+            if (n % columns_ + 1 < columns_) nodes_[n].is_plane = is_plane(n);
     }
 
     bool find(uint32_t x, uint32_t y, double xy[2]) const {
-        const Node *upper = &nodes_[size_t(y / node_px) * columns_ + x / node_px], *lower = upper + columns_;
-        if (!(upper[0].is_seen && upper[1].is_seen && lower[0].is_seen && lower[1].is_seen)) return false;
-        const double u = static_cast<double>(x % node_px) / node_px, v = static_cast<double>(y % node_px) / node_px;
-        xy[0] = (1 - v) * ((1 - u) * upper[0].x + u * upper[1].x) + v * ((1 - u) * lower[0].x + u * lower[1].x);
-        xy[1] = (1 - v) * ((1 - u) * upper[0].y + u * upper[1].y) + v * ((1 - u) * lower[0].y + u * lower[1].y);
+        const size_t n = size_t(y / node_px) * columns_ + x / node_px;
+        if (!nodes_[n].is_plane) return compute(x, y, xy);
+        between(n, static_cast<double>(x % node_px) / node_px, static_cast<double>(y % node_px) / node_px, xy);
         return true;
     }
 
 private:
     struct Node {
-        double x = 0.0, y = 0.0;
-        bool is_seen = false;
+        double xy[2] = {};
+        bool is_seen = false, is_plane = false;  // is_plane: of the square of nodes from this one on
     };
 
+    double x_of(size_t n) const { return static_cast<double>(n % columns_) * node_px; }
+    double y_of(size_t n) const { return static_cast<double>(n / columns_) * node_px; }
+
+    bool compute(double x, double y, double xy[2]) const {
+        double direction[2];
+        if (!lensprof_camera_unproject(&from_, PixelScale::to_frame(x, out_.x), PixelScale::to_frame(y, out_.y),
+                                       direction)
+            || !lensprof_camera_project(&to_, direction[0], direction[1], xy))
+            return false;
+        xy[0] = PixelScale::to_picture(xy[0], in_.x), xy[1] = PixelScale::to_picture(xy[1], in_.y);
+        return true;
+    }
+
+    void between(size_t n, double u, double v, double xy[2]) const {
+        const Node *upper = &nodes_[n], *lower = upper + columns_;
+        for (size_t d = 0; d < 2; d++)
+            xy[d] = (1 - v) * ((1 - u) * upper[0].xy[d] + u * upper[1].xy[d])
+                    + v * ((1 - u) * lower[0].xy[d] + u * lower[1].xy[d]);
+    }
+
+    bool is_plane(size_t n) const {
+        for (size_t corner : {n, n + 1, n + columns_, n + columns_ + 1})
+            if (!nodes_[corner].is_seen) return false;
+        constexpr double inside[3][2] = {{0.5, 0.5}, {0.5, 0.0}, {0.0, 0.5}};  // where bends are largest
+        for (const auto &[u, v] : inside) {
+            double straight[2], exact[2];
+            between(n, u, v, straight);
+            if (!compute(x_of(n) + u * node_px, y_of(n) + v * node_px, exact)
+                || !(std::hypot(straight[0] - exact[0], straight[1] - exact[1]) < bent_px))
+                return false;
+        }
+        return true;
+    }
+
+    const lensprof_camera from_, to_;
+    const PixelScale out_, in_;
     uint32_t columns_;
     std::vector<Node> nodes_;
 };
@@ -156,15 +201,20 @@ struct Reading {
     uint32_t x, y;  // the nearest pixel
 };
 
+// False outside of the picture, and where a mask excludes any of the four.
 bool read_at(LitPicture &picture, const double xy[2], Reading &reading) {
-    const double left = std::floor(xy[0]), top = std::floor(xy[1]);
-    if (!(left >= 0.0 && top >= 0.0 && left + 1.0 < picture.width() && top + 1.0 < picture.height())) return false;
-    const auto x = static_cast<uint32_t>(left), y = static_cast<uint32_t>(top);
-    const double u = xy[0] - left, v = xy[1] - top;
-    reading = {{}, 1.0, false, u < 0.5 ? x : x + 1, v < 0.5 ? y : y + 1};
+    const double right = picture.width() - 1.0, bottom = picture.height() - 1.0;
+    if (!(xy[0] >= -edge_px && xy[1] >= -edge_px && xy[0] <= right + edge_px && xy[1] <= bottom + edge_px))
+        return false;
+    const double at_x = std::clamp(xy[0], 0.0, right), at_y = std::clamp(xy[1], 0.0, bottom);
+    const auto x = static_cast<uint32_t>(at_x), y = static_cast<uint32_t>(at_y);
+    const double u = at_x - x, v = at_y - y;
+    const uint32_t next_x = std::min(x + 1, picture.width() - 1), next_y = std::min(y + 1, picture.height() - 1);
+    reading = {{}, 1.0, false, u < 0.5 ? x : next_x, v < 0.5 ? y : next_y};
     for (uint32_t n = 0; n < 4; n++) {
-        const uint32_t px = x + n % 2, py = y + n / 2;
+        const uint32_t px = n % 2 ? next_x : x, py = n / 2 ? next_y : y;
         const double share = (n % 2 ? u : 1 - u) * (n / 2 ? v : 1 - v);
+        if (picture.is_masked(px, py)) return false;
         const float *light = picture.light(px, py);
         for (size_t c = 0; c < picture.samples(); c++) reading.light[c] += share * static_cast<double>(light[c]);
         reading.trust = std::min(reading.trust, picture.trust(px, py));
@@ -180,7 +230,7 @@ public:
         : kind_(kind), own_(placed, kind, project), sums_(size_t(own_.width()) * own_.height() * own_.samples()) {
         in_strips([&](uint32_t x, uint32_t y) {
             double weight[3];
-            own_.weights(x, y, trust_of(own_.largest(x, y)), weight);
+            own_.weights(x, y, ends_in_white(x, y) ? 0.0 : own_.trust(x, y), weight);
             add(x, y, own_.light(x, y), weight);
         });
     }
@@ -189,12 +239,32 @@ public:
 
     void add(LitPicture &other) {
         const PlaceMap map(own_, other);
+        std::vector<Agreement> agreement(size_t(own_.width()) * own_.height(), Agreement::unseen);
+        const uint32_t columns = own_.width() / block_px + 1;
+        std::vector<Block> blocks(size_t(columns) * (own_.height() / block_px + 1));
+        const auto at = [&](uint32_t x, uint32_t y) -> Agreement & { return agreement[size_t(y) * own_.width() + x]; };
         in_strips([&](uint32_t x, uint32_t y) {
             double xy[2];
             Reading reading;
-            if (map.find(x, y, xy) && read_at(other, xy, reading) && is_alike(x, y, reading)) add(x, y, other, reading);
+            if (!map.find(x, y, xy) || !read_at(other, xy, reading)) return;
+            at(x, y) = compare(x, y, reading);
+            if (reading.trust == 0.0) return;  // black or white, which is not the light
+            Block &block = blocks[size_t(y / block_px) * columns + x / block_px];
+            block.difference += difference_of(x, y, reading), block.pixels++;
         });
+        in_strips([&](uint32_t x, uint32_t y) {
+            double xy[2];
+            Reading reading;
+            const bool may_be = at(x, y) == Agreement::near || at(x, y) == Agreement::same;
+            if (may_be && most_are_same(agreement, x, y) && map.find(x, y, xy) && read_at(other, xy, reading))
+                add(x, y, other, reading);
+        });
+        for (const Block &block : blocks)
+            if (block.pixels) seen_++, same_ += std::fabs(block.difference / block.pixels) <= same_block;
     }
+
+    // Of what other pictures show of this one the share where they agree with it; NaN where they show nothing.
+    double share_same() const { return static_cast<double>(same_) / static_cast<double>(seen_); }
 
     // What has been found, in the place of the picture's own light.
     const std::vector<float> &result() {
@@ -207,6 +277,19 @@ public:
     }
 
 private:
+    enum class Agreement : uint8_t {
+        unseen,
+        other,
+        near,  // as noise or a step beside it may explain
+        same
+    };
+
+    // Differences of what another picture shows, as this one would have recorded it.
+    struct Block {
+        double difference = 0.0;
+        uint32_t pixels = 0;
+    };
+
     struct Sum {
         float light = 0.0f, weight = 0.0f;
     };
@@ -245,30 +328,79 @@ private:
         }
     }
 
-    bool is_alike(uint32_t x, uint32_t y, const Reading &reading) const {
-        const double falloff = own_.falloff(x, y);
+    // Whether a channel is white: by its grey value, or almost, among others that are.
+    bool ends_in_white(uint32_t x, uint32_t y, size_t c) const {
+        if (is_white(own_.grey(x, y, c))) return true;
+        if (own_.grey(x, y, c) < almost_white) return false;
+        for (uint32_t py = y - (y > 0); py <= std::min(y + 1, own_.height() - 1); py++)
+            for (uint32_t px = x - (x > 0); px <= std::min(x + 1, own_.width() - 1); px++)
+                if (is_white(own_.grey(px, py, c))) return true;
+        return false;
+    }
+
+    bool ends_in_white(uint32_t x, uint32_t y) const {
         for (size_t c = 0; c < own_.samples(); c++)
-            if (!(std::fabs(own_.recorded(c, reading.light[c], falloff) - own_.grey(x, y, c)) <= same_grey))
-                return false;
-        return true;
+            if (ends_in_white(x, y, c)) return true;
+        return false;
+    }
+
+    // Whether this picture would have recorded such light as it did. White fits all that is brighter.
+    Agreement compare(uint32_t x, uint32_t y, const Reading &reading) const {
+        const double falloff = own_.falloff(x, y);
+        Agreement all = Agreement::same;
+        for (size_t c = 0; c < own_.samples(); c++) {
+            const double grey = std::clamp(own_.grey(x, y, c), 0.0, 1.0),
+                         more = own_.recorded(c, reading.light[c], falloff) - grey;
+            if (more > 0.0 && ends_in_white(x, y, c)) continue;
+            if (!(std::fabs(more) <= same_grey)) return Agreement::other;
+            if (std::fabs(more) > same_dark + same_share * grey) all = Agreement::near;
+        }
+        return all;
+    }
+
+    // Of green, or grey.
+    double difference_of(uint32_t x, uint32_t y, const Reading &reading) const {
+        const size_t c = own_.samples() / 2;
+        return std::min(own_.recorded(c, reading.light[c], own_.falloff(x, y)), 1.0)
+               - std::clamp(own_.grey(x, y, c), 0.0, 1.0);
+    }
+
+    // A step of light in shadows is as small as noise at one pixel, and is not about it.
+    bool most_are_same(const std::vector<Agreement> &agreement, uint32_t x, uint32_t y) const {
+        const auto width = static_cast<int>(own_.width()), height = static_cast<int>(own_.height());
+        const auto left = std::max(static_cast<int>(x) - about_px, 0),
+                   top = std::max(static_cast<int>(y) - about_px, 0);
+        int seen = 0, same = 0;
+        for (int py = top; py <= std::min(static_cast<int>(y) + about_px, height - 1); py++)
+            for (int px = left; px <= std::min(static_cast<int>(x) + about_px, width - 1); px++) {
+                const Agreement one = agreement[static_cast<size_t>(py) * own_.width() + static_cast<size_t>(px)];
+                seen += one != Agreement::unseen, same += one == Agreement::same;
+            }
+        return same >= most_agree * seen;
     }
 
     const CorrectionKind &kind_;
     LitPicture own_;
     std::vector<Sum> sums_;
+    uint64_t seen_ = 0, same_ = 0;  // blocks of other pictures in this one
 };
 
-// Whether a picture shows any place of another one.
-bool overlap(const lensprof_camera &one, const lensprof_camera &other) {
+// Whether a picture shows any of the places of another one, its edges among them.
+bool shows_any(const lensprof_camera &one, const lensprof_camera &other) {
     double direction[2], xy[2];
     for (int v = 0; v <= sight_steps; v++)
         for (int u = 0; u <= sight_steps; u++)
-            if (lensprof_camera_unproject(&one, u * (one.width - 1.0) / sight_steps,
-                                          v * (one.height - 1.0) / sight_steps, direction)
-                && lensprof_camera_project(&other, direction[0], direction[1], xy) && xy[0] >= 0.0 && xy[1] >= 0.0
-                && xy[0] <= other.width - 1.0 && xy[1] <= other.height - 1.0)
+            if (lensprof_camera_unproject(&other, u * (other.width - 1.0) / sight_steps,
+                                          v * (other.height - 1.0) / sight_steps, direction)
+                && lensprof_camera_project(&one, direction[0], direction[1], xy) && xy[0] >= -0.5 && xy[1] >= -0.5
+                && xy[0] <= one.width - 0.5 && xy[1] <= one.height - 0.5)
                 return true;
     return false;
+}
+
+// One may lie between the places of the other.
+bool overlap(const lensprof_camera &one, const lensprof_camera &other) {
+    return shows_any(one, other) || shows_any(other, one);
 }
 
 void write_light(const Correction &job, const CorrectionKind &kind, Merge &merge, Progress &progress) {
@@ -285,19 +417,15 @@ void write_light(const Correction &job, const CorrectionKind &kind, Merge &merge
 
 }  // namespace
 
-void check_overlaps(const std::vector<PlacedCorrection> &all) {
-    uint32_t layout = 0;
-    for (const PlacedCorrection &placed : all) {
-        const Picture header = read_header(placed.job.source);
-        const size_t samples = lensprof_layout_samples(header.layout);
-        if (samples != 1 && samples != 3)
-            throw Failure(ExitCode::usage,
-                          placed.job.source + ": has transparency, which a merged picture has not; remove it");
-        if (&placed == &all[0]) layout = header.layout;
-        if (header.layout != layout)
-            throw Failure(ExitCode::usage, placed.job.source + ": is " + (samples == 1 ? "grey" : "in colour")
-                                               + ", and " + all[0].job.source + " is not; merge pictures of one kind");
-    }
+void check_mergeable(const std::string &file, std::optional<uint32_t> &layout) {
+    const Picture header = read_header(file);
+    const size_t samples = lensprof_layout_samples(header.layout);
+    if (samples != 1 && samples != 3)
+        throw Failure(ExitCode::usage, file + ": has transparency, which a merged picture has not; remove it");
+    if (layout && header.layout != *layout)
+        throw Failure(ExitCode::usage, file + ": is " + (samples == 1 ? "grey" : "in colour")
+                                           + ", and others are not; merge pictures of one kind");
+    layout = header.layout;
 }
 
 Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCorrection> &jobs,
@@ -319,9 +447,21 @@ Corrected write_from_overlaps(const Project &project, const std::vector<PlacedCo
             merge.add(lit);
             overlapping++;
         }
+        if (!overlapping)
+            progress.warn(placed.job.source
+                          + ": no other picture of the project overlaps it; its light is its own alone");
+        const double same = merge.share_same();
+        if (same < enough_agree)
+            progress.warn(
+                placed.job.source
+                + format(": agrees with the pictures that overlap it at %.0f %% of what they share alone; is it "
+                         "the picture that the project was fitted to?",
+                         100.0 * same));
         write_light(placed.job, kind, merge, progress);
-        corrected.pictures.push_back(
-            {{"file", placed.job.source}, {"output", placed.job.target}, {"overlapping", overlapping}});
+        corrected.pictures.push_back({{"file", placed.job.source},
+                                      {"output", placed.job.target},
+                                      {"overlapping", overlapping},
+                                      {"agreement", overlapping ? Json(same) : Json()}});
         throughput.add_pixels(placed.job.pixels);
         throughput.add_picture();
     }
