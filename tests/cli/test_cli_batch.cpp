@@ -281,6 +281,9 @@ void test_time_left(void **) {
     assert_close(left.seconds("sampling", 0.2, 111.0), 0.0, 0.0);   // other work begins anew,
     assert_close(left.seconds("sampling", 0.6, 115.0), 4.0, 1e-9);  // from what was done of it then
     assert_close(left.seconds("sampling", 0.1, 116.0), 0.0, 0.0);   // and so does work that is done once more
+    left.seconds("fitting", 0.0, 120.0), left.seconds("fitting", 1.0, 140.0);
+    assert_close(left.seconds("fitting", 0.0, 140.0), 0.0, 0.0);  // the same once more
+    assert_close(left.seconds("fitting", 0.3, 143.0), 7.0, 1e-9);
     assert_true(describe_time_left(4.0).empty());
     assert_string_equal(describe_time_left(41.2).c_str(), ", 42 s left");
     assert_string_equal(describe_time_left(61.0).c_str(), ", 2 min left");

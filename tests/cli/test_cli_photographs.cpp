@@ -117,8 +117,7 @@ void test_another_camera_in_a_chain(void **) {
     const Outcome run = run_words(Words{"build", work("chain")} + quietly);
     assert_int_equal(run.code, done);
     assert_int_equal(Json::parse(run.out)["images"].size(), 3);
-    assert_true(
-        contains(run.err, "img000.png, img001.png: left out, another group, which only pictures of another camera"));
+    assert_true(contains(run.err, "img000.png, img001.png: left out, another group: only pictures of another camera"));
     assert_true(contains(run.err, "img002.png: left out, of another camera or size"));
 }
 
@@ -132,7 +131,21 @@ void test_one_picture_behind_another_camera(void **) {
     const Outcome run = run_words(Words{"build", work("behind")} + quietly);
     assert_int_equal(run.code, done);
     assert_true(contains(run.err, "img001.png: left out, of another camera or size"));
-    assert_true(contains(run.err, "img000.png: left out, which only pictures of another camera or size join to these"));
+    assert_true(
+        contains(run.err, "img000.png: left out, only pictures of another camera or size join it to the others"));
+}
+
+// Pictures that lensprof has made are no photographs of the camera, unless they are named.
+void test_own_pictures_are_left_out(void **) {
+    if (is_missing()) return;
+    simulate("own", {"--images", "3", "--seed", "65"});
+    must_exit(done, {"build", work("own"), "--no-store", "--pto-out", work("own/result.pto")});
+    must_exit(done, {"apply", "--pto", work("own/result.pto"), "-o", work("own/even")});
+    const Outcome run = run_words(Words{"build", work("own")} + quietly);
+    assert_int_equal(run.code, done);
+    assert_int_equal(Json::parse(run.out)["images"].size(), 3);
+    assert_true(contains(run.err, "even/img001.png: left out, lensprof has made it"));
+    must_exit(not_usable, Words{"build", work("own/even")} + quietly);
 }
 
 // What cannot be written is said before the overlaps are found, and no picture that is named is written over, be it
@@ -143,9 +156,9 @@ void test_outputs_are_checked_first(void **) {
     fs::copy_file(work("first/img001.png"), work("first/copy.png"));
     simulate("alone", {"--images", "2", "--seed", "64"});
     fs::copy_file(work("alone/img000.png"), work("first/z.png"));
-    const auto refused = [](const Words &more, const std::string &said) {
+    const auto refused = [](const Words &more, const std::string &said, int code = usage) {
         const Outcome run = run_words(Words{"build", work("first")} + more);
-        assert_int_equal(run.code, usage);
+        assert_int_equal(run.code, code);
         assert_true(contains(run.err, said) && !contains(run.err, "pictures overlap"));
     };
     for (const char *picture : {"first/copy.png", "first/z.png", "first/img001.png"}) {
@@ -153,8 +166,12 @@ void test_outputs_are_checked_first(void **) {
         refused({"--no-store", "--preview", work(picture)}, work(picture) + ": would be written over");
         assert_true(text_of(work(picture)) == before);
     }
-    refused({"--no-store", "--preview", work("nowhere/p.jpg")}, "its folder is not there");
-    refused({"--no-store", "--project-out", work("nowhere/p.pto")}, "its folder is not there");
+    refused({"--no-store", "--pto-out", work("alone/img001.png")}, "is the name of a picture");
+    refused({"--no-store", "--preview", work("alone/img001.png")}, "is a photograph that is there already");
+    refused({"--no-store", "--preview", work("nowhere/p.jpg")}, "cannot write", failed);
+    refused({"--no-store", "--project-out", work("nowhere/p.pto")}, "cannot write", failed);
+    refused({"--no-store", "--pto-out", work("alone")}, "is not a regular file");
+    refused({"--no-store", "--pto-out", "/dev/null"}, "is not a regular file");
     for (const char *picture :
          {"first/img000.png", "first/img001.png", "first/img002.png", "first/copy.png", "first/z.png"})
         write_picture(work(picture), read_picture(work(picture)));  // without metadata
@@ -377,6 +394,7 @@ int main() {
         CLI_TEST(test_another_camera_in_a_chain),
         CLI_TEST(test_one_picture_behind_another_camera),
         CLI_TEST(test_outputs_are_checked_first),
+        CLI_TEST(test_own_pictures_are_left_out),
         CLI_TEST(test_corrected_copies_are_not_read),
         CLI_TEST(test_what_is_fixed_to_the_frame),
         CLI_TEST(test_the_preview_is_even),

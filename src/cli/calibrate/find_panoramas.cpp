@@ -38,11 +38,13 @@ Group group_of(const FoundProject &found, const std::vector<const InputPicture *
     for (const uint32_t number : found.pictures) group.pictures.push_back(all[number]);
     group.geometry = text_of_found(found);
     // Through the ledger's text, so that a fit of recalled matches is the same to the byte.
-    read_noted(json_of(NotedMatches{found.matches, found.by_matches}), found.pictures.size(), group.matches);
+    if (!read_noted(json_of(NotedMatches{found.matches, found.by_matches}), found.pictures.size(), group.matches))
+        throw Failure(ExitCode::failed, "matches of pictures are not finite numbers; please report this");
     group.facts = {{"camera", found.kind == SceneKind::plane ? "moved over a plane" : "turned about one point"},
                    {"links", found.links},
                    {"links_unfit", found.unfit},
                    {"by_matches", found.by_matches},
+                   {"cameras_fit", found.cameras_fit()},
                    {"residual", found.residual}};
     return group;
 }

@@ -59,8 +59,7 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     }
     const lensprof_profile_key key = profile_key(options, project, metadata, streams);
     const EarlierProfile prior = find_stored_prior(options.store, 0, false, key, project.path);
-    if (panorama.summary["links"] < 2 * panorama.summary["links_unfit"].get<uint32_t>())
-        warn(streams, panorama.name + no_cameras_fit);
+    if (panorama.summary["cameras_fit"] == false) warn(streams, panorama.name + no_cameras_fit);
     ProjectFit done(progress);
     done.report.camera_kind = camera_kind_of(options.fit, key, metadata[project.reference]);
     fit_project(options, project, metadata, prior, done, streams);

@@ -53,7 +53,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int schema = 3;
+constexpr int schema = 4;
 
 std::string without_slash(std::string path) {
     while (path.size() > 1 && path.back() == '/') path.pop_back();

@@ -81,16 +81,35 @@ void declare(Command &command, Options &o) {
     declare_progress(command, o.progress);
 }
 
+// A name for text that is one of a picture is a slip, which would cost a photograph where it is there; so would a
+// preview in the place of one.
+void check_is_no_photograph(const std::string &output, bool is_preview) {
+    if (!is_preview && is_picture_name(output))
+        throw Failure(ExitCode::usage,
+                      output + ": is the name of a picture, and what is written is text; give another");
+    if (!is_preview || !is_regular_file(output)) return;
+    PictureMetadata metadata = unknown_metadata();
+    try {
+        metadata = read_metadata(output);
+    } catch (const Failure &) {
+        return;  // no picture that anybody can read
+    }
+    if (*metadata.key.camera_model || metadata.exposure_time_s)
+        throw Failure(ExitCode::usage,
+                      output + ": is a photograph that is there already; give the preview another name");
+}
+
 // No output may take the place of an input, of the database or of another output.
 void check_outputs(const Options &o, std::vector<std::string> taken) {
     taken.insert(taken.end(), {o.points, o.compare});
     if (!o.store.no_store) taken.push_back(store_path(o.store.db));
     for (const std::string &output : {o.points_out, o.pto_out, o.project_out, o.preview}) {
         if (output.empty()) continue;
-        check_output_file(output);
         for (const std::string &other : taken)
             if (is_same_file(output, other))
                 throw Failure(ExitCode::usage, output + ": would be written over; give the output another name");
+        check_is_no_photograph(output, output == o.preview);
+        check_output_file(output);
         taken.push_back(output);
     }
 }

@@ -79,7 +79,7 @@ std::string why_apart(const FoundProject &other, const FoundProject &project) {
     if (!other.meets_another || !project.meets_another)
         return "another group, which overlaps with none of these; give its pictures alone";
     if (other.body != project.body) return std::string("another group, ") + of_another_body;
-    return std::string("another group, ") + joined_by_another_body;
+    return std::string("another group: ") + joined_by_another_body;
 }
 
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
@@ -110,24 +110,41 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
 
 bool names_pictures(const std::string &word) { return is_folder(word) || is_picture_name(word); }
 
+// Whether a picture of a folder is marked as one of lensprof's own.
+static bool is_corrected_copy(const NamedPicture &picture) {
+    if (!picture.in_folder) return false;
+    try {
+        const auto mark = read_metadata(picture.file).mark;
+        return mark && mark->falloff != CorrectionMark::Falloff::added;
+    } catch (const Failure &) {
+        return false;  // said when it is read
+    }
+}
+
 Photographs find_photographs(const std::vector<std::string> &words, Streams &streams) {
     std::vector<NamedPicture> named = named_pictures(words, std::string());
     const std::vector<NamedPicture> outputs =
         take_out_below(named, [](const std::string &folder) { return path_exists(folder + "/" + calibrate_records); });
     for (const NamedPicture &picture : named) note_instead(picture, streams);
+    const auto own = std::stable_partition(named.begin(), named.end(),
+                                           [](const NamedPicture &picture) { return !is_corrected_copy(picture); });
+    const std::vector<NamedPicture> corrected(own, named.end());
+    named.erase(own, named.end());
     Photographs list = list_photographs(words, named);
     for (const NamedPicture &picture : outputs)
         list.left_out.emplace_back(picture.file, "it is in a folder that calibrate has written");
+    for (const NamedPicture &picture : corrected)
+        list.left_out.emplace_back(picture.file, "lensprof has made it of another picture; name it itself to take it");
     for (const auto &[file, why] : list.left_out) warn(streams, file + ": left out, " + why);
+    demand_one_kind(list.files);
+    if (list.files.size() < 2)
+        throw Failure(ExitCode::not_usable, list.label + ": has one picture; at least two overlapping ones are needed",
+                      LENSPROF_REASON_FEW_PAIRS);
     return list;
 }
 
 Project project_of_pictures(const Photographs &list, bool one_lens, Progress &progress, Streams &streams) {
     const auto &[label, files, names, left_out] = list;
-    demand_one_kind(files);
-    if (files.size() < 2)
-        throw Failure(ExitCode::not_usable, label + ": has one picture; at least two overlapping ones are needed",
-                      LENSPROF_REASON_FEW_PAIRS);
     Project project;
     project.left_out = left_out;
     auto clock = std::chrono::steady_clock::now();

@@ -24,7 +24,7 @@ struct Photographs {
 Photographs list_photographs(const std::vector<std::string> &words, const std::vector<NamedPicture> &pictures);
 
 // The pictures that are named, and those of folders that are. What calibrate has written is left out. What is left out
-// is named on standard error.
+// is named on standard error. Failure for raw files among others (usage), and where fewer than two are left.
 Photographs find_photographs(const std::vector<std::string> &words, Streams &streams);
 
 // Finds the overlaps. The project is that of the largest group of one camera; what it leaves out is named on standard
@@ -35,7 +35,7 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
 // Why a picture is not part of a project that it overlaps with, directly or through others.
 constexpr const char *of_another_body = "of another camera or size than most (--one-lens takes all as one)";
 constexpr const char *joined_by_another_body =
-    "which only pictures of another camera or size join to these (--one-lens takes all as one)";
+    "only pictures of another camera or size join it to the others (--one-lens takes all as one)";
 
 // What is to be said of a project whose cameras do not fit.
 constexpr const char *no_cameras_fit =

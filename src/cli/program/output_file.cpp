@@ -127,12 +127,7 @@ void check_folder(const std::string &folder, const std::string &item, ExitCode n
                                       + "; check its permissions, or give another folder");
 }
 
-void check_output_file(const std::string &path) {
-    const std::string folder = std::filesystem::path(absolute_path(path)).parent_path().string();
-    if (!is_folder(folder))
-        throw Failure(ExitCode::usage, path + ": its folder is not there; make it, or give another name");
-    check_folder(folder, path, ExitCode::usage, ExitCode::failed);
-}
+void check_output_file(const std::string &path) { const OutputFile attempt(path); }
 
 void check_output_folder(const std::string &folder) { check_folder(folder, folder, ExitCode::usage, ExitCode::failed); }
 

@@ -79,8 +79,7 @@ int open_nameless(const std::string &beside);
 // where a file is in its place, else `no_writing`. To be known before work that takes long.
 void check_folder(const std::string &folder, const std::string &item, ExitCode no_folder, ExitCode no_writing);
 
-// Failure (usage, or failed) about a file that is to be written, where its folder is not there or takes no files:
-// before the work is done.
+// The Failure that writing this file would end in, before the work is done.
 void check_output_file(const std::string &path);
 
 // The folder for what a command writes, made where there is none. Failure (usage, or failed) names it.

@@ -22,10 +22,12 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 double TimeLeft::seconds(const std::string &what, double fraction, double now) {
     constexpr double soonest = 2.0, least = 0.01;  // s, and share, from which on the rate is known
-    if (what != what_ || fraction < first_) {
+    constexpr double anew = 0.05;                  // share that threads do not go back by
+    if (what != what_ || fraction < last_ - anew) {
         what_ = what;
         begin_ = now, first_ = fraction;
     }
+    last_ = fraction;
     const double taken = now - begin_, done = fraction - first_;
     return taken < soonest || done < least ? 0.0 : taken * std::max(1.0 - fraction, 0.0) / done;
 }

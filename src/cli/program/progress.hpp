@@ -24,7 +24,7 @@ public:
 
 private:
     std::string what_;
-    double begin_ = 0.0, first_ = 0.0;
+    double begin_ = 0.0, first_ = 0.0, last_ = 0.0;
 };
 
 // ", 40 s left", ", 3 min left", ", 2 h 5 min left"; empty where it is short.

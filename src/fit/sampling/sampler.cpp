@@ -168,7 +168,8 @@ void Sampler::register_neighbours() {
         corrections_[edge_of(i, j)] = registration(camera(i), *grey_[i], camera(j), *grey_[j]);
         done++;
     };
-    each(static_cast<uint32_t>(edges.size()), work, [&] { return kShareOfRegistration * done / edges.size(); });
+    each(static_cast<uint32_t>(edges.size()), work,
+         [&] { return kShareOfRegistration * done / std::max<size_t>(edges.size(), 1); });
 }
 
 const Correction &Sampler::correction(uint32_t i, uint32_t j) const {
@@ -283,6 +284,7 @@ std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
     for (const auto &list : neighbours_) sights += list.size();
     auto chunk = static_cast<uint32_t>(std::clamp<size_t>(4 * wanted / std::max<size_t>(sights, 1), 4, 256));
     const uint32_t most = 102400 / chunk, hopeless = 2560 / chunk, pieces = (chunk + kPiece - 1) / kPiece;
+    const double before = shown_;  // of the progress
     for (uint32_t round = 0;
          round < most && all.size() < wanted && refused_ < kMostRefused * wanted && !(round > hopeless && all.empty());
          round++) {
@@ -300,7 +302,7 @@ std::vector<Sampler::Candidate> Sampler::candidates(size_t wanted) {
             count += found[n].size();
         };
         each(static_cast<uint32_t>(found.size()), work,
-             [&] { return 0.95 * static_cast<double>(count) / static_cast<double>(wanted); });
+             [&] { return before + (0.95 - before) * static_cast<double>(count) / static_cast<double>(wanted); });
         append(found, all);
     }
     return all;

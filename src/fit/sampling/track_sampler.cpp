@@ -87,6 +87,7 @@ bool Sampler::find_track(const Aim &aim, uint32_t number, TrackCandidate &found)
 // The rounds end where they end on any number of threads.
 std::vector<Sampler::TrackCandidate> Sampler::track_candidates(size_t wanted, const std::function<Aim(uint32_t)> &aim) {
     std::vector<TrackCandidate> all;
+    const double before = shown_;  // of the progress
     for (uint32_t round = 0; round < kMostRounds && all.size() < wanted && !(round > kHopeless && all.empty());
          round++) {
         std::vector<std::vector<TrackCandidate>> found(kRound / kPiece);
@@ -96,7 +97,7 @@ std::vector<Sampler::TrackCandidate> Sampler::track_candidates(size_t wanted, co
                 if (find_track(aim(round * kRound + k), k, candidate)) found[piece].push_back(std::move(candidate));
             }
         };
-        double done = 0.95 * static_cast<double>(all.size()) / static_cast<double>(wanted);
+        const double done = before + (0.95 - before) * static_cast<double>(all.size()) / static_cast<double>(wanted);
         each(static_cast<uint32_t>(found.size()), work, [=] { return done; });
         for (auto &list : found) std::move(list.begin(), list.end(), std::back_inserter(all));
     }
