@@ -16,19 +16,22 @@
 namespace lensprof {
 namespace {
 
-constexpr double edge_px = 0.05;    // beyond the middles of the outermost pixels
-constexpr double same_grey = 0.03;  // difference of grey values that one light may have at a pixel at most,
-constexpr double same_dark = 0.01, same_share = 0.04;  // and about it, in black and more for a grey value
-constexpr double most_agree = 0.6;                     // share of the places about a pixel
+// A light may differ by so much from a pixel's grey value; and from those of most about it, which noise does less.
+constexpr double same_grey = 0.03, same_in_black = 0.01, same_share = 0.04;
+constexpr double most_agree = 0.6;
 constexpr int about_px = 2;
-constexpr uint32_t block_px = 16;      // side of the blocks whose means are compared, which a few px do not matter to,
-constexpr double same_block = 0.04;    // difference of grey values that they may have
-constexpr double enough_agree = 0.5;   // share of what pictures have in common, below which something is wrong
-constexpr double almost_white = 0.95;  // of a grey value next to white ones: noise and coding leave it below them
-constexpr double bent_px = 0.05;       // by which places between nodes may be off the straight line
-constexpr uint32_t node_px = 8,
-                   strip_rows = 4 * block_px;  // between places that are computed; rows that a thread takes
+// Grey values next to white ones from which on noise and coding may have made them of white.
+constexpr double almost_white = 0.95;
+
+// Means of blocks tell whether pictures show the same at all; some px of misplacement do not matter to them.
+constexpr uint32_t block_px = 16;
+constexpr double same_block = 0.04, enough_agree = 0.5;
+
+constexpr uint32_t node_px = 8;                // between places that are computed
+constexpr double bent_px = 0.05;               // by which those between may be off a plane
+constexpr double edge_px = 0.05;               // beyond the middles of the outermost pixels
 constexpr int sight_steps = 24;                // of the places by which pictures are found to overlap
+constexpr uint32_t strip_rows = 4 * block_px;  // that a thread takes
 
 // Full frame of the project -> pixels of a picture, which may be of another size.
 struct PixelScale {
@@ -353,7 +356,7 @@ private:
                          more = own_.recorded(c, reading.light[c], falloff) - grey;
             if (more > 0.0 && ends_in_white(x, y, c)) continue;
             if (!(std::fabs(more) <= same_grey)) return Agreement::other;
-            if (std::fabs(more) > same_dark + same_share * grey) all = Agreement::near;
+            if (std::fabs(more) > same_in_black + same_share * grey) all = Agreement::near;
         }
         return all;
     }
