@@ -107,14 +107,18 @@ void test_a_folder_of_many_things(void **) {
     assert_true(json["seconds"]["register"].get<double>() > 0.0);
 }
 
+// `build` of a row of pictures one of which is of another size.
+Outcome build_with_one_smaller(const std::string &name, const Words &row, const std::string &picture) {
+    simulate(name, row);
+    simulate(name + "_small", row + Words{"--size", "400x300"});
+    fs::copy_file(work(name + "_small/" + picture), work(name + "/" + picture), fs::copy_options::overwrite_existing);
+    return run_words(Words{"build", work(name)} + quietly);
+}
+
 // What joins two parts of a row is of another size: the larger part is taken, and the reasons name the size.
 void test_another_camera_in_a_chain(void **) {
     if (is_missing()) return;
-    simulate("chain", {"--images", "6", "--seed", "61"});
-    simulate("chain_small", {"--images", "6", "--seed", "61", "--size", "400x300"});
-    fs::remove(work("chain/img002.png"));
-    fs::copy_file(work("chain_small/img002.png"), work("chain/img002.png"));
-    const Outcome run = run_words(Words{"build", work("chain")} + quietly);
+    const Outcome run = build_with_one_smaller("chain", {"--images", "6", "--seed", "61"}, "img002.png");
     assert_int_equal(run.code, done);
     assert_int_equal(Json::parse(run.out)["images"].size(), 3);
     assert_true(contains(run.err, "img000.png, img001.png: left out, another group: only pictures of another camera"));
@@ -124,11 +128,7 @@ void test_another_camera_in_a_chain(void **) {
 // A picture that only one of another size joins to the others is not itself of another size.
 void test_one_picture_behind_another_camera(void **) {
     if (is_missing()) return;
-    simulate("behind", {"--images", "5", "--seed", "62"});
-    simulate("behind_small", {"--images", "5", "--seed", "62", "--size", "400x300"});
-    fs::remove(work("behind/img001.png"));
-    fs::copy_file(work("behind_small/img001.png"), work("behind/img001.png"));
-    const Outcome run = run_words(Words{"build", work("behind")} + quietly);
+    const Outcome run = build_with_one_smaller("behind", {"--images", "5", "--seed", "62"}, "img001.png");
     assert_int_equal(run.code, done);
     assert_true(contains(run.err, "img001.png: left out, of another camera or size"));
     assert_true(

@@ -9,6 +9,13 @@ namespace lensprof {
 // coding of JPEG and the noise mix saturated pixels with others.
 static constexpr double none_below = 0.01, all_above = 0.06, all_below = 0.9, none_above = 0.98;
 
+size_t samples_of_light(const Picture &header, const std::string &file) {
+    const size_t samples = lensprof_layout_samples(header.layout);
+    if (samples != 1 && samples != 3)
+        throw Failure(ExitCode::usage, file + ": has transparency, which a merged picture has not; remove it");
+    return samples;
+}
+
 double grey_at(const lensprof_image &rows, uint32_t y, size_t n) {
     const auto *row = static_cast<const uint8_t *>(rows.data) + static_cast<ptrdiff_t>(y) * rows.row_bytes;
     switch (rows.sample) {

@@ -4,8 +4,12 @@
 #include <array>
 
 #include "cli/correct/correction.hpp"
+#include "cli/pictures/picture.hpp"
 
 namespace lensprof {
+
+// Samples of a pixel: 1 or 3. Failure (usage) that names the file for a picture with transparency.
+size_t samples_of_light(const Picture &header, const std::string &file);
 
 // Grey value 0..1 of the n-th sample of a row.
 double grey_at(const lensprof_image &rows, uint32_t y, size_t n);

@@ -21,10 +21,7 @@ public:
     Frame(const Correction &job, const CorrectionKind &kind)
         : job_(job), reader_(job.source), plan_(options_of(reader_.header(), job, kind), job.source), weights_(job) {
         const Picture &header = reader_.header();
-        samples_ = lensprof_layout_samples(header.layout);
-        if (samples_ != 1 && samples_ != 3)
-            throw Failure(ExitCode::usage,
-                          job.source + ": has transparency, which a merged picture has not; remove it");
+        samples_ = samples_of_light(header, job.source);
     }
 
     const Picture &header() const { return reader_.header(); }

@@ -250,10 +250,13 @@ public:
             double xy[2];
             Reading reading;
             if (!map.find(x, y, xy) || !read_at(other, xy, reading)) return;
-            at(x, y) = compare(x, y, reading);
-            if (reading.trust == 0.0) return;  // black or white, which is not the light
+            double more[3];
+            differences(x, y, reading, more);
+            at(x, y) = agreement_of(x, y, more);
+            if (reading.trust == 0.0) return;     // black or white, which is not the light
+            const size_t c = own_.samples() / 2;  // green, or grey
             Block &block = blocks[size_t(y / block_px) * columns + x / block_px];
-            block.difference += difference_of(x, y, reading), block.pixels++;
+            block.difference += std::min(more[c], 1.0 - clamped_grey(x, y, c)), block.pixels++;
         });
         in_strips([&](uint32_t x, uint32_t y) {
             double xy[2];
@@ -347,25 +350,24 @@ private:
         return false;
     }
 
-    // Whether this picture would have recorded such light as it did. White fits all that is brighter.
-    Agreement compare(uint32_t x, uint32_t y, const Reading &reading) const {
+    double clamped_grey(uint32_t x, uint32_t y, size_t c) const { return std::clamp(own_.grey(x, y, c), 0.0, 1.0); }
+
+    // By how much this picture would have recorded more of such light than it did.
+    void differences(uint32_t x, uint32_t y, const Reading &reading, double more[3]) const {
         const double falloff = own_.falloff(x, y);
-        Agreement all = Agreement::same;
-        for (size_t c = 0; c < own_.samples(); c++) {
-            const double grey = std::clamp(own_.grey(x, y, c), 0.0, 1.0),
-                         more = own_.recorded(c, reading.light[c], falloff) - grey;
-            if (more > 0.0 && ends_in_white(x, y, c)) continue;
-            if (!(std::fabs(more) <= same_grey)) return Agreement::other;
-            if (std::fabs(more) > same_in_black + same_share * grey) all = Agreement::near;
-        }
-        return all;
+        for (size_t c = 0; c < own_.samples(); c++)
+            more[c] = own_.recorded(c, reading.light[c], falloff) - clamped_grey(x, y, c);
     }
 
-    // Of green, or grey.
-    double difference_of(uint32_t x, uint32_t y, const Reading &reading) const {
-        const size_t c = own_.samples() / 2;
-        return std::min(own_.recorded(c, reading.light[c], own_.falloff(x, y)), 1.0)
-               - std::clamp(own_.grey(x, y, c), 0.0, 1.0);
+    // White fits all that is brighter.
+    Agreement agreement_of(uint32_t x, uint32_t y, const double more[3]) const {
+        Agreement all = Agreement::same;
+        for (size_t c = 0; c < own_.samples(); c++) {
+            if (more[c] > 0.0 && ends_in_white(x, y, c)) continue;
+            if (!(std::fabs(more[c]) <= same_grey)) return Agreement::other;
+            if (std::fabs(more[c]) > same_in_black + same_share * clamped_grey(x, y, c)) all = Agreement::near;
+        }
+        return all;
     }
 
     // A step of light in shadows is as small as noise at one pixel, and is not about it.
@@ -422,9 +424,7 @@ void write_light(const Correction &job, const CorrectionKind &kind, Merge &merge
 
 void check_mergeable(const std::string &file, std::optional<uint32_t> &layout) {
     const Picture header = read_header(file);
-    const size_t samples = lensprof_layout_samples(header.layout);
-    if (samples != 1 && samples != 3)
-        throw Failure(ExitCode::usage, file + ": has transparency, which a merged picture has not; remove it");
+    const size_t samples = samples_of_light(header, file);
     if (layout && header.layout != *layout)
         throw Failure(ExitCode::usage, file + ": is " + (samples == 1 ? "grey" : "in colour")
                                            + ", and others are not; merge pictures of one kind");
