@@ -4,16 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "cli/correct/correction.hpp"
-#include "cli/fitting/project.hpp"
+#include "cli/correct/lit_picture.hpp"
 
 namespace lensprof {
-
-// A correction of an image of a project, by the model of the project.
-struct PlacedCorrection {
-    Correction job;
-    uint32_t image;
-};
 
 // Failure (usage) for a picture with transparency, and for one that is grey where others are not, or the other way
 // round: `layout` is that of the others, where there are any, and becomes this one's.
