@@ -93,6 +93,14 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_settings(lenspro
                                                                          const lensprof_vignetting *vignetting,
                                                                          uint32_t setting_count, lensprof_error *error);
 
+/* Gives every camera a response: of the images with camera[i] = k the first one receives response[k], as
+ * lensprof_pto_set_result writes one, and the others are linked to it. Call it after that function. camera[image_count]
+ * are less than camera_count. Errors: ARGUMENT, what lensprof_response_validate says, MEMORY. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_set_cameras(lensprof_pto *pto, const uint32_t *camera,
+                                                                        uint32_t image_count,
+                                                                        const lensprof_response *response,
+                                                                        uint32_t camera_count, lensprof_error *error);
+
 /* The project as text: everything that was read, unchanged but for what was set. data[capacity] and
  * *count (bytes) as in base.h. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_pto_write(const lensprof_pto *pto, void *data, size_t capacity,

@@ -9,21 +9,21 @@
 #define LEAST_FALLOFF_SHIFT 21 /* M in 2^-21: 1 / 2000 of the smallest one allowed */
 #define SMALLEST_M 0.0005      /* below the smallest one allowed, above 0 after rounding */
 
-static int is_linear(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding) {
+static int is_linear(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
     int linear = 1;
-    for (uint32_t c = 0; c < lp_curves(o, m) && encoding == LENSPROF_ENCODING_RESPONSE; c++)
-        linear = linear && lp_response(o, m, c)->kind == LENSPROF_RESPONSE_LINEAR;
+    for (uint32_t c = 0; c < lp_curves(o, m); c++)
+        linear = linear && lp_response(o, m, end, c).kind == LENSPROF_RESPONSE_LINEAR;
     return linear;
 }
 
-static uint32_t tables_of(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding) {
+static uint32_t tables_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
     if (o->source_sample != LENSPROF_SAMPLE_U8) return 0;
-    return is_linear(o, m, encoding) ? 1 : lp_curves(o, m);
+    return is_linear(o, m, end) ? 1 : lp_curves(o, m);
 }
 
 static size_t bytes_of(const lensprof_apply_options *o, const lp_model *m) {
     return sizeof(lensprof_fixed_plan)
-           + (tables_of(o, m, o->input) + tables_of(o, m, o->output)) * (LP_CODES * sizeof(int32_t));
+           + (tables_of(o, m, LP_INPUT) + tables_of(o, m, LP_OUTPUT)) * (LP_CODES * sizeof(int32_t));
 }
 
 /* ---- falloff ---- */
@@ -76,19 +76,16 @@ static int32_t log_of(double light) {
     return light > 0.0 ? (int32_t)floor(log2(light) * (1 << LP_LOG_SHIFT) + 0.5) : LP_LOG_NONE;
 }
 
-static double light_of(const lensprof_apply_options *o, const lp_model *m, uint32_t encoding, uint32_t curve,
-                       double value) {
-    return encoding == LENSPROF_ENCODING_LINEAR ? value : lp_model_invert(lp_response(o, m, curve), value);
-}
-
 static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     int32_t *table = (int32_t *)(void *)(plan + 1);
-    for (uint32_t c = 0; c < plan->decode_curves; c++, table += LP_CODES)
-        for (uint32_t code = 0; code < LP_CODES; code++)
-            table[code] = log_of(light_of(o, m, o->input, c, code / 255.0));
+    for (uint32_t c = 0; c < plan->decode_curves; c++, table += LP_CODES) {
+        const struct lp_model_response response = lp_response(o, m, LP_INPUT, c);
+        for (uint32_t code = 0; code < LP_CODES; code++) table[code] = log_of(lp_model_invert(&response, code / 255.0));
+    }
     for (uint32_t c = 0; c < plan->encode_curves; c++, table += LP_CODES) {
+        const struct lp_model_response response = lp_response(o, m, LP_OUTPUT, c);
         for (uint32_t code = 0; code < LP_CODES - 1; code++)
-            table[code] = log_of(light_of(o, m, o->output, c, (code + 0.5) / 255.0));
+            table[code] = log_of(lp_model_invert(&response, (code + 0.5) / 255.0));
         table[LP_CODES - 1] = INT32_MAX;
     }
 }
@@ -103,7 +100,7 @@ static lensprof_status validate(const lensprof_apply_options *given, lensprof_ap
         || o->source_layout == LENSPROF_LAYOUT_PLANAR || m->columns || o->dither)
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED,
                        "integers take U8 and U16 to the same, no planes, grid or dither");
-    if (o->source_sample == LENSPROF_SAMPLE_U16 && !(is_linear(o, m, o->input) && is_linear(o, m, o->output)))
+    if (o->source_sample == LENSPROF_SAMPLE_U16 && !(is_linear(o, m, LP_INPUT) && is_linear(o, m, LP_OUTPUT)))
         return lp_fail(error, LENSPROF_ERROR_UNSUPPORTED, "integers take U16 through a linear response only");
     return LENSPROF_OK;
 }
@@ -123,8 +120,8 @@ static void prepare_layout(lensprof_fixed_plan *plan, const lensprof_apply_optio
     plan->frame_width = o->frame_width;
     plan->frame_height = o->frame_height;
     plan->simulate = o->direction == LENSPROF_DIRECTION_SIMULATE;
-    plan->decode_curves = (uint8_t)tables_of(o, m, o->input);
-    plan->encode_curves = (uint8_t)tables_of(o, m, o->output);
+    plan->decode_curves = (uint8_t)tables_of(o, m, LP_INPUT);
+    plan->encode_curves = (uint8_t)tables_of(o, m, LP_OUTPUT);
 }
 
 static void prepare_gains(lensprof_fixed_plan *plan, const lensprof_apply_options *o) {

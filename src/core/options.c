@@ -59,7 +59,13 @@ static lensprof_status view_structs(const lensprof_apply_options *o, lp_model *m
     return lensprof_gain_grid_validate(o->grid);
 }
 
+static int is_output_stated(const lensprof_apply_options *o) {
+    const uint32_t count = o->output_responses;
+    return o->output_response ? count == 1 || count == 3 : !count;
+}
+
 lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m) {
+    if (!is_output_stated(o)) return LENSPROF_ERROR_ARGUMENT;
     if (!o->blob) return view_structs(o, m);
     if (o->response || o->vignetting || o->grid) return LENSPROF_ERROR_ARGUMENT;
     lp_blob blob;
@@ -69,12 +75,19 @@ lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m) {
 }
 
 uint32_t lp_curves(const lensprof_apply_options *o, const lp_model *m) {
-    return lensprof_layout_channels(o->source_layout) == 1 ? 1 : m->responses;
+    if (lensprof_layout_channels(o->source_layout) == 1) return 1;
+    return m->responses == 3 || o->output_responses == 3 ? 3 : 1;
 }
 
-const struct lp_model_response *lp_response(const lensprof_apply_options *o, const lp_model *m, uint32_t curve) {
-    uint32_t channel = lensprof_layout_channels(o->source_layout) == 1 ? 1 : curve;
-    return &m->response[m->responses == 3 ? channel : 0];
+struct lp_model_response lp_response(const lensprof_apply_options *o, const lp_model *m, enum lp_end end,
+                                     uint32_t curve) {
+    const uint32_t channel = lensprof_layout_channels(o->source_layout) == 1 ? 1 : curve;
+    struct lp_model_response response = m->response[m->responses == 3 ? channel : 0];
+    if (end == LP_OUTPUT && o->output_responses)
+        view_response(&response, &o->output_response[o->output_responses == 3 ? channel : 0]);
+    if ((end == LP_INPUT ? o->input : o->output) == LENSPROF_ENCODING_LINEAR)
+        response.kind = LENSPROF_RESPONSE_LINEAR, response.gamma = 1.0;
+    return response;
 }
 
 double lp_model_invert(const struct lp_model_response *response, double b) {
@@ -90,6 +103,15 @@ double lp_model_invert(const struct lp_model_response *response, double b) {
             high = middle;
     }
     return lp_curve_between(lp_model_sample(response, low), lp_model_sample(response, high), b, low);
+}
+
+/* Of the output response; lp_options_model has checked that it is there. */
+static lensprof_status validate_output(const lensprof_apply_options *o, lensprof_error *error) {
+    for (uint32_t c = 0; c < o->output_responses; c++) {
+        const lensprof_status status = lensprof_response_validate(&o->output_response[c]);
+        if (status != LENSPROF_OK) return lp_fail(error, status, "an output response is invalid");
+    }
+    return LENSPROF_OK;
 }
 
 static lensprof_status validate_curves(const lensprof_apply_options *o, lensprof_error *error) {
@@ -144,7 +166,7 @@ static lensprof_status validate_options(const lensprof_apply_options *o, lenspro
         return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "strength is not within 0..1");
     if (!(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LP_LARGEST_GAIN_CAP)))
         return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "gain_cap is not 0 or within 1..1e6");
-    if (o->dither > 1 || o->reserved)
+    if (o->dither > 1 || o->reserved || o->reserved2)
         return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "dither is not 0 or 1, or reserved is not 0");
     if (!o->frame_width || !o->frame_height || o->frame_width > LP_LARGEST_SIDE || o->frame_height > LP_LARGEST_SIDE)
         return lp_fail(error, LENSPROF_ERROR_SIZE, "frame_width or frame_height is 0, or over 2^20");
@@ -160,6 +182,7 @@ lensprof_status lp_options_validate(const lensprof_apply_options *given, lenspro
     lensprof_status status = validate_options(own, error);
     if (status != LENSPROF_OK) return status;
     status = lp_options_model(own, model);
-    if (status == LENSPROF_OK) return status;
+    if (status == LENSPROF_OK) return validate_output(own, error);
+    if (!is_output_stated(own)) return lp_fail(error, status, "output_response is not of 1 or 3 responses");
     return lp_fail(error, status, own->blob ? "the blob is invalid, or with other curves" : "the gain grid is invalid");
 }

@@ -46,6 +46,7 @@ struct lensprof_plan {
     uint32_t inverse_shift;          /* log2 of the codes that `inverse` has an entry for */
     const float *nodes[LP_CHANNELS]; /* attenuation less 1 */
     const float *forward;            /* curves x 1024 samples of f, and one number more */
+    const float *backward;           /* the same of the f that was input, for g of values; `forward` where it is one */
     const float *inverse;            /* curves x codes of g; NULL without */
     const uint16_t *start;           /* for g of values: curves x LP_CELLS + 1, the last sample below cell / LP_CELLS */
     int32_t step; /* from there the first step up the samples is this, then half of it, ...; 0 where a cell has <= 2 */

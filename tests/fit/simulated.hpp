@@ -19,7 +19,9 @@ struct Simulation {
     lensprof_vignetting vignetting{{-0.30, 0.05, -0.15}, {0.02, -0.015}};
     std::vector<lensprof_vignetting> chromatic;  // one falloff curve a channel; empty = `vignetting` for all
     std::vector<lensprof_vignetting>
-        of_setting;         // of each lens setting, which images have in turn; empty = one for all
+        of_setting;  // of each lens setting, which images have in turn; empty = one for all
+    std::vector<lensprof_response>
+        of_camera;          // of each camera, which images are of in turn, each with one setting; empty = one for all
     double local_ev = 0.0;  // largest local tone error, EV: waves over the frame that start elsewhere in each image
     double frame_ev = 0.0;  // the same at the same place of every image, EV
     double tilt_ev = 0.0;   // from the left edge of every frame to the right, EV: no lens does it, and it adds up
@@ -43,6 +45,7 @@ struct Simulation {
             lensprof_fit_image image;
             lensprof_fit_image_init(&image, i, width, height);
             image.setting = of_setting.empty() ? 0 : i % static_cast<uint32_t>(of_setting.size());
+            image.camera = of_camera.empty() ? 0 : i % static_cast<uint32_t>(of_camera.size());
             fit_images.push_back(image);
         }
         while (pairs.size() < count) {
@@ -76,7 +79,8 @@ struct Simulation {
             for (uint32_t c = 0; c < 3; c++) {
                 double m = lensprof_vignetting_eval(&falloff_of(pair.image[side], c), r2, nullptr) * local;
                 double e = lensprof_exposure_factor(&exposures[pair.image[side]], c);
-                double b = lensprof_response_eval(&response, radiance[channels == 1 ? 0 : c] * m * e, nullptr);
+                const double light = radiance[channels == 1 ? 0 : c] * m * e;
+                double b = lensprof_response_eval(&response_of(pair.image[side]), light, nullptr);
                 if (b > 250.0 / 255.0 || b < 3.0 / 255.0) return false;
                 double noisy = b + noise_levels / 255.0 * (noise_levels > 0.0 ? lp_normal(&random) : 0.0);
                 pair.value[side][c] = std::round(std::clamp(noisy, 0.0, 1.0) * 255.0 * 256.0) / (255.0 * 256.0);
@@ -86,6 +90,9 @@ struct Simulation {
         return true;
     }
 
+    const lensprof_response &response_of(uint32_t image) const {
+        return of_camera.empty() ? response : of_camera[image % of_camera.size()];
+    }
     const lensprof_vignetting &falloff_of(uint32_t image, uint32_t channel) const {
         return of_setting.empty() ? falloff(channel) : of_setting[image % of_setting.size()];
     }

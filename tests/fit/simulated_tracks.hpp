@@ -61,7 +61,8 @@ private:
             for (uint32_t c = 0; c < 3; c++) {
                 double m = lensprof_vignetting_eval(&falloff_of(o.image, c), r2, nullptr);
                 double e = lensprof_exposure_factor(&exposures[o.image], c);
-                double b = lensprof_response_eval(&response, radiance[channels == 1 ? 0 : c] * m * e, nullptr);
+                const double light = radiance[channels == 1 ? 0 : c] * m * e;
+                double b = lensprof_response_eval(&response_of(o.image), light, nullptr);
                 double noisy = b + noise_levels / 255.0 * (noise_levels > 0.0 ? lp_normal(&random) : 0.0);
                 o.value[c] = std::round(std::clamp(noisy, 0.0, 1.0) * 255.0 * 256.0) / (255.0 * 256.0);
                 if (channels == 1) o.value[c] = o.value[0];

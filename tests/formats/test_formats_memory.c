@@ -47,6 +47,11 @@ static lensprof_status set_result(world *w) {
     return lensprof_pto_set_result(w->pto, &w->response, &vignetting, w->exposures, 4, 0, NULL);
 }
 
+static lensprof_status set_cameras(world *w) {
+    const uint32_t camera[4] = {0, 0, 0, 0};
+    return lensprof_pto_set_cameras(w->pto, camera, 4, &w->response, 1, NULL);
+}
+
 static lensprof_status write_points(world *w) {
     (void)w;
     const lensprof_camera cameras[2] = {{.width = 6, .height = 8}, {.width = 6, .height = 8}};
@@ -280,6 +285,7 @@ static void test_out_of_memory(void **state) {
     fail_each(w, read_wrong, 3);
     fail_each(w, draw, 2);
     fail_each(w, set_result, 20);
+    fail_each(w, set_cameras, 20);
     fail_each(w, write_points, 1);
     fail_each(w, read_lensfun, 5);
     fail_each(w, write_lensfun, 5);

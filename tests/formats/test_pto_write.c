@@ -192,6 +192,50 @@ static void test_other_responses_are_projected(void **state) {
     free(response);
 }
 
+/* Of each camera the first image has its response and the others are linked to that one, whatever they were before;
+ * falloffs and exposures stay. */
+static void test_cameras(void **state) {
+    (void)state;
+    const char *text =
+        "i w10 h10 Ra0 Rb0 Rc0 Rd0 Re0 Eev1 Er2 Eb3 n\"a\"\ni w10 h10 Ra=0 Rb=0 Rc=0 Rd=0 Re=0 Eev4 n\"b\"\n"
+        "i w10 h10 Ra=0 Rb=0 Rc=0 Rd=0 Re=0 Eev5 n\"c\"\ni w10 h10 Ra0.3 Rb0 Rc0 Rd0 Re0 Eev6 n\"d\"\n";
+    lensprof_pto *pto = read_pto(text);
+    lensprof_response *response = malloc(2 * sizeof *response);
+    const double other[2] = {-0.4, 0.1};
+    assert_ok(lensprof_response_set_emor(&response[0], emor, 5));
+    assert_ok(lensprof_response_set_emor(&response[1], other, 2));
+    lensprof_exposure exposures[4];
+    for (int i = 0; i < 4; i++) exposures[i] = (lensprof_exposure){0.5 * i, {1, 1, 1}};
+    assert_ok(lensprof_pto_set_result(pto, response, &falloff, exposures, 4, 0, NULL));
+    const uint32_t camera[4] = {0, 1, 0, 1};
+    assert_ok(lensprof_pto_set_cameras(pto, camera, 4, response, 2, NULL));
+    char *written = write_pto(pto);
+    lensprof_pto *again = read_pto(written);
+    for (uint32_t i = 0; i < 4; i++) {
+        lensprof_pto_image image;
+        lensprof_pto_image_init(&image);
+        assert_ok(lensprof_pto_get_image(again, i, &image, NULL));
+        assert_int_equal(image.response_of, camera[i]);
+        assert_true(image.emor[0] == (camera[i] ? other[0] : emor[0]));
+        assert_true(image.emor[4] == (camera[i] ? 0.0 : emor[4]));
+        assert_true(image.vignetting.k[0] == falloff.k[0]);
+        assert_close(image.exposure.ev, -1.0 + 0.5 * i, 1e-12);
+    }
+    const uint32_t beyond[4] = {0, 1, 2, 1};
+    lensprof_error error;
+    assert_int_equal(lensprof_pto_set_cameras(pto, beyond, 4, response, 2, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_cameras(pto, camera, 3, response, 2, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_pto_set_cameras(pto, camera, 4, NULL, 2, &error), LENSPROF_ERROR_ARGUMENT);
+    response[1].table[5] = 7.0;
+    assert_int_equal(lensprof_pto_set_cameras(pto, camera, 4, response, 2, &error), LENSPROF_ERROR_RESPONSE);
+    assert_non_null(strstr(error.text, "response 1"));
+    char *untouched = write_pto(pto);
+    assert_string_equal(written, untouched);
+    free(untouched), free(written), free(response);
+    lensprof_pto_destroy(again);
+    lensprof_pto_destroy(pto);
+}
+
 /* Images without an exposure keep theirs, and a comment names them; a later result takes the comment's place. */
 static void test_images_that_were_left_out(void **state) {
     (void)state;
@@ -351,6 +395,7 @@ int main(void) {
         cmocka_unit_test(test_links_stay_and_missing_items_come),
         cmocka_unit_test(test_reference_stays),
         cmocka_unit_test(test_other_responses_are_projected),
+        cmocka_unit_test(test_cameras),
         cmocka_unit_test(test_images_that_were_left_out),
         cmocka_unit_test(test_links_to_an_image_that_was_left_out),
         cmocka_unit_test(test_odd_marks),

@@ -104,6 +104,21 @@ class Values(unittest.TestCase):
         with self.assertRaises(TypeError):
             options(grid=np.ones((2, 2)))
 
+    def test_output_response(self):
+        array, fields = picture(np.uint16), options(source_sample=lp.SampleType.U16, target_sample=lp.SampleType.U16)
+        self.assertEqual((fields.output_response, fields.output_responses), ((), 0))
+        plain = lp.Plan(fields).apply(array)
+        fields.output_response = fields.response[0]
+        self.assertEqual(fields.output_responses, 1)
+        np.testing.assert_array_equal(lp.Plan(fields).apply(array), plain)
+        fields.output_response = lp.Response.from_gamma(1.5)
+        other = lp.Plan(fields).apply(array)
+        self.assertFalse(np.array_equal(other, plain))
+        fields.output_response = None
+        np.testing.assert_array_equal(lp.Plan(fields).apply(array), plain)
+        with self.assertRaisesRegex(AttributeError, "assign output_response"):
+            fields.output_responses = 3
+
     def test_blob_option(self):
         with_grid = profile()
         with_grid.response = lp.Response.from_emor([0.8, -0.3])

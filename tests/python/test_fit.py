@@ -122,6 +122,32 @@ class Fits(unittest.TestCase):
             images[1].setting = lp.SETTINGS_MAX
             lp.fit_overlap(images, simple_pairs(), linear_options())
 
+    def test_cameras(self):
+        images = [lp.FitImage(i, 240, 180, setting=i // 2, camera=i // 2) for i in range(4)]
+        rng, gain = np.random.default_rng(3), (1.0, 1.5, 0.8, 1.2)
+        pairs = np.zeros(3000, dtype=lp.PAIR_DTYPE)
+        for n in range(len(pairs)):
+            pairs["image"][n] = sorted(rng.choice(4, 2, replace=False))
+            pairs["xy"][n] = rng.uniform((0, 0), (239, 179), (2, 2))
+            light = rng.uniform(0.05, 0.6) * np.array([1.0, 1.1, 0.9])
+            for end in range(2):
+                seen = pairs["image"][n, end]
+                exponent = 1 / 2.2 if seen < 2 else 1 / 1.8
+                pairs["value"][n, end] = (light * gain[seen]) ** exponent + rng.normal(0, 0.001, 3)
+        result = lp.fit_overlap(images, pairs, lp.FitOptions(free=lp.Free.RESPONSE))
+        self.assertEqual([(c.images, c.joined) for c in result.cameras], [(2, True), (2, True)])
+        self.assertEqual(result.left_out, 0)
+        self.assertGreater(result.cameras[1].shared_pairs, 1000)
+        own = [np.interp(0.5, np.linspace(0, 1, 1024), c.response.table) for c in result.cameras]
+        self.assertGreater(own[0], own[1])
+        profile = result.profile(lp.ProfileKey(camera_model="c"), setting=1)
+        self.assertEqual(profile.response[0], result.cameras[1].response)
+        self.assertNotEqual(profile.response[0], result.response)
+        self.assertEqual(result.settings[1].covariance_size, result.cameras[1].covariance_size)
+        with self.assertRaises(lp.Error):
+            images[1].camera = 1
+            lp.fit_overlap(images, pairs)
+
     def test_pairs_are_not_copied(self):
         from lensprof import _arrays
         import ctypes

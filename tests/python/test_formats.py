@@ -123,6 +123,20 @@ class Projects(unittest.TestCase):
                 pto.set_settings(*arguments)
         self.assertEqual(pto.write().decode(), text)
 
+    def test_set_cameras(self):
+        pto = lp.Pto("".join(f"i w800 h600 f0 v50 Ra0 Rb0 Rc0 Rd0 Re0 Va1 Vb0 Vc0 Vd0 Vx0 Vy0 Vm5 n\"{n}\"\n" for n in "abc"))
+        curves = [lp.Response.from_emor([0.5, 0.1]), lp.Response.from_emor([-0.3])]
+        pto.set_cameras([1, 0, 1], curves)
+        text = pto.write().decode()
+        self.assertIn("Ra=0 Rb=0 Rc=0 Rd=0 Re=0", text)
+        again = lp.Pto(text)
+        self.assertEqual([again.image(i).emor[0] for i in range(3)], [-0.3, 0.5, -0.3])
+        self.assertEqual([again.image(i).response_of for i in range(3)], [0, 1, 0])
+        for arguments in ([0, 1], curves), ([0, 2, 1], curves):
+            with self.assertRaises(lp.Error):
+                pto.set_cameras(*arguments)
+        self.assertEqual(pto.write().decode(), text)
+
     def test_set_result_refused(self):
         pto, good = lp.Pto(PROJECT), [lp.Exposure()] * 2
         curves = lp.Response(), lp.Vignetting()

@@ -12,7 +12,7 @@ enum {
 };
 
 typedef struct model {
-    lensprof_response response[3];
+    lensprof_response response[3], output[3];
     lensprof_vignetting vignetting[3];
     lensprof_gain_grid grid;
     lensprof_apply_options options;
@@ -79,6 +79,7 @@ static void random_model(model *m, uint64_t *random) {
 static double reference(const model *m, double value, uint32_t c, uint32_t x, uint32_t y) {
     const lensprof_apply_options *o = &m->options;
     const lensprof_response *r = &m->response[o->responses == 3 ? c : 0];
+    const lensprof_response *out = o->output_responses ? &m->output[o->output_responses == 3 ? c : 0] : r;
     const lensprof_vignetting *v = &m->vignetting[o->vignettings == 3 ? c : 0];
     double r2 = lensprof_vignetting_r2(v, o->frame_width, o->frame_height, x, y, NULL);
     double falloff = lensprof_vignetting_eval(v, r2, NULL);
@@ -88,7 +89,7 @@ static double reference(const model *m, double value, uint32_t c, uint32_t x, ui
     double ratio = lensprof_exposure_factor(&o->target, c) / lensprof_exposure_factor(&o->source, c);
     double light = o->input == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(r, value, NULL);
     light *= o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / falloff : falloff / ratio;
-    return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(r, light, NULL);
+    return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(out, light, NULL);
 }
 
 #endif

@@ -10,7 +10,7 @@ enum {
 static const double steps[3] = {255.0, 65535.0, 0.0};
 
 typedef struct fixture {
-    lensprof_response response[3];
+    lensprof_response response[3], output[3];
     lensprof_vignetting vignetting[3];
     lensprof_gain_grid grid;
     lensprof_apply_options options;
@@ -18,18 +18,22 @@ typedef struct fixture {
     const lensprof_plan *plan;
 } fixture;
 
-static void make_model(fixture *f, uint32_t kind, uint32_t curves) {
+static void make_response(lensprof_response *response, uint32_t kind, int c) {
     const double emor[3] = {0.8, -0.3, 0.1}, table[4] = {0.0, 0.6, 0.9, 1.0};
+    if (kind == LENSPROF_RESPONSE_LINEAR)
+        lensprof_response_set_linear(response);
+    else if (kind == LENSPROF_RESPONSE_GAMMA)
+        assert_ok(lensprof_response_set_gamma(response, 2.0 + 0.2 * c));
+    else if (kind == LENSPROF_RESPONSE_EMOR)
+        assert_ok(lensprof_response_set_emor(response, emor, 1 + (uint32_t)c));
+    else
+        assert_ok(lensprof_response_set_table(response, table, 4));
+}
+
+static void make_model(fixture *f, uint32_t kind, uint32_t curves) {
     lensprof_apply_options_init(&f->options);
     for (int c = 0; c < 3; c++) {
-        if (kind == LENSPROF_RESPONSE_LINEAR)
-            lensprof_response_set_linear(&f->response[c]);
-        else if (kind == LENSPROF_RESPONSE_GAMMA)
-            assert_ok(lensprof_response_set_gamma(&f->response[c], 2.0 + 0.2 * c));
-        else if (kind == LENSPROF_RESPONSE_EMOR)
-            assert_ok(lensprof_response_set_emor(&f->response[c], emor, 1 + (uint32_t)c));
-        else
-            assert_ok(lensprof_response_set_table(&f->response[c], table, 4));
+        make_response(&f->response[c], kind, c);
         f->vignetting[c] = (lensprof_vignetting){{-0.4 + 0.1 * c, 0.1, -0.1}, {0.03, -0.05}};
     }
     f->options.response = f->response;
@@ -64,6 +68,7 @@ static double reference(const fixture *f, double value, int channel, double x, d
     const lensprof_apply_options *o = &f->options;
     int c = channel < 0 ? 1 : channel, one_r = o->responses == 3 ? c : 0, one_v = o->vignettings == 3 ? c : 0;
     const lensprof_response *r = &f->response[one_r];
+    const lensprof_response *out = o->output_responses ? &f->output[o->output_responses == 3 ? c : 0] : r;
     double m = lensprof_vignetting_eval(&f->vignetting[one_v],
                                         lensprof_vignetting_r2(&f->vignetting[one_v], W, H, x, y, NULL), NULL);
     if (o->grid) m *= lensprof_gain_grid_eval(o->grid, W, H, x, y, (uint32_t)c);
@@ -71,7 +76,7 @@ static double reference(const fixture *f, double value, int channel, double x, d
         lensprof_exposure_factor(&o->target, (uint32_t)c) / lensprof_exposure_factor(&o->source, (uint32_t)c);
     double light = o->input == LENSPROF_ENCODING_LINEAR ? value : lensprof_response_invert(r, value, NULL);
     light *= o->direction == LENSPROF_DIRECTION_CORRECT ? ratio / m : m / ratio;
-    return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(r, light, NULL);
+    return o->output == LENSPROF_ENCODING_LINEAR ? light : lensprof_response_eval(out, light, NULL);
 }
 
 static void put(uint8_t *p, uint32_t sample, double value) {
@@ -143,6 +148,42 @@ static void test_every_format_follows_the_formula(void **state) {
         lensprof_image source = make_image(source_sample, layout, n), target = make_image(target_sample, layout, 1);
         assert_ok(lensprof_apply(f.plan, &source, &target, 0, 0));
         compare(&f, &source, &target);
+        free(source.data), free(target.data), free(f.memory);
+    }
+}
+
+/* Every kind of response in, every kind out, one and three of each, encoded and light, corrected and simulated. */
+static void test_output_has_a_response_of_its_own(void **state) {
+    (void)state;
+    for (uint32_t n = 0; n < 3 * 3 * 4 * 4 * 2 * 2 * 2 * 2; n++) {
+        fixture f;
+        uint32_t k = n, source_sample = k % 3, target_sample = (k /= 3) % 3, kind = (k /= 3) % 4, out = (k /= 4) % 4;
+        make_model(&f, kind, (k /= 4) % 2 ? 3 : 1);
+        for (int c = 0; c < 3; c++) make_response(&f.output[c], out, 2 - c);
+        f.options.output_response = f.output;
+        f.options.output_responses = (k /= 2) % 2 ? 3 : 1;
+        f.options.direction = (k /= 2) % 2;
+        f.options.output = (k /= 2) % 2;
+        f.options.source_sample = source_sample;
+        f.options.target_sample = target_sample;
+        f.options.source_layout = n % 6;
+        make_plan(&f);
+        lensprof_image source = make_image(source_sample, n % 6, n), target = make_image(target_sample, n % 6, 1);
+        assert_ok(lensprof_apply(f.plan, &source, &target, 0, 0));
+        compare(&f, &source, &target);
+        /* The response itself as that of the output is the plan as ever. */
+        if (f.options.responses == f.options.output_responses) {
+            lensprof_image same = make_image(target_sample, n % 6, 2), plain = make_image(target_sample, n % 6, 3);
+            for (int own = 0; own < 2; own++) {
+                f.options.output_response = own ? f.response : NULL;
+                f.options.output_responses = own ? f.options.responses : 0;
+                free(f.memory);
+                make_plan(&f);
+                assert_ok(lensprof_apply(f.plan, &source, own ? &same : &plain, 0, 0));
+            }
+            assert_memory_equal(same.data, plain.data, (size_t)same.row_bytes * H);
+            free(same.data), free(plain.data);
+        }
         free(source.data), free(target.data), free(f.memory);
     }
 }
@@ -312,6 +353,13 @@ static void test_plan_refuses(void **state) {
     REFUSED(f.options.saturated = 2, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.responses = 2, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.response = NULL, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(f.options.output_responses = 1, LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_plan_bytes(&f.options), 0);
+    REFUSED(f.options.output_response = f.output, LENSPROF_ERROR_ARGUMENT);
+    REFUSED((f.options.output_response = f.output, f.options.output_responses = 2), LENSPROF_ERROR_ARGUMENT);
+    memset(f.output, 0, sizeof f.output);
+    REFUSED((f.options.output_response = f.output, f.options.output_responses = 1), LENSPROF_ERROR_RESPONSE);
+    REFUSED(f.options.reserved2 = 1, LENSPROF_ERROR_ARGUMENT);
     REFUSED(f.options.frame_width = 0, LENSPROF_ERROR_SIZE);
     REFUSED(f.options.frame_height = 0xFFFFFFFFu, LENSPROF_ERROR_SIZE);
     REFUSED(f.options.source.ev = NAN, LENSPROF_ERROR_EXPOSURE);
@@ -429,6 +477,7 @@ static void test_apply_refuses_and_writes_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_format_follows_the_formula),
+        cmocka_unit_test(test_output_has_a_response_of_its_own),
         cmocka_unit_test(test_gain_grids_follow_the_formula),
         cmocka_unit_test(test_no_gain_grid),
         cmocka_unit_test(test_tiles_in_place_and_bottom_up_give_the_whole),

@@ -28,6 +28,11 @@ static void check_levels(uint32_t sample, double smallest_share) {
     static fixture f;
     for (int n = 0; n < PROFILES; n++) {
         make_case(&f, sample, &random);
+        if (n % 3 == 0 && sample == LENSPROF_SAMPLE_U8) {
+            for (int c = 0; c < 3; c++) random_response(&f.m.output[c], &random);
+            f.m.options.output_response = f.m.output, f.m.options.output_responses = n % 2 ? 1 : 3;
+            make_plan(&f);
+        }
         assert_ok(lensprof_fixed_apply(f.plan, &f.from, &f.to, f.x0, f.y0));
         worst = fmax(worst, worst_error(&f, &same, &all));
     }
@@ -279,6 +284,7 @@ static void test_options_that_are_refused(void **state) {
     } while (0)
     REFUSED(o->struct_size = 1, LENSPROF_ERROR_STRUCT_SIZE);
     REFUSED(o->response = NULL, LENSPROF_ERROR_ARGUMENT);
+    REFUSED(o->output_responses = 1, LENSPROF_ERROR_ARGUMENT);
     REFUSED(o->source_layout = 99, LENSPROF_ERROR_ARGUMENT);
     REFUSED(o->frame_width = 0, LENSPROF_ERROR_SIZE);
     REFUSED(o->source.ev = NAN, LENSPROF_ERROR_EXPOSURE);

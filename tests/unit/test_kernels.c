@@ -33,7 +33,7 @@ static guarded guarded_memory(void) {
 }
 
 typedef struct model {
-    lensprof_response response[3];
+    lensprof_response response[3], output[3];
     lensprof_vignetting vignetting[3];
     lensprof_gain_grid grid;
     lensprof_apply_options options;
@@ -90,6 +90,10 @@ static void make_model(model *m, uint64_t seed) {
             m->grid.attenuation[i] = (float)(0.6 + 0.8 * lp_random(&random));
         o->grid = &m->grid;
     }
+    if (lp_random(&random) < 0.7) return;
+    o->output_responses = lp_random(&random) < 0.5 ? 1 : 3;
+    o->output_response = m->output;
+    for (uint32_t c = 0; c < 3; c++) random_response(&m->output[c], (uint32_t)(4 * lp_random(&random)), &random);
 }
 
 static void *make_plan(const model *m, uint32_t lanes, const lensprof_plan **plan) {

@@ -4,7 +4,7 @@ A thin layer over the C library lensprof on the memory of NumPy arrays. What the
 with a `status`; what it could not be asked (an array of a wrong type, shape or stride) raises TypeError or
 ValueError.
 """
-from ._abi import (COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
+from ._abi import (CAMERAS_MAX, COVARIANCE_MAX, COVERAGE_BINS, EMOR_MODES, FLAT_IMAGES, FLAT_SPOTS, GRID_SIDE, MODES_AUTO,
                    RESPONSE_SAMPLES, SETTINGS_MAX, UNKNOWN, CameraKind, CurveKind, Direction, DistanceRule, DngForm, Encoding,
                    FitResponse, FlatGrid, FlatLight, Format, Free, GammaFrom, Holds, ItemKind, Layout, LinkState, Loss,
                    MapSense, Method, Pack, Processing, ProfilePrior, Projection, Reason, ResponseFrom, ResponseKind,
@@ -14,7 +14,7 @@ from ._arrays import (EXPOSURE_DTYPE, FLAT_QUALITY_DTYPE, FLAT_SPOT_DTYPE, IMAGE
                       MATCH_DTYPE, OBSERVATION_DTYPE, PAIR_DTYPE)
 from ._library import Error, status_name, version
 from .apply import ApplyOptions, FixedPlan, Plan, correct, layout_channels, layout_samples, sample_type_bytes, simulate
-from .fit import FitImage, FitOptions, FitResult, FitSetting, fit_overlap, fit_radiance, transfer_rms
+from .fit import FitCamera, FitImage, FitOptions, FitResult, FitSetting, fit_overlap, fit_radiance, transfer_rms
 from .flat import FlatImage, FlatOptions, FlatResult, fit_flat
 from .formats import (FormatInfo, FrameTime, Pto, PtoImage, alsc_read, alsc_write, curves_read, curves_write,
                       detect_format, dng_opcodes_read, dng_opcodes_write, drone_xmp_read, export_profiles,
@@ -31,9 +31,9 @@ from .sample import SampleImage, SampleOptions, sample_matches, sample_overlap, 
 from .store import Lookup, LookupOptions, Store, StoreFault, StoreName, StoreRow, StoreStats, StoreSummary, lookup_in
 
 __all__ = [
-    "ApplyOptions", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel", "CurveKind", "Direction",
+    "ApplyOptions", "CAMERAS_MAX", "COVARIANCE_MAX", "COVERAGE_BINS", "Camera", "CameraKind", "CameraModel", "CurveKind", "Direction",
     "DistanceRule", "DngForm", "EMOR_MODES", "EXPOSURE_DTYPE", "Encoding", "Error", "Exposure", "FLAT_IMAGES",
-    "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitImage", "FitOptions", "FitResponse", "FitResult",
+    "FLAT_QUALITY_DTYPE", "FLAT_SPOTS", "FLAT_SPOT_DTYPE", "FitCamera", "FitImage", "FitOptions", "FitResponse", "FitResult",
     "FitSetting", "FixedPlan", "FlatGrid", "FlatImage", "FlatLight", "FlatOptions", "FlatResult", "Format", "FormatInfo", "FrameTime",
     "Free", "GRID_SIDE", "GainGrid", "GammaFrom", "Holds", "IMAGE_QUALITY_DTYPE", "Item", "ItemKind", "LINK_DTYPE",
     "Layout", "LinkState", "Lookup", "LookupOptions", "Loss", "MATCH_DTYPE", "MODES_AUTO", "MapSense", "Method", "OBSERVATION_DTYPE",

@@ -18,6 +18,7 @@ GRID_SIDE = 32
 UNKNOWN = -1.0
 COVARIANCE_MAX = 36
 SETTINGS_MAX = 64
+CAMERAS_MAX = 64
 MODES_AUTO = 4294967295
 COVERAGE_BINS = 10
 FLAT_IMAGES = 128
@@ -304,6 +305,7 @@ class GammaFrom(IntEnum):
     NONE = 4
     PROFILE = 5
     FALLOFF = 6
+    CAMERAS = 7
 
 
 class FitResponse(IntEnum):
@@ -573,6 +575,9 @@ class ApplyOptions(Structure):
         ("reserved", c_uint32),
         ("blob", c_void_p),
         ("blob_bytes", c_size_t),
+        ("output_response", POINTER(Response)),
+        ("output_responses", c_uint32),
+        ("reserved2", c_uint32),
     ]
 
 
@@ -677,6 +682,8 @@ class FitImage(Structure):
         ("exposure", Exposure),
         ("known_ev", c_double),
         ("known_ev_sigma", c_double),
+        ("camera", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -745,6 +752,40 @@ class FitSetting(Structure):
     ]
 
 
+class FitCamera(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("images", c_uint32),
+        ("joined", c_uint32),
+        ("shared_pairs", c_uint32),
+        ("agreeing_share", c_double),
+        ("light_difference_ev", c_double),
+        ("log_gamma", c_double),
+        ("offset_sigma_ev", c_double),
+        ("response", Response),
+        ("vignettings", c_uint32),
+        ("pairs", c_uint32),
+        ("evens", c_uint32),
+        ("gamma_from", c_uint32),
+        ("response_from", c_uint32),
+        ("profile_prior", c_uint32),
+        ("covariance_size", c_uint32),
+        ("converged", c_uint32),
+        ("gamma_sigma", c_double),
+        ("before_rms", c_double),
+        ("heldout_rms", c_double),
+        ("heldout_median", c_double),
+        ("noise_levels", c_double),
+        ("inlier_share", c_double),
+        ("frame_share", c_double),
+        ("image_share", c_double),
+        ("light_spread_ev", c_double),
+        ("grey_ends", c_uint32 * 10),
+        ("reference", c_uint32),
+        ("setting", c_uint32),
+    ]
+
+
 class FitResult(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -788,6 +829,9 @@ class FitResult(Structure):
         ("settings", POINTER(FitSetting)),
         ("setting_count", c_uint32),
         ("reserved2", c_uint32),
+        ("cameras", POINTER(FitCamera)),
+        ("camera_count", c_uint32),
+        ("reserved3", c_uint32),
     ]
 
 
@@ -1176,6 +1220,7 @@ STRUCTS = {
     "lensprof_fit_options": FitOptions,
     "lensprof_fit_image_quality": FitImageQuality,
     "lensprof_fit_setting": FitSetting,
+    "lensprof_fit_camera": FitCamera,
     "lensprof_fit_result": FitResult,
     "lensprof_flat_image": FlatImage,
     "lensprof_flat_options": FlatOptions,
@@ -1225,6 +1270,7 @@ INITS: dict[type[Structure], tuple[str, list[type[Structure]]]] = {
     SampleOptions: ("lensprof_sample_options_init_sized", [SampleOptions]),
     FitOptions: ("lensprof_fit_options_init_sized", [FitOptions]),
     FitSetting: ("lensprof_fit_setting_init_sized", [FitSetting]),
+    FitCamera: ("lensprof_fit_camera_init_sized", [FitCamera]),
     FitResult: ("lensprof_fit_result_init_sized", [FitResult, FitImageQuality]),
     FlatImage: ("lensprof_flat_image_init_sized", [FlatImage]),
     FlatOptions: ("lensprof_flat_options_init_sized", [FlatOptions]),
@@ -1311,6 +1357,7 @@ FUNCTIONS = {
     "lensprof_fit_image_init_sized": (None, [POINTER(FitImage), c_size_t, c_uint32, c_uint32, c_uint32]),
     "lensprof_fit_options_init_sized": (None, [POINTER(FitOptions), c_size_t]),
     "lensprof_fit_setting_init_sized": (None, [POINTER(FitSetting), c_size_t]),
+    "lensprof_fit_camera_init_sized": (None, [POINTER(FitCamera), c_size_t]),
     "lensprof_fit_result_init_sized": (None, [POINTER(FitResult), c_size_t, c_size_t]),
     "lensprof_fit_overlap": (c_int, [POINTER(FitOptions), POINTER(FitImage), c_uint32, POINTER(Pair), c_uint32,
                                      POINTER(Exposure), POINTER(FitResult), POINTER(ErrorText)]),
@@ -1319,6 +1366,7 @@ FUNCTIONS = {
     "lensprof_profile_from_fit": (c_int, [POINTER(Profile), POINTER(FitResult), POINTER(FitOptions), c_uint32,
                                           POINTER(ErrorText)]),
     "lensprof_fit_result_take_setting": (c_int, [POINTER(FitResult), POINTER(FitSetting), POINTER(ErrorText)]),
+    "lensprof_fit_result_take_camera": (c_int, [POINTER(FitResult), POINTER(FitCamera), POINTER(ErrorText)]),
     "lensprof_transfer_rms": (c_int, [POINTER(Response), POINTER(Vignetting), POINTER(FitImage), POINTER(Exposure),
                                       c_uint32, POINTER(Pair), c_uint32, c_uint32, POINTER(c_double), POINTER(c_double),
                                       POINTER(ErrorText)]),
@@ -1352,6 +1400,8 @@ FUNCTIONS = {
                                         c_uint32, c_uint32, POINTER(ErrorText)]),
     "lensprof_pto_set_settings": (c_int, [POINTER(Pto), POINTER(c_uint32), c_uint32, POINTER(Vignetting), c_uint32,
                                           POINTER(ErrorText)]),
+    "lensprof_pto_set_cameras": (c_int, [POINTER(Pto), POINTER(c_uint32), c_uint32, POINTER(Response), c_uint32,
+                                         POINTER(ErrorText)]),
     "lensprof_pto_write": (c_int, [POINTER(Pto), c_void_p, c_size_t, POINTER(c_size_t), POINTER(ErrorText)]),
     "lensprof_points_read": (c_int, [c_void_p, c_size_t, POINTER(Pair), c_uint32, POINTER(c_uint32),
                                      POINTER(ErrorText)]),

@@ -228,10 +228,11 @@ class Count(_Field):
 
 
 class Referenced(_Field, Generic[T]):
-    """A pointer to structures: copies of what is assigned, kept alive by this structure. A tuple, empty for NULL."""
+    """A pointer to structures: copies of what is assigned, kept alive by this structure. A tuple, empty for NULL,
+    which None assigns where it is `optional`."""
 
-    def __init__(self, cls: Type[T], count: str):
-        self.cls, self.count = cls, count
+    def __init__(self, cls: Type[T], count: str, optional: bool = False):
+        self.cls, self.count, self.optional = cls, count, optional
 
     def __get__(self, instance: Any, owner: type) -> tuple[T, ...]:
         if instance is None:
@@ -239,9 +240,9 @@ class Referenced(_Field, Generic[T]):
         array = vars(instance).get("_" + self.name) or ()
         return tuple(self.cls.from_buffer(item) for item in array)  # type: ignore[attr-defined]
 
-    def __set__(self, instance: Any, value: Union[T, Iterable[T]]) -> None:
-        values = one_or_three(value, self.cls, self.name)
-        self._point(instance, (_raw(self.cls) * len(values))(*values))
+    def __set__(self, instance: Any, value: Union[T, Iterable[T], None]) -> None:
+        values = () if value is None and self.optional else one_or_three(value, self.cls, self.name)
+        self._point(instance, (_raw(self.cls) * len(values))(*values) if values else None)
         vars(_raw(type(instance)))[self.count].__set__(instance, len(values))
 
     def _point(self, instance: Any, array: Any) -> None:

@@ -42,6 +42,7 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     what the picture received. target: what it shall look like. grid: a GainGrid multiplied to the vignetting, or None.
     strength: 0..1 of the falloff. gain_cap: the largest gain for the falloff, 1..1e6, or 0. dither: in place of
     rounding, where uint8 is written. blob: what Profile.pack gave, instead of response, vignetting and grid, or None.
+    output_response: what is written is encoded by this one, or three, instead; None = by the model's own.
     """
 
     direction = Enumerated(Direction)
@@ -65,6 +66,8 @@ class ApplyOptions(Struct, _abi.ApplyOptions):
     dither = Flag()
     blob = Bytes("blob_bytes")
     blob_bytes = Count("assign blob")
+    output_response = Referenced(Response, "output_responses", optional=True)
+    output_responses = Count("assign output_response")
 
     def set_profile(self, profile: Profile) -> None:
         """Response, vignetting and grid of a copy of the profile, in place of what was set."""

@@ -25,7 +25,8 @@ class FitImage(Value, _abi.FitImage):
     Free.EV, RED, BLUE, all by default. ev_of, red_of, blue_of: index of the image whose ev or white balance factor this one shares;
     its own unless told. known_ev: exposure from elsewhere (EXIF), EV up to a common offset, a soft observation;
     known_ev_sigma: its standard error, EV, 0 = not known. setting: number of the lens setting (lens, focal length, aperture
-    and focus), 0..SETTINGS_MAX - 1, each of which has a vignetting of its own.
+    and focus), 0..SETTINGS_MAX - 1, each of which has a vignetting of its own. camera: number of the camera, 0..CAMERAS_MAX - 1,
+    each of which has a response of its own; images of one setting are of one camera.
     """
 
     width: int
@@ -36,6 +37,7 @@ class FitImage(Value, _abi.FitImage):
     red_of: int
     blue_of: int
     setting: int
+    camera: int
     known_ev: float
     known_ev_sigma: float
 
@@ -123,6 +125,47 @@ class FitSetting(Struct, _abi.FitSetting):
         return self._covariance_size
 
 
+class FitCamera(Struct, _abi.FitCamera):
+    """What a fit found of one camera of several; the fields are those of FitResult with these names, of a fit of the pairs
+    between its own images.
+
+    images: of this camera that joined its fit; where 0, the rest means nothing. joined: its exposures are relative to the
+    reference, as pairs with other cameras show; else they are NaN. shared_pairs: with an end in it and the other in another
+    camera; agreeing_share: of these, those within 3 sigma of what is left; light_difference_ev: median difference of the
+    light at their ends. log_gamma: by which its own fit was moved to agree with the others. offset_sigma_ev: standard error
+    of the offset of its exposures. reference: image whose exposure its own fit held; setting: of that image.
+    """
+
+    images: int
+    joined = Flag()
+    shared_pairs: int
+    agreeing_share: float
+    light_difference_ev: float
+    log_gamma: float
+    offset_sigma_ev: float
+    response = Nested(Response)
+    vignettings: int
+    pairs: int
+    evens = Flag()
+    gamma_from = Enumerated(GammaFrom)
+    response_from = Enumerated(FitResponse)
+    profile_prior = Enumerated(ProfilePrior)
+    covariance_size: int
+    converged = Flag()
+    gamma_sigma: float
+    before_rms: float
+    heldout_rms: float
+    heldout_median: float
+    noise_levels: float
+    inlier_share: float
+    frame_share: float
+    image_share: float
+    light_spread_ev: float
+    grey_ends = Vector(writable=False)
+    reference: int
+    setting: int
+
+
 class FitResult(Struct, _abi.FitResult):
     """What a fit found. Arrays are views on this object.
 
@@ -138,7 +181,9 @@ class FitResult(Struct, _abi.FitResult):
     255. frame_share, image_share: residual variance that follows a map over the frame, or of each image's own. inlier_share: 0..1. seconds: time taken. radius_ends, grey_ends: pair ends by tenths of
     the half diagonal and of the grey range. covariance: n x n as in Profile; parameters held fixed have zero rows.
     settings: tuple of FitSetting by FitImage.setting; where there are several, vignetting, radius_ends, usable, reason,
-    covariance and gamma_direction of the result are those of the reference's.
+    covariance and gamma_direction of the result are those of the reference's. cameras: tuple of FitCamera by FitImage.camera;
+    where there are several, the result's other fields are those of the reference's, but exposures, image_quality and
+    left_out, which are of all.
     """
 
     usable = Flag()
@@ -176,24 +221,34 @@ class FitResult(Struct, _abi.FitResult):
     response_from = Enumerated(FitResponse)
     light_spread_ev: float
 
-    def __init__(self, image_count: int, options: Optional[FitOptions] = None, setting_count: int = 1):
+    def __init__(self, image_count: int, options: Optional[FitOptions] = None, setting_count: int = 1,
+                 camera_count: int = 1):
         super().__init__()
         given = options or FitOptions()
         self._options = FitOptions(method=given.method, profile=given.profile)
         self._exposures = np.zeros(image_count, dtype=_arrays.EXPOSURE_DTYPE)
         self._quality = np.zeros(image_count, dtype=_arrays.IMAGE_QUALITY_DTYPE)
         self._settings = (FitSetting * setting_count)(*(FitSetting() for _ in range(setting_count)))
+        self._cameras = (FitCamera * camera_count)(*(FitCamera() for _ in range(camera_count)))
+        self._camera_of: dict[int, int] = {}  # of each setting
 
     @classmethod
     def _names(cls) -> list[str]:
-        return [name for name in super()._names() if name not in ("image_quality", "settings", "setting_count")]
+        hidden = "image_quality", "settings", "setting_count", "cameras", "camera_count"
+        return [name for name in super()._names() if name not in hidden]
 
     @property
     def settings(self) -> tuple[FitSetting, ...]:
         settings = tuple(self._settings)
-        for setting in settings:
-            setting._vignettings, setting._covariance_size = self.vignettings, self.covariance_size
+        for number, setting in enumerate(settings):
+            camera = self._cameras[self._camera_of.get(number, 0)]
+            own = camera if camera.images else self
+            setting._vignettings, setting._covariance_size = own.vignettings, own.covariance_size
         return settings
+
+    @property
+    def cameras(self) -> tuple[FitCamera, ...]:
+        return tuple(self._cameras)
 
     @property
     def exposures(self) -> np.ndarray:
@@ -215,6 +270,10 @@ class FitResult(Struct, _abi.FitResult):
         result: _abi.FitResult = self
         if setting is not None:
             result, found = _abi.FitResult.from_buffer_copy(self), self._settings[setting]
+            camera = self._cameras[self._camera_of.get(setting, 0)]
+            if camera.images:
+                check(lib.lensprof_fit_result_take_camera(byref(result), byref(camera), byref(error)),
+                      f"no profile of setting {setting}", error)
             check(lib.lensprof_fit_result_take_setting(byref(result), byref(found), byref(error)),
                   f"no profile of setting {setting}", error)
             count = found.images
@@ -230,10 +289,14 @@ def _fit_images(images: Sequence[FitImage]) -> Any:
 
 def _fit(function: Any, images: Sequence[FitImage], data: tuple[Any, int], options: FitOptions) -> FitResult:
     error, result = _abi.ErrorText(), FitResult(
-        len(images), options, min(1 + max((i.setting for i in images), default=0), _abi.SETTINGS_MAX))
+        len(images), options, min(1 + max((i.setting for i in images), default=0), _abi.SETTINGS_MAX),
+        min(1 + max((i.camera for i in images), default=0), _abi.CAMERAS_MAX))
+    result._camera_of = {i.setting: min(i.camera, len(result._cameras) - 1) for i in images}
     out = _abi.FitResult.from_buffer(result)
     out.settings = ctypes.cast(result._settings, ctypes.POINTER(_abi.FitSetting))
     out.setting_count = len(result._settings)
+    out.cameras = ctypes.cast(result._cameras, ctypes.POINTER(_abi.FitCamera))
+    out.camera_count = len(result._cameras)
     out.image_quality = _arrays.address(result.image_quality, _abi.FitImageQuality)
     with calling(options) as call:
         status = function(byref(call), _fit_images(images), len(images), *data,

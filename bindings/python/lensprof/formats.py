@@ -167,6 +167,17 @@ class Pto(Handle):
                                                 (_abi.Vignetting * len(curves))(*curves), len(curves), byref(error)),
                   f"{len(numbers)} settings, {len(curves)} vignettings", error)
 
+    def set_cameras(self, cameras: Iterable[int], response: Iterable[Response]) -> None:
+        """Gives every camera a response. cameras: number of that of each image, 0 .. len(response) - 1. The first image of
+        each receives it, and the others are linked to that one. Call it after set_result."""
+        numbers = [integer(number, "a camera") for number in cameras]
+        curves = list(response)
+        error = _abi.ErrorText()
+        with self._use() as pto:
+            check(lib.lensprof_pto_set_cameras(pto, (c_uint32 * len(numbers))(*numbers), len(numbers),
+                                               (_abi.Response * len(curves))(*curves), len(curves), byref(error)),
+                  f"{len(numbers)} cameras, {len(curves)} responses", error)
+
     def write(self) -> bytes:
         """The project as text: what was read, unchanged but for what was set."""
         with self._use() as pto:

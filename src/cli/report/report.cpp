@@ -108,8 +108,8 @@ void print_response(const lensprof_response &r, std::ostream &out) {
 }
 
 const char *gamma_name(uint32_t from) {
-    static const char *const names[] = {"auto", "prior", "exif", "known", "none", "profile", "falloff"};
-    return from <= LENSPROF_GAMMA_FALLOFF ? names[from] : "unknown";
+    static const char *const names[] = {"auto", "prior", "exif", "known", "none", "profile", "falloff", "cameras"};
+    return from <= LENSPROF_GAMMA_CAMERAS ? names[from] : "unknown";
 }
 
 const char *camera_kind_name(uint32_t kind) {

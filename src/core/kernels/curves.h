@@ -61,7 +61,7 @@ ALWAYS_INLINE lane_f between_four(const lane_f four[4], lane_i low, lane_f b) {
 
 /* g(b) by the samples of f, 0 <= b <= 1. */
 ONCE_IN_SCALAR lane_f table_inverse(const lensprof_plan *plan, lane_f b, lane_i channel) {
-    const float *samples = plan->forward;
+    const float *samples = plan->backward;
     const lane_i first = i_left(channel, LP_FORWARD_SHIFT);
     int32_t at[LANES];
     lane_f four[4];

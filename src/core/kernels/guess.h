@@ -75,7 +75,7 @@ static NEVER_INLINE lane_f inverse_by_steps(const lensprof_plan *plan, lane_f va
 static void values_by_guess(const lensprof_plan *plan, const run *r, strip *s) {
     const lane_table guess[3] = {table_load(s->guess[0]), table_load(s->guess[1]), table_load(s->guess[2])};
     const float *values = (const float *)(const void *)r->from;
-    const float *samples = plan->forward;
+    const float *samples = plan->backward;
     const uint32_t count = r->count;
     float *light = s->light + r->at;
     int32_t *place = s->place + r->at;

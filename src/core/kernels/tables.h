@@ -36,7 +36,7 @@ static void look_up(const uint16_t *restrict table, int32_t *restrict place, uin
 /* Values to light, no steps being needed. */
 static void values_by_table(const lensprof_plan *plan, const run *r, strip *s) {
     const uint16_t *start = plan->start;
-    const float *samples = plan->forward;
+    const float *samples = plan->backward;
     float *light = s->light + r->at;
     int32_t *place = s->place + r->at;
     load_codes(LENSPROF_SAMPLE_F32, r->from, r->count, light);

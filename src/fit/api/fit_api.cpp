@@ -1,12 +1,14 @@
 // The C face of the overlap fit: checks, and the exception fence.
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <new>
 
 #include "core/profile.h"
 #include "fit/api/profile.hpp"
 #include "fit/base/sized.hpp"
+#include "fit/methods/cameras.hpp"
 #include "fit/methods/debevec.hpp"
 #include "fit/methods/group.hpp"
 #include "fit/methods/overlap.hpp"
@@ -27,6 +29,7 @@ constexpr size_t kFirstOptions = LP_END_OF(lensprof_fit_options, progress_user);
 constexpr size_t kFirstImage = LP_END_OF(lensprof_fit_image, known_ev_sigma);
 constexpr size_t kFirstResult = LP_END_OF(lensprof_fit_result, image_quality);
 constexpr size_t kFirstSetting = sizeof(lensprof_fit_setting);
+constexpr size_t kFirstCamera = sizeof(lensprof_fit_camera);
 constexpr size_t kFirstQuality = LP_END_OF(lensprof_fit_image_quality, known_ev_left_out);
 
 // The profile that is to be the prior.
@@ -119,6 +122,9 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
         if (image.setting >= LENSPROF_SETTINGS_MAX)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "setting must be 0..%d",
                            LENSPROF_SETTINGS_MAX - 1);
+        if (image.camera >= LENSPROF_CAMERAS_MAX || image.reserved)
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                           "camera must be 0..%d, and reserved 0", LENSPROF_CAMERAS_MAX - 1);
         for (uint32_t of : {image.ev_of, image.red_of, image.blue_of})
             if (of >= count)
                 return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error, "linked to image %u of %u", of,
@@ -127,6 +133,19 @@ lensprof_status check_images(const lensprof_fit_image *images, uint32_t count, l
             || images[image.blue_of].blue_of != image.blue_of)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "linked to an image that is linked itself");
+    }
+    return LENSPROF_OK;
+}
+
+// A setting is that of a lens on one camera.
+lensprof_status check_cameras(const std::vector<lensprof_fit_image> &images, lensprof_error *error) {
+    std::map<uint32_t, uint32_t> first;  // image of each setting
+    for (uint32_t i = 0; i < images.size(); i++) {
+        const uint32_t other = first.try_emplace(images[i].setting, i).first->second;
+        if (images[other].camera != images[i].camera)
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                           "is of setting %u as image %u, and of another camera; give it a setting of its own",
+                           images[i].setting, other);
     }
     return LENSPROF_OK;
 }
@@ -227,8 +246,10 @@ struct Call {
     lensprof_fit_result result;
     std::vector<lensprof_fit_image_quality> quality;
     std::vector<lensprof_fit_setting> settings;      // none where all images are of setting 0
-    lensprof_fit_setting *given_settings = nullptr;  // the caller's array, or NULL
-    uint32_t given_setting_count = 0;
+    std::vector<lensprof_fit_camera> cameras;        // none where all images are of camera 0
+    lensprof_fit_setting *given_settings = nullptr;  // the caller's arrays, or NULL
+    lensprof_fit_camera *given_cameras = nullptr;
+    uint32_t given_setting_count = 0, given_camera_count = 0;
 
     uint32_t count() const { return static_cast<uint32_t>(images.size()); }
     int channels() const { return static_cast<int>(options.channels); }
@@ -238,48 +259,92 @@ lensprof_status take_images(const lensprof_fit_image *given, uint32_t count, std
                             lensprof_error *error) {
     auto init = [](lensprof_fit_image &image, uint32_t i) { lensprof_fit_image_init(&image, i, 0, 0); };
     lensprof_status status = take_all(given, count, kFirstImage, LENSPROF_ITEM_IMAGE, init, own, error);
-    return status == LENSPROF_OK ? check_images(own.data(), count, error) : status;
+    if (status == LENSPROF_OK) status = check_images(own.data(), count, error);
+    return status == LENSPROF_OK ? check_cameras(own, error) : status;
 }
 
-// Room for what is found of the lens settings, where there are several or the caller asks for them.
+// Methods that estimate one falloff take one setting of a camera.
+lensprof_status check_settings(const Call &call, lensprof_error *error) {
+    const uint32_t method = call.options.method;
+    if (method != LENSPROF_METHOD_TRANSFER_FUNCTION && method != LENSPROF_METHOD_DEBEVEC) return LENSPROF_OK;
+    std::map<uint32_t, uint32_t> setting_of;  // of each camera
+    for (uint32_t i = 0; i < call.count(); i++) {
+        const lensprof_fit_image &image = call.images[i];
+        const uint32_t camera = method == LENSPROF_METHOD_DEBEVEC ? 0 : image.camera;
+        if (setting_of.try_emplace(camera, image.setting).first->second != image.setting)
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_UNSUPPORTED, error,
+                           "is of another lens setting, which the methods transfer and radiance fit together");
+        if (method == LENSPROF_METHOD_DEBEVEC && image.camera != call.images[0].camera)
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_UNSUPPORTED, error,
+                           "is of another camera, and the method debevec fits one at a time");
+    }
+    return LENSPROF_OK;
+}
+
+// Room for what is found of lens settings or cameras: of as many as images name, or as the caller asks for. None where
+// all are 0 and nobody asks.
+template <class Item, class Init>
+lensprof_status take_items(Item *given, uint32_t given_count, uint32_t last, uint32_t most, size_t first_size,
+                           Init init, std::vector<Item> &own, lensprof_error *error) {
+    std::vector<Item> checked;
+    const uint32_t count = given ? std::min(given_count, most) : 0;
+    const lensprof_status status = take_all(given, count, first_size, LENSPROF_ITEM_NONE, init, checked, error);
+    if (status != LENSPROF_OK || (last == 0 && !given)) return status;
+    own.resize(std::max(last + 1, count));
+    for (Item &item : own) init(item, 0);
+    return LENSPROF_OK;
+}
+
 lensprof_status take_settings(const lensprof_fit_result &given, Call &call, lensprof_error *error) {
     lensprof_fit_result taken;  // without these members where the caller's is older
     lensprof_fit_result_init(&taken);
     lp_sized_copy(&taken, &given);
     call.given_settings = taken.settings, call.given_setting_count = taken.setting_count;
-    const bool is_by_pairs =
-        call.options.method == LENSPROF_METHOD_TRANSFER_FUNCTION || call.options.method == LENSPROF_METHOD_DEBEVEC;
-    uint32_t last = 0;
+    call.given_cameras = taken.cameras, call.given_camera_count = taken.camera_count;
+    uint32_t last_setting = 0, last_camera = 0;
     for (uint32_t i = 0; i < call.count(); i++) {
-        last = std::max(last, call.images[i].setting);
-        if (is_by_pairs && call.images[i].setting != call.images[0].setting)
-            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_UNSUPPORTED, error,
-                           "is of another lens setting, which the methods transfer and radiance fit together");
+        last_setting = std::max(last_setting, call.images[i].setting);
+        last_camera = std::max(last_camera, call.images[i].camera);
         if (taken.settings && call.images[i].setting >= taken.setting_count)
             return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
                            "its setting is %u, and the result has room for %u", call.images[i].setting,
                            taken.setting_count);
+        if (taken.cameras && call.images[i].camera >= taken.camera_count)
+            return fail_at(LENSPROF_ITEM_IMAGE, i, LENSPROF_ERROR_ARGUMENT, error,
+                           "its camera is %u, and the result has room for %u", call.images[i].camera,
+                           taken.camera_count);
     }
-    std::vector<lensprof_fit_setting> checked;
-    const auto init = [](lensprof_fit_setting &setting, uint32_t) { lensprof_fit_setting_init(&setting); };
-    const uint32_t count = taken.settings ? std::min<uint32_t>(taken.setting_count, LENSPROF_SETTINGS_MAX) : 0;
-    const lensprof_status status =
-        take_all(taken.settings, count, kFirstSetting, LENSPROF_ITEM_NONE, init, checked, error);
-    if (status != LENSPROF_OK || (last == 0 && !taken.settings)) return status;
-    call.settings.resize(std::max(last + 1, count));
-    for (auto &setting : call.settings) lensprof_fit_setting_init(&setting);
-    call.result.settings = call.settings.data();
+    lensprof_status status = check_settings(call, error);
+    if (status == LENSPROF_OK)
+        status = take_items(
+            taken.settings, taken.setting_count, last_setting, LENSPROF_SETTINGS_MAX, kFirstSetting,
+            [](lensprof_fit_setting &setting, uint32_t) { lensprof_fit_setting_init(&setting); }, call.settings, error);
+    if (status == LENSPROF_OK)
+        status = take_items(
+            taken.cameras, taken.camera_count, last_camera, LENSPROF_CAMERAS_MAX, kFirstCamera,
+            [](lensprof_fit_camera &camera, uint32_t) { lensprof_fit_camera_init(&camera); }, call.cameras, error);
+    if (!call.settings.empty()) call.result.settings = call.settings.data();
     call.result.setting_count = static_cast<uint32_t>(call.settings.size());
-    return LENSPROF_OK;
+    if (!call.cameras.empty()) call.result.cameras = call.cameras.data();
+    call.result.camera_count = static_cast<uint32_t>(call.cameras.size());
+    return status;
 }
 
-// Into the caller's array, which may have fewer elements than this library's. Its place and size stay in the result.
-void give_settings(Call &call) {
-    auto *bytes = reinterpret_cast<char *>(call.given_settings);
+template <class Item>
+void give_items(Item *given, uint32_t given_count, const std::vector<Item> &own) {
+    auto *bytes = reinterpret_cast<char *>(given);
     const size_t step = bytes ? lp_sized_bytes(bytes) : 0;
-    for (size_t n = 0; bytes && n < std::min<size_t>(call.given_setting_count, call.settings.size()); n++)
-        lp_sized_copy(bytes + n * step, &call.settings[n]);
+    for (size_t n = 0; bytes && n < std::min<size_t>(given_count, own.size()); n++)
+        lp_sized_copy(bytes + n * step, &own[n]);
+}
+
+// Into the caller's arrays, which may have fewer elements than this library's. Their places and sizes stay in the
+// result.
+void give_settings(Call &call) {
+    give_items(call.given_settings, call.given_setting_count, call.settings);
+    give_items(call.given_cameras, call.given_camera_count, call.cameras);
     call.result.settings = call.given_settings, call.result.setting_count = call.given_setting_count;
+    call.result.cameras = call.given_cameras, call.result.camera_count = call.given_camera_count;
 }
 
 // What both fits ask of everything but the pairs or observations.
@@ -395,6 +460,32 @@ lensprof_status fit_pairs(Call &call, const lensprof_pair *pairs, uint32_t count
     return LENSPROF_OK;
 }
 
+// One camera of several: the call of its images alone.
+bool fit_camera(const CameraInput &input, lensprof_exposure *exposures, lensprof_fit_result &result) {
+    if (!has_unknowns(input.options, input.images.data(), static_cast<uint32_t>(input.images.size()))) return false;
+    Call own;
+    own.options = input.options;
+    own.images = input.images;
+    own.result = result;
+    const auto pairs = static_cast<uint32_t>(input.pairs.size()),
+               observations = static_cast<uint32_t>(input.observations.size());
+    const lensprof_status status = observations
+                                       ? fit_tracks(own, input.observations.data(), observations, exposures, nullptr)
+                                       : fit_pairs(own, input.pairs.data(), pairs, exposures, nullptr);
+    result = own.result;
+    return status == LENSPROF_OK;
+}
+
+// By the pairs of all data, or by the tracks that are given in their place.
+lensprof_status fit_each_camera(Call &call, const std::vector<lensprof_pair> &pairs,
+                                const std::vector<lensprof_observation> &observations, lensprof_exposure *exposures,
+                                lensprof_error *error) {
+    if (fit_cameras(call.options, call.images, pairs, observations, fit_camera, exposures, call.result))
+        return LENSPROF_OK;
+    return fail(LENSPROF_ERROR_NO_SAMPLES, error,
+                "fit: no pairs are between two images of one camera; give more of its images, or take all as of one");
+}
+
 const char *method_name(uint32_t method) {
     switch (method) {
     case LENSPROF_METHOD_TRANSFER: return "transfer";
@@ -466,7 +557,11 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
             status = check_debevec(call->options, call->images.data(), image_count, error);
         if (status != LENSPROF_OK) return status;
         if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
-        return run(*call, result, error, [&] { return fit_pairs(*call, pairs, pair_count, exposures, error); });
+        return run(*call, result, error, [&] {
+            return has_several_cameras(call->options, call->images)
+                       ? fit_each_camera(*call, {pairs, pairs + pair_count}, {}, exposures, error)
+                       : fit_pairs(*call, pairs, pair_count, exposures, error);
+        });
     });
 }
 
@@ -485,8 +580,15 @@ lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const
                                         call->channels(), error);
         if (status != LENSPROF_OK) return status;
         if (observation_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no observations were given");
-        return run(*call, result, error,
-                   [&] { return fit_tracks(*call, observations, observation_count, exposures, error); });
+        return run(*call, result, error, [&] {
+            if (!has_several_cameras(call->options, call->images))
+                return fit_tracks(*call, observations, observation_count, exposures, error);
+            const Tracks tracks = tracks_of(observations, observation_count);
+            status = check_tracks(tracks, error);
+            if (status != LENSPROF_OK) return status;
+            return fit_each_camera(*call, pairs_of(tracks, call->channels()),
+                                   {observations, observations + observation_count}, exposures, error);
+        });
     });
 }
 
@@ -542,6 +644,28 @@ lensprof_status lensprof_fit_result_take_setting(lensprof_fit_result *result, co
     copy_setting(setting, own);
     own.pairs = setting.pairs;
     own.left_out = 0;
+    lp_sized_copy(result, &own);
+    return LENSPROF_OK;
+}
+
+void lensprof_fit_camera_init_sized(lensprof_fit_camera *camera, size_t size) {
+    if (lp_sized_begin(camera, size, kFirstCamera)) lensprof_response_set_linear(&camera->response);
+}
+
+lensprof_status lensprof_fit_result_take_camera(lensprof_fit_result *result, const lensprof_fit_camera *given,
+                                                lensprof_error *error) {
+    clear(error);
+    if (!result || !given) return fail(LENSPROF_ERROR_ARGUMENT, error, "result or camera is NULL");
+    lensprof_fit_camera camera;
+    lensprof_fit_camera_init(&camera);
+    if (const char *wrong = lp_sized_take(&camera, given, kFirstCamera))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "camera: %s", wrong);
+    lensprof_fit_result own;
+    lensprof_fit_result_init(&own);
+    if (const char *wrong = lp_sized_take(&own, result, kFirstResult))
+        return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
+    if (!camera.images) return fail(LENSPROF_ERROR_ARGUMENT, error, "camera: it has no fit; take one that has images");
+    copy_camera(camera, own);
     lp_sized_copy(result, &own);
     return LENSPROF_OK;
 }

@@ -216,10 +216,7 @@ void GroupFit::warn_of_links(const lensprof_fit_result &all, Verdict &r) const {
     if (!r.usable) return;
     const auto is_own = [&](const auto &link) { return is_within(link); };
     const auto broken = std::find_if(group_.broken.begin(), group_.broken.end(), is_own);
-    // Which greys were seen is worth less than which images hold together.
-    const bool is_of_greys =
-        r.reason_code == LENSPROF_REASON_MISSING_GREYS || r.reason_code == LENSPROF_REASON_RESPONSE_NOT_SHOWN;
-    if (r.reason_code != LENSPROF_REASON_NONE && !is_of_greys) return;
+    if (r.reason_code != LENSPROF_REASON_NONE && !is_of_greys(r.reason_code)) return;
     // Links that sampling found to show something else have no pairs that could contradict the result.
     const auto is_contradicted = [&](const lensprof_link &link) {
         return link.state == LENSPROF_LINK_CONTRADICTED && group_.joined[link.image[0]] && group_.joined[link.image[1]];

@@ -41,12 +41,13 @@ bool nothing_fixes_gamma(const lensprof_fit_options &options, const Problem &pro
     return (options.free & LENSPROF_FREE_RESPONSE) && options.modes != 0 && !has_fixed_exposure(problem);
 }
 
-// Least squares k1..k3 (those that are free) of M^gamma over the frame.
-void raise_falloff(const Problem &problem, double gamma, lensprof_vignetting &v) {
+}  // namespace
+
+void raise_falloff(uint32_t free, double gamma, lensprof_vignetting &v) {
     constexpr int kRadii = 40;
     std::vector<int> powers;  // of r^2
     for (int n = 0; n < 3; n++)
-        if (problem.free & (LENSPROF_FREE_K1 << n)) powers.push_back(n + 1);
+        if (free & (LENSPROF_FREE_K1 << n)) powers.push_back(n + 1);
     if (powers.empty()) return;
     const lensprof_vignetting given = v;
     const Eigen::VectorXd k = fit_powers(powers.data(), static_cast<int>(powers.size()), kRadii, 0, [&](int i) {
@@ -56,8 +57,6 @@ void raise_falloff(const Problem &problem, double gamma, lensprof_vignetting &v)
     });
     for (size_t u = 0; u < powers.size(); u++) v.k[powers[u] - 1] = k[static_cast<Eigen::Index>(u)];
 }
-
-}  // namespace
 
 Eigen::VectorXd gamma_slope(const Estimate &estimate) {
     Eigen::VectorXd by_mode;
@@ -76,7 +75,7 @@ Estimate with_exponent(const Problem &problem, const Estimate &estimate, double 
     else
         set_table(moved, curve);
     for (Falloffs &curves : moved.vignetting)
-        for (auto &v : curves) raise_falloff(problem, gamma, v);
+        for (auto &v : curves) raise_falloff(problem.free, gamma, v);
     const auto &reference = estimate.log_exposure[problem.reference];
     for (auto &a : moved.log_exposure)
         for (size_t c = 0; c < 3; c++) a[c] = reference[c] + gamma * (a[c] - reference[c]);

@@ -80,6 +80,9 @@ private:
     std::vector<double> level_offset_;   // of each image, as known_offset_: that of the level it is on
 };
 
+// Least squares k1..k3 of M^gamma over the frame, those that `free` names (LENSPROF_FREE_K1 .. _K3).
+void raise_falloff(uint32_t free, double gamma, lensprof_vignetting &v);
+
 // Change of a response's position within its family for each of its coefficients.
 Eigen::VectorXd gamma_slope(const Estimate &estimate);
 

@@ -25,6 +25,21 @@ void copy_setting(const From &from, To &to) {
     std::copy(std::begin(from.gamma_direction), std::end(from.gamma_direction), to.gamma_direction);
 }
 
+// What a result and each of its cameras have in common.
+template <class From, class To>
+void copy_camera(const From &from, To &to) {
+    to.response = from.response;
+    to.vignettings = from.vignettings, to.pairs = from.pairs, to.evens = from.evens, to.gamma_from = from.gamma_from;
+    to.response_from = from.response_from, to.profile_prior = from.profile_prior;
+    to.covariance_size = from.covariance_size, to.converged = from.converged;
+    to.gamma_sigma = from.gamma_sigma;
+    to.before_rms = from.before_rms, to.heldout_rms = from.heldout_rms, to.heldout_median = from.heldout_median;
+    to.noise_levels = from.noise_levels, to.inlier_share = from.inlier_share;
+    to.frame_share = from.frame_share, to.image_share = from.image_share, to.light_spread_ev = from.light_spread_ev;
+    std::copy(std::begin(from.grey_ends), std::end(from.grey_ends), to.grey_ends);
+    to.reference = from.reference;
+}
+
 struct Output {
     std::unique_ptr<lensprof_fit_result> result;
     std::vector<lensprof_exposure> exposures;

@@ -53,6 +53,11 @@ bool warn(Result &r, const Reason &reason) {
     return give_reason(r, reason, true);
 }
 
+// A warning of which greys were seen, which is worth less than one of which images hold together.
+inline bool is_of_greys(uint32_t reason) {
+    return reason == LENSPROF_REASON_MISSING_GREYS || reason == LENSPROF_REASON_RESPONSE_NOT_SHOWN;
+}
+
 // change(verdict) for that of a result and those of its lens settings.
 template <class Change>
 void for_each_verdict(lensprof_fit_result &r, Change change) {

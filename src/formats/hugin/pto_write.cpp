@@ -80,12 +80,17 @@ std::vector<Edit> falloff_edits(const lensprof_vignetting &vignetting, const Pto
     return edits;
 }
 
-// Rt0: EMoR, which is also what a line without Rt means.
-std::vector<Edit> model_edits(const std::array<double, kHuginModes> &modes, const lensprof_vignetting &vignetting,
-                              const PtoImage &image) {
+std::vector<Edit> response_edits(const std::array<double, kHuginModes> &modes) {
     std::vector<Edit> edits;
     for (size_t i = 0; i < kHuginModes; i++)
         edits.push_back({kPtoParameterInfo[kResponseA + i].name, number_text(modes[i])});
+    return edits;
+}
+
+// Rt0: EMoR, which is also what a line without Rt means.
+std::vector<Edit> model_edits(const std::array<double, kHuginModes> &modes, const lensprof_vignetting &vignetting,
+                              const PtoImage &image) {
+    std::vector<Edit> edits = response_edits(modes);
     for (const Edit &edit : falloff_edits(vignetting, image)) edits.push_back(edit);
     edits.push_back({"Vm", "5"});
     if (image.result.response_type != 0) edits.push_back({"Rt", "0"});
@@ -117,6 +122,20 @@ template <class EditsOf>
 std::string edit_lines(const lensprof_pto &pto, const EditsOf &edits_of) {
     return replace_lines(
         pto, [&](uint32_t i) { return edit_line(line_of(pto, pto.images[i]), pto.images[i].line, edits_of(i)); });
+}
+
+// The text where the first image of every group has the values of edits_of(image), and the others are linked to it.
+template <class EditsOf>
+std::string link_groups(const lensprof_pto &pto, const uint32_t *group, const EditsOf &edits_of) {
+    return edit_lines(pto, [&](uint32_t i) {
+        const auto first = static_cast<uint32_t>(std::find(group, group + i, group[i]) - group);
+        std::vector<Edit> edits = edits_of(i);
+        for (Edit &edit : edits) {
+            if (first < i) edit.value = '=' + std::to_string(first);
+            edit.replaces_link = true;
+        }
+        return edits;
+    });
 }
 
 // A name that can stand between the quotes of a line.
@@ -217,15 +236,29 @@ lensprof_status lensprof_pto_set_settings(lensprof_pto *pto, const uint32_t *set
             if (const auto status = lensprof_vignetting_validate(&vignetting[s]); status != LENSPROF_OK)
                 throw FormatFailure{
                     status, "vignetting " + std::to_string(s) + " is invalid; see lensprof_vignetting_validate"};
-        *pto = parse_pto(edit_lines(*pto, [&](uint32_t i) {
-            const auto first = static_cast<uint32_t>(std::find(setting, setting + i, setting[i]) - setting);
-            std::vector<Edit> edits = falloff_edits(vignetting[setting[i]], pto->images[i]);
-            for (Edit &edit : edits) {
-                if (first < i) edit.value = '=' + std::to_string(first);
-                edit.replaces_link = true;
-            }
-            return edits;
-        }));
+        *pto = parse_pto(link_groups(
+            *pto, setting, [&](uint32_t i) { return falloff_edits(vignetting[setting[i]], pto->images[i]); }));
+    });
+}
+
+lensprof_status lensprof_pto_set_cameras(lensprof_pto *pto, const uint32_t *camera, uint32_t image_count,
+                                         const lensprof_response *response, uint32_t camera_count,
+                                         lensprof_error *error) {
+    if (!pto || !camera || !response || image_count != pto->images.size()
+        || std::any_of(camera, camera + image_count, [&](uint32_t k) { return k >= camera_count; })) {
+        set_error(error,
+                  "lensprof_pto_set_cameras: give a project, a camera of each image, and a response of each camera");
+        return LENSPROF_ERROR_ARGUMENT;
+    }
+    return at_boundary(error, [&] {
+        std::vector<std::array<double, kHuginModes>> modes;
+        for (uint32_t k = 0; k < camera_count; k++) {
+            if (const auto status = lensprof_response_validate(&response[k]); status != LENSPROF_OK)
+                throw FormatFailure{status,
+                                    "response " + std::to_string(k) + " is invalid; see lensprof_response_validate"};
+            modes.push_back(hugin_modes(response[k]));
+        }
+        *pto = parse_pto(link_groups(*pto, camera, [&](uint32_t i) { return response_edits(modes[camera[i]]); }));
     });
 }
 

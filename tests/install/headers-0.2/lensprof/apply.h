@@ -66,7 +66,7 @@ typedef enum lensprof_direction {
 } lensprof_direction;
 
 typedef enum lensprof_encoding {
-    LENSPROF_ENCODING_RESPONSE = 0, /* grey values, encoded by the response */
+    LENSPROF_ENCODING_RESPONSE = 0, /* grey values, encoded by the response; output by output_response where given */
     LENSPROF_ENCODING_LINEAR = 1    /* irradiance, 1 = what the response maps to 1 */
 } lensprof_encoding;
 
@@ -101,6 +101,11 @@ typedef struct lensprof_apply_options {
     const void *blob;  /* instead of response, vignetting and grid, which are NULL then: a profile blob (profile.h), at
                           any address, read during plan init only; its own counts stand for responses and vignettings */
     size_t blob_bytes;
+    const lensprof_response *output_response; /* what is written is encoded by this instead, as pictures of several
+                                                 cameras are that lie side by side; NULL = by `response`, or the blob's.
+                                                 Read during plan init only */
+    uint32_t output_responses;                /* 1 for all channels, or 3; 0 without */
+    uint32_t reserved2;                       /* 0 */
 } lensprof_apply_options;
 
 /* Correct, encoded in and out, u8 RGB in and out, exposures 0 EV, strength 1; the rest zero, to be set by the caller.

@@ -6,7 +6,8 @@
  *
  * Method `transfer` (d'Angelo 2007): minimise the symmetric grey value transfer error
  *     B1 - f( g(B2) s1/s2 )   and   B2 - f( g(B1) s2/s1 ),      s = M e w            (equations 5, 8, 10)
- * over one response f (EMoR), one vignetting M per lens setting and the exposure and white balance of every image.
+ * over one response f (EMoR) per camera, one vignetting M per lens setting and the exposure and white balance of every
+ * image.
  *
  * Method `transfer-function` (Kim & Pollefeys 2004): the most likely brightness transfer function of every image pair
  * and channel, from its joint histogram; then linear least squares for ln f^-1 and the log exposures (equations 5 to
@@ -45,6 +46,7 @@ extern "C" {
 #define LENSPROF_FREE_BLUE 0x80u
 
 #define LENSPROF_SETTINGS_MAX 64
+#define LENSPROF_CAMERAS_MAX 64
 
 /* How the unknowns are told from the correspondences. All give the same kind of result. */
 typedef enum lensprof_fit_method {
@@ -71,7 +73,8 @@ typedef enum lensprof_gamma_from {
     LENSPROF_GAMMA_KNOWN = 3,     /* results only: parameters held fixed, be it response, falloff or exposures */
     LENSPROF_GAMMA_NONE = 4,      /* results only: nothing, for want of a prior (the paper's method): it is arbitrary */
     LENSPROF_GAMMA_PROFILE = 5,   /* results only: the response of the profile that the options give as the prior */
-    LENSPROF_GAMMA_FALLOFF = 6    /* results only: its falloff, as it says how deep M is */
+    LENSPROF_GAMMA_FALLOFF = 6,   /* results only: its falloff, as it says how deep M is */
+    LENSPROF_GAMMA_CAMERAS = 7    /* results only: another camera of the fit, whose gamma is known better */
 } lensprof_gamma_from;
 
 /* One image of the fit. */
@@ -83,15 +86,18 @@ typedef struct lensprof_fit_image {
     uint32_t red_of, blue_of;   /* the same for the white balance factors */
     uint32_t setting;           /* 0..LENSPROF_SETTINGS_MAX - 1: images of one lens at one focal length, aperture and
                                    focus have the same. Every setting has a vignetting of its own, TRANSFER and RADIANCE
-                                   alone; all have one response */
+                                   alone */
     lensprof_exposure exposure; /* the value where fixed, else unused */
     double known_ev;            /* exposure from elsewhere (EXIF), EV up to a common offset: a soft observation */
     double known_ev_sigma;      /* its standard error, 0.001..100 EV; 0 = not known. Rounded EXIF: about 0.1; below
                                    0.02 counts as 0.02. One alone says nothing: only differences do */
+    uint32_t camera;            /* 0..LENSPROF_CAMERAS_MAX - 1: every camera has a response of its own, where that is
+                                   free. Images of one setting are of one camera. Several: not with DEBEVEC */
+    uint32_t reserved;          /* 0 */
 } lensprof_fit_image;
 
-/* Image `index` of the array, of a frame of width x height px: setting 0, exposure and white balance of its own, free,
- * 0 EV and 1, 1, 1 where fixed, and not known from elsewhere. */
+/* Image `index` of the array, of a frame of width x height px: setting 0, camera 0, exposure and white balance of its
+ * own, free, 0 EV and 1, 1, 1 where fixed, and not known from elsewhere. */
 LENSPROF_API void lensprof_fit_image_init_sized(lensprof_fit_image *image, size_t size, uint32_t index, uint32_t width,
                                                 uint32_t height);
 static inline void lensprof_fit_image_init(lensprof_fit_image *image, uint32_t index, uint32_t width, uint32_t height) {
@@ -202,7 +208,40 @@ static inline void lensprof_fit_setting_init(lensprof_fit_setting *setting) {
     lensprof_fit_setting_init_sized(setting, sizeof *setting);
 }
 
-/* Of several lens settings, that of the reference stands in vignetting, radius_ends, usable, reason, covariance and
+/* What a fit found of one camera of several: the members named as those of lensprof_fit_result are of its own fit, on
+ * the pairs between its own images. Pairs with other cameras then join it to that of the reference: they say the
+ * exponent gamma by which both see the same light, with what each fit knows of its own, and the offset of its exposures
+ * in each channel. */
+typedef struct lensprof_fit_camera {
+    uint32_t struct_size;
+    uint32_t images; /* of this camera that joined its fit; 0: the rest means nothing, for no pairs are between two of
+                        its images */
+    uint32_t joined; /* 1: the exposures of these are relative to the reference; 0: too few pairs with other cameras, or
+                        most of them contradict it; the ev of its images is NaN */
+    uint32_t shared_pairs;      /* with an end in it and the other in another camera that joined */
+    double agreeing_share;      /* of these, those within 3 sigma of what is left */
+    double light_difference_ev; /* median absolute difference of the light at their ends, EV */
+    double log_gamma;           /* by which its own fit was moved along its family, to agree with the others */
+    double offset_sigma_ev;     /* standard error of the offset of its exposures; 0 for that of the reference */
+    lensprof_response response;
+    uint32_t vignettings, pairs, evens, gamma_from;
+    uint32_t response_from, profile_prior, covariance_size, converged;
+    double gamma_sigma, before_rms, heldout_rms, heldout_median, noise_levels, inlier_share, frame_share, image_share,
+        light_spread_ev;
+    uint32_t grey_ends[LENSPROF_COVERAGE_BINS];
+    uint32_t reference; /* image whose exposure its own fit held */
+    uint32_t setting;   /* of that image: the others of its verdict are lensprof_fit_setting.usable and reason */
+} lensprof_fit_camera;
+/* No images, a linear response. */
+LENSPROF_API void lensprof_fit_camera_init_sized(lensprof_fit_camera *camera, size_t size);
+static inline void lensprof_fit_camera_init(lensprof_fit_camera *camera) {
+    lensprof_fit_camera_init_sized(camera, sizeof *camera);
+}
+
+/* Of several cameras, the members are those of the reference's, but exposures, image_quality, settings, left_out and
+ * seconds, which are of all; `cameras` has the others. Where the reference's own pictures are not evened out, the
+ * reference is an image of the camera with most images that are.
+ * Of several lens settings, that of the reference stands in vignetting, radius_ends, usable, reason, covariance and
  * gamma_direction; `settings` has all. */
 typedef struct lensprof_fit_result {
     uint32_t struct_size;
@@ -252,7 +291,11 @@ typedef struct lensprof_fit_result {
     lensprof_fit_setting *settings; /* the caller's array of setting_count initialised elements, by setting, set before
                                        the call; or NULL */
     uint32_t setting_count;
-    uint32_t reserved2; /* 0 */
+    uint32_t reserved2;           /* 0 */
+    lensprof_fit_camera *cameras; /* the caller's array of camera_count initialised elements, by camera, set before the
+                                     call; or NULL */
+    uint32_t camera_count;
+    uint32_t reserved3; /* 0 */
 } lensprof_fit_result;
 
 /* No result, a linear response. */
@@ -265,7 +308,9 @@ static inline void lensprof_fit_result_init(lensprof_fit_result *result) {
  * relative to the reference. A fit that ran returns OK even when the result is poor: see `usable` and `evens`.
  * Where images do not all agree, the fit is of the largest group that does; the ev of an image that was left out is NaN
  * (image_quality.joined 0). Pictures of a camera that did not move are one group or none.
- * Method TRANSFER_FUNCTION or DEBEVEC with several settings UNSUPPORTED; a setting beyond `settings` ARGUMENT.
+ * Method TRANSFER_FUNCTION with several settings of a camera, or DEBEVEC with several settings, UNSUPPORTED; a setting
+ * beyond `settings` or a camera beyond `cameras` ARGUMENT. Several cameras, none of which has pairs between two of its
+ * own images, NO_SAMPLES.
  * Method DEBEVEC: an image whose exposure is not known, a falloff that is free or a response that is not ARGUMENT.
  * Method RADIANCE: pairs that have an end in common (image, position and values) are joined to a track.
  * Errors: indices, values outside 0..1, unusable options ARGUMENT; NaN NOT_FINITE; no pairs NO_SAMPLES;
@@ -303,6 +348,11 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_from_fit(lenspro
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_result_take_setting(lensprof_fit_result *result,
                                                                                 const lensprof_fit_setting *setting,
                                                                                 lensprof_error *error);
+/* The same of a camera of several: what its own fit found takes the place of that of the reference's camera. Take one
+ * of its settings afterwards. Errors: ARGUMENT, also for a camera without images; STRUCT_SIZE. */
+LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_result_take_camera(lensprof_fit_result *result,
+                                                                               const lensprof_fit_camera *camera,
+                                                                               lensprof_error *error);
 
 /* Root mean square of the symmetric transfer residual (levels of 255) and, when not NULL, its median absolute
  * value, of pairs under a given model (vignetting of the three channels, of all settings): the figure that

@@ -1,0 +1,278 @@
+#include "fit/methods/join.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Dense>
+
+#include "fit/base/constants.hpp"
+#include "fit/base/quantile.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr size_t kFewestPairs = 30;          // that join a camera
+constexpr double kLargestDifference = 0.25;  // of the light at their ends, median, natural logarithm
+constexpr double kSmallestScatter = 0.01;    // of light, natural logarithm: misplaced texture
+constexpr double kCutoff = 3.0;              // standard deviations beyond which a pair loses its weight
+constexpr double kKnownSigma = 1e-6;         // of ln gamma where that is known
+constexpr double kLargestLogGamma = 1.2;     // in all
+constexpr int kRounds = 40;
+constexpr double kConverged = 1e-7;
+
+// A weighted residual, and its change with gamma and offset of both cameras.
+struct Slopes {
+    double residual;
+    int column[4];
+    double slope[4];
+};
+
+// What is estimated: ln gamma of every camera, then its offsets, one a channel.
+class Join {
+public:
+    Join(const std::vector<LightPair> &pairs, const std::vector<double> &gamma_sigma, uint32_t reference, int channels)
+        : pairs_(pairs),
+          sigma_(gamma_sigma),
+          count_(static_cast<int>(gamma_sigma.size())),
+          reference_(reference),
+          channels_(channels),
+          joints_(gamma_sigma.size()) {}
+
+    std::vector<Joint> run() {
+        std::vector<bool> may_join(joints_.size(), true);
+        for (;;) {
+            take_reached(may_join);
+            solve();
+            describe();
+            const size_t worst = farthest();
+            if (joints_[worst].residual <= kLargestDifference) return joints_;
+            may_join[worst] = false;
+        }
+    }
+
+private:
+    int gamma_column(uint32_t camera) const { return static_cast<int>(camera); }
+    int offset_column(uint32_t camera, int channel) const {
+        return count_ + channels_ * static_cast<int>(camera) + channel;
+    }
+    bool takes(const LightPair &pair) const { return joints_[pair.camera[0]].joined && joints_[pair.camera[1]].joined; }
+
+    void take_reached(const std::vector<bool> &may_join);
+    size_t farthest() const;
+    void start_offsets();
+    double scatter_of(const std::vector<double> &residuals) const;
+    double residual(const LightPair &pair, int channel) const;
+    double variance(const LightPair &pair, int channel) const;
+    double chi2(const LightPair &pair) const;
+    double weight(const LightPair &pair) const {
+        const double z = chi2(pair) / (kCutoff * kCutoff);
+        return 1.0 / (1.0 + z * z);
+    }
+    Slopes slopes(const LightPair &pair, int channel) const;
+    void find_scatter();
+    double step(Eigen::MatrixXd &normal);
+    void solve();
+    void describe();
+
+    const std::vector<LightPair> &pairs_;
+    const std::vector<double> &sigma_;
+    const int count_;
+    const uint32_t reference_;
+    const int channels_;
+    std::vector<Joint> joints_;
+    Eigen::VectorXd at_;    // the estimate
+    double scatter_ = 0.0;  // of light, beyond the noise of grey values, natural logarithm
+    Eigen::MatrixXd cov_;
+};
+
+// Cameras that enough pairs join to the reference's, directly or through others.
+void Join::take_reached(const std::vector<bool> &may_join) {
+    std::map<std::array<uint32_t, 2>, size_t> between;
+    for (const LightPair &pair : pairs_)
+        between[{std::min(pair.camera[0], pair.camera[1]), std::max(pair.camera[0], pair.camera[1])}]++;
+    for (Joint &joint : joints_) joint = {};
+    joints_[reference_].joined = true;
+    for (bool any = true; any;) {
+        any = false;
+        for (const auto &[ends, pairs] : between) {
+            Joint &a = joints_[ends[0]], &b = joints_[ends[1]];
+            if (pairs < kFewestPairs || a.joined == b.joined || !may_join[ends[0]] || !may_join[ends[1]]) continue;
+            a.joined = b.joined = any = true;
+        }
+    }
+}
+
+// The camera whose light differs most from that of the others, but for the reference's; that one where it is alone.
+size_t Join::farthest() const {
+    size_t worst = reference_;
+    for (size_t k = 0; k < joints_.size(); k++)
+        if (k != reference_ && joints_[k].joined
+            && (worst == reference_ || joints_[k].residual > joints_[worst].residual))
+            worst = k;
+    return worst;
+}
+
+double Join::residual(const LightPair &pair, int c) const {
+    double value[2];
+    for (int side = 0; side < 2; side++)
+        value[side] = std::exp(at_[gamma_column(pair.camera[side])]) * pair.log_light[side][c]
+                      + at_[offset_column(pair.camera[side], c)];
+    return value[0] - value[1];
+}
+
+double Join::variance(const LightPair &pair, int c) const {
+    double sum = 0.0;
+    for (int side = 0; side < 2; side++)
+        sum +=
+            std::exp(2.0 * at_[gamma_column(pair.camera[side])]) * (pair.variance[side][c] + 0.5 * scatter_ * scatter_);
+    return sum;
+}
+
+double Join::chi2(const LightPair &pair) const {
+    double sum = 0.0;
+    for (int c = 0; c < channels_; c++) sum += std::pow(residual(pair, c), 2) / variance(pair, c);
+    return sum / channels_;
+}
+
+// r / s, where gamma is in the standard deviation s, too.
+Slopes Join::slopes(const LightPair &pair, int c) const {
+    const double r = residual(pair, c), v = variance(pair, c), s = std::sqrt(v);
+    Slopes result{r / s, {}, {}};
+    for (int side = 0; side < 2; side++) {
+        const uint32_t camera = pair.camera[side];
+        const double gamma = std::exp(at_[gamma_column(camera)]), sign = side ? -1.0 : 1.0;
+        const double own = gamma * gamma * (pair.variance[side][c] + 0.5 * scatter_ * scatter_);
+        result.column[2 * side] = gamma_column(camera);
+        result.slope[2 * side] = sign * gamma * pair.log_light[side][c] / s - r * own / (v * s);
+        result.column[2 * side + 1] = offset_column(camera, c);
+        result.slope[2 * side + 1] = sign / s;
+    }
+    return result;
+}
+
+// Medians, from camera to camera.
+void Join::start_offsets() {
+    at_ = Eigen::VectorXd::Zero(count_ * (1 + channels_));
+    std::vector<bool> is_known(joints_.size());
+    is_known[reference_] = true;
+    for (bool any = true; any;) {
+        any = false;
+        std::map<std::pair<uint32_t, int>, std::vector<double>> differences;  // of a new camera and channel
+        for (const LightPair &pair : pairs_) {
+            if (!takes(pair) || is_known[pair.camera[0]] == is_known[pair.camera[1]]) continue;
+            const uint32_t camera = pair.camera[is_known[pair.camera[0]]];
+            for (int c = 0; c < channels_; c++)
+                differences[{camera, c}].push_back(is_known[pair.camera[0]] ? residual(pair, c) : -residual(pair, c));
+        }
+        for (auto &[of, values] : differences) {
+            at_[offset_column(of.first, of.second)] = quantile(values, 0.5);
+            is_known[of.first] = any = true;
+        }
+    }
+}
+
+// What residuals have beyond the noise of grey values, robustly.
+void Join::find_scatter() {
+    std::vector<double> squares;
+    for (const LightPair &pair : pairs_)
+        for (int c = 0; c < channels_ && takes(pair); c++) {
+            const double scale = std::exp(at_[gamma_column(pair.camera[0])] + at_[gamma_column(pair.camera[1])]);
+            const double noise = pair.variance[0][c] + pair.variance[1][c];
+            squares.push_back(std::max(0.0, std::pow(kMadToSigma * residual(pair, c), 2) / scale - noise));
+        }
+    scatter_ = std::max(kSmallestScatter, squares.empty() ? 0.0 : std::sqrt(quantile(squares, 0.5)));
+}
+
+// One Gauss-Newton step of the weighted residuals; returns its length. `normal` receives the normal equations.
+double Join::step(Eigen::MatrixXd &normal) {
+    const auto size = at_.size();
+    normal = Eigen::MatrixXd::Zero(size, size);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
+    for (const LightPair &pair : pairs_) {
+        if (!takes(pair)) continue;
+        const double trust = weight(pair);
+        for (int c = 0; c < channels_; c++) {
+            const Slopes own = slopes(pair, c);
+            for (int i = 0; i < 4; i++) {
+                right[own.column[i]] -= trust * own.slope[i] * own.residual;
+                for (int j = 0; j < 4; j++) normal(own.column[i], own.column[j]) += trust * own.slope[i] * own.slope[j];
+            }
+        }
+    }
+    for (uint32_t k = 0; k < joints_.size(); k++) {
+        const int g = gamma_column(k);
+        const double precision = 1.0 / std::pow(std::max(sigma_[k], kKnownSigma), 2);
+        normal(g, g) += precision, right[g] -= precision * at_[g];
+        for (int c = 0; c < channels_; c++) {  // of the reference 0; of cameras that did not join nothing is known
+            const int b = offset_column(k, c);
+            if (k != reference_ && joints_[k].joined) continue;
+            normal.row(b).setZero(), normal.col(b).setZero();
+            normal(b, b) = 1.0, right[b] = 0.0;
+        }
+    }
+    const Eigen::VectorXd change = normal.ldlt().solve(right);
+    const double length = change.cwiseAbs().maxCoeff();
+    if (!std::isfinite(length)) return 0.0;
+    at_ += change;
+    for (int k = 0; k < count_; k++) at_[k] = std::clamp(at_[k], -kLargestLogGamma, kLargestLogGamma);
+    return length;
+}
+
+void Join::solve() {
+    start_offsets();
+    Eigen::MatrixXd normal;
+    for (int round = 0; round < kRounds; round++) {
+        find_scatter();
+        if (step(normal) < kConverged) break;
+    }
+    cov_ = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+}
+
+// The standard error of a column, at least as large as the links of images, each as a whole, make it.
+void Join::describe() {
+    std::map<std::array<uint32_t, 2>, Eigen::VectorXd> of_link;
+    std::vector<std::vector<double>> residuals(joints_.size());
+    std::vector<size_t> inliers(joints_.size());
+    for (const LightPair &pair : pairs_) {
+        if (!takes(pair)) continue;
+        const double trust = weight(pair);
+        auto &gradient =
+            of_link.try_emplace({pair.image[0], pair.image[1]}, Eigen::VectorXd::Zero(at_.size())).first->second;
+        for (int c = 0; c < channels_; c++) {
+            const Slopes own = slopes(pair, c);
+            for (int i = 0; i < 4; i++) gradient[own.column[i]] += trust * own.slope[i] * own.residual;
+        }
+        for (const uint32_t camera : pair.camera) {
+            for (int c = 0; c < channels_; c++) residuals[camera].push_back(std::abs(residual(pair, c)));
+            inliers[camera] += chi2(pair) < kCutoff * kCutoff;
+            joints_[camera].pairs++;
+        }
+    }
+    Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(at_.size(), at_.size());
+    for (const auto &[link, gradient] : of_link) spread += gradient * gradient.transpose();
+    const Eigen::MatrixXd by_links = cov_ * spread * cov_;
+    const auto sigma_of = [&](int column) {
+        return std::sqrt(std::max({0.0, cov_(column, column), by_links(column, column)}));
+    };
+    const int measured = channels_ == 3 ? 1 : 0;
+    for (uint32_t k = 0; k < joints_.size(); k++) {
+        Joint &joint = joints_[k];
+        if (!joint.joined) continue;
+        joint.inlier_share = joint.pairs ? static_cast<double>(inliers[k]) / joint.pairs : 1.0;
+        joint.residual = residuals[k].empty() ? 0.0 : quantile(residuals[k], 0.5);
+        joint.log_gamma = at_[gamma_column(k)], joint.log_gamma_sigma = sigma_of(gamma_column(k));
+        if (sigma_[k] <= 0.0) joint.log_gamma = joint.log_gamma_sigma = 0.0;
+        for (int c = 0; c < channels_; c++) joint.offset[static_cast<size_t>(c)] = at_[offset_column(k, c)];
+        joint.offset_sigma = k == reference_ ? 0.0 : sigma_of(offset_column(k, measured));
+    }
+}
+
+}  // namespace
+
+std::vector<Joint> join_cameras(const std::vector<LightPair> &pairs, const std::vector<double> &gamma_sigma,
+                                uint32_t reference, int channels) {
+    return Join(pairs, gamma_sigma, reference, channels).run();
+}
+
+}  // namespace lensprof

@@ -1,0 +1,25 @@
+// A finished result moved along its family: (f, M, e) to (f o x^(1/gamma), M^gamma, e^gamma), which make the same
+// pictures, and its exposures moved to another reference.
+#pragma once
+
+#include <array>
+#include <set>
+#include <vector>
+
+#include <lensprof/fit.h>
+
+namespace lensprof {
+
+// Raises response, falloffs and exposures of a result to the exponent exp(log_gamma), whose standard error then is
+// `sigma`, and states their errors by that. The response becomes a TABLE, which follows exactly; the coefficients that
+// are not `free` (LENSPROF_FREE_K1.._K3) stay. `settings`: those of the result that are its own. Exposures are relative
+// to its reference's.
+void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<uint32_t> &settings,
+                  std::vector<lensprof_exposure> &exposures, lensprof_fit_result &result);
+
+// Divides light by exp(offset) of each channel, as exposures have it; `sigma`: the offset's standard error, natural
+// logarithm.
+void offset_exposures(const std::array<double, 3> &offset, double sigma, uint32_t channels,
+                      std::vector<lensprof_exposure> &exposures, lensprof_fit_result &result);
+
+}  // namespace lensprof

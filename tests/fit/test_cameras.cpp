@@ -1,0 +1,433 @@
+// Pictures of several cameras in one fit: a response for each, joined by what they share.
+#include "simulated_tracks.hpp"
+
+namespace {
+
+const lensprof_vignetting kWide{{-0.45, 0.12, -0.10}, {0.01, -0.01}}, kTele{{-0.15, 0.03, -0.05}, {-0.01, 0.01}};
+
+struct Run : FitRun {
+    std::vector<lensprof_fit_setting> settings;
+    std::vector<lensprof_fit_camera> cameras;
+
+    explicit Run(const Simulation &s, size_t count = 2) : settings(count), cameras(count) {
+        exposures.resize(s.images);
+        quality.resize(s.images);
+        lensprof_fit_result_init(&result);
+        result.image_quality = quality.data();
+        for (auto &setting : settings) lensprof_fit_setting_init(&setting);
+        for (auto &camera : cameras) lensprof_fit_camera_init(&camera);
+        result.settings = settings.data(), result.cameras = cameras.data();
+        result.setting_count = result.camera_count = static_cast<uint32_t>(count);
+    }
+
+    lensprof_status fit(const Simulation &s, const lensprof_fit_options &options, lensprof_error *error = nullptr) {
+        return lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
+                                    static_cast<uint32_t>(s.pairs.size()), exposures.data(), &result, error);
+    }
+    lensprof_status fit(const TrackSimulation &s, const lensprof_fit_options &options) {
+        return lensprof_fit_radiance(&options, s.fit_images.data(), s.images, s.observations.data(),
+                                     static_cast<uint32_t>(s.observations.size()), exposures.data(), &result, nullptr);
+    }
+};
+
+// Images in turn of two cameras, which differ in response, falloff, sensitivity and white balance.
+template <class Simulated>
+Simulated alternating(uint64_t seed = 42) {
+    Simulated s;
+    s.images = 10;
+    s.of_setting = {kWide, kTele};
+    s.of_camera = {srgb_response(), film_response()};
+    s.reach = 4;
+    uint64_t random = seed + 7;
+    for (uint32_t i = 0; i < s.images; i++) {
+        lensprof_exposure e;
+        lensprof_exposure_init(&e);
+        if (i > 0)
+            e = {2.0 * lp_random(&random) - 1.0,
+                 {0.85 + 0.3 * lp_random(&random), 1.0, 0.85 + 0.3 * lp_random(&random)}};
+        if (i % 2) e.ev -= 0.5, e.white_balance[0] *= 1.3, e.white_balance[2] *= 0.8;
+        s.exposures.push_back(e);
+    }
+    if constexpr (std::is_same_v<Simulated, TrackSimulation>)
+        s.make_tracks(1500, 1.0, 0.02, 1.0, seed);
+    else
+        s.make(6000, 1.0, 0.05, 1.0, seed);
+    return s;
+}
+
+double falloff_error(const lensprof_vignetting &found, const lensprof_vignetting &truth, double gamma) {
+    double worst = 0.0;
+    for (int k = 0; k <= 20; k++) {
+        const double r2 = k * k / 400.0, m = lensprof_vignetting_eval(&found, r2, nullptr);
+        worst = std::max(worst, std::abs(std::pow(m, 1.0 / gamma) - lensprof_vignetting_eval(&truth, r2, nullptr)));
+    }
+    return worst;
+}
+
+// Grey values of light as the reference sees it, from 3 % of its white on, in an image, as found and in truth: by all
+// that was found of both cameras together, whatever exponent and whatever light at white they have in common. 0..1.
+double grey_error(const Simulation &s, const Run &run, uint32_t image) {
+    const uint32_t camera = s.fit_images[image].camera;
+    double worst = 0.0;
+    for (int k = 3; k <= 100; k++)
+        for (uint32_t c = 0; c < s.channels; c++) {
+            const double light = k / 100.0, seen = lensprof_response_eval(&s.of_camera[0], light, nullptr);
+            const double found = lensprof_response_invert(&run.cameras[0].response, seen, nullptr)
+                                 * lensprof_exposure_factor(&run.exposures[image], c);
+            const double truth = light * lensprof_exposure_factor(&s.exposures[image], c);
+            if (truth > 0.9) continue;  // near white, which is not seen
+            worst = std::max(worst, std::abs(lensprof_response_eval(&run.cameras[camera].response, found, nullptr)
+                                             - lensprof_response_eval(&s.of_camera[camera], truth, nullptr)));
+        }
+    return worst;
+}
+
+// Exposures of a camera's images relative to its first one: errors with the exponent `gamma` taken out, EV.
+double exposure_error(const Simulation &s, const Run &run, uint32_t camera, double gamma) {
+    double worst = 0.0;
+    for (uint32_t i = camera; i < s.images; i += 2)
+        worst = std::max(worst, std::abs((run.exposures[i].ev - run.exposures[camera].ev) / gamma
+                                         - (s.exposures[i].ev - s.exposures[camera].ev)));
+    return worst;
+}
+
+// The exponent that recovered exposures of a camera's images have beside the true ones.
+double gamma_of(const Simulation &s, const Run &run, uint32_t camera) {
+    std::vector<double> found, truth;
+    double found_mean = 0.0, true_mean = 0.0, cross = 0.0, square = 0.0;
+    for (uint32_t i = camera; i < s.images; i += 2)
+        found.push_back(run.exposures[i].ev), truth.push_back(s.exposures[i].ev);
+    for (size_t n = 0; n < found.size(); n++)
+        found_mean += found[n] / static_cast<double>(found.size()),
+            true_mean += truth[n] / static_cast<double>(found.size());
+    for (size_t n = 0; n < found.size(); n++) {
+        cross += (found[n] - found_mean) * (truth[n] - true_mean);
+        square += (truth[n] - true_mean) * (truth[n] - true_mean);
+    }
+    return cross / square;
+}
+
+// Everything of both cameras by one exponent, for what they share says that it is the same.
+void check_found(const Simulation &s, const Run &run) {
+    const double gamma = gamma_of(s, run, 0);
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.result.left_out, 0);
+    assert_close(gamma_of(s, run, 1) / gamma, 1.0, 0.02);
+    for (uint32_t i = 0; i < s.images; i++) assert_true(grey_error(s, run, i) < 0.012);
+    for (uint32_t n = 0; n < 2; n++) {
+        const lensprof_fit_camera &camera = run.cameras[n];
+        assert_int_equal(camera.images, 5);
+        assert_int_equal(camera.joined, 1);
+        assert_true(camera.agreeing_share > 0.8);
+        assert_true(exposure_error(s, run, n, gamma) < 0.02);
+        assert_true(falloff_error(run.settings[n].vignetting[0], s.of_setting[n], gamma)
+                    < (s.channels == 3 ? 0.01 : 0.02));
+        assert_int_equal(camera.setting, n);
+        assert_int_equal(camera.reference % 2, n);
+    }
+    assert_true(run.cameras[0].offset_sigma_ev == 0.0 && run.cameras[1].offset_sigma_ev > 0.0);
+    assert_memory_equal(&run.result.response, &run.cameras[0].response, sizeof run.result.response);
+}
+
+void test_each_response_is_found(void **) {
+    const auto s = alternating<Simulation>();
+    Run run(s);
+    assert_ok(run.fit(s, default_fit()));
+    check_found(s, run);
+    // With one response for both, those of one camera contradict those of the other.
+    Simulation one = s;
+    for (auto &image : one.fit_images) image.camera = 0;
+    const FitRun together = run_fit(one);
+    assert_int_equal(together.result.left_out, 5);
+}
+
+void test_each_response_is_found_by_radiance(void **) {
+    const auto s = alternating<TrackSimulation>();
+    Run run(s);
+    assert_ok(run.fit(s, radiance_fit()));
+    check_found(s, run);
+}
+
+void test_each_response_is_found_in_grey(void **) {
+    auto s = alternating<Simulation>();
+    s.pairs.clear(), s.fit_images.clear(), s.exposures.clear();
+    s.channels = 1;
+    s.make(6000, 1.0, 0.05, 1.0, 5);
+    lensprof_fit_options options = default_fit();
+    options.channels = 1;
+    Run run(s);
+    assert_ok(run.fit(s, options));
+    check_found(s, run);
+}
+
+// A camera whose exposures are known says the exponent of the other, whose are not.
+void test_knowledge_of_one_serves_the_other(void **) {
+    auto s = alternating<Simulation>();
+    Run without(s);
+    assert_ok(without.fit(s, default_fit()));
+    for (size_t i = 0; i < s.images; i += 2)
+        s.fit_images[i].known_ev = s.exposures[i].ev, s.fit_images[i].known_ev_sigma = 0.02;
+    Run run(s);
+    assert_ok(run.fit(s, default_fit()));
+    assert_close(gamma_of(s, run, 1), 1.0, 0.03);
+    assert_true(run.cameras[1].gamma_sigma < 0.03);
+    assert_int_equal(run.cameras[0].gamma_from, LENSPROF_GAMMA_EXPOSURES);
+    assert_int_equal(run.cameras[1].gamma_from, LENSPROF_GAMMA_CAMERAS);
+    assert_true(without.cameras[1].gamma_sigma > 2.0 * run.cameras[1].gamma_sigma);
+}
+
+// Errors of the exponent of the camera that knows nothing of its own, and of its images' exposures relative to each
+// other, in their stated standard errors.
+void test_stated_errors_hold(void **) {
+    double of_exposures = 0.0, of_gamma = 0.0;
+    int exposures = 0, runs = 0;
+    for (uint64_t seed = 1; seed <= 12; seed++, runs++) {
+        auto s = alternating<Simulation>(seed);
+        for (size_t i = 0; i < s.images; i += 2)
+            s.fit_images[i].known_ev = s.exposures[i].ev, s.fit_images[i].known_ev_sigma = 0.02;
+        Run run(s);
+        assert_ok(run.fit(s, default_fit()));
+        for (size_t i = 3; i < s.images; i += 2, exposures++)
+            of_exposures += std::pow((run.exposures[i].ev - run.exposures[1].ev - s.exposures[i].ev + s.exposures[1].ev)
+                                         / std::hypot(run.quality[i].ev_sigma, run.quality[1].ev_sigma),
+                                     2);
+        of_gamma += std::pow((gamma_of(s, run, 1) - 1.0) / run.cameras[1].gamma_sigma, 2);
+    }
+    const double exposure_rms = std::sqrt(of_exposures / exposures), gamma_rms = std::sqrt(of_gamma / runs);
+    print_message("rms in stated standard errors: exposures %.2f, gamma %.2f\n", exposure_rms, gamma_rms);
+    assert_true(exposure_rms < 1.6 && gamma_rms < 1.6);
+}
+
+// Which numbers cameras have makes no difference, nor whether anybody asks for what was found of them.
+void test_numbers_are_names(void **) {
+    const auto s = alternating<Simulation>();
+    Simulation renamed = s;
+    for (auto &image : renamed.fit_images) image.setting = image.setting ? 0 : 63, image.camera = image.camera ? 7 : 9;
+    Run run(s), other(s, 64);
+    assert_ok(run.fit(s, default_fit()));
+    assert_ok(other.fit(renamed, default_fit()));
+    const FitRun unasked = run_fit(s);
+    assert_memory_equal(run.exposures.data(), other.exposures.data(), s.images * sizeof run.exposures[0]);
+    assert_memory_equal(run.exposures.data(), unasked.exposures.data(), s.images * sizeof run.exposures[0]);
+    assert_memory_equal(&run.cameras[1].response, &other.cameras[7].response, sizeof run.result.response);
+    assert_int_equal(other.cameras[5].images, 0);
+}
+
+// Where the response is held, all cameras have that one, and what differs is the lens.
+void test_held_response_is_of_all(void **) {
+    auto s = alternating<Simulation>();
+    s.of_camera = {s.of_camera[0], s.of_camera[0]};
+    s.pairs.clear(), s.fit_images.clear();
+    s.make(6000, 1.0, 0.05, 1.0, 3);
+    lensprof_fit_options options = default_fit();
+    options.free &= ~LENSPROF_FREE_RESPONSE;
+    options.response = &s.of_camera[0];
+    Run run(s);
+    assert_ok(run.fit(s, options));
+    assert_int_equal(run.result.usable, 1);
+    assert_true(s.exposure_error(run.exposures, 1.0) < 0.02);
+    assert_int_equal(run.cameras[0].images, 0);  // nothing of a camera's own was fitted
+    assert_int_equal(run.settings[1].images, 5);
+}
+
+Simulation within_cameras() {
+    Simulation s = alternating<Simulation>();
+    s.pairs.erase(std::remove_if(s.pairs.begin(), s.pairs.end(),
+                                 [](const lensprof_pair &p) { return p.image[0] % 2 != p.image[1] % 2; }),
+                  s.pairs.end());
+    return s;
+}
+
+// Nothing joins the cameras: the reference's stands, the other's exposures are not known, and its profile is one.
+void test_cameras_apart(void **) {
+    const Simulation s = within_cameras();
+    Run run(s);
+    assert_ok(run.fit(s, default_fit()));
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.result.left_out, 5);
+    assert_int_equal(run.cameras[1].joined, 0);
+    assert_int_equal(run.cameras[1].images, 5);
+    assert_int_equal(run.settings[1].usable, 1);
+    for (size_t i = 0; i < s.images; i++) {
+        assert_int_equal(std::isnan(run.exposures[i].ev), i % 2);
+        assert_int_equal(run.quality[i].joined, i % 2 == 0);
+    }
+}
+
+// Pairs between the cameras that show something else join nothing.
+void test_contradictions_join_nothing(void **) {
+    Simulation s = alternating<Simulation>();
+    uint64_t random = 3;
+    for (auto &pair : s.pairs)
+        if (pair.image[0] % 2 != pair.image[1] % 2)
+            for (double &v : pair.value[1]) v = 0.05 + 0.9 * lp_random(&random);
+    Run run(s);
+    assert_ok(run.fit(s, default_fit()));
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.cameras[1].joined, 0);
+    assert_int_equal(run.result.left_out, 5);
+}
+
+// One picture says nothing of its camera's response; it is left out, and is no reason to leave the others.
+void test_single_picture_is_left_out(void **) {
+    Simulation s = alternating<Simulation>();
+    for (size_t i = 0; i < s.images; i++) s.fit_images[i].camera = s.fit_images[i].setting = 0;
+    s.of_camera.pop_back(), s.of_setting.pop_back();
+    s.pairs.clear(), s.fit_images.clear();
+    s.make(4000, 1.0, 0.05, 1.0, 11);
+    s.fit_images[4].camera = 1, s.fit_images[4].setting = 1;
+    Run run(s);
+    assert_ok(run.fit(s, default_fit()));
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.result.left_out, 1);
+    assert_int_equal(run.cameras[1].images, 0);
+    assert_int_equal(run.settings[1].images, 0);
+    assert_true(std::isnan(run.exposures[4].ev));
+    // Held as the reference, it gives way to another.
+    lensprof_fit_options options = default_fit();
+    options.reference = 4;
+    assert_ok(run.fit(s, options));
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.result.reference == 4, 0);
+    assert_true(std::isnan(run.exposures[4].ev));
+}
+
+// The reference's camera moves with the others: exposures are relative to its image all the same.
+void test_any_reference(void **) {
+    const auto s = alternating<Simulation>();
+    Run first(s), other(s);
+    assert_ok(first.fit(s, default_fit()));
+    lensprof_fit_options options = default_fit();
+    options.reference = 3;
+    assert_ok(other.fit(s, options));
+    assert_int_equal(other.result.reference, 3);
+    assert_true(other.exposures[3].ev == 0.0);
+    assert_memory_equal(&other.result.response, &other.cameras[1].response, sizeof other.result.response);
+    for (size_t i = 0; i < s.images; i++)
+        assert_close(other.exposures[i].ev - other.exposures[0].ev, first.exposures[i].ev, 0.01);
+}
+
+// Unknowns that are shared across cameras are shared within each.
+void test_links_end_at_cameras(void **) {
+    auto s = alternating<Simulation>();
+    s.exposures[3].ev = s.exposures[2].ev, s.exposures[5].ev = s.exposures[2].ev;
+    s.pairs.clear(), s.fit_images.clear();
+    s.make(6000, 1.0, 0.0, 1.0, 9);
+    for (size_t i : {3, 5}) s.fit_images[i].ev_of = 2;
+    Run run(s);
+    assert_ok(run.fit(s, default_fit()));
+    assert_int_equal(run.result.usable, 1);
+    assert_true(run.exposures[3].ev == run.exposures[5].ev);
+    assert_true(exposure_error(s, run, 1, gamma_of(s, run, 0)) < 0.02);
+}
+
+void test_threads_change_nothing(void **) {
+    const auto s = alternating<Simulation>();
+    lensprof_fit_options options = default_fit();
+    Run one(s), four(s);
+    options.threads = 1;
+    assert_ok(one.fit(s, options));
+    options.threads = 4;
+    assert_ok(four.fit(s, options));
+    assert_memory_equal(one.exposures.data(), four.exposures.data(), s.images * sizeof one.exposures[0]);
+    assert_memory_equal(one.cameras.data(), four.cameras.data(), 2 * sizeof one.cameras[0]);
+}
+
+// Progress of both cameras is one.
+void test_progress_rises(void **) {
+    const auto s = alternating<Simulation>();
+    struct Told {
+        double last = 0.0;
+        int falls = 0, calls = 0;
+    } told;
+    lensprof_fit_options options = default_fit();
+    options.progress = [](double done, void *user) {
+        auto &t = *static_cast<Told *>(user);
+        t.falls += done < t.last || done > 1.0;
+        t.last = done, t.calls++;
+        return 0;
+    };
+    options.progress_user = &told;
+    Run run(s);
+    assert_ok(run.fit(s, options));
+    assert_true(told.calls > 10 && told.falls == 0 && told.last > 0.7);
+    options.progress = [](double done, void *) { return static_cast<int>(done > 0.6); };
+    assert_int_equal(run.fit(s, options), LENSPROF_ERROR_CANCELLED);
+}
+
+void test_profile_of_a_camera(void **) {
+    const auto s = alternating<Simulation>();
+    Run run(s);
+    assert_ok(run.fit(s, default_fit()));
+    lensprof_profile profile;
+    lensprof_profile_init(&profile);
+    lensprof_fit_result own = run.result;
+    lensprof_error error;
+    assert_ok(lensprof_fit_result_take_camera(&own, &run.cameras[1], &error));
+    assert_ok(lensprof_fit_result_take_setting(&own, &run.settings[1], &error));
+    assert_ok(lensprof_profile_from_fit(&profile, &own, nullptr, run.settings[1].images, &error));
+    assert_ok(lensprof_profile_validate(&profile));
+    assert_memory_equal(profile.vignetting, run.settings[1].vignetting, sizeof profile.vignetting);
+    assert_memory_equal(profile.response[0].table, run.cameras[1].response.table, sizeof profile.response[0].table);
+    assert_true(profile.provenance.heldout_rms == run.cameras[1].heldout_rms);
+    assert_int_equal(profile.provenance.images, 5);
+    assert_true(profile.covariance_size > 0);
+    lensprof_fit_camera none;
+    lensprof_fit_camera_init(&none);
+    assert_int_equal(lensprof_fit_result_take_camera(&own, &none, &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(lensprof_fit_result_take_camera(&own, nullptr, &error), LENSPROF_ERROR_ARGUMENT);
+    none.struct_size = 8;
+    assert_int_equal(lensprof_fit_result_take_camera(&own, &none, &error), LENSPROF_ERROR_STRUCT_SIZE);
+}
+
+void test_bad_input(void **) {
+    auto s = alternating<Simulation>();
+    lensprof_error error;
+    Run run(s);
+    lensprof_fit_options options = default_fit();
+    options.method = LENSPROF_METHOD_DEBEVEC;
+    assert_int_equal(run.fit(s, options, &error), LENSPROF_ERROR_UNSUPPORTED);
+    run.result.camera_count = 1;
+    assert_int_equal(run.fit(s, default_fit(), &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(error.item.index, 1);
+    run.result.camera_count = 2;
+    run.cameras[1].struct_size = 0;
+    assert_int_equal(run.fit(s, default_fit(), &error), LENSPROF_ERROR_STRUCT_SIZE);
+    auto mixed = s;
+    mixed.fit_images[3].setting = 0;  // of camera 1
+    assert_int_equal(run_fit(s).result.usable, 1);
+    Run other(s);
+    assert_int_equal(other.fit(mixed, default_fit(), &error), LENSPROF_ERROR_ARGUMENT);
+    assert_int_equal(error.item.index, 3);
+    auto beyond = s;
+    beyond.fit_images[2].camera = LENSPROF_CAMERAS_MAX;
+    assert_int_equal(other.fit(beyond, default_fit(), &error), LENSPROF_ERROR_ARGUMENT);
+    auto alone = s;
+    for (uint32_t i = 0; i < s.images; i++) alone.fit_images[i].camera = alone.fit_images[i].setting = i;
+    Run each(s, s.images);
+    assert_int_equal(each.fit(alone, default_fit(), &error), LENSPROF_ERROR_NO_SAMPLES);
+}
+
+}  // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_each_response_is_found),
+        cmocka_unit_test(test_each_response_is_found_by_radiance),
+        cmocka_unit_test(test_each_response_is_found_in_grey),
+        cmocka_unit_test(test_knowledge_of_one_serves_the_other),
+        cmocka_unit_test(test_stated_errors_hold),
+        cmocka_unit_test(test_numbers_are_names),
+        cmocka_unit_test(test_held_response_is_of_all),
+        cmocka_unit_test(test_cameras_apart),
+        cmocka_unit_test(test_contradictions_join_nothing),
+        cmocka_unit_test(test_single_picture_is_left_out),
+        cmocka_unit_test(test_any_reference),
+        cmocka_unit_test(test_links_end_at_cameras),
+        cmocka_unit_test(test_threads_change_nothing),
+        cmocka_unit_test(test_progress_rises),
+        cmocka_unit_test(test_profile_of_a_camera),
+        cmocka_unit_test(test_bad_input),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
