@@ -231,6 +231,9 @@ typedef struct lensprof_fit_camera {
     uint32_t grey_ends[LENSPROF_COVERAGE_BINS];
     uint32_t reference; /* image whose exposure its own fit held */
     uint32_t setting;   /* of that image: the others of its verdict are lensprof_fit_setting.usable and reason */
+    uint32_t attached;  /* images beside those of its fit, for no pairs with these join them, whose exposures pairs with
+                           other cameras say */
+    uint32_t reserved;  /* 0 */
 } lensprof_fit_camera;
 /* No images, a linear response. */
 LENSPROF_API void lensprof_fit_camera_init_sized(lensprof_fit_camera *camera, size_t size);

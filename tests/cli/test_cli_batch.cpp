@@ -80,7 +80,8 @@ std::map<std::string, Bytes> correct_by(const Words &files, bool linear, uint32_
     for (const std::string &file : files) {
         fs::path name = fs::path(file).filename();
         if (linear) name += ".tif";
-        Correction job{file, out + "/" + name.string(), model, {}, {}, 0, nullptr, 0, "lens", ""};
+        Correction job;
+        job.source = file, job.target = out + "/" + name.string(), job.model = model, job.model_name = "lens";
         lensprof_exposure_init(&job.own);
         lensprof_exposure_init(&job.wanted);
         jobs.push_back(job);

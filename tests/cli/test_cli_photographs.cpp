@@ -98,12 +98,12 @@ void test_a_folder_of_many_things(void **) {
     assert_true(contains(run.err, "y.png: left out, no overlap"));
     assert_true(contains(run.err, "damaged.png"));
     assert_true(contains(run.err, "it is a copy of copy.png"));
-    assert_true(contains(run.err, "small.png: left out, of another camera or size"));
+    assert_true(contains(run.err, "small.png: left out, of a camera, size or processing of which no two"));
     std::map<std::string, std::string> left_out;
     for (const Json &one : json["left_out"]) left_out[one["file"]] = one["reason"];
     assert_int_equal(left_out.size(), 7);
     assert_true(contains(left_out["x1.png"], "another group") && contains(left_out["y.png"], "no overlap"));
-    assert_true(contains(left_out["small.png"], "another camera") && contains(left_out["damaged.png"], "damaged.png"));
+    assert_true(contains(left_out["small.png"], "of a camera") && contains(left_out["damaged.png"], "damaged.png"));
     assert_true(json["seconds"]["register"].get<double>() > 0.0);
 }
 
@@ -122,7 +122,7 @@ void test_another_camera_in_a_chain(void **) {
     assert_int_equal(run.code, done);
     assert_int_equal(Json::parse(run.out)["images"].size(), 3);
     assert_true(contains(run.err, "img000.png, img001.png: left out, another group: only pictures of another camera"));
-    assert_true(contains(run.err, "img002.png: left out, of another camera or size"));
+    assert_true(contains(run.err, "img002.png: left out, of a camera, size or processing of which no two"));
 }
 
 // A picture that only one of another size joins to the others is not itself of another size.
@@ -130,9 +130,8 @@ void test_one_picture_behind_another_camera(void **) {
     if (is_missing()) return;
     const Outcome run = build_with_one_smaller("behind", {"--images", "5", "--seed", "62"}, "img001.png");
     assert_int_equal(run.code, done);
-    assert_true(contains(run.err, "img001.png: left out, of another camera or size"));
-    assert_true(
-        contains(run.err, "img000.png: left out, only pictures of another camera or size join it to the others"));
+    assert_true(contains(run.err, "img001.png: left out, of a camera, size or processing of which no two"));
+    assert_true(contains(run.err, "img000.png: left out, only pictures of another camera, size or processing join it"));
 }
 
 // Pictures that lensprof has made are no photographs of the camera, unless they are named.

@@ -292,6 +292,41 @@ void test_single_picture_is_left_out(void **) {
     assert_true(std::isnan(run.exposures[4].ev));
 }
 
+// Images of a camera that only another camera's join to the others of theirs: their exposures are found all the same,
+// also those of images that only such join.
+void test_groups_of_a_camera(void **) {
+    Simulation s = alternating<Simulation>();
+    const auto is_own = [](const lensprof_pair &p, uint32_t i, uint32_t j) {
+        return (p.image[0] == i && p.image[1] == j) || (p.image[0] == j && p.image[1] == i);
+    };
+    const auto is_cut = [&](const lensprof_pair &p) {  // 1 3 | 5 7 9, and 1 has pairs with 0 and 2 alone
+        return (p.image[0] % 2 && p.image[1] % 2 && p.image[0] < 5 && p.image[1] >= 5) || is_own(p, 1, 4)
+               || is_own(p, 1, 3);
+    };
+    s.pairs.erase(std::remove_if(s.pairs.begin(), s.pairs.end(), is_cut), s.pairs.end());
+    Run run(s);
+    assert_ok(run.fit(s, default_fit()));
+    assert_int_equal(run.result.left_out, 0);
+    assert_int_equal(run.cameras[1].images, 3);
+    assert_int_equal(run.cameras[1].attached, 2);
+    assert_int_equal(run.settings[1].images, 5);
+    const double gamma = gamma_of(s, run, 0);
+    for (uint32_t i = 0; i < s.images; i++) {
+        assert_true(grey_error(s, run, i) < 0.012);
+        assert_int_equal(run.quality[i].joined, 1);
+        if (i % 2)
+            assert_close((run.exposures[i].ev - run.exposures[9].ev) / gamma, s.exposures[i].ev - s.exposures[9].ev,
+                         0.03);
+    }
+    assert_true(run.quality[1].ev_sigma > 0.0 && run.quality[1].ev_sigma < 0.5);
+    // As the reference, such an image is one.
+    lensprof_fit_options options = default_fit();
+    options.reference = 1;
+    assert_ok(run.fit(s, options));
+    assert_int_equal(run.result.usable, 1);
+    assert_int_equal(run.result.left_out, 0);
+}
+
 // The reference's camera moves with the others: exposures are relative to its image all the same.
 void test_any_reference(void **) {
     const auto s = alternating<Simulation>();
@@ -422,6 +457,7 @@ int main() {
         cmocka_unit_test(test_cameras_apart),
         cmocka_unit_test(test_contradictions_join_nothing),
         cmocka_unit_test(test_single_picture_is_left_out),
+        cmocka_unit_test(test_groups_of_a_camera),
         cmocka_unit_test(test_any_reference),
         cmocka_unit_test(test_links_end_at_cameras),
         cmocka_unit_test(test_threads_change_nothing),

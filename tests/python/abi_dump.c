@@ -274,6 +274,8 @@ static void print_structs(void) {
     FIELD(lensprof_fit_camera, grey_ends);
     FIELD(lensprof_fit_camera, reference);
     FIELD(lensprof_fit_camera, setting);
+    FIELD(lensprof_fit_camera, attached);
+    FIELD(lensprof_fit_camera, reserved);
     STRUCT(lensprof_fit_result);
     FIELD(lensprof_fit_result, struct_size);
     FIELD(lensprof_fit_result, usable);

@@ -783,6 +783,8 @@ class FitCamera(Structure):
         ("grey_ends", c_uint32 * 10),
         ("reference", c_uint32),
         ("setting", c_uint32),
+        ("attached", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 

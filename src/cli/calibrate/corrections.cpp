@@ -21,7 +21,8 @@ std::string copy_key(const InputPicture &picture, const std::string &model) {
 }
 
 Correction job_of(const InputPicture &picture) {
-    Correction job{picture.file, picture.target, nullptr, {}, {}, 0, nullptr, 0, {}, {}};
+    Correction job;
+    job.source = picture.file, job.target = picture.target;
     lensprof_exposure_init(&job.own);
     lensprof_exposure_init(&job.wanted);
     job.pixels = uint64_t(picture.metadata.size.width) * picture.metadata.size.height;
@@ -35,10 +36,11 @@ using Reasons = std::map<std::string, std::string>;  // by file
 // By the project, whose images are found by their files: somebody may have edited it.
 void take_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons) {
     const std::string text = read_text(panorama.project, largest_text);
-    const Project project = read_project(panorama.project, true);
+    const Project project = read_project(panorama.project);
     const ImagesByFile images(project);
     const std::vector<lensprof_exposure> exposures = relative_to_joined(project);
     const lensprof_exposure mean = mean_exposure(joined_exposures(project, exposures));
+    const auto encoding = common_encoding(project);
     for (const InputPicture *picture : panorama.pictures) {
         const auto image = images.find(picture->file);
         if (!image || project.images[*image].left_out) {
@@ -50,7 +52,7 @@ void take_project(const Panorama &panorama, ByFile &corrected, Reasons &reasons)
         CorrectedPicture one{picture, panorama.name, exposures[*image].ev - mean.ev, copy_key(*picture, text),
                              job_of(*picture)};
         one.job.model = model_of_project(project, *image);
-        one.job.own = exposures[*image], one.job.wanted = mean;
+        one.job.own = exposures[*image], one.job.wanted = mean, one.job.encoding = encoding;
         one.job.model_name = std::filesystem::path(panorama.project).filename().string();
         corrected.emplace(picture->file, std::move(one));
     }

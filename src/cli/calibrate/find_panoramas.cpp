@@ -77,8 +77,8 @@ Groups register_groups(const CalibrateOptions &o, const std::vector<const InputP
         groups.unjoined[files[number]] = files[number] + ": no overlap with another picture was found";
     for (const uint32_t number : found.foreign)
         groups.unjoined[files[number]] =
-            files[number] + ": overlaps with pictures "
-            + (o.one_lens ? "that are camera raw files, or that are none where it is one" : of_another_body);
+            files[number] + ": overlaps with others, and is "
+            + (o.one_lens ? "the only camera raw file among them, or the only one that is none" : of_another_body);
     for (const uint32_t number : found.apart)
         groups.unjoined[files[number]] = files[number] + ": " + joined_by_another_body;
     for (const FoundProject &project : found.projects) groups.list.push_back(group_of(project, all));

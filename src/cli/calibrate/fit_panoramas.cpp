@@ -149,15 +149,19 @@ bool recall(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger) {
 void draw_preview(Panorama &panorama, Ledger &ledger, Progress &progress) {
     const std::string text = read_text(panorama.project, largest_text), key = digest_of_text("preview\n" + text);
     if (ledger.is_current(panorama.preview, key)) return;
-    const Project project = read_project(panorama.project, true);
+    const Project project = read_project(panorama.project);
     Fitted fitted;
     lensprof_fit_result_init(&fitted.result);
-    fitted.result.response = model_of_project(project, project.reference)->response[0];
     fitted.result.vignettings = 1;
+    fitted.reference = project.reference;
     for (uint32_t i = 0; i < project.images.size(); i++) {
         fitted.setting_of.push_back(i);
         fitted.settings.emplace_back();
         fitted.settings[i].vignetting[0] = project.images[i].vignetting;
+        fitted.camera_of.push_back(i);
+        fitted.cameras.emplace_back();
+        fitted.cameras[i].images = fitted.cameras[i].vignettings = 1;
+        fitted.cameras[i].response = model_of_project(project, i)->response[0];
     }
     fitted.exposures = relative_to_joined(project);
     for (size_t i = 0; i < project.images.size(); i++)

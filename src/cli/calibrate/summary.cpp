@@ -19,6 +19,19 @@ double corner_of(const Json &result) {
     return corner;
 }
 
+// "profile 3 stored", "profiles 3, 4 stored"; empty where none is.
+std::string stored_text(const Json &result) {
+    std::string ids;
+    size_t count = 0;
+    const auto add = [&](const Json &id) {
+        if (id.is_null()) return;
+        ids += (count++ ? ", " : "") + std::to_string(id.get<long long>());
+    };
+    for (const Json &setting : result["settings"]) add(setting["profile"]);
+    if (result["settings"].empty()) add(result["profile"]);
+    return count ? (count > 1 ? "profiles " : "profile ") + ids + " stored" : "";
+}
+
 // "  img000 (5 pictures): profile 3 stored, corners at 0.62 (-0.69 EV); reason".
 std::string line_of(const Panorama &panorama) {
     const Json &summary = panorama.summary, &result = summary["result"];
@@ -26,11 +39,11 @@ std::string line_of(const Panorama &panorama) {
     if (!result.is_object()) return text + "not fitted: " + summary["not_stored"].get<std::string>();
     const std::string reason = result["reason"].get<std::string>();
     if (!panorama.evens()) return text + "not usable: " + reason;
-    text += result["profile"].is_null() ? std::string("evened, no profile stored")
-                                        : format("profile %lld stored", static_cast<long long>(result["profile"]));
+    const std::string stored = stored_text(result);
+    text += stored.empty() ? "evened, no profile stored" : stored;
     const double corner = corner_of(result);
     if (corner > 0.0) text += format(", light in the corners %.2f (%+.2f EV)", corner, std::log2(corner));
-    if (result["profile"].is_null() && !summary["not_stored"].is_null())
+    if (stored.empty() && !summary["not_stored"].is_null())
         return text + ": " + summary["not_stored"].get<std::string>();
     return reason.empty() ? text : text + "; " + reason;
 }

@@ -78,7 +78,7 @@ constexpr uint32_t lens_flags =
 // Where the camera looked. A sequence is aligned from nothing but its pictures: all is unknown, but for a falloff that
 // a camera that stands still does not show.
 Project sequence(const Options &o) {
-    Project project = o.pto.empty() ? static_project(o.files, true) : read_project(o.pto, true);
+    Project project = o.pto.empty() ? static_project(o.files, true) : read_project(o.pto);
     if (project.images.size() < 2)
         throw Failure(ExitCode::not_usable,
                       (o.pto.empty() ? project.files[0] : o.pto)
@@ -165,17 +165,11 @@ std::vector<Correction> make_jobs(const Options &o, const Project &project, cons
     for (uint32_t i : frames) {
         std::filesystem::path name = std::filesystem::path(project.files[i]).filename();
         if (raw_kind(project.files[i]) || is_read_alone(project.files[i])) name.replace_extension(".tif");
-        jobs.push_back({project.files[i],
-                        (std::filesystem::path(o.folder()) / name).string(),
-                        nullptr,
-                        {},
-                        {},
-                        0,
-                        nullptr,
-                        0,
-                        "frames of " + std::filesystem::path(project.files[0]).filename().string() + " on",
-                        {},
-                        false});
+        Correction job;
+        job.source = project.files[i];
+        job.target = (std::filesystem::path(o.folder()) / name).string();
+        job.model_name = "frames of " + std::filesystem::path(project.files[0]).filename().string() + " on";
+        jobs.push_back(std::move(job));
     }
     if (!o.merge.empty()) {
         check_merge(o, project);

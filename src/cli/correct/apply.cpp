@@ -157,17 +157,6 @@ void check_shape(const Project &project, uint32_t image, const std::string &file
                                    camera.height));
 }
 
-// One response is applied to all images, and to each the falloff of its lens setting.
-void check_one_response(const Project &project) {
-    const auto &first = project.images[project.reference];
-    for (uint32_t i = 0; i < project.images.size(); i++) {
-        const auto &image = project.images[i];
-        if (image.response_type != first.response_type || !std::equal(image.emor, image.emor + 5, first.emor))
-            throw Failure(ExitCode::usage, project.path + ": image " + std::to_string(i) + " (" + project.names[i]
-                                               + ") has a response of its own; correct one camera at a time");
-    }
-}
-
 // A project without a result would change nothing, which nobody asks for on purpose.
 void check_has_result(const Project &project) {
     for (const auto &image : project.images) {
@@ -199,7 +188,7 @@ Source open_source(const Options &o) {
                       "say what to correct with: --profile ID, --from-db or --pto FILE; there is no "
                       "database of your own yet, and none is installed");
     if (!o.pto.empty()) {
-        source.project = std::make_unique<Project>(read_project(o.pto, true));
+        source.project = std::make_unique<Project>(read_project(o.pto));
         source.images = std::make_unique<ImagesByFile>(*source.project);
         source.exposures = relative_to_joined(*source.project);
         source.has_model = !from_store;
@@ -242,7 +231,8 @@ void check_opcodes(const Options &o, const std::string &file) {
 }
 
 Correction make_job(const Options &o, const Source &source, const NamedPicture &picture) {
-    Correction job{picture.file, target_name(o, picture), nullptr, {}, {}, 0, nullptr, 0, {}, {}, false};
+    Correction job;
+    job.source = picture.file, job.target = target_name(o, picture);
     lensprof_exposure_init(&job.own);
     if (source.project) {
         const uint32_t image = source.images->at(picture.file, "--pto");
@@ -340,10 +330,7 @@ Work plan_work(const Options &o, const Source &source, Streams &streams) {
     if (!o.sheet.empty()) format_of_name(o.sheet);  // for its errors, before anything is written
     check_targets(work.jobs, inputs, o.sheet);
     check_older_outputs(work.jobs, o.kind, o.has_output);
-    if (source.has_model) {
-        check_has_result(*source.project);
-        check_one_response(*source.project);
-    }
+    if (source.has_model) check_has_result(*source.project);
     if (o.merge) work.lit = placed_images(o, source, work, streams);
     return work;
 }
@@ -397,6 +384,15 @@ Corrected merge(const Options &o, const Source &source, const Work &work, Progre
     return write_from_overlaps(*source.project, placed, work.lit, o.kind, progress);
 }
 
+// Pictures of several cameras look alike only where one response encodes them.
+void encode_alike(const Project &project, std::vector<Correction> &jobs, Streams &streams) {
+    const auto encoding = common_encoding(project);
+    if (!encoding) return;
+    for (Correction &job : jobs) job.encoding = encoding;
+    note(streams, project.path + ": is of several cameras; what is written is encoded by the response of the reference's "
+                                 "(--output-exposure keep: each by its own)");
+}
+
 Corrected correct(const Options &o, const Source &source, Work &work, Streams &streams) {
     if (work.jobs.empty()) return {};
     lensprof_exposure reference;
@@ -406,6 +402,8 @@ Corrected correct(const Options &o, const Source &source, Work &work, Streams &s
                                                                : Exposure::mean;
     for (Correction &job : work.jobs)
         job.wanted = chosen == Exposure::keep ? job.own : chosen == Exposure::mean ? work.mean : reference;
+    if (source.has_model && chosen != Exposure::keep && !o.kind.linear && !o.kind.simulate)
+        encode_alike(*source.project, work.jobs, streams);
     make_folder(o.output);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;

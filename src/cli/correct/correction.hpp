@@ -21,13 +21,14 @@ namespace lensprof {
 struct Correction {
     std::string source, target;
     std::shared_ptr<const lensprof_profile> model;
-    lensprof_exposure own, wanted;        // what the picture got, and what it shall look like
-    int64_t profile_id = 0;               // 0 = the model is of no profile
-    std::shared_ptr<const Found> lookup;  // how the model was predicted; NULL = it was not
-    uint64_t pixels = 0;                  // of the source
-    std::string model_name;               // for the output's mark
-    std::string note;                     // what is to be said of it; empty = nothing
-    bool copies_dng = false;              // the target is the source with the falloff as an opcode, pixels untouched
+    std::shared_ptr<const lensprof_response> encoding;  // of the target; NULL = as the source's
+    lensprof_exposure own{}, wanted{};                  // what the picture got, and what it shall look like
+    int64_t profile_id = 0;                             // 0 = the model is of no profile
+    std::shared_ptr<const Found> lookup;                // how the model was predicted; NULL = it was not
+    uint64_t pixels = 0;                                // of the source
+    std::string model_name;                             // for the output's mark
+    std::string note;                                   // what is to be said of it; empty = nothing
+    bool copies_dng = false;  // the target is the source with the falloff as an opcode, pixels untouched
 };
 
 struct CorrectionKind {

@@ -1,5 +1,7 @@
 #include "cli/correct/project_model.hpp"
 
+#include <algorithm>
+
 namespace lensprof {
 
 std::shared_ptr<lensprof_profile> model_of_project(const Project &project, uint32_t image) {
@@ -10,11 +12,26 @@ std::shared_ptr<lensprof_profile> model_of_project(const Project &project, uint3
     return profile;
 }
 
-std::vector<lensprof_exposure> relative_to_joined(const Project &project) {
+// The project's, or the first image that its result is not without.
+static uint32_t joined_reference(const Project &project) {
     uint32_t reference = project.reference;
     for (uint32_t i = 0; i < project.images.size() && project.images[reference].left_out; i++)
         if (!project.images[i].left_out) reference = i;
-    return relative_exposures(project_exposures(project), reference);
+    return reference;
+}
+
+std::shared_ptr<const lensprof_response> common_encoding(const Project &project) {
+    const uint32_t reference = joined_reference(project);
+    const auto &first = project.images[reference];
+    const bool is_one = std::all_of(project.images.begin(), project.images.end(), [&](const lensprof_pto_image &image) {
+        return image.response_type == first.response_type && std::equal(image.emor, image.emor + 5, first.emor);
+    });
+    if (is_one) return nullptr;
+    return std::make_shared<lensprof_response>(model_of_project(project, reference)->response[0]);
+}
+
+std::vector<lensprof_exposure> relative_to_joined(const Project &project) {
+    return relative_exposures(project_exposures(project), joined_reference(project));
 }
 
 std::vector<lensprof_exposure> joined_exposures(const Project &project, const std::vector<lensprof_exposure> &all) {

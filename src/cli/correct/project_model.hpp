@@ -11,6 +11,10 @@ namespace lensprof {
 // Response and falloff of an image.
 std::shared_ptr<lensprof_profile> model_of_project(const Project &project, uint32_t image);
 
+// That of the reference, where images have several: what all are encoded by, so that they look alike. NULL where they
+// have one.
+std::shared_ptr<const lensprof_response> common_encoding(const Project &project);
+
 // The project's exposures, relative to its reference, or where the result is without that to the first image that it
 // has.
 std::vector<lensprof_exposure> relative_to_joined(const Project &project);

@@ -150,6 +150,23 @@ CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const P
     return {kind, KindFrom::pictures};
 }
 
+// For what is found of lens settings and cameras.
+static void make_room(const std::vector<lensprof_fit_image> &images, Fitted &fitted) {
+    uint32_t last_setting = 0, last_camera = 0;
+    for (const lensprof_fit_image &image : images) {
+        fitted.setting_of.push_back(image.setting);
+        fitted.camera_of.push_back(image.camera);
+        last_setting = std::max(last_setting, image.setting);
+        last_camera = std::max(last_camera, image.camera);
+    }
+    fitted.settings.resize(last_setting + 1);
+    for (auto &setting : fitted.settings) lensprof_fit_setting_init(&setting);
+    fitted.cameras.resize(last_camera + 1);
+    for (auto &camera : fitted.cameras) lensprof_fit_camera_init(&camera);
+    fitted.result.settings = fitted.settings.data(), fitted.result.cameras = fitted.cameras.data();
+    fitted.result.setting_count = last_setting + 1, fitted.result.camera_count = last_camera + 1;
+}
+
 Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,
            std::vector<lensprof_fit_image_quality> *quality) {
     Fitted fitted;
@@ -160,15 +177,7 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
         quality->resize(count);
         fitted.result.image_quality = quality->data();
     }
-    uint32_t last = 0;
-    for (const lensprof_fit_image &image : input.images) {
-        fitted.setting_of.push_back(image.setting);
-        last = std::max(last, image.setting);
-    }
-    fitted.settings.resize(last + 1);
-    for (auto &setting : fitted.settings) lensprof_fit_setting_init(&setting);
-    fitted.result.settings = fitted.settings.data();
-    fitted.result.setting_count = last + 1;
+    make_room(input.images, fitted);
     input.options.progress = on_progress;
     input.options.progress_user = &progress;
     lensprof_error error{};
@@ -184,6 +193,7 @@ Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progres
     check(status, item, &error);
     fitted.result.image_quality = nullptr;
     fitted.result.settings = nullptr, fitted.result.setting_count = 0;
+    fitted.result.cameras = nullptr, fitted.result.camera_count = 0;
     fitted.reference = std::isnan(fitted.exposures[reference].ev) ? fitted.result.reference : reference;
     fitted.exposures = relative_exposures(fitted.exposures, fitted.reference);
     return fitted;
@@ -217,10 +227,29 @@ void name_left_out(const BuildReport &report, Streams &streams) {
     }
 }
 
+// Whether the camera of an image has a part; of one camera it has.
+static bool is_camera_joined(const BuildReport &report, size_t image) {
+    return report.cameras.empty() || report.cameras[report.camera_of[image]].found.joined;
+}
+
+// Names the cameras that have no part, and why.
+static void name_cameras(const BuildReport &report, const std::string &source, Streams &streams) {
+    for (const CameraReport &camera : report.cameras) {
+        if (camera.found.joined) continue;
+        const std::string left_out = source + ": " + camera.label + ": left out, ";
+        if (!camera.found.images)
+            warn(streams, left_out + "for no two of its pictures share enough; give more of them, or --one-lens to take "
+                                     "all as of one camera");
+        else
+            warn(streams, left_out + "for what its pictures share with those of others is too little, or does not agree; "
+                                     "give more that overlap");
+    }
+}
+
 // Names the images that do not agree with the others; where the verdict is about them, too.
 void name_unjoined(const BuildReport &report, Streams &streams) {
     for (size_t i = 0; i < report.quality.size() && report.fit.left_out; i++)
-        if (!report.quality[i].joined)
+        if (!report.quality[i].joined && is_camera_joined(report, i))
             warn(streams, report.names[i]
                               + ": left out, for it does not agree with the others, or no pair joins it to them; check "
                                 "its alignment");
@@ -261,7 +290,7 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
         if (!setting.found.images || !(setting.found.usable || store.force)) continue;
         setting.has_same_key = !keys.insert(describe_key(setting.key)).second;
         if (setting.has_same_key) continue;  // a lookup could not tell them apart
-        setting.profile_id = store_setting(result_of(report.fit, setting.found), setting.found.images, setting.key,
+        setting.profile_id = store_setting(result_of(report, setting), setting.found.images, setting.key,
                                            setting.is_reference, store, finish);
         if (setting.is_reference) report.profile_id = setting.profile_id;
     }
@@ -325,7 +354,7 @@ int finish_fit(BuildReport &report, const lensprof_profile_key &key, const Store
     if (report.fit.usable && !report.verdict.text.empty()) warn(streams, finish.source + ": " + report.verdict.text);
     const bool evens = finish.evens_pictures && report.fit.evens;
     if (report.fit.usable) name_left_out(report, streams);
-    if (report.fit.usable || evens) name_unjoined(report, streams);
+    if (report.fit.usable || evens) name_cameras(report, finish.source, streams), name_unjoined(report, streams);
     const bool is_good = is_any_usable(report) || (store.no_store && evens);
     if (!report.fit.usable && is_good)
         warn(streams, finish.source

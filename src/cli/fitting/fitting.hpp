@@ -69,15 +69,26 @@ struct Fitted {
     std::vector<lensprof_exposure> exposures;    // relative to the reference; ev is NaN of images that were left out
     std::vector<lensprof_fit_setting> settings;  // by the images' `setting`; `result` has that of the reference
     std::vector<uint32_t> setting_of;            // of each image
+    std::vector<lensprof_fit_camera> cameras;    // by the images' `camera`; `result` has that of the reference
+    std::vector<uint32_t> camera_of;             // of each image
     uint32_t reference = 0;                      // the one asked for, or where that was left out the result's own
 
     // Whether the pictures may be corrected with it; a profile to store has to be usable.
     bool corrects() const { return result.usable || result.evens; }
 
-    // The curves of an image, as many as the result has.
+    // The curves of an image, and how many its camera's fit has.
     const lensprof_vignetting *falloff_of(uint32_t image) const {
         return settings.empty() ? result.vignetting : settings[setting_of[image]].vignetting;
     }
+    uint32_t falloff_curves_of(uint32_t image) const {
+        return is_of_own_camera(image) ? cameras[camera_of[image]].vignettings : result.vignettings;
+    }
+    const lensprof_response &response_of(uint32_t image) const {
+        return is_of_own_camera(image) ? cameras[camera_of[image]].response : result.response;
+    }
+
+    // Whether the fit of an image is that of one camera of several.
+    bool is_of_own_camera(uint32_t image) const { return !cameras.empty() && cameras[camera_of[image]].images; }
 };
 
 // Fits, with `progress` shown. `item` names the input in a Failure. `quality` may be NULL.

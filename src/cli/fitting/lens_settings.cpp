@@ -39,7 +39,33 @@ lensprof_profile_key stated_key(lensprof_profile_key key, const StoreOptions &st
     if (store.focal != LENSPROF_UNKNOWN) key.focal_mm = store.focal;
     if (store.distance != LENSPROF_UNKNOWN) key.distance_m = store.distance;
     if (!store.lens.empty()) *key.lens = '\0';
+    if (!store.camera.empty()) *key.camera_model = '\0';
     return key;
+}
+
+// Whether two images are of one camera: EXIF says it, unless their sizes or processings differ, or the project, unless
+// EXIF says that they are not.
+bool is_same_camera(const Project &project, const std::vector<lensprof_profile_key> &keys, uint32_t i, uint32_t j) {
+    const lensprof_profile_key &a = keys[i], &b = keys[j];
+    const bool is_stated = *a.camera_model && *b.camera_model;
+    const bool is_alike =
+        std::strcmp(a.camera_model, b.camera_model) == 0 && std::strcmp(a.camera_maker, b.camera_maker) == 0;
+    if (is_stated && !is_alike) return false;
+    if (project.images[i].response_of == project.images[j].response_of) return true;
+    const lensprof_camera &one = project.images[i].camera, &other = project.images[j].camera;
+    return is_stated && a.processing == b.processing
+           && std::minmax(one.width, one.height) == std::minmax(other.width, other.height);
+}
+
+// Numbers cameras in the order of their images.
+void number_cameras(const Project &project, const std::vector<lensprof_profile_key> &keys, LensSettings &settings) {
+    auto &first = settings.first_of_camera;
+    for (uint32_t i = 0; i < project.images.size(); i++) {
+        const auto same =
+            std::find_if(first.begin(), first.end(), [&](uint32_t j) { return is_same_camera(project, keys, i, j); });
+        settings.camera_of_image.push_back(static_cast<uint32_t>(same - first.begin()));
+        if (same == first.end()) first.push_back(i);
+    }
 }
 
 // Numbers settings in the order of their images.
@@ -63,9 +89,12 @@ LensSettings in_order(const std::vector<uint32_t> &found, const std::vector<uint
 LensSettings lens_settings(const Project &project, const std::vector<PictureMetadata> &metadata,
                            const StoreOptions &store, bool one_lens) {
     const auto count = static_cast<uint32_t>(project.images.size());
-    if (one_lens) return {std::vector<uint32_t>(count, 0), {project.reference}};
+    const std::vector<uint32_t> all(count, 0), reference{project.reference};
+    if (one_lens) return {all, reference, all, reference};
     std::vector<lensprof_profile_key> keys;
     for (const PictureMetadata &own : metadata) keys.push_back(stated_key(own.key, store));
+    LensSettings cameras;
+    number_cameras(project, keys, cameras);
     std::vector<uint32_t> order(count), found(count), first;
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(),
@@ -74,8 +103,8 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
         const auto is_possible = [&](uint32_t other) {
             const auto &a = project.images[i], &b = project.images[other];
             const bool is_upright = a.camera.height > a.camera.width;  // centres are in the frame's own axes
-            return a.vignetting_of == b.vignetting_of && is_upright == (b.camera.height > b.camera.width)
-                   && is_same_setting(keys[i], keys[other]);
+            return cameras.camera_of_image[i] == cameras.camera_of_image[other] && a.vignetting_of == b.vignetting_of
+                   && is_upright == (b.camera.height > b.camera.width) && is_same_setting(keys[i], keys[other]);
         };
         std::vector<uint32_t> possible;
         for (uint32_t n = 0; n < first.size(); n++)
@@ -92,7 +121,19 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
                       project.path + ": its pictures have " + std::to_string(first.size()) + " lens settings, and "
                           + std::to_string(LENSPROF_SETTINGS_MAX)
                           + " are the most of one fit; give fewer pictures, or --one-lens to take all as one");
-    return in_order(found, first);
+    LensSettings settings = in_order(found, first);
+    settings.camera_of_image = cameras.camera_of_image, settings.first_of_camera = cameras.first_of_camera;
+    return settings;
+}
+
+void join_cameras(LensSettings &settings) {
+    settings.camera_of_image.assign(settings.camera_of_image.size(), 0);
+    settings.first_of_camera.resize(1);
+}
+
+std::string describe_camera(const lensprof_profile_key &key, const std::string &first_image) {
+    const std::string name = camera_name(key.camera_maker, key.camera_model);
+    return name.empty() ? "camera of " + first_image : name;
 }
 
 std::string describe_setting(const lensprof_profile_key &key, const std::string &first_image) {

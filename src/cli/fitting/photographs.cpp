@@ -75,13 +75,6 @@ void leave_out(const std::vector<uint32_t> &numbers, const std::vector<std::stri
     warn(streams, listed(numbers, names) + ": left out, " + reason);
 }
 
-std::string why_apart(const FoundProject &other, const FoundProject &project) {
-    if (!other.meets_another || !project.meets_another)
-        return "another group, which overlaps with none of these; give its pictures alone";
-    if (other.body != project.body) return std::string("another group, ") + of_another_body;
-    return std::string("another group: ") + joined_by_another_body;
-}
-
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
                   LeftOut &left_out, Streams &streams) {
     const FoundProject &project = found.projects[0];
@@ -97,9 +90,20 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
                       100.0 * project.residual,
                       project.kind == SceneKind::plane ? "a camera that moved over a plane, compared where they match"
                                                        : "a camera that turned about one point"));
+    const size_t cameras = std::set<uint32_t>(project.bodies.begin(), project.bodies.end()).size();
+    if (cameras > 1)
+        note(streams,
+             label
+                 + format(": the pictures are of %zu cameras, sizes or processings; each gets a response of its "
+                          "own, unless --one-lens takes all as of one",
+                          cameras));
     if (!project.cameras_fit()) warn(streams, label + no_cameras_fit);
     for (size_t n = 1; n < found.projects.size(); n++)
-        leave_out(found.projects[n].pictures, names, why_apart(found.projects[n], project), left_out, streams);
+        leave_out(found.projects[n].pictures, names,
+                  found.projects[n].whole == project.whole
+                      ? std::string("another group: ") + joined_by_another_body
+                      : "another group, which overlaps with none of these; give its pictures alone",
+                  left_out, streams);
     if (!found.foreign.empty()) leave_out(found.foreign, names, of_another_body, left_out, streams);
     if (!found.apart.empty()) leave_out(found.apart, names, joined_by_another_body, left_out, streams);
     if (!found.alone.empty())
@@ -183,7 +187,8 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
 std::string text_of_found(const FoundProject &found) {
     std::vector<ProjectImage> images;
     for (size_t n = 0; n < found.pictures.size(); n++)
-        images.push_back({found.cameras[n], format("image%zu", n), 0, found.lenses[n]});  // a name may hold quotes
+        images.push_back(
+            {found.cameras[n], format("image%zu", n), found.bodies[n], found.lenses[n]});  // a name may hold quotes
     return new_project_text("found by lensprof build", images, found.points);
 }
 

@@ -27,15 +27,16 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
 // is named on standard error. Failure for raw files among others (usage), and where fewer than two are left.
 Photographs find_photographs(const std::vector<std::string> &words, Streams &streams);
 
-// Finds the overlaps. The project is that of the largest group of one camera; what it leaves out is named on standard
+// Finds the overlaps. The project is that of the largest group; what it leaves out is named on standard
 // error. With `one_lens` all pictures are taken as of one. All unknowns are asked for. Failure (not usable) where no
 // two overlap.
 Project project_of_pictures(const Photographs &list, bool one_lens, Progress &progress, Streams &streams);
 
 // Why a picture is not part of a project that it overlaps with, directly or through others.
-constexpr const char *of_another_body = "of another camera or size than most (--one-lens takes all as one)";
+constexpr const char *of_another_body =
+    "of a camera, size or processing of which no two pictures overlap (--one-lens takes all as of one)";
 constexpr const char *joined_by_another_body =
-    "only pictures of another camera or size join it to the others (--one-lens takes all as one)";
+    "only pictures of another camera, size or processing join it to the others (--one-lens takes all as of one)";
 
 // What is to be said of a project whose cameras do not fit.
 constexpr const char *no_cameras_fit =

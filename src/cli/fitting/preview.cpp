@@ -54,8 +54,9 @@ Tile tile_of(const Project &project, uint32_t i, const Fitted &fitted, const len
     Tile tile;
     tile.before = applied(source, options, project.files[i]);
     options.input = options.output = LENSPROF_ENCODING_RESPONSE;
-    options.response = &fitted.result.response;
-    options.vignettings = fitted.result.vignettings, options.vignetting = fitted.falloff_of(i);
+    options.response = &fitted.response_of(i);
+    options.output_response = &fitted.response_of(fitted.reference), options.output_responses = 1;
+    options.vignettings = fitted.falloff_curves_of(i), options.vignetting = fitted.falloff_of(i);
     options.source = fitted.exposures[i], options.target = wanted;
     tile.after = applied(source, options, project.files[i]);
     tile.camera = project.images[i].camera;

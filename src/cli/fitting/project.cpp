@@ -25,15 +25,6 @@ uint32_t find_reference(const Project &project) {
     return 0;
 }
 
-// The fit knows one response.
-void check_one_camera(const Project &project) {
-    for (uint32_t i = 1; i < project.images.size(); i++)
-        if (project.images[i].response_of != project.images[0].response_of)
-            throw Failure(ExitCode::usage, project.path + ": image " + std::to_string(i) + " (" + project.names[i]
-                          + ") is not linked to image 0 in Ra..Re, which makes it another camera; link them in Hugin (or "
-                            "give build --one-lens)");
-}
-
 // Failure where the frame of a picture is not the one of the project.
 void check_size(const Project &project, uint32_t i, const Picture &header) {
     const auto &camera = project.images[i].camera;
@@ -115,7 +106,7 @@ void add_image(Project &project) {
     project.images.push_back(image);
 }
 
-Project read_project(const std::string &path, bool one_lens) {
+Project read_project(const std::string &path) {
     Project project;
     project.path = path;
     project.pto = read_pto(path);
@@ -126,7 +117,6 @@ Project read_project(const std::string &path, bool one_lens) {
         project.files.push_back((folder / project.names[i]).string());
         check_name(project, i);
     }
-    if (!one_lens) check_one_camera(project);
     project.reference = find_reference(project);
     return project;
 }

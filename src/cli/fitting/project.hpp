@@ -29,9 +29,8 @@ struct Project {
     double register_s = 0.0;
 };
 
-// Reads a project. The reference is the first image whose Eev is not asked for, else image 0. With `one_lens`, images
-// that are not linked in their response are taken as of one camera; otherwise that is a Failure.
-Project read_project(const std::string &path, bool one_lens);
+// Reads a project. The reference is the first image whose Eev is not asked for, else image 0.
+Project read_project(const std::string &path);
 
 // Takes the next image of the Pto; its name and file are the caller's to add.
 void add_image(Project &project);

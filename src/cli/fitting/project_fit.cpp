@@ -160,15 +160,55 @@ void refer_to(uint32_t reference, FitInput &input) {
     own = reference;
 }
 
-// The images' settings, where the method fits several.
+// The images' settings, where the method fits several, and cameras.
 void set_settings(const ProjectFitOptions &o, ProjectFit &done, Streams &streams) {
     LensSettings &settings = done.settings;
-    if (settings.are_several() && o.fit.method == LENSPROF_METHOD_TRANSFER_FUNCTION) {
+    const bool is_of_one = o.fit.method == LENSPROF_METHOD_TRANSFER_FUNCTION;  // of one falloff a camera
+    if (is_of_one && settings.first.size() > settings.first_of_camera.size()) {
         warn(streams, "--method transfer-function: estimates one falloff, and these pictures are at "
                           + counted(settings.first.size(), "lens setting") + "; transfer and radiance estimate each");
-        settings = {std::vector<uint32_t>(settings.of_image.size(), 0), {settings.first[0]}};
+        settings.of_image = settings.camera_of_image, settings.first = settings.first_of_camera;
     }
-    for (size_t i = 0; i < done.input.images.size(); i++) done.input.images[i].setting = settings.of_image[i];
+    for (size_t i = 0; i < done.input.images.size(); i++) {
+        done.input.images[i].setting = settings.of_image[i];
+        done.input.images[i].camera = settings.camera_of_image[i];
+    }
+}
+
+// Failure (usage) for images of several cameras that are to be held to one response though theirs differ, or of more
+// cameras than a fit takes, or each of its own.
+void check_cameras(const Project &project, uint32_t free, LensSettings &settings) {
+    if (!settings.are_of_several_cameras()) return;
+    const size_t cameras = settings.first_of_camera.size();
+    const auto refuse = [&](const std::string &why) {
+        throw Failure(ExitCode::usage, project.path + ": its images are of " + std::to_string(cameras)
+                                           + " cameras, by their links in Ra..Re and by EXIF" + why);
+    };
+    if (!(free & LENSPROF_FREE_RESPONSE)) {
+        const auto &first = project.images[settings.first_of_camera[0]];
+        for (const uint32_t i : settings.first_of_camera) {
+            const auto &image = project.images[i];
+            if (image.response_type != first.response_type || !std::equal(image.emor, image.emor + 5, first.emor))
+                refuse(", and the response of " + project.names[i]
+                       + " is to be held beside another; estimate the responses, or give one camera at a time");
+        }
+        join_cameras(settings);
+    } else if (cameras == project.images.size()) {
+        refuse(", no two of one; give more pictures of each, or --one-lens to take all as of one");
+    } else if (cameras > LENSPROF_CAMERAS_MAX) {
+        refuse(format(", and %d are the most of one fit; give fewer, or --one-lens to take all as of one",
+                      LENSPROF_CAMERAS_MAX));
+    }
+}
+
+// The kind of all cameras, where pictures say it; any where they differ.
+CameraKind kind_of_all(const ProjectFitOptions &o, const std::vector<PictureMetadata> &metadata,
+                       const LensSettings &settings, const CameraKind &of_reference) {
+    for (const uint32_t first : settings.first_of_camera)
+        if (of_reference.from != KindFrom::option && settings.are_of_several_cameras()
+            && camera_kind_of(o.fit, metadata[first].key, metadata[first]).kind != of_reference.kind)
+            return {};
+    return of_reference;
 }
 
 // Things look different from another side, which in few pictures is taken for falloff.
@@ -191,8 +231,13 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
     for (uint32_t s = 0; s < settings.first.size(); s++) {
         const uint32_t first = settings.first[s];
         SettingReport setting;
+        setting.camera = settings.camera_of_image[first];
         setting.key = override_key(metadata[first].key, metadata[first].size, o.store, project.files[first]);
         setting.label = describe_setting(setting.key, project.names[first]);
+        if (settings.are_of_several_cameras())
+            setting.label =
+                describe_camera(metadata[first].key, project.names[settings.first_of_camera[setting.camera]]) + ", "
+                + setting.label;
         for (const SettingReport &other : report.settings)
             if (other.label == setting.label) setting.label += ", from " + project.names[first];
         setting.is_reference = s == settings.of_image[done.best.result.reference];
@@ -203,14 +248,38 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
     }
 }
 
+// The same of each camera.
+void report_cameras(const Project &project, const std::vector<PictureMetadata> &metadata, ProjectFit &done) {
+    BuildReport &report = done.report;
+    const LensSettings &settings = done.settings;
+    if (!settings.are_of_several_cameras()) return;
+    report.camera_of = settings.camera_of_image;
+    for (uint32_t k = 0; k < settings.first_of_camera.size(); k++) {
+        const uint32_t first = settings.first_of_camera[k];
+        CameraReport camera;
+        camera.label = describe_camera(metadata[first].key, project.names[first]);
+        for (const CameraReport &other : report.cameras)
+            if (other.label == camera.label) camera.label += ", from " + project.names[first];
+        camera.is_reference = k == settings.camera_of_image[done.best.result.reference];
+        camera.found = done.best.cameras[k];
+        report.cameras.push_back(camera);
+    }
+}
+
 constexpr uint32_t project_modes = 5;  // Ra..Re
 
 // A project holds five modes and one falloff: what is best with these, not what is left of something better.
 Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, const std::string &item,
                        Progress &progress) {
-    bool fits = best.result.response.modes <= project_modes && best.result.vignettings == 1;
+    const auto can_hold = [](const auto &found) {
+        return found.response.modes <= project_modes && found.vignettings == 1;
+    };
+    bool fits = can_hold(best.result);
+    uint32_t modes = std::min<uint32_t>(best.result.response.modes, project_modes);
+    for (const lensprof_fit_camera &camera : best.cameras)  // joining them makes tables, whose modes are not known
+        if (camera.images) modes = project_modes, fits = fits && can_hold(camera);
     if (fits || !(input.options.free & LENSPROF_FREE_RESPONSE)) return best;
-    input.options.modes = std::min<uint32_t>(best.result.response.modes, project_modes);
+    input.options.modes = modes;
     input.options.vignettings = 1;
     return fit(input, reference, item, progress, nullptr);
 }
@@ -253,13 +322,15 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     report.register_s = project.register_s;
     report.reference = o.reference.empty() ? project.reference : image_of_word(project, o.reference);
     input.options = project_options(o, project, input.fixed);
-    input.options.camera_kind = report.camera_kind.kind;
     report.prior_id = prior.id;
     report.no_prior = prior.reason;
     report.prior_is_composed = prior.is_composed;
     input.options.profile = prior.profile.get();
     check_unknowns(o, project, input.options);
     done.settings = lens_settings(project, metadata, o.store, o.one_lens);
+    check_cameras(project, input.options.free, done.settings);
+    report.camera_kind = kind_of_all(o, metadata, done.settings, report.camera_kind);
+    input.options.camera_kind = report.camera_kind.kind;
     Pictures pictures = get_points(o, project, done);
     stop_if_interrupted();
     if (project.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
@@ -277,7 +348,9 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     }
     done.item = o.points.empty() ? project.path : o.points;
     done.best = fit(input, report.reference, done.item, done.progress, &report.quality);
-    if (!pictures.empty() && may_join_more(o, done.best, report.links)) look_again(o, project, pictures, done);
+    const bool is_of_one = !done.settings.are_of_several_cameras();  // light is compared by one response
+    if (is_of_one && !pictures.empty() && may_join_more(o, done.best, report.links))
+        look_again(o, project, pictures, done);
     report.fit = done.best.result;
     report.verdict = verdict_of(done.best.result);
     warn_of_few(project, done.best, streams);
@@ -285,6 +358,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
         report.verdict.text += " (Er and Eb on the v lines, or --free all)";
     name_image(project.names, report.verdict);
     report_settings(o, project, metadata, done);
+    report_cameras(project, metadata, done);
     report.exposures = done.best.exposures;
     if (done.best.reference != report.reference)
         warn(streams, project.names[report.reference] + ": the reference was left out; exposures are relative to "
@@ -301,11 +375,23 @@ std::string result_text(ProjectFit &done, Project &project, const std::string &p
           project.path, &error);
     if (done.settings.are_several()) {
         std::vector<lensprof_vignetting> falloffs;
-        for (const lensprof_fit_setting &setting : written.settings)
-            falloffs.push_back(green_falloff(setting.images ? result_of(written.result, setting) : written.result));
+        for (uint32_t s = 0; s < written.settings.size(); s++) {
+            const lensprof_fit_setting &setting = written.settings[s];
+            const uint32_t curves = written.falloff_curves_of(done.settings.first[s]);
+            falloffs.push_back(setting.images ? setting.vignetting[curves == 3 ? 1 : 0]
+                                              : green_falloff(written.result));
+        }
         check(lensprof_pto_set_settings(project.pto.get(), done.settings.of_image.data(),
                                         static_cast<uint32_t>(done.settings.of_image.size()), falloffs.data(),
                                         static_cast<uint32_t>(falloffs.size()), &error),
+              project.path, &error);
+    }
+    if (done.settings.are_of_several_cameras()) {
+        std::vector<lensprof_response> responses;
+        for (const uint32_t first : done.settings.first_of_camera) responses.push_back(written.response_of(first));
+        check(lensprof_pto_set_cameras(project.pto.get(), done.settings.camera_of_image.data(),
+                                       static_cast<uint32_t>(done.settings.camera_of_image.size()), responses.data(),
+                                       static_cast<uint32_t>(responses.size()), &error),
               project.path, &error);
     }
     return project_text_at(project, path);

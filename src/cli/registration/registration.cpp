@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <new>
+#include <set>
 #include <tuple>
 
 #include "cli/pictures/metadata.hpp"
@@ -161,16 +163,72 @@ std::vector<PictureOptics> optics_of(const std::vector<RegisteredPicture> &pictu
     return optics;
 }
 
-// Takes links between cameras away; returns which pictures have one.
-std::vector<bool> part_cameras(const std::vector<uint32_t> &bodies, std::vector<PictureLink> &links) {
-    std::vector<bool> meets(bodies.size());
-    const auto parts = [&](const PictureLink &link) {
-        const bool differ = bodies[link.picture[0]] != bodies[link.picture[1]];
-        if (differ) meets[link.picture[0]] = meets[link.picture[1]] = true;
-        return differ;
-    };
-    links.erase(std::remove_if(links.begin(), links.end(), parts), links.end());
+// Which pictures are of projects, and their groups: a body takes part in a group where two of its pictures there
+// overlap.
+class Grouping {
+public:
+    Grouping(const std::vector<uint32_t> &bodies, const std::vector<PictureLink> &links)
+        : takes_(bodies.size(), true), groups_(groups_of(bodies.size(), links)) {
+        while (drop(bodies, links)) groups_ = groups_of(bodies.size(), kept(links));
+    }
+
+    bool takes(uint32_t picture) const { return takes_[picture]; }
+    uint32_t group(uint32_t picture) const { return groups_[picture]; }
+
+private:
+    // Takes pictures of bodies without a part in their group out; false where there are none. That may cut groups.
+    bool drop(const std::vector<uint32_t> &bodies, const std::vector<PictureLink> &links) {
+        std::set<std::pair<uint32_t, uint32_t>> parts;  // groups and bodies
+        for (const PictureLink &link : kept(links))
+            if (bodies[link.picture[0]] == bodies[link.picture[1]])
+                parts.insert({groups_[link.picture[0]], bodies[link.picture[0]]});
+        bool any = false;
+        for (uint32_t i = 0; i < takes_.size(); i++) {
+            if (!takes_[i] || parts.count({groups_[i], bodies[i]})) continue;
+            takes_[i] = false, any = true;
+        }
+        return any;
+    }
+    // Without their matches, which nothing here needs.
+    std::vector<PictureLink> kept(const std::vector<PictureLink> &links) const {
+        std::vector<PictureLink> some;
+        for (const PictureLink &link : links) {
+            if (!takes_[link.picture[0]] || !takes_[link.picture[1]]) continue;
+            some.emplace_back();
+            std::copy(link.picture, link.picture + 2, some.back().picture);
+        }
+        return some;
+    }
+
+    std::vector<bool> takes_;
+    std::vector<uint32_t> groups_;
+};
+
+// Pictures that overlap with another.
+std::vector<bool> which_meet(size_t pictures, const std::vector<PictureLink> &links) {
+    std::vector<bool> meets(pictures);
+    for (const PictureLink &link : links) meets[link.picture[0]] = meets[link.picture[1]] = true;
     return meets;
+}
+
+// Takes links between raw files and others away: no project has both.
+void part_raw(const std::vector<std::string> &files, std::vector<PictureLink> &links) {
+    std::vector<bool> is_raw;
+    for (const std::string &file : files) is_raw.push_back(raw_kind(file).has_value());
+    const auto parts = [&](const PictureLink &link) { return is_raw[link.picture[0]] != is_raw[link.picture[1]]; };
+    links.erase(std::remove_if(links.begin(), links.end(), parts), links.end());
+}
+
+// Pictures that are in no project, by what they overlap with.
+void name_single(const Grouping &grouping, const std::vector<uint32_t> &bodies, const std::vector<bool> &meets,
+                 const std::vector<RegisteredPicture> &pictures, Registration &result) {
+    std::set<uint32_t> taken;  // bodies
+    for (uint32_t i = 0; i < bodies.size(); i++)
+        if (grouping.takes(i)) taken.insert(bodies[i]);
+    for (uint32_t i = 0; i < bodies.size(); i++) {
+        if (grouping.takes(i) || !pictures[i].failure.empty()) continue;
+        (!meets[i] ? result.alone : taken.count(bodies[i]) ? result.apart : result.foreign).push_back(i);
+    }
 }
 
 Registration registered(const std::vector<std::string> &files, bool as_one, Progress &progress) {
@@ -183,31 +241,23 @@ Registration registered(const std::vector<std::string> &files, bool as_one, Prog
     }
     std::vector<PictureLink> links = find_links(features, progress);
     const std::vector<uint32_t> bodies = bodies_of(files, pictures, as_one);
-    const std::vector<bool> meets = part_cameras(bodies, links);
-    const std::vector<uint32_t> groups = groups_of(pictures.size(), links);
+    const std::vector<uint32_t> wholes = groups_of(pictures.size(), links);
+    const std::vector<bool> meets = which_meet(pictures.size(), links);
+    part_raw(files, links);
+    const Grouping grouping(bodies, links);
+    name_single(grouping, bodies, meets, pictures, result);
     std::map<uint32_t, std::vector<uint32_t>> members;
     for (uint32_t i = 0; i < pictures.size(); i++)
-        if (pictures[i].failure.empty()) members[groups[i]].push_back(i);
+        if (grouping.takes(i)) members[grouping.group(i)].push_back(i);
     for (const auto &[group, numbers] : members) {
         progress.update("finding cameras", static_cast<double>(group) / static_cast<double>(members.size()));
-        if (numbers.size() == 1) {
-            (meets[numbers[0]] ? result.foreign : result.alone).push_back(numbers[0]);
-            continue;
-        }
         result.projects.push_back(project_of(numbers, optics_of(pictures, numbers), links_within(links, numbers)));
-        result.projects.back().body = bodies[numbers[0]];
-        result.projects.back().meets_another =
-            std::any_of(numbers.begin(), numbers.end(), [&](uint32_t number) { return meets[number]; });
+        result.projects.back().whole = wholes[numbers[0]];
+        for (const uint32_t i : numbers) result.projects.back().bodies.push_back(bodies[i]);
     }
     std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {
         return a.pictures.size() > b.pictures.size();
     });
-    const auto is_foreign = [&](uint32_t number) {
-        return result.projects.empty() || bodies[number] != result.projects[0].body;
-    };
-    const auto of_first = std::stable_partition(result.foreign.begin(), result.foreign.end(), is_foreign);
-    result.apart.assign(of_first, result.foreign.end());
-    result.foreign.erase(of_first, result.foreign.end());
     return result;
 }
 

@@ -13,14 +13,6 @@ namespace lensprof {
 // False where all is light as the centre is: a falloff held at none, or not measured, as by `bracket`.
 inline bool has_falloff(const lensprof_vignetting &v) { return v.k[0] != 0.0 || v.k[1] != 0.0 || v.k[2] != 0.0; }
 
-// A result with what was found of a lens setting in the place of what it has of the reference's.
-inline lensprof_fit_result result_of(const lensprof_fit_result &result, const lensprof_fit_setting &setting) {
-    lensprof_fit_result own = result;
-    lensprof_error error{};
-    check(lensprof_fit_result_take_setting(&own, &setting, &error), "fit", &error);
-    return own;
-}
-
 // What a fit found, and how sure it is; key and origin are still empty.
 inline std::unique_ptr<lensprof_profile> profile_of(const lensprof_fit_result &fit,
                                                     const lensprof_fit_options *options = nullptr, size_t images = 0) {

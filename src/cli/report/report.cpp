@@ -197,6 +197,7 @@ Json images_json(const BuildReport &report) {
                       {"ev", std::isnan(e.ev) ? Json() : Json(e.ev)},
                       {"white_balance", is_left_out(report, i) ? Json() : numbers(e.white_balance, 3)}};
         if (!report.settings.empty()) image["setting"] = report.setting_of[i];
+        if (!report.cameras.empty()) image["camera"] = report.camera_of[i];
         if (i < report.quality.size()) {
             const auto &q = report.quality[i];
             image["ev_sigma"] = q.ev_sigma;
@@ -253,11 +254,12 @@ Json left_out_json(const BuildReport &report) {
 // Of several lens settings what was found of each.
 Json settings_json(const BuildReport &report) {
     Json list = Json::array();
-    const auto &fit = report.fit;
     for (const SettingReport &setting : report.settings) {
         const lensprof_fit_setting &found = setting.found;
+        const lensprof_fit_result fit = found.images ? result_of(report, setting) : report.fit;
         Json json;
         json["label"] = setting.label;
+        if (!report.cameras.empty()) json["camera"] = setting.camera;
         json["key"] = key_json(setting.key);
         json["reference"] = setting.is_reference;
         json["images"] = found.images;
@@ -305,6 +307,43 @@ Json prior_json(const BuildReport &report) {
 
 }  // namespace
 
+// Of several cameras what was found of each.
+static Json cameras_json(const BuildReport &report) {
+    Json list = Json::array();
+    for (const CameraReport &camera : report.cameras) {
+        const lensprof_fit_camera &found = camera.found;
+        Json json;
+        json["label"] = camera.label;
+        json["reference"] = camera.is_reference;
+        json["images"] = found.images;
+        json["attached"] = found.attached;
+        json["joined"] = found.joined != 0;
+        json["pairs"] = found.images ? Json(found.pairs) : Json();
+        json["shared_pairs"] = found.shared_pairs;
+        json["agreeing_share"] = found.shared_pairs ? Json(found.agreeing_share) : Json();
+        json["light_difference_ev"] = found.shared_pairs ? Json(found.light_difference_ev) : Json();
+        json["log_gamma"] = found.log_gamma;
+        json["offset_sigma_ev"] = found.joined ? Json(found.offset_sigma_ev) : Json();
+        json["evens"] = found.images && found.evens;
+        json["response"] = found.images ? response_json(&found.response, 1) : Json();
+        if (found.images) json["response"]["from"] = response_from_name(found.response_from);
+        json["gamma_from"] = found.images ? Json(gamma_name(found.gamma_from)) : Json();
+        json["gamma_sigma"] = found.images ? number_or_null(found.gamma_sigma) : Json();
+        json["heldout_rms"] = found.images ? number_or_null(found.heldout_rms) : Json();
+        list.push_back(json);
+    }
+    return list;
+}
+
+lensprof_fit_result result_of(const BuildReport &report, const SettingReport &setting) {
+    lensprof_fit_result own = report.fit;
+    lensprof_error error{};
+    if (!report.cameras.empty() && report.cameras[setting.camera].found.images)
+        check(lensprof_fit_result_take_camera(&own, &report.cameras[setting.camera].found, &error), "fit", &error);
+    check(lensprof_fit_result_take_setting(&own, &setting.found, &error), "fit", &error);
+    return own;
+}
+
 Json build_json(const BuildReport &report) {
     const auto &fit = report.fit;
     Json json;
@@ -316,6 +355,7 @@ Json build_json(const BuildReport &report) {
     json["images"] = images_json(report);
     if (report.has_falloff) json["vignetting"] = vignetting_json(fit.vignetting, fit.vignettings);
     json["settings"] = settings_json(report);
+    json["cameras"] = cameras_json(report);
     json["response"] = response_json(&fit.response, 1);
     json["response"]["from"] = response_from_name(fit.response_from);
     json["response"]["light_spread_ev"] = fit.light_spread_ev;
@@ -417,7 +457,33 @@ void print_falloffs(const BuildReport &report, std::ostream &out) {
         if (!setting.found.images) continue;
         out << "setting   " << setting.label << format(", %s", counted(setting.found.images, "picture").c_str())
             << (setting.found.usable ? "" : "; not a profile to store") << "\n";
-        print_vignettings(*profile_of(result_of(report.fit, setting.found)), out);
+        print_vignettings(*profile_of(result_of(report, setting)), out);
+    }
+}
+
+// Of one camera, or of each, and what joins it to the reference's.
+void print_responses(const BuildReport &report, std::ostream &out) {
+    if (report.cameras.empty()) {
+        if (report.fit.response_from == LENSPROF_FIT_RESPONSE_KIND)
+            out << "response  typical of the kind of camera: the pictures do not show it\n";
+        print_response(report.fit.response, out);
+    }
+    for (const CameraReport &camera : report.cameras) {
+        const lensprof_fit_camera &found = camera.found;
+        out << "camera    " << camera.label;
+        if (found.images) out << format(", %s", counted(found.images, "picture").c_str());
+        if (!found.joined)
+            out << (found.images ? "; not joined to the reference" : ": left out");
+        else if (camera.is_reference)
+            out << ", with the reference";
+        else
+            out << format("; the light of %u shared pairs differs by %.3f EV (median)", found.shared_pairs,
+                          found.light_difference_ev);
+        out << "\n";
+        if (!found.images) continue;
+        if (found.response_from == LENSPROF_FIT_RESPONSE_KIND)
+            out << "response  typical of the kind of camera: its pictures do not show it\n";
+        print_response(found.response, out);
     }
 }
 
@@ -427,9 +493,7 @@ void print_build(const BuildReport &report, std::ostream &out) {
     const auto &fit = report.fit;
     print_exposures(report, out);
     if (report.has_falloff) print_falloffs(report, out);
-    if (fit.response_from == LENSPROF_FIT_RESPONSE_KIND)
-        out << "response  typical of the kind of camera: the pictures do not show it\n";
-    print_response(fit.response, out);
+    print_responses(report, out);
     print_gamma(report, out);
     print_prior(report, out);
     std::string heldout = "not measured: too few pairs";

@@ -32,11 +32,19 @@ struct CameraKind {
 struct SettingReport {
     std::string label;  // "50 mm, f/2.8"
     lensprof_profile_key key;
+    uint32_t camera = 0;        // number of its camera
     bool is_reference = false;  // the setting of the reference, whose numbers the fit has too
     lensprof_fit_setting found{};
     Verdict verdict;
     int64_t profile_id = 0;     // 0 = not stored
     bool has_same_key = false;  // as a setting that is stored
+};
+
+// What was found of one of several cameras.
+struct CameraReport {
+    std::string label;          // "Canon EOS 6D"
+    bool is_reference = false;  // the camera of the reference, whose numbers the fit has too
+    lensprof_fit_camera found{};
 };
 
 // Everything `build` found out.
@@ -48,6 +56,8 @@ struct BuildReport {
     Verdict verdict;                      // of it
     std::vector<SettingReport> settings;  // none where all images are at one lens setting
     std::vector<uint32_t> setting_of;     // of each image; empty: one setting
+    std::vector<CameraReport> cameras;    // none where all images are of one camera
+    std::vector<uint32_t> camera_of;      // of each image; empty: one camera
     std::vector<lensprof_link> links;     // between the images, as far as they were looked for
     uint32_t reference = 0;
     bool has_falloff = true;       // else it cancels in these pictures
@@ -61,6 +71,9 @@ struct BuildReport {
     std::string no_prior;            // why none was, where one was asked for
     bool prior_is_composed = false;  // of several profiles, of which prior_id is the nearest
 };
+
+// The result with what was found of a lens setting, and of its camera, in the place of what it has of the reference's.
+lensprof_fit_result result_of(const BuildReport &report, const SettingReport &setting);
 
 // Whether a fit's result holds the profile that was its prior, or a part of it.
 bool holds_prior(const lensprof_fit_result &fit);

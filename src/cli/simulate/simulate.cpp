@@ -154,7 +154,7 @@ int run(const SimulateOptions &o, Streams &streams) {
     write_file(pto, project.data(), project.size());
     write_file((folder / "truth.json").string(), json.data(), json.size());
     if (o.points || o.test_points) {
-        Project read = read_project(pto, false);
+        Project read = read_project(pto);
         uint32_t levels = o.formats[0].sample == LENSPROF_SAMPLE_U8 ? 255 : 65535;
         auto write = [&](const char *name, uint32_t count, double darkest, bool noisy) {
             std::string text = points_text(simulate_pairs(truth, scene, count, darkest, noisy, levels), read);

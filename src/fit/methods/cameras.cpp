@@ -5,10 +5,12 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <set>
 
 #include "core/response.h"
 #include "fit/base/constants.hpp"
+#include "fit/base/quantile.hpp"
 #include "fit/methods/join.hpp"
 #include "fit/methods/raised.hpp"
 #include "fit/problem/tracks.hpp"
@@ -19,8 +21,10 @@ namespace lensprof {
 namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
-constexpr double kUnsettledSigma = 1.0;  // of ln gamma that nothing settles
-constexpr double kBetter = 0.9;          // standard error, relative, from which on other cameras settle gamma
+constexpr double kUnsettledSigma = 1.0;      // of ln gamma that nothing settles
+constexpr double kBetter = 0.9;              // standard error, relative, from which on other cameras settle gamma
+constexpr size_t kFewestToAttach = 30;       // pairs of an image
+constexpr double kLargestDifference = 0.25;  // of what they say of its exposure, median, natural logarithm
 constexpr double kDarkest = 2.0 / 255.0;
 
 // What a camera's fit tells of its progress, as a part of all.
@@ -38,9 +42,10 @@ struct PartOfProgress {
 // One camera: what its fit is given, and what it found.
 struct Camera {
     CameraInput input;
-    std::vector<uint32_t> place;  // of each image of all among those of this camera; kNone
+    std::vector<uint32_t> place;  // of each image of all among those that are fitted; kNone
     std::unique_ptr<Output> found;
     bool is_fitted = false;
+    uint32_t attached = 0;  // images
 
     const lensprof_fit_result &result() const { return *found->result; }
     bool corrects() const { return is_fitted && (result().usable || result().evens); }
@@ -59,16 +64,20 @@ public:
     bool run(const FitCamera &fit, lensprof_exposure *exposures, lensprof_fit_result &result);
 
 private:
+    std::vector<uint32_t> groups_of_own() const;
     void part_images();
     void part_data();
     void link_images(Camera &camera);
     void fit_each(const FitCamera &fit, const lensprof_fit_result &result);
     uint32_t choose_base() const;
-    bool light_of(const Camera &camera, const lensprof_pair &pair, int side, LightPair &light) const;
+    bool light_of(const lensprof_pair &pair, int side, const lensprof_exposure &exposure, double log_light[3],
+                  double variance[3]) const;
     std::vector<LightPair> light_pairs() const;
     void join(uint32_t base);
+    void collect();
+    void attach();
+    bool attach_image(uint32_t image);
     void give(uint32_t base, lensprof_exposure *exposures, lensprof_fit_result &result) const;
-    void give_images(const Camera &camera, bool is_joined, lensprof_exposure *exposures, lensprof_fit_result &r) const;
     void give_camera(uint32_t number, lensprof_fit_result &r) const;
 
     const lensprof_fit_options &options_;
@@ -79,20 +88,51 @@ private:
     std::vector<uint32_t> camera_of_;  // of each image, here
     std::vector<Camera> cameras_;
     std::vector<Joint> joints_;
+    std::vector<lensprof_exposure> exposures_;  // of all images, relative to the reference; ev NaN where not known
+    std::vector<lensprof_fit_image_quality> quality_;  // of those
 };
 
-// Numbers cameras as they come.
+// The groups of images, each by its smallest index, that what images of one camera share joins.
+std::vector<uint32_t> CamerasFit::groups_of_own() const {
+    std::vector<uint32_t> parent(images_.size());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](uint32_t i) {
+        while (parent[i] != i) i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    const auto join = [&](uint32_t i, uint32_t j) {
+        const uint32_t a = root(i), b = root(j);
+        if (camera_of_[i] == camera_of_[j]) parent[std::max(a, b)] = std::min(a, b);
+    };
+    for (const lensprof_pair &pair : pairs_) join(pair.image[0], pair.image[1]);
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> first;  // of a point's images those of a camera
+    for (const lensprof_observation &o : observations_)
+        join(first.try_emplace({o.point, camera_of_[o.image]}, o.image).first->second, o.image);
+    for (uint32_t i = 0; i < parent.size(); i++) parent[i] = root(i);
+    return parent;
+}
+
+// Numbers cameras as they come. The largest group of a camera's images is fitted; what joins others of them to it are
+// other cameras.
 void CamerasFit::part_images() {
     std::map<uint32_t, uint32_t> numbers;
-    for (uint32_t i = 0; i < images_.size(); i++) {
-        const auto [found, is_new] = numbers.try_emplace(images_[i].camera, static_cast<uint32_t>(numbers.size()));
-        if (is_new) {
-            number_of_.push_back(images_[i].camera);
-            cameras_.emplace_back();
-            cameras_.back().place.assign(images_.size(), kNone);
-        }
-        Camera &camera = cameras_[found->second];
+    for (const lensprof_fit_image &image : images_) {
+        const auto [found, is_new] = numbers.try_emplace(image.camera, static_cast<uint32_t>(numbers.size()));
+        if (is_new) number_of_.push_back(image.camera);
         camera_of_.push_back(found->second);
+    }
+    cameras_.resize(number_of_.size());
+    const std::vector<uint32_t> groups = groups_of_own();
+    std::vector<uint32_t> size(images_.size()), largest(cameras_.size(), kNone);
+    for (const uint32_t group : groups) size[group]++;
+    for (uint32_t i = 0; i < images_.size(); i++) {
+        uint32_t &best = largest[camera_of_[i]];
+        if (best == kNone || size[groups[i]] > size[best]) best = groups[i];
+    }
+    for (Camera &camera : cameras_) camera.place.assign(images_.size(), kNone);
+    for (uint32_t i = 0; i < images_.size(); i++) {
+        Camera &camera = cameras_[camera_of_[i]];
+        if (groups[i] != largest[camera_of_[i]]) continue;
         camera.place[i] = static_cast<uint32_t>(camera.input.numbers.size());
         camera.input.numbers.push_back(i);
         camera.input.images.push_back(images_[i]);
@@ -113,8 +153,9 @@ void CamerasFit::link_images(Camera &camera) {
 }
 
 void CamerasFit::part_data() {
-    const auto camera_of = [&](const uint32_t image[2]) {
-        return camera_of_[image[0]] == camera_of_[image[1]] ? &cameras_[camera_of_[image[0]]] : nullptr;
+    const auto camera_of = [&](const uint32_t image[2]) -> Camera * {
+        Camera &camera = cameras_[camera_of_[image[0]]];
+        return camera.place[image[0]] != kNone && camera.place[image[1]] != kNone ? &camera : nullptr;
     };
     for (lensprof_pair pair : pairs_) {
         Camera *camera = camera_of(pair.image);
@@ -130,10 +171,11 @@ void CamerasFit::part_data() {
         camera->input.links.push_back(link);
     }
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> seen;  // camera and point: observations
-    for (const lensprof_observation &o : observations_) seen[{camera_of_[o.image], o.point}]++;
+    for (const lensprof_observation &o : observations_)
+        if (cameras_[camera_of_[o.image]].place[o.image] != kNone) seen[{camera_of_[o.image], o.point}]++;
     for (lensprof_observation o : observations_) {
         Camera &camera = cameras_[camera_of_[o.image]];
-        if (seen[{camera_of_[o.image], o.point}] < 2) continue;
+        if (camera.place[o.image] == kNone || seen[{camera_of_[o.image], o.point}] < 2) continue;
         o.image = camera.place[o.image];
         camera.input.observations.push_back(o);
     }
@@ -181,12 +223,13 @@ uint32_t CamerasFit::choose_base() const {
     return base;
 }
 
-// The light behind an end of a pair, by the fit of its camera. False where that does not tell it.
-bool CamerasFit::light_of(const Camera &camera, const lensprof_pair &pair, int side, LightPair &light) const {
-    const uint32_t own = camera.place[pair.image[side]];
-    const lensprof_exposure &exposure = camera.found->exposures[own];
-    if (!camera.corrects() || std::isnan(exposure.ev)) return false;
+// The light behind an end of a pair, by the fit of its camera and this exposure of the image. False where that does not
+// tell it.
+bool CamerasFit::light_of(const lensprof_pair &pair, int side, const lensprof_exposure &exposure, double log_light[3],
+                          double variance[3]) const {
+    const Camera &camera = cameras_[camera_of_[pair.image[side]]];
     const lensprof_fit_image &image = images_[pair.image[side]];
+    if (!camera.corrects() || !camera.found->settings[image.setting].images || std::isnan(exposure.ev)) return false;
     const lensprof_fit_result &r = camera.result();
     const lensprof_vignetting *curves = camera.found->settings[image.setting].vignetting;
     const double noise = std::max(r.noise_levels, 0.5) / 255.0;
@@ -196,26 +239,30 @@ bool CamerasFit::light_of(const Camera &camera, const lensprof_pair &pair, int s
         double slope;
         const double x = lp_curve_invert(r.response.table, b, &slope);
         const lensprof_vignetting &curve = curves[options_.channels == 3 ? c : 0];
+        const double *xy = pair.xy[side];
         const double m = lensprof_vignetting_eval(
-            &curve,
-            lensprof_vignetting_r2(&curve, image.width, image.height, pair.xy[side][0], pair.xy[side][1], nullptr),
-            nullptr);
+            &curve, lensprof_vignetting_r2(&curve, image.width, image.height, xy[0], xy[1], nullptr), nullptr);
         const double white = options_.channels == 3 ? std::log(exposure.white_balance[c]) : 0.0;
         if (!(x > 0.0 && m > 0.0)) return false;
-        light.log_light[side][c] = std::log(x) - std::log(m) - exposure.ev * kLn2 - white;
-        light.variance[side][c] = std::pow(noise * slope / x, 2);
+        log_light[c] = std::log(x) - std::log(m) - exposure.ev * kLn2 - white;
+        variance[c] = std::pow(noise * slope / x, 2);
     }
-    light.image[side] = pair.image[side];
-    light.camera[side] = camera_of_[pair.image[side]];
     return true;
 }
 
 std::vector<LightPair> CamerasFit::light_pairs() const {
     std::vector<LightPair> light;
     for (const lensprof_pair &pair : pairs_) {
-        const uint32_t a = camera_of_[pair.image[0]], b = camera_of_[pair.image[1]];
         LightPair own{};
-        if (a != b && light_of(cameras_[a], pair, 0, own) && light_of(cameras_[b], pair, 1, own)) light.push_back(own);
+        bool is_known = camera_of_[pair.image[0]] != camera_of_[pair.image[1]];
+        for (int side = 0; side < 2 && is_known; side++) {
+            const uint32_t image = pair.image[side], camera = camera_of_[image], place = cameras_[camera].place[image];
+            own.image[side] = image, own.camera[side] = camera;
+            is_known = place != kNone
+                       && light_of(pair, side, cameras_[camera].found->exposures[place], own.log_light[side],
+                                   own.variance[side]);
+        }
+        if (is_known) light.push_back(own);
     }
     return light;
 }
@@ -248,19 +295,81 @@ void CamerasFit::join(uint32_t base) {
     }
 }
 
-// Exposures and qualities of a camera's images.
-void CamerasFit::give_images(const Camera &camera, bool is_joined, lensprof_exposure *exposures,
-                             lensprof_fit_result &r) const {
-    for (uint32_t n = 0; n < camera.input.numbers.size(); n++) {
-        const uint32_t i = camera.input.numbers[n];
-        exposures[i] = camera.found->exposures[n];
-        if (!is_joined) exposures[i].ev = std::numeric_limits<double>::quiet_NaN();
-        if (!r.image_quality) continue;
-        r.image_quality[i] = camera.found->quality[n];
-        if (!camera.is_fitted) r.image_quality[i] = {};
-        const uint32_t component = r.image_quality[i].component;
-        r.image_quality[i].component = camera.is_fitted ? camera.input.numbers[component] : i;
-        if (!is_joined) r.image_quality[i].joined = 0;
+// Exposures and qualities of the images that are fitted.
+void CamerasFit::collect() {
+    exposures_.resize(images_.size());
+    quality_.resize(images_.size());
+    for (uint32_t i = 0; i < images_.size(); i++) {
+        const Camera &camera = cameras_[camera_of_[i]];
+        const bool is_joined = camera.is_fitted && joints_[camera_of_[i]].joined;
+        const uint32_t place = camera.place[i];
+        exposures_[i] = images_[i].exposure;
+        quality_[i] = {};
+        quality_[i].component = i;
+        if (camera.is_fitted && place != kNone) {
+            exposures_[i] = camera.found->exposures[place];
+            quality_[i] = camera.found->quality[place];
+            quality_[i].component = camera.input.numbers[quality_[i].component];
+        }
+        if (is_joined && place != kNone) continue;
+        exposures_[i].ev = std::numeric_limits<double>::quiet_NaN();
+        quality_[i].joined = 0;
+    }
+}
+
+// The exposure of an image that its camera's fit is without, by pairs with images whose exposures are known. False
+// where these are too few, or disagree.
+bool CamerasFit::attach_image(uint32_t image) {
+    std::vector<double> log_exposure[3];
+    lensprof_exposure zero;
+    lensprof_exposure_init(&zero);
+    double other_variance = 0.0;
+    for (const lensprof_pair &pair : pairs_) {
+        if (pair.image[0] != image && pair.image[1] != image) continue;
+        const int side = pair.image[1] == image, other = 1 - side;
+        double own[3], seen[3], unused[3];
+        if (!light_of(pair, side, zero, own, unused)
+            || !light_of(pair, other, exposures_[pair.image[other]], seen, unused))
+            continue;
+        for (uint32_t c = 0; c < options_.channels; c++) log_exposure[c].push_back(own[c] - seen[c]);
+        other_variance += std::pow(quality_[pair.image[other]].ev_sigma, 2);
+    }
+    const size_t count = log_exposure[0].size();
+    if (count < kFewestToAttach) return false;
+    double found[3] = {}, sigma[3] = {};
+    for (uint32_t c = 0; c < options_.channels; c++) {
+        found[c] = median(log_exposure[c]);
+        for (double &value : log_exposure[c]) value = std::abs(value - found[c]);
+        const double scatter = median(log_exposure[c]);
+        if (scatter > kLargestDifference) return false;
+        sigma[c] = kMadToSigma * scatter / std::sqrt(static_cast<double>(count));
+    }
+    const uint32_t green = options_.channels == 3 ? 1 : 0;
+    lensprof_fit_image_quality &quality = quality_[image];
+    exposures_[image].ev = found[green] / kLn2;
+    for (const uint32_t c : {0u, 2u}) {
+        if (options_.channels == 1) break;
+        exposures_[image].white_balance[c] = std::exp(found[c] - found[green]);
+        quality.white_balance_sigma[c] = exposures_[image].white_balance[c] * std::hypot(sigma[c], sigma[green]);
+    }
+    quality.ev_sigma = std::hypot(sigma[green] / kLn2, std::sqrt(other_variance / static_cast<double>(count)));
+    quality.pairs = quality.inliers = static_cast<uint32_t>(count);
+    quality.joined = 1;
+    return true;
+}
+
+// Images that no pairs join to others of their camera, by what other cameras saw: first those that share something with
+// images that are fitted, then those that do with these.
+void CamerasFit::attach() {
+    for (bool any = true; any;) {
+        any = false;
+        for (uint32_t i = 0; i < images_.size(); i++) {
+            Camera &camera = cameras_[camera_of_[i]];
+            if (camera.place[i] != kNone || !std::isnan(exposures_[i].ev) || !joints_[camera_of_[i]].joined) continue;
+            if (!camera.corrects() || !attach_image(i)) continue;
+            camera.attached++, any = true;
+            camera.found->settings[images_[i].setting].images++;
+        }
     }
 }
 
@@ -276,6 +385,7 @@ void CamerasFit::give_camera(uint32_t number, lensprof_fit_result &r) const {
     const Joint &joint = joints_[number];
     lensprof_fit_camera &to = r.cameras[number_of_[number]];
     to.images = camera.is_fitted ? camera.joined_images() : 0;
+    to.attached = camera.attached;
     to.joined = camera.is_fitted && joint.joined;
     if (!camera.is_fitted) return;
     to.shared_pairs = joint.pairs;
@@ -300,17 +410,13 @@ void CamerasFit::give(uint32_t base, lensprof_exposure *exposures, lensprof_fit_
     r.cameras = result.cameras, r.camera_count = result.camera_count;
     renumber(first.input.numbers, r);
     r.reference = first.input.numbers[r.reference];
-    r.left_out = 0;
-    uint32_t left_out = kNone;
-    for (uint32_t k = 0; k < cameras_.size(); k++) {
-        give_images(cameras_[k], cameras_[k].is_fitted && joints_[k].joined, exposures, r);
-        give_camera(k, r);
-    }
-    for (uint32_t i = 0; i < images_.size(); i++) {
-        if (!std::isnan(exposures[i].ev)) continue;
-        r.left_out++;
-        left_out = std::min(left_out, i);
-    }
+    for (uint32_t k = 0; k < cameras_.size(); k++) give_camera(k, r);
+    std::copy(exposures_.begin(), exposures_.end(), exposures);
+    if (r.image_quality) std::copy(quality_.begin(), quality_.end(), r.image_quality);
+    const auto is_out = [](const lensprof_exposure &exposure) { return std::isnan(exposure.ev); };
+    r.left_out = static_cast<uint32_t>(std::count_if(exposures_.begin(), exposures_.end(), is_out));
+    const auto left_out =
+        static_cast<uint32_t>(std::find_if(exposures_.begin(), exposures_.end(), is_out) - exposures_.begin());
     for_each_verdict(r, [&](auto &verdict) {
         const uint32_t code = verdict.reason_code;
         const bool is_lesser = code == LENSPROF_REASON_NONE || is_of_greys(code);
@@ -327,6 +433,8 @@ bool CamerasFit::run(const FitCamera &fit, lensprof_exposure *exposures, lenspro
     const uint32_t base = choose_base();
     if (!cameras_[base].is_fitted) return false;
     join(base);
+    collect();
+    attach();
     give(base, exposures, result);
     return true;
 }
