@@ -476,12 +476,9 @@ bool fit_camera(const CameraInput &input, lensprof_exposure *exposures, lensprof
     return status == LENSPROF_OK;
 }
 
-// By the pairs of all data, or by the tracks that are given in their place.
-lensprof_status fit_each_camera(Call &call, const std::vector<lensprof_pair> &pairs,
-                                const std::vector<lensprof_observation> &observations, lensprof_exposure *exposures,
+lensprof_status fit_each_camera(Call &call, const CamerasData &data, lensprof_exposure *exposures,
                                 lensprof_error *error) {
-    if (fit_cameras(call.options, call.images, pairs, observations, fit_camera, exposures, call.result))
-        return LENSPROF_OK;
+    if (fit_cameras(data, fit_camera, exposures, call.result)) return LENSPROF_OK;
     return fail(LENSPROF_ERROR_NO_SAMPLES, error,
                 "fit: no pairs are between two images of one camera; give more of its images, or take all as of one");
 }
@@ -559,7 +556,8 @@ lensprof_status lensprof_fit_overlap(const lensprof_fit_options *options, const 
         if (pair_count == 0) return fail(LENSPROF_ERROR_NO_SAMPLES, error, "fit: no pairs were given");
         return run(*call, result, error, [&] {
             return has_several_cameras(call->options, call->images)
-                       ? fit_each_camera(*call, {pairs, pairs + pair_count}, {}, exposures, error)
+                       ? fit_each_camera(*call, {call->options, call->images, {pairs, pairs + pair_count}, {}},
+                                         exposures, error)
                        : fit_pairs(*call, pairs, pair_count, exposures, error);
         });
     });
@@ -586,8 +584,12 @@ lensprof_status lensprof_fit_radiance(const lensprof_fit_options *options, const
             const Tracks tracks = tracks_of(observations, observation_count);
             status = check_tracks(tracks, error);
             if (status != LENSPROF_OK) return status;
-            return fit_each_camera(*call, pairs_of(tracks, call->channels()),
-                                   {observations, observations + observation_count}, exposures, error);
+            return fit_each_camera(*call,
+                                   {call->options,
+                                    call->images,
+                                    pairs_of(tracks, call->channels()),
+                                    {observations, observations + observation_count}},
+                                   exposures, error);
         });
     });
 }

@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <set>
 
 #include "core/response.h"
@@ -20,7 +19,6 @@
 namespace lensprof {
 namespace {
 
-constexpr uint32_t kNone = UINT32_MAX;
 constexpr double kUnsettledSigma = 1.0;      // of ln gamma that nothing settles
 constexpr double kBetter = 0.9;              // standard error, relative, from which on other cameras settle gamma
 constexpr size_t kFewestToAttach = 30;       // pairs of an image
@@ -42,7 +40,6 @@ struct PartOfProgress {
 // One camera: what its fit is given, and what it found.
 struct Camera {
     CameraInput input;
-    std::vector<uint32_t> place;  // of each image of all among those that are fitted; kNone
     std::unique_ptr<Output> found;
     bool is_fitted = false;
     uint32_t attached = 0;  // images
@@ -57,17 +54,14 @@ struct Camera {
 
 class CamerasFit {
 public:
-    CamerasFit(const lensprof_fit_options &options, const std::vector<lensprof_fit_image> &images,
-               const std::vector<lensprof_pair> &pairs, const std::vector<lensprof_observation> &observations)
-        : options_(options), images_(images), pairs_(pairs), observations_(observations) {}
+    explicit CamerasFit(const CamerasData &data)
+        : options_(data.options), images_(data.images), pairs_(data.pairs), camera_of_(camera_numbers(data.images)) {
+        for (CameraInput &input : part_cameras(data, camera_of_)) cameras_.push_back({std::move(input), nullptr});
+    }
 
     bool run(const FitCamera &fit, lensprof_exposure *exposures, lensprof_fit_result &result);
 
 private:
-    std::vector<uint32_t> groups_of_own() const;
-    void part_images();
-    void part_data();
-    void link_images(Camera &camera);
     void fit_each(const FitCamera &fit, const lensprof_fit_result &result);
     uint32_t choose_base() const;
     bool light_of(const lensprof_pair &pair, int side, const lensprof_exposure &exposure, double log_light[3],
@@ -76,120 +70,19 @@ private:
     void join(uint32_t base);
     void collect();
     void attach();
-    bool attach_image(uint32_t image);
+    bool attach_image(uint32_t image, const std::vector<uint32_t> &pairs);
     void give(uint32_t base, lensprof_exposure *exposures, lensprof_fit_result &result) const;
     void give_camera(uint32_t number, lensprof_fit_result &r) const;
 
     const lensprof_fit_options &options_;
     const std::vector<lensprof_fit_image> &images_;
     const std::vector<lensprof_pair> &pairs_;
-    const std::vector<lensprof_observation> &observations_;
-    std::vector<uint32_t> number_of_;  // of each camera here, the caller's
-    std::vector<uint32_t> camera_of_;  // of each image, here
+    const std::vector<uint32_t> camera_of_;  // of each image, numbered as they come
     std::vector<Camera> cameras_;
     std::vector<Joint> joints_;
     std::vector<lensprof_exposure> exposures_;  // of all images, relative to the reference; ev NaN where not known
     std::vector<lensprof_fit_image_quality> quality_;  // of those
 };
-
-// The groups of images, each by its smallest index, that what images of one camera share joins.
-std::vector<uint32_t> CamerasFit::groups_of_own() const {
-    std::vector<uint32_t> parent(images_.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](uint32_t i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-    };
-    const auto join = [&](uint32_t i, uint32_t j) {
-        const uint32_t a = root(i), b = root(j);
-        if (camera_of_[i] == camera_of_[j]) parent[std::max(a, b)] = std::min(a, b);
-    };
-    for (const lensprof_pair &pair : pairs_) join(pair.image[0], pair.image[1]);
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> first;  // of a point's images those of a camera
-    for (const lensprof_observation &o : observations_)
-        join(first.try_emplace({o.point, camera_of_[o.image]}, o.image).first->second, o.image);
-    for (uint32_t i = 0; i < parent.size(); i++) parent[i] = root(i);
-    return parent;
-}
-
-// Numbers cameras as they come. The largest group of a camera's images is fitted; what joins others of them to it are
-// other cameras.
-void CamerasFit::part_images() {
-    std::map<uint32_t, uint32_t> numbers;
-    for (const lensprof_fit_image &image : images_) {
-        const auto [found, is_new] = numbers.try_emplace(image.camera, static_cast<uint32_t>(numbers.size()));
-        if (is_new) number_of_.push_back(image.camera);
-        camera_of_.push_back(found->second);
-    }
-    cameras_.resize(number_of_.size());
-    const std::vector<uint32_t> groups = groups_of_own();
-    std::vector<uint32_t> size(images_.size()), largest(cameras_.size(), kNone);
-    for (const uint32_t group : groups) size[group]++;
-    for (uint32_t i = 0; i < images_.size(); i++) {
-        uint32_t &best = largest[camera_of_[i]];
-        if (best == kNone || size[groups[i]] > size[best]) best = groups[i];
-    }
-    for (Camera &camera : cameras_) camera.place.assign(images_.size(), kNone);
-    for (uint32_t i = 0; i < images_.size(); i++) {
-        Camera &camera = cameras_[camera_of_[i]];
-        if (groups[i] != largest[camera_of_[i]]) continue;
-        camera.place[i] = static_cast<uint32_t>(camera.input.numbers.size());
-        camera.input.numbers.push_back(i);
-        camera.input.images.push_back(images_[i]);
-    }
-}
-
-// Images that share unknowns with one of another camera share them with the first such image of their own.
-void CamerasFit::link_images(Camera &camera) {
-    for (uint32_t lensprof_fit_image::*of :
-         {&lensprof_fit_image::ev_of, &lensprof_fit_image::red_of, &lensprof_fit_image::blue_of}) {
-        std::map<uint32_t, uint32_t> first;  // by the image whose unknown it is
-        for (uint32_t n = 0; n < camera.input.images.size(); n++) {
-            const uint32_t owner = images_[camera.input.numbers[n]].*of;
-            const uint32_t own = camera.place[owner] != kNone ? camera.place[owner] : n;
-            camera.input.images[n].*of = first.try_emplace(owner, own).first->second;
-        }
-    }
-}
-
-void CamerasFit::part_data() {
-    const auto camera_of = [&](const uint32_t image[2]) -> Camera * {
-        Camera &camera = cameras_[camera_of_[image[0]]];
-        return camera.place[image[0]] != kNone && camera.place[image[1]] != kNone ? &camera : nullptr;
-    };
-    for (lensprof_pair pair : pairs_) {
-        Camera *camera = camera_of(pair.image);
-        if (!camera) continue;
-        for (uint32_t &image : pair.image) image = camera->place[image];
-        camera->input.pairs.push_back(pair);
-    }
-    for (uint32_t n = 0; n < options_.link_count; n++) {
-        lensprof_link link = options_.links[n];
-        Camera *camera = camera_of(link.image);
-        if (!camera) continue;
-        for (uint32_t &image : link.image) image = camera->place[image];
-        camera->input.links.push_back(link);
-    }
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> seen;  // camera and point: observations
-    for (const lensprof_observation &o : observations_)
-        if (cameras_[camera_of_[o.image]].place[o.image] != kNone) seen[{camera_of_[o.image], o.point}]++;
-    for (lensprof_observation o : observations_) {
-        Camera &camera = cameras_[camera_of_[o.image]];
-        if (camera.place[o.image] == kNone || seen[{camera_of_[o.image], o.point}] < 2) continue;
-        o.image = camera.place[o.image];
-        camera.input.observations.push_back(o);
-    }
-    for (Camera &camera : cameras_) {
-        link_images(camera);
-        camera.input.options = options_;
-        camera.input.options.links = camera.input.links.data();
-        camera.input.options.link_count = static_cast<uint32_t>(camera.input.links.size());
-        const uint32_t own = camera.place[options_.reference];
-        camera.input.options.reference = own == kNone ? 0 : own;
-        // The falloff of a profile is of one setting, and its response of one camera.
-        if (own == kNone) camera.input.options.profile = nullptr;
-    }
-}
 
 void CamerasFit::fit_each(const FitCamera &fit, const lensprof_fit_result &result) {
     double done = 0.0;  // share of the images
@@ -202,8 +95,7 @@ void CamerasFit::fit_each(const FitCamera &fit, const lensprof_fit_result &resul
         std::vector<lensprof_exposure> start;
         for (const lensprof_fit_image &image : camera.input.images) start.push_back(image.exposure);
         camera.found = std::make_unique<Output>(result, start.data(), static_cast<uint32_t>(start.size()));
-        if (camera.input.images.size() < 2 || (camera.input.pairs.empty() && camera.input.observations.empty()))
-            continue;
+        if (!camera.input.has_data()) continue;
         camera.is_fitted = fit(camera.input, camera.found->exposures.data(), *camera.found->result);
     }
 }
@@ -256,9 +148,10 @@ std::vector<LightPair> CamerasFit::light_pairs() const {
         LightPair own{};
         bool is_known = camera_of_[pair.image[0]] != camera_of_[pair.image[1]];
         for (int side = 0; side < 2 && is_known; side++) {
-            const uint32_t image = pair.image[side], camera = camera_of_[image], place = cameras_[camera].place[image];
+            const uint32_t image = pair.image[side], camera = camera_of_[image],
+                           place = cameras_[camera].input.place[image];
             own.image[side] = image, own.camera[side] = camera;
-            is_known = place != kNone
+            is_known = place != kNoPlace
                        && light_of(pair, side, cameras_[camera].found->exposures[place], own.log_light[side],
                                    own.variance[side]);
         }
@@ -302,16 +195,16 @@ void CamerasFit::collect() {
     for (uint32_t i = 0; i < images_.size(); i++) {
         const Camera &camera = cameras_[camera_of_[i]];
         const bool is_joined = camera.is_fitted && joints_[camera_of_[i]].joined;
-        const uint32_t place = camera.place[i];
+        const uint32_t place = camera.input.place[i];
         exposures_[i] = images_[i].exposure;
         quality_[i] = {};
         quality_[i].component = i;
-        if (camera.is_fitted && place != kNone) {
+        if (camera.is_fitted && place != kNoPlace) {
             exposures_[i] = camera.found->exposures[place];
             quality_[i] = camera.found->quality[place];
             quality_[i].component = camera.input.numbers[quality_[i].component];
         }
-        if (is_joined && place != kNone) continue;
+        if (is_joined && place != kNoPlace) continue;
         exposures_[i].ev = std::numeric_limits<double>::quiet_NaN();
         quality_[i].joined = 0;
     }
@@ -319,13 +212,13 @@ void CamerasFit::collect() {
 
 // The exposure of an image that its camera's fit is without, by pairs with images whose exposures are known. False
 // where these are too few, or disagree.
-bool CamerasFit::attach_image(uint32_t image) {
+bool CamerasFit::attach_image(uint32_t image, const std::vector<uint32_t> &pairs) {
     std::vector<double> log_exposure[3];
     lensprof_exposure zero;
     lensprof_exposure_init(&zero);
     double other_variance = 0.0;
-    for (const lensprof_pair &pair : pairs_) {
-        if (pair.image[0] != image && pair.image[1] != image) continue;
+    for (const uint32_t p : pairs) {
+        const lensprof_pair &pair = pairs_[p];
         const int side = pair.image[1] == image, other = 1 - side;
         double own[3], seen[3], unused[3];
         if (!light_of(pair, side, zero, own, unused)
@@ -361,14 +254,21 @@ bool CamerasFit::attach_image(uint32_t image) {
 // Images that no pairs join to others of their camera, by what other cameras saw: first those that share something with
 // images that are fitted, then those that do with these.
 void CamerasFit::attach() {
+    std::map<uint32_t, std::vector<uint32_t>> pairs_of;  // images that may be attached, and pairs with an end in them
+    const auto may_be = [&](uint32_t i) {
+        const Camera &camera = cameras_[camera_of_[i]];
+        return camera.input.place[i] == kNoPlace && camera.corrects() && joints_[camera_of_[i]].joined;
+    };
+    for (uint32_t p = 0; p < pairs_.size(); p++)
+        for (const uint32_t image : pairs_[p].image)
+            if (may_be(image)) pairs_of[image].push_back(p);
     for (bool any = true; any;) {
         any = false;
-        for (uint32_t i = 0; i < images_.size(); i++) {
-            Camera &camera = cameras_[camera_of_[i]];
-            if (camera.place[i] != kNone || !std::isnan(exposures_[i].ev) || !joints_[camera_of_[i]].joined) continue;
-            if (!camera.corrects() || !attach_image(i)) continue;
+        for (const auto &[image, pairs] : pairs_of) {
+            if (!std::isnan(exposures_[image].ev) || !attach_image(image, pairs)) continue;
+            Camera &camera = cameras_[camera_of_[image]];
             camera.attached++, any = true;
-            camera.found->settings[images_[i].setting].images++;
+            camera.found->settings[images_[image].setting].images++;
         }
     }
 }
@@ -383,7 +283,7 @@ void renumber(const std::vector<uint32_t> &numbers, Verdict &verdict) {
 void CamerasFit::give_camera(uint32_t number, lensprof_fit_result &r) const {
     const Camera &camera = cameras_[number];
     const Joint &joint = joints_[number];
-    lensprof_fit_camera &to = r.cameras[number_of_[number]];
+    lensprof_fit_camera &to = r.cameras[camera.input.number];
     to.images = camera.is_fitted ? camera.joined_images() : 0;
     to.attached = camera.attached;
     to.joined = camera.is_fitted && joint.joined;
@@ -427,8 +327,6 @@ void CamerasFit::give(uint32_t base, lensprof_exposure *exposures, lensprof_fit_
 }
 
 bool CamerasFit::run(const FitCamera &fit, lensprof_exposure *exposures, lensprof_fit_result &result) {
-    part_images();
-    part_data();
     fit_each(fit, result);
     const uint32_t base = choose_base();
     if (!cameras_[base].is_fitted) return false;
@@ -447,10 +345,9 @@ bool has_several_cameras(const lensprof_fit_options &options, const std::vector<
                           [&](const lensprof_fit_image &image) { return image.camera != images[0].camera; });
 }
 
-bool fit_cameras(const lensprof_fit_options &options, const std::vector<lensprof_fit_image> &images,
-                 const std::vector<lensprof_pair> &pairs, const std::vector<lensprof_observation> &observations,
-                 const FitCamera &fit, lensprof_exposure *exposures, lensprof_fit_result &result) {
-    return CamerasFit(options, images, pairs, observations).run(fit, exposures, result);
+bool fit_cameras(const CamerasData &data, const FitCamera &fit, lensprof_exposure *exposures,
+                 lensprof_fit_result &result) {
+    return CamerasFit(data).run(fit, exposures, result);
 }
 
 }  // namespace lensprof

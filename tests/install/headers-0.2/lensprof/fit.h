@@ -92,7 +92,8 @@ typedef struct lensprof_fit_image {
     double known_ev_sigma;      /* its standard error, 0.001..100 EV; 0 = not known. Rounded EXIF: about 0.1; below
                                    0.02 counts as 0.02. One alone says nothing: only differences do */
     uint32_t camera;            /* 0..LENSPROF_CAMERAS_MAX - 1: every camera has a response of its own, where that is
-                                   free. Images of one setting are of one camera. Several: not with DEBEVEC */
+                                   free. Images of one setting are of one camera. What is fixed or known of exposures is
+                                   of images of one camera relative to each other. Several: not with DEBEVEC */
     uint32_t reserved;          /* 0 */
 } lensprof_fit_image;
 
@@ -230,7 +231,7 @@ typedef struct lensprof_fit_camera {
         light_spread_ev;
     uint32_t grey_ends[LENSPROF_COVERAGE_BINS];
     uint32_t reference; /* image whose exposure its own fit held */
-    uint32_t setting;   /* of that image: the others of its verdict are lensprof_fit_setting.usable and reason */
+    uint32_t setting;   /* of that image */
     uint32_t attached;  /* images beside those of its fit, for no pairs with these join them, whose exposures pairs with
                            other cameras say */
     uint32_t reserved;  /* 0 */
