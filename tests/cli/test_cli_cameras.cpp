@@ -109,6 +109,10 @@ void test_one_lens_takes_all_as_one(void **) {
     assert_true(json["cameras"].empty() && !json["images"][0].contains("camera"));
     assert_true(json["residual"]["heldout_median"].get<double>()
                 > 2.0 * each["residual"]["heldout_median"].get<double>());
+    // Linear pictures have one response, and each setting of each camera its falloff.
+    const Json linear = Json::parse(run_words(Words{"build", project(), "--camera-kind", "linear"} + quietly).out);
+    assert_true(linear["cameras"].empty());
+    assert_int_equal(linear["settings"].size(), 2);
     // What the command line states holds for all pictures.
     assert_true(Json::parse(run_words(Words{"build", project(), "--camera", "One"} + quietly).out)["cameras"].empty());
 }

@@ -342,6 +342,7 @@ void test_bad_merges(void **) {
                          {"apply", "--linear", "--merge", file_of(0)},
                          {"apply", "--linear", "--merge", "--pto", project, "--profile", "1"},
                          {"apply", "--linear", "--merge", "--pto", project, "--gain-cap", "2"},
+                         {"apply", "--linear", "--merge", "--pto", project, "--dither"},
                          {"apply", "--linear", "--merge", "--pto", project, "--strength", "0.5"},
                          {"apply", "--linear", "--merge", "--pto", project, "--simulate"},
                          {"apply", "--linear", "--merge", "--pto", project, "--contact-sheet", work("sheet.jpg")}};

@@ -134,6 +134,27 @@ void test_one_picture_behind_another_camera(void **) {
     assert_true(contains(run.err, "img000.png: left out, only pictures of another camera, size or processing join it"));
 }
 
+// A bracket shows no falloff: what takes it is named. Beside a row of pictures it is left out, however many it has.
+void test_a_bracket(void **) {
+    if (is_missing()) return;
+    simulate("row", {"--images", "3", "--seed", "71"});
+    fs::create_directory(work("still"));
+    for (int i = 0; i < 4; i++) {
+        simulate("shot" + std::to_string(i), {"--images", "2", "--seed", "72", "--mean-ev", std::to_string(i - 2)});
+        fs::copy_file(work("shot" + std::to_string(i) + "/img000.png"), work("still/s" + std::to_string(i) + ".png"));
+    }
+    assert_refused(not_usable, {"build", work("still"), "--no-store"}, {"did not move", "lensprof bracket", "align"});
+    const Json json =
+        json_of({"calibrate", work("still"), "-o", work("still_out"), "--no-store", "--json"}, not_usable);
+    assert_true(json["panoramas"][0]["camera"] == "stood still" && json["panoramas"][0]["result"].is_null());
+    for (int i = 0; i < 4; i++)
+        fs::copy_file(work("still/s" + std::to_string(i) + ".png"), work("row/s" + std::to_string(i) + ".png"));
+    const Outcome run = run_words(Words{"build", work("row")} + quietly);
+    assert_int_equal(run.code, done);
+    assert_int_equal(Json::parse(run.out)["images"].size(), 3);
+    assert_true(contains(run.err, "s3.png: left out, another group, of a camera that did not move"));
+}
+
 // Pictures that lensprof has made are no photographs of the camera, unless they are named.
 void test_own_pictures_are_left_out(void **) {
     if (is_missing()) return;
@@ -393,6 +414,7 @@ int main() {
         CLI_TEST(test_another_camera_in_a_chain),
         CLI_TEST(test_one_picture_behind_another_camera),
         CLI_TEST(test_outputs_are_checked_first),
+        CLI_TEST(test_a_bracket),
         CLI_TEST(test_own_pictures_are_left_out),
         CLI_TEST(test_corrected_copies_are_not_read),
         CLI_TEST(test_what_is_fixed_to_the_frame),

@@ -40,7 +40,9 @@ Group group_of(const FoundProject &found, const std::vector<const InputPicture *
     // Through the ledger's text, so that a fit of recalled matches is the same to the byte.
     if (!read_noted(json_of(NotedMatches{found.matches, found.by_matches}), found.pictures.size(), group.matches))
         throw Failure(ExitCode::failed, "matches of pictures are not finite numbers; please report this");
-    group.facts = {{"camera", found.kind == SceneKind::plane ? "moved over a plane" : "turned about one point"},
+    group.facts = {{"camera", found.kind == SceneKind::still   ? stood_still
+                              : found.kind == SceneKind::plane ? "moved over a plane"
+                                                               : "turned about one point"},
                    {"links", found.links},
                    {"links_unfit", found.unfit},
                    {"by_matches", found.by_matches},

@@ -46,6 +46,8 @@ void fit_and_store(const CalibrateOptions &o, Panorama &panorama, Project &proje
     ProjectFitOptions options;
     options.store = o.store;
     options.one_lens = o.one_lens;
+    if (panorama.summary["camera"] == stood_still)
+        throw Failure(ExitCode::not_usable, panorama.name + no_falloff_of_still, LENSPROF_REASON_FEW_PAIRS);
     check_pictures(project, options.max_side);
     const std::vector<PictureMetadata> metadata = picture_metadata(options, project);
     const lensprof_profile_key &exif = metadata[project.reference].key;

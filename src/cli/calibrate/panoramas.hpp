@@ -21,6 +21,8 @@ struct CalibrateOptions {
     uint32_t threads = 0;
 };
 
+constexpr const char *stood_still = "stood still";  // what a summary's `camera` may be: no panorama, and not fitted
+
 struct Panorama {
     std::string name;              // "img000", of its first picture when it was found
     std::string project, preview;  // files in the output folder

@@ -423,10 +423,10 @@ void check_merge(const Options &o) {
         throw Failure(ExitCode::usage,
                       "--merge: takes response and falloff of the project; leave out --profile, --from-db and the "
                       "response");
-    if (o.kind.simulate || o.kind.strength != 1.0 || o.kind.gain_cap != 0.0 || !o.sheet.empty())
+    if (o.kind.simulate || o.kind.strength != 1.0 || o.kind.gain_cap != 0.0 || o.kind.dither || !o.sheet.empty())
         throw Failure(ExitCode::usage,
-                      "--merge: takes the falloff out as a whole; leave out --simulate, --strength, --gain-cap and "
-                      "--contact-sheet");
+                      "--merge: takes the falloff out as a whole, and writes light; leave out --simulate, --strength, "
+                      "--gain-cap, --dither and --contact-sheet");
 }
 
 int run(Options &o, Streams &streams) {

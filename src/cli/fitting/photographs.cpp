@@ -75,6 +75,13 @@ void leave_out(const std::vector<uint32_t> &numbers, const std::vector<std::stri
     warn(streams, listed(numbers, names) + ": left out, " + reason);
 }
 
+std::string why_apart(const FoundProject &other, const FoundProject &project) {
+    if (other.kind == SceneKind::still)
+        return "another group, of a camera that did not move; `lensprof bracket` and `lensprof align` take its pictures";
+    if (other.whole == project.whole) return std::string("another group: ") + joined_by_another_body;
+    return "another group, which overlaps with none of these; give its pictures alone";
+}
+
 void report_found(const Registration &found, const std::vector<std::string> &names, const std::string &label,
                   LeftOut &left_out, Streams &streams) {
     const FoundProject &project = found.projects[0];
@@ -99,11 +106,7 @@ void report_found(const Registration &found, const std::vector<std::string> &nam
                           cameras));
     if (!project.cameras_fit()) warn(streams, label + no_cameras_fit);
     for (size_t n = 1; n < found.projects.size(); n++)
-        leave_out(found.projects[n].pictures, names,
-                  found.projects[n].whole == project.whole
-                      ? std::string("another group: ") + joined_by_another_body
-                      : "another group, which overlaps with none of these; give its pictures alone",
-                  left_out, streams);
+        leave_out(found.projects[n].pictures, names, why_apart(found.projects[n], project), left_out, streams);
     if (!found.foreign.empty()) leave_out(found.foreign, names, of_another_body, left_out, streams);
     if (!found.apart.empty()) leave_out(found.apart, names, joined_by_another_body, left_out, streams);
     if (!found.alone.empty())
@@ -171,6 +174,8 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
                       label + ": no two of the pictures overlap, or too little in them can be recognised; give pictures "
                               "that share a third, or a Hugin project",
                       LENSPROF_REASON_FEW_PAIRS);
+    if (found.projects[0].kind == SceneKind::still)
+        throw Failure(ExitCode::not_usable, label + no_falloff_of_still, LENSPROF_REASON_FEW_PAIRS);
     report_found(found, names, label, project.left_out, streams);
 
     const FoundProject &own = found.projects[0];

@@ -38,6 +38,11 @@ constexpr const char *of_another_body =
 constexpr const char *joined_by_another_body =
     "only pictures of another camera, size or processing join it to the others (--one-lens takes all as of one)";
 
+// Why pictures of a camera that did not move are not fitted, and what they serve for.
+constexpr const char *no_falloff_of_still =
+    ": the camera did not move between the pictures, which show no falloff then. `lensprof bracket` finds the response "
+    "from their exposures, `lensprof align` makes them alike, and with --merge gives their light";
+
 // What is to be said of a project whose cameras do not fit.
 constexpr const char *no_cameras_fit =
     ": no cameras fit the pictures well: parallax of a camera that moved, distortion, or things that moved. The pictures "

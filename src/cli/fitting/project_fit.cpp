@@ -212,13 +212,13 @@ CameraKind kind_of_all(const ProjectFitOptions &o, const std::vector<PictureMeta
 }
 
 // Things look different from another side, which in few pictures is taken for falloff.
-void warn_of_few(const Project &project, const Fitted &fitted, Streams &streams) {
+void warn_of_few(const ProjectFitOptions &o, const Project &project, const Fitted &fitted, Streams &streams) {
     constexpr size_t enough = 12;
     if (!project.by_matches || !fitted.corrects() || joined_images(fitted) >= enough) return;
     warn(streams, project.path
                       + format(": the falloff is of %zu pictures of a camera that moved, and its error may be several "
-                               "times the stated one; give %zu pictures or more, or --no-store",
-                               joined_images(fitted), enough));
+                               "times the stated one; give %zu pictures or more%s",
+                               joined_images(fitted), enough, o.store.no_store ? "" : ", or --no-store"));
 }
 
 // What was found of each setting, where there are several.
@@ -328,9 +328,10 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     input.options.profile = prior.profile.get();
     check_unknowns(o, project, input.options);
     done.settings = lens_settings(project, metadata, o.store, o.one_lens);
-    check_cameras(project, input.options.free, done.settings);
     report.camera_kind = kind_of_all(o, metadata, done.settings, report.camera_kind);
     input.options.camera_kind = report.camera_kind.kind;
+    if (report.camera_kind.kind == LENSPROF_CAMERA_LINEAR) join_cameras(done.settings);  // all have one response
+    check_cameras(project, input.options.free, done.settings);
     Pictures pictures = get_points(o, project, done);
     stop_if_interrupted();
     if (project.by_matches && o.sampling == LENSPROF_SAMPLING_PAPER)
@@ -353,7 +354,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
         look_again(o, project, pictures, done);
     report.fit = done.best.result;
     report.verdict = verdict_of(done.best.result);
-    warn_of_few(project, done.best, streams);
+    warn_of_few(o, project, done.best, streams);
     if (report.verdict.code == LENSPROF_REASON_BALANCES_HELD)
         report.verdict.text += " (Er and Eb on the v lines, or --free all)";
     name_image(project.names, report.verdict);

@@ -20,9 +20,10 @@ constexpr double tolerance = 0.003;  // of the longer side: how far a match may 
 // matches; of related ones with little overlap 10 to 20.
 constexpr size_t fewest_matches = 10;
 constexpr double fewest_by_chance = 6.0, share_of_matches = 0.1;
-constexpr double still = 0.002;   // of the longer side: less than a camera that moves or turns moves the picture
-constexpr int most_draws = 3000;  // of four matches for a homography
-constexpr int most_rounds = 5;    // of matching: what is linked says what to look at next
+constexpr double still = 0.002;       // of the longer side: less than a camera that moves or turns moves the picture
+constexpr size_t still_by_moved = 3;  // times as many stayed as moved with each other, where the camera stood still
+constexpr int most_draws = 3000;      // of four matches for a homography
+constexpr int most_rounds = 5;        // of matching: what is linked says what to look at next
 
 using Match = std::pair<int, int>;
 
@@ -77,33 +78,53 @@ std::optional<PictureLink> link_by(const PicturePair &pair, const Places &matche
     return is_chance ? std::nullopt : std::optional(std::move(found));
 }
 
+// Whether places that stayed are those of a scene: many more than moved with each other, and over the frame. What is
+// fixed to the frame is small.
+bool is_still_scene(const Places &stayed, size_t moved, const Features &picture) {
+    if (stayed.size() < fewest_matches || stayed.size() < still_by_moved * moved) return false;
+    cv::Point2d low = stayed[0].first, high = low;
+    for (const auto &[from, to] : stayed) {
+        low = {std::min(low.x, from.x), std::min(low.y, from.y)};
+        high = {std::max(high.x, from.x), std::max(high.y, from.y)};
+    }
+    return high.x - low.x > 0.5 * picture.width && high.y - low.y > 0.25 * picture.height;
+}
+
 // By what moved from frame to frame; or, where that shows nothing, by all: what is fixed to the frame, a date stamp, a
-// logo or dirt, matches in every pair of pictures.
+// logo or dirt, matches in every pair of pictures. Nothing moves where the camera stood still, but that matches of
+// things which repeat themselves may agree by chance.
 std::optional<PictureLink> link(const std::vector<Features> &pictures, const PicturePair &pair) {
     const Features &a = pictures[pair.first], &b = pictures[pair.second];
     const double longer_side = std::max(std::max(a.width, a.height), std::max(b.width, b.height));
-    Places all, moved;
+    Places all, moved, stayed;
     for (const Match &m : match(a, b)) {
         const cv::Point2d from = a.places[static_cast<size_t>(m.first)], to = b.places[static_cast<size_t>(m.second)];
         all.emplace_back(from, to);
-        if (cv::norm(to - from) > still * longer_side) moved.push_back(all.back());
+        (cv::norm(to - from) > still * longer_side ? moved : stayed).push_back(all.back());
     }
-    if (auto found = link_by(pair, moved, longer_side)) return found;
-    auto found = link_by(pair, all, longer_side);
-    if (found) found->is_still = moved.size() < all.size();
+    auto by_moved = link_by(pair, moved, longer_side);
+    const bool is_scene = is_still_scene(stayed, by_moved ? by_moved->matches.size() : 0, a);
+    if (by_moved && !is_scene) return by_moved;
+    auto found = link_by(pair, by_moved ? stayed : all, longer_side);
+    if (found) found->is_still = !stayed.empty(), found->is_scene = is_scene;
     return found;
 }
 
-// Still links of pictures that are linked by what moves: the camera did not stand still.
-void drop_still(size_t pictures, std::vector<PictureLink> &links) {
-    std::vector<bool> moves(pictures);
+// Pictures are of a camera that moved, or of one that stood still, by their link with most matches: the links of the
+// other kind are of things fixed to the frame, or chance.
+void drop_contradicted(size_t pictures, std::vector<PictureLink> &links) {
+    std::vector<size_t> moved(pictures), stayed(pictures);
     for (const PictureLink &link : links)
-        for (uint32_t picture : link.picture)
-            if (!link.is_still) moves[picture] = true;
-    const auto is_fixed = [&](const PictureLink &link) {
-        return link.is_still && (moves[link.picture[0]] || moves[link.picture[1]]);
+        for (const uint32_t picture : link.picture) {
+            size_t &most = link.is_still ? stayed[picture] : moved[picture];
+            if (!link.is_still || link.is_scene) most = std::max(most, link.matches.size());
+        }
+    const auto moves = [&](uint32_t picture) { return moved[picture] > 0 && moved[picture] >= stayed[picture]; };
+    const auto is_contradicted = [&](const PictureLink &link) {
+        const int count = moves(link.picture[0]) + moves(link.picture[1]);
+        return link.is_still ? count > 0 : count == 0;
     };
-    links.erase(std::remove_if(links.begin(), links.end(), is_fixed), links.end());
+    links.erase(std::remove_if(links.begin(), links.end(), is_contradicted), links.end());
 }
 
 }  // namespace
@@ -121,7 +142,7 @@ std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Progr
         std::sort(tried.begin(), tried.end());
         pairs = further_pairs(static_cast<uint32_t>(pictures.size()), linked, tried);
     }
-    drop_still(pictures.size(), links);
+    drop_contradicted(pictures.size(), links);
     std::sort(links.begin(), links.end(), [](const PictureLink &a, const PictureLink &b) {
         return std::tie(a.picture[0], a.picture[1]) < std::tie(b.picture[0], b.picture[1]);
     });

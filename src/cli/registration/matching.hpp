@@ -17,7 +17,8 @@ struct PictureLink {
     uint32_t picture[2];                                       // the lower number first
     std::vector<std::pair<cv::Point2d, cv::Point2d>> matches;  // px of the two full frames
     cv::Matx33d homography;                                    // from the first frame to the second, px
-    bool is_still = false;                                     // hardly anything moved from one frame to the other
+    bool is_still = false;                                     // hardly anything moved from one frame to the other,
+    bool is_scene = false;  // and that is a scene, and not what is fixed to the frame
 };
 
 // The links among pictures, in the order of their numbers.

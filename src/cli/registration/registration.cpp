@@ -64,7 +64,9 @@ FoundProject project_of(std::vector<uint32_t> numbers, const std::vector<Picture
     project.pictures = std::move(numbers);
     for (const PictureOptics &o : optics) project.lenses.push_back(o.lens);
     FoundCameras found = find_cameras(optics, links);
-    project.kind = found.kind;
+    const bool is_still =
+        std::all_of(links.begin(), links.end(), [](const PictureLink &link) { return link.is_still; });
+    project.kind = is_still ? SceneKind::still : found.kind;
     project.cameras = std::move(found.cameras);
     project.links = static_cast<uint32_t>(links.size());
     std::vector<double> residuals;
@@ -256,7 +258,8 @@ Registration registered(const std::vector<std::string> &files, bool as_one, Prog
         for (const uint32_t i : numbers) result.projects.back().bodies.push_back(bodies[i]);
     }
     std::stable_sort(result.projects.begin(), result.projects.end(), [](const FoundProject &a, const FoundProject &b) {
-        return a.pictures.size() > b.pictures.size();
+        const bool a_still = a.kind == SceneKind::still, b_still = b.kind == SceneKind::still;
+        return a_still != b_still ? b_still : a.pictures.size() > b.pictures.size();
     });
     return result;
 }

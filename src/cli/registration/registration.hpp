@@ -16,7 +16,8 @@ namespace lensprof {
 
 enum class SceneKind {
     panorama,  // the camera turned about one point
-    plane      // it moved, over a scene that is nearly a plane
+    plane,     // it moved, over a scene that is nearly a plane
+    still      // neither: frames of a tripod, a bracket, which show no falloff
 };
 
 // Pictures that overlap, directly or through others. Of each camera there are at least two, which its own pictures
@@ -39,7 +40,7 @@ struct FoundProject {
 };
 
 struct Registration {
-    std::vector<FoundProject> projects;  // the one with most pictures first
+    std::vector<FoundProject> projects;  // the one with most pictures first; still cameras last
     std::vector<uint32_t> alone;         // pictures that overlap with no other,
     // And those that overlap with pictures of other cameras alone: of a camera of which no two others overlap, and of
     // one of which others do.
