@@ -342,6 +342,28 @@ void test_any_reference(void **) {
         assert_close(other.exposures[i].ev - other.exposures[0].ev, first.exposures[i].ev, 0.01);
 }
 
+// What exposures of images start from, which that of a reference keeps, makes no difference to what is found.
+void test_exposures_of_references(void **) {
+    auto s = alternating<Simulation>();
+    Run plain(s), shifted(s);
+    assert_ok(plain.fit(s, default_fit()));
+    for (size_t i = 0; i < s.images; i++) {
+        s.fit_images[i].exposure.ev = i % 2 ? -2.5 : 1.5;
+        s.fit_images[i].exposure.white_balance[0] = i % 2 ? 0.7 : 1.2;
+    }
+    assert_ok(shifted.fit(s, default_fit()));
+    assert_true(std::abs(shifted.cameras[1].log_gamma - shifted.cameras[0].log_gamma) > 0.1);  // they move
+    assert_true(shifted.exposures[0].ev == 1.5);
+    for (size_t i = 0; i < s.images; i++) {
+        assert_close(shifted.exposures[i].ev - 1.5, plain.exposures[i].ev, 0.01);
+        assert_close(shifted.exposures[i].white_balance[0] / 1.2, plain.exposures[i].white_balance[0], 0.01);
+    }
+    for (uint32_t i = 0; i < s.images; i++) {  // as the grey values are, relative to the reference
+        shifted.exposures[i].ev -= 1.5, shifted.exposures[i].white_balance[0] /= 1.2;
+        assert_true(grey_error(s, shifted, i) < 0.012);
+    }
+}
+
 // Unknowns that are shared across cameras are shared within each.
 void test_links_end_at_cameras(void **) {
     auto s = alternating<Simulation>();
@@ -459,6 +481,7 @@ int main() {
         cmocka_unit_test(test_single_picture_is_left_out),
         cmocka_unit_test(test_groups_of_a_camera),
         cmocka_unit_test(test_any_reference),
+        cmocka_unit_test(test_exposures_of_references),
         cmocka_unit_test(test_links_end_at_cameras),
         cmocka_unit_test(test_threads_change_nothing),
         cmocka_unit_test(test_progress_rises),

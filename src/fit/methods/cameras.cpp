@@ -1,6 +1,7 @@
 #include "fit/methods/cameras.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -68,6 +69,7 @@ private:
                   double variance[3]) const;
     std::vector<LightPair> light_pairs() const;
     void join(uint32_t base);
+    void move(uint32_t number, double sigma, std::array<double, 3> &shift);
     void collect();
     void attach();
     bool attach_image(uint32_t image, const std::vector<uint32_t> &pairs);
@@ -172,20 +174,33 @@ void CamerasFit::join(uint32_t base) {
                                                               : camera.result().gamma_sigma);
     }
     joints_ = join_cameras(light_pairs(), sigma, base, static_cast<int>(options_.channels));
+    std::array<double, 3> of_base{};
+    move(base, sigma[base], of_base);
     for (uint32_t k = 0; k < cameras_.size(); k++) {
-        const Joint &joint = joints_[k];
-        Camera &camera = cameras_[k];
-        if (!joint.joined || !camera.is_fitted) continue;
-        lensprof_fit_result &r = *camera.found->result;
-        if (joint.pairs && sigma[k] > 0.0) {
-            std::set<uint32_t> settings;
-            for (const lensprof_fit_image &image : camera.input.images) settings.insert(image.setting);
-            raise_result(joint.log_gamma, joint.log_gamma_sigma, options_.free, settings, camera.found->exposures, r);
-            if (joint.log_gamma_sigma < kBetter * sigma[k]) r.gamma_from = LENSPROF_GAMMA_CAMERAS;
-        }
-        if (k != base)
-            offset_exposures(joint.offset, joint.offset_sigma, options_.channels, camera.found->exposures, r);
+        if (k == base || !joints_[k].joined || !cameras_[k].is_fitted) continue;
+        std::array<double, 3> offset{};
+        move(k, sigma[k], offset);
+        for (size_t c = 0; c < 3; c++) offset[c] = joints_[k].offset[c] + of_base[c] - offset[c];
+        offset_exposures(offset, joints_[k].offset_sigma, options_.channels, cameras_[k].found->exposures,
+                         *cameras_[k].found->result);
     }
+}
+
+// Moves a camera's result along its family. That holds the exposure of its reference, so that the light which was l is
+// gamma l + shift then, in each channel.
+void CamerasFit::move(uint32_t number, double sigma, std::array<double, 3> &shift) {
+    const Joint &joint = joints_[number];
+    Camera &camera = cameras_[number];
+    lensprof_fit_result &r = *camera.found->result;
+    if (!joint.pairs || !(sigma > 0.0)) return;
+    const lensprof_exposure &zero = camera.found->exposures[r.reference];
+    for (uint32_t c = 0; c < options_.channels; c++)
+        shift[c] = (std::exp(joint.log_gamma) - 1.0)
+                   * (zero.ev * kLn2 + (options_.channels == 3 ? std::log(zero.white_balance[c]) : 0.0));
+    std::set<uint32_t> settings;
+    for (const lensprof_fit_image &image : camera.input.images) settings.insert(image.setting);
+    raise_result(joint.log_gamma, joint.log_gamma_sigma, options_.free, settings, camera.found->exposures, r);
+    if (joint.log_gamma_sigma < kBetter * sigma) r.gamma_from = LENSPROF_GAMMA_CAMERAS;
 }
 
 // Exposures and qualities of the images that are fitted.
