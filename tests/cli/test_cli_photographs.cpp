@@ -155,6 +155,24 @@ void test_a_bracket(void **) {
     assert_true(contains(run.err, "s3.png: left out, another group, of a camera that did not move"));
 }
 
+// A panorama of brackets: within a stack the camera stood still, from stack to stack it turned; all are of one.
+void test_stacks(void **) {
+    if (is_missing()) return;
+    fs::create_directory(work("stacks"));
+    for (int ev : {-2, 0, 1}) {
+        const std::string name = "ev" + std::to_string(ev);
+        simulate(name, {"--images", "4", "--seed", "73", "--ev", "0.01", "--mean-ev", std::to_string(ev)});
+        for (int i = 0; i < 4; i++)
+            fs::copy_file(work(name + "/img00" + std::to_string(i) + ".png"),
+                          work("stacks/v" + std::to_string(i) + "_" + name + ".png"));
+    }
+    const Json json = json_of(Words{"build", work("stacks")} + quietly);
+    assert_int_equal(json["images"].size(), 12);
+    const auto ev = [&](size_t i) { return json["images"][i]["ev"].get<double>(); };
+    for (size_t view = 0; view < 12; view += 3)  // -2, 0 and 1 EV, but for gamma
+        assert_close((ev(view + 2) - ev(view)) / (ev(view + 1) - ev(view)), 1.5, 0.02);
+}
+
 // Pictures that lensprof has made are no photographs of the camera, unless they are named.
 void test_own_pictures_are_left_out(void **) {
     if (is_missing()) return;
@@ -415,6 +433,7 @@ int main() {
         CLI_TEST(test_one_picture_behind_another_camera),
         CLI_TEST(test_outputs_are_checked_first),
         CLI_TEST(test_a_bracket),
+        CLI_TEST(test_stacks),
         CLI_TEST(test_own_pictures_are_left_out),
         CLI_TEST(test_corrected_copies_are_not_read),
         CLI_TEST(test_what_is_fixed_to_the_frame),

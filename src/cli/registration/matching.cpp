@@ -110,21 +110,39 @@ std::optional<PictureLink> link(const std::vector<Features> &pictures, const Pic
     return found;
 }
 
-// Pictures are of a camera that moved, or of one that stood still, by their link with most matches: the links of the
-// other kind are of things fixed to the frame, or chance.
-void drop_contradicted(size_t pictures, std::vector<PictureLink> &links) {
-    std::vector<size_t> moved(pictures), stayed(pictures);
+std::vector<PictureLink> only_still_scenes(const std::vector<PictureLink> &links) {
+    std::vector<PictureLink> some;
     for (const PictureLink &link : links)
-        for (const uint32_t picture : link.picture) {
-            size_t &most = link.is_still ? stayed[picture] : moved[picture];
-            if (!link.is_still || link.is_scene) most = std::max(most, link.matches.size());
-        }
-    const auto moves = [&](uint32_t picture) { return moved[picture] > 0 && moved[picture] >= stayed[picture]; };
-    const auto is_contradicted = [&](const PictureLink &link) {
-        const int count = moves(link.picture[0]) + moves(link.picture[1]);
-        return link.is_still ? count > 0 : count == 0;
+        if (link.is_scene) some.push_back({{link.picture[0], link.picture[1]}, {}, {}});
+    return some;
+}
+
+// Links of what moved between pictures that links of what stayed join, with far more matches: of things that repeat
+// themselves, by chance.
+void drop_chance(size_t pictures, std::vector<PictureLink> &links) {
+    const std::vector<uint32_t> groups = groups_of(pictures, only_still_scenes(links));
+    std::vector<size_t> stayed(pictures);  // matches of each picture's largest link of what stayed
+    for (const PictureLink &link : links)
+        for (const uint32_t picture : link.picture)
+            if (link.is_scene) stayed[picture] = std::max(stayed[picture], link.matches.size());
+    const auto is_chance = [&](const PictureLink &link) {
+        const auto [a, b] = std::pair(link.picture[0], link.picture[1]);
+        return !link.is_still && groups[a] == groups[b]
+               && still_by_moved * link.matches.size() < std::min(stayed[a], stayed[b]);
     };
-    links.erase(std::remove_if(links.begin(), links.end(), is_contradicted), links.end());
+    links.erase(std::remove_if(links.begin(), links.end(), is_chance), links.end());
+}
+
+// Still links of pictures that are linked by what moves: the camera did not stand still.
+void drop_still(size_t pictures, std::vector<PictureLink> &links) {
+    std::vector<bool> moves(pictures);
+    for (const PictureLink &link : links)
+        for (uint32_t picture : link.picture)
+            if (!link.is_still) moves[picture] = true;
+    const auto is_fixed = [&](const PictureLink &link) {
+        return link.is_still && (moves[link.picture[0]] || moves[link.picture[1]]);
+    };
+    links.erase(std::remove_if(links.begin(), links.end(), is_fixed), links.end());
 }
 
 }  // namespace
@@ -142,7 +160,8 @@ std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Progr
         std::sort(tried.begin(), tried.end());
         pairs = further_pairs(static_cast<uint32_t>(pictures.size()), linked, tried);
     }
-    drop_contradicted(pictures.size(), links);
+    drop_chance(pictures.size(), links);
+    drop_still(pictures.size(), links);
     std::sort(links.begin(), links.end(), [](const PictureLink &a, const PictureLink &b) {
         return std::tie(a.picture[0], a.picture[1]) < std::tie(b.picture[0], b.picture[1]);
     });
