@@ -223,7 +223,8 @@ typedef struct lensprof_fit_camera {
     double agreeing_share;      /* of these, those within 3 sigma of what is left */
     double light_difference_ev; /* median absolute difference of the light at their ends, EV */
     double log_gamma;           /* by which its own fit was moved along its family, to agree with the others */
-    double offset_sigma_ev;     /* standard error of the offset of its exposures; 0 for that of the reference */
+    double offset_sigma_ev;     /* standard error of the offset of its exposures, most of it of the light at white,
+                                   which no pair shows; 0 for that of the reference */
     lensprof_response response;
     uint32_t vignettings, pairs, evens, gamma_from;
     uint32_t response_from, profile_prior, covariance_size, converged;
@@ -352,8 +353,8 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_profile_from_fit(lenspro
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_result_take_setting(lensprof_fit_result *result,
                                                                                 const lensprof_fit_setting *setting,
                                                                                 lensprof_error *error);
-/* The same of a camera of several: what its own fit found takes the place of that of the reference's camera. Take one
- * of its settings afterwards. Errors: ARGUMENT, also for a camera without images; STRUCT_SIZE. */
+/* The same of a camera of several: what its own fit found takes the place of that of the reference's camera. The result
+ * is not usable until one of its settings is taken. Errors: ARGUMENT, also for a camera without images; STRUCT_SIZE. */
 LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_fit_result_take_camera(lensprof_fit_result *result,
                                                                                const lensprof_fit_camera *camera,
                                                                                lensprof_error *error);

@@ -115,6 +115,13 @@ void test_one_lens_takes_all_as_one(void **) {
     assert_int_equal(linear["settings"].size(), 2);
     // What the command line states holds for all pictures.
     assert_true(Json::parse(run_words(Words{"build", project(), "--camera", "One"} + quietly).out)["cameras"].empty());
+    // Also where the project does not link them.
+    std::string text = text_of(project());
+    for (size_t at = text.find("Ra=0"); at != std::string::npos; at = text.find("Ra=0", at)) text.replace(at, 4, "Ra0");
+    const std::string unlinked = two_cameras() + "/unlinked.pto";
+    save_text(unlinked, text);
+    assert_true(Json::parse(run_words(Words{"build", unlinked, "--camera", "One"} + quietly).out)["cameras"].empty());
+    assert_int_equal(Json::parse(run_words(Words{"build", unlinked} + quietly).out)["cameras"].size(), 2);
 }
 
 // Without a project: the overlaps join both cameras, and the project that is written says which picture is of which.
@@ -177,6 +184,11 @@ void test_apply(void **) {
     assert_false(
         contains(run_words({"apply", "--pto", result, "--output-exposure", "keep", "-o", kept}).err, "several"));
     assert_true(seams(kept) > 2.0 * after);
+    // So it is by the profiles of a database, which has both.
+    const std::string db = work("both.db"), by_db = work("by_db");
+    must_exit(done, {"build", project(), "--db", db});
+    must_exit(done, {"apply", "--pto", result, "--from-db", "--db", db, "-o", by_db});
+    assert_true(seams(by_db) < 0.15 * before);
     // A preview has both, too.
     must_exit(done, Words{"build", project(), "--preview", work("preview.png")} + quietly);
     assert_true(fs::exists(work("preview.png")));
@@ -225,6 +237,29 @@ void test_single_picture(void **) {
     }
 }
 
+// What says no camera is not stored, and is no reason not to store the others.
+void test_camera_without_a_name(void **) {
+    const std::string folder = pictures("unnamed"), db = work("unnamed.db");
+    std::string text = text_of(project());  // with a response of its own for each second image, as EXIF says nothing
+    const std::string linked = "Ra=0 Rb=0 Rc=0 Rd=0 Re=0", own = "Ra0 Rb0 Rc0 Rd0 Re0",
+                      other = "Ra=1 Rb=1 Rc=1 Rd=1 Re=1";
+    for (size_t at = text.find(linked), n = 0; at != std::string::npos; at = text.find(linked, at + 1), n++)
+        if (n % 2 == 0) text.replace(at, linked.size(), n == 0 ? own : other);
+    save_text(folder + "/pano.pto", text);
+    for (size_t i = 1; i < kImages; i += 2) {
+        const Picture picture = read_picture(folder + "/" + numbered(i));
+        fs::remove(folder + "/" + numbered(i));
+        write_picture(folder + "/" + numbered(i), picture);  // without metadata
+    }
+    const Outcome outcome = run_words({"build", folder + "/pano.pto", "--db", db, "--json"});
+    assert_int_equal(outcome.code, done);
+    assert_true(contains(outcome.err, "not stored: "));
+    const Json json = Json::parse(outcome.out);
+    assert_int_equal(json["cameras"].size(), 2);
+    assert_int_equal(json["settings"][0]["profile"], 1);
+    assert_true(json["settings"][1]["profile"].is_null());
+}
+
 // Nothing that one camera shows is in pictures of the other: that of the reference is the result.
 void test_cameras_that_share_nothing(void **) {
     const std::string folder = pictures("apart"), db = work("apart.db");
@@ -269,6 +304,7 @@ int main() {
         CLI_TEST(test_calibrate),
         CLI_TEST(test_light),
         CLI_TEST(test_single_picture),
+        CLI_TEST(test_camera_without_a_name),
         CLI_TEST(test_cameras_that_share_nothing),
         CLI_TEST(test_what_is_refused),
     };

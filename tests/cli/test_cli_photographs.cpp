@@ -155,6 +155,24 @@ void test_a_bracket(void **) {
     assert_true(contains(run.err, "s3.png: left out, another group, of a camera that did not move"));
 }
 
+// Pictures a third of which is fixed to the frame, as from behind a windscreen, are of a camera that turned.
+void test_behind_a_dashboard(void **) {
+    if (is_missing()) return;
+    simulate("drive", {"--images", "5", "--seed", "75", "--overlap", "0.5"});
+    simulate("board", {"--images", "2", "--seed", "76", "--scene", "foliage"});
+    const Picture board = read_picture(work("board/img000.png"));
+    for (int i = 0; i < 5; i++) {
+        const std::string file = work("drive/img00" + std::to_string(i) + ".png");
+        Picture picture = read_picture(file);
+        const size_t from = picture.row_bytes * (picture.height * 65 / 100);
+        std::copy(board.pixels.begin() + static_cast<std::ptrdiff_t>(from), board.pixels.end(),
+                  picture.pixels.begin() + static_cast<std::ptrdiff_t>(from));
+        write_picture(file, picture);
+    }
+    const Outcome run = run_words(Words{"build", work("drive")} + quietly);
+    assert_true(contains(run.err, "5 pictures overlap") && contains(run.err, "a camera that turned"));
+}
+
 // A panorama of brackets: within a stack the camera stood still, from stack to stack it turned; all are of one.
 void test_stacks(void **) {
     if (is_missing()) return;
@@ -433,6 +451,7 @@ int main() {
         CLI_TEST(test_one_picture_behind_another_camera),
         CLI_TEST(test_outputs_are_checked_first),
         CLI_TEST(test_a_bracket),
+        CLI_TEST(test_behind_a_dashboard),
         CLI_TEST(test_stacks),
         CLI_TEST(test_own_pictures_are_left_out),
         CLI_TEST(test_corrected_copies_are_not_read),

@@ -135,7 +135,7 @@ class Fits(unittest.TestCase):
                 exponent = 1 / 2.2 if seen < 2 else 1 / 1.8
                 pairs["value"][n, end] = (light * gain[seen]) ** exponent + rng.normal(0, 0.001, 3)
         result = lp.fit_overlap(images, pairs, lp.FitOptions(free=lp.Free.RESPONSE))
-        self.assertEqual([(c.images, c.joined) for c in result.cameras], [(2, True), (2, True)])
+        self.assertEqual([(c.images, c.attached, c.joined) for c in result.cameras], [(2, 0, True), (2, 0, True)])
         self.assertEqual(result.left_out, 0)
         self.assertGreater(result.cameras[1].shared_pairs, 1000)
         own = [np.interp(0.5, np.linspace(0, 1, 1024), c.response.table) for c in result.cameras]

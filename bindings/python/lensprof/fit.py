@@ -129,7 +129,8 @@ class FitCamera(Struct, _abi.FitCamera):
     """What a fit found of one camera of several; the fields are those of FitResult with these names, of a fit of the pairs
     between its own images.
 
-    images: of this camera that joined its fit; where 0, the rest means nothing. joined: its exposures are relative to the
+    images: of this camera that joined its fit; where 0, the rest means nothing. attached: beside these, whose exposures pairs
+    with other cameras say. joined: its exposures are relative to the
     reference, as pairs with other cameras show; else they are NaN. shared_pairs: with an end in it and the other in another
     camera; agreeing_share: of these, those within 3 sigma of what is left; light_difference_ev: median difference of the
     light at their ends. log_gamma: by which its own fit was moved to agree with the others. offset_sigma_ev: standard error
@@ -137,6 +138,7 @@ class FitCamera(Struct, _abi.FitCamera):
     """
 
     images: int
+    attached: int
     joined = Flag()
     shared_pairs: int
     agreeing_share: float

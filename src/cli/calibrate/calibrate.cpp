@@ -36,7 +36,7 @@ void declare(Command &command, CalibrateOptions &o) {
         "profile database; where it is given more than once profiles are stored in the first, and the others are read; "
         "default lensprof/profiles.db in $XDG_DATA_HOME or ~/.local/share");
     command.flag("--no-store", o.store.no_store, "do not store profiles");
-    command.flag("--one-lens", o.one_lens, "take pictures of a panorama as of one lens, whatever they say");
+    command.flag("--one-lens", o.one_lens, "take pictures of a panorama as of one camera and lens, whatever they say");
     command.flag("--overwrite", o.overwrite, "replace files in the output folder that are not of an earlier calibrate");
     command.count("--threads", o.threads, 0, 1024, "threads that correct pictures; 0 = all cores (default)");
     declare_json(command, o.json);

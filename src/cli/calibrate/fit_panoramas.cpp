@@ -1,4 +1,5 @@
 // Fit, profile, project and mosaic of each panorama.
+#include <algorithm>
 #include <sstream>
 
 #include "cli/calibrate/attempt.hpp"
@@ -115,7 +116,11 @@ void fit_one(const CalibrateOptions &o, Panorama &panorama, Ledger &ledger, Prog
 // Whether the profile that an earlier run stored is still there.
 bool is_stored(const CalibrateOptions &o, const Json &summary) {
     const Json &result = summary["result"];
-    if (!result.is_object() || result["profile"].is_null()) return true;
+    const auto has_profile = [](const Json &setting) { return !setting["profile"].is_null(); };
+    if (!result.is_object()
+        || (result["profile"].is_null()
+            && std::none_of(result["settings"].begin(), result["settings"].end(), has_profile)))
+        return true;
     if (!path_exists(store_path(o.store.db))) return false;
     const Store store = open_store(o.store.db, LENSPROF_STORE_READ);
     auto profile = new_profile();

@@ -384,13 +384,20 @@ Corrected merge(const Options &o, const Source &source, const Work &work, Progre
     return write_from_overlaps(*source.project, placed, work.lit, o.kind, progress);
 }
 
-// Pictures of several cameras look alike only where one response encodes them.
-void encode_alike(const Project &project, std::vector<Correction> &jobs, Streams &streams) {
-    const auto encoding = common_encoding(project);
+// Pictures of several cameras look alike only where one response encodes them: that of the project's reference, or
+// where responses are of profiles that of the first picture.
+void encode_alike(const Source &source, std::vector<Correction> &jobs, Streams &streams) {
+    auto encoding = source.has_model ? common_encoding(*source.project) : nullptr;
+    const auto &first = jobs[0].model->response[0];
+    const bool differ = std::any_of(jobs.begin(), jobs.end(), [&](const Correction &job) {
+        return !std::equal(std::begin(first.table), std::end(first.table), std::begin(job.model->response[0].table));
+    });
+    if (!source.has_model && differ) encoding = std::make_shared<lensprof_response>(first);
     if (!encoding) return;
     for (Correction &job : jobs) job.encoding = encoding;
-    note(streams, project.path + ": is of several cameras; what is written is encoded by the response of the reference's "
-                                 "(--output-exposure keep: each by its own)");
+    note(streams, source.project->path + ": is of several cameras; what is written is encoded by the response of "
+                      + (source.has_model ? std::string("the reference's") : jobs[0].source)
+                      + " (--output-exposure keep: each by its own)");
 }
 
 Corrected correct(const Options &o, const Source &source, Work &work, Streams &streams) {
@@ -402,8 +409,8 @@ Corrected correct(const Options &o, const Source &source, Work &work, Streams &s
                                                                : Exposure::mean;
     for (Correction &job : work.jobs)
         job.wanted = chosen == Exposure::keep ? job.own : chosen == Exposure::mean ? work.mean : reference;
-    if (source.has_model && chosen != Exposure::keep && !o.kind.linear && !o.kind.simulate)
-        encode_alike(*source.project, work.jobs, streams);
+    if (source.project && chosen != Exposure::keep && !o.kind.linear && !o.kind.simulate)
+        encode_alike(source, work.jobs, streams);
     make_folder(o.output);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;

@@ -65,8 +65,10 @@ void declare(Command &command, Options &o) {
                  "what is estimated instead of the v lines, the same of every image; default of a project without "
                  "photometric v lines: all");
     command.text("--reference", o.reference, "image (number or name) whose exposure is 0 EV");
-    command.flag("--one-lens", o.one_lens,
-                 "estimate one falloff for all pictures, whatever lens, focal length, aperture and focus they state");
+    command.flag(
+        "--one-lens", o.one_lens,
+        "estimate one response and one falloff for all pictures, whatever camera, lens, focal length, aperture and "
+        "focus they state");
     command.choice("--sampling", o.sampling,
                    {{"balanced", LENSPROF_SAMPLING_BALANCED}, {"paper", LENSPROF_SAMPLING_PAPER}},
                    "balanced or paper (d'Angelo 5.1)");

@@ -234,12 +234,18 @@ static bool is_camera_joined(const BuildReport &report, size_t image) {
 
 // Names the cameras that have no part, and why.
 static void name_cameras(const BuildReport &report, const std::string &source, Streams &streams) {
-    for (const CameraReport &camera : report.cameras) {
+    for (uint32_t k = 0; k < report.cameras.size(); k++) {
+        const CameraReport &camera = report.cameras[k];
         if (camera.found.joined) continue;
+        const auto own =
+            std::find_if(report.settings.begin(), report.settings.end(),
+                         [&](const SettingReport &setting) { return setting.camera == k && setting.found.images; });
         const std::string left_out = source + ": " + camera.label + ": left out, ";
         if (!camera.found.images)
             warn(streams, left_out + "for no two of its pictures share enough; give more of them, or --one-lens to take "
                                      "all as of one camera");
+        else if (!camera.found.evens && own != report.settings.end() && !own->found.usable)
+            warn(streams, left_out + "for its own pictures are not evened out: " + own->verdict.text);
         else
             warn(streams, left_out + "for what its pictures share with those of others is too little, or does not agree; "
                                      "give more that overlap");
@@ -287,7 +293,7 @@ void store_result(BuildReport &report, const lensprof_profile_key &key, const St
     std::set<std::string> keys;
     for (SettingReport *one : order) {
         SettingReport &setting = *one;
-        if (!setting.found.images || !(setting.found.usable || store.force)) continue;
+        if (!setting.found.images || !(setting.found.usable || store.force) || !setting.no_key.empty()) continue;
         setting.has_same_key = !keys.insert(describe_key(setting.key)).second;
         if (setting.has_same_key) continue;  // a lookup could not tell them apart
         setting.profile_id = store_setting(result_of(report, setting), setting.found.images, setting.key,
@@ -309,6 +315,9 @@ void print_stored(const BuildReport &report, const lensprof_profile_key &key, co
 
 // Says which of several settings give no profile, and why.
 void name_unusable(const BuildReport &report, const std::string &source, Streams &streams) {
+    for (const SettingReport &setting : report.settings)
+        if (setting.found.images && setting.found.usable && !setting.no_key.empty())
+            warn(streams, source + ": " + setting.label + ": not stored: " + setting.no_key);
     for (const SettingReport &setting : report.settings)
         if (setting.has_same_key)
             warn(streams,

@@ -39,32 +39,51 @@ lensprof_profile_key stated_key(lensprof_profile_key key, const StoreOptions &st
     if (store.focal != LENSPROF_UNKNOWN) key.focal_mm = store.focal;
     if (store.distance != LENSPROF_UNKNOWN) key.distance_m = store.distance;
     if (!store.lens.empty()) *key.lens = '\0';
-    if (!store.camera.empty()) *key.camera_model = '\0';
     return key;
 }
 
 // Whether two images are of one camera: EXIF says it, unless their sizes or processings differ, or the project, unless
-// EXIF says that they are not.
-bool is_same_camera(const Project &project, const std::vector<lensprof_profile_key> &keys, uint32_t i, uint32_t j) {
-    const lensprof_profile_key &a = keys[i], &b = keys[j];
-    const bool is_stated = *a.camera_model && *b.camera_model;
+// EXIF says that they are not. `is_given`: the command line states the camera of all.
+bool is_same_camera(const Project &project, const std::vector<PictureMetadata> &metadata, bool is_given, uint32_t i,
+                    uint32_t j) {
+    const lensprof_profile_key &a = metadata[i].key, &b = metadata[j].key;
+    const bool is_stated = is_given || (*a.camera_model && *b.camera_model);
     const bool is_alike =
-        std::strcmp(a.camera_model, b.camera_model) == 0 && std::strcmp(a.camera_maker, b.camera_maker) == 0;
+        is_given
+        || (std::strcmp(a.camera_model, b.camera_model) == 0 && std::strcmp(a.camera_maker, b.camera_maker) == 0);
     if (is_stated && !is_alike) return false;
     if (project.images[i].response_of == project.images[j].response_of) return true;
     const lensprof_camera &one = project.images[i].camera, &other = project.images[j].camera;
-    return is_stated && a.processing == b.processing
-           && std::minmax(one.width, one.height) == std::minmax(other.width, other.height);
+    const bool is_one_kind =
+        a.processing == b.processing && std::minmax(one.width, one.height) == std::minmax(other.width, other.height);
+    return is_stated && is_one_kind;
 }
 
-// Numbers cameras in the order of their images.
-void number_cameras(const Project &project, const std::vector<lensprof_profile_key> &keys, LensSettings &settings) {
-    auto &first = settings.first_of_camera;
-    for (uint32_t i = 0; i < project.images.size(); i++) {
-        const auto same =
-            std::find_if(first.begin(), first.end(), [&](uint32_t j) { return is_same_camera(project, keys, i, j); });
-        settings.camera_of_image.push_back(static_cast<uint32_t>(same - first.begin()));
-        if (same == first.end()) first.push_back(i);
+// Numbers cameras in the order of their first images. Images that state their camera come first, so that those which do
+// not join what the project links them to.
+void number_cameras(const Project &project, const std::vector<PictureMetadata> &metadata, bool is_given,
+                    LensSettings &settings) {
+    const auto count = static_cast<uint32_t>(project.images.size());
+    std::vector<uint32_t> order(count), found(count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_partition(order.begin(), order.end(), [&](uint32_t i) { return *metadata[i].key.camera_model != 0; });
+    std::vector<std::vector<uint32_t>> members;
+    for (const uint32_t i : order) {
+        const auto same = std::find_if(members.begin(), members.end(), [&](const std::vector<uint32_t> &own) {
+            return std::any_of(own.begin(), own.end(),
+                               [&](uint32_t j) { return is_same_camera(project, metadata, is_given, i, j); });
+        });
+        found[i] = static_cast<uint32_t>(same - members.begin());
+        if (same == members.end()) members.emplace_back();
+        members[found[i]].push_back(i);
+    }
+    std::vector<uint32_t> number(members.size(), UINT32_MAX);
+    for (uint32_t i = 0; i < count; i++) {
+        if (number[found[i]] == UINT32_MAX) {
+            number[found[i]] = static_cast<uint32_t>(settings.first_of_camera.size());
+            settings.first_of_camera.push_back(i);
+        }
+        settings.camera_of_image.push_back(number[found[i]]);
     }
 }
 
@@ -94,7 +113,7 @@ LensSettings lens_settings(const Project &project, const std::vector<PictureMeta
     std::vector<lensprof_profile_key> keys;
     for (const PictureMetadata &own : metadata) keys.push_back(stated_key(own.key, store));
     LensSettings cameras;
-    number_cameras(project, keys, cameras);
+    number_cameras(project, metadata, !store.camera.empty(), cameras);
     std::vector<uint32_t> order(count), found(count), first;
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(),

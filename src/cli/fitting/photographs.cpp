@@ -166,8 +166,8 @@ Project project_of_pictures(const Photographs &list, bool one_lens, Progress &pr
         throw Failure(ExitCode::unreadable, label + ": none of the pictures can be read; give others");
     if (found.projects.empty() && !found.foreign.empty())
         throw Failure(ExitCode::not_usable,
-                      label + ": no two pictures of one camera and size overlap; give --one-lens to "
-                              "take all as one",
+                      label + ": no two pictures of one camera, size and processing overlap, as each camera's must; give "
+                              "more of them, or --one-lens to take all as of one",
                       LENSPROF_REASON_FEW_PAIRS);
     if (found.projects.empty())
         throw Failure(ExitCode::not_usable,

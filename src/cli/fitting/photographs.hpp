@@ -40,8 +40,8 @@ constexpr const char *joined_by_another_body =
 
 // Why pictures of a camera that did not move are not fitted, and what they serve for.
 constexpr const char *no_falloff_of_still =
-    ": the camera did not move between the pictures, which show no falloff then. `lensprof bracket` finds the response "
-    "from their exposures, `lensprof align` makes them alike, and with --merge gives their light";
+    ": the camera did not move, and the pictures show no falloff; `lensprof bracket` finds its response, `lensprof align` "
+    "evens or merges them";
 
 // What is to be said of a project whose cameras do not fit.
 constexpr const char *no_cameras_fit =

@@ -214,11 +214,14 @@ CameraKind kind_of_all(const ProjectFitOptions &o, const std::vector<PictureMeta
 // Things look different from another side, which in few pictures is taken for falloff.
 void warn_of_few(const ProjectFitOptions &o, const Project &project, const Fitted &fitted, Streams &streams) {
     constexpr size_t enough = 12;
-    if (!project.by_matches || !fitted.corrects() || joined_images(fitted) >= enough) return;
+    size_t images = joined_images(fitted);  // or of the camera with fewest
+    for (const lensprof_fit_camera &camera : fitted.cameras)
+        if (camera.images) images = std::min<size_t>(images, camera.images);
+    if (!project.by_matches || !fitted.corrects() || images >= enough) return;
     warn(streams, project.path
                       + format(": the falloff is of %zu pictures of a camera that moved, and its error may be several "
                                "times the stated one; give %zu pictures or more%s",
-                               joined_images(fitted), enough, o.store.no_store ? "" : ", or --no-store"));
+                               images, enough, o.store.no_store ? "" : ", or --no-store"));
 }
 
 // What was found of each setting, where there are several.
@@ -232,7 +235,12 @@ void report_settings(const ProjectFitOptions &o, const Project &project, const s
         const uint32_t first = settings.first[s];
         SettingReport setting;
         setting.camera = settings.camera_of_image[first];
-        setting.key = override_key(metadata[first].key, metadata[first].size, o.store, project.files[first]);
+        try {
+            setting.key = override_key(metadata[first].key, metadata[first].size, o.store, project.files[first]);
+        } catch (const Failure &failure) {  // the others are stored
+            if (failure.code != ExitCode::usage || s == settings.of_image[done.best.result.reference]) throw;
+            setting.key = metadata[first].key, setting.no_key = failure.what();
+        }
         setting.label = describe_setting(setting.key, project.names[first]);
         if (settings.are_of_several_cameras())
             setting.label =
@@ -276,7 +284,7 @@ Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, 
     };
     bool fits = can_hold(best.result);
     uint32_t modes = std::min<uint32_t>(best.result.response.modes, project_modes);
-    for (const lensprof_fit_camera &camera : best.cameras)  // joining them makes tables, whose modes are not known
+    for (const lensprof_fit_camera &camera : best.cameras)  // whose responses are tables, which are projected
         if (camera.images) modes = project_modes, fits = fits && can_hold(camera);
     if (fits || !(input.options.free & LENSPROF_FREE_RESPONSE)) return best;
     input.options.modes = modes;

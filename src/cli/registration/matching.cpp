@@ -78,16 +78,25 @@ std::optional<PictureLink> link_by(const PicturePair &pair, const Places &matche
     return is_chance ? std::nullopt : std::optional(std::move(found));
 }
 
-// Whether places that stayed are those of a scene: many more than moved with each other, and over the frame. What is
-// fixed to the frame is small.
-bool is_still_scene(const Places &stayed, size_t moved, const Features &picture) {
-    if (stayed.size() < fewest_matches || stayed.size() < still_by_moved * moved) return false;
-    cv::Point2d low = stayed[0].first, high = low;
-    for (const auto &[from, to] : stayed) {
+// Where places are in the first frame.
+cv::Rect2d box_of(const Places &places) {
+    cv::Point2d low = places[0].first, high = low;
+    for (const auto &[from, to] : places) {
         low = {std::min(low.x, from.x), std::min(low.y, from.y)};
         high = {std::max(high.x, from.x), std::max(high.y, from.y)};
     }
-    return high.x - low.x > 0.5 * picture.width && high.y - low.y > 0.25 * picture.height;
+    return {low.x, low.y, high.x - low.x, high.y - low.y};
+}
+
+// Whether places that stayed are those of a scene: many more than moved with each other, over the frame, and where
+// these are, which then repeat themselves. What is fixed to the frame, as a dashboard is, has its own part of it.
+bool is_still_scene(const Places &stayed, const Places &moved, const Features &picture) {
+    if (stayed.size() < fewest_matches || stayed.size() < still_by_moved * moved.size()) return false;
+    const cv::Rect2d box = box_of(stayed);
+    const auto outside =
+        std::count_if(moved.begin(), moved.end(), [&](const auto &place) { return !box.contains(place.first); });
+    return box.width > 0.5 * picture.width && box.height > 0.25 * picture.height
+           && 2 * static_cast<size_t>(outside) <= moved.size();
 }
 
 // By what moved from frame to frame; or, where that shows nothing, by all: what is fixed to the frame, a date stamp, a
@@ -103,7 +112,7 @@ std::optional<PictureLink> link(const std::vector<Features> &pictures, const Pic
         (cv::norm(to - from) > still * longer_side ? moved : stayed).push_back(all.back());
     }
     auto by_moved = link_by(pair, moved, longer_side);
-    const bool is_scene = is_still_scene(stayed, by_moved ? by_moved->matches.size() : 0, a);
+    const bool is_scene = is_still_scene(stayed, by_moved ? by_moved->matches : Places(), a);
     if (by_moved && !is_scene) return by_moved;
     auto found = link_by(pair, by_moved ? stayed : all, longer_side);
     if (found) found->is_still = !stayed.empty(), found->is_scene = is_scene;
@@ -117,18 +126,34 @@ std::vector<PictureLink> only_still_scenes(const std::vector<PictureLink> &links
     return some;
 }
 
-// Links of what moved between pictures that links of what stayed join, with far more matches: of things that repeat
-// themselves, by chance.
+// What stayed in a picture, by its link of a still scene with most matches.
+struct Stayed {
+    size_t matches = 0;
+    cv::Rect2d box;
+};
+
+std::vector<Stayed> what_stayed(size_t pictures, const std::vector<PictureLink> &links) {
+    std::vector<Stayed> stayed(pictures);
+    for (const PictureLink &link : links)
+        for (const uint32_t picture : link.picture)  // at the same places of both
+            if (link.is_scene && link.matches.size() > stayed[picture].matches)
+                stayed[picture] = {link.matches.size(), box_of(link.matches)};
+    return stayed;
+}
+
+// Links of what moved between pictures that links of what stayed join, with far more matches and at the same places: of
+// things that repeat themselves, by chance.
 void drop_chance(size_t pictures, std::vector<PictureLink> &links) {
     const std::vector<uint32_t> groups = groups_of(pictures, only_still_scenes(links));
-    std::vector<size_t> stayed(pictures);  // matches of each picture's largest link of what stayed
-    for (const PictureLink &link : links)
-        for (const uint32_t picture : link.picture)
-            if (link.is_scene) stayed[picture] = std::max(stayed[picture], link.matches.size());
+    const std::vector<Stayed> stayed = what_stayed(pictures, links);
     const auto is_chance = [&](const PictureLink &link) {
-        const auto [a, b] = std::pair(link.picture[0], link.picture[1]);
-        return !link.is_still && groups[a] == groups[b]
-               && still_by_moved * link.matches.size() < std::min(stayed[a], stayed[b]);
+        const Stayed &a = stayed[link.picture[0]], &b = stayed[link.picture[1]];
+        if (link.is_still || groups[link.picture[0]] != groups[link.picture[1]]) return false;
+        if (still_by_moved * link.matches.size() >= std::min(a.matches, b.matches)) return false;
+        const auto within = std::count_if(link.matches.begin(), link.matches.end(), [&](const auto &place) {
+            return a.box.contains(place.first) && b.box.contains(place.second);
+        });
+        return 2 * static_cast<size_t>(within) > link.matches.size();
     };
     links.erase(std::remove_if(links.begin(), links.end(), is_chance), links.end());
 }

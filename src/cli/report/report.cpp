@@ -479,6 +479,8 @@ void print_responses(const BuildReport &report, std::ostream &out) {
         else
             out << format("; the light of %u shared pairs differs by %.3f EV (median)", found.shared_pairs,
                           found.light_difference_ev);
+        if (found.images && !camera.is_reference && found.heldout_rms != LENSPROF_UNKNOWN)
+            out << format("; residual %.2f levels (RMS, held out)", found.heldout_rms);
         out << "\n";
         if (!found.images) continue;
         if (found.response_from == LENSPROF_FIT_RESPONSE_KIND)

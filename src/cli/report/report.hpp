@@ -38,6 +38,7 @@ struct SettingReport {
     Verdict verdict;
     int64_t profile_id = 0;     // 0 = not stored
     bool has_same_key = false;  // as a setting that is stored
+    std::string no_key;         // why nothing says what camera and lens it is of; empty: something does
 };
 
 // What was found of one of several cameras.

@@ -668,6 +668,7 @@ lensprof_status lensprof_fit_result_take_camera(lensprof_fit_result *result, con
         return fail(LENSPROF_ERROR_STRUCT_SIZE, error, "result: %s", wrong);
     if (!camera.images) return fail(LENSPROF_ERROR_ARGUMENT, error, "camera: it has no fit; take one that has images");
     copy_camera(camera, own);
+    own.usable = 0;  // until a setting is taken
     lp_sized_copy(result, &own);
     return LENSPROF_OK;
 }

@@ -110,9 +110,15 @@ std::vector<CameraInput> part_cameras(const CamerasData &data, const std::vector
         input.options = data.options;
         input.options.links = input.links.data();
         input.options.link_count = static_cast<uint32_t>(input.links.size());
+        const uint32_t setting = data.images[data.options.reference].setting;
+        const auto alike = std::find_if(input.images.begin(), input.images.end(),
+                                        [&](const lensprof_fit_image &image) { return image.setting == setting; });
         const uint32_t own = input.place[data.options.reference];
-        input.options.reference = own == kNoPlace ? 0 : own;
-        if (own == kNoPlace) input.options.profile = nullptr;  // whose falloff and response are of the reference
+        input.options.reference = own != kNoPlace               ? own
+                                  : alike != input.images.end() ? static_cast<uint32_t>(alike - input.images.begin())
+                                                                : 0;
+        // Its falloff and response are of the reference's setting.
+        if (alike == input.images.end()) input.options.profile = nullptr;
     }
     return inputs;
 }

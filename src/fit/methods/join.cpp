@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "fit/base/constants.hpp"
+#include "fit/base/parallel.hpp"
 #include "fit/base/quantile.hpp"
 
 namespace lensprof {
@@ -31,8 +32,10 @@ struct Slopes {
 // What is estimated: ln gamma of every camera, then its offsets, one a channel.
 class Join {
 public:
-    Join(const std::vector<LightPair> &pairs, const std::vector<double> &gamma_sigma, uint32_t reference, int channels)
-        : pairs_(pairs),
+    Join(std::vector<LightPair> pairs, const std::vector<double> &gamma_sigma, uint32_t reference, int channels,
+         const std::function<bool()> &cancelled)
+        : pairs_(std::move(pairs)),
+          cancelled_(cancelled),
           sigma_(gamma_sigma),
           count_(static_cast<int>(gamma_sigma.size())),
           reference_(reference),
@@ -75,7 +78,8 @@ private:
     void solve();
     void describe();
 
-    const std::vector<LightPair> &pairs_;
+    const std::vector<LightPair> pairs_;
+    const std::function<bool()> &cancelled_;
     const std::vector<double> &sigma_;
     const int count_;
     const uint32_t reference_;
@@ -223,6 +227,7 @@ void Join::solve() {
     start_offsets();
     Eigen::MatrixXd normal;
     for (int round = 0; round < kRounds; round++) {
+        if (cancelled_()) throw Cancelled();
         find_scatter();
         if (step(normal) < kConverged) break;
     }
@@ -264,15 +269,63 @@ void Join::describe() {
         joint.log_gamma = at_[gamma_column(k)], joint.log_gamma_sigma = sigma_of(gamma_column(k));
         if (sigma_[k] <= 0.0) joint.log_gamma = joint.log_gamma_sigma = 0.0;
         for (int c = 0; c < channels_; c++) joint.offset[static_cast<size_t>(c)] = at_[offset_column(k, c)];
-        joint.offset_sigma = k == reference_ ? 0.0 : sigma_of(offset_column(k, measured));
+        if (k == reference_) continue;
+        joint.offset_sigma = sigma_of(offset_column(k, measured));
+        for (int c = 0; c < channels_; c++) {
+            const int one = offset_column(k, c), other = offset_column(k, measured);
+            const auto of = [&](const Eigen::MatrixXd &m) {
+                return m(one, one) + m(other, other) - 2.0 * m(one, other);
+            };
+            joint.balance_sigma[static_cast<size_t>(c)] = std::sqrt(std::max({0.0, of(cov_), of(by_links)}));
+        }
     }
+}
+
+// Middle and spread of a channel at one end of some pairs.
+struct Spread {
+    double middle, spread;
+};
+Spread spread_of(const std::vector<const LightPair *> &pairs, int end, int c) {
+    std::vector<double> values;
+    for (const LightPair *pair : pairs)
+        values.push_back(pair->log_light[pair->camera[0] > pair->camera[1] ? 1 - end : end][c]);
+    Spread found{median(values), 0.0};
+    for (double &value : values) value = std::abs(value - found.middle);
+    found.spread = median(values);
+    return found;
+}
+
+// Whether light that two cameras saw may be the same: roughly, by the ratio of its spreads as the exponent.
+bool may_agree(const std::vector<const LightPair *> &pairs) {
+    const int c = 0;  // any channel
+    const Spread a = spread_of(pairs, 0, c), b = spread_of(pairs, 1, c);
+    const double ratio = a.spread > 0.0 && b.spread > 0.0 ? std::sqrt(a.spread / b.spread) : 1.0;
+    std::vector<double> away;
+    for (const LightPair *pair : pairs) {
+        const int first = pair->camera[0] > pair->camera[1];
+        away.push_back(std::abs((pair->log_light[first][c] - a.middle) / ratio
+                                - (pair->log_light[1 - first][c] - b.middle) * ratio));
+    }
+    return median(away) < 2.0 * kLargestDifference;
+}
+
+// Without pairs of two cameras whose light has nothing in common: a solution of all would have to find them one by one.
+std::vector<LightPair> agreeing(const std::vector<LightPair> &pairs) {
+    std::map<std::array<uint32_t, 2>, std::vector<const LightPair *>> between;
+    for (const LightPair &pair : pairs)
+        between[{std::min(pair.camera[0], pair.camera[1]), std::max(pair.camera[0], pair.camera[1])}].push_back(&pair);
+    std::vector<LightPair> some;
+    for (const auto &[cameras, own] : between)
+        if (own.size() >= kFewestPairs && may_agree(own))
+            for (const LightPair *pair : own) some.push_back(*pair);
+    return some;
 }
 
 }  // namespace
 
 std::vector<Joint> join_cameras(const std::vector<LightPair> &pairs, const std::vector<double> &gamma_sigma,
-                                uint32_t reference, int channels) {
-    return Join(pairs, gamma_sigma, reference, channels).run();
+                                uint32_t reference, int channels, const std::function<bool()> &cancelled) {
+    return Join(agreeing(pairs), gamma_sigma, reference, channels, cancelled).run();
 }
 
 }  // namespace lensprof

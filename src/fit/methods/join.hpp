@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace lensprof {
@@ -31,12 +32,14 @@ struct Joint {
     double inlier_share = 0.0;  // of these, those within 3 sigma of what is left
     double residual = 0.0;      // median absolute difference of light, natural logarithm
     double log_gamma = 0.0, log_gamma_sigma = 0.0;
-    std::array<double, 3> offset{};  // b of each channel, natural logarithm
-    double offset_sigma = 0.0;       // of the one that exposures are measured in
+    std::array<double, 3> offset{};         // b of each channel, natural logarithm
+    double offset_sigma = 0.0;              // of the one that exposures are measured in, by the pairs
+    std::array<double, 3> balance_sigma{};  // of the others less that one
 };
 
 // gamma_sigma: of ln gamma of each camera; 0 where it is known. `channels` 1 or 3.
+// Cancelled is thrown where `cancelled` says so.
 std::vector<Joint> join_cameras(const std::vector<LightPair> &pairs, const std::vector<double> &gamma_sigma,
-                                uint32_t reference, int channels);
+                                uint32_t reference, int channels, const std::function<bool()> &cancelled);
 
 }  // namespace lensprof

@@ -66,7 +66,8 @@ private:
 
 void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<uint32_t> &settings,
                   std::vector<lensprof_exposure> &exposures, lensprof_fit_result &r) {
-    const double gamma = std::exp(log_gamma), old_sigma = std::max(r.gamma_sigma, 0.0);
+    const double gamma = std::exp(log_gamma), old_sigma = std::max(r.gamma_sigma, 0.0), stated = sigma;
+    sigma = std::max(sigma, 0.0);
     const uint32_t modes = lp_covariance_modes(&r.response, 1), size = r.covariance_size;
     r.response = raised_response(r.response, gamma);
     r.covariance_size = size > modes ? size - modes : 0;
@@ -80,26 +81,37 @@ void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<
         if (std::isnan(e.ev)) continue;
         const double away = e.ev - zero.ev, of_gamma = old_sigma * away;
         e.ev = zero.ev + gamma * away;
-        for (int c = 0; c < 3; c++)
-            e.white_balance[c] = zero.white_balance[c] * std::pow(e.white_balance[c] / zero.white_balance[c], gamma);
+        for (int c = 0; c < 3; c++) {
+            const double before = e.white_balance[c];
+            e.white_balance[c] = zero.white_balance[c] * std::pow(before / zero.white_balance[c], gamma);
+            if (r.image_quality) r.image_quality[i].white_balance_sigma[c] *= gamma * e.white_balance[c] / before;
+        }
         if (!r.image_quality) continue;
         double &ev_sigma = r.image_quality[i].ev_sigma;
         const double of_data = std::max(0.0, ev_sigma * ev_sigma - of_gamma * of_gamma);
         ev_sigma = std::sqrt(gamma * gamma * of_data + std::pow(sigma * gamma * away, 2));
     }
-    r.gamma_sigma = sigma;
+    r.gamma_sigma = stated;
+    r.light_spread_ev *= gamma;
 }
 
-void offset_exposures(const std::array<double, 3> &offset, double sigma, uint32_t channels,
-                      std::vector<lensprof_exposure> &exposures, lensprof_fit_result &r) {
+void offset_exposures(const Offset &offset, uint32_t channels, std::vector<lensprof_exposure> &exposures,
+                      lensprof_fit_result &r) {
     const size_t measured = channels == 3 ? 1 : 0;
     for (size_t i = 0; i < exposures.size(); i++) {
         lensprof_exposure &e = exposures[i];
         if (std::isnan(e.ev)) continue;
-        e.ev -= offset[measured] / kLn2;
-        for (const size_t c : {0, 2})
-            if (channels == 3) e.white_balance[c] *= std::exp(offset[measured] - offset[c]);
-        if (r.image_quality) r.image_quality[i].ev_sigma = std::hypot(r.image_quality[i].ev_sigma, sigma / kLn2);
+        e.ev -= offset.log_light[measured] / kLn2;
+        lensprof_fit_image_quality *quality = r.image_quality ? &r.image_quality[i] : nullptr;
+        if (quality) quality->ev_sigma = std::hypot(quality->ev_sigma, offset.sigma / kLn2);
+        for (const size_t c : {0, 2}) {
+            if (channels == 1) break;
+            const double factor = std::exp(offset.log_light[measured] - offset.log_light[c]);
+            e.white_balance[c] *= factor;
+            if (!quality) continue;
+            quality->white_balance_sigma[c] =
+                std::hypot(factor * quality->white_balance_sigma[c], e.white_balance[c] * offset.balance_sigma[c]);
+        }
     }
 }
 

@@ -17,9 +17,16 @@ namespace lensprof {
 void raise_result(double log_gamma, double sigma, uint32_t free, const std::set<uint32_t> &settings,
                   std::vector<lensprof_exposure> &exposures, lensprof_fit_result &result);
 
-// Divides light by exp(offset) of each channel, as exposures have it; `sigma`: the offset's standard error, natural
-// logarithm.
-void offset_exposures(const std::array<double, 3> &offset, double sigma, uint32_t channels,
-                      std::vector<lensprof_exposure> &exposures, lensprof_fit_result &result);
+// By how much the light of images differs, natural logarithm, with its standard errors: that of the channel which
+// exposures are measured in, and of the others less that one.
+struct Offset {
+    std::array<double, 3> log_light;
+    double sigma;
+    std::array<double, 3> balance_sigma;
+};
+
+// Multiplies the light of all images, as their exposures have it.
+void offset_exposures(const Offset &offset, uint32_t channels, std::vector<lensprof_exposure> &exposures,
+                      lensprof_fit_result &result);
 
 }  // namespace lensprof
