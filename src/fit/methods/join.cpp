@@ -64,7 +64,6 @@ private:
     void take_reached(const std::vector<bool> &may_join);
     size_t farthest() const;
     void start_offsets();
-    double scatter_of(const std::vector<double> &residuals) const;
     double residual(const LightPair &pair, int channel) const;
     double variance(const LightPair &pair, int channel) const;
     double chi2(const LightPair &pair) const;
@@ -76,6 +75,8 @@ private:
     void find_scatter();
     double step(Eigen::MatrixXd &normal);
     void solve();
+    Eigen::MatrixXd covariance_by_links() const;
+    void count_pairs();
     void describe();
 
     const std::vector<LightPair> pairs_;
@@ -234,61 +235,83 @@ void Join::solve() {
     cov_ = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
 }
 
-// The standard error of a column, at least as large as the links of images, each as a whole, make it.
-void Join::describe() {
-    std::map<std::array<uint32_t, 2>, Eigen::VectorXd> of_link;
-    std::vector<std::vector<double>> residuals(joints_.size());
-    std::vector<size_t> inliers(joints_.size());
+// The covariance of the estimate where not pairs but links of images, each as a whole, are independent.
+Eigen::MatrixXd Join::covariance_by_links() const {
+    std::map<std::array<uint32_t, 2>, Eigen::VectorXd> gradients;  // of each link's part of the objective
     for (const LightPair &pair : pairs_) {
         if (!takes(pair)) continue;
         const double trust = weight(pair);
         auto &gradient =
-            of_link.try_emplace({pair.image[0], pair.image[1]}, Eigen::VectorXd::Zero(at_.size())).first->second;
+            gradients.try_emplace({pair.image[0], pair.image[1]}, Eigen::VectorXd::Zero(at_.size())).first->second;
         for (int c = 0; c < channels_; c++) {
             const Slopes own = slopes(pair, c);
             for (int i = 0; i < 4; i++) gradient[own.column[i]] += trust * own.slope[i] * own.residual;
         }
+    }
+    Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(at_.size(), at_.size());
+    for (const auto &[link, gradient] : gradients) squares += gradient * gradient.transpose();
+    return cov_ * squares * cov_;
+}
+
+// How many pairs join each camera, and how well.
+void Join::count_pairs() {
+    std::vector<std::vector<double>> residuals(joints_.size());
+    std::vector<size_t> inliers(joints_.size());
+    for (const LightPair &pair : pairs_) {
+        if (!takes(pair)) continue;
         for (const uint32_t camera : pair.camera) {
             for (int c = 0; c < channels_; c++) residuals[camera].push_back(std::abs(residual(pair, c)));
             inliers[camera] += chi2(pair) < kCutoff * kCutoff;
             joints_[camera].pairs++;
         }
     }
-    Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(at_.size(), at_.size());
-    for (const auto &[link, gradient] : of_link) spread += gradient * gradient.transpose();
-    const Eigen::MatrixXd by_links = cov_ * spread * cov_;
+    for (size_t k = 0; k < joints_.size(); k++) {
+        joints_[k].inlier_share = joints_[k].pairs ? static_cast<double>(inliers[k]) / joints_[k].pairs : 1.0;
+        joints_[k].residual = median(residuals[k]);
+    }
+}
+
+// The estimate and its standard errors, the larger of those by pairs and by links.
+void Join::describe() {
+    count_pairs();
+    const Eigen::MatrixXd by_links = covariance_by_links();
+    const auto larger = [&](const auto &variance_by) {
+        return std::sqrt(std::max({0.0, variance_by(cov_), variance_by(by_links)}));
+    };
     const auto sigma_of = [&](int column) {
-        return std::sqrt(std::max({0.0, cov_(column, column), by_links(column, column)}));
+        return larger([&](const Eigen::MatrixXd &m) { return m(column, column); });
+    };
+    const auto sigma_between = [&](int one, int other) {
+        return larger([&](const Eigen::MatrixXd &m) { return m(one, one) + m(other, other) - 2.0 * m(one, other); });
     };
     const int measured = channels_ == 3 ? 1 : 0;
     for (uint32_t k = 0; k < joints_.size(); k++) {
         Joint &joint = joints_[k];
         if (!joint.joined) continue;
-        joint.inlier_share = joint.pairs ? static_cast<double>(inliers[k]) / joint.pairs : 1.0;
-        joint.residual = residuals[k].empty() ? 0.0 : quantile(residuals[k], 0.5);
-        joint.log_gamma = at_[gamma_column(k)], joint.log_gamma_sigma = sigma_of(gamma_column(k));
-        if (sigma_[k] <= 0.0) joint.log_gamma = joint.log_gamma_sigma = 0.0;
+        const bool is_open = sigma_[k] > 0.0;
+        joint.log_gamma = is_open ? at_[gamma_column(k)] : 0.0;
+        joint.log_gamma_sigma = is_open ? sigma_of(gamma_column(k)) : 0.0;
         for (int c = 0; c < channels_; c++) joint.offset[static_cast<size_t>(c)] = at_[offset_column(k, c)];
         if (k == reference_) continue;
         joint.offset_sigma = sigma_of(offset_column(k, measured));
-        for (int c = 0; c < channels_; c++) {
-            const int one = offset_column(k, c), other = offset_column(k, measured);
-            const auto of = [&](const Eigen::MatrixXd &m) {
-                return m(one, one) + m(other, other) - 2.0 * m(one, other);
-            };
-            joint.balance_sigma[static_cast<size_t>(c)] = std::sqrt(std::max({0.0, of(cov_), of(by_links)}));
-        }
+        for (int c = 0; c < channels_; c++)
+            joint.balance_sigma[static_cast<size_t>(c)] =
+                sigma_between(offset_column(k, c), offset_column(k, measured));
     }
 }
 
-// Middle and spread of a channel at one end of some pairs.
+// Light of a pair's first channel in the camera with the smaller number, or in the other.
+double light_in(const LightPair &pair, bool is_other) {
+    return pair.log_light[(pair.camera[0] > pair.camera[1]) != is_other][0];
+}
+
+// Middle and spread of such light.
 struct Spread {
     double middle, spread;
 };
-Spread spread_of(const std::vector<const LightPair *> &pairs, int end, int c) {
+Spread spread_of(const std::vector<const LightPair *> &pairs, bool is_other) {
     std::vector<double> values;
-    for (const LightPair *pair : pairs)
-        values.push_back(pair->log_light[pair->camera[0] > pair->camera[1] ? 1 - end : end][c]);
+    for (const LightPair *pair : pairs) values.push_back(light_in(*pair, is_other));
     Spread found{median(values), 0.0};
     for (double &value : values) value = std::abs(value - found.middle);
     found.spread = median(values);
@@ -297,16 +320,13 @@ Spread spread_of(const std::vector<const LightPair *> &pairs, int end, int c) {
 
 // Whether light that two cameras saw may be the same: roughly, by the ratio of its spreads as the exponent.
 bool may_agree(const std::vector<const LightPair *> &pairs) {
-    const int c = 0;  // any channel
-    const Spread a = spread_of(pairs, 0, c), b = spread_of(pairs, 1, c);
-    const double ratio = a.spread > 0.0 && b.spread > 0.0 ? std::sqrt(a.spread / b.spread) : 1.0;
-    std::vector<double> away;
-    for (const LightPair *pair : pairs) {
-        const int first = pair->camera[0] > pair->camera[1];
-        away.push_back(std::abs((pair->log_light[first][c] - a.middle) / ratio
-                                - (pair->log_light[1 - first][c] - b.middle) * ratio));
-    }
-    return median(away) < 2.0 * kLargestDifference;
+    const Spread a = spread_of(pairs, false), b = spread_of(pairs, true);
+    const double exponent = a.spread > 0.0 && b.spread > 0.0 ? std::sqrt(a.spread / b.spread) : 1.0;
+    std::vector<double> differences;
+    for (const LightPair *pair : pairs)
+        differences.push_back(
+            std::abs((light_in(*pair, false) - a.middle) / exponent - (light_in(*pair, true) - b.middle) * exponent));
+    return median(differences) < 2.0 * kLargestDifference;
 }
 
 // Without pairs of two cameras whose light has nothing in common: a solution of all would have to find them one by one.
