@@ -61,6 +61,8 @@ typedef struct lp_model {
         const double *table;   /* the samples of EMOR and TABLE */
         const uint8_t *packed; /* the same, f32 */
     } response[3];
+    struct lp_model_response output[3]; /* of what is written, where it has its own */
+    uint32_t outputs;                   /* 1 or 3, or 0 */
     lensprof_vignetting vignetting[3];
     uint32_t columns, rows, channels; /* of the gain grid; 0 = none */
     const float *attenuation;

@@ -9,10 +9,19 @@
 #define LEAST_FALLOFF_SHIFT 21 /* M in 2^-21: 1 / 2000 of the smallest one allowed */
 #define SMALLEST_M 0.0005      /* below the smallest one allowed, above 0 after rounding */
 
+/* A linear one where pixels are light. */
+static struct lp_model_response response_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end,
+                                            uint32_t curve) {
+    struct lp_model_response response = *lp_response(o, m, end, curve);
+    if ((end == LP_INPUT ? o->input : o->output) == LENSPROF_ENCODING_LINEAR)
+        response.kind = LENSPROF_RESPONSE_LINEAR, response.gamma = 1.0;
+    return response;
+}
+
 static int is_linear(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
     int linear = 1;
     for (uint32_t c = 0; c < lp_curves(o, m); c++)
-        linear = linear && lp_response(o, m, end, c).kind == LENSPROF_RESPONSE_LINEAR;
+        linear = linear && response_of(o, m, end, c).kind == LENSPROF_RESPONSE_LINEAR;
     return linear;
 }
 
@@ -79,11 +88,11 @@ static int32_t log_of(double light) {
 static void prepare_tables(lensprof_fixed_plan *plan, const lensprof_apply_options *o, const lp_model *m) {
     int32_t *table = (int32_t *)(void *)(plan + 1);
     for (uint32_t c = 0; c < plan->decode_curves; c++, table += LP_CODES) {
-        const struct lp_model_response response = lp_response(o, m, LP_INPUT, c);
+        const struct lp_model_response response = response_of(o, m, LP_INPUT, c);
         for (uint32_t code = 0; code < LP_CODES; code++) table[code] = log_of(lp_model_invert(&response, code / 255.0));
     }
     for (uint32_t c = 0; c < plan->encode_curves; c++, table += LP_CODES) {
-        const struct lp_model_response response = lp_response(o, m, LP_OUTPUT, c);
+        const struct lp_model_response response = response_of(o, m, LP_OUTPUT, c);
         for (uint32_t code = 0; code < LP_CODES - 1; code++)
             table[code] = log_of(lp_model_invert(&response, (code + 0.5) / 255.0));
         table[LP_CODES - 1] = INT32_MAX;

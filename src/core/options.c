@@ -64,8 +64,7 @@ static int is_output_stated(const lensprof_apply_options *o) {
     return o->output_response ? count == 1 || count == 3 : !count;
 }
 
-lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m) {
-    if (!is_output_stated(o)) return LENSPROF_ERROR_ARGUMENT;
+static lensprof_status view_model(const lensprof_apply_options *o, lp_model *m) {
     if (!o->blob) return view_structs(o, m);
     if (o->response || o->vignetting || o->grid) return LENSPROF_ERROR_ARGUMENT;
     lp_blob blob;
@@ -74,20 +73,25 @@ lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m) {
     return status;
 }
 
-uint32_t lp_curves(const lensprof_apply_options *o, const lp_model *m) {
-    if (lensprof_layout_channels(o->source_layout) == 1) return 1;
-    return m->responses == 3 || o->output_responses == 3 ? 3 : 1;
+lensprof_status lp_options_model(const lensprof_apply_options *o, lp_model *m) {
+    if (!is_output_stated(o)) return LENSPROF_ERROR_ARGUMENT;
+    const lensprof_status status = view_model(o, m);
+    m->outputs = o->output_responses;
+    for (uint32_t c = 0; c < m->outputs; c++) view_response(&m->output[c], &o->output_response[c]);
+    return status;
 }
 
-struct lp_model_response lp_response(const lensprof_apply_options *o, const lp_model *m, enum lp_end end,
-                                     uint32_t curve) {
+uint32_t lp_curves(const lensprof_apply_options *o, const lp_model *m) {
+    if (lensprof_layout_channels(o->source_layout) == 1) return 1;
+    return m->responses == 3 || m->outputs == 3 ? 3 : 1;
+}
+
+const struct lp_model_response *lp_response(const lensprof_apply_options *o, const lp_model *m, enum lp_end end,
+                                            uint32_t curve) {
     const uint32_t channel = lensprof_layout_channels(o->source_layout) == 1 ? 1 : curve;
-    struct lp_model_response response = m->response[m->responses == 3 ? channel : 0];
-    if (end == LP_OUTPUT && o->output_responses)
-        view_response(&response, &o->output_response[o->output_responses == 3 ? channel : 0]);
-    if ((end == LP_INPUT ? o->input : o->output) == LENSPROF_ENCODING_LINEAR)
-        response.kind = LENSPROF_RESPONSE_LINEAR, response.gamma = 1.0;
-    return response;
+    const uint32_t outputs = end == LP_OUTPUT ? m->outputs : 0;
+    if (outputs) return &m->output[outputs == 3 ? channel : 0];
+    return &m->response[m->responses == 3 ? channel : 0];
 }
 
 double lp_model_invert(const struct lp_model_response *response, double b) {
@@ -105,27 +109,22 @@ double lp_model_invert(const struct lp_model_response *response, double b) {
     return lp_curve_between(lp_model_sample(response, low), lp_model_sample(response, high), b, low);
 }
 
-/* Of the output response; lp_options_model has checked that it is there. */
-static lensprof_status validate_output(const lensprof_apply_options *o, lensprof_error *error) {
-    for (uint32_t c = 0; c < o->output_responses; c++) {
-        const lensprof_status status = lensprof_response_validate(&o->output_response[c]);
-        if (status != LENSPROF_OK) return lp_fail(error, status, "an output response is invalid");
-    }
-    return LENSPROF_OK;
+static lensprof_status validate_responses(const lensprof_response *response, uint32_t count, lensprof_error *error) {
+    lensprof_status status = LENSPROF_OK;
+    for (uint32_t c = 0; c < count && status == LENSPROF_OK; c++) status = lensprof_response_validate(&response[c]);
+    return status == LENSPROF_OK ? status : lp_fail(error, status, "a response is invalid");
 }
 
 static lensprof_status validate_curves(const lensprof_apply_options *o, lensprof_error *error) {
-    lensprof_status status = LENSPROF_OK;
-    for (uint32_t c = 0; c < o->responses && status == LENSPROF_OK; c++)
-        status = lensprof_response_validate(&o->response[c]);
-    if (status != LENSPROF_OK) return lp_fail(error, status, "a response is invalid");
+    lensprof_status status = validate_responses(o->response, o->responses, error);
+    if (status != LENSPROF_OK) return status;
     for (uint32_t c = 0; c < o->vignettings && status == LENSPROF_OK; c++)
         status = lensprof_vignetting_validate(&o->vignetting[c]);
-    if (status != LENSPROF_OK) return lp_fail(error, status, "a vignetting is not positive on the whole frame");
+    if (status != LENSPROF_OK) return lp_fail(error, status, "a vignetting is not positive");
     for (uint32_t c = 1; c < o->vignettings; c++)
         if (o->vignetting[c].center[0] != o->vignetting[0].center[0]
             || o->vignetting[c].center[1] != o->vignetting[0].center[1])
-            return lp_fail(error, LENSPROF_ERROR_VIGNETTING, "the vignettings differ in their centres");
+            return lp_fail(error, LENSPROF_ERROR_VIGNETTING, "vignettings differ in centre");
     return LENSPROF_OK;
 }
 
@@ -133,7 +132,7 @@ static lensprof_status validate_curves(const lensprof_apply_options *o, lensprof
 static lensprof_status validate_structs(const lensprof_apply_options *o, lensprof_error *error) {
     if (!o->response || !o->vignetting || (o->responses != 1 && o->responses != 3)
         || (o->vignettings != 1 && o->vignettings != 3))
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "no model: 1 or 3 responses and vignettings, or a blob");
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "no model: 1 or 3 curves of each, or a blob");
     return validate_curves(o, error);
 }
 
@@ -151,25 +150,23 @@ static lensprof_status validate_exposures(const lensprof_apply_options *o, lensp
     if (status == LENSPROF_OK) status = lensprof_exposure_validate(&o->target);
     for (uint32_t c = 0; c < 3 && status == LENSPROF_OK; c++) /* single precision must hold the factor */
         if (!(lp_exposure_ratio(o, c) >= 1e-12 && lp_exposure_ratio(o, c) <= 1e12)) status = LENSPROF_ERROR_EXPOSURE;
-    return status == LENSPROF_OK ? status : lp_fail(error, status, "source or target is invalid, or over 1e12 apart");
+    return status == LENSPROF_OK ? status : lp_fail(error, status, "exposures invalid, or over 1e12 apart");
 }
 
 /* All but what the model decides. */
 static lensprof_status validate_options(const lensprof_apply_options *o, lensprof_error *error) {
     if (o->direction > LENSPROF_DIRECTION_SIMULATE || o->input > LENSPROF_ENCODING_LINEAR
         || o->output > LENSPROF_ENCODING_LINEAR || o->saturated > LENSPROF_SATURATED_AS_VALUE)
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "direction, input, output or saturated is unknown");
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "direction, encoding or saturated is unknown");
     if (!lensprof_sample_type_bytes(o->source_sample) || !lensprof_sample_type_bytes(o->target_sample)
         || !lensprof_layout_samples(o->source_layout))
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "source_sample, target_sample or source_layout is unknown");
-    if (!(o->strength >= 0.0 && o->strength <= 1.0))
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "strength is not within 0..1");
-    if (!(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LP_LARGEST_GAIN_CAP)))
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "gain_cap is not 0 or within 1..1e6");
-    if (o->dither > 1 || o->reserved || o->reserved2)
-        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "dither is not 0 or 1, or reserved is not 0");
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "a sample type or the layout is unknown");
+    if (!(o->strength >= 0.0 && o->strength <= 1.0)
+        || !(o->gain_cap == 0.0 || (o->gain_cap >= 1.0 && o->gain_cap <= LP_LARGEST_GAIN_CAP)) || o->dither > 1
+        || o->reserved || o->reserved2)
+        return lp_fail(error, LENSPROF_ERROR_ARGUMENT, "strength, gain_cap, dither or reserved is wrong");
     if (!o->frame_width || !o->frame_height || o->frame_width > LP_LARGEST_SIDE || o->frame_height > LP_LARGEST_SIDE)
-        return lp_fail(error, LENSPROF_ERROR_SIZE, "frame_width or frame_height is 0, or over 2^20");
+        return lp_fail(error, LENSPROF_ERROR_SIZE, "frame size is 0, or over 2^20");
     const lensprof_status status = validate_exposures(o, error);
     return status == LENSPROF_OK && !o->blob ? validate_structs(o, error) : status;
 }
@@ -182,7 +179,6 @@ lensprof_status lp_options_validate(const lensprof_apply_options *given, lenspro
     lensprof_status status = validate_options(own, error);
     if (status != LENSPROF_OK) return status;
     status = lp_options_model(own, model);
-    if (status == LENSPROF_OK) return validate_output(own, error);
-    if (!is_output_stated(own)) return lp_fail(error, status, "output_response is not of 1 or 3 responses");
-    return lp_fail(error, status, own->blob ? "the blob is invalid, or with other curves" : "the gain grid is invalid");
+    if (status == LENSPROF_OK) return validate_responses(own->output_response, own->output_responses, error);
+    return lp_fail(error, status, own->blob ? "blob invalid, or beside curves" : "grid or output is invalid");
 }

@@ -21,15 +21,15 @@ lensprof_status lp_options_model(const lensprof_apply_options *options, lp_model
 lensprof_status lp_options_validate(const lensprof_apply_options *given, lensprof_apply_options *own, lp_model *model,
                                     lensprof_error *error);
 
-/* The responses that pixels pass through, of what is read and of what is written; linear ones where these are light.
- * Grey is treated as green. */
+/* The responses that pixels pass through where they are encoded, of what is read and of what is written. Grey is
+ * treated as green. */
 enum lp_end {
     LP_INPUT,
     LP_OUTPUT
 };
 uint32_t lp_curves(const lensprof_apply_options *options, const lp_model *model);
-struct lp_model_response lp_response(const lensprof_apply_options *options, const lp_model *model, enum lp_end end,
-                                     uint32_t curve);
+const struct lp_model_response *lp_response(const lensprof_apply_options *options, const lp_model *model,
+                                            enum lp_end end, uint32_t curve);
 
 /* A power of light, the first included, and not a table. */
 static inline int lp_is_power(const struct lp_model_response *response) {

@@ -10,7 +10,7 @@
 static uint32_t kind_of(const lensprof_apply_options *o, const lp_model *m, enum lp_end end) {
     uint32_t kind = LP_CURVE_NONE;
     for (uint32_t c = 0; c < lp_curves(o, m); c++) {
-        uint32_t own = lp_response(o, m, end, c).kind;
+        uint32_t own = lp_response(o, m, end, c)->kind;
         own = own == LENSPROF_RESPONSE_LINEAR  ? LP_CURVE_CLIP
               : own == LENSPROF_RESPONSE_GAMMA ? LP_CURVE_POWER
                                                : LP_CURVE_TABLE;
@@ -48,24 +48,13 @@ static size_t starts_of(const lensprof_apply_options *o, const lp_model *m) {
     return decode == LP_CURVE_TABLE || decode == LP_CURVE_MIXED ? LP_CELLS + 1 : 0;
 }
 
-/* Entries of the table of the response that values go through the inverse of, where that is not the one of what is
- * written. */
-static size_t backward_of(const lensprof_apply_options *o, const lp_model *m) {
-    return starts_of(o, m) && o->output_responses ? LENSPROF_RESPONSE_SAMPLES : 0;
-}
-
-/* Entries of the table of the response of what is written, and where that is the same of what is read; 0 where none is
- * asked. */
-static size_t forward_of(const lensprof_apply_options *o, const lp_model *m) {
+/* Entries of the tables of f: of what is written, which serves g of values (`starts`), too, where that is of the same;
+ * and else of what is read, after it. 0 where none is asked. */
+static size_t samples_of(const lensprof_apply_options *o, const lp_model *m, size_t starts, enum lp_end end) {
     const uint32_t encode = encode_of(o, m);
-    const int is_read = starts_of(o, m) && !o->output_responses;
-    return is_read || encode == LP_CURVE_TABLE || encode == LP_CURVE_MIXED ? LENSPROF_RESPONSE_SAMPLES : 0;
-}
-
-/* Samples of f; not read where there is an exponent. */
-static void fill_samples(const struct lp_model_response *response, size_t samples, float *to) {
-    for (size_t j = 0; j < samples; j++)
-        to[j] = lp_is_power(response) ? 0.0f : (float)lp_model_sample(response, (uint32_t)j);
+    const int is_written = encode == LP_CURVE_TABLE || encode == LP_CURVE_MIXED;
+    const int is_asked = end == LP_INPUT ? starts && m->outputs : is_written || (starts && !m->outputs);
+    return is_asked ? LENSPROF_RESPONSE_SAMPLES : 0;
 }
 
 /* g of every code. As codes rise, so does the place among the response's samples. */
@@ -101,34 +90,40 @@ static void fill_start(lensprof_plan *plan, const float *samples, uint16_t *star
 }
 
 float *lp_prepare_curves(lensprof_plan *plan, const lensprof_apply_options *o, const lp_model *m, float *memory) {
-    const size_t forward = forward_of(o, m), backward = backward_of(o, m), samples = forward + backward;
     const size_t codes = codes_of(o, m), starts = starts_of(o, m);
+    const size_t forward = samples_of(o, m, starts, LP_OUTPUT), backward = samples_of(o, m, starts, LP_INPUT);
+    const size_t samples = forward + backward;
     plan->curves = lp_curves(o, m);
     plan->decode = decode_of(o, m);
     plan->encode = encode_of(o, m);
-    float *input = backward ? memory + plan->curves * forward : memory; /* of the response that is read */
     float *inverse = memory + plan->curves * samples + (samples ? 1 : 0), *after = inverse + plan->curves * codes;
     uint16_t *start = (uint16_t *)(void *)after;
     if (samples) inverse[-1] = 0.0f; /* kernels read it, times 0 */
     plan->forward = memory;
-    plan->backward = input;
+    plan->backward = backward ? memory + plan->curves * forward : memory;
     plan->inverse = codes ? inverse : NULL;
     plan->start = starts ? start : NULL;
     plan->inverse_shift = codes == 256 ? 8 : 16;
     for (uint32_t c = 0; c < plan->curves; c++) {
-        const struct lp_model_response in = lp_response(o, m, LP_INPUT, c), out = lp_response(o, m, LP_OUTPUT, c);
-        plan->exponent[c] = lp_is_power(&out) ? (float)(1.0 / out.gamma) : 0.0f;
-        plan->inverse_exponent[c] = lp_is_power(&in) ? (float)in.gamma : 0.0f;
-        fill_samples(starts && !backward ? &in : &out, forward, memory + c * forward);
-        fill_samples(&in, backward, input + c * backward);
-        if (codes) fill_inverse(&in, codes, inverse + c * codes);
+        const struct lp_model_response *in = lp_response(o, m, LP_INPUT, c), *out = lp_response(o, m, LP_OUTPUT, c);
+        plan->exponent[c] = lp_is_power(out) ? (float)(1.0 / out->gamma) : 0.0f;
+        plan->inverse_exponent[c] = lp_is_power(in) ? (float)in->gamma : 0.0f;
+        if (codes) fill_inverse(in, codes, inverse + c * codes);
+        float *to = memory + c * forward; /* f of what is written, then of what is read where that has another table */
+        const struct lp_model_response *of = out;
+        for (size_t left = forward, end = 0; end < 2; end++) { /* not read where there is an exponent */
+            for (size_t j = 0; j < left; j++) to[j] = lp_is_power(of) ? 0.0f : (float)lp_model_sample(of, (uint32_t)j);
+            to = memory + plan->curves * forward + c * backward, of = in, left = backward;
+        }
         memset(start + c * starts, 0, starts * sizeof *start);
-        if (starts && !lp_is_power(&in)) fill_start(plan, input + c * LENSPROF_RESPONSE_SAMPLES, start + c * starts);
+        if (starts && !lp_is_power(in))
+            fill_start(plan, plan->backward + c * LENSPROF_RESPONSE_SAMPLES, start + c * starts);
     }
     return after + (plan->curves * starts + 1) / 2;
 }
 
 size_t lp_curve_numbers(const lensprof_apply_options *o, const lp_model *m) {
-    const size_t samples = forward_of(o, m) + backward_of(o, m), after = samples ? 1 : 0;
-    return lp_curves(o, m) * (samples + codes_of(o, m)) + (lp_curves(o, m) * starts_of(o, m) + 1) / 2 + after;
+    const size_t starts = starts_of(o, m);
+    const size_t samples = samples_of(o, m, starts, LP_OUTPUT) + samples_of(o, m, starts, LP_INPUT);
+    return lp_curves(o, m) * (samples + codes_of(o, m)) + (lp_curves(o, m) * starts + 1) / 2 + (samples ? 1 : 0);
 }
