@@ -132,7 +132,7 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
         warn(streams, project.path
                           + (o.points.empty() ? ": no EXIF exposures that differ" : ": EXIF is not read with --points")
                           + ": gamma rests on the prior");
-    return std::move(report);
+    return std::move(done.report);
 }
 
 // What can be said before the overlaps of pictures are found, which takes time.

@@ -56,7 +56,7 @@ CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const P
 
 // What is fitted.
 struct FitInput {
-    lensprof_fit_options options;
+    lensprof_fit_options options{};
     lensprof_response fixed{};
     std::vector<lensprof_fit_image> images;
     std::vector<lensprof_pair> pairs;                // what is fitted where there are no observations

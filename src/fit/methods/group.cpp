@@ -38,7 +38,7 @@ private:
     void note_quality(const lensprof_fit_result &r);
     void describe(lensprof_exposure *exposures, lensprof_fit_result &r) const;
     template <class Verdict>
-    void warn_of_links(const lensprof_fit_result &r, Verdict &verdict) const;
+    void warn_of_links(const lensprof_fit_result &all, Verdict &r) const;
     uint32_t count_unverified(uint32_t &first) const;
     bool is_within(const std::array<uint32_t, 2> &link) const {
         return group_.joined[link[0]] && group_.joined[link[1]];
