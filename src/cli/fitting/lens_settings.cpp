@@ -42,6 +42,20 @@ lensprof_profile_key stated_key(lensprof_profile_key key, const StoreOptions &st
     return key;
 }
 
+// Numbers settings, or cameras, in the order of their images.
+LensSettings in_order(const std::vector<uint32_t> &found, const std::vector<uint32_t> &first) {
+    LensSettings settings;
+    std::vector<uint32_t> number(first.size(), UINT32_MAX);
+    for (uint32_t own : found) {
+        if (number[own] == UINT32_MAX) {
+            number[own] = static_cast<uint32_t>(settings.first.size());
+            settings.first.push_back(first[own]);
+        }
+        settings.of_image.push_back(number[own]);
+    }
+    return settings;
+}
+
 // Whether two images are of one camera: EXIF says it, unless their sizes or processings differ, or the project, unless
 // EXIF says that they are not. `is_given`: the command line states the camera of all.
 bool is_same_camera(const Project &project, const std::vector<PictureMetadata> &metadata, bool is_given, uint32_t i,
@@ -77,28 +91,10 @@ void number_cameras(const Project &project, const std::vector<PictureMetadata> &
         if (same == members.end()) members.emplace_back();
         members[found[i]].push_back(i);
     }
-    std::vector<uint32_t> number(members.size(), UINT32_MAX);
-    for (uint32_t i = 0; i < count; i++) {
-        if (number[found[i]] == UINT32_MAX) {
-            number[found[i]] = static_cast<uint32_t>(settings.first_of_camera.size());
-            settings.first_of_camera.push_back(i);
-        }
-        settings.camera_of_image.push_back(number[found[i]]);
-    }
-}
-
-// Numbers settings in the order of their images.
-LensSettings in_order(const std::vector<uint32_t> &found, const std::vector<uint32_t> &first) {
-    LensSettings settings;
-    std::vector<uint32_t> number(first.size(), UINT32_MAX);
-    for (uint32_t own : found) {
-        if (number[own] == UINT32_MAX) {
-            number[own] = static_cast<uint32_t>(settings.first.size());
-            settings.first.push_back(first[own]);
-        }
-        settings.of_image.push_back(number[own]);
-    }
-    return settings;
+    std::vector<uint32_t> first;
+    for (const std::vector<uint32_t> &own : members) first.push_back(*std::min_element(own.begin(), own.end()));
+    const LensSettings cameras = in_order(found, first);
+    settings.camera_of_image = cameras.of_image, settings.first_of_camera = cameras.first;
 }
 
 }  // namespace

@@ -119,13 +119,6 @@ std::optional<PictureLink> link(const std::vector<Features> &pictures, const Pic
     return found;
 }
 
-std::vector<PictureLink> only_still_scenes(const std::vector<PictureLink> &links) {
-    std::vector<PictureLink> some;
-    for (const PictureLink &link : links)
-        if (link.is_scene) some.push_back({{link.picture[0], link.picture[1]}, {}, {}});
-    return some;
-}
-
 // What stayed in a picture, by its link of a still scene with most matches.
 struct Stayed {
     size_t matches = 0;
@@ -144,7 +137,8 @@ std::vector<Stayed> what_stayed(size_t pictures, const std::vector<PictureLink> 
 // Links of what moved between pictures that links of what stayed join, with far more matches and at the same places: of
 // things that repeat themselves, by chance.
 void drop_chance(size_t pictures, std::vector<PictureLink> &links) {
-    const std::vector<uint32_t> groups = groups_of(pictures, only_still_scenes(links));
+    const std::vector<uint32_t> groups =
+        groups_of(pictures, links, [](const PictureLink &link) { return link.is_scene; });
     const std::vector<Stayed> stayed = what_stayed(pictures, links);
     const auto is_chance = [&](const PictureLink &link) {
         const Stayed &a = stayed[link.picture[0]], &b = stayed[link.picture[1]];
@@ -193,7 +187,7 @@ std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Progr
     return links;
 }
 
-std::vector<uint32_t> groups_of(size_t pictures, const std::vector<PictureLink> &links) {
+std::vector<uint32_t> groups_of(size_t pictures, const std::vector<PictureLink> &links, const TakesLink &takes) {
     std::vector<uint32_t> first(pictures);
     std::iota(first.begin(), first.end(), 0u);
     const auto root = [&](uint32_t i) {
@@ -201,6 +195,7 @@ std::vector<uint32_t> groups_of(size_t pictures, const std::vector<PictureLink> 
         return i;
     };
     for (const PictureLink &link : links) {
+        if (!takes(link)) continue;
         const uint32_t a = root(link.picture[0]), b = root(link.picture[1]);
         first[std::max(a, b)] = std::min(a, b);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,9 @@ std::vector<PictureLink> find_links(const std::vector<Features> &pictures, Progr
 
 // Of every picture the number of its group: pictures that links join, directly or through others, are one. Groups are
 // numbered by their first picture.
-std::vector<uint32_t> groups_of(size_t pictures, const std::vector<PictureLink> &links);
+using TakesLink = std::function<bool(const PictureLink &)>;
+std::vector<uint32_t> groups_of(
+    size_t pictures, const std::vector<PictureLink> &links,
+    const TakesLink &takes = [](const PictureLink &) { return true; });
 
 }  // namespace lensprof

@@ -171,7 +171,8 @@ class Grouping {
 public:
     Grouping(const std::vector<uint32_t> &bodies, const std::vector<PictureLink> &links)
         : takes_(bodies.size(), true), groups_(groups_of(bodies.size(), links)) {
-        while (drop(bodies, links)) groups_ = groups_of(bodies.size(), kept(links));
+        while (drop(bodies, links))
+            groups_ = groups_of(bodies.size(), links, [this](const PictureLink &link) { return takes_both(link); });
     }
 
     bool takes(uint32_t picture) const { return takes_[picture]; }
@@ -181,8 +182,8 @@ private:
     // Takes pictures of bodies without a part in their group out; false where there are none. That may cut groups.
     bool drop(const std::vector<uint32_t> &bodies, const std::vector<PictureLink> &links) {
         std::set<std::pair<uint32_t, uint32_t>> parts;  // groups and bodies
-        for (const PictureLink &link : kept(links))
-            if (bodies[link.picture[0]] == bodies[link.picture[1]])
+        for (const PictureLink &link : links)
+            if (takes_both(link) && bodies[link.picture[0]] == bodies[link.picture[1]])
                 parts.insert({groups_[link.picture[0]], bodies[link.picture[0]]});
         bool any = false;
         for (uint32_t i = 0; i < takes_.size(); i++) {
@@ -191,16 +192,7 @@ private:
         }
         return any;
     }
-    // Without their matches, which nothing here needs.
-    std::vector<PictureLink> kept(const std::vector<PictureLink> &links) const {
-        std::vector<PictureLink> some;
-        for (const PictureLink &link : links) {
-            if (!takes_[link.picture[0]] || !takes_[link.picture[1]]) continue;
-            some.emplace_back();
-            std::copy(link.picture, link.picture + 2, some.back().picture);
-        }
-        return some;
-    }
+    bool takes_both(const PictureLink &link) const { return takes_[link.picture[0]] && takes_[link.picture[1]]; }
 
     std::vector<bool> takes_;
     std::vector<uint32_t> groups_;

@@ -29,8 +29,6 @@ constexpr double kBetter = 0.9;          // standard error, relative, from which
 // defined by it. Over 60 pairs of measured responses of today's cameras the exposures of two cameras were .37 EV off,
 // RMS, median .24.
 constexpr double kWhiteSigma = 0.18;
-constexpr size_t kFewestToAttach = 30;       // pairs of an image
-constexpr double kLargestDifference = 0.25;  // of what they say of its exposure, median, natural logarithm
 constexpr double kDarkest = 2.0 / 255.0;
 
 // What a camera's fit tells of its progress, as a part of all.
@@ -332,13 +330,13 @@ bool CamerasFit::attach_image(uint32_t image, const std::vector<uint32_t> &pairs
         other_variance += std::pow(quality_[pair.image[other]].ev_sigma, 2);
     }
     const size_t count = log_exposure[0].size();
-    if (count < kFewestToAttach) return false;
+    if (count < kFewestJoining) return false;
     double found[3] = {}, sigma[3] = {};
     for (uint32_t c = 0; c < options_.channels; c++) {
         found[c] = median(log_exposure[c]);
         for (double &value : log_exposure[c]) value = std::abs(value - found[c]);
         const double scatter = median(log_exposure[c]);
-        if (scatter > kLargestDifference) return false;
+        if (scatter > kLargestLightDifference) return false;
         sigma[c] = kMadToSigma * scatter / std::sqrt(static_cast<double>(count));
     }
     const uint32_t green = options_.channels == 3 ? 1 : 0;

@@ -13,12 +13,10 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kFewestPairs = 30;          // that join a camera
-constexpr double kLargestDifference = 0.25;  // of the light at their ends, median, natural logarithm
-constexpr double kSmallestScatter = 0.01;    // of light, natural logarithm: misplaced texture
-constexpr double kCutoff = 3.0;              // standard deviations beyond which a pair loses its weight
-constexpr double kKnownSigma = 1e-6;         // of ln gamma where that is known
-constexpr double kLargestLogGamma = 1.2;     // in all
+constexpr double kSmallestScatter = 0.01;  // of light, natural logarithm: misplaced texture
+constexpr double kCutoff = 3.0;            // standard deviations beyond which a pair loses its weight
+constexpr double kKnownSigma = 1e-6;       // of ln gamma where that is known
+constexpr double kLargestLogGamma = 1.2;   // in all
 constexpr int kRounds = 40;
 constexpr double kConverged = 1e-7;
 
@@ -49,7 +47,7 @@ public:
             solve();
             describe();
             const size_t worst = farthest();
-            if (joints_[worst].residual <= kLargestDifference) return joints_;
+            if (joints_[worst].residual <= kLargestLightDifference) return joints_;
             may_join[worst] = false;
         }
     }
@@ -102,7 +100,7 @@ void Join::take_reached(const std::vector<bool> &may_join) {
         any = false;
         for (const auto &[ends, pairs] : between) {
             Joint &a = joints_[ends[0]], &b = joints_[ends[1]];
-            if (pairs < kFewestPairs || a.joined == b.joined || !may_join[ends[0]] || !may_join[ends[1]]) continue;
+            if (pairs < kFewestJoining || a.joined == b.joined || !may_join[ends[0]] || !may_join[ends[1]]) continue;
             a.joined = b.joined = any = true;
         }
     }
@@ -171,7 +169,7 @@ void Join::start_offsets() {
                 differences[{camera, c}].push_back(is_known[pair.camera[0]] ? residual(pair, c) : -residual(pair, c));
         }
         for (auto &[of, values] : differences) {
-            at_[offset_column(of.first, of.second)] = quantile(values, 0.5);
+            at_[offset_column(of.first, of.second)] = median(values);
             is_known[of.first] = any = true;
         }
     }
@@ -186,7 +184,7 @@ void Join::find_scatter() {
             const double noise = pair.variance[0][c] + pair.variance[1][c];
             squares.push_back(std::max(0.0, std::pow(kMadToSigma * residual(pair, c), 2) / scale - noise));
         }
-    scatter_ = std::max(kSmallestScatter, squares.empty() ? 0.0 : std::sqrt(quantile(squares, 0.5)));
+    scatter_ = std::max(kSmallestScatter, std::sqrt(median(squares)));
 }
 
 // One Gauss-Newton step of the weighted residuals; returns its length. `normal` receives the normal equations.
@@ -326,7 +324,7 @@ bool may_agree(const std::vector<const LightPair *> &pairs) {
     for (const LightPair *pair : pairs)
         differences.push_back(
             std::abs((light_in(*pair, false) - a.middle) / exponent - (light_in(*pair, true) - b.middle) * exponent));
-    return median(differences) < 2.0 * kLargestDifference;
+    return median(differences) < 2.0 * kLargestLightDifference;
 }
 
 // Without pairs of two cameras whose light has nothing in common: a solution of all would have to find them one by one.
@@ -336,7 +334,7 @@ std::vector<LightPair> agreeing(const std::vector<LightPair> &pairs) {
         between[{std::min(pair.camera[0], pair.camera[1]), std::max(pair.camera[0], pair.camera[1])}].push_back(&pair);
     std::vector<LightPair> some;
     for (const auto &[cameras, own] : between)
-        if (own.size() >= kFewestPairs && may_agree(own))
+        if (own.size() >= kFewestJoining && may_agree(own))
             for (const LightPair *pair : own) some.push_back(*pair);
     return some;
 }

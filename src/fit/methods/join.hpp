@@ -18,6 +18,9 @@
 
 namespace lensprof {
 
+constexpr size_t kFewestJoining = 30;             // pairs that join a camera or an image
+constexpr double kLargestLightDifference = 0.25;  // of the light at their ends, median, natural logarithm
+
 // What two cameras saw of one place, by their own fits.
 struct LightPair {
     uint32_t camera[2];
