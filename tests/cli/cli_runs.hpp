@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -218,6 +219,17 @@ inline std::string lensfun_text(const std::string &lens, const std::vector<Lensf
 // `scene` holds four PNG and `mixed` one picture of every kind, rendered once; `work` is empty before every test.
 constexpr const char *mixed_names[] = {"img000.png", "img001.png", "img002.tif",
                                        "img003.tif", "img004.tif", "img005.jpg"};
+
+// Largest difference of a falloff in JSON (k1..k3) from the true one, from the centre to the corner.
+inline double falloff_error(const Json &k, const std::vector<double> &truth) {
+    double worst = 0.0;
+    for (double r = 0.0; r <= 1.0; r += 0.05) {
+        double difference = 0.0;
+        for (int n = 0; n < 3; n++) difference += (k[n].get<double>() - truth[n]) * std::pow(r * r, n + 1);
+        worst = std::max(worst, std::abs(difference));
+    }
+    return worst;
+}
 
 inline std::string scene(const std::string &name) { return in_folder("scene/" + name); }
 inline std::string mixed(const std::string &name) { return in_folder("mixed/" + name); }

@@ -57,16 +57,6 @@ std::string pictures(const std::string &name) {
     return work(name);
 }
 
-double falloff_error(const Json &k, const std::vector<double> &truth) {
-    double worst = 0.0;
-    for (double r = 0.0; r <= 1.0; r += 0.05) {
-        double difference = 0.0;
-        for (int n = 0; n < 3; n++) difference += (k[n].get<double>() - truth[n]) * std::pow(r * r, n + 1);
-        worst = std::max(worst, std::abs(difference));
-    }
-    return worst;
-}
-
 // EXIF of both settles gamma, so that falloffs compare with the true ones.
 void assert_both_found(const Json &json, double tolerance) {
     assert_true(json["usable"] == true && json["evens"] == true);

@@ -34,16 +34,6 @@ std::string two_apertures(const char *overlap = "0.4") {
     return work("open/pano.pto");
 }
 
-double falloff_error(const Json &k, const std::vector<double> &truth) {
-    double worst = 0.0;
-    for (double r = 0.0; r <= 1.0; r += 0.05) {
-        double difference = 0.0;
-        for (int n = 0; n < 3; n++) difference += (k[n].get<double>() - truth[n]) * std::pow(r * r, n + 1);
-        worst = std::max(worst, std::abs(difference));
-    }
-    return worst;
-}
-
 void assert_both_found(const Json &json) {
     assert_true(json["usable"] == true && json["evens"] == true);
     assert_int_equal(json["settings"].size(), 2);

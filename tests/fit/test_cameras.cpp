@@ -1,34 +1,9 @@
 // Pictures of several cameras in one fit: a response for each, joined by what they share.
-#include "simulated_tracks.hpp"
+#include "simulated_run.hpp"
 
 namespace {
 
 const lensprof_vignetting kWide{{-0.45, 0.12, -0.10}, {0.01, -0.01}}, kTele{{-0.15, 0.03, -0.05}, {-0.01, 0.01}};
-
-struct Run : FitRun {
-    std::vector<lensprof_fit_setting> settings;
-    std::vector<lensprof_fit_camera> cameras;
-
-    explicit Run(const Simulation &s, size_t count = 2) : settings(count), cameras(count) {
-        exposures.resize(s.images);
-        quality.resize(s.images);
-        lensprof_fit_result_init(&result);
-        result.image_quality = quality.data();
-        for (auto &setting : settings) lensprof_fit_setting_init(&setting);
-        for (auto &camera : cameras) lensprof_fit_camera_init(&camera);
-        result.settings = settings.data(), result.cameras = cameras.data();
-        result.setting_count = result.camera_count = static_cast<uint32_t>(count);
-    }
-
-    lensprof_status fit(const Simulation &s, const lensprof_fit_options &options, lensprof_error *error = nullptr) {
-        return lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                                    static_cast<uint32_t>(s.pairs.size()), exposures.data(), &result, error);
-    }
-    lensprof_status fit(const TrackSimulation &s, const lensprof_fit_options &options) {
-        return lensprof_fit_radiance(&options, s.fit_images.data(), s.images, s.observations.data(),
-                                     static_cast<uint32_t>(s.observations.size()), exposures.data(), &result, nullptr);
-    }
-};
 
 // Images in turn of two cameras, which differ in response, falloff, sensitivity and white balance.
 template <class Simulated>
@@ -53,15 +28,6 @@ Simulated alternating(uint64_t seed = 42) {
     else
         s.make(6000, 1.0, 0.05, 1.0, seed);
     return s;
-}
-
-double falloff_error(const lensprof_vignetting &found, const lensprof_vignetting &truth, double gamma) {
-    double worst = 0.0;
-    for (int k = 0; k <= 20; k++) {
-        const double r2 = k * k / 400.0, m = lensprof_vignetting_eval(&found, r2, nullptr);
-        worst = std::max(worst, std::abs(std::pow(m, 1.0 / gamma) - lensprof_vignetting_eval(&truth, r2, nullptr)));
-    }
-    return worst;
 }
 
 // Grey values of light as the reference sees it, from 3 % of its white on, in an image, as found and in truth: by all

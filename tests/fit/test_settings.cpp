@@ -1,33 +1,9 @@
 // Pictures at several lens settings in one fit: a falloff for each, one response for all.
-#include "simulated_tracks.hpp"
+#include "simulated_run.hpp"
 
 namespace {
 
 const lensprof_vignetting kOpen{{-0.55, 0.15, -0.12}, {0.02, -0.015}}, kStopped{{-0.12, 0.02, -0.03}, {-0.01, 0.005}};
-
-struct Run : FitRun {
-    std::vector<lensprof_fit_setting> settings;
-
-    // With room for so many settings.
-    explicit Run(const Simulation &s, size_t count = 2) : settings(count) {
-        exposures.resize(s.images);
-        quality.resize(s.images);
-        lensprof_fit_result_init(&result);
-        result.image_quality = quality.data();
-        for (auto &setting : settings) lensprof_fit_setting_init(&setting);
-        result.settings = settings.data();
-        result.setting_count = static_cast<uint32_t>(count);
-    }
-
-    lensprof_status fit(const Simulation &s, const lensprof_fit_options &options, lensprof_error *error = nullptr) {
-        return lensprof_fit_overlap(&options, s.fit_images.data(), s.images, s.pairs.data(),
-                                    static_cast<uint32_t>(s.pairs.size()), exposures.data(), &result, error);
-    }
-    lensprof_status fit(const TrackSimulation &s, const lensprof_fit_options &options) {
-        return lensprof_fit_radiance(&options, s.fit_images.data(), s.images, s.observations.data(),
-                                     static_cast<uint32_t>(s.observations.size()), exposures.data(), &result, nullptr);
-    }
-};
 
 // Images in turn wide open and stopped down.
 template <class Simulated>
@@ -40,15 +16,6 @@ Simulated alternating(uint64_t seed = 42) {
     else
         s.make(2000, 1.0, 0.05, 1.0, seed);
     return s;
-}
-
-double falloff_error(const lensprof_vignetting &found, const lensprof_vignetting &truth, double gamma) {
-    double worst = 0.0;
-    for (int k = 0; k <= 20; k++) {
-        const double r2 = k * k / 400.0, m = lensprof_vignetting_eval(&found, r2, nullptr);
-        worst = std::max(worst, std::abs(std::pow(m, 1.0 / gamma) - lensprof_vignetting_eval(&truth, r2, nullptr)));
-    }
-    return worst;
 }
 
 void check_found(const Simulation &s, const Run &run) {
