@@ -98,12 +98,13 @@ ROOMS = {
                 "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/cli": ["program", "report", "pictures", "registration", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
+    "src/cli": ["program", "report", "pictures", "registration", "reconstruction", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 
 # Headers that one room alone may use.
 ROOM_HEADERS = {
     "src/cli/registration": {"Eigen/*", "opencv2/*"},
+    "src/cli/reconstruction": {"sqlite3.h"},
     "src/cli/response": {"Eigen/*"},
     "src/cli/pictures": {"OpenEXR/*", "jxl/*", "libheif/*", "libraw/*", "webp/*"},
 }

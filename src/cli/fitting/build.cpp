@@ -12,18 +12,21 @@
 #include "cli/fitting/preview.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/project_fit.hpp"
+#include "cli/fitting/reconstruction_project.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
+#include "cli/reconstruction/reconstruction_file.hpp"
 
 namespace lensprof {
 namespace {
 
 struct Options : ProjectFitOptions {
     std::vector<std::string> inputs;
-    std::string points_out, pto_out, project_out, preview, compare;
+    std::string images, points_out, pto_out, project_out, preview, compare;
+    bool track_colours = false;
     std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
     bool json = false, progress = false;
 };
@@ -35,8 +38,12 @@ void declare_points(Command &command, Options &o) {
     command.files(
         "INPUT", o.inputs,
         "pictures and folders of pictures, whose overlaps are found; or one Hugin project, whose v lines choose "
-        "what is estimated");
+        "what is estimated; or one reconstruction (COLMAP database.db or model folder, tracks.csv of OpenSfM and "
+        "OpenDroneMap, Bundler .out, AliceVision .sfm, OpenMVG sfm_data.json, or a folder of one)");
     command.require("INPUT");
+    command.folder("--images", o.images, "folder of a reconstruction's pictures; default beside it");
+    command.flag("--track-colors", o.track_colours,
+                 "take the colours in tracks.csv and read no picture; so it is without pictures, too");
     command.file("--project-out", o.project_out,
                  "write the project that was found for the pictures, before the fit; to correct it, open it in Hugin");
     command.file("--points", o.points,
@@ -156,8 +163,23 @@ void check_photographs(const Options &o, const Photographs &list) {
     if (unnamed) throw *unnamed;
 }
 
+// What cannot be asked of a project without cameras.
+Project open_reconstruction(const Options &o, Streams &streams) {
+    for (const auto &[option, value] : {std::pair("--points", o.points), std::pair("--preview", o.preview),
+                                        std::pair("--project-out", o.project_out)})
+        if (!value.empty())
+            throw Failure(ExitCode::usage, std::string(option) + ": is for panoramas, and " + o.inputs[0]
+                                               + " is a reconstruction; leave it out");
+    return project_of_reconstruction(o.inputs[0], {o.images, o.track_colours, o.pairs, o.seed}, streams);
+}
+
 // A project, or the pictures that take its place.
 Project open_project(const Options &o, Streams &streams) {
+    if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, streams);
+    if (!o.images.empty() || o.track_colours)
+        throw Failure(ExitCode::usage,
+                      std::string(o.images.empty() ? "--track-colors" : "--images") + ": is of a reconstruction, and "
+                          + o.inputs[0] + " is none; leave it out, or give database.db, tracks.csv or the like alone");
     const bool is_project = o.inputs.size() == 1 && !names_pictures(o.inputs[0]);
     for (const std::string &input : o.inputs)
         if (!is_project && !names_pictures(input))
@@ -202,13 +224,15 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     check_outputs(o, inputs);
     if (!o.project_out.empty()) write_project(project, o.project_out);
     choose_unknowns(o, project, streams);
-    if (o.points.empty()) check_pictures(project, o.max_side);
+    if (o.points.empty() && project.pairs.empty()) check_pictures(project, o.max_side);
     auto metadata = picture_metadata(o, project);
     lensprof_profile_key key = profile_key(o, project, metadata, streams);
     TrueValues truth;
     if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
     check_store(o.store);
-    const CameraKind kind = camera_kind_of(o.fit, key, metadata[project.reference]);
+    CameraKind kind = camera_kind_of(o.fit, key, metadata[project.reference]);
+    if (project.is_reconstruction && kind.from == KindFrom::none)
+        kind = {LENSPROF_CAMERA_CAMERA, KindFrom::reconstruction};  // few reconstruct from film
     OutputFiles outputs;
     EarlierProfile prior;
     if (takes_stored_prior(o.fit))

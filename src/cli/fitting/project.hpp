@@ -24,7 +24,8 @@ struct Project {
     // Of pictures that were in no project: where they show the same, of links that the cameras do not fit or of all
     // (`by_matches`); those that are not part of it, and why; and how long finding it took.
     std::vector<lensprof_match> matches;
-    bool by_matches = false;
+    bool by_matches = false, is_reconstruction = false;
+    std::vector<lensprof_pair> pairs;  // that came with the project, in the place of pictures
     std::vector<std::pair<std::string, std::string>> left_out;
     double register_s = 0.0;
 };

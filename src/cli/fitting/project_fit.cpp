@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "cli/fitting/exposures_only.hpp"
 #include "cli/fitting/known_exposures.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/program/format.hpp"
@@ -78,8 +79,8 @@ void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &p
 Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectFit &done) {
     auto clock = std::chrono::steady_clock::now();
     uint32_t &channels = done.input.options.channels;
-    if (!o.points.empty()) {
-        done.input.pairs = read_points(o.points, project);
+    if (!o.points.empty() || !project.pairs.empty()) {
+        done.input.pairs = o.points.empty() ? project.pairs : read_points(o.points, project);
         channels = is_grey(done.input.pairs) ? 1 : 3;
         done.report.load_s = lap(clock);
         return {};
@@ -224,6 +225,29 @@ void warn_of_few(const ProjectFitOptions &o, const Project &project, const Fitte
                                images, enough, o.store.no_store ? "" : ", or --no-store"));
 }
 
+// Of a reconstruction: measures what was gained, and where response and falloff explain no more of the pairs than
+// exposures alone takes these, for they are harmed by what the pictures do not show.
+void compare_with_exposures_only(const Project &project, ProjectFit &done, Streams &streams) {
+    BuildReport &report = done.report;
+    const bool is_by_pairs = done.input.observations.empty() && done.input.options.free != 0;
+    if (!project.is_reconstruction || !is_by_pairs) return;
+    const Fitted only = fit_exposures_only(done.input, report.reference, done.item, done.progress);
+    if (!is_joint_better(done.best, only)) {
+        warn(streams, project.path
+                          + ": response and falloff explain the pictures no better than exposures and white balances "
+                            "alone, which are given");
+        done.best = only;
+        done.best.result.usable = 0;
+        done.best.result.reason_code = LENSPROF_REASON_NONE;
+        std::snprintf(done.best.result.reason, sizeof done.best.result.reason,
+                      "the pictures show neither response nor falloff");
+        done.settings.of_image.assign(done.settings.of_image.size(), 0), done.settings.first.resize(1);
+        join_cameras(done.settings);
+    }
+    report.variance = colour_variance(done.input, done.best, only);
+    done.best.result.evens = report.variance.result < report.variance.before;
+}
+
 // What was found of each setting, where there are several.
 void report_settings(const ProjectFitOptions &o, const Project &project, const std::vector<PictureMetadata> &metadata,
                      ProjectFit &done) {
@@ -296,7 +320,7 @@ Fitted fit_for_project(FitInput &input, const Fitted &best, uint32_t reference, 
 
 std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const Project &project) {
     std::vector<PictureMetadata> metadata(project.files.size(), unknown_metadata());
-    if (o.points.empty()) demand_one_kind(project.files);
+    if (o.points.empty() && project.pairs.empty()) demand_one_kind(project.files);
     for (uint32_t i = 0; i < metadata.size(); i++) {
         bool needed = o.points.empty() || (i == project.reference && !o.store.no_store);
         if (needed && path_exists(project.files[i])) metadata[i] = read_metadata(project.files[i]);
@@ -360,6 +384,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     const bool is_of_one = !done.settings.are_of_several_cameras();  // light is compared by one response
     if (is_of_one && !pictures.empty() && may_join_more(o, done.best, report.links))
         look_again(o, project, pictures, done);
+    compare_with_exposures_only(project, done, streams);
     report.fit = done.best.result;
     report.verdict = verdict_of(done.best.result);
     warn_of_few(o, project, done.best, streams);

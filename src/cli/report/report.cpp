@@ -236,13 +236,15 @@ const char *response_from_name(uint32_t from) {
 }
 
 const char *kind_from_name(KindFrom from) {
-    return from == KindFrom::option ? "option" : from == KindFrom::pictures ? "pictures" : "none";
+    static const char *const names[] = {"none", "option", "pictures", "reconstruction"};
+    return names[static_cast<int>(from)];
 }
 
 const char *describe_kind_from(KindFrom from) {
     return from == KindFrom::option     ? "as asked for"
            : from == KindFrom::pictures ? "by what the pictures say"
-                                        : "as no picture says which; --camera-kind does";
+           : from == KindFrom::none     ? "as no picture says which; --camera-kind does"
+                                        : "as most reconstructions are of; --camera-kind says another";
 }
 
 Json left_out_json(const BuildReport &report) {
@@ -366,6 +368,11 @@ Json build_json(const BuildReport &report) {
                         {"frame_share", fit.frame_share},
                         {"image_share", fit.image_share},
                         {"inlier_share", fit.inlier_share}};
+    if (report.variance.pairs)
+        json["colour_variance"] = {{"before", report.variance.before},
+                                   {"exposures_only", report.variance.exposures_only},
+                                   {"result", report.variance.result},
+                                   {"pairs", report.variance.pairs}};
     json["gamma_from"] = gamma_name(fit.gamma_from);
     json["gamma"] = gamma_json(report);
     json["coverage"] = {{"radius", std::vector<uint32_t>(fit.radius_ends, fit.radius_ends + LENSPROF_COVERAGE_BINS)},
@@ -503,6 +510,11 @@ void print_build(const BuildReport &report, std::ostream &out) {
         heldout = format("%.2f (RMS; median %.2f) on pairs left out of the fit", fit.heldout_rms, fit.heldout_median);
     out << format("residual  before %.2f, after %s, levels of 255; %.1f %% inliers of %u pairs\n", fit.before_rms,
                   heldout.c_str(), 100.0 * fit.inlier_share, fit.pairs);
+    if (report.variance.pairs)
+        out << format(
+            "colours   variance of a point's colour over its views %.1f before, %.1f by exposures alone, %.1f "
+            "by this result, levels squared\n",
+            report.variance.before, report.variance.exposures_only, report.variance.result);
     if (!report.links.empty()) out << links_row(report.links);
     if (report.register_s > 0.0) out << format("time      find overlaps %.2f s\n", report.register_s);
     out << format("time      load %.2f s, sample %.2f s, solve %.2f s\n", report.load_s, report.sample_s, fit.seconds);

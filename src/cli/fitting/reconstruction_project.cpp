@@ -1,0 +1,105 @@
+#include "cli/fitting/reconstruction_project.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include "cli/fitting/fitting.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/message.hpp"
+#include "cli/reconstruction/match_choice.hpp"
+#include "cli/reconstruction/pictures.hpp"
+#include "cli/reconstruction/reconstruction_file.hpp"
+#include "cli/registration/project_text.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kAnyAngle = 50.0;                        // of view, degrees: nothing goes by it
+constexpr uint32_t kPairsOfImage = 300;                   // wanted, as sampling has them,
+constexpr uint32_t kMatchesOfPair = 4;                    // and matches to choose them from
+constexpr double kBlackLevel = 2.0, kWhiteLevel = 250.0;  // colours outside are not used
+
+std::vector<ProjectImage> images_of(const Reconstruction &r) {
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> sizes;  // upright or not
+    std::vector<ProjectImage> images;
+    for (size_t i = 0; i < r.images.size(); i++) {
+        lensprof_camera camera{};
+        camera.width = r.cameras[i].width, camera.height = r.cameras[i].height;
+        camera.hfov_deg = kAnyAngle;
+        const auto size = std::minmax(camera.width, camera.height);
+        const auto lens = sizes.emplace(size, static_cast<uint32_t>(sizes.size())).first->second;
+        images.push_back({camera, format("image%zu", i), lens, lens});  // a name may hold quotes
+    }
+    return images;
+}
+
+// The colours of two observations, where both are between black and white.
+bool pair_of_colours(const TrackObservation &a, const TrackObservation &b, lensprof_pair &pair) {
+    const TrackObservation *ends[2] = {&a, &b};
+    for (int side = 0; side < 2; side++) {
+        pair.image[side] = ends[side]->image;
+        for (int d = 0; d < 2; d++) pair.xy[side][d] = ends[side]->xy[d];
+        for (size_t c = 0; c < 3; c++) {
+            const double level = ends[side]->colour[c];
+            if (level < kBlackLevel || level > kWhiteLevel) return false;
+            pair.value[side][c] = level / 255.0;
+        }
+    }
+    return true;
+}
+
+std::vector<lensprof_pair> pairs_of_colours(const Reconstruction &r, const std::vector<ObservationPair> &chosen) {
+    std::vector<lensprof_pair> pairs;
+    for (const ObservationPair &own : chosen) {
+        lensprof_pair pair{};
+        if (pair_of_colours(r.observations[own.first], r.observations[own.second], pair)) pairs.push_back(pair);
+    }
+    return pairs;
+}
+
+void report_read(const Reconstruction &r, bool has_pictures, Streams &streams) {
+    const auto placed =
+        std::count_if(r.images.begin(), r.images.end(), [](const auto &image) { return image.has_centre; });
+    note(streams, r.path
+                      + format(": %s of %zu images, %u points, %zu observations; %s; %s", r.kind.c_str(),
+                               r.images.size(), r.point_count(), r.observations.size(),
+                               placed ? "similar views, by their angles, count most"
+                                      : "similar views, by the points they share, count most",
+                               has_pictures ? "the pictures are compared at its points"
+                                            : "the colours of its points are compared, and no picture is read"));
+}
+
+}  // namespace
+
+Project project_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Streams &streams) {
+    auto clock = std::chrono::steady_clock::now();
+    Reconstruction r = read_reconstruction(path, streams);
+    if (options.is_by_colours && !r.has_colours)
+        throw Failure(ExitCode::usage, "--track-colors: are in OpenSfM's tracks.csv alone, and " + path + " is a "
+                                           + r.kind + "; leave the option out");
+    Project project;
+    project.path = path;
+    project.by_matches = project.is_reconstruction = true;
+    const std::vector<std::string> files = find_pictures(r, options.images, r.has_colours);
+    settle_coordinates(r, files);
+    const bool has_pictures = !files.empty() && !options.is_by_colours;
+    report_read(r, has_pictures, streams);
+    const uint32_t of_image =
+        options.pairs ? static_cast<uint32_t>(2 * uint64_t{options.pairs} / r.images.size()) + 1 : kPairsOfImage;
+    const auto chosen = choose_pairs(r, kMatchesOfPair * of_image, options.seed);
+    if (has_pictures)
+        project.matches = matches_of(r, chosen);
+    else
+        project.pairs = pairs_of_colours(r, chosen);
+    for (size_t i = 0; i < r.images.size(); i++) {
+        project.names.push_back(r.images[i].name);
+        project.files.push_back(files.empty() ? r.images[i].name : files[i]);
+    }
+    project.pto = parse_pto(new_project_text("read by lensprof build", images_of(r)), path);
+    for (size_t i = 0; i < r.images.size(); i++) add_image(project);
+    project.register_s = lap(clock);
+    return project;
+}
+
+}  // namespace lensprof

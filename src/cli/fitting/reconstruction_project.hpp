@@ -1,0 +1,21 @@
+// What structure from motion found, as a project.
+#pragma once
+
+#include <string>
+
+#include "cli/fitting/project.hpp"
+#include "cli/program/run.hpp"
+
+namespace lensprof {
+
+struct ReconstructionOptions {
+    std::string images;            // folder of the pictures; empty: where they are looked for
+    bool is_by_colours = false;    // the colours of the tracks are taken, and no picture is read
+    uint32_t pairs = 0, seed = 1;  // wanted; 0: 300 an image
+};
+
+// Images of one size are linked: EXIF tells cameras and settings apart. Pictures of the project are compared at its
+// matches; where there are no pictures, and the tracks have colours, these are its pairs.
+Project project_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Streams &streams);
+
+}  // namespace lensprof

@@ -1,0 +1,101 @@
+// Bundler's .out (version 0.3): cameras, and points with the views that see them. Names of images are in a list.
+#include <cstring>
+#include <filesystem>
+
+#include "cli/program/error.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/reconstruction/field_reader.hpp"
+#include "cli/reconstruction/readers.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint64_t kMostBytes = uint64_t(8) << 30;
+constexpr const char *kHeader = "# Bundle file";
+
+// list.txt beside it, or what is named as the file is but for its end.
+std::string list_beside(const std::string &path) {
+    const std::filesystem::path file(path);
+    std::vector<std::string> tried;
+    for (const std::string &name : {file.filename().string() + ".list.txt", file.stem().string() + ".list.txt",
+                                    std::string("list.txt"), std::string("image_list.txt")}) {
+        tried.push_back((file.parent_path() / name).string());
+        if (is_regular_file(tried.back())) return tried.back();
+    }
+    for (const std::string &name : {std::string("list.txt"), std::string("image_list.txt")}) {
+        const std::string above = (file.parent_path() / ".." / name).string();
+        if (is_regular_file(above)) return above;
+    }
+    throw Failure(ExitCode::unreadable,
+                  path + ": the list of its images is not beside it; put it there as " + tried[2]);
+}
+
+std::vector<std::string> read_list(const std::string &path) {
+    FieldReader fields(path, '\0', kMostBytes);
+    std::vector<std::string> names;
+    while (fields.next_line_of_values()) names.push_back(fields.text());  // focal lengths may follow
+    return names;
+}
+
+// Centre -R^T t of rotation and translation, which have five lines; a camera of zeros was not placed.
+void read_camera(FieldReader &fields, ReconstructionImage &image) {
+    std::array<std::array<double, 3>, 5> rows;  // focal length and distortion, R, t
+    for (auto &row : rows) {
+        if (!fields.next_line_of_values()) fields.fail("cameras are missing");
+        for (double &x : row) x = fields.number();
+    }
+    image.has_centre = rows[0][0] != 0.0;
+    for (size_t d = 0; d < 3; d++)
+        image.centre[d] = -(rows[1][d] * rows[4][0] + rows[2][d] * rows[4][1] + rows[3][d] * rows[4][2]);
+}
+
+// Position, colour, and the views: camera, feature, and place from the middle of the picture, y upwards.
+void read_point(FieldReader &fields, Reconstruction &found) {
+    std::array<double, 3> position;
+    if (!fields.next_line_of_values()) fields.fail("points are missing");
+    for (double &x : position) x = fields.number();
+    if (!fields.next_line_of_values()) fields.fail("points are missing");
+    if (!fields.next_line_of_values()) fields.fail("points are missing");
+    for (auto views = fields.whole<uint32_t>(); views > 0; views--) {
+        TrackObservation own;
+        own.point = static_cast<uint32_t>(found.points.size());
+        own.image = fields.whole<uint32_t>();
+        if (own.image >= found.images.size()) fields.fail("it names a camera that is not there");
+        own.feature = fields.whole<uint32_t>();
+        own.xy[0] = static_cast<float>(fields.number());
+        own.xy[1] = -static_cast<float>(fields.number());
+        if (found.observations.size() == most_observations) fields.fail("it has one observation too many");
+        found.observations.push_back(own);
+    }
+    found.points.push_back(position);
+}
+
+}  // namespace
+
+bool is_bundler(const std::string &path) {
+    return is_regular_file(path) && read_head(path, std::strlen(kHeader)) == kHeader;
+}
+
+Reconstruction read_bundler(const std::string &path) {
+    Reconstruction found;
+    found.kind = "Bundler file", found.path = path;
+    found.coordinates = ImageCoordinates::stored_centred_px;
+    found.cameras.emplace_back();
+    const std::string list = list_beside(path);
+    for (const std::string &name : read_list(list)) found.images.push_back({name, 0, false, {}});
+    FieldReader fields(path, '\0', kMostBytes);
+    if (!fields.next_line_of_values()) fields.fail("the number of cameras is missing");
+    const auto cameras = fields.whole<uint32_t>(), points = fields.whole<uint32_t>();
+    if (cameras != found.images.size())
+        throw Failure(ExitCode::unreadable, path + ": has " + std::to_string(cameras) + " cameras, and " + list
+                                                + " names " + std::to_string(found.images.size())
+                                                + " images; give the list that belongs to it");
+    for (ReconstructionImage &image : found.images) read_camera(fields, image);
+    for (uint32_t n = 0; n < points; n++) read_point(fields, found);
+    settle_tracks(found);
+    sort_images(found);
+    return found;
+}
+
+}  // namespace lensprof

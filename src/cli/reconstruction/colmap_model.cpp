@@ -1,0 +1,269 @@
+// COLMAP's sparse model: cameras, images and points3D, binary or text. Rigs and frames of newer versions are not read:
+// images.bin has the pose of every image all the same.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <unordered_map>
+
+#include "cli/program/error.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/reconstruction/field_reader.hpp"
+#include "cli/reconstruction/readers.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint64_t kMostBytes = uint64_t(4) << 30;
+// Parameters of the camera models 0, 1, 2, ... (COLMAP, src/colmap/sensor/models.h).
+constexpr int kParameters[] = {3, 4, 4, 5, 8, 8, 12, 5, 4, 5, 12, 16, 4, 5, 3, 4};
+
+[[noreturn]] void fail_damaged(const std::string &file, const std::string &what) {
+    throw Failure(ExitCode::unreadable, file + ": " + what + "; give an intact COLMAP model");
+}
+
+// Numbers of a binary file, which is little-endian.
+class Bytes {
+public:
+    explicit Bytes(const std::string &file) : file_(file), content_(read_text(file, kMostBytes)) {}
+
+    template <class Number>
+    Number next() {
+        Number number;
+        std::memcpy(&number, take(sizeof number), sizeof number);
+        return number;
+    }
+    std::string next_text() {
+        const size_t end = content_.find('\0', at_);
+        if (end == std::string::npos) fail_damaged(file_, "is cut off");
+        const std::string text = content_.substr(at_, end - at_);
+        at_ = end + 1;
+        return text;
+    }
+    // The number of items to come, of at least `bytes_each`.
+    uint64_t next_count(uint64_t bytes_each) {
+        const auto count = next<uint64_t>();
+        if (count > (content_.size() - at_) / bytes_each)
+            fail_damaged(file_, "is to hold " + std::to_string(count) + " items, and is too short for them");
+        return count;
+    }
+    const char *take(size_t bytes) {
+        if (bytes > content_.size() - at_) fail_damaged(file_, "is cut off");
+        at_ += bytes;
+        return content_.data() + at_ - bytes;
+    }
+    void demand_end() const {
+        if (at_ != content_.size()) fail_damaged(file_, "holds more than its counts say");
+    }
+
+private:
+    std::string file_, content_;
+    size_t at_ = 0;
+};
+
+struct PosedImage {
+    ReconstructionImage image;
+    std::vector<std::array<double, 2>> places;  // of its features
+    uint32_t camera_id = 0;
+};
+
+struct Model {
+    std::map<uint32_t, ReconstructionCamera> cameras;  // by their numbers in the files
+    std::map<uint32_t, PosedImage> images;
+};
+
+struct Sight {
+    uint32_t image, feature;
+};
+
+ReconstructionCamera camera_of(const std::string &file, uint64_t width, uint64_t height) {
+    if (width < 1 || height < 1 || width > uint64_t(most_image_side) || height > uint64_t(most_image_side))
+        fail_damaged(file, "has a camera of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+    return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+}
+
+// The centre -R^T t of world-to-camera rotation and translation.
+void place(const std::array<double, 4> &q, const std::array<double, 3> &t, ReconstructionImage &image) {
+    const double w = q[0], n = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (!std::isfinite(n) || n == 0.0) return;
+    const std::array<double, 3> v = {-q[1] / n, -q[2] / n, -q[3] / n};  // of the inverse rotation
+    const auto cross = [](const auto &a, const auto &b) {
+        return std::array<double, 3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    auto once = cross(v, t);
+    for (int d = 0; d < 3; d++) once[d] += w / n * t[d];
+    const auto twice = cross(v, once);
+    for (int d = 0; d < 3; d++) image.centre[d] = -(t[d] + 2.0 * twice[d]);
+    image.has_centre = is_finite(image.centre);
+}
+
+void read_binary_cameras(const std::string &file, Model &model) {
+    Bytes bytes(file);
+    for (uint64_t left = bytes.next_count(24); left > 0; left--) {
+        const auto id = bytes.next<uint32_t>();
+        const auto kind = bytes.next<int32_t>();
+        const auto width = bytes.next<uint64_t>(), height = bytes.next<uint64_t>();
+        if (kind < 0 || kind >= int32_t(std::size(kParameters)))
+            fail_damaged(file, "has a camera model of the number " + std::to_string(kind) + ", which is not known");
+        bytes.take(sizeof(double) * static_cast<size_t>(kParameters[kind]));
+        model.cameras[id] = camera_of(file, width, height);
+    }
+    bytes.demand_end();
+}
+
+void read_binary_images(const std::string &file, Model &model) {
+    Bytes bytes(file);
+    for (uint64_t left = bytes.next_count(73); left > 0; left--) {
+        const auto id = bytes.next<uint32_t>();
+        std::array<double, 4> q;
+        std::array<double, 3> t;
+        for (double &x : q) x = bytes.next<double>();
+        for (double &x : t) x = bytes.next<double>();
+        PosedImage &own = model.images[id];
+        own.camera_id = bytes.next<uint32_t>();
+        own.image.name = bytes.next_text();
+        place(q, t, own.image);
+        own.places.resize(bytes.next_count(24));
+        for (auto &xy : own.places) {
+            for (double &x : xy) x = bytes.next<double>();
+            bytes.next<uint64_t>();  // its point, which points3D says again
+        }
+    }
+    bytes.demand_end();
+}
+
+// Calls add(position, sights) for every point.
+template <class Add>
+void read_binary_points(const std::string &file, const Add &add) {
+    Bytes bytes(file);
+    for (uint64_t left = bytes.next_count(51); left > 0; left--) {
+        bytes.next<uint64_t>();  // its number
+        std::array<double, 3> position;
+        for (double &x : position) x = bytes.next<double>();
+        bytes.take(3 + sizeof(double));  // colour, error
+        std::vector<Sight> sights(bytes.next_count(8));
+        for (Sight &sight : sights) sight = {bytes.next<uint32_t>(), bytes.next<uint32_t>()};
+        add(position, sights);
+    }
+    bytes.demand_end();
+}
+
+void read_text_cameras(const std::string &file, Model &model) {
+    FieldReader fields(file, '\0', kMostBytes);
+    while (fields.next_line_of_values()) {
+        const auto id = fields.whole<uint32_t>();
+        fields.text();  // the name of its model
+        const auto width = fields.whole<uint64_t>(), height = fields.whole<uint64_t>();
+        model.cameras[id] = camera_of(file, width, height);
+    }
+}
+
+void read_text_images(const std::string &file, Model &model) {
+    FieldReader fields(file, '\0', kMostBytes);
+    while (fields.next_line_of_values()) {
+        const auto id = fields.whole<uint32_t>();
+        std::array<double, 4> q;
+        std::array<double, 3> t;
+        for (double &x : q) x = fields.number();
+        for (double &x : t) x = fields.number();
+        PosedImage &own = model.images[id];
+        own.camera_id = fields.whole<uint32_t>();
+        own.image.name = fields.rest();
+        place(q, t, own.image);
+        if (!fields.next_line()) fields.fail("the line of its features is missing");  // which may be empty
+        while (fields.has_more()) {
+            const double x = fields.number(), y = fields.number();
+            fields.text();  // its point, or -1
+            own.places.push_back({x, y});
+        }
+    }
+}
+
+template <class Add>
+void read_text_points(const std::string &file, const Add &add) {
+    FieldReader fields(file, '\0', kMostBytes);
+    while (fields.next_line_of_values()) {
+        fields.text();  // its number
+        std::array<double, 3> position;
+        for (double &x : position) x = fields.number();
+        for (int n = 0; n < 4; n++) fields.number();  // colour, error
+        std::vector<Sight> sights;
+        while (fields.has_more()) {
+            const auto image = fields.whole<uint32_t>();
+            sights.push_back({image, fields.whole<uint32_t>()});
+        }
+        add(position, sights);
+    }
+}
+
+// "cameras" -> the path of cameras.bin, or of cameras.txt; empty where there is neither.
+std::string model_file(const std::string &folder, const char *name) {
+    for (const char *end : {".bin", ".txt"})
+        if (is_regular_file(folder + "/" + name + end)) return folder + "/" + name + end;
+    return {};
+}
+
+bool is_text(const std::string &file) { return file.back() == 't'; }
+
+// The images in the order of their names.
+void take_images(const Model &model, const std::string &file, Reconstruction &found,
+                 std::unordered_map<uint32_t, uint32_t> &image_of) {
+    std::map<uint32_t, uint32_t> camera_of;
+    for (const auto &[id, camera] : model.cameras) {
+        camera_of[id] = static_cast<uint32_t>(found.cameras.size());
+        found.cameras.push_back(camera);
+    }
+    std::vector<uint32_t> order;
+    for (const auto &entry : model.images) order.push_back(entry.first);
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return model.images.at(a).image.name < model.images.at(b).image.name; });
+    for (const uint32_t id : order) {
+        const PosedImage &own = model.images.at(id);
+        if (!camera_of.count(own.camera_id)) fail_damaged(file, own.image.name + " is of a camera that is not there");
+        image_of[id] = static_cast<uint32_t>(found.images.size());
+        found.images.push_back(own.image);
+        found.images.back().camera = camera_of[own.camera_id];
+    }
+}
+
+}  // namespace
+
+bool is_colmap_model(const std::string &folder) {
+    for (const char *name : {"cameras", "images", "points3D"})
+        if (model_file(folder, name).empty()) return false;
+    return true;
+}
+
+Reconstruction read_colmap_model(const std::string &folder) {
+    const std::string cameras = model_file(folder, "cameras"), images = model_file(folder, "images"),
+                      points = model_file(folder, "points3D");
+    Model model;
+    is_text(cameras) ? read_text_cameras(cameras, model) : read_binary_cameras(cameras, model);
+    is_text(images) ? read_text_images(images, model) : read_binary_images(images, model);
+    Reconstruction found;
+    found.kind = "COLMAP model", found.path = folder;
+    std::unordered_map<uint32_t, uint32_t> image_of;
+    take_images(model, images, found, image_of);
+    const auto add = [&](const std::array<double, 3> &position, const std::vector<Sight> &sights) {
+        for (const Sight &sight : sights) {
+            const auto own = model.images.find(sight.image);
+            if (own == model.images.end() || sight.feature >= own->second.places.size())
+                fail_damaged(points, "names feature " + std::to_string(sight.feature) + " of image "
+                                         + std::to_string(sight.image) + ", which is not there");
+            TrackObservation observation;
+            observation.point = static_cast<uint32_t>(found.points.size());
+            observation.image = image_of.at(sight.image), observation.feature = sight.feature;
+            for (int d = 0; d < 2; d++)  // COLMAP: the first pixel's middle is (.5, .5)
+                observation.xy[d] = static_cast<float>(own->second.places[sight.feature][d] - 0.5);
+            found.observations.push_back(observation);
+        }
+        found.points.push_back(position);
+    };
+    is_text(points) ? read_text_points(points, add) : read_binary_points(points, add);
+    settle_tracks(found);
+    return found;
+}
+
+}  // namespace lensprof

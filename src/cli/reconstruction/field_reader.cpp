@@ -1,0 +1,76 @@
+#include "cli/reconstruction/field_reader.hpp"
+
+#include <cmath>
+
+#include "cli/program/error.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/paths.hpp"
+
+namespace lensprof {
+
+FieldReader::FieldReader(const std::string &file, char separator, uint64_t most_bytes)
+    : file_(file), separator_(separator) {
+    demand_ordinary(file);
+    if (file_bytes(file) > most_bytes)
+        throw Failure(ExitCode::unreadable, file + ": has " + std::to_string(file_bytes(file)) + " bytes, and "
+                                                + std::to_string(most_bytes) + " are the most; give a smaller one");
+    stream_.open(file);
+    if (!stream_) throw Failure(ExitCode::unreadable, file + ": cannot be opened; give a file that can be read");
+}
+
+bool FieldReader::next_line() {
+    if (!std::getline(stream_, line_)) return false;
+    if (!line_.empty() && line_.back() == '\r') line_.pop_back();
+    at_ = 0, number_++;
+    skip_blanks();
+    return true;
+}
+
+bool FieldReader::next_line_of_values() {
+    while (next_line())
+        if (has_more() && line_[at_] != '#') return true;
+    return false;
+}
+
+bool FieldReader::has_more() const { return at_ < line_.size(); }
+
+void FieldReader::skip_blanks() {
+    if (!separator_)
+        while (at_ < line_.size() && (line_[at_] == ' ' || line_[at_] == '\t')) at_++;
+}
+
+std::string FieldReader::text() {
+    if (!has_more()) fail("it has too few fields");
+    const size_t end = separator_ ? line_.find(separator_, at_) : line_.find_first_of(" \t", at_);
+    const std::string field = line_.substr(at_, end - at_);
+    at_ = end == std::string::npos ? line_.size() : end + (separator_ ? 1 : 0);
+    skip_blanks();
+    return field;
+}
+
+std::string FieldReader::rest() {
+    if (!has_more()) fail("it has too few fields");
+    const std::string field = line_.substr(at_);
+    at_ = line_.size();
+    return field;
+}
+
+double FieldReader::number() {
+    const std::string field = text();
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
+    if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(number))
+        fail_at(field, "a number");
+    return number;
+}
+
+void FieldReader::fail_at(const std::string &field, const char *wanted) const {
+    fail("'" + short_name(field) + "' is not " + wanted);
+}
+
+void FieldReader::fail(const std::string &what) const {
+    throw Failure(ExitCode::unreadable,
+                  file_ + ": line " + std::to_string(number_) + ": " + what + "; give an intact file");
+}
+
+}  // namespace lensprof

@@ -1,0 +1,60 @@
+#include "cli/reconstruction/json_file.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "cli/program/error.hpp"
+#include "cli/program/input_file.hpp"
+
+namespace lensprof {
+
+Json read_json_file(const std::string &path) {
+    constexpr uint64_t most_bytes = uint64_t(2) << 30;
+    try {
+        return Json::parse(read_text(path, most_bytes));
+    } catch (const Json::parse_error &error) {
+        throw Failure(ExitCode::unreadable,
+                      path + ": is not JSON at byte " + std::to_string(error.byte) + "; give an intact file");
+    }
+}
+
+double real_of(const Json &value) {
+    if (value.is_number()) return value.get<double>();
+    if (!value.is_string()) return NAN;
+    const auto &text = value.get_ref<const std::string &>();
+    double number = NAN;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size() ? number : NAN;
+}
+
+int64_t whole_at(const Json &object, const char *name) {
+    if (!object.is_object() || !object.contains(name)) return -1;
+    const double number = real_of(object[name]);
+    return number >= 0.0 && number < 9e15 && number == std::floor(number) ? static_cast<int64_t>(number) : -1;
+}
+
+std::string text_at(const Json &object, const char *name) {
+    if (!object.is_object() || !object.contains(name)) return {};
+    const Json &value = object[name];
+    if (value.is_string()) return value.get<std::string>();
+    return value.is_number_integer() ? value.dump() : std::string();
+}
+
+std::array<double, 3> vector_at(const Json &object, const char *name) {
+    std::array<double, 3> vector = {NAN, NAN, NAN};
+    const Json &list = list_at(object, name);
+    for (size_t d = 0; d < vector.size() && d < list.size(); d++) vector[d] = real_of(list[d]);
+    return vector;
+}
+
+const Json &object_at(const Json &object, const char *name) {
+    static const Json none = Json::object();
+    return object.is_object() && object.contains(name) && object[name].is_object() ? object[name] : none;
+}
+
+const Json &list_at(const Json &object, const char *name) {
+    static const Json none = Json::array();
+    return object.is_object() && object.contains(name) && object[name].is_array() ? object[name] : none;
+}
+
+}  // namespace lensprof

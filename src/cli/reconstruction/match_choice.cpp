@@ -1,0 +1,217 @@
+#include "cli/reconstruction/match_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <queue>
+#include <tuple>
+#include <unordered_map>
+
+namespace lensprof {
+namespace {
+
+constexpr double kUsualAngle = 0.2618;  // 15 degrees, in radians
+constexpr double kUsualShare = 0.05;    // of common points, of views that count as little
+constexpr size_t kLongTrack = 12;       // an observation of a longer track is paired with some of the others alone:
+constexpr size_t kNext = 3, kFar = 6;   // the next ones in the order of the images, and others
+constexpr size_t kCountedTrack = 64;    // longer tracks say little of which images are alike
+
+// A number in (0, 1] by SplitMix64 (Steele, Lea and Flood 2014).
+double fraction_of(uint64_t value) {
+    value += 0x9E3779B97F4A7C15ull;
+    value = (value ^ (value >> 30)) * 0xBF58476D1CE4E5B9ull;
+    value = (value ^ (value >> 27)) * 0x94D049BB133111EBull;
+    value ^= value >> 31;
+    return (static_cast<double>(value >> 11) + 1.0) / 9007199254740992.0;
+}
+
+uint64_t link_of(uint32_t i, uint32_t j) { return uint64_t{std::min(i, j)} << 32 | std::max(i, j); }
+
+// How many points two images have in common, as a share of those that either has.
+class Shares {
+public:
+    explicit Shares(const Reconstruction &r) : points_(r.images.size()) {
+        const auto &all = r.observations;
+        for (size_t first = 0, last = 0; first < all.size(); first = last) {
+            for (last = first; last < all.size() && all[last].point == all[first].point; last++)
+                points_[all[last].image]++;
+            if (last - first > kCountedTrack) continue;
+            for (size_t a = first; a < last; a++)
+                for (size_t b = a + 1; b < last; b++) common_[link_of(all[a].image, all[b].image)]++;
+        }
+    }
+    double of(uint32_t i, uint32_t j) const {
+        const auto found = common_.find(link_of(i, j));
+        const uint32_t least = std::min(points_[i], points_[j]);
+        return found == common_.end() || !least ? 0.0 : std::min(1.0, found->second / double(least));
+    }
+
+private:
+    std::vector<uint32_t> points_;
+    std::unordered_map<uint64_t, uint32_t> common_;
+};
+
+// Between two views of a point, radians; none without poses.
+std::optional<double> view_angle(const Reconstruction &r, const TrackObservation &a, const TrackObservation &b) {
+    const ReconstructionImage &i = r.images[a.image], &j = r.images[b.image];
+    if (!i.has_centre || !j.has_centre || r.points.empty() || !is_finite(r.points[a.point])) return {};
+    double dot = 0.0, square_a = 0.0, square_b = 0.0;
+    for (size_t d = 0; d < 3; d++) {
+        const double x = i.centre[d] - r.points[a.point][d], y = j.centre[d] - r.points[a.point][d];
+        dot += x * y, square_a += x * x, square_b += y * y;
+    }
+    if (square_a == 0.0 || square_b == 0.0) return {};
+    return std::acos(std::clamp(dot / std::sqrt(square_a * square_b), -1.0, 1.0));
+}
+
+// The pairs of each image that come first.
+class Choice {
+public:
+    Choice(size_t images, size_t most) : best_(images), most_(most) {}
+
+    void offer(const ObservationPair &pair, uint32_t i, uint32_t j, double order) {
+        for (const uint32_t image : {i, j}) {
+            auto &own = best_[image];
+            if (own.size() == most_ && !(order < own.top().order)) continue;
+            own.push({order, pair});
+            if (own.size() > most_) own.pop();
+        }
+    }
+    std::vector<ObservationPair> taken() {
+        std::vector<ObservationPair> all;
+        for (auto &own : best_)
+            for (; !own.empty(); own.pop()) all.push_back(own.top().pair);
+        return all;
+    }
+
+private:
+    struct Offer {
+        double order;
+        ObservationPair pair;
+        bool operator<(const Offer &other) const {
+            return std::tie(order, pair.first, pair.second)
+                   < std::tie(other.order, other.pair.first, other.pair.second);
+        }
+    };
+    std::vector<std::priority_queue<Offer>> best_;
+    size_t most_;
+};
+
+// Calls offer(a, b) for pairs of a track's observations from `first` to `last`: all of them, or of a long track some.
+template <class Offer>
+void pair_track(size_t first, size_t last, const Offer &offer) {
+    const size_t count = last - first;
+    for (size_t a = first; a < last; a++) {
+        if (count <= kLongTrack) {
+            for (size_t b = a + 1; b < last; b++) offer(a, b);
+            continue;
+        }
+        for (size_t n = 1; n <= kNext && a + n < last; n++) offer(a, a + n);
+        for (size_t n = 0; n < kFar; n++) {
+            const auto b = first + static_cast<size_t>(fraction_of(a * kFar + n) * double(count - 1));
+            if (b > a + kNext || b + kNext < a) offer(std::min(a, b), std::max(a, b));
+        }
+    }
+}
+
+using Map = std::array<std::array<double, 2>, 2>;
+
+// From the surroundings of one feature to those of the other: B A^-1; none where a shape is not known or flat.
+std::optional<Map> map_of_shapes(const TrackObservation &from, const TrackObservation &to) {
+    const auto &a = from.shape, &b = to.shape;
+    const double determinant = double(a[0][0]) * a[1][1] - double(a[0][1]) * a[1][0];
+    if (!(determinant > 0.0)) return {};
+    const double inverse[2][2] = {{a[1][1] / determinant, -a[0][1] / determinant},
+                                  {-a[1][0] / determinant, a[0][0] / determinant}};
+    Map map;
+    for (size_t row = 0; row < 2; row++)
+        for (size_t column = 0; column < 2; column++)
+            map[row][column] = b[row][0] * inverse[0][column] + b[row][1] * inverse[1][column];
+    const double scale = map[0][0] * map[1][1] - map[0][1] * map[1][0];
+    return scale > 0.0 && std::isfinite(scale) ? std::optional<Map>(map) : std::nullopt;
+}
+
+// The similarity that fits the places of one image to those of another best: its turn and scale; none of fewer than
+// four matches or where all are in one place.
+std::optional<Map> fitted_similarity(const Reconstruction &r, const ObservationPair *first,
+                                     const ObservationPair *last) {
+    const auto count = static_cast<double>(last - first);
+    if (count < 4.0) return {};
+    double mean[2][2] = {};
+    for (const ObservationPair *p = first; p != last; p++)
+        for (int d = 0; d < 2; d++) {
+            mean[0][d] += r.observations[p->first].xy[d] / count;
+            mean[1][d] += r.observations[p->second].xy[d] / count;
+        }
+    double along = 0.0, across = 0.0, spread = 0.0;
+    for (const ObservationPair *p = first; p != last; p++) {
+        const float *from = r.observations[p->first].xy, *to = r.observations[p->second].xy;
+        const double x = from[0] - mean[0][0], y = from[1] - mean[0][1], u = to[0] - mean[1][0], v = to[1] - mean[1][1];
+        along += x * u + y * v, across += x * v - y * u, spread += x * x + y * y;
+    }
+    if (!(spread > 0.0) || !(along * along + across * across > 0.0)) return {};
+    return Map{{{along / spread, -across / spread}, {across / spread, along / spread}}};
+}
+
+// A similarity's turn with the scales of two features, where these are known.
+Map with_scales(Map map, const TrackObservation &from, const TrackObservation &to) {
+    if (!from.has_scale() || !to.has_scale()) return map;
+    const double wanted = double(to.shape[0][0]) / from.shape[0][0], own = std::hypot(map[0][0], map[1][0]);
+    if (!(wanted > 0.0) || !std::isfinite(wanted)) return map;
+    for (auto &row : map)
+        for (double &value : row) value *= wanted / own;
+    return map;
+}
+
+}  // namespace
+
+std::vector<ObservationPair> choose_pairs(const Reconstruction &r, uint32_t of_image, uint32_t seed) {
+    const Shares shares(r);
+    const auto &all = r.observations;
+    const auto order_of = [&](size_t a, size_t b) {
+        const auto angle = view_angle(r, all[a], all[b]);
+        const double far =
+            angle ? *angle / kUsualAngle : kUsualShare / std::max(1e-6, shares.of(all[a].image, all[b].image));
+        const uint64_t key = (uint64_t{seed} << 32) + all[a].point;
+        const double chance = fraction_of(key * 0x100000001B3ull + link_of(all[a].image, all[b].image));
+        return -std::log(chance) * (1.0 + far * far);  // by weights, without replacement (Efraimidis and Spirakis 2006)
+    };
+    Choice choice(r.images.size(), std::max(1u, of_image));
+    for (size_t first = 0, last = 0; first < all.size(); first = last) {
+        for (last = first; last < all.size() && all[last].point == all[first].point;) last++;
+        pair_track(first, last, [&](size_t a, size_t b) {
+            choice.offer({static_cast<uint32_t>(a), static_cast<uint32_t>(b)}, all[a].image, all[b].image,
+                         order_of(a, b));
+        });
+    }
+    std::vector<ObservationPair> taken = choice.taken();
+    const auto key = [&](const ObservationPair &p) {
+        return std::tuple(all[p.first].image, all[p.second].image, p.first, p.second);
+    };
+    std::sort(taken.begin(), taken.end(), [&](const auto &a, const auto &b) { return key(a) < key(b); });
+    const auto is_same = [&](const auto &a, const auto &b) { return key(a) == key(b); };
+    taken.erase(std::unique(taken.begin(), taken.end(), is_same), taken.end());
+    return taken;
+}
+
+std::vector<lensprof_match> matches_of(const Reconstruction &r, const std::vector<ObservationPair> &pairs) {
+    const auto &all = r.observations;
+    std::vector<lensprof_match> matches;
+    for (size_t first = 0, last = 0; first < pairs.size(); first = last) {
+        const auto link = [&](size_t n) { return link_of(all[pairs[n].first].image, all[pairs[n].second].image); };
+        for (last = first; last < pairs.size() && link(last) == link(first);) last++;
+        const auto similarity = fitted_similarity(r, pairs.data() + first, pairs.data() + last);
+        for (size_t n = first; n < last; n++) {
+            const TrackObservation &from = all[pairs[n].first], &to = all[pairs[n].second];
+            lensprof_match match{{from.image, to.image}, {{from.xy[0], from.xy[1]}, {to.xy[0], to.xy[1]}}, {}};
+            std::optional<Map> map = r.has_rotations ? map_of_shapes(from, to) : std::nullopt;
+            if (!map && similarity) map = with_scales(*similarity, from, to);
+            for (size_t row = 0; row < 2 && map; row++)
+                std::copy((*map)[row].begin(), (*map)[row].end(), match.map[row]);
+            matches.push_back(match);
+        }
+    }
+    return matches;
+}
+
+}  // namespace lensprof

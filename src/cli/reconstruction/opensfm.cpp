@@ -1,0 +1,161 @@
+// OpenSfM's and OpenDroneMap's tracks.csv: features of every picture, the track of each, and their colours; and
+// reconstruction.json beside it: where the cameras and the points are.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program/error.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/reconstruction/field_reader.hpp"
+#include "cli/reconstruction/json_file.hpp"
+#include "cli/reconstruction/readers.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr uint64_t kMostBytes = uint64_t(64) << 30;  // of tracks.csv, which is read line by line
+constexpr const char *kHeader = "OPENSFM_TRACKS_VERSION_v";
+
+// Version 0 has no size of the feature, 1 has one, and 2 segmentation and instance after the colour.
+int version_of(const std::string &path) {
+    const std::string head = read_head(path, 4096);
+    if (head.compare(0, std::strlen(kHeader), kHeader) == 0) return head[std::strlen(kHeader)] - '0';
+    return 0;
+}
+
+struct Tracks {
+    Reconstruction found;
+    std::unordered_map<std::string, uint32_t> image_of, point_of;
+};
+
+uint32_t number_of(const std::string &name, std::unordered_map<std::string, uint32_t> &numbers) {
+    return numbers.emplace(name, static_cast<uint32_t>(numbers.size())).first->second;
+}
+
+std::array<uint8_t, 3> colour_of(FieldReader &fields) {
+    std::array<uint8_t, 3> colour;
+    for (uint8_t &channel : colour) {
+        const double value = fields.number();
+        if (value < 0.0 || value > 255.0) fields.fail("a colour is not in 0..255");
+        channel = static_cast<uint8_t>(std::lround(value));
+    }
+    return colour;
+}
+
+void read_tracks(const std::string &path, Tracks &tracks) {
+    const int version = version_of(path);
+    FieldReader fields(path, '\t', kMostBytes);
+    if (version > 2 || version < 0)
+        throw Failure(ExitCode::unreadable, path + ": is of a version of tracks that is not known; write version 2");
+    Reconstruction &found = tracks.found;
+    bool is_first = version > 0;
+    while (fields.next_line()) {
+        if (std::exchange(is_first, false) || !fields.has_more()) continue;
+        TrackObservation own;
+        const std::string image = fields.text();
+        own.image = number_of(image, tracks.image_of);
+        if (own.image == found.images.size()) {
+            if (found.images.size() == most_images) fields.fail("it names one image too many");
+            found.images.push_back({image, 0, false, {}});
+        }
+        own.point = number_of(fields.text(), tracks.point_of);
+        own.feature = fields.whole<uint32_t>();
+        for (float &x : own.xy) {
+            x = static_cast<float>(fields.number());
+            if (std::fabs(x) > 0.5001f) fields.fail("its place is outside the picture");
+        }
+        if (version > 0) own.shape[0][0] = own.shape[1][1] = static_cast<float>(fields.number());
+        own.colour = colour_of(fields);
+        if (found.observations.size() == most_observations) fields.fail("it has one observation too many");
+        found.observations.push_back(own);
+    }
+}
+
+// The centre -R^T t, by the angle-axis vector of the world-to-camera rotation (Rodrigues).
+void place(const Json &shot, ReconstructionImage &image) {
+    std::array<double, 3> v = vector_at(shot, "rotation");
+    const std::array<double, 3> t = vector_at(shot, "translation");
+    for (double &x : v) x = -x;
+    const double angle = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
+                 dot = v[0] * t[0] + v[1] * t[1] + v[2] * t[2];
+    const double a = angle > 1e-12 ? std::sin(angle) / angle : 1.0,
+                 b = angle > 1e-6 ? (1.0 - std::cos(angle)) / (angle * angle) : 0.5;
+    for (size_t d = 0; d < 3; d++) {
+        const size_t e = (d + 1) % 3, f = (d + 2) % 3;
+        image.centre[d] = -(std::cos(angle) * t[d] + a * (v[e] * t[f] - v[f] * t[e]) + b * dot * v[d]);
+    }
+    image.has_centre = is_finite(image.centre);
+}
+
+void take_sizes(const Json &model, std::map<std::string, uint32_t> &camera_of, Reconstruction &found) {
+    for (const auto &[name, camera] : object_at(model, "cameras").items()) {
+        const int64_t width = whole_at(camera, "width"), height = whole_at(camera, "height");
+        if (width < 1 || height < 1 || width > most_image_side || height > most_image_side) continue;
+        camera_of[name] = static_cast<uint32_t>(found.cameras.size());
+        found.cameras.push_back({static_cast<uint32_t>(width), static_cast<uint32_t>(height)});
+    }
+}
+
+// Centres and positions are of the model with most shots: each has a scene of its own.
+void take_models(const std::string &path, Tracks &tracks) {
+    const Json all = read_json_file(path);
+    if (!all.is_array())
+        throw Failure(ExitCode::unreadable,
+                      path + ": is not a list of reconstructions; give OpenSfM's reconstruction.json");
+    std::map<std::string, uint32_t> camera_of;
+    const Json *largest = nullptr;
+    for (const Json &model : all) {
+        take_sizes(model, camera_of, tracks.found);
+        for (const auto &[name, shot] : object_at(model, "shots").items()) {
+            const auto image = tracks.image_of.find(name);
+            const auto camera = camera_of.find(text_at(shot, "camera"));
+            if (image != tracks.image_of.end() && camera != camera_of.end())
+                tracks.found.images[image->second].camera = camera->second;
+        }
+        if (!largest || object_at(model, "shots").size() > object_at(*largest, "shots").size()) largest = &model;
+    }
+    if (!largest) return;
+    for (const auto &[name, shot] : object_at(*largest, "shots").items()) {
+        const auto image = tracks.image_of.find(name);
+        if (image != tracks.image_of.end()) place(shot, tracks.found.images[image->second]);
+    }
+    tracks.found.points.assign(tracks.point_of.size(), {NAN, NAN, NAN});
+    for (const auto &[name, point] : object_at(*largest, "points").items()) {
+        const auto known = tracks.point_of.find(name);
+        if (known != tracks.point_of.end()) tracks.found.points[known->second] = vector_at(point, "coordinates");
+    }
+}
+
+}  // namespace
+
+bool is_opensfm_tracks(const std::string &path) {
+    if (!is_regular_file(path)) return false;
+    const std::string head = read_head(path, 4096);
+    if (head.compare(0, std::strlen(kHeader), kHeader) == 0) return true;
+    const std::string line = head.substr(0, head.find('\n'));  // version 0: shot, track, feature, x, y, r, g, b
+    return path.size() > 4 && path.compare(path.size() - 4, 4, ".csv") == 0
+           && std::count(line.begin(), line.end(), '\t') == 7;
+}
+
+Reconstruction read_opensfm(const std::string &path) {
+    Tracks tracks;
+    Reconstruction &found = tracks.found;
+    found.kind = "OpenSfM tracks", found.path = path;
+    found.coordinates = ImageCoordinates::upright_centred, found.has_colours = true;
+    found.cameras.emplace_back();  // of images that no reconstruction has
+    read_tracks(path, tracks);
+    const std::string model = (std::filesystem::path(path).parent_path() / "reconstruction.json").string();
+    if (is_regular_file(model)) take_models(model, tracks);
+    settle_tracks(found);
+    sort_images(found);
+    return std::move(found);
+}
+
+}  // namespace lensprof

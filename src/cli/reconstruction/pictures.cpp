@@ -1,0 +1,135 @@
+#include "cli/reconstruction/pictures.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/pictures/metadata.hpp"
+#include "cli/pictures/picture.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/interrupt.hpp"
+#include "cli/program/paths.hpp"
+
+namespace lensprof {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A name below a folder; where that is no file, the last part of the name in it.
+std::string file_of(const std::string &folder, const std::string &name) {
+    const std::string whole = (fs::path(folder) / name).string();  // an absolute name as it is
+    const std::string last = (fs::path(folder) / fs::path(name).filename()).string();
+    return !is_regular_file(whole) && is_regular_file(last) ? last : whole;
+}
+
+std::vector<std::string> candidate_folders(const Reconstruction &r) {
+    const fs::path own = is_folder(r.path) ? fs::path(r.path) : fs::path(r.path).parent_path();
+    std::vector<std::string> folders;
+    if (!r.folder.empty()) folders.push_back(r.folder);
+    for (const fs::path &base : {own, own / "..", own / "../.."})
+        for (const char *below : {"", "images"}) folders.push_back((base / below).lexically_normal().string());
+    return folders;
+}
+
+size_t count_found(const Reconstruction &r, const std::string &folder) {
+    return static_cast<size_t>(std::count_if(r.images.begin(), r.images.end(), [&](const ReconstructionImage &image) {
+        return is_regular_file(file_of(folder, image.name));
+    }));
+}
+
+// The size as EXIF's orientation turns it.
+ReconstructionCamera upright_size(const ReconstructionCamera &stored, uint16_t orientation) {
+    return orientation >= 5 ? ReconstructionCamera{stored.height, stored.width} : stored;
+}
+
+// From px of the upright picture to those of the stored one, by EXIF's orientation.
+void turn_back(const ReconstructionCamera &upright, uint16_t orientation, float xy[2]) {
+    const float u = xy[0], v = xy[1], right = float(upright.width) - 1.0f - u, down = float(upright.height) - 1.0f - v;
+    const float turned[9][2] = {{u, v}, {u, v},     {right, v},    {right, down}, {u, down},
+                                {v, u}, {v, right}, {down, right}, {down, u}};
+    if (orientation < 9) std::copy(turned[orientation], turned[orientation] + 2, xy);
+}
+
+struct Frame {
+    ReconstructionCamera stored;
+    uint16_t orientation = 1;
+};
+
+Frame frame_of(const Reconstruction &r, const ReconstructionImage &image, const std::string &file) {
+    const ReconstructionCamera &stated = r.cameras[image.camera];
+    if (file.empty()) {
+        if (!stated.width)
+            throw Failure(ExitCode::unreadable, r.path + ": does not say how large " + image.name
+                                                    + " is; give its pictures with --images, or reconstruction.json "
+                                                      "beside it");
+        return {stated, 1};
+    }
+    const Picture header = read_header(file, {});
+    Frame frame{{header.frame_width, header.frame_height}, 1};
+    if (r.coordinates == ImageCoordinates::upright_centred) frame.orientation = read_metadata(file).orientation;
+    const ReconstructionCamera own = upright_size(frame.stored, frame.orientation);
+    if (stated.width && (stated.width != own.width || stated.height != own.height))
+        throw Failure(ExitCode::unreadable,
+                      file + format(": is %u x %u pixels, but ", own.width, own.height) + r.path
+                          + format(" says %u x %u, so that it was resized or turned since; give the pictures that were "
+                                   "matched",
+                                   stated.width, stated.height));
+    return frame;
+}
+
+void settle(const Reconstruction &r, const Frame &frame, TrackObservation &own) {
+    const ReconstructionCamera upright = upright_size(frame.stored, frame.orientation);
+    const float size[2] = {float(upright.width), float(upright.height)};
+    const float unit = r.coordinates == ImageCoordinates::upright_centred ? std::max(size[0], size[1]) : 1.0f;
+    for (int d = 0; d < 2 && r.coordinates != ImageCoordinates::stored_px; d++)
+        own.xy[d] = own.xy[d] * unit + (size[d] - 1.0f) / 2.0f;
+    for (auto &row : own.shape)
+        for (float &value : row) value *= unit;
+    for (int d = 0; d < 2; d++)
+        if (!(own.xy[d] >= -1.0f && own.xy[d] <= size[d]))
+            throw Failure(ExitCode::unreadable,
+                          r.path + format(": has a feature at %.1f, %.1f in ", double(own.xy[0]), double(own.xy[1]))
+                              + r.images[own.image].name
+                              + format(", which is %u x %u pixels; give the pictures that were matched", upright.width,
+                                       upright.height));
+    turn_back(upright, frame.orientation, own.xy);
+}
+
+}  // namespace
+
+std::vector<std::string> find_pictures(const Reconstruction &r, const std::string &folder, bool may_lack) {
+    const std::vector<std::string> folders = folder.empty() ? candidate_folders(r) : std::vector<std::string>{folder};
+    std::string best = folders[0];
+    size_t most = 0;
+    for (const std::string &candidate : folders)
+        if (const size_t found = count_found(r, candidate); found > most) most = found, best = candidate;
+    if (!most && may_lack) return {};
+    std::vector<std::string> files;
+    std::string missing;
+    for (const ReconstructionImage &image : r.images) {
+        files.push_back(file_of(best, image.name));
+        if (missing.empty() && !is_regular_file(files.back())) missing = image.name;
+    }
+    if (missing.empty()) return files;
+    const std::string counts = format(": %zu of its %zu pictures, the first ", r.images.size() - most, r.images.size());
+    throw Failure(ExitCode::unreadable,
+                  r.path + counts + missing + ", are not in "
+                      + (most || !folder.empty() ? best : std::string("its folder, or images beside it"))
+                      + (folder.empty() ? "; give their folder with --images" : "; give the folder that holds all"));
+}
+
+void settle_coordinates(Reconstruction &r, const std::vector<std::string> &files) {
+    std::vector<Frame> frames;
+    for (size_t i = 0; i < r.images.size(); i++) {
+        stop_if_interrupted();
+        frames.push_back(frame_of(r, r.images[i], files.empty() ? std::string() : files[i]));
+    }
+    for (TrackObservation &own : r.observations) settle(r, frames[own.image], own);
+    r.cameras.clear();
+    for (uint32_t i = 0; i < r.images.size(); i++) {
+        r.images[i].camera = i;
+        r.cameras.push_back(frames[i].stored);
+    }
+    r.coordinates = ImageCoordinates::stored_px;
+}
+
+}  // namespace lensprof

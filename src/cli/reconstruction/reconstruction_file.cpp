@@ -1,0 +1,91 @@
+#include "cli/reconstruction/reconstruction_file.hpp"
+
+#include <filesystem>
+#include <vector>
+
+#include "cli/program/message.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/reconstruction/readers.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Format {
+    bool (*is)(const std::string &);
+    Reconstruction (*read)(const std::string &);
+};
+
+const Format file_formats[] = {{is_colmap_database, read_colmap_database},
+                               {is_opensfm_tracks, read_opensfm},
+                               {is_bundler, read_bundler},
+                               {is_alicevision, read_alicevision},
+                               {is_openmvg, read_openmvg}};
+
+const Format *format_of(const std::string &path) {
+    for (const Format &format : file_formats)
+        if (format.is(path)) return &format;
+    return nullptr;
+}
+
+std::string below(const std::string &folder, const std::string &name) {
+    return (std::filesystem::path(folder) / name).lexically_normal().string();
+}
+
+// The model of a folder: in itself, in sparse, or in sparse/0, sparse/1, ... that with most images; `models`: their
+// number.
+std::string model_folder(const std::string &folder, size_t &models) {
+    models = 1;
+    for (const char *name : {"", "sparse"})
+        if (is_colmap_model(below(folder, name))) return *name ? below(folder, name) : folder;
+    std::string best;
+    uint64_t most = 0;
+    for (models = 0;; models++) {
+        const std::string own = below(folder, "sparse/" + std::to_string(models));
+        if (!is_colmap_model(own)) return best;
+        const uint64_t bytes = file_bytes(own + "/images.bin") + file_bytes(own + "/images.txt");
+        if (best.empty() || bytes > most) best = own, most = bytes;
+    }
+}
+
+// What a folder holds under its usual name, of which the first counts; empty: nothing.
+std::string file_in(const std::string &folder) {
+    for (const char *name : {"database.db", "tracks.csv", "opensfm/tracks.csv", "bundle.out", "bundle/bundle.out",
+                             "sfm_data.json", "sfm.sfm", "cameras.sfm"}) {
+        const std::string file = below(folder, name);
+        if (format_of(file)) return file;
+    }
+    return {};
+}
+
+Reconstruction read_model(const std::string &folder, Streams &streams) {
+    Reconstruction model = read_colmap_model(folder);
+    for (const char *name : {"database.db", "../database.db", "../../database.db"}) {
+        const std::string database = below(folder, name);
+        if (!is_colmap_database(database)) continue;
+        if (!take_shapes(database, model))
+            note(streams, database + ": is not what " + folder + " was made of, and is not read");
+        break;
+    }
+    return model;
+}
+
+}  // namespace
+
+bool is_reconstruction(const std::string &path) {
+    if (!is_folder(path)) return format_of(path) != nullptr;
+    size_t models = 0;
+    return !model_folder(path, models).empty() || !file_in(path).empty();
+}
+
+Reconstruction read_reconstruction(const std::string &path, Streams &streams) {
+    if (!is_folder(path)) return format_of(path)->read(path);
+    size_t models = 0;
+    const std::string model = model_folder(path, models);
+    if (model.empty()) return format_of(file_in(path))->read(file_in(path));
+    if (models > 1)
+        note(streams, path + ": has " + std::to_string(models) + " models, and the largest is read, " + model
+                          + "; database.db itself has all images");
+    return read_model(model, streams);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,146 @@
+// AliceVision's .sfm and OpenMVG's sfm_data.json. Both are JSON of views, poses and structure; AliceVision writes
+// numbers as texts, OpenMVG keys and values of maps.
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "cli/program/error.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/reconstruction/json_file.hpp"
+#include "cli/reconstruction/readers.hpp"
+
+namespace lensprof {
+namespace {
+
+[[noreturn]] void fail_damaged(const std::string &path, const std::string &what) {
+    throw Failure(ExitCode::unreadable, path + ": " + what + "; write it again, with structure and observations");
+}
+
+struct Views {
+    Reconstruction found;
+    std::map<std::string, uint32_t> image_of;                // by number of the view
+    std::map<std::string, std::array<double, 3>> centre_of;  // by number of the pose
+    std::map<std::string, std::string> pose_of;              // by number of the view
+};
+
+void add_view(const std::string &id, const std::string &name, int64_t width, int64_t height, Views &views) {
+    Reconstruction &found = views.found;
+    const std::string &path = found.path;
+    if (id.empty() || name.empty()) fail_damaged(path, "has a view without a number or without a name");
+    if (width < 1 || height < 1 || width > most_image_side || height > most_image_side)
+        fail_damaged(path, name + " has no size");
+    if (!views.image_of.emplace(id, static_cast<uint32_t>(found.images.size())).second)
+        fail_damaged(path, "has two views of the number " + id);
+    found.images.push_back({name, static_cast<uint32_t>(found.cameras.size()), false, {}});
+    found.cameras.push_back({static_cast<uint32_t>(width), static_cast<uint32_t>(height)});
+}
+
+void add_observation(const std::string &view, int64_t feature, const Json &place, double scale, Views &views) {
+    Reconstruction &found = views.found;
+    const auto image = views.image_of.find(view);
+    if (image == views.image_of.end())
+        fail_damaged(found.path, "has an observation in view " + view + ", which is not there");
+    TrackObservation own;
+    own.point = static_cast<uint32_t>(found.points.size()), own.image = image->second;
+    own.feature = feature < 0 ? 0 : static_cast<uint32_t>(feature);
+    for (size_t d = 0; d < 2; d++) {
+        const double x = d < place.size() ? real_of(place[d]) : NAN;
+        if (!std::isfinite(x)) fail_damaged(found.path, "has an observation without a place");
+        own.xy[d] = static_cast<float>(x - 0.5);  // the first pixel's middle is (.5, .5)
+    }
+    if (scale > 0.0) own.shape[0][0] = own.shape[1][1] = static_cast<float>(scale);
+    found.observations.push_back(own);
+}
+
+void place_images(Views &views) {
+    for (const auto &[view, pose] : views.pose_of) {
+        const auto centre = views.centre_of.find(pose);
+        ReconstructionImage &image = views.found.images[views.image_of.at(view)];
+        if (centre != views.centre_of.end() && is_finite(centre->second))
+            image.centre = centre->second, image.has_centre = true;
+    }
+}
+
+Reconstruction finished(Views &views, const Json &structure) {
+    if (structure.empty())
+        fail_damaged(views.found.path, "holds no structure, so that no points say where images show the same");
+    place_images(views);
+    settle_tracks(views.found);
+    sort_images(views.found);
+    return std::move(views.found);
+}
+
+// What a file of JSON holds at its top, without reading it as a whole.
+bool has_members(const std::string &path, const char *const *names, const char *end) {
+    const std::string ending(end);
+    if (path.size() < ending.size() || path.compare(path.size() - ending.size(), ending.size(), ending) != 0)
+        return false;
+    if (!is_regular_file(path)) return false;
+    const std::string head = read_head(path, 1 << 16);
+    if (head.find('{') == std::string::npos) return false;
+    for (; *names; names++)
+        if (head.find(std::string("\"") + *names + "\"") == std::string::npos) return false;
+    return true;
+}
+
+}  // namespace
+
+bool is_alicevision(const std::string &path) {
+    static const char *const names[] = {"version", nullptr};
+    return has_members(path, names, ".sfm");
+}
+
+Reconstruction read_alicevision(const std::string &path) {
+    const Json all = read_json_file(path);
+    Views views;
+    views.found.kind = "AliceVision scene", views.found.path = path;
+    for (const Json &view : list_at(all, "views")) {
+        const std::string id = text_at(view, "viewId");
+        add_view(id, text_at(view, "path"), whole_at(view, "width"), whole_at(view, "height"), views);
+        views.pose_of[id] = text_at(view, "poseId");
+    }
+    for (const Json &pose : list_at(all, "poses"))
+        views.centre_of[text_at(pose, "poseId")] = vector_at(object_at(object_at(pose, "pose"), "transform"), "center");
+    const Json &structure = list_at(all, "structure");
+    for (const Json &point : structure) {
+        for (const Json &own : list_at(point, "observations"))
+            add_observation(text_at(own, "observationId"), whole_at(own, "featureId"), list_at(own, "x"),
+                            own.contains("scale") ? real_of(own["scale"]) : 0.0, views);
+        views.found.points.push_back(vector_at(point, "X"));
+    }
+    return finished(views, structure);
+}
+
+bool is_openmvg(const std::string &path) {
+    static const char *const names[] = {"sfm_data_version", nullptr};
+    return has_members(path, names, ".json");
+}
+
+Reconstruction read_openmvg(const std::string &path) {
+    const Json all = read_json_file(path);
+    Views views;
+    views.found.kind = "OpenMVG scene", views.found.path = path;
+    const std::string root = text_at(all, "root_path");
+    for (const Json &entry : list_at(all, "views")) {
+        const Json &view = object_at(object_at(object_at(entry, "value"), "ptr_wrapper"), "data");
+        const std::string id = text_at(view, "id_view");
+        const auto name = std::filesystem::path(text_at(view, "local_path")) / text_at(view, "filename");
+        add_view(id, name.string(), whole_at(view, "width"), whole_at(view, "height"), views);
+        views.pose_of[id] = text_at(view, "id_pose");
+    }
+    for (const Json &pose : list_at(all, "extrinsics"))
+        views.centre_of[text_at(pose, "key")] = vector_at(object_at(pose, "value"), "center");
+    const Json &structure = list_at(all, "structure");
+    for (const Json &point : structure) {
+        const Json &value = object_at(point, "value");
+        for (const Json &own : list_at(value, "observations"))
+            add_observation(text_at(own, "key"), whole_at(object_at(own, "value"), "id_feat"),
+                            list_at(object_at(own, "value"), "x"), 0.0, views);
+        views.found.points.push_back(vector_at(value, "X"));
+    }
+    views.found.folder = root;
+    return finished(views, structure);
+}
+
+}  // namespace lensprof

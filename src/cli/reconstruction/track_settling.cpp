@@ -1,0 +1,62 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "cli/program/error.hpp"
+#include "cli/reconstruction/reconstruction.hpp"
+
+namespace lensprof {
+
+void settle_tracks(Reconstruction &reconstruction) {
+    auto &all = reconstruction.observations;
+    std::stable_sort(all.begin(), all.end(), [](const TrackObservation &a, const TrackObservation &b) {
+        return std::tuple(a.point, a.image) < std::tuple(b.point, b.image);
+    });
+    std::vector<std::array<double, 3>> positions;
+    size_t kept = 0;
+    uint32_t points = 0;
+    for (size_t first = 0, last = 0; first < all.size(); first = last) {
+        bool is_twice = false;
+        for (last = first; last < all.size() && all[last].point == all[first].point; last++)
+            is_twice = is_twice || (last > first && all[last].image == all[last - 1].image);
+        if (is_twice || last - first < 2) continue;
+        const uint32_t point = all[first].point;
+        if (!reconstruction.points.empty()) positions.push_back(reconstruction.points[point]);
+        for (size_t n = first; n < last; n++) {
+            all[kept] = all[n];
+            all[kept++].point = points;
+        }
+        points++;
+    }
+    all.resize(kept);
+    reconstruction.points = std::move(positions);
+    if (all.empty())
+        throw Failure(ExitCode::not_usable,
+                      reconstruction.path + ": no point is seen by two of its images; match the pictures first",
+                      LENSPROF_REASON_FEW_PAIRS);
+}
+
+void sort_images(Reconstruction &reconstruction) {
+    auto &images = reconstruction.images;
+    std::vector<uint32_t> order(images.size()), number(images.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return images[a].name < images[b].name; });
+    std::vector<ReconstructionImage> sorted;
+    for (uint32_t n = 0; n < order.size(); n++) {
+        number[order[n]] = n;
+        sorted.push_back(images[order[n]]);
+    }
+    images = std::move(sorted);
+    for (TrackObservation &own : reconstruction.observations) own.image = number[own.image];
+    std::sort(reconstruction.observations.begin(), reconstruction.observations.end(),
+              [](const TrackObservation &a, const TrackObservation &b) {
+                  return std::tuple(a.point, a.image) < std::tuple(b.point, b.image);
+              });
+}
+
+bool is_finite(const std::array<double, 3> &vector) {
+    return std::all_of(vector.begin(), vector.end(), [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace lensprof
