@@ -5,20 +5,6 @@
 #include "cli/simulate/scene_maths.hpp"
 
 namespace lensprof {
-namespace {
-
-uint32_t hash(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
-    uint32_t h = a * 0x9e3779b1u ^ b * 0x85ebca77u ^ c * 0xc2b2ae3du ^ d * 0x27d4eb2fu;
-    h ^= h >> 15;
-    h *= 0x2c1b3c6du;
-    h ^= h >> 12;
-    h *= 0x297a2d39u;
-    return h ^ (h >> 15);
-}
-
-double unit(uint32_t h) { return h * (1.0 / 4294967296.0); }
-
-}  // namespace
 
 // Value noise in -1..1 on a lattice of the sphere's space.
 double Scene::noise(double x, double y, double z, uint32_t octave) const {

@@ -149,10 +149,13 @@ int run(const SimulateOptions &o, Streams &streams) {
 
     Progress progress(streams.err, ShowProgress::when_terminal);
     if (!o.no_images) write_pictures(o, truth, scene, progress);
-    std::string project = project_text(o, truth), json = truth_text(truth);
-    std::string pto = (folder / "pano.pto").string();
-    write_file(pto, project.data(), project.size());
-    write_file((folder / "truth.json").string(), json.data(), json.size());
+    const std::string pto = (folder / "pano.pto").string(), truth_file = (folder / "truth.json").string();
+    if (!o.moving) {  // a project could not say where a camera that moves is
+        const std::string project = project_text(o, truth);
+        write_file(pto, project.data(), project.size());
+    }
+    const std::string json = truth_text(truth);
+    write_file(truth_file, json.data(), json.size());
     if (o.points || o.test_points) {
         Project read = read_project(pto);
         uint32_t levels = o.formats[0].sample == LENSPROF_SAMPLE_U8 ? 255 : 65535;
@@ -164,7 +167,7 @@ int run(const SimulateOptions &o, Streams &streams) {
         if (o.test_points) write("test_points.txt", o.test_points, 3.0 / 255.0, false);
     }
     progress.clear();
-    streams.out << pto << "\n";
+    streams.out << (o.moving ? truth_file : pto) << "\n";
     return 0;
 }
 

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <lensprof/lensprof.h>
 
 #include "cli/pictures/picture.hpp"
+#include "cli/simulate/moving.hpp"
 #include "cli/simulate/scene.hpp"
 #include "cli/simulate/simulate_options.hpp"
 
@@ -56,6 +58,11 @@ struct Truth {
     std::vector<ToneMap> tone;                // of every image; empty = no local tone mapping
     std::vector<Settings> settings;           // of every image; empty = the pictures do not tell
     bool is_manual = false;                   // they tell that these were set by hand
+    // --moving alone:
+    std::shared_ptr<const MovingWorld> world;  // instead of the scene
+    const char *world_word = nullptr;          // its name
+    Pinhole pinhole{};
+    std::vector<Pose> poses;  // of every image
 };
 
 // splitmix64: uniform and normal numbers from a seed, the same on every machine.
@@ -97,6 +104,10 @@ void seen_radiance(const Truth &truth, const Scene &scene, uint32_t index, doubl
 // --parallax: cameras that also move. Then the direction in which the scene has what is seen in a direction.
 void move_cameras(double parallax, Random &random, Truth &truth);
 void moved_direction(const Truth &truth, const Scene &scene, uint32_t index, double direction[2]);
+
+// --moving: the world, cameras and poses. Then exposures and white balances as a camera would choose them.
+void place_moving_cameras(const SimulateOptions &options, Truth &truth);
+void expose_automatically(const SimulateOptions &options, Truth &truth);
 
 // --clip: moves all exposures alike until this share of the pixels is white in a channel.
 void clip_lights(double share, const Scene &scene, Truth &truth);

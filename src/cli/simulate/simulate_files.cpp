@@ -10,6 +10,14 @@
 namespace lensprof {
 namespace {
 
+Json vector_json(const Vector3 &v) { return {v.x, v.y, v.z}; }
+
+Json pose_json(const Pose &pose) {
+    Json rows = Json::array();
+    for (const auto &row : pose.rotation) rows.push_back(vector_json(row));
+    return {{"centre_m", vector_json(pose.centre_m)}, {"rotation", rows}};
+}
+
 Json image_json(const Truth &truth, size_t i) {
     const auto &e = truth.exposures[i];
     Json image = {
@@ -18,6 +26,7 @@ Json image_json(const Truth &truth, size_t i) {
         const auto &s = truth.settings[i];
         image["exif_ev"] = std::log2(s.time_s * s.iso / 100.0 / (s.f_number * s.f_number));
     }
+    if (!truth.poses.empty()) image["pose"] = pose_json(truth.poses[i]);
     if (!truth.positions.empty()) image["shift"] = truth.positions[i];
     if (!truth.objects.empty()) {
         image["objects"] = Json::array();
@@ -57,10 +66,15 @@ std::string truth_text(const Truth &truth) {
     json["outliers"] = truth.outlier_share;
     json["objects"] = truth.object_share;
     json["local_tone"] = truth.local_tone;
-    json["scene"] = scene_word(truth.scene);
+    json["scene"] = truth.world ? truth.world_word : scene_word(truth.scene);
     json["parallax"] = truth.parallax;
     json["sharpen"] = truth.sharpening;
     json["clip"] = truth.clip_share;
+    if (truth.world) {
+        const auto &pinhole = truth.pinhole;
+        json["camera"] = {{"focal_px", pinhole.focal_px},
+                          {"principal_px", {pinhole.principal_px[0], pinhole.principal_px[1]}}};
+    }
     return json.dump(1) + "\n";
 }
 

@@ -17,6 +17,11 @@ const Choices<SceneKind> scenes = {
     {"foliage", SceneKind::foliage},     {"interior", SceneKind::interior},
 };
 
+const Choices<std::optional<MovingKind>> moving = {
+    {"terrain", MovingKind::terrain},
+    {"room", MovingKind::room},
+};
+
 void declare_camera(Command &command, SimulateOptions &o) {
     o.response = response_of_word("srgb");
     command.size("--size", o.width, o.height, {16, 32768}, "of the pictures, px");
@@ -29,11 +34,15 @@ void declare_camera(Command &command, SimulateOptions &o) {
         "linear, srgb, gamma:G, film, or emor:a,b,... (EMoR coefficients)");
     command.numbers("--vignetting", o.vignetting, any_number, "k1,k2,k3, or nine numbers for red, green, blue");
     command.numbers("--center", o.center, any_number, "x,y of the falloff's centre, half diagonals");
-    command.number("--ev", o.ev, {0.0, 8.0}, "exposures are uniform within +- this, EV");
-    command.number("--mean-ev", o.mean_ev, {-8.0, 8.0}, "about this; at 0 the brightest clouds are white");
+    command.number(
+        "--ev", o.ev, {0.0, 8.0},
+        "exposures are uniform within +- this, EV, default 1; --moving: automatic within this, default 0.75");
+    command.number("--mean-ev", o.mean_ev, {-8.0, 8.0},
+                   "about this; at 0 the brightest clouds are white, and the mean light of --moving is 0.2 of white");
     command.number("--clip", o.clip, {0.0, 0.9},
                    "move all exposures alike, so that this share of the pixels is white in a channel; 0 = leave them");
-    command.number("--wb", o.wb, {0.0, 0.9}, "white balance factors are uniform within 1 +- this");
+    command.number("--wb", o.wb, {0.0, 0.9},
+                   "white balance factors are uniform within 1 +- this, default 0.15; --moving: drift, default 0.06");
 }
 
 void declare_disturbances(Command &command, SimulateOptions &o) {
@@ -54,14 +63,37 @@ void declare_disturbances(Command &command, SimulateOptions &o) {
                    "sigma of the shutter and aperture about what was set and is told, EV");
 }
 
+// What is about a camera that turns.
+void check_moving_options(const SimulateOptions &o) {
+    const SimulateOptions usual{};
+    const std::pair<const char *, bool> changed[] = {
+        {"--rows", o.rows != usual.rows},
+        {"--overlap", o.overlap != usual.overlap},
+        {"--misalign", o.misalign != usual.misalign},
+        {"--scene", o.scene != usual.scene},
+        {"--parallax", o.parallax != usual.parallax},
+        {"--points", o.points != usual.points},
+        {"--test-points", o.test_points != usual.test_points},
+    };
+    for (const auto &option : changed)
+        if (option.second)
+            throw Failure(ExitCode::usage, option.first
+                                               + std::string(": is for a camera that turns in one place; leave it out, "
+                                                             "or leave out --moving"));
+    if (o.hfov < 20.0 || o.hfov > 100.0)
+        throw Failure(ExitCode::usage, "--hfov: --moving takes 20 to 100 degrees; give a number in between");
+}
+
 }  // namespace
 
 void declare_simulate_options(Command &command, SimulateOptions &o) {
-    command.folder("-o,--output", o.output, "folder for pictures, pano.pto and truth.json");
+    command.folder("-o,--output", o.output, "folder for pictures, pano.pto (not with --moving) and truth.json");
     command.require("--output");
     command.count("--images", o.images, 2, 5000, "number of pictures");
     command.count("--rows", o.rows, 1, 100, "rows of pictures");
     command.choice("--scene", o.scene, scenes, "what the pictures show");
+    command.choice("--moving", o.moving, moving,
+                   "the camera moves through a scene in space: over hills in rows, or round a room");
     declare_camera(command, o);
     declare_disturbances(command, o);
     command.list("--format", o.formats, formats, "of the pictures; several, with commas, take turns");
@@ -73,6 +105,7 @@ void declare_simulate_options(Command &command, SimulateOptions &o) {
 }
 
 void check_simulate_options(const SimulateOptions &o) {
+    if (o.moving) check_moving_options(o);
     if (o.exif && o.no_images)
         throw Failure(ExitCode::usage, "--exif: there is no picture to write it into; leave out --no-images");
     if (o.exif_rounding > 0.0 && !o.exif) throw Failure(ExitCode::usage, "--exif-rounding: needs --exif");

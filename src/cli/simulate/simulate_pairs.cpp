@@ -38,6 +38,10 @@ void seen_radiance(const Truth &truth, const Scene &scene, uint32_t index, doubl
     double direction[2];
     rgb[0] = rgb[1] = rgb[2] = 0.0;
     if (object_radiance(truth, scene, index, x, y, rgb)) return;
+    if (truth.world) {
+        const double xy[2] = {x, y};
+        return moving_radiance(*truth.world, truth.pinhole, truth.poses[index], xy, rgb);
+    }
     if (!lensprof_camera_unproject(&truth.cameras[index], x, y, direction)) return;
     moved_direction(truth, scene, index, direction);
     scene.radiance(direction[0], direction[1], rgb);

@@ -67,6 +67,20 @@ void place_cameras(const SimulateOptions &o, Random &random, Truth &truth) {
     }
 }
 
+// Uniform; the first white balance is neutral.
+void draw_exposures(const SimulateOptions &o, Random &random, Truth &truth) {
+    const double most = o.ev.value_or(kRandomEv), wb = o.wb.value_or(kRandomWb);
+    for (uint32_t i = 0; i < o.images; i++) {
+        lensprof_exposure e;
+        lensprof_exposure_init(&e);
+        double draws[3] = {o.mean_ev + random.uniform(-most, most), random.uniform(1 - wb, 1 + wb),
+                           random.uniform(1 - wb, 1 + wb)};
+        e.ev = draws[0];
+        if (i > 0) e.white_balance[0] = draws[1], e.white_balance[2] = draws[2];
+        truth.exposures.push_back(e);
+    }
+}
+
 // Failure (usage) that names the option to blame: the curve, or where only it is off the middle the centre.
 void check_falloff(lensprof_vignetting falloff) {
     if (lensprof_vignetting_validate(&falloff) == LENSPROF_OK) return;
@@ -98,18 +112,16 @@ Truth make_truth(const SimulateOptions &o, const Scene &scene) {
         for (uint32_t d = 0; d < 2; d++) truth.vignetting[c].center[d] = o.center[d];
         check_falloff(truth.vignetting[c]);
     }
-    Random random(o.seed);
-    place_cameras(o, random, truth);
-    for (uint32_t i = 0; i < o.images; i++) {
-        lensprof_exposure e;
-        lensprof_exposure_init(&e);
-        double draws[3] = {o.mean_ev + random.uniform(-o.ev, o.ev), random.uniform(1 - o.wb, 1 + o.wb),
-                           random.uniform(1 - o.wb, 1 + o.wb)};
-        e.ev = draws[0];
-        if (i > 0) e.white_balance[0] = draws[1], e.white_balance[2] = draws[2];
-        truth.exposures.push_back(e);
-        truth.files.push_back(format("img%03u", i) + o.formats[i % o.formats.size()].extension);
+    if (o.moving) {
+        place_moving_cameras(o, truth);
+        expose_automatically(o, truth);
+    } else {
+        Random random(o.seed);
+        place_cameras(o, random, truth);
+        draw_exposures(o, random, truth);
     }
+    for (uint32_t i = 0; i < o.images; i++)
+        truth.files.push_back(format("img%03u", i) + o.formats[i % o.formats.size()].extension);
     add_disturbances(o, scene, truth);
     return truth;
 }
