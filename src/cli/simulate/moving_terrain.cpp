@@ -38,6 +38,9 @@ struct Survey {
     double reach_y_m() const { return 0.5 * (columns - 1) * ahead_m + kMargin; }
 };
 
+// Across from the middle of the road, m.
+double from_road(double x, double y) { return x - 14.0 * std::sin(y / 31.0) - 9.0; }
+
 struct Tree {
     Vector3 centre;
     double radius_m;
@@ -106,6 +109,7 @@ void Terrain::for_each_bucket(const Vector3 &a, const Vector3 &b, const Visit &v
 }
 
 bool Terrain::is_free(double x, double y, double radius_m) const {
+    if (std::fabs(from_road(x, y)) < radius_m + 3.5) return false;
     return std::none_of(houses_.begin(), houses_.end(), [&](const Box &house) {
         return std::hypot(x - house.centre.x, y - house.centre.y) < radius_m + std::hypot(house.half.x, house.half.y);
     });
@@ -193,7 +197,8 @@ Look Terrain::look_of_ground(const Hit &hit, double footprint_m) const {
                  v = y / (1.4 * kField) + 0.3 * noise2(x / 35.0, y / 35.0, seed + 1);
     Look look{};
     cell_colour(u, v, seed, 0.19, look.rgb);
-    look.rgb[0] *= 0.95, look.rgb[2] *= 0.6;
+    const double earth[3] = {1.05, 1.0, 0.62}, mean = (look.rgb[0] + look.rgb[1] + look.rgb[2]) / 3.0;
+    for (int c = 0; c < 3; c++) look.rgb[c] = mix(look.rgb[c], mean, 0.4) * earth[c];
     const double turn = kPi * cell_draw(u, v, 31, seed);
     const double furrow = (x * std::cos(turn) + y * std::sin(turn)) / 0.9;
     const double depth = 0.5 * cell_draw(u, v, 32, seed) * ramp(0.2, 0.5, 0.45 / footprint_m);
@@ -201,7 +206,7 @@ Look Terrain::look_of_ground(const Hit &hit, double footprint_m) const {
     const double hedge = joint(u, v, 0.022, footprint_m / kField),
                  wood = ramp(-0.1, 0.25, noise2(x / 45.0, y / 45.0, plan_.seed * 977u + 61u));
     const double stone = ramp(0.13, 0.22, 1.0 - hit.normal.z);
-    const double way = x - 14.0 * std::sin(y / 31.0) - 9.0, road = 1.0 - ramp(2.1, 2.5, std::fabs(way));
+    const double way = from_road(x, y), road = 1.0 - ramp(2.1, 2.5, std::fabs(way));
     const double leaves[3] = {0.05, 0.075, 0.03}, bare[3] = {0.34, 0.31, 0.27}, asphalt[3] = {0.13, 0.13, 0.135};
     for (int c = 0; c < 3; c++) {
         look.rgb[c] = mix(mix(look.rgb[c], leaves[c], std::max(hedge, 0.85 * wood)), bare[c], stone);
