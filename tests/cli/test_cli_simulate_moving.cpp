@@ -106,7 +106,7 @@ class Sequence {
 public:
     explicit Sequence(const std::string &kind) : truth(truth_of(kind)) {
         world_ = make_moving_world(kind == "room" ? MovingKind::room : MovingKind::terrain,
-                                   {1, images, width, height, 50, 1});
+                                   {1, images, width, height, 50, 1, 1});
         response_ = truth["response"]["values"][0].get<std::vector<double>>();
         for (size_t i = 0; i < images; ++i) views_.push_back(view_of(truth, i, kind));
     }
@@ -181,13 +181,16 @@ void check_light(const std::string &kind) {
 void test_light_of_terrain(void **) { check_light("terrain"); }
 void test_light_of_room(void **) { check_light("room"); }
 
-// The highlight on the floor moves with the camera.
+// The highlight on the floor moves with the camera, unless all surfaces are matte.
 void test_glossy_surfaces(void **) {
-    must_exit(done, simulate("room", {}));
-    std::vector<double> matte, glossy;
-    for (const Match &match : Sequence("room").matches(0, 2))
-        (match.glossy ? glossy : matte).push_back(std::fabs(match.difference));
-    assert_true(median(glossy) > 1.5 * median(matte));
+    for (const char *gloss : {"1", "0"}) {
+        must_exit(done, simulate("room", {"--gloss", gloss}));
+        assert_close(truth_of("room")["gloss"].get<double>(), std::atof(gloss), 0);
+        std::vector<double> matte, glossy;
+        for (const Match &match : Sequence("room").matches(0, 2))
+            (match.glossy ? glossy : matte).push_back(std::fabs(match.difference));
+        assert_true((median(glossy) > 1.8 * median(matte)) == (gloss[0] == '1'));
+    }
 }
 
 double row_dot(const Json &rotation, size_t a, size_t b) {
@@ -282,6 +285,8 @@ void test_refused_options(void **) {
         assert_refused(usage, simulate("room", words), {words[0], "leave out --moving"});
     for (const char *hfov : {"19", "101"})
         assert_refused(usage, simulate("terrain", {"--hfov", hfov}), {"--hfov", "20 to 100"});
+    assert_refused(usage, {"simulate", "-o", work("s"), "--gloss", "1"}, {"--gloss: needs --moving"});
+    assert_refused(usage, simulate("room", {"--gloss", "5"}), {"--gloss"});
     assert_refused(usage, {"simulate", "-o", work("s"), "--moving", "sea"}, {"--moving", "terrain"});
     assert_refused(usage, {"simulate", "-o", work("s"), "--moving", ""}, {"--moving"});
 }

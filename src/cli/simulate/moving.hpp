@@ -22,6 +22,7 @@ const char *moving_word(MovingKind kind);  // "terrain", ...
 struct MovingPlan {
     uint32_t seed, images, width, height;
     double hfov_deg, jitter_deg;
+    double gloss;  // strength of highlights; 0 = matte surfaces
 };
 
 // A pinhole camera. Centres of pixels are whole numbers.
@@ -64,6 +65,7 @@ struct Light {
     bool is_sun;       // else a lamp, whose light is as stated at 3 m
     double direct[3];  // light of a white surface that faces it
     double sky[3];     // light from everywhere above
+    double gloss;      // strength of its highlights, of the usual
 };
 
 class MovingWorld {

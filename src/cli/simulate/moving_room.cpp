@@ -19,6 +19,7 @@ constexpr uint32_t kSurfaces = 8;           // numbers that a box takes
 class Room : public MovingWorld {
 public:
     explicit Room(const MovingPlan &plan) : plan_(plan) {
+        light_.gloss = plan.gloss;
         walls_.half = kHalf;
         walls_.centre.z = kHalf.z;
         Random random(plan.seed * 6364136223846793005ull + 11);
@@ -55,7 +56,7 @@ private:
     Look look_of_wall(uint32_t face, const double uv_m[2], double footprint_m) const;
 
     MovingPlan plan_;
-    Light light_ = {{1.2, -0.8, 3.2}, false, {0.95, 0.88, 0.75}, {0.30, 0.31, 0.34}};
+    Light light_ = {{1.2, -0.8, 3.2}, false, {0.95, 0.88, 0.75}, {0.30, 0.31, 0.34}, 1.0};
     Box walls_;
     std::vector<Box> boxes_;
 };

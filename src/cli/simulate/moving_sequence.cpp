@@ -35,7 +35,8 @@ double drift(double share, double swings, double phase) {
 }  // namespace
 
 void place_moving_cameras(const SimulateOptions &o, Truth &truth) {
-    truth.world = make_moving_world(*o.moving, {o.seed, o.images, o.width, o.height, o.hfov, o.jitter});
+    truth.gloss = o.gloss.value_or(1.0);
+    truth.world = make_moving_world(*o.moving, {o.seed, o.images, o.width, o.height, o.hfov, o.jitter, truth.gloss});
     truth.world_word = moving_word(*o.moving);
     truth.pinhole = pinhole_of(o.width, o.height, o.hfov);
     truth.poses = truth.world->path();

@@ -55,6 +55,7 @@ public:
           columns_(static_cast<int>(2.0 * survey_.reach_x_m() / kBucket) + 1),
           rows_(static_cast<int>(2.0 * survey_.reach_y_m() / kBucket) + 1),
           buckets_(static_cast<size_t>(columns_) * static_cast<size_t>(rows_)) {
+        light_.gloss = plan.gloss;
         Random random(plan.seed * 6364136223846793005ull + 21);
         const double hectares = 4.0 * survey_.reach_x_m() * survey_.reach_y_m() / 1e4;
         for (int h = 0; h < static_cast<int>(9.0 * hectares); h++) add_house(random);
@@ -90,7 +91,7 @@ private:
     MovingPlan plan_;
     Survey survey_;
     Heights ground_;
-    Light light_ = {normalised({0.45, 0.35, 0.82}), true, {0.92, 0.86, 0.76}, {0.22, 0.26, 0.34}};
+    Light light_ = {normalised({0.45, 0.35, 0.82}), true, {0.92, 0.86, 0.76}, {0.22, 0.26, 0.34}, 1.0};
     int columns_, rows_;
     std::vector<Bucket> buckets_;
     std::vector<Box> houses_;
@@ -216,7 +217,7 @@ Look Terrain::look_of_ground(const Hit &hit, double footprint_m) const {
     const double lightness = std::exp2(1.3 * noise2(x / 55.0, y / 55.0, seed + 3));  // of sand, clay and peat
     for (double &c : look.rgb) c *= lightness;
     add_grain({seed + 2, 9.0, 0.32}, x, y, footprint_m, look.rgb);
-    if (road < 0.5 && cell_draw(u, v, 33, seed) < 0.2) look.gloss = 0.06, look.sharpness = 20.0;
+    if (road < 0.5 && cell_draw(u, v, 33, seed) < 0.2) look.gloss = 0.04, look.sharpness = 20.0;
     return look;
 }
 

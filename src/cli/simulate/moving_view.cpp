@@ -29,7 +29,8 @@ void surface_radiance(const MovingWorld &world, const Line &line, const Hit &hit
     double highlight = 0.0;
     if (look.gloss > 0.0 && facing > 0.0) {
         const double half = dot(hit.normal, normalised(to_light - line.direction));
-        highlight = look.gloss * std::pow(std::max(half, 0.0), look.sharpness) * (look.sharpness + 8.0) / 8.0;
+        highlight =
+            light.gloss * look.gloss * std::pow(std::max(half, 0.0), look.sharpness) * (look.sharpness + 8.0) / 8.0;
     }
     for (int c = 0; c < 3; c++)
         rgb[c] = look.rgb[c] * (light.direct[c] * strength * facing + light.sky[c] * above)

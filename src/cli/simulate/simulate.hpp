@@ -61,6 +61,7 @@ struct Truth {
     // --moving alone:
     std::shared_ptr<const MovingWorld> world;  // instead of the scene
     const char *world_word = nullptr;          // its name
+    double gloss = 1.0;                        // strength of highlights; 0 = matte surfaces
     Pinhole pinhole{};
     std::vector<Pose> poses;  // of every image
 };

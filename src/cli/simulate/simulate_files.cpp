@@ -72,6 +72,7 @@ std::string truth_text(const Truth &truth) {
     json["clip"] = truth.clip_share;
     if (truth.world) {
         const auto &pinhole = truth.pinhole;
+        json["gloss"] = truth.gloss;
         json["camera"] = {{"focal_px", pinhole.focal_px},
                           {"principal_px", {pinhole.principal_px[0], pinhole.principal_px[1]}}};
     }

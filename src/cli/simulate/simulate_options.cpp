@@ -94,6 +94,8 @@ void declare_simulate_options(Command &command, SimulateOptions &o) {
     command.choice("--scene", o.scene, scenes, "what the pictures show");
     command.choice("--moving", o.moving, moving,
                    "the camera moves through a scene in space: over hills in rows, or round a room");
+    command.number("--gloss", o.gloss, {0.0, 4.0},
+                   "strength of the highlights of glossy surfaces, with --moving; 0 = all are matte, default 1");
     declare_camera(command, o);
     declare_disturbances(command, o);
     command.list("--format", o.formats, formats, "of the pictures; several, with commas, take turns");
@@ -106,6 +108,7 @@ void declare_simulate_options(Command &command, SimulateOptions &o) {
 
 void check_simulate_options(const SimulateOptions &o) {
     if (o.moving) check_moving_options(o);
+    if (o.gloss && !o.moving) throw Failure(ExitCode::usage, "--gloss: needs --moving");
     if (o.exif && o.no_images)
         throw Failure(ExitCode::usage, "--exif: there is no picture to write it into; leave out --no-images");
     if (o.exif_rounding > 0.0 && !o.exif) throw Failure(ExitCode::usage, "--exif-rounding: needs --exif");

@@ -31,6 +31,7 @@ struct SimulateOptions {
     std::vector<double> vignetting{-0.30, 0.05, -0.15}, center{0.02, -0.015};
     std::optional<double> ev,
         wb;  // limits of exposures, EV, and of white balance factors about 1; as below if not given
+    std::optional<double> gloss;  // 1 if not given
     bool no_images = false, exif = false, exif_manual = false;
 };
 
