@@ -57,6 +57,23 @@ struct Moved : Pictures {
     }
 };
 
+// The index of each pair's match: of the same images, and at most as far away as quiet places are looked for.
+void test_matches_of_pairs(void **) {
+    const Moved pictures(3);
+    const auto matches = pictures.matches(true);
+    lensprof_sample_options options = options_of(LENSPROF_SAMPLING_BALANCED, 600);
+    std::vector<uint32_t> match_of_pair(600, UINT32_MAX);
+    options.match_of_pair = match_of_pair.data();
+    std::vector<lensprof_pair> pairs;
+    assert_ok(pictures.sample(matches, pairs, options));
+    for (size_t p = 0; p < pairs.size(); p++) {
+        assert_true(match_of_pair[p] < matches.size());
+        const lensprof_match &match = matches[match_of_pair[p]];
+        for (int side = 0; side < 2; side++) assert_int_equal(match.image[side], pairs[p].image[side]);
+        for (int d = 0; d < 2; d++) assert_true(std::fabs(match.xy[0][d] - pairs[p].xy[0][d]) <= 8.0);
+    }
+}
+
 void test_pairs_show_one_scene_point(void **) {
     const Moved pictures(3);
     for (const bool with_map : {true, false}) {
@@ -167,9 +184,13 @@ void test_what_is_refused(void **) {
 
 int main() {
     const CMUnitTest tests[] = {
-        cmocka_unit_test(test_pairs_show_one_scene_point), cmocka_unit_test(test_the_quietest_place_near_a_match),
-        cmocka_unit_test(test_wrong_matches_are_found),    cmocka_unit_test(test_the_same_on_any_number_of_threads),
-        cmocka_unit_test(test_no_camera_is_needed),        cmocka_unit_test(test_what_is_refused),
+        cmocka_unit_test(test_matches_of_pairs),
+        cmocka_unit_test(test_pairs_show_one_scene_point),
+        cmocka_unit_test(test_the_quietest_place_near_a_match),
+        cmocka_unit_test(test_wrong_matches_are_found),
+        cmocka_unit_test(test_the_same_on_any_number_of_threads),
+        cmocka_unit_test(test_no_camera_is_needed),
+        cmocka_unit_test(test_what_is_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

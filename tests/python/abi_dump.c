@@ -173,6 +173,7 @@ static void print_structs(void) {
     FIELD(lensprof_sample_options, reserved2);
     FIELD(lensprof_sample_options, response);
     FIELD(lensprof_sample_options, vignetting);
+    FIELD(lensprof_sample_options, match_of_pair);
     STRUCT(lensprof_match);
     FIELD(lensprof_match, image);
     FIELD(lensprof_match, xy);

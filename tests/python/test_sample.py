@@ -35,6 +35,7 @@ class Sampling(unittest.TestCase):
         known = {tuple(xy) for xy in true["xy"].reshape(-1, 4)}
         self.assertTrue(all(tuple(xy) in known for xy in pairs["xy"].reshape(-1, 4)))
         self.assertTrue((options.links["state"] == lp.LinkState.VERIFIED).all())
+        np.testing.assert_array_equal(matches["xy"][options.match_of_pair], pairs["xy"])
         with self.assertRaises(TypeError):
             lp.sample_matches(sample_images(pictures()), true)
         matches["image"][3] = 7

@@ -658,6 +658,7 @@ class SampleOptions(Structure):
         ("reserved2", c_uint32),
         ("response", POINTER(Response)),
         ("vignetting", POINTER(Vignetting)),
+        ("match_of_pair", POINTER(c_uint32)),
     ]
 
 

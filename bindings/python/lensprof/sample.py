@@ -1,7 +1,7 @@
 """Correspondences: the same scene point seen in two pictures; see lensprof/sample.h."""
 from __future__ import annotations
 
-from ctypes import byref, c_uint32, pointer
+from ctypes import POINTER, byref, c_uint32, pointer
 from dataclasses import dataclass
 from typing import Any, Callable, Optional, Sequence
 
@@ -62,6 +62,12 @@ class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
     response = OptionalReference(Response)
     vignetting = OptionalReference(Vignetting)
     _links: Optional[np.ndarray] = None
+    _match_of_pair: Optional[np.ndarray] = None
+
+    @property
+    def match_of_pair(self) -> Optional[np.ndarray]:
+        """After sample_matches, the index of the match of each pair; None before."""
+        return self._match_of_pair
 
     @property
     def links(self) -> Optional[np.ndarray]:
@@ -69,7 +75,7 @@ class SampleOptions(WithProgress, Struct, _abi.SampleOptions):
 
     @classmethod
     def _names(cls) -> list[str]:
-        return [name for name in super()._names() if not name.startswith("link")]
+        return [name for name in super()._names() if not name.startswith("link") and name != "match_of_pair"]
 
 
 def _sample(function: Any, images: Sequence[SampleImage], options: Optional[SampleOptions], dtype: np.dtype,
@@ -83,9 +89,13 @@ def _sample(function: Any, images: Sequence[SampleImage], options: Optional[Samp
     with calling(options) as call:
         call.links, call.link_capacity = _arrays.address(links, _abi.Link), len(links)
         call.link_count = pointer(link_count)
+        if more:
+            matched = np.empty(len(out), dtype=np.uint32)
+            call.match_of_pair = matched.ctypes.data_as(POINTER(c_uint32))
         status = function(byref(call), views, len(views), *more, *data(out), byref(found), byref(error))
     check(status, "sampling failed", error)
     options._links = links[:link_count.value]
+    options._match_of_pair = matched[:found.value] if more else None
     return out[:found.value]
 
 

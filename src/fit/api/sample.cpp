@@ -219,7 +219,9 @@ lensprof_status lensprof_sample_matches(const lensprof_sample_options *given, co
         return fail(LENSPROF_ERROR_ARGUMENT, error, "sample: paper sampling takes no matches; use balanced");
     const uint32_t wanted = wanted_pairs(options, image_count);
     const Matches own{matches, match_count};
-    auto draw = [&](Sampler &sampler) { return sampler.of_matches(matches, match_count, wanted); };
+    auto draw = [&](Sampler &sampler) {
+        return sampler.of_matches(matches, match_count, wanted, options.match_of_pair);
+    };
     return sample_into(options, images, image_count, &own, wanted, pairs, capacity, count, draw, error);
 }
 

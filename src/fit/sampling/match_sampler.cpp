@@ -95,7 +95,8 @@ bool Sampler::quiet_place(const lensprof_match &match, MatchCandidate &found) {
     return true;
 }
 
-std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, uint32_t count, uint32_t wanted) {
+std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, uint32_t count, uint32_t wanted,
+                                               uint32_t *match_of_pair) {
     overlaps_ = count > 0;
     likenesses_ = std::vector<Likenesses>(edge_numbers_);
     read_grey_levels();
@@ -110,6 +111,7 @@ std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, ui
     const auto work = [&](uint32_t piece) {
         for (size_t n = size_t{piece} * kPiece; n < std::min(looked.size(), (size_t{piece} + 1) * kPiece); n++) {
             MatchCandidate candidate;
+            candidate.match = looked[n];
             if (quiet_place(matches[looked[n]], candidate)) found[piece].push_back(candidate);
         }
         done++;
@@ -118,7 +120,10 @@ std::vector<lensprof_pair> Sampler::of_matches(const lensprof_match *matches, ui
     std::vector<MatchCandidate> all;
     for (auto &list : found) std::move(list.begin(), list.end(), std::back_inserter(all));
     std::vector<lensprof_pair> pairs;
-    for (const MatchCandidate &chosen : balanced_choice(std::move(all), wanted)) pairs.push_back(chosen.pair);
+    for (const MatchCandidate &chosen : balanced_choice(std::move(all), wanted)) {
+        if (match_of_pair) match_of_pair[pairs.size()] = chosen.match;
+        pairs.push_back(chosen.pair);
+    }
     show_done();
     return pairs;
 }

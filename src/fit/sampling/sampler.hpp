@@ -34,7 +34,9 @@ public:
     std::vector<lensprof_pair> paper(uint32_t wanted);
 
     // At places that match: the quietest near each match, balanced as above.
-    std::vector<lensprof_pair> of_matches(const lensprof_match *matches, uint32_t count, uint32_t wanted);
+    // `match_of_pair`, where it is not NULL, receives the index of the match of each pair.
+    std::vector<lensprof_pair> of_matches(const lensprof_match *matches, uint32_t count, uint32_t wanted,
+                                          uint32_t *match_of_pair);
 
     // Points spread evenly over what the pictures see, each in every picture that sees it (kLongestTrack at most),
     // saturated channels with the value 1; of those near each other the quietest, balanced over radius and grey level.
@@ -70,6 +72,7 @@ private:
     // One near a match, where its pair is measured.
     struct MatchCandidate : Candidate {
         lensprof_pair pair;
+        uint32_t match;  // its index
     };
 
     // One image's part of a candidate for a track.

@@ -89,6 +89,8 @@ typedef struct lensprof_sample_options {
                                           which differ in more than a factor where exposures are far apart, */
     const lensprof_vignetting *vignetting; /* without the falloff, where that is known; or NULL. The pairs hold the
                                               pictures' own grey values all the same. */
+    uint32_t *match_of_pair;               /* the caller's array of `capacity`, or NULL: receives of each pair of
+                                              lensprof_sample_matches the index of the match that it was measured at */
 } lensprof_sample_options;
 
 /* Balanced, 0 pairs (= 300 per image, or 150 points with tracks; at least 2000), seed 1, threads on all cores, no
