@@ -13,6 +13,8 @@
 #include "cli/correct/overlaps.hpp"
 #include "cli/correct/picture_model.hpp"
 #include "cli/correct/project_model.hpp"
+#include "cli/correct/seeded_exif.hpp"
+#include "cli/fitting/exposure_file.hpp"
 #include "cli/pictures/coded_kind.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/pictures/raw_kind.hpp"
@@ -48,11 +50,15 @@ struct Options {
     ModelOptions model;
     RawOutput raw_output = RawOutput::by_default;
     std::string linear_end;  // of --linear-output; empty: not given
-    std::string pto, output, sheet;
+    std::string pto, exposures, images, output, sheet;
     Exposure exposure = Exposure::by_default;
     CorrectionKind kind;
-    bool merge = false, skip = false, json = false, progress = false, has_output = true;
+    bool seed_exif = false, merge = false, skip = false, json = false, progress = false, has_output = true;
     std::vector<std::string> files;
+
+    // The file that says the pictures' exposures, and the option that names it.
+    const std::string &project() const { return pto.empty() ? exposures : pto; }
+    const char *project_option() const { return pto.empty() ? "--model" : "--pto"; }
 };
 
 struct LeftOut {
@@ -70,10 +76,18 @@ struct Work {
 
 void declare_exposure(Command &command, Options &o) {
     command.file("--pto", o.pto, "take exposures (and, without --profile or --from-db, the curves) from this project");
-    command.choice("--output-exposure", o.exposure,
-                   {{"mean", Exposure::mean}, {"reference", Exposure::reference}, {"keep", Exposure::keep}},
-                   "mean: all like the geometric mean of the project (default with --pto); reference: like its 0 EV; "
-                   "keep: each its own (default without --pto)");
+    command.file("--model", o.exposures,
+                 "take exposures, response and falloff from this exposures.json of `build --exposures-out`");
+    command.folder("--images", o.images, "with --model: folder of the pictures, where they are elsewhere by now");
+    command.flag(
+        "--seed-exif", o.seed_exif,
+        "with --model: write the exposure that each output has into its EXIF (ExposureTime), and a mark of that "
+        "into its XMP; best with --output-exposure keep");
+    command.choice(
+        "--output-exposure", o.exposure,
+        {{"mean", Exposure::mean}, {"reference", Exposure::reference}, {"keep", Exposure::keep}},
+        "mean: all like the geometric mean of the project (default with --pto and --model); reference: like its "
+        "0 EV; keep: each its own (default without)");
 }
 
 void declare(Command &command, Options &o) {
@@ -122,7 +136,7 @@ void declare(Command &command, Options &o) {
 bool becomes_dng(const Options &o, const std::string &raw) {
     const CorrectionKind &kind = o.kind;
     const bool is_plain = !kind.linear && !kind.simulate && kind.strength == 1.0 && kind.gain_cap == 0.0
-                          && o.pto.empty() && o.sheet.empty();
+                          && o.project().empty() && o.sheet.empty();
     if (o.raw_output == RawOutput::dng && raw != "DNG")
         throw Failure(ExitCode::usage, "--raw-output dng: takes DNG files, and one is a " + raw
                                            + "; convert it to DNG first, or leave the option out");
@@ -148,9 +162,10 @@ std::string target_name(const Options &o, const NamedPicture &picture) {
 void check_shape(const Project &project, uint32_t image, const std::string &file) {
     const auto &camera = project.images[image].camera;
     PictureSize size = read_size(file);
-    double expected = static_cast<double>(camera.width) / camera.height,
-           shape = static_cast<double>(size.width) / size.height;
-    if (std::abs(shape / expected - 1.0) > 0.01)
+    const double expected = static_cast<double>(camera.width) / camera.height,
+                 shape = static_cast<double>(size.width) / size.height;
+    const bool is_same = size.width == camera.width && size.height == camera.height;
+    if (project.models.empty() ? std::abs(shape / expected - 1.0) > 0.01 : !is_same)
         throw Failure(ExitCode::unreadable,
                       file + format(": is %u x %u pixels, but ", size.width, size.height) + project.path
                           + format(" says %u x %u; use the pictures that the project was made with", camera.width,
@@ -180,22 +195,23 @@ struct Source {
 
 Source open_source(const Options &o) {
     Source source;
-    if (o.files.empty() && o.pto.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
-    source.models = std::make_unique<PictureModels>(o.model, o.pto.empty());
+    if (o.files.empty() && o.project().empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
+    source.models = std::make_unique<PictureModels>(o.model, o.project().empty());
     const bool from_store = source.models->are_used();
-    if (!from_store && o.pto.empty())
+    if (!from_store && o.project().empty())
         throw Failure(ExitCode::usage,
-                      "say what to correct with: --profile ID, --from-db or --pto FILE; there is no "
+                      "say what to correct with: --profile ID, --from-db, --pto FILE or --model FILE; there is no "
                       "database of your own yet, and none is installed");
-    if (!o.pto.empty()) {
-        source.project = std::make_unique<Project>(read_project(o.pto));
+    if (!o.project().empty()) {
+        source.project =
+            std::make_unique<Project>(o.pto.empty() ? read_exposures(o.exposures, o.images) : read_project(o.pto));
         source.images = std::make_unique<ImagesByFile>(*source.project);
         source.exposures = relative_to_joined(*source.project);
         source.has_model = !from_store;
     } else if (o.exposure == Exposure::mean || o.exposure == Exposure::reference) {
         throw Failure(ExitCode::usage, std::string("--output-exposure ")
                                            + (o.exposure == Exposure::mean ? "mean" : "reference")
-                                           + " needs the exposures of a project; give it with --pto");
+                                           + " needs the exposures of a project; give it with --pto or --model");
     }
     return source;
 }
@@ -206,7 +222,7 @@ PictureMetadata metadata_of(const Options &o, const std::string &file) {
     try {
         return read_metadata(file);
     } catch (const Failure &) {
-        if (!o.model.profile && o.pto.empty()) throw;
+        if (!o.model.profile && o.project().empty()) throw;
         return unknown_metadata();
     }
 }
@@ -235,11 +251,11 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
     job.source = picture.file, job.target = target_name(o, picture);
     lensprof_exposure_init(&job.own);
     if (source.project) {
-        const uint32_t image = source.images->at(picture.file, "--pto");
+        const uint32_t image = source.images->at(picture.file, o.project_option());
         check_shape(*source.project, image, picture.file);
         job.own = source.exposures[image];
         if (source.has_model) job.model = model_of_project(*source.project, image);
-        job.model_name = std::filesystem::path(o.pto).filename().string();
+        job.model_name = std::filesystem::path(o.project()).filename().string();
     }
     const PictureMetadata metadata = metadata_of(o, picture.file);
     check_mark(o, picture.file, metadata);
@@ -290,10 +306,20 @@ std::vector<PlacedCorrection> placed_images(const Options &o, const Source &sour
     return placed;
 }
 
+// Where an output goes below the folder of outputs: where a model's image is below that of the pictures, so that the
+// model takes the outputs for its images.
+std::string subfolder_of(const Project &project, size_t image) {
+    if (project.models.empty()) return {};
+    const auto folder = std::filesystem::path(project.names[image]).lexically_normal().parent_path();
+    const bool leads_out = folder.is_absolute() || (!folder.empty() && *folder.begin() == "..");
+    return leads_out ? std::string() : folder.string();
+}
+
 Work plan_work(const Options &o, const Source &source, Streams &streams) {
     std::vector<NamedPicture> pictures;
     if (o.files.empty() && source.project)
-        for (const std::string &file : source.project->files) pictures.push_back({file, "", false});
+        for (size_t i = 0; i < source.project->files.size(); i++)
+            pictures.push_back({source.project->files[i], subfolder_of(*source.project, i), false});
     else
         pictures = named_pictures(o.files, o.output);
     if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
@@ -306,10 +332,10 @@ Work plan_work(const Options &o, const Source &source, Streams &streams) {
         inputs.push_back(picture.file);
         note_instead(picture, streams);
         if (source.project && picture.in_folder && !source.images->find(picture.file)) {
-            work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.pto, false});
+            work.left_out.push_back({picture.file, picture.file + ": is not a picture of " + o.project(), false});
             continue;
         }
-        if (source.project && source.project->images[source.images->at(picture.file, "--pto")].left_out) {
+        if (source.project && source.project->images[source.images->at(picture.file, o.project_option())].left_out) {
             const std::string reason =
                 picture.file
                 + ": is not part of the result, and its exposure is not known; it is not corrected: use the original";
@@ -330,7 +356,7 @@ Work plan_work(const Options &o, const Source &source, Streams &streams) {
     if (!o.sheet.empty()) format_of_name(o.sheet);  // for its errors, before anything is written
     check_targets(work.jobs, inputs, o.sheet);
     check_older_outputs(work.jobs, o.kind, o.has_output);
-    if (source.has_model) check_has_result(*source.project);
+    if (source.has_model && !o.pto.empty()) check_has_result(*source.project);
     if (o.merge) work.lit = placed_images(o, source, work, streams);
     return work;
 }
@@ -405,12 +431,13 @@ Corrected correct(const Options &o, const Source &source, Work &work, Streams &s
     lensprof_exposure reference;
     lensprof_exposure_init(&reference);
     const Exposure chosen = o.exposure != Exposure::by_default ? o.exposure
-                            : o.pto.empty()                    ? Exposure::keep
+                            : o.project().empty()              ? Exposure::keep
                                                                : Exposure::mean;
     for (Correction &job : work.jobs)
         job.wanted = chosen == Exposure::keep ? job.own : chosen == Exposure::mean ? work.mean : reference;
     if (source.project && chosen != Exposure::keep && !o.kind.linear && !o.kind.simulate)
         encode_alike(source, work.jobs, streams);
+    if (o.seed_exif) seed_exif(work.jobs, work.mean);
     make_folder(o.output);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;
@@ -436,7 +463,16 @@ void check_merge(const Options &o) {
                       "--gain-cap, --dither and --contact-sheet");
 }
 
+void check_project_options(const Options &o) {
+    if (!o.pto.empty() && !o.exposures.empty())
+        throw Failure(ExitCode::usage, "--pto and --model: both say the exposures; give one of the two");
+    if (o.exposures.empty() && (!o.images.empty() || o.seed_exif))
+        throw Failure(ExitCode::usage, std::string(o.seed_exif ? "--seed-exif" : "--images")
+                                           + ": is for the exposures of --model; give that, or leave it out");
+}
+
 int run(Options &o, Streams &streams) {
+    check_project_options(o);
     if (!o.linear_end.empty() && !o.kind.linear)
         throw Failure(ExitCode::usage,
                       "--linear-output: is for --linear, which writes irradiance; give both or neither");

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/pictures/contact_sheet.hpp"
+#include "cli/pictures/metadata.hpp"
 #include "cli/profiles/lookup_report.hpp"
 #include "cli/program/library.hpp"
 #include "cli/program/options.hpp"
@@ -27,6 +28,7 @@ struct Correction {
     std::shared_ptr<const Found> lookup;                // how the model was predicted; NULL = it was not
     uint64_t pixels = 0;                                // of the source
     std::string model_name;                             // for the output's mark
+    std::shared_ptr<const PictureMetadata> exif;        // of the exposure, in place of the source's; NULL = its own
     std::string note;                                   // what is to be said of it; empty = nothing
     bool copies_dng = false;  // the target is the source with the falloff as an opcode, pixels untouched
 };

@@ -67,6 +67,8 @@ WriteOptions write_options(const Correction &job, const CorrectionKind &kind) {
     WriteOptions options;
     options.metadata_from = job.source;
     options.mark = mark_of(job, kind);
+    options.mark->is_exposure_measured = job.exif != nullptr;
+    options.metadata = job.exif.get();
     return options;
 }
 

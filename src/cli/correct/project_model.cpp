@@ -4,7 +4,8 @@
 
 namespace lensprof {
 
-std::shared_ptr<lensprof_profile> model_of_project(const Project &project, uint32_t image) {
+std::shared_ptr<const lensprof_profile> model_of_project(const Project &project, uint32_t image) {
+    if (!project.models.empty()) return project.models[image];
     auto profile = std::shared_ptr<lensprof_profile>(new_profile());
     lensprof_error error{};
     check(lensprof_pto_get_response(project.pto.get(), image, &profile->response[0], &error), project.path, &error);
@@ -23,9 +24,17 @@ static uint32_t joined_reference(const Project &project) {
 std::shared_ptr<const lensprof_response> common_encoding(const Project &project) {
     const uint32_t reference = joined_reference(project);
     const auto &first = project.images[reference];
-    const bool is_one = std::all_of(project.images.begin(), project.images.end(), [&](const lensprof_pto_image &image) {
-        return image.response_type == first.response_type && std::equal(image.emor, image.emor + 5, first.emor);
-    });
+    const bool is_one =
+        project.models.empty()
+            ? std::all_of(project.images.begin(), project.images.end(),
+                          [&](const lensprof_pto_image &image) {
+                              return image.response_type == first.response_type
+                                     && std::equal(image.emor, image.emor + 5, first.emor);
+                          })
+            : std::all_of(project.models.begin(), project.models.end(), [&](const auto &model) {
+                  const auto &table = model->response[0].table;
+                  return std::equal(std::begin(table), std::end(table), project.models[reference]->response[0].table);
+              });
     if (is_one) return nullptr;
     return std::make_shared<lensprof_response>(model_of_project(project, reference)->response[0]);
 }

@@ -9,7 +9,7 @@
 namespace lensprof {
 
 // Response and falloff of an image.
-std::shared_ptr<lensprof_profile> model_of_project(const Project &project, uint32_t image);
+std::shared_ptr<const lensprof_profile> model_of_project(const Project &project, uint32_t image);
 
 // That of the reference, where images have several: what all are encoded by, so that they look alike. NULL where they
 // have one.

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/fitting/exposure_file.hpp"
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/photographs.hpp"
 #include "cli/fitting/preview.hpp"
@@ -25,7 +26,7 @@ namespace {
 
 struct Options : ProjectFitOptions {
     std::vector<std::string> inputs;
-    std::string images, points_out, pto_out, project_out, preview, compare;
+    std::string images, points_out, exposures_out, pto_out, project_out, preview, compare;
     bool track_colours = false;
     std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
     bool json = false, progress = false;
@@ -52,6 +53,9 @@ void declare_points(Command &command, Options &o) {
                  "write the pairs used (Hugin's 16 columns), also those of a fit that is not usable");
     command.file("--preview", o.preview,
                  "write a mosaic of the pictures before, and below it after correction, as .jpg, .png or .tif");
+    command.file("--exposures-out", o.exposures_out,
+                 "write exposures and white balances with their errors, response and falloff, for `apply --model` and "
+                 "other programs, as JSON");
     command.file("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
 }
 
@@ -112,7 +116,7 @@ void check_is_no_photograph(const std::string &output, bool is_preview) {
 void check_outputs(const Options &o, std::vector<std::string> taken) {
     taken.insert(taken.end(), {o.points, o.compare});
     if (!o.store.no_store) taken.push_back(store_path(o.store.db));
-    for (const std::string &output : {o.points_out, o.pto_out, o.project_out, o.preview}) {
+    for (const std::string &output : {o.points_out, o.exposures_out, o.pto_out, o.project_out, o.preview}) {
         if (output.empty()) continue;
         for (const std::string &other : taken)
             if (is_same_file(output, other))
@@ -123,6 +127,13 @@ void check_outputs(const Options &o, std::vector<std::string> taken) {
     }
 }
 
+// Few reconstruct from film. Sensors of phones are small.
+CameraKind usual_kind(const lensprof_profile_key &key) {
+    constexpr double least_crop_factor = 4.5;
+    const bool is_phone = key.crop_factor != LENSPROF_UNKNOWN && key.crop_factor >= least_crop_factor;
+    return {is_phone ? LENSPROF_CAMERA_PHONE : LENSPROF_CAMERA_CAMERA, KindFrom::reconstruction};
+}
+
 BuildReport build(const Options &o, Project &project, const std::vector<PictureMetadata> &metadata,
                   const EarlierProfile &prior, const CameraKind &kind, OutputFiles &outputs, Streams &streams) {
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
@@ -131,6 +142,8 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     fit_project(o, project, metadata, prior, done, streams);
     BuildReport &report = done.report;
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(done.input.pairs, project));
+    if (!o.exposures_out.empty() && (done.best.corrects() || o.store.force))
+        outputs.add(o.exposures_out, exposures_text(done, project, metadata, o.exposures_out));
     if (!o.pto_out.empty() && (done.best.corrects() || o.store.force))
         outputs.add(o.pto_out, result_text(done, project, o.pto_out));
     if (!o.preview.empty() && done.best.corrects()) write_preview(o.preview, project, done.best, progress);
@@ -224,15 +237,14 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     check_outputs(o, inputs);
     if (!o.project_out.empty()) write_project(project, o.project_out);
     choose_unknowns(o, project, streams);
-    if (o.points.empty() && project.pairs.empty()) check_pictures(project, o.max_side);
+    if (o.points.empty() && !project.is_reconstruction) check_pictures(project, o.max_side);
     auto metadata = picture_metadata(o, project);
     lensprof_profile_key key = profile_key(o, project, metadata, streams);
     TrueValues truth;
     if (!o.compare.empty()) truth = read_truth(o.compare, project.images.size());
     check_store(o.store);
     CameraKind kind = camera_kind_of(o.fit, key, metadata[project.reference]);
-    if (project.is_reconstruction && kind.from == KindFrom::none)
-        kind = {LENSPROF_CAMERA_CAMERA, KindFrom::reconstruction};  // few reconstruct from film
+    if (project.is_reconstruction && kind.from == KindFrom::none) kind = usual_kind(key);
     OutputFiles outputs;
     EarlierProfile prior;
     if (takes_stored_prior(o.fit))
@@ -241,8 +253,9 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
     int code = finish_fit(report, key, o.store,
                           {method_name(o.fit.method), project.path, o.json, true, &outputs, &prior}, streams);
     if (!o.compare.empty() && !o.json) print_comparison(report, truth, streams.out);
-    if (!report.fit.usable && !report.fit.evens && !o.pto_out.empty() && !o.store.force)
-        tell(streams, o.pto_out + ": not written (--force writes it all the same)");
+    for (const std::string &file : {o.exposures_out, o.pto_out})
+        if (!report.fit.usable && !report.fit.evens && !file.empty() && !o.store.force)
+            tell(streams, file + ": not written (--force writes it all the same)");
     if (!report.fit.usable && !report.fit.evens && !o.preview.empty())
         tell(streams, o.preview + ": not written, for the result evens nothing out");
     return code;
@@ -256,7 +269,7 @@ int run(const Options &o, Streams &streams) {
         throw Failure(ExitCode::usage, "--preview: shows pictures, which --points leaves out; give one of the two");
     if (o.json && !o.compare.empty())
         throw Failure(ExitCode::usage, "--compare prints a table, which --json leaves out; give one of the two");
-    check_store_options(o.store, takes_stored_prior(o.fit), !o.pto_out.empty());
+    check_store_options(o.store, takes_stored_prior(o.fit), !o.pto_out.empty() || !o.exposures_out.empty());
 
     std::vector<std::string> names;
     try {

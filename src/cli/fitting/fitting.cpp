@@ -150,6 +150,11 @@ CameraKind camera_kind_of(const FitOptions &o, lensprof_profile_key key, const P
     return {kind, KindFrom::pictures};
 }
 
+size_t joined_images(const Fitted &fitted) {
+    return static_cast<size_t>(std::count_if(fitted.exposures.begin(), fitted.exposures.end(),
+                                             [](const lensprof_exposure &e) { return !std::isnan(e.ev); }));
+}
+
 // For what is found of lens settings and cameras.
 static void make_room(const std::vector<lensprof_fit_image> &images, Fitted &fitted) {
     uint32_t last_setting = 0, last_camera = 0;

@@ -91,6 +91,9 @@ struct Fitted {
     bool is_of_own_camera(uint32_t image) const { return !cameras.empty() && cameras[camera_of[image]].images; }
 };
 
+// The number of images that a result has exposures of.
+size_t joined_images(const Fitted &fitted);
+
 // Fits, with `progress` shown. `item` names the input in a Failure. `quality` may be NULL.
 Fitted fit(FitInput &input, uint32_t reference, const std::string &item, Progress &progress,
            std::vector<lensprof_fit_image_quality> *quality);

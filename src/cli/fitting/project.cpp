@@ -57,25 +57,6 @@ uint64_t memory_bound() {
     return bound;
 }
 
-SamplePicture read_one(const Project &project, uint32_t i, uint32_t max_side) {
-    const std::string &file = project.files[i];
-    SamplePicture result;
-    ReadOptions options;
-    options.max_side = max_side;
-    result.picture = read_picture(file, options);
-    const Picture &p = result.picture;
-    check_size(project, i, p);
-    check_finite(result.picture.view(), 0, p.reduction, file);
-    if (!project.pto) return result;
-    std::vector<uint8_t> mask(static_cast<size_t>(p.width) * p.height);
-    lensprof_error error{};
-    check(lensprof_pto_draw_mask(project.pto.get(), i, mask.data(), p.width, p.height, static_cast<ptrdiff_t>(p.width),
-                                 &error),
-          file, &error);
-    if (std::find(mask.begin(), mask.end(), 0) != mask.end()) result.mask = std::move(mask);
-    return result;
-}
-
 int on_sampling(double done, void *progress) {
     static_cast<Progress *>(progress)->update("sampling", done);
     return interrupted();
@@ -174,10 +155,29 @@ void check_pictures(const Project &project, uint32_t max_side) {
                                    project.files.size(), double(needed) / (1 << 30), double(bound) / (1 << 30)));
 }
 
+SamplePicture read_sample_picture(const Project &project, uint32_t i, uint32_t max_side) {
+    const std::string &file = project.files[i];
+    SamplePicture result;
+    ReadOptions options;
+    options.max_side = max_side;
+    result.picture = read_picture(file, options);
+    const Picture &p = result.picture;
+    check_size(project, i, p);
+    check_finite(result.picture.view(), 0, p.reduction, file);
+    if (!project.pto) return result;
+    std::vector<uint8_t> mask(static_cast<size_t>(p.width) * p.height);
+    lensprof_error error{};
+    check(lensprof_pto_draw_mask(project.pto.get(), i, mask.data(), p.width, p.height, static_cast<ptrdiff_t>(p.width),
+                                 &error),
+          file, &error);
+    if (std::find(mask.begin(), mask.end(), 0) != mask.end()) result.mask = std::move(mask);
+    return result;
+}
+
 std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress) {
     std::vector<SamplePicture> pictures(project.files.size());
     for_each_parallel(static_cast<uint32_t>(pictures.size()), "reading pictures", progress,
-                      [&](uint32_t i) { pictures[i] = read_one(project, i, max_side); });
+                      [&](uint32_t i) { pictures[i] = read_sample_picture(project, i, max_side); });
     return pictures;
 }
 
@@ -185,6 +185,20 @@ uint32_t channel_count(const std::vector<SamplePicture> &pictures) {
     for (const auto &p : pictures)
         if (lensprof_layout_channels(p.picture.layout) == 3) return 3;
     return 1;
+}
+
+lensprof_sample_image sample_image(const Project &project, uint32_t i, SamplePicture &picture, const GreyRange &range) {
+    lensprof_sample_image image;
+    lensprof_sample_image_init(&image);
+    image.view = picture.picture.view();
+    image.camera = project.images[i].camera;
+    image.reduction = picture.picture.reduction;
+    image.mask = picture.mask.empty() ? nullptr : picture.mask.data();
+    image.mask_row_bytes = static_cast<ptrdiff_t>(picture.picture.width);
+    image.black = range.black;
+    image.white = range.white;
+    image.every_pixel = range.every_pixel;
+    return image;
 }
 
 namespace {
@@ -196,17 +210,7 @@ std::vector<Item> sample(const Project &project, std::vector<SamplePicture> &pic
                          Function function) {
     std::vector<lensprof_sample_image> images;
     for (size_t i = 0; i < pictures.size(); i++) {
-        lensprof_sample_image image;
-        lensprof_sample_image_init(&image);
-        image.view = pictures[i].picture.view();
-        image.camera = project.images[i].camera;
-        image.reduction = pictures[i].picture.reduction;
-        image.mask = pictures[i].mask.empty() ? nullptr : pictures[i].mask.data();
-        image.mask_row_bytes = static_cast<ptrdiff_t>(pictures[i].picture.width);
-        image.black = range.black;
-        image.white = range.white;
-        image.every_pixel = range.every_pixel;
-        images.push_back(image);
+        images.push_back(sample_image(project, static_cast<uint32_t>(i), pictures[i], range));
     }
     lensprof_error error{};
     uint32_t found = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,11 +22,16 @@ struct Project {
     std::vector<std::string> files;  // path of each picture
     uint32_t reference = 0;          // image that the fit holds
 
+    // Response and falloff of each image, where the project is of a file of exposures, which has no Pto.
+    std::vector<std::shared_ptr<const lensprof_profile>> models;
+
     // Of pictures that were in no project: where they show the same, of links that the cameras do not fit or of all
     // (`by_matches`); those that are not part of it, and why; and how long finding it took.
     std::vector<lensprof_match> matches;
+    std::vector<uint32_t> match_points;  // of a reconstruction: the scene point of each match
     bool by_matches = false, is_reconstruction = false;
-    std::vector<lensprof_pair> pairs;  // that came with the project, in the place of pictures
+    std::vector<lensprof_pair> pairs;   // that came with the project, in the place of pictures,
+    std::vector<uint32_t> pair_points;  // and the scene point of each
     std::vector<std::pair<std::string, std::string>> left_out;
     double register_s = 0.0;
 };
@@ -71,8 +77,11 @@ constexpr uint64_t project_max_bytes = uint64_t(8) << 30;
 // by their headers, before the first is loaded.
 void check_pictures(const Project &project, uint32_t max_side);
 
-// Reads all pictures, several at once, each reduced to a longer side of at least `max_side` pixels. Sizes that
-// contradict the project, unreadable files and float samples that are not finite are a Failure that names the file.
+// Reads a picture, reduced to a longer side of at least `max_side` pixels. A size that contradicts the project, a file
+// that cannot be read and float samples that are not finite are a Failure that names the file.
+SamplePicture read_sample_picture(const Project &project, uint32_t image, uint32_t max_side);
+
+// The same of all pictures, several at once.
 std::vector<SamplePicture> read_pictures(const Project &project, uint32_t max_side, Progress &progress);
 
 // Failure (unreadable) that names the first sample that is not a finite number, in rows of a picture from first_row
@@ -87,6 +96,10 @@ struct GreyRange {
     double black = 2.0 / 255.0, white = 250.0 / 255.0;
     bool every_pixel = false;  // of a patch has to be within; else its mean
 };
+
+// An image as the library samples it; its pixels are those of `picture`.
+lensprof_sample_image sample_image(const Project &project, uint32_t image, SamplePicture &picture,
+                                   const GreyRange &range);
 
 // The progress function of the options is set here.
 // `links` receives those of the pictures; or NULL. Pictures with matches give pairs there, and not by their cameras.

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <tuple>
 
-#include "cli/fitting/exposures_only.hpp"
+#include "cli/fitting/block_sampling.hpp"
 #include "cli/fitting/known_exposures.hpp"
+#include "cli/fitting/matte_fit.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
@@ -50,17 +51,28 @@ bool is_grey(const std::vector<lensprof_pair> &pairs) {
 
 using Pictures = std::vector<SamplePicture>;
 
+lensprof_sample_options sample_options(const ProjectFitOptions &o) {
+    lensprof_sample_options options;
+    lensprof_sample_options_init(&options);
+    options.sampling = o.sampling;
+    options.pairs = o.pairs;
+    options.seed = o.seed;
+    return options;
+}
+
+// Tells the fit what sampling found of the links.
+void set_links(ProjectFit &done) {
+    done.input.options.links = done.report.links.data();
+    done.input.options.link_count = static_cast<uint32_t>(done.report.links.size());
+}
+
 // Pairs or tracks of the pictures; what `known` says of the camera, where it is not NULL, helps to find them.
 void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &pictures, const Fitted *known,
                  ProjectFit &done) {
     auto clock = std::chrono::steady_clock::now();
     FitInput &input = done.input;
     std::vector<lensprof_link> &links = done.report.links;
-    lensprof_sample_options options;
-    lensprof_sample_options_init(&options);
-    options.sampling = o.sampling;
-    options.pairs = o.pairs;
-    options.seed = o.seed;
+    lensprof_sample_options options = sample_options(o);
     if (known) options.response = &known->result.response, options.vignetting = &green_falloff(known->result);
     // The method radiance makes tracks of pairs where no cameras find more.
     const bool by_matches = project.by_matches && o.sampling == LENSPROF_SAMPLING_BALANCED;
@@ -70,8 +82,7 @@ void draw_points(const ProjectFitOptions &o, const Project &project, Pictures &p
     } else {
         input.pairs = sample_pairs(project, pictures, options, {}, done.progress, &links);
     }
-    input.options.links = links.data();
-    input.options.link_count = static_cast<uint32_t>(links.size());
+    set_links(done);
     done.report.sample_s += lap(clock);
 }
 
@@ -81,8 +92,18 @@ Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectF
     uint32_t &channels = done.input.options.channels;
     if (!o.points.empty() || !project.pairs.empty()) {
         done.input.pairs = o.points.empty() ? project.pairs : read_points(o.points, project);
+        done.points = project.pair_points;
         channels = is_grey(done.input.pairs) ? 1 : 3;
         done.report.load_s = lap(clock);
+        return {};
+    }
+    if (project.is_reconstruction) {
+        lensprof_sample_options options = sample_options(o);
+        options.pairs = static_cast<uint32_t>(project.matches.size());  // which were chosen for it
+        done.input.pairs = sample_in_blocks(project, options, o.max_side, usual_block_bytes, done.progress,
+                                            done.report.links, done.points, &channels);
+        set_links(done);
+        done.report.sample_s = lap(clock);
         return {};
     }
     Pictures pictures = read_pictures(project, o.max_side, done.progress);
@@ -90,11 +111,6 @@ Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectF
     done.report.load_s = lap(clock);
     draw_points(o, project, pictures, nullptr, done);
     return pictures;
-}
-
-size_t joined_images(const Fitted &fitted) {
-    return static_cast<size_t>(std::count_if(fitted.exposures.begin(), fitted.exposures.end(),
-                                             [](const lensprof_exposure &e) { return !std::isnan(e.ev); }));
 }
 
 size_t links_of_state(const std::vector<lensprof_link> &links, uint32_t state) {
@@ -143,8 +159,7 @@ void look_again(const ProjectFitOptions &o, const Project &project, Pictures &pi
         if (failure.code == ExitCode::interrupted) throw;  // else the first look stands
     }
     done.input.pairs = pairs, done.input.observations = observations, done.report.links = links;
-    done.input.options.links = done.report.links.data();
-    done.input.options.link_count = static_cast<uint32_t>(links.size());
+    set_links(done);
 }
 
 // Another reference than the project's: where nothing else is held, it is held in that one's place, so that standard
@@ -225,26 +240,36 @@ void warn_of_few(const ProjectFitOptions &o, const Project &project, const Fitte
                                images, enough, o.store.no_store ? "" : ", or --no-store"));
 }
 
-// Of a reconstruction: measures what was gained, and where response and falloff explain no more of the pairs than
-// exposures alone takes these, for they are harmed by what the pictures do not show.
-void compare_with_exposures_only(const Project &project, ProjectFit &done, Streams &streams) {
+// Takes exposures alone as the result, for a profile of which there is nothing.
+void take_exposures_only(const Fitted &only, const Project &project, ProjectFit &done, Streams &streams) {
+    warn(streams, project.path
+                      + ": response and falloff explain the pictures no better than exposures and white balances alone, "
+                        "which are given");
+    done.best = only;
+    done.best.result.usable = 0;
+    done.best.result.reason_code = LENSPROF_REASON_NONE;
+    std::snprintf(done.best.result.reason, sizeof done.best.result.reason,
+                  "the pictures show neither response nor falloff");
+    done.settings.of_image.assign(done.settings.of_image.size(), 0), done.settings.first.resize(1);
+    join_cameras(done.settings);
+}
+
+// Of a reconstruction: fits without what shines, measures what was gained, and where response and falloff explain no
+// more of the pairs than exposures alone takes these, for what the pictures do not show does harm.
+void fit_reconstruction(const Project &project, ProjectFit &done, Streams &streams) {
     BuildReport &report = done.report;
     const bool is_by_pairs = done.input.observations.empty() && done.input.options.free != 0;
     if (!project.is_reconstruction || !is_by_pairs) return;
-    const Fitted only = fit_exposures_only(done.input, report.reference, done.item, done.progress);
-    if (!is_joint_better(done.best, only)) {
-        warn(streams, project.path
-                          + ": response and falloff explain the pictures no better than exposures and white balances "
-                            "alone, which are given");
-        done.best = only;
-        done.best.result.usable = 0;
-        done.best.result.reason_code = LENSPROF_REASON_NONE;
-        std::snprintf(done.best.result.reason, sizeof done.best.result.reason,
-                      "the pictures show neither response nor falloff");
-        done.settings.of_image.assign(done.settings.of_image.size(), 0), done.settings.first.resize(1);
-        join_cameras(done.settings);
-    }
-    report.variance = colour_variance(done.input, done.best, only);
+    const FitInput all = done.input;
+    const Fitted only = fit_exposures_only(all, report.reference, done.item, done.progress);
+    if (is_joint_better(done.best, only))
+        done.best = fit_matte_points(done.input, done.points, done.best, report.reference, done.item, done.progress,
+                                     &report.quality);
+    else
+        take_exposures_only(only, project, done, streams);
+    report.variance = {colour_variance_of(colour_differences(all, nullptr)),
+                       colour_variance_of(colour_differences(all, &only)),
+                       colour_variance_of(colour_differences(all, &done.best)), all.pairs.size()};
     done.best.result.evens = report.variance.result < report.variance.before;
 }
 
@@ -384,7 +409,7 @@ void fit_project(const ProjectFitOptions &o, Project &project, const std::vector
     const bool is_of_one = !done.settings.are_of_several_cameras();  // light is compared by one response
     if (is_of_one && !pictures.empty() && may_join_more(o, done.best, report.links))
         look_again(o, project, pictures, done);
-    compare_with_exposures_only(project, done, streams);
+    fit_reconstruction(project, done, streams);
     report.fit = done.best.result;
     report.verdict = verdict_of(done.best.result);
     warn_of_few(o, project, done.best, streams);

@@ -33,6 +33,7 @@ struct ProjectFit {
     BuildReport report;  // its camera_kind is given
     LensSettings settings;
     FitInput input;
+    std::vector<uint32_t> points;  // of a reconstruction: the scene point of each pair
     Fitted best;
     std::string item;  // the input's name in a Failure
 };

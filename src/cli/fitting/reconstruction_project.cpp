@@ -15,9 +15,10 @@
 namespace lensprof {
 namespace {
 
-constexpr double kAnyAngle = 50.0;                        // of view, degrees: nothing goes by it
-constexpr uint32_t kPairsOfImage = 300;                   // wanted, as sampling has them,
-constexpr uint32_t kMatchesOfPair = 4;                    // and matches to choose them from
+constexpr double kAnyAngle = 50.0;  // of view, degrees: nothing goes by it
+// Pairs that are drawn of an image: as many as that are in all, but not less than the least.
+constexpr uint32_t kPairsOfImage = 600, kLeastOfImage = 150, kPairsOfAll = 600000;
+constexpr uint32_t kEnds = 2;                             // a pair is of two images, which both choose it
 constexpr double kBlackLevel = 2.0, kWhiteLevel = 250.0;  // colours outside are not used
 
 std::vector<ProjectImage> images_of(const Reconstruction &r) {
@@ -49,13 +50,22 @@ bool pair_of_colours(const TrackObservation &a, const TrackObservation &b, lensp
     return true;
 }
 
-std::vector<lensprof_pair> pairs_of_colours(const Reconstruction &r, const std::vector<ObservationPair> &chosen) {
-    std::vector<lensprof_pair> pairs;
+void add_pairs_of_colours(const Reconstruction &r, const std::vector<ObservationPair> &chosen, Project &project) {
     for (const ObservationPair &own : chosen) {
         lensprof_pair pair{};
-        if (pair_of_colours(r.observations[own.first], r.observations[own.second], pair)) pairs.push_back(pair);
+        if (!pair_of_colours(r.observations[own.first], r.observations[own.second], pair)) continue;
+        project.pairs.push_back(pair);
+        project.pair_points.push_back(r.observations[own.first].point);
     }
-    return pairs;
+    if (project.pairs.empty())
+        throw Failure(ExitCode::not_usable, project.path + ": the colours of its points are all black or white; give its "
+                                                           "pictures with --images",
+                      LENSPROF_REASON_FEW_PAIRS);
+}
+
+uint32_t pairs_of_image(const ReconstructionOptions &options, size_t images) {
+    if (options.pairs) return static_cast<uint32_t>((options.pairs + images - 1) / images);
+    return std::clamp(static_cast<uint32_t>(kPairsOfAll / images), kLeastOfImage, kPairsOfImage);
 }
 
 void report_read(const Reconstruction &r, bool has_pictures, Streams &streams) {
@@ -85,13 +95,13 @@ Project project_of_reconstruction(const std::string &path, const ReconstructionO
     settle_coordinates(r, files);
     const bool has_pictures = !files.empty() && !options.is_by_colours;
     report_read(r, has_pictures, streams);
-    const uint32_t of_image =
-        options.pairs ? static_cast<uint32_t>(2 * uint64_t{options.pairs} / r.images.size()) + 1 : kPairsOfImage;
-    const auto chosen = choose_pairs(r, kMatchesOfPair * of_image, options.seed);
-    if (has_pictures)
+    const auto chosen = choose_pairs(r, kEnds * pairs_of_image(options, r.images.size()), options.seed);
+    if (has_pictures) {
         project.matches = matches_of(r, chosen);
-    else
-        project.pairs = pairs_of_colours(r, chosen);
+        for (const ObservationPair &own : chosen) project.match_points.push_back(r.observations[own.first].point);
+    } else {
+        add_pairs_of_colours(r, chosen, project);
+    }
     for (size_t i = 0; i < r.images.size(); i++) {
         project.names.push_back(r.images[i].name);
         project.files.push_back(files.empty() ? r.images[i].name : files[i]);

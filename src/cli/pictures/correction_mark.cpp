@@ -63,6 +63,7 @@ std::optional<CorrectionMark> correction_mark_of(const Exiv2::XmpData &xmp) {
         CorrectionMark mark;
         mark.falloff = static_cast<CorrectionMark::Falloff>(i);
         mark.linear = read_property(xmp, "Encoding") == "linear";
+        mark.is_exposure_measured = read_property(xmp, "Exposure") == "measured";
         mark.software = read_property(xmp, "Software");
         mark.model = read_property(xmp, "Model");
         mark.source = read_property(xmp, "Source");
@@ -77,6 +78,7 @@ void set_correction_mark(const CorrectionMark &mark, Exiv2::XmpData &xmp) {
     const bool keeps = older && mark.falloff == CorrectionMark::Falloff::kept;
     set_property("Falloff", falloff_words[static_cast<size_t>(keeps ? older->falloff : mark.falloff)], xmp);
     set_property("Encoding", mark.linear ? "linear" : "", xmp);
+    set_property("Exposure", mark.is_exposure_measured ? "measured" : "", xmp);
     set_property("Software", mark.software, xmp);
     set_property("Model", mark.model, xmp);
     set_property("Source", mark.source, xmp);

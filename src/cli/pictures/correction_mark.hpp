@@ -20,11 +20,12 @@ struct CorrectionMark {
     };
 
     Falloff falloff = Falloff::kept;
-    bool linear = false;   // proportional to light
-    std::string software;  // "lensprof 0.2.0"
-    std::string model;     // what falloff and response are those of
-    std::string source;    // name of the picture that it was made from, without folder
-    std::string digest;    // of that file: digest_of
+    bool linear = false;                // proportional to light
+    bool is_exposure_measured = false;  // EXIF's exposure is what lensprof measured, and not what the camera states
+    std::string software;               // "lensprof 0.2.0"
+    std::string model;                  // what falloff and response are those of
+    std::string source;                 // name of the picture that it was made from, without folder
+    std::string digest;                 // of that file: digest_of
 };
 
 // Sixteen hexadecimal digits (FNV-1a) of a file's size, its first and its last 64 KiB, which tell photographs apart.

@@ -54,6 +54,8 @@ void read_exposure(const Exiv2::ExifData &exif, PictureMetadata &metadata) {
 void write_exposure(const PictureMetadata &metadata, Exiv2::ExifData &exif) {
     set_rational(exif, "Exif.Photo.FNumber", metadata.key.aperture);
     set_rational(exif, "Exif.Photo.ExposureTime", metadata.exposure_time_s.value_or(LENSPROF_UNKNOWN));
+    const auto apex = exif.findKey(Exiv2::ExifKey("Exif.Photo.ShutterSpeedValue"));  // states the old time
+    if (metadata.exposure_time_s && apex != exif.end()) exif.erase(apex);
     if (metadata.iso && *metadata.iso >= 0.5)  // 16 bits; 65535 stands for what is larger
         exif["Exif.Photo.ISOSpeedRatings"] = static_cast<uint16_t>(std::lround(std::fmin(*metadata.iso, 65535)));
     if (!metadata.is_manual) return;

@@ -1,4 +1,5 @@
 // Bundler's .out (version 0.3): cameras, and points with the views that see them. Names of images are in a list.
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 
@@ -31,10 +32,32 @@ std::string list_beside(const std::string &path) {
                   path + ": the list of its images is not beside it; put it there as " + tried[2]);
 }
 
+bool is_number(const std::string &text) {
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+std::string last_word(const std::string &line) { return line.substr(line.find_last_of(" \t") + 1); }
+
+std::string without_last_word(std::string line) {
+    line.erase(line.size() - last_word(line).size());
+    line.erase(line.find_last_not_of(" \t") + 1);
+    return line;
+}
+
+// A line of the list without the 0 and the focal length that Bundler puts behind a name; names may hold blanks.
+std::string name_of(std::string line) {
+    line.erase(line.find_last_not_of(" \t") + 1);
+    const std::string one_less = without_last_word(line), two_less = without_last_word(one_less);
+    if (!two_less.empty() && last_word(one_less) == "0" && is_number(last_word(line))) return two_less;
+    return !one_less.empty() && last_word(line) == "0" ? one_less : line;
+}
+
 std::vector<std::string> read_list(const std::string &path) {
     FieldReader fields(path, '\0', kMostBytes);
     std::vector<std::string> names;
-    while (fields.next_line_of_values()) names.push_back(fields.text());  // focal lengths may follow
+    while (fields.next_line_of_values()) names.push_back(name_of(fields.rest()));
     return names;
 }
 
@@ -62,7 +85,7 @@ void read_point(FieldReader &fields, Reconstruction &found) {
         own.point = static_cast<uint32_t>(found.points.size());
         own.image = fields.whole<uint32_t>();
         if (own.image >= found.images.size()) fields.fail("it names a camera that is not there");
-        own.feature = fields.whole<uint32_t>();
+        own.feature = static_cast<uint32_t>(fields.whole<int32_t>());  // -1 where it has no number
         own.xy[0] = static_cast<float>(fields.number());
         own.xy[1] = -static_cast<float>(fields.number());
         if (found.observations.size() == most_observations) fields.fail("it has one observation too many");
@@ -85,6 +108,8 @@ Reconstruction read_bundler(const std::string &path) {
     const std::string list = list_beside(path);
     for (const std::string &name : read_list(list)) found.images.push_back({name, 0, false, {}});
     FieldReader fields(path, '\0', kMostBytes);
+    if (!fields.next_line() || fields.rest() != kHeader + std::string(" v0.3"))
+        fields.fail("it is not of version 0.3, which has the places of the features");
     if (!fields.next_line_of_values()) fields.fail("the number of cameras is missing");
     const auto cameras = fields.whole<uint32_t>(), points = fields.whole<uint32_t>();
     if (cameras != found.images.size())

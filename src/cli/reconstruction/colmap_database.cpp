@@ -1,9 +1,11 @@
 // COLMAP's database: features and verified matches (two_view_geometries) of its images.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <map>
 #include <memory>
+#include <new>
 #include <numeric>
 
 #include <sqlite3.h>
@@ -19,7 +21,9 @@ namespace {
 
 constexpr int64_t kPairBase = 2147483647;     // pair_id = kPairBase * smaller image_id + larger image_id
 constexpr uint64_t kMostFeatures = 1u << 30;  // of all images
-constexpr int kFirstVerified = 2, kLastVerified = 6, kMultiple = 8;  // TwoViewGeometry's configurations
+// TwoViewGeometry's configurations that are verified: all but undefined, degenerate (0, 1) and watermark (7).
+constexpr const char *kVerified = "2, 3, 4, 5, 6, 8, 9";
+constexpr int kWait_ms = 1000;  // for a program that writes to it
 
 // The rows that one query finds.
 class Rows {
@@ -50,9 +54,18 @@ public:
 
 private:
     void check(bool is_good) const {
-        if (!is_good)
-            throw Failure(ExitCode::unreadable, path_ + ": cannot be read as a COLMAP database ("
-                                                    + sqlite3_errmsg(database_) + "); give an intact copy");
+        if (is_good) return;
+        const int code = sqlite3_errcode(database_) & 0xFF;
+        if (code == SQLITE_NOMEM) throw std::bad_alloc();
+        if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
+            throw Failure(ExitCode::unreadable,
+                          path_ + ": another program writes to it; wait until that has ended, or give a copy");
+        if (code == SQLITE_CANTOPEN && path_exists(path_ + "-wal"))
+            throw Failure(ExitCode::unreadable, path_ + ": its changes in " + path_
+                                                    + "-wal cannot be read here; copy both to a folder that can be "
+                                                      "written to");
+        throw Failure(ExitCode::unreadable, path_ + ": cannot be read as a COLMAP database ("
+                                                + sqlite3_errmsg(database_) + "); give an intact copy");
     }
 
     sqlite3 *database_;
@@ -65,13 +78,35 @@ struct Close {
 };
 using Database = std::unique_ptr<sqlite3, Close>;
 
-// Only read: a database that is still written to is left alone.
+// COLMAP leaves its databases in the mode of a write-ahead log, in which SQLite writes two files beside even what it
+// only reads. Where there is no such log nobody has the file open, and SQLite may take it as one that does not change.
+bool is_at_rest(const std::string &path) {
+    constexpr size_t write_version = 18;  // byte of the header
+    const std::string head = read_head(path, write_version + 1);
+    return head.size() > write_version && head[write_version] == 2 && !path_exists(path + "-wal");
+}
+
+std::string address_of(const std::string &path) {
+    std::string address = "file://";
+    for (const char c : absolute_path(path))
+        address += std::isalnum(static_cast<unsigned char>(c)) || c == '/'
+                       ? std::string(1, c)
+                       : format("%%%02X", unsigned(static_cast<unsigned char>(c)));
+    return address + "?immutable=1";
+}
+
+// Only read, all of it as it is at one moment: a database that is still written to is left alone.
 Database open_database(const std::string &path) {
     sqlite3 *opened = nullptr;
-    const int code = sqlite3_open_v2(path.c_str(), &opened, SQLITE_OPEN_READONLY, nullptr);
+    const int code = is_at_rest(path) ? sqlite3_open_v2(address_of(path).c_str(), &opened,
+                                                        SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr)
+                                      : sqlite3_open_v2(path.c_str(), &opened, SQLITE_OPEN_READONLY, nullptr);
     Database database(opened);
     if (code != SQLITE_OK)
         throw Failure(ExitCode::unreadable, path + ": cannot be opened; give a file that can be read");
+    sqlite3_busy_timeout(opened, kWait_ms);
+    sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    Rows(opened, path, "BEGIN").next();
     return database;
 }
 
@@ -103,7 +138,8 @@ void read_images(Content &content) {
         if (width < 1 || height < 1 || width > most_image_side || height > most_image_side)
             fail_damaged(content.path,
                          "has a camera of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
-        camera_of[cameras.whole(0)] = static_cast<uint32_t>(content.found.cameras.size());
+        if (!camera_of.emplace(cameras.whole(0), static_cast<uint32_t>(content.found.cameras.size())).second)
+            fail_damaged(content.path, "has two cameras of one number");
         content.found.cameras.push_back({static_cast<uint32_t>(width), static_cast<uint32_t>(height)});
     }
     Rows images(content.database.get(), content.path, "SELECT image_id, name, camera_id FROM images ORDER BY name");
@@ -111,7 +147,8 @@ void read_images(Content &content) {
         const auto camera = camera_of.find(images.whole(2));
         if (camera == camera_of.end()) fail_damaged(content.path, "has an image without a camera");
         if (content.found.images.size() == most_images) fail_damaged(content.path, "has too many images");
-        content.image_of[images.whole(0)] = static_cast<uint32_t>(content.found.images.size());
+        if (!content.image_of.emplace(images.whole(0), static_cast<uint32_t>(content.found.images.size())).second)
+            fail_damaged(content.path, "has two images of one number");
         ReconstructionImage image;
         image.name = images.text(1), image.camera = camera->second;
         content.found.images.push_back(image);
@@ -144,14 +181,23 @@ void check_table(const std::string &path, int64_t rows, int64_t columns, size_t 
         fail_damaged(path, std::string("has ") + what + " that are cut off");
 }
 
+// What the pages of a file can hold; those of its log may come on top.
+uint64_t most_bytes(const std::string &path) { return file_bytes(path) + file_bytes(path + "-wal"); }
+
 void count_features(Content &content) {
     std::vector<uint64_t> count(content.found.images.size());
+    std::vector<bool> is_counted(count.size());
+    uint64_t left = most_bytes(content.path);
     Rows rows(content.database.get(), content.path, "SELECT image_id, rows, cols, length(data) FROM keypoints");
     while (rows.next()) {
         check_table(content.path, rows.whole(1), rows.whole(2), static_cast<size_t>(rows.whole(3)), "keypoints");
         if (rows.whole(2) != 2 && rows.whole(2) != 4 && rows.whole(2) != 6 && rows.whole(1) > 0)
             fail_damaged(content.path, "has keypoints of " + std::to_string(rows.whole(2)) + " columns");
-        count[content.image_at(rows.whole(0))] = static_cast<uint64_t>(rows.whole(1));
+        const uint32_t image = content.image_at(rows.whole(0));
+        if (is_counted[image]) fail_damaged(content.path, "has the keypoints of an image twice");
+        const auto bytes = static_cast<uint64_t>(rows.whole(3));
+        if (bytes > left) fail_damaged(content.path, "is too short for its keypoints");
+        is_counted[image] = true, count[image] = static_cast<uint64_t>(rows.whole(1)), left -= bytes;
     }
     content.first_feature.assign(1, 0);
     for (const uint64_t own : count) content.first_feature.push_back(content.first_feature.back() + own);
@@ -179,9 +225,8 @@ private:
 Joined join_matches(const Content &content) {
     Joined joined(content.first_feature.back());
     Rows rows(content.database.get(), content.path,
-              format("SELECT pair_id, rows, cols, data FROM two_view_geometries WHERE rows > 0 AND (config BETWEEN %d "
-                     "AND %d OR config = %d)",
-                     kFirstVerified, kLastVerified, kMultiple));
+              format("SELECT pair_id, rows, cols, data FROM two_view_geometries WHERE rows > 0 AND config IN (%s)",
+                     kVerified));
     while (rows.next()) {
         const int64_t id = rows.whole(0);
         const uint32_t image[2] = {content.image_at(id / kPairBase), content.image_at(id % kPairBase)};
@@ -204,6 +249,15 @@ Joined join_matches(const Content &content) {
     return joined;
 }
 
+// The keypoints of a row of image_id, cols, data, which count_features has seen.
+Keypoints keypoints_of(const Rows &rows, const Content &content) {
+    size_t bytes = 0;
+    const Keypoints keypoints{rows.bytes(2, bytes), static_cast<size_t>(rows.whole(1))};
+    const uint64_t count = content.feature_count(content.image_at(rows.whole(0)));
+    check_table(content.path, static_cast<int64_t>(count), rows.whole(1), bytes, "keypoints");
+    return keypoints;
+}
+
 // Observations of every feature that a match joins to another, the points numbered by their first feature.
 void take_tracks(Content &content, Joined joined) {
     const size_t count = content.first_feature.back();
@@ -213,9 +267,8 @@ void take_tracks(Content &content, Joined joined) {
     Rows rows(content.database.get(), content.path, "SELECT image_id, cols, data FROM keypoints");
     while (rows.next()) {
         const uint32_t image = content.image_at(rows.whole(0));
-        size_t bytes = 0;
-        const Keypoints keypoints{rows.bytes(2, bytes), static_cast<size_t>(rows.whole(1))};
-        content.found.has_rotations = keypoints.columns > 2;
+        const Keypoints keypoints = keypoints_of(rows, content);
+        content.found.has_rotations = content.found.has_rotations || keypoints.columns > 2;
         for (uint64_t n = content.first_feature[image]; n < content.first_feature[image + 1]; n++) {
             if (!is_matched[n]) continue;
             if (content.found.observations.size() == most_observations)
@@ -238,8 +291,10 @@ Content open_content(const std::string &path) {
 
 }  // namespace
 
+bool is_database(const std::string &path) { return is_regular_file(path) && read_head(path, 15) == "SQLite format 3"; }
+
 bool is_colmap_database(const std::string &path) {
-    if (!is_regular_file(path) || read_head(path, 15) != "SQLite format 3") return false;
+    if (!is_database(path)) return false;
     try {
         const Database database = open_database(path);
         Rows tables(database.get(), path,
@@ -247,7 +302,7 @@ bool is_colmap_database(const std::string &path) {
                     "'keypoints', 'two_view_geometries')");
         return tables.next() && tables.whole(0) == 4;
     } catch (const Failure &) {
-        return false;
+        return true;  // perhaps: reading it says what is wrong
     }
 }
 
@@ -274,8 +329,7 @@ bool take_shapes(const std::string &database, Reconstruction &model) {
     Rows rows(content.database.get(), database, "SELECT image_id, cols, data FROM keypoints");
     bool has_shapes = false;
     while (rows.next()) {
-        size_t bytes = 0;
-        const Keypoints keypoints{rows.bytes(2, bytes), static_cast<size_t>(rows.whole(1))};
+        const Keypoints keypoints = keypoints_of(rows, content);
         has_shapes = has_shapes || keypoints.columns > 2;
         for (const size_t n : of_image[content.image_at(rows.whole(0))]) {
             TrackObservation feature;

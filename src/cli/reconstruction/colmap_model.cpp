@@ -18,7 +18,7 @@ namespace {
 
 constexpr uint64_t kMostBytes = uint64_t(4) << 30;
 // Parameters of the camera models 0, 1, 2, ... (COLMAP, src/colmap/sensor/models.h).
-constexpr int kParameters[] = {3, 4, 4, 5, 8, 8, 12, 5, 4, 5, 12, 16, 4, 5, 3, 4};
+constexpr int kParameters[] = {3, 4, 4, 5, 8, 8, 12, 5, 4, 5, 12, 16, 4, 5, 3, 4, 6, 2};
 
 [[noreturn]] void fail_damaged(const std::string &file, const std::string &what) {
     throw Failure(ExitCode::unreadable, file + ": " + what + "; give an intact COLMAP model");
@@ -99,6 +99,17 @@ void place(const std::array<double, 4> &q, const std::array<double, 3> &t, Recon
     image.has_centre = is_finite(image.centre);
 }
 
+void add_camera(const std::string &file, uint32_t id, const ReconstructionCamera &camera, Model &model) {
+    if (!model.cameras.emplace(id, camera).second)
+        fail_damaged(file, "has two cameras of the number " + std::to_string(id));
+}
+
+PosedImage &add_image(const std::string &file, uint32_t id, Model &model) {
+    const auto [own, is_new] = model.images.emplace(id, PosedImage());
+    if (!is_new) fail_damaged(file, "has two images of the number " + std::to_string(id));
+    return own->second;
+}
+
 void read_binary_cameras(const std::string &file, Model &model) {
     Bytes bytes(file);
     for (uint64_t left = bytes.next_count(24); left > 0; left--) {
@@ -108,7 +119,7 @@ void read_binary_cameras(const std::string &file, Model &model) {
         if (kind < 0 || kind >= int32_t(std::size(kParameters)))
             fail_damaged(file, "has a camera model of the number " + std::to_string(kind) + ", which is not known");
         bytes.take(sizeof(double) * static_cast<size_t>(kParameters[kind]));
-        model.cameras[id] = camera_of(file, width, height);
+        add_camera(file, id, camera_of(file, width, height), model);
     }
     bytes.demand_end();
 }
@@ -121,7 +132,7 @@ void read_binary_images(const std::string &file, Model &model) {
         std::array<double, 3> t;
         for (double &x : q) x = bytes.next<double>();
         for (double &x : t) x = bytes.next<double>();
-        PosedImage &own = model.images[id];
+        PosedImage &own = add_image(file, id, model);
         own.camera_id = bytes.next<uint32_t>();
         own.image.name = bytes.next_text();
         place(q, t, own.image);
@@ -156,7 +167,7 @@ void read_text_cameras(const std::string &file, Model &model) {
         const auto id = fields.whole<uint32_t>();
         fields.text();  // the name of its model
         const auto width = fields.whole<uint64_t>(), height = fields.whole<uint64_t>();
-        model.cameras[id] = camera_of(file, width, height);
+        add_camera(file, id, camera_of(file, width, height), model);
     }
 }
 
@@ -168,7 +179,7 @@ void read_text_images(const std::string &file, Model &model) {
         std::array<double, 3> t;
         for (double &x : q) x = fields.number();
         for (double &x : t) x = fields.number();
-        PosedImage &own = model.images[id];
+        PosedImage &own = add_image(file, id, model);
         own.camera_id = fields.whole<uint32_t>();
         own.image.name = fields.rest();
         place(q, t, own.image);
@@ -188,7 +199,8 @@ void read_text_points(const std::string &file, const Add &add) {
         fields.text();  // its number
         std::array<double, 3> position;
         for (double &x : position) x = fields.number();
-        for (int n = 0; n < 4; n++) fields.number();  // colour, error
+        for (int n = 0; n < 3; n++) fields.number();  // colour
+        fields.text();                                // error, which may be nan
         std::vector<Sight> sights;
         while (fields.has_more()) {
             const auto image = fields.whole<uint32_t>();
@@ -252,6 +264,7 @@ Reconstruction read_colmap_model(const std::string &folder) {
             if (own == model.images.end() || sight.feature >= own->second.places.size())
                 fail_damaged(points, "names feature " + std::to_string(sight.feature) + " of image "
                                          + std::to_string(sight.image) + ", which is not there");
+            if (found.observations.size() == most_observations) fail_damaged(points, "has too many observations");
             TrackObservation observation;
             observation.point = static_cast<uint32_t>(found.points.size());
             observation.image = image_of.at(sight.image), observation.feature = sight.feature;

@@ -19,7 +19,10 @@ FieldReader::FieldReader(const std::string &file, char separator, uint64_t most_
 }
 
 bool FieldReader::next_line() {
-    if (!std::getline(stream_, line_)) return false;
+    if (!std::getline(stream_, line_)) {
+        if (stream_.bad()) fail("it cannot be read");
+        return false;
+    }
     if (!line_.empty() && line_.back() == '\r') line_.pop_back();
     at_ = 0, number_++;
     skip_blanks();

@@ -60,8 +60,9 @@ std::optional<double> view_angle(const Reconstruction &r, const TrackObservation
         const double x = i.centre[d] - r.points[a.point][d], y = j.centre[d] - r.points[a.point][d];
         dot += x * y, square_a += x * x, square_b += y * y;
     }
-    if (square_a == 0.0 || square_b == 0.0) return {};
-    return std::acos(std::clamp(dot / std::sqrt(square_a * square_b), -1.0, 1.0));
+    const double cosine = dot / (std::sqrt(square_a) * std::sqrt(square_b));
+    if (!std::isfinite(cosine)) return {};  // in one place, or too far
+    return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
 // The pairs of each image that come first.
@@ -131,38 +132,6 @@ std::optional<Map> map_of_shapes(const TrackObservation &from, const TrackObserv
     return scale > 0.0 && std::isfinite(scale) ? std::optional<Map>(map) : std::nullopt;
 }
 
-// The similarity that fits the places of one image to those of another best: its turn and scale; none of fewer than
-// four matches or where all are in one place.
-std::optional<Map> fitted_similarity(const Reconstruction &r, const ObservationPair *first,
-                                     const ObservationPair *last) {
-    const auto count = static_cast<double>(last - first);
-    if (count < 4.0) return {};
-    double mean[2][2] = {};
-    for (const ObservationPair *p = first; p != last; p++)
-        for (int d = 0; d < 2; d++) {
-            mean[0][d] += r.observations[p->first].xy[d] / count;
-            mean[1][d] += r.observations[p->second].xy[d] / count;
-        }
-    double along = 0.0, across = 0.0, spread = 0.0;
-    for (const ObservationPair *p = first; p != last; p++) {
-        const float *from = r.observations[p->first].xy, *to = r.observations[p->second].xy;
-        const double x = from[0] - mean[0][0], y = from[1] - mean[0][1], u = to[0] - mean[1][0], v = to[1] - mean[1][1];
-        along += x * u + y * v, across += x * v - y * u, spread += x * x + y * y;
-    }
-    if (!(spread > 0.0) || !(along * along + across * across > 0.0)) return {};
-    return Map{{{along / spread, -across / spread}, {across / spread, along / spread}}};
-}
-
-// A similarity's turn with the scales of two features, where these are known.
-Map with_scales(Map map, const TrackObservation &from, const TrackObservation &to) {
-    if (!from.has_scale() || !to.has_scale()) return map;
-    const double wanted = double(to.shape[0][0]) / from.shape[0][0], own = std::hypot(map[0][0], map[1][0]);
-    if (!(wanted > 0.0) || !std::isfinite(wanted)) return map;
-    for (auto &row : map)
-        for (double &value : row) value *= wanted / own;
-    return map;
-}
-
 }  // namespace
 
 std::vector<ObservationPair> choose_pairs(const Reconstruction &r, uint32_t of_image, uint32_t seed) {
@@ -172,8 +141,7 @@ std::vector<ObservationPair> choose_pairs(const Reconstruction &r, uint32_t of_i
         const auto angle = view_angle(r, all[a], all[b]);
         const double far =
             angle ? *angle / kUsualAngle : kUsualShare / std::max(1e-6, shares.of(all[a].image, all[b].image));
-        const uint64_t key = (uint64_t{seed} << 32) + all[a].point;
-        const double chance = fraction_of(key * 0x100000001B3ull + link_of(all[a].image, all[b].image));
+        const double chance = fraction_of((uint64_t{seed} << 32) + all[a].point);  // of all pairs of a point
         return -std::log(chance) * (1.0 + far * far);  // by weights, without replacement (Efraimidis and Spirakis 2006)
     };
     Choice choice(r.images.size(), std::max(1u, of_image));
@@ -195,21 +163,14 @@ std::vector<ObservationPair> choose_pairs(const Reconstruction &r, uint32_t of_i
 }
 
 std::vector<lensprof_match> matches_of(const Reconstruction &r, const std::vector<ObservationPair> &pairs) {
-    const auto &all = r.observations;
     std::vector<lensprof_match> matches;
-    for (size_t first = 0, last = 0; first < pairs.size(); first = last) {
-        const auto link = [&](size_t n) { return link_of(all[pairs[n].first].image, all[pairs[n].second].image); };
-        for (last = first; last < pairs.size() && link(last) == link(first);) last++;
-        const auto similarity = fitted_similarity(r, pairs.data() + first, pairs.data() + last);
-        for (size_t n = first; n < last; n++) {
-            const TrackObservation &from = all[pairs[n].first], &to = all[pairs[n].second];
-            lensprof_match match{{from.image, to.image}, {{from.xy[0], from.xy[1]}, {to.xy[0], to.xy[1]}}, {}};
-            std::optional<Map> map = r.has_rotations ? map_of_shapes(from, to) : std::nullopt;
-            if (!map && similarity) map = with_scales(*similarity, from, to);
-            for (size_t row = 0; row < 2 && map; row++)
-                std::copy((*map)[row].begin(), (*map)[row].end(), match.map[row]);
-            matches.push_back(match);
-        }
+    for (const ObservationPair &pair : pairs) {
+        const TrackObservation &from = r.observations[pair.first], &to = r.observations[pair.second];
+        lensprof_match match{{from.image, to.image}, {{from.xy[0], from.xy[1]}, {to.xy[0], to.xy[1]}}, {}};
+        if (r.has_rotations)
+            if (const auto map = map_of_shapes(from, to))
+                for (size_t row = 0; row < 2; row++) std::copy((*map)[row].begin(), (*map)[row].end(), match.map[row]);
+        matches.push_back(match);
     }
     return matches;
 }

@@ -16,13 +16,12 @@ struct ObservationPair {
 
 // About `of_image` pairs of every image, and more where other images choose it. A pair counts 1 / (1 + (a / 15
 // degrees)^2), where a is the angle between the two views at the point; without poses the share of points that the two
-// images have in common takes its place. Pairs are drawn by these weights, the same for one seed. By images, then
-// observations.
+// images have in common takes its place. Points are drawn, and their pairs by these weights, the same for one seed. By
+// images, then observations.
 std::vector<ObservationPair> choose_pairs(const Reconstruction &reconstruction, uint32_t of_image, uint32_t seed);
 
-// The matches that lensprof_sample_matches takes. Coordinates must be px of the stored pictures. The shapes of the
-// features say how surroundings are turned and scaled, as far as they are known, else the similarity that fits the
-// matches of the two images best.
+// The matches that lensprof_sample_matches takes, with the maps of their surroundings where shapes of features say
+// these; else pairs come from the points themselves. Coordinates must be px of the stored pictures.
 std::vector<lensprof_match> matches_of(const Reconstruction &reconstruction, const std::vector<ObservationPair> &pairs);
 
 }  // namespace lensprof

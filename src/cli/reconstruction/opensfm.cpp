@@ -26,8 +26,12 @@ constexpr const char *kHeader = "OPENSFM_TRACKS_VERSION_v";
 // Version 0 has no size of the feature, 1 has one, and 2 segmentation and instance after the colour.
 int version_of(const std::string &path) {
     const std::string head = read_head(path, 4096);
-    if (head.compare(0, std::strlen(kHeader), kHeader) == 0) return head[std::strlen(kHeader)] - '0';
-    return 0;
+    if (head.compare(0, std::strlen(kHeader), kHeader) != 0) return 0;
+    const std::string number = head.substr(std::strlen(kHeader), head.find_first_of("\r\n") - std::strlen(kHeader));
+    if (number != "0" && number != "1" && number != "2")
+        throw Failure(ExitCode::unreadable, path + ": has tracks of version '" + short_name(number)
+                                                + "', which is not known; write version 2");
+    return number[0] - '0';
 }
 
 struct Tracks {
@@ -52,10 +56,8 @@ std::array<uint8_t, 3> colour_of(FieldReader &fields) {
 void read_tracks(const std::string &path, Tracks &tracks) {
     const int version = version_of(path);
     FieldReader fields(path, '\t', kMostBytes);
-    if (version > 2 || version < 0)
-        throw Failure(ExitCode::unreadable, path + ": is of a version of tracks that is not known; write version 2");
     Reconstruction &found = tracks.found;
-    bool is_first = version > 0;
+    bool is_first = read_head(path, std::strlen(kHeader)) == kHeader;
     while (fields.next_line()) {
         if (std::exchange(is_first, false) || !fields.has_more()) continue;
         TrackObservation own;
@@ -66,12 +68,12 @@ void read_tracks(const std::string &path, Tracks &tracks) {
             found.images.push_back({image, 0, false, {}});
         }
         own.point = number_of(fields.text(), tracks.point_of);
-        own.feature = fields.whole<uint32_t>();
+        own.feature = static_cast<uint32_t>(fields.whole<int32_t>());
         for (float &x : own.xy) {
             x = static_cast<float>(fields.number());
             if (std::fabs(x) > 0.5001f) fields.fail("its place is outside the picture");
         }
-        if (version > 0) own.shape[0][0] = own.shape[1][1] = static_cast<float>(fields.number());
+        if (version > 0) own.shape[0][0] = own.shape[1][1] = std::max(0.0f, static_cast<float>(fields.number()));
         own.colour = colour_of(fields);
         if (found.observations.size() == most_observations) fields.fail("it has one observation too many");
         found.observations.push_back(own);
@@ -79,7 +81,7 @@ void read_tracks(const std::string &path, Tracks &tracks) {
 }
 
 // The centre -R^T t, by the angle-axis vector of the world-to-camera rotation (Rodrigues).
-void place(const Json &shot, ReconstructionImage &image) {
+void place(const SceneJson &shot, ReconstructionImage &image) {
     std::array<double, 3> v = vector_at(shot, "rotation");
     const std::array<double, 3> t = vector_at(shot, "translation");
     for (double &x : v) x = -x;
@@ -94,7 +96,7 @@ void place(const Json &shot, ReconstructionImage &image) {
     image.has_centre = is_finite(image.centre);
 }
 
-void take_sizes(const Json &model, std::map<std::string, uint32_t> &camera_of, Reconstruction &found) {
+void take_sizes(const SceneJson &model, std::map<std::string, uint32_t> &camera_of, Reconstruction &found) {
     for (const auto &[name, camera] : object_at(model, "cameras").items()) {
         const int64_t width = whole_at(camera, "width"), height = whole_at(camera, "height");
         if (width < 1 || height < 1 || width > most_image_side || height > most_image_side) continue;
@@ -105,13 +107,13 @@ void take_sizes(const Json &model, std::map<std::string, uint32_t> &camera_of, R
 
 // Centres and positions are of the model with most shots: each has a scene of its own.
 void take_models(const std::string &path, Tracks &tracks) {
-    const Json all = read_json_file(path);
+    const SceneJson all = read_json_file(path);
     if (!all.is_array())
         throw Failure(ExitCode::unreadable,
                       path + ": is not a list of reconstructions; give OpenSfM's reconstruction.json");
     std::map<std::string, uint32_t> camera_of;
-    const Json *largest = nullptr;
-    for (const Json &model : all) {
+    const SceneJson *largest = nullptr;
+    for (const SceneJson &model : all) {
         take_sizes(model, camera_of, tracks.found);
         for (const auto &[name, shot] : object_at(model, "shots").items()) {
             const auto image = tracks.image_of.find(name);
@@ -155,7 +157,7 @@ Reconstruction read_opensfm(const std::string &path) {
     if (is_regular_file(model)) take_models(model, tracks);
     settle_tracks(found);
     sort_images(found);
-    return std::move(found);
+    return std::move(tracks.found);
 }
 
 }  // namespace lensprof

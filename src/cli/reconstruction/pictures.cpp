@@ -38,7 +38,7 @@ size_t count_found(const Reconstruction &r, const std::string &folder) {
 
 // The size as EXIF's orientation turns it.
 ReconstructionCamera upright_size(const ReconstructionCamera &stored, uint16_t orientation) {
-    return orientation >= 5 ? ReconstructionCamera{stored.height, stored.width} : stored;
+    return orientation >= 5 && orientation <= 8 ? ReconstructionCamera{stored.height, stored.width} : stored;
 }
 
 // From px of the upright picture to those of the stored one, by EXIF's orientation.

@@ -8,8 +8,10 @@
 
 namespace lensprof {
 
-// COLMAP's database.db: points are what its verified matches join. True of a file that is one.
+// COLMAP's database.db: points are what its verified matches join. True of a file that is one, or of a database that
+// cannot be read.
 bool is_colmap_database(const std::string &path);
+bool is_database(const std::string &path);  // of SQLite, COLMAP's or not
 Reconstruction read_colmap_database(const std::string &path);
 
 // A folder of cameras, images and points3D, .bin or .txt. Where `database` is not empty, shapes of features are taken

@@ -34,8 +34,6 @@ struct TrackObservation {
     float shape[2][2] = {};  // from the unit circle to the feature, px; a multiple of the identity where only its
                              // scale is known; all 0: not known
     std::array<uint8_t, 3> colour{};  // red, green, blue, where has_colours
-
-    bool has_scale() const { return shape[0][0] != 0.0f || shape[0][1] != 0.0f; }
 };
 
 struct Reconstruction {
@@ -56,7 +54,8 @@ struct Reconstruction {
 };
 
 // Sorts observations by point and image, leaves points out that an image sees twice, or that fewer than two see, and
-// numbers the others from 0 on. Failure (unreadable) that names the path where nothing is left.
+// numbers the others from 0 on. Failure that names the path: (unreadable) for images without a name of their own and
+// for places that are no numbers, (not_usable) where nothing is left.
 void settle_tracks(Reconstruction &reconstruction);
 
 // Numbers images in the order of their names, which is often that of the camera's way.

@@ -72,16 +72,20 @@ Reconstruction read_model(const std::string &folder, Streams &streams) {
 }  // namespace
 
 bool is_reconstruction(const std::string &path) {
-    if (!is_folder(path)) return format_of(path) != nullptr;
+    if (!is_folder(path)) return format_of(path) != nullptr || is_database(path);
     size_t models = 0;
     return !model_folder(path, models).empty() || !file_in(path).empty();
 }
 
 Reconstruction read_reconstruction(const std::string &path, Streams &streams) {
-    if (!is_folder(path)) return format_of(path)->read(path);
     size_t models = 0;
-    const std::string model = model_folder(path, models);
-    if (model.empty()) return format_of(file_in(path))->read(file_in(path));
+    const bool is_in_folder = is_folder(path);
+    const std::string model = is_in_folder ? model_folder(path, models) : std::string();
+    if (model.empty()) {
+        const std::string file = is_in_folder ? file_in(path) : path;
+        const Format *format = format_of(file);
+        return format ? format->read(file) : read_colmap_database(file);  // which says what it lacks
+    }
     if (models > 1)
         note(streams, path + ": has " + std::to_string(models) + " models, and the largest is read, " + model
                           + "; database.db itself has all images");

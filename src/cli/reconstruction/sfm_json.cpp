@@ -28,26 +28,29 @@ void add_view(const std::string &id, const std::string &name, int64_t width, int
     Reconstruction &found = views.found;
     const std::string &path = found.path;
     if (id.empty() || name.empty()) fail_damaged(path, "has a view without a number or without a name");
-    if (width < 1 || height < 1 || width > most_image_side || height > most_image_side)
-        fail_damaged(path, name + " has no size");
+    if (width < 0 || height < 0 || width > most_image_side || height > most_image_side || !width != !height)
+        fail_damaged(path, short_name(name) + " has no size that pictures have");
     if (!views.image_of.emplace(id, static_cast<uint32_t>(found.images.size())).second)
-        fail_damaged(path, "has two views of the number " + id);
+        fail_damaged(path, "has two views of the number " + short_name(id));
     found.images.push_back({name, static_cast<uint32_t>(found.cameras.size()), false, {}});
     found.cameras.push_back({static_cast<uint32_t>(width), static_cast<uint32_t>(height)});
 }
 
-void add_observation(const std::string &view, int64_t feature, const Json &place, double scale, Views &views) {
+// px; 0 where the file does not say it.
+int64_t side_of(const SceneJson &view, const char *name) { return view.contains(name) ? whole_at(view, name) : 0; }
+
+void add_observation(const std::string &view, int64_t feature, const SceneJson &place, double scale, Views &views) {
     Reconstruction &found = views.found;
     const auto image = views.image_of.find(view);
     if (image == views.image_of.end())
-        fail_damaged(found.path, "has an observation in view " + view + ", which is not there");
+        fail_damaged(found.path, "has an observation in view " + short_name(view) + ", which is not there");
     TrackObservation own;
     own.point = static_cast<uint32_t>(found.points.size()), own.image = image->second;
     own.feature = feature < 0 ? 0 : static_cast<uint32_t>(feature);
     for (size_t d = 0; d < 2; d++) {
         const double x = d < place.size() ? real_of(place[d]) : NAN;
         if (!std::isfinite(x)) fail_damaged(found.path, "has an observation without a place");
-        own.xy[d] = static_cast<float>(x - 0.5);  // the first pixel's middle is (.5, .5)
+        own.xy[d] = static_cast<float>(x);  // as VLFeat's SIFT gives it: the first pixel's middle is (0, 0)
     }
     if (scale > 0.0) own.shape[0][0] = own.shape[1][1] = static_cast<float>(scale);
     found.observations.push_back(own);
@@ -62,7 +65,7 @@ void place_images(Views &views) {
     }
 }
 
-Reconstruction finished(Views &views, const Json &structure) {
+Reconstruction finished(Views &views, const SceneJson &structure) {
     if (structure.empty())
         fail_damaged(views.found.path, "holds no structure, so that no points say where images show the same");
     place_images(views);
@@ -92,21 +95,21 @@ bool is_alicevision(const std::string &path) {
 }
 
 Reconstruction read_alicevision(const std::string &path) {
-    const Json all = read_json_file(path);
+    const SceneJson all = read_json_file(path);
     Views views;
     views.found.kind = "AliceVision scene", views.found.path = path;
-    for (const Json &view : list_at(all, "views")) {
+    for (const SceneJson &view : list_at(all, "views")) {
         const std::string id = text_at(view, "viewId");
-        add_view(id, text_at(view, "path"), whole_at(view, "width"), whole_at(view, "height"), views);
+        add_view(id, text_at(view, "path"), side_of(view, "width"), side_of(view, "height"), views);
         views.pose_of[id] = text_at(view, "poseId");
     }
-    for (const Json &pose : list_at(all, "poses"))
+    for (const SceneJson &pose : list_at(all, "poses"))
         views.centre_of[text_at(pose, "poseId")] = vector_at(object_at(object_at(pose, "pose"), "transform"), "center");
-    const Json &structure = list_at(all, "structure");
-    for (const Json &point : structure) {
-        for (const Json &own : list_at(point, "observations"))
+    const SceneJson &structure = list_at(all, "structure");
+    for (const SceneJson &point : structure) {
+        for (const SceneJson &own : list_at(point, "observations"))
             add_observation(text_at(own, "observationId"), whole_at(own, "featureId"), list_at(own, "x"),
-                            own.contains("scale") ? real_of(own["scale"]) : 0.0, views);
+                            own.is_object() && own.contains("scale") ? real_of(own["scale"]) : 0.0, views);
         views.found.points.push_back(vector_at(point, "X"));
     }
     return finished(views, structure);
@@ -118,23 +121,26 @@ bool is_openmvg(const std::string &path) {
 }
 
 Reconstruction read_openmvg(const std::string &path) {
-    const Json all = read_json_file(path);
+    const SceneJson all = read_json_file(path);
     Views views;
     views.found.kind = "OpenMVG scene", views.found.path = path;
     const std::string root = text_at(all, "root_path");
-    for (const Json &entry : list_at(all, "views")) {
-        const Json &view = object_at(object_at(object_at(entry, "value"), "ptr_wrapper"), "data");
+    for (const SceneJson &entry : list_at(all, "views")) {
+        const SceneJson &view = object_at(object_at(object_at(entry, "value"), "ptr_wrapper"), "data");
         const std::string id = text_at(view, "id_view");
-        const auto name = std::filesystem::path(text_at(view, "local_path")) / text_at(view, "filename");
-        add_view(id, name.string(), whole_at(view, "width"), whole_at(view, "height"), views);
+        // Below the folder of all, even where it begins with a slash.
+        std::string folder = text_at(view, "local_path");
+        if (!root.empty()) folder.erase(0, folder.find_first_not_of('/'));
+        const auto name = std::filesystem::path(folder) / text_at(view, "filename");
+        add_view(id, name.string(), side_of(view, "width"), side_of(view, "height"), views);
         views.pose_of[id] = text_at(view, "id_pose");
     }
-    for (const Json &pose : list_at(all, "extrinsics"))
+    for (const SceneJson &pose : list_at(all, "extrinsics"))
         views.centre_of[text_at(pose, "key")] = vector_at(object_at(pose, "value"), "center");
-    const Json &structure = list_at(all, "structure");
-    for (const Json &point : structure) {
-        const Json &value = object_at(point, "value");
-        for (const Json &own : list_at(value, "observations"))
+    const SceneJson &structure = list_at(all, "structure");
+    for (const SceneJson &point : structure) {
+        const SceneJson &value = object_at(point, "value");
+        for (const SceneJson &own : list_at(value, "observations"))
             add_observation(text_at(own, "key"), whole_at(object_at(own, "value"), "id_feat"),
                             list_at(object_at(own, "value"), "x"), 0.0, views);
         views.found.points.push_back(vector_at(value, "X"));

@@ -1,14 +1,38 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <tuple>
+#include <unordered_set>
 
 #include "cli/program/error.hpp"
+#include "cli/program/paths.hpp"
 #include "cli/reconstruction/reconstruction.hpp"
 
 namespace lensprof {
 
+namespace {
+
+// Names that can be those of files, each once, and places that are numbers.
+void check(const Reconstruction &r) {
+    const auto fail = [&](const std::string &what) {
+        throw Failure(ExitCode::unreadable, r.path + ": " + what + "; give an intact file");
+    };
+    if (r.images.size() > most_images) fail("has " + std::to_string(r.images.size()) + " images, which are too many");
+    std::unordered_set<std::string> names;
+    for (const ReconstructionImage &image : r.images) {
+        if (image.name.empty() || image.name.find('\0') != std::string::npos) fail("has an image without a name");
+        if (!names.insert(image.name).second) fail("has the image " + short_name(image.name) + " twice");
+    }
+    for (const TrackObservation &own : r.observations)
+        if (!std::isfinite(own.xy[0]) || !std::isfinite(own.xy[1]))
+            fail("has a feature in " + short_name(r.images[own.image].name) + " whose place is no number");
+}
+
+}  // namespace
+
 void settle_tracks(Reconstruction &reconstruction) {
+    check(reconstruction);
     auto &all = reconstruction.observations;
     std::stable_sort(all.begin(), all.end(), [](const TrackObservation &a, const TrackObservation &b) {
         return std::tuple(a.point, a.image) < std::tuple(b.point, b.image);

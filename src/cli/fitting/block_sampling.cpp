@@ -1,0 +1,213 @@
+#include "cli/fitting/block_sampling.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <set>
+
+#include "cli/program/interrupt.hpp"
+#include "cli/program/parallel.hpp"
+
+namespace lensprof {
+namespace {
+
+using ImagePair = std::pair<uint32_t, uint32_t>;
+
+ImagePair images_of(const lensprof_match &match) { return std::minmax(match.image[0], match.image[1]); }
+
+// Images in an order in which those that share many matches are near each other: breadth first, along the links with
+// most matches.
+std::vector<uint32_t> order_by_links(uint32_t count, const std::map<ImagePair, uint32_t> &matches_of_link) {
+    std::vector<std::vector<std::pair<uint32_t, uint32_t>>> neighbours(count);
+    for (const auto &[link, matches] : matches_of_link) {
+        neighbours[link.first].push_back({matches, link.second});
+        neighbours[link.second].push_back({matches, link.first});
+    }
+    for (auto &own : neighbours)
+        std::sort(own.begin(), own.end(), [](const auto &a, const auto &b) {
+            return a.first != b.first ? a.first > b.first : a.second < b.second;
+        });
+    std::vector<uint32_t> order;
+    std::vector<bool> is_met(count);
+    for (uint32_t start = 0; start < count; start++) {
+        if (is_met[start]) continue;
+        std::deque<uint32_t> next{start};
+        for (is_met[start] = true; !next.empty(); next.pop_front()) {
+            order.push_back(next.front());
+            for (const auto &neighbour : neighbours[next.front()])
+                if (!is_met[neighbour.second]) is_met[neighbour.second] = true, next.push_back(neighbour.second);
+        }
+    }
+    return order;
+}
+
+struct Block {
+    std::vector<uint32_t> images;
+    std::vector<SamplePicture> pictures;  // read when they are needed
+};
+
+// The matches between two blocks, or within one, with the block's own numbers of the images.
+struct BlockMatches {
+    std::vector<uint32_t> images;  // of the project
+    std::vector<lensprof_sample_image> views;
+    std::vector<lensprof_match> matches;
+    size_t links = 0;
+};
+
+class BlockSampler {
+public:
+    BlockSampler(const Project &project, const lensprof_sample_options &options, uint32_t max_side,
+                 uint64_t block_bytes, Progress &progress);
+
+    void run();
+
+    std::vector<lensprof_pair> pairs;
+    std::vector<lensprof_link> links;
+    std::vector<uint32_t> points;
+    uint32_t channels = 1;
+
+private:
+    uint64_t bytes_of(uint32_t image) const;
+    void read(Block &block);
+    // Of two blocks, which may be one, and the matches of these numbers.
+    BlockMatches matches_between(Block &a, Block &b, const std::vector<uint32_t> &numbers) const;
+    void sample(Block &a, Block &b, const std::vector<uint32_t> &numbers);
+
+    const Project &project_;
+    const lensprof_sample_options options_;
+    const uint32_t max_side_;
+    Progress &progress_;
+    std::map<ImagePair, uint32_t> matches_of_link_;
+    std::vector<Block> blocks_;
+    std::vector<uint32_t> block_of_;  // of each image
+    std::string nothing_;             // why a sampling found nothing
+};
+
+BlockSampler::BlockSampler(const Project &project, const lensprof_sample_options &options, uint32_t max_side,
+                           uint64_t block_bytes, Progress &progress)
+    : project_(project), options_(options), max_side_(max_side), progress_(progress) {
+    for (const lensprof_match &match : project.matches) matches_of_link_[images_of(match)]++;
+    const auto count = static_cast<uint32_t>(project.images.size());
+    block_of_.resize(count);
+    uint64_t bytes = block_bytes;  // so that the first image begins a block
+    for (const uint32_t image : order_by_links(count, matches_of_link_)) {
+        const uint64_t own = bytes_of(image);
+        if (bytes + own > block_bytes) blocks_.emplace_back(), bytes = 0;
+        bytes += own;
+        block_of_[image] = static_cast<uint32_t>(blocks_.size() - 1);
+        blocks_.back().images.push_back(image);
+    }
+}
+
+uint64_t BlockSampler::bytes_of(uint32_t image) const {
+    ReadOptions options;
+    options.max_side = max_side_;
+    const Picture header = read_header(project_.files[image], options);
+    return header.row_bytes * header.height;
+}
+
+void BlockSampler::read(Block &block) {
+    block.pictures.resize(block.images.size());
+    for_each_parallel(static_cast<uint32_t>(block.images.size()), "reading pictures", progress_, [&](uint32_t n) {
+        block.pictures[n] = read_sample_picture(project_, block.images[n], max_side_);
+    });
+    channels = std::max(channels, channel_count(block.pictures));
+}
+
+BlockMatches BlockSampler::matches_between(Block &a, Block &b, const std::vector<uint32_t> &numbers) const {
+    BlockMatches own;
+    std::vector<uint32_t> number(project_.images.size());
+    for (Block *block : {&a, &b}) {
+        for (size_t n = 0; n < block->images.size(); n++) {
+            number[block->images[n]] = static_cast<uint32_t>(own.images.size());
+            own.images.push_back(block->images[n]);
+            own.views.push_back(sample_image(project_, block->images[n], block->pictures[n], {}));
+        }
+        if (&a == &b) break;
+    }
+    std::set<ImagePair> own_links;
+    for (const uint32_t m : numbers) {
+        own.matches.push_back(project_.matches[m]);
+        own_links.insert(images_of(project_.matches[m]));
+        for (uint32_t &image : own.matches.back().image) image = number[image];
+    }
+    own.links = own_links.size();
+    return own;
+}
+
+void BlockSampler::sample(Block &a, Block &b, const std::vector<uint32_t> &numbers) {
+    const BlockMatches own = matches_between(a, b, numbers);
+    lensprof_sample_options options = options_;
+    const size_t wanted = options.pairs ? options.pairs : std::max<size_t>(2000, 300 * project_.images.size());
+    options.pairs = static_cast<uint32_t>(std::max<size_t>(1, wanted * own.links / matches_of_link_.size()));
+    std::vector<lensprof_pair> found(options.pairs);
+    std::vector<uint32_t> match_of_pair(options.pairs);
+    std::vector<lensprof_link> own_links(own.links);
+    uint32_t count = 0, link_count = 0;
+    options.match_of_pair = match_of_pair.data();
+    options.links = own_links.data(), options.link_capacity = static_cast<uint32_t>(own.links);
+    options.link_count = &link_count;
+    lensprof_error error{};
+    const lensprof_status status =
+        lensprof_sample_matches(&options, own.views.data(), static_cast<uint32_t>(own.views.size()), own.matches.data(),
+                                static_cast<uint32_t>(own.matches.size()), found.data(), options.pairs, &count, &error);
+    if (status == LENSPROF_ERROR_NO_SAMPLES || status == LENSPROF_ERROR_NO_OVERLAP) {
+        nothing_ = error.text;
+        return;
+    }
+    std::vector<std::string> names;
+    for (const uint32_t image : own.images) names.push_back(project_.names[image]);
+    check_named(status, project_.path, error, LENSPROF_ITEM_IMAGE, names);
+    for (uint32_t p = 0; p < count; p++) {
+        for (uint32_t &image : found[p].image) image = own.images[image];
+        pairs.push_back(found[p]);
+        points.push_back(project_.match_points[numbers[match_of_pair[p]]]);
+    }
+    own_links.resize(std::min<size_t>(own_links.size(), link_count));
+    for (lensprof_link &link : own_links) {
+        const auto [first, second] = std::minmax(own.images[link.image[0]], own.images[link.image[1]]);
+        links.push_back({{first, second}, link.state, link.pairs});
+    }
+}
+
+void BlockSampler::run() {
+    std::map<ImagePair, std::vector<uint32_t>> matches_of_blocks;
+    for (uint32_t m = 0; m < project_.matches.size(); m++) {
+        const uint32_t *image = project_.matches[m].image;
+        matches_of_blocks[std::minmax(block_of_[image[0]], block_of_[image[1]])].push_back(m);
+    }
+    size_t done = 0;
+    uint32_t held = UINT32_MAX;  // the block that is kept for what is between it and later ones
+    for (const auto &[numbers, matches] : matches_of_blocks) {
+        stop_if_interrupted();
+        Block &a = blocks_[numbers.first], &b = blocks_[numbers.second];
+        if (held != numbers.first) {
+            if (held != UINT32_MAX) blocks_[held].pictures.clear();
+            read(a);
+            held = numbers.first;
+        }
+        if (&a != &b) read(b);
+        sample(a, b, matches);
+        if (&a != &b) b.pictures.clear();
+        progress_.update("sampling", double(++done) / double(matches_of_blocks.size()));
+    }
+    if (pairs.empty()) throw Failure(ExitCode::not_usable, project_.path + ": " + nothing_, LENSPROF_REASON_FEW_PAIRS);
+    std::sort(links.begin(), links.end(), [](const lensprof_link &a, const lensprof_link &b) {
+        return std::pair(a.image[0], a.image[1]) < std::pair(b.image[0], b.image[1]);
+    });
+}
+
+}  // namespace
+
+std::vector<lensprof_pair> sample_in_blocks(const Project &project, const lensprof_sample_options &options,
+                                            uint32_t max_side, uint64_t block_bytes, Progress &progress,
+                                            std::vector<lensprof_link> &links, std::vector<uint32_t> &points,
+                                            uint32_t *channels) {
+    BlockSampler sampler(project, options, max_side, block_bytes, progress);
+    sampler.run();
+    links = std::move(sampler.links), points = std::move(sampler.points);
+    *channels = sampler.channels;
+    return std::move(sampler.pairs);
+}
+
+}  // namespace lensprof

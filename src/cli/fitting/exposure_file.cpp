@@ -1,0 +1,254 @@
+#include "cli/fitting/exposure_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program/format.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/reconstruction/reconstruction.hpp"
+
+namespace lensprof {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint64_t most_bytes = uint64_t(1) << 30;
+constexpr int schema = 1;
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+// The response as its kind has it, and the light of every grey level of 8 bits.
+Json camera_json(const lensprof_response &response, const std::string &name) {
+    Json curve = response_json(&response, 1), light = Json::array();
+    if (response.kind != LENSPROF_RESPONSE_TABLE) curve.erase("values");
+    for (int level = 0; level < 256; level++)
+        light.push_back(lensprof_response_invert(&response, level / 255.0, nullptr));
+    return {{"name", name}, {"response", curve}, {"light_of_level", light}};
+}
+
+Json cameras_json(const ProjectFit &done, const Project &project, const std::vector<PictureMetadata> &metadata) {
+    Json list = Json::array();
+    for (const uint32_t first : done.settings.first_of_camera)
+        list.push_back(
+            camera_json(done.best.response_of(first), describe_camera(metadata[first].key, project.names[first])));
+    return list;
+}
+
+Json lenses_json(const ProjectFit &done, const Project &project, const std::vector<PictureMetadata> &metadata) {
+    Json list = Json::array();
+    for (const uint32_t first : done.settings.first)
+        list.push_back(
+            {{"name", describe_setting(metadata[first].key, project.names[first])},
+             {"camera", done.settings.camera_of_image[first]},
+             {"vignetting", vignetting_json(done.best.falloff_of(first), done.best.falloff_curves_of(first))}});
+    return list;
+}
+
+Json image_json(const ProjectFit &done, const Project &project, uint32_t i, const fs::path &folder) {
+    const lensprof_exposure &own = done.best.exposures[i];
+    const lensprof_camera &frame = project.images[i].camera;
+    Json json = {{"name", project.names[i]}};
+    if (path_exists(project.files[i]))
+        json["file"] = fs::path(absolute_path(project.files[i])).lexically_proximate(folder).string();
+    json["width"] = frame.width, json["height"] = frame.height;
+    json["lens"] = done.settings.of_image[i];
+    if (std::isnan(own.ev)) {
+        json["ev"] = Json();
+        return json;
+    }
+    json["ev"] = own.ev;
+    json["white_balance"] = own.white_balance;
+    if (i < done.report.quality.size()) {
+        json["ev_sigma"] = number_or_null(done.report.quality[i].ev_sigma);
+        json["white_balance_sigma"] = done.report.quality[i].white_balance_sigma;
+    }
+    return json;
+}
+
+// What reads the file, and says what is wrong with it.
+class Reader {
+public:
+    explicit Reader(const std::string &path) : path_(path) {}
+
+    [[noreturn]] void fail(const std::string &what) const {
+        throw Failure(ExitCode::unreadable,
+                      path_ + ": " + what + "; give the file that `lensprof build --exposures-out` wrote");
+    }
+    const Json &member(const Json &object, const char *name) const {
+        if (!object.is_object() || !object.contains(name)) fail(std::string("has no ") + name);
+        return object[name];
+    }
+    const Json &list(const Json &object, const char *name) const {
+        const Json &found = member(object, name);
+        if (!found.is_array() || found.empty()) fail(std::string("has no list of ") + name);
+        return found;
+    }
+    double number(const Json &value, const char *name) const {
+        if (!value.is_number() || !std::isfinite(value.get<double>())) fail(std::string(name) + " is no number");
+        return value.get<double>();
+    }
+    uint32_t index(const Json &object, const char *name, size_t count) const {
+        const double number = this->number(member(object, name), name);
+        if (number < 0.0 || number >= double(count) || number != std::floor(number))
+            fail(std::string(name) + " is none of those that are there");
+        return static_cast<uint32_t>(number);
+    }
+    std::string text(const Json &object, const char *name) const {
+        const Json &value = member(object, name);
+        if (!value.is_string() || value.get_ref<const std::string &>().empty()) fail(std::string(name) + " is no text");
+        return value.get<std::string>();
+    }
+    std::vector<double> numbers(const Json &object, const char *name, size_t most) const {
+        std::vector<double> values;
+        for (const Json &value : list(object, name)) values.push_back(number(value, name));
+        if (values.size() > most) fail(std::string(name) + " has too many numbers");
+        return values;
+    }
+
+    lensprof_response response(const Json &camera) const;
+    void vignetting(const Json &lens, lensprof_profile &model) const;
+    lensprof_exposure exposure(const Json &image) const;
+
+private:
+    std::string path_;
+};
+
+lensprof_response Reader::response(const Json &camera) const {
+    const Json &json = member(camera, "response");
+    const std::string kind = text(json, "kind");
+    lensprof_response response{};
+    lensprof_status status = LENSPROF_OK;
+    if (kind == "linear") {
+        lensprof_response_set_linear(&response);
+    } else if (kind == "gamma") {
+        status = lensprof_response_set_gamma(&response, number(member(json, "gamma"), "gamma"));
+    } else if (kind == "emor") {
+        const Json &modes = member(json, "emor");
+        const std::vector<double> values = modes.empty() ? std::vector<double>() : numbers(json, "emor", 25);
+        status = lensprof_response_set_emor(&response, values.data(), static_cast<uint32_t>(values.size()));
+    } else {
+        const Json &channels = list(json, "values");
+        const std::vector<double> values = numbers({{"values", channels[0]}}, "values", LENSPROF_RESPONSE_SAMPLES);
+        status = values.size() < 2
+                     ? LENSPROF_ERROR_RESPONSE
+                     : lensprof_response_set_table(&response, values.data(), static_cast<uint32_t>(values.size()));
+    }
+    if (status != LENSPROF_OK) fail("a response is not valid");
+    return response;
+}
+
+void Reader::vignetting(const Json &lens, lensprof_profile &model) const {
+    const Json &json = member(lens, "vignetting"), &curves = list(json, "k");
+    const std::vector<double> center = numbers(json, "center", 2);
+    if ((curves.size() != 1 && curves.size() != 3) || center.size() != 2) fail("a vignetting is not valid");
+    model.vignettings = static_cast<uint32_t>(curves.size());
+    for (size_t c = 0; c < curves.size(); c++) {
+        const std::vector<double> k = numbers({{"k", curves[c]}}, "k", 3);
+        if (k.size() != 3) fail("a vignetting is not valid");
+        std::copy(k.begin(), k.end(), model.vignetting[c].k);
+        std::copy(center.begin(), center.end(), model.vignetting[c].center);
+        if (lensprof_vignetting_validate(&model.vignetting[c]) != LENSPROF_OK) fail("a vignetting is not valid");
+    }
+}
+
+lensprof_exposure Reader::exposure(const Json &image) const {
+    lensprof_exposure own;
+    lensprof_exposure_init(&own);
+    own.ev = number(member(image, "ev"), "ev");
+    const std::vector<double> balance = numbers(image, "white_balance", 3);
+    if (balance.size() != 3 || std::fabs(own.ev) > 100.0) fail("an exposure is not valid");
+    for (size_t c = 0; c < 3; c++)
+        if (!(balance[c] >= 1e-6 && balance[c] <= 1e6)) fail("a white balance is not valid");
+    std::copy(balance.begin(), balance.end(), own.white_balance);
+    return own;
+}
+
+// One model a lens, which all of its images share.
+std::vector<std::shared_ptr<const lensprof_profile>> models_of(const Reader &reader, const Json &all) {
+    const Json &cameras = reader.list(all, "cameras");
+    std::vector<lensprof_response> responses;
+    for (const Json &camera : cameras) responses.push_back(reader.response(camera));
+    std::vector<std::shared_ptr<const lensprof_profile>> models;
+    for (const Json &lens : reader.list(all, "lenses")) {
+        auto model = std::shared_ptr<lensprof_profile>(new_profile());
+        model->response[0] = responses[reader.index(lens, "camera", responses.size())];
+        reader.vignetting(lens, *model);
+        models.push_back(model);
+    }
+    return models;
+}
+
+void add_image(const Reader &reader, const Json &json,
+               const std::vector<std::shared_ptr<const lensprof_profile>> &models, const std::string &images,
+               Project &project) {
+    const std::string name = reader.text(json, "name");
+    const fs::path folder = fs::path(project.path).parent_path();
+    const auto side = [&](const char *member) {
+        const double value = reader.number(reader.member(json, member), member);
+        if (value < 1.0 || value > double(most_image_side)) reader.fail(name + " has no size");
+        return static_cast<uint32_t>(value);
+    };
+    lensprof_pto_image image;
+    lensprof_pto_image_init(&image);
+    image.camera.width = side("width"), image.camera.height = side("height");
+    image.left_out = reader.member(json, "ev").is_null();
+    lensprof_exposure_init(&image.exposure);
+    if (!image.left_out) image.exposure = reader.exposure(json);
+    const auto index = static_cast<uint32_t>(project.images.size());
+    image.response_of = image.vignetting_of = image.center_of = image.ev_of = image.red_of = image.blue_of = index;
+    project.images.push_back(image);
+    project.models.push_back(models[reader.index(json, "lens", models.size())]);
+    project.names.push_back(name);
+    const bool has_file = json.contains("file") && images.empty();
+    if (!has_file && images.empty()) reader.fail("does not say where " + name + " is (--images does)");
+    project.files.push_back(
+        (has_file ? folder / reader.text(json, "file") : fs::path(images) / name).lexically_normal().string());
+}
+
+}  // namespace
+
+std::string exposures_text(const ProjectFit &done, const Project &project, const std::vector<PictureMetadata> &metadata,
+                           const std::string &path) {
+    const fs::path folder = fs::path(absolute_path(path)).parent_path();
+    Json images = Json::array();
+    for (uint32_t i = 0; i < project.names.size(); i++) images.push_back(image_json(done, project, i, folder));
+    const lensprof_exposure mean = mean_exposure(done.best.exposures);
+    const Json all = {{"schema", schema},
+                      {"file", "lensprof exposures"},
+                      {"software", std::string("lensprof ") + lensprof_version()},
+                      {"reference", project.names[done.best.reference]},
+                      {"mean", {{"ev", mean.ev}, {"white_balance", mean.white_balance}}},
+                      {"cameras", cameras_json(done, project, metadata)},
+                      {"lenses", lenses_json(done, project, metadata)},
+                      {"images", images}};
+    return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Project read_exposures(const std::string &path, const std::string &images) {
+    const Reader reader(path);
+    Json all = Json::parse(read_text(path, most_bytes), nullptr, false);
+    if (all.is_discarded() || !all.is_object() || !all.contains("file") || all["file"] != "lensprof exposures")
+        reader.fail("is no file of exposures");
+    if (reader.member(all, "schema") != schema) reader.fail("is of another version");
+    Project project;
+    project.path = path;
+    const auto models = models_of(reader, all);
+    std::set<std::string> names;
+    for (const Json &image : reader.list(all, "images")) {
+        add_image(reader, image, models, images, project);
+        if (!names.insert(project.names.back()).second) reader.fail("names " + project.names.back() + " twice");
+    }
+    if (std::all_of(project.images.begin(), project.images.end(), [](const auto &image) { return image.left_out; }))
+        reader.fail("knows no exposure");
+    const std::string reference = reader.text(all, "reference");
+    for (uint32_t i = 0; i < project.names.size(); i++)
+        if (project.names[i] == reference) project.reference = i;
+    return project;
+}
+
+}  // namespace lensprof

@@ -1,0 +1,260 @@
+// `build` of reconstructions, and `apply --model`: exposures and falloff beside the truth of a simulated camera that
+// moves, and what is written for other programs.
+#include "moving_scenes.hpp"
+
+using namespace moving_scenes;
+
+namespace {
+
+constexpr uint32_t images = 12;
+
+int make_work(void **state) {
+    if (make_folder(state) != 0) return -1;
+    setenv("XDG_DATA_HOME", in_folder("work/data").c_str(), 1);
+    setenv("XDG_DATA_DIRS", in_folder("work/share").c_str(), 1);
+    return 0;
+}
+
+Words build(const std::string &project, const Words &more = {}) {
+    return Words{"build", work(project), "--images", work("pictures"), "--no-store", "--json"} + more;
+}
+
+// The largest error of exposures against the truth once their common offset and the exponent are aligned, EV.
+double exposure_error(const Json &result, const Json &truth) {
+    std::vector<double> found, real;
+    double means[2] = {};
+    for (size_t i = 0; i < images; i++) {
+        if (result["images"][i]["ev"].is_null()) fail_msg("image %zu was left out", i);
+        found.push_back(result["images"][i]["ev"].get<double>());
+        real.push_back(truth["images"][i]["ev"].get<double>());
+        means[0] += found[i] / images, means[1] += real[i] / images;
+    }
+    double across = 0, along = 0;
+    for (size_t i = 0; i < images; i++) {
+        found[i] -= means[0], real[i] -= means[1];
+        across += found[i] * real[i], along += found[i] * found[i];
+    }
+    double largest = 0;
+    for (size_t i = 0; i < images; i++) largest = std::max(largest, std::fabs(found[i] * across / along - real[i]));
+    return largest;
+}
+
+struct Work {
+    Work() : scene("pictures", MovingKind::room, images) {
+        scene.write_colmap("model");
+        scene.write_opensfm(work("tracks.csv"));
+    }
+    MovingScene scene;
+};
+
+const Work &shared() {
+    static const Work work;
+    return work;
+}
+
+void test_exposures_are_found(void **) {
+    const Json &truth = shared().scene.truth;
+    for (const char *project : {"model", "tracks.csv"}) {
+        const Json result = json_of(build(project));
+        const double error = exposure_error(result, truth);
+        if (error > 0.03) fail_msg("%s: exposures are %.3f EV off", project, error);
+        const Json &variance = result["colour_variance"];
+        assert_true(variance["pairs"].get<int>() > 1000);
+        assert_true(variance["result"].get<double>() < 0.7 * variance["exposures_only"].get<double>());
+        assert_true(variance["exposures_only"].get<double>() < variance["before"].get<double>());
+        assert_string_equal(result["gamma"]["camera_kind_from"].get<std::string>().c_str(), "reconstruction");
+    }
+}
+
+// Colours of the tracks in the place of pictures: asked for, and where none are there.
+void test_colours_stand_for_pictures(void **) {
+    const Json &truth = shared().scene.truth;
+    const Json asked = json_of(build("tracks.csv", {"--track-colors"}));
+    assert_true(exposure_error(asked, truth) < 0.06);
+    fs::create_directory(work("elsewhere"));
+    fs::copy_file(work("tracks.csv"), work("elsewhere/tracks.csv"));
+    const Words alone = {"build", work("elsewhere/tracks.csv"), "--no-store", "--json"};
+    assert_refused(unreadable, alone, {"tracks.csv", "--images", "reconstruction.json"});
+    Json shots = Json::object();
+    for (size_t i = 0; i < images; i++) shots[shared().scene.file(i)] = {{"camera", "one"}};
+    save_text(work("elsewhere/reconstruction.json"),
+              Json::array({{{"cameras", {{"one", {{"width", 400}, {"height", 300}}}}}, {"shots", shots}}}).dump());
+    assert_true(exposure_error(json_of(alone), truth) < 0.06);
+    fs::remove_all(work("elsewhere"));
+    assert_refused(usage, build("model", {"--track-colors"}), {"--track-colors", "tracks.csv", "COLMAP model"});
+}
+
+// One run and one thread, and blocks of pictures, give the same bytes.
+void test_is_deterministic(void **) {
+    const std::string first = must_exit(done, build("model", {"--exposures-out", work("a.json")}));
+    must_exit(done, build("model", {"--exposures-out", work("b.json")}));
+    assert_true(load(work("a.json")) == load(work("b.json")));
+    for (const char *name : {"a.json", "b.json"}) fs::remove(work(name));
+}
+
+void write_exposures() { must_exit(done, build("model", {"--exposures-out", work("exposures.json")})); }
+
+// The file has what other programs need, under the names of the images.
+void test_file_of_exposures(void **) {
+    write_exposures();
+    const Json all = Json::parse(text_of(work("exposures.json")));
+    assert_int_equal(all["schema"].get<int>(), 1);
+    assert_int_equal(all["images"].size(), images);
+    double mean = 0;
+    for (size_t i = 0; i < images; i++) {
+        const Json &image = all["images"][i];
+        assert_string_equal(image["name"].get<std::string>().c_str(), shared().scene.file(i).c_str());
+        assert_string_equal(image["file"].get<std::string>().c_str(), ("pictures/" + shared().scene.file(i)).c_str());
+        assert_int_equal(image["width"].get<int>(), 400);
+        mean += image["ev"].get<double>() / images;
+        assert_true(i == 0 || image["ev_sigma"].get<double>() > 0);
+    }
+    assert_true(std::fabs(mean - all["mean"]["ev"].get<double>()) < 1e-9);
+    const Json &camera = all["cameras"][all["lenses"][0]["camera"].get<size_t>()], &light = camera["light_of_level"];
+    assert_int_equal(light.size(), 256);
+    assert_true(light[0].get<double>() == 0.0 && light[255].get<double>() == 1.0);
+    for (size_t level = 1; level < 256; level++)
+        assert_true(light[level].get<double>() >= light[level - 1].get<double>());
+}
+
+// Mean grey value of places that two pictures show, and its spread between them.
+double mean_difference(const std::string &folder) {
+    const MovingScene &scene = shared().scene;
+    std::vector<Picture> pictures;
+    for (size_t i = 0; i < images; i++) pictures.push_back(read_picture(work(folder + "/" + scene.file(i))));
+    double sum = 0, count = 0;
+    for (const Track &track : scene.tracks)
+        for (size_t n = 1; n < track.sights.size(); n++) {
+            double value[2];
+            for (size_t side = 0; side < 2; side++) {
+                const Sight &sight = track.sights[n - 1 + side];
+                const Picture &picture = pictures[sight.image];
+                value[side] = picture.pixels[size_t(std::lround(sight.xy[1])) * picture.row_bytes
+                                             + 3 * size_t(std::lround(sight.xy[0])) + 1];
+            }
+            sum += std::fabs(value[0] - value[1]), count++;
+        }
+    return sum / count;
+}
+
+// Corrected copies have names, sizes and formats of the pictures, so that the model takes them.
+void test_corrected_copies(void **) {
+    write_exposures();
+    const Disk before = disk();
+    must_exit(done, {"apply", "--model", work("exposures.json"), "-o", work("corrected")});
+    for (size_t i = 0; i < images; i++) {
+        const std::string name = "/" + shared().scene.file(i);
+        const Picture own = read_header(work("pictures" + name), {}), copy = read_header(work("corrected" + name), {});
+        assert_true(own.width == copy.width && own.height == copy.height && own.layout == copy.layout);
+    }
+    assert_true(mean_difference("corrected") < 0.6 * mean_difference("pictures"));
+    fs::remove_all(work("corrected"));
+    const std::string changes = difference(before, disk());  // the originals above all
+    if (!changes.empty()) fail_msg("on the disk:%s", changes.c_str());
+}
+
+// Folders in the images' names are kept; --images says where the pictures are by now.
+void test_folders_of_names(void **) {
+    write_exposures();
+    const std::string first = shared().scene.file(0);
+    fs::create_directories(work("moved/left"));
+    for (size_t i = 0; i < images; i++)
+        fs::copy_file(work("pictures/" + shared().scene.file(i)),
+                      work((i ? "moved/" : "moved/left/") + shared().scene.file(i)));
+    edit(work("exposures.json"), "\"name\": \"" + first + "\"", "\"name\": \"left/" + first + "\"");
+    edit(work("exposures.json"), "\"reference\": \"" + first + "\"", "\"reference\": \"left/" + first + "\"");
+    must_exit(done, {"apply", "--model", work("exposures.json"), "--images", work("moved"), "-o", work("corrected")});
+    assert_true(fs::exists(work("corrected/left/" + first)));
+    assert_true(fs::exists(work("corrected/" + shared().scene.file(1))));
+    for (const char *name : {"corrected", "moved"}) fs::remove_all(work(name));
+}
+
+// EXIF of the copies has the measured exposures, and XMP says so.
+void test_seeded_exif(void **) {
+    write_exposures();
+    must_exit(done, {"apply", "--model", work("exposures.json"), "--seed-exif", "--output-exposure", "keep", "-o",
+                     work("seeded")});
+    const Json all = Json::parse(text_of(work("exposures.json")));
+    double offset = 0;
+    for (size_t i = 0; i < images; i++) {
+        const PictureMetadata metadata = read_metadata(work("seeded/" + shared().scene.file(i)));
+        assert_true(metadata.exif_ev.has_value() && metadata.mark && metadata.mark->is_exposure_measured);
+        const double own = *metadata.exif_ev - all["images"][i]["ev"].get<double>();
+        if (i == 0) offset = own;
+        assert_true(std::fabs(own - offset) < 0.01);
+    }
+    fs::remove_all(work("seeded"));
+}
+
+void test_bad_files_of_exposures(void **) {
+    write_exposures();
+    const std::string good = text_of(work("exposures.json"));
+    const Words apply = {"apply", "--model", work("exposures.json"), "-o", work("out")};
+    const std::pair<const char *, const char *> changes[] = {
+        {"\"schema\": 1", "\"schema\": 7"},        {"\"lens\": 0", "\"lens\": 5"},
+        {"\"camera\": 0", "\"camera\": -1"},       {"\"width\": 400", "\"width\": 0"},
+        {"\"width\": 400", "\"width\": \"x\""},    {"\"light_of_level\"", "\"light_of_leve\""},  // not read: no refusal
+        {"\"kind\": \"emor\"", "\"kind\": \"x\""}, {"lensprof exposures", "other"}};
+    for (const auto &[part, by] : changes) {
+        edit(work("exposures.json"), part, by);
+        if (std::string(by) == "\"light_of_leve\"") {
+            must_exit(done, apply);
+            fs::remove_all(work("out"));
+        } else {
+            assert_refused(unreadable, apply, {"exposures.json", "--exposures-out"});
+        }
+        fs::remove(work("exposures.json"));
+        save_text(work("exposures.json"), good);
+    }
+    for (size_t bytes = 0; bytes + 1 < good.size(); bytes += good.size() / 23) {
+        fs::remove(work("exposures.json"));
+        save_text(work("exposures.json"), good.substr(0, bytes));
+        assert_refused(unreadable, apply, {"exposures.json"});
+    }
+}
+
+// What does not go together is refused with the options' names.
+void test_options(void **) {
+    write_exposures();
+    const std::string file = work("exposures.json");
+    assert_refused(usage, {"apply", "--model", file, "--pto", file, "-o", work("out")}, {"--pto", "--model"});
+    assert_refused(usage, {"apply", "--profile", "1", "--seed-exif", work("pictures"), "-o", work("out")},
+                   {"--seed-exif", "--model"});
+    assert_refused(usage, {"apply", "--model", file, "--merge", "--linear", "-o", work("out")}, {"--merge", "--pto"});
+    for (const char *option : {"--preview", "--points", "--project-out"})
+        assert_refused(usage, build("model", {option, work("x.png")}), {option, "reconstruction"});
+    assert_refused(usage, {"build", work("pictures"), "--images", work("pictures"), "--no-store"},
+                   {"--images", "reconstruction"});
+}
+
+// A picture that was resized since it was matched.
+void test_resized_picture(void **) {
+    write_exposures();
+    const std::string picture = work("pictures/" + shared().scene.file(3));
+    const Bytes own = load(picture);
+    fs::remove(picture);
+    write_picture(picture, make_smooth(200, 150, LENSPROF_LAYOUT_RGB));
+    assert_refused(unreadable, build("model"), {shared().scene.file(3), "200 x 150", "400 x 300"});
+    assert_refused(unreadable, {"apply", "--model", work("exposures.json"), "-o", work("out")},
+                   {shared().scene.file(3), "200 x 150", "400 x 300"});
+    fs::remove(picture);
+    save(picture, own);
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(test_exposures_are_found),
+        cmocka_unit_test(test_colours_stand_for_pictures),
+        cmocka_unit_test(test_is_deterministic),
+        cmocka_unit_test(test_file_of_exposures),
+        cmocka_unit_test(test_corrected_copies),
+        cmocka_unit_test(test_folders_of_names),
+        cmocka_unit_test(test_seeded_exif),
+        cmocka_unit_test(test_bad_files_of_exposures),
+        cmocka_unit_test(test_options),
+        cmocka_unit_test(test_resized_picture),
+    };
+    return cmocka_run_group_tests(tests, make_work, remove_folder);
+}

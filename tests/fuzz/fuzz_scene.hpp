@@ -1,0 +1,104 @@
+// What the fuzz targets of reconstructions share: a folder with the files of one, and what must hold of each that is
+// read. Several files are one in the corpus, with a line between them.
+#pragma once
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "cli/reconstruction/match_choice.hpp"
+#include "cli/reconstruction/pictures.hpp"
+#include "cli/reconstruction/readers.hpp"
+#include "fuzz_file.hpp"
+
+namespace {
+
+const std::string kNextFile = "\n--- the next file\n";
+
+class Folder {
+public:
+    Folder() {
+        path_ = (std::filesystem::temp_directory_path() / "lensprof-fuzz-XXXXXX").string();
+        demand(mkdtemp(path_.data()) != nullptr, "no folder");
+    }
+    Folder(const Folder &) = delete;
+    Folder &operator=(const Folder &) = delete;
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+
+    const std::string &path() const { return path_; }
+    std::string path(const std::string &name) const { return path_ + "/" + name; }
+
+    void write(const std::string &name, const std::string &bytes) const {
+        std::filesystem::remove(path(name));  // writing it again where it is waits for the disk
+        std::ofstream file(path(name), std::ios::binary);
+        file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        demand(file.good(), "no file");
+    }
+    // The parts of a file of the corpus; those that are not there are no files.
+    void write_parts(const std::vector<char> &bytes, const std::vector<std::string> &names) const {
+        const std::string text(bytes.begin(), bytes.end());
+        size_t at = 0;
+        for (const std::string &name : names) {
+            std::filesystem::remove(path(name));
+            if (at == std::string::npos) continue;
+            const size_t end = text.find(kNextFile, at);
+            write(name, text.substr(at, end - at));
+            at = end == std::string::npos ? end : end + kNextFile.size();
+        }
+    }
+
+private:
+    std::string path_;
+};
+
+// True when `call` returns; false when it throws Failure as unreadable or not usable, with a text.
+template <typename Call>
+[[maybe_unused]] bool is_done(const Call &call) {
+    try {
+        call();
+        return true;
+    } catch (const lensprof::Failure &failure) {
+        demand(failure.code == lensprof::ExitCode::unreadable || failure.code == lensprof::ExitCode::not_usable,
+               failure.what());
+        demand(failure.what()[0], "a failure without a text");
+        return false;
+    }
+}
+
+[[maybe_unused]] void check_scene(const lensprof::Reconstruction &r) {
+    std::set<std::string> names;
+    for (const auto &image : r.images) {
+        demand(!image.name.empty() && names.insert(image.name).second, "a name that is empty or there twice");
+        demand(image.camera < r.cameras.size(), "an image without a camera");
+        demand(!image.has_centre || lensprof::is_finite(image.centre), "a centre that is no place");
+    }
+    demand(!r.observations.empty(), "no observation");
+    demand(r.points.empty() || r.points.size() == r.point_count(), "positions of other points");
+    for (size_t n = 0; n < r.observations.size(); n++) {
+        const auto &own = r.observations[n];
+        demand(own.image < r.images.size(), "an observation in no image");
+        demand(std::isfinite(own.xy[0]) && std::isfinite(own.xy[1]), "an observation without a place");
+        if (n == 0) continue;
+        const auto &last = r.observations[n - 1];
+        demand(own.point == last.point ? own.image > last.image : own.point == last.point + 1, "not in order");
+        demand(own.point == last.point || n == 1 || r.observations[n - 2].point == last.point, "a point seen once");
+    }
+}
+
+// Reads, and goes on as `build` does, without pictures.
+template <typename Read>
+[[maybe_unused]] bool try_scene(const Read &read) {
+    lensprof::Reconstruction r;
+    if (!is_done([&] { r = read(); })) return false;
+    check_scene(r);
+    lensprof::matches_of(r, lensprof::choose_pairs(r, 2, 1));
+    is_done([&] { lensprof::settle_coordinates(r, {}); });
+    return true;
+}
+
+}  // namespace
