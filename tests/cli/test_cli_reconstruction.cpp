@@ -1,5 +1,8 @@
 // `build` of reconstructions, and `apply --model`: exposures and falloff beside the truth of a simulated camera that
 // moves, and what is written for other programs.
+#include "cli/fitting/block_sampling.hpp"
+#include "cli/fitting/reconstruction_project.hpp"
+
 #include "moving_scenes.hpp"
 
 using namespace moving_scenes;
@@ -90,6 +93,68 @@ void test_is_deterministic(void **) {
     must_exit(done, build("model", {"--exposures-out", work("b.json")}));
     assert_true(load(work("a.json")) == load(work("b.json")));
     for (const char *name : {"a.json", "b.json"}) fs::remove(work(name));
+}
+
+// Pictures in blocks of two, and all in one: the same links, and as many pairs.
+void test_blocks(void **) {
+    std::ostringstream out, err;
+    Streams streams{out, err};
+    Progress progress(err, ShowProgress::when_terminal);
+    const Project project = project_of_reconstruction(work("model"), {work("pictures"), false, {}, 0, 1}, streams);
+    lensprof_sample_options options;
+    lensprof_sample_options_init(&options);
+    std::vector<lensprof_pair> pairs[2];
+    std::vector<lensprof_link> links[2];
+    std::vector<uint32_t> points[2];
+    for (const size_t n : {0u, 1u}) {
+        uint32_t channels = 0;
+        const uint64_t block_bytes = n ? 2 * 3 * 400 * 300 : usual_block_bytes;
+        pairs[n] = sample_in_blocks(project, options, 800, block_bytes, progress, links[n], points[n], &channels);
+        assert_int_equal(channels, 3);
+        assert_int_equal(points[n].size(), pairs[n].size());
+    }
+    assert_int_equal(links[0].size(), links[1].size());
+    for (size_t l = 0; l < links[0].size(); l++)
+        for (int side = 0; side < 2; side++) assert_int_equal(links[0][l].image[side], links[1][l].image[side]);
+    assert_true(pairs[1].size() > 0.95 * double(pairs[0].size()) && pairs[1].size() < 1.05 * double(pairs[0].size()));
+}
+
+// The parts of several machines: every picture once, and outputs as without.
+void test_shards(void **) {
+    must_exit(done, build("model", {"--exposures-out", work("exposures.json")}));
+    const Words apply = {"apply", "--model", work("exposures.json"), "-o"};
+    must_exit(done, apply + Words{work("whole")});
+    for (const char *part : {"1/5", "2/5", "3/5", "4/5", "5/5"})
+        must_exit(done, apply + Words{work("parts"), "--shard", part});
+    for (size_t i = 0; i < images; i++) {
+        const std::string name = "/" + shared().scene.file(i);
+        assert_true(load(work("whole" + name)) == load(work("parts" + name)));
+    }
+    for (const char *name : {"whole", "parts"}) fs::remove_all(work(name));
+    for (const char *part : {"0/5", "6/5", "5", "1/0", "a/b", "1/2/3"})
+        assert_refused(usage, apply + Words{work("parts"), "--shard", part}, {"--shard", part});
+    assert_refused(usage, apply + Words{work("parts"), "--shard", "1/20"}, {"--shard 1/20", "12 pictures"});
+    const Words own = {"--camera", "Example", "--lens", "Example"};
+    std::vector<std::string> files;
+    for (const char *part : {"1/2", "2/2"}) {
+        const Words words = {"build", work("model"), "--images", work("pictures"), "--shard", part, "--json"};
+        const Json result = json_of(words + own + Words{"--db", work(std::string(part, 1) + ".db"), "--force"});
+        for (const Json &image : result["images"]) files.push_back(image["file"].get<std::string>());
+    }
+    std::sort(files.begin(), files.end());
+    assert_int_equal(files.size(), images);
+    assert_true(std::unique(files.begin(), files.end()) == files.end());
+    must_exit(done, {"profile", "merge", work("1.db"), work("2.db"), "--db", work("all.db")});
+    assert_refused(usage, build("model", {"--shard", "1/9"}), {"--shard 1/9", "fewer than two"});
+}
+
+void test_chart_of_gains(void **) {
+    for (const char *name : {"gain.svg", "gain.png"}) {
+        must_exit(done, build("model", {"--gain-chart", work(name)}));
+        assert_true(load(work(name)).size() > 2000);
+        fs::remove(work(name));
+    }
+    assert_refused(usage, build("model", {"--gain-chart", work("gain.txt")}), {"gain.txt", ".svg or .png"});
 }
 
 void write_exposures() { must_exit(done, build("model", {"--exposures-out", work("exposures.json")})); }
@@ -248,6 +313,9 @@ int main() {
         cmocka_unit_test(test_exposures_are_found),
         cmocka_unit_test(test_colours_stand_for_pictures),
         cmocka_unit_test(test_is_deterministic),
+        cmocka_unit_test(test_blocks),
+        cmocka_unit_test(test_shards),
+        cmocka_unit_test(test_chart_of_gains),
         cmocka_unit_test(test_file_of_exposures),
         cmocka_unit_test(test_corrected_copies),
         cmocka_unit_test(test_folders_of_names),

@@ -27,6 +27,7 @@
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
+#include "cli/program/shard.hpp"
 
 namespace lensprof {
 namespace {
@@ -50,7 +51,7 @@ struct Options {
     ModelOptions model;
     RawOutput raw_output = RawOutput::by_default;
     std::string linear_end;  // of --linear-output; empty: not given
-    std::string pto, exposures, images, output, sheet;
+    std::string pto, exposures, images, shard, output, sheet;
     Exposure exposure = Exposure::by_default;
     CorrectionKind kind;
     bool seed_exif = false, merge = false, skip = false, json = false, progress = false, has_output = true;
@@ -96,6 +97,9 @@ void declare(Command &command, Options &o) {
     command.flag("--linear", o.kind.linear, "write irradiance instead of grey values, as 32 bit float TIFF");
     command.choice("--linear-output", o.linear_end, {{"tif", ".tif"}, {"exr", ".exr"}},
                    "of --linear: tif (default), or exr, OpenEXR without metadata");
+    command.text("--shard", o.shard,
+                 "only a part of the pictures, for several machines at once: 2/5 is the second of five; outputs are "
+                 "as without");
     command.flag(
         "--merge", o.merge,
         "of --linear with --pto: the light of each picture in its own frame from all pictures of the project that "
@@ -315,6 +319,15 @@ std::string subfolder_of(const Project &project, size_t image) {
     return leads_out ? std::string() : folder.string();
 }
 
+void take_shard(const Shard &shard, std::vector<NamedPicture> &pictures) {
+    const size_t first = shard.first(pictures.size()), end = shard.end(pictures.size());
+    if (first == end && !pictures.empty())
+        throw Failure(ExitCode::usage, format("--shard %u/%u: has none of the %zu pictures; give fewer parts",
+                                              shard.number, shard.count, pictures.size()));
+    pictures.erase(pictures.begin() + static_cast<std::ptrdiff_t>(end), pictures.end());
+    pictures.erase(pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
 Work plan_work(const Options &o, const Source &source, Streams &streams) {
     std::vector<NamedPicture> pictures;
     if (o.files.empty() && source.project)
@@ -322,6 +335,7 @@ Work plan_work(const Options &o, const Source &source, Streams &streams) {
             pictures.push_back({source.project->files[i], subfolder_of(*source.project, i), false});
     else
         pictures = named_pictures(o.files, o.output);
+    take_shard(shard_of(o.shard), pictures);
     if (pictures.empty()) throw Failure(ExitCode::usage, "no pictures to correct; name them");
     Work work;
     lensprof_exposure_init(&work.mean);
@@ -437,7 +451,7 @@ Corrected correct(const Options &o, const Source &source, Work &work, Streams &s
         job.wanted = chosen == Exposure::keep ? job.own : chosen == Exposure::mean ? work.mean : reference;
     if (source.project && chosen != Exposure::keep && !o.kind.linear && !o.kind.simulate)
         encode_alike(source, work.jobs, streams);
-    if (o.seed_exif) seed_exif(work.jobs, work.mean);
+    if (o.seed_exif) seed_exif(work.jobs, *source.project, source.exposures);
     make_folder(o.output);
     Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
     ContactSheet sheet;

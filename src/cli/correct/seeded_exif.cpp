@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/correct/project_model.hpp"
 #include "cli/pictures/metadata.hpp"
+#include "cli/program/paths.hpp"
 
 namespace lensprof {
 namespace {
@@ -22,21 +24,22 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-void seed_exif(std::vector<Correction> &jobs, const lensprof_exposure &mean) {
-    std::vector<PictureMetadata> own;
+void seed_exif(std::vector<Correction> &jobs, const Project &project, const std::vector<lensprof_exposure> &exposures) {
     std::vector<double> offsets;  // from measured to stated EV
-    for (const Correction &job : jobs) {
-        own.push_back(read_metadata(job.source));
-        if (own.back().exif_ev) offsets.push_back(*own.back().exif_ev - job.own.ev);
+    for (size_t i = 0; i < exposures.size(); i++) {
+        if (project.images[i].left_out || !path_exists(project.files[i])) continue;
+        if (const auto stated = read_metadata(project.files[i]).exif_ev) offsets.push_back(*stated - exposures[i].ev);
     }
+    const double usual = exif_ev_of(usual_time_s, usual_aperture, usual_iso);
     const double offset =
-        offsets.empty() ? exif_ev_of(usual_time_s, usual_aperture, usual_iso) - mean.ev : median(std::move(offsets));
-    for (size_t i = 0; i < jobs.size(); i++) {
+        offsets.empty() ? usual - mean_exposure(joined_exposures(project, exposures)).ev : median(std::move(offsets));
+    for (Correction &job : jobs) {
+        const PictureMetadata own = read_metadata(job.source);
         auto seeded = std::make_shared<PictureMetadata>(unknown_metadata());
-        const double aperture = own[i].f_number.value_or(usual_aperture), iso = own[i].iso.value_or(usual_iso);
+        const double aperture = own.f_number.value_or(usual_aperture), iso = own.iso.value_or(usual_iso);
         seeded->key.aperture = aperture, seeded->iso = iso;
-        seeded->exposure_time_s = std::exp2(jobs[i].wanted.ev + offset) * 100.0 / iso * aperture * aperture;
-        jobs[i].exif = std::move(seeded);
+        seeded->exposure_time_s = std::exp2(job.wanted.ev + offset) * 100.0 / iso * aperture * aperture;
+        job.exif = std::move(seeded);
     }
 }
 

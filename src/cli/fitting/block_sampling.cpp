@@ -1,12 +1,12 @@
 #include "cli/fitting/block_sampling.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <map>
 #include <set>
 
 #include "cli/program/interrupt.hpp"
 #include "cli/program/parallel.hpp"
+#include "cli/reconstruction/link_order.hpp"
 
 namespace lensprof {
 namespace {
@@ -14,32 +14,6 @@ namespace {
 using ImagePair = std::pair<uint32_t, uint32_t>;
 
 ImagePair images_of(const lensprof_match &match) { return std::minmax(match.image[0], match.image[1]); }
-
-// Images in an order in which those that share many matches are near each other: breadth first, along the links with
-// most matches.
-std::vector<uint32_t> order_by_links(uint32_t count, const std::map<ImagePair, uint32_t> &matches_of_link) {
-    std::vector<std::vector<std::pair<uint32_t, uint32_t>>> neighbours(count);
-    for (const auto &[link, matches] : matches_of_link) {
-        neighbours[link.first].push_back({matches, link.second});
-        neighbours[link.second].push_back({matches, link.first});
-    }
-    for (auto &own : neighbours)
-        std::sort(own.begin(), own.end(), [](const auto &a, const auto &b) {
-            return a.first != b.first ? a.first > b.first : a.second < b.second;
-        });
-    std::vector<uint32_t> order;
-    std::vector<bool> is_met(count);
-    for (uint32_t start = 0; start < count; start++) {
-        if (is_met[start]) continue;
-        std::deque<uint32_t> next{start};
-        for (is_met[start] = true; !next.empty(); next.pop_front()) {
-            order.push_back(next.front());
-            for (const auto &neighbour : neighbours[next.front()])
-                if (!is_met[neighbour.second]) is_met[neighbour.second] = true, next.push_back(neighbour.second);
-        }
-    }
-    return order;
-}
 
 struct Block {
     std::vector<uint32_t> images;
@@ -77,7 +51,7 @@ private:
     const lensprof_sample_options options_;
     const uint32_t max_side_;
     Progress &progress_;
-    std::map<ImagePair, uint32_t> matches_of_link_;
+    LinkWeights matches_of_link_;
     std::vector<Block> blocks_;
     std::vector<uint32_t> block_of_;  // of each image
     std::string nothing_;             // why a sampling found nothing
@@ -138,8 +112,8 @@ BlockMatches BlockSampler::matches_between(Block &a, Block &b, const std::vector
 void BlockSampler::sample(Block &a, Block &b, const std::vector<uint32_t> &numbers) {
     const BlockMatches own = matches_between(a, b, numbers);
     lensprof_sample_options options = options_;
-    const size_t wanted = options.pairs ? options.pairs : std::max<size_t>(2000, 300 * project_.images.size());
-    options.pairs = static_cast<uint32_t>(std::max<size_t>(1, wanted * own.links / matches_of_link_.size()));
+    const size_t wanted = options.pairs ? options.pairs : project_.matches.size();
+    options.pairs = static_cast<uint32_t>(std::max<size_t>(1, wanted * own.matches.size() / project_.matches.size()));
     std::vector<lensprof_pair> found(options.pairs);
     std::vector<uint32_t> match_of_pair(options.pairs);
     std::vector<lensprof_link> own_links(own.links);

@@ -20,13 +20,14 @@
 #include "cli/program/output_file.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/reconstruction/reconstruction_file.hpp"
+#include "cli/report/drawing.hpp"
 
 namespace lensprof {
 namespace {
 
 struct Options : ProjectFitOptions {
     std::vector<std::string> inputs;
-    std::string images, points_out, exposures_out, pto_out, project_out, preview, compare;
+    std::string images, shard, points_out, exposures_out, gain_chart, pto_out, project_out, preview, compare;
     bool track_colours = false;
     std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
     bool json = false, progress = false;
@@ -43,6 +44,9 @@ void declare_points(Command &command, Options &o) {
         "OpenDroneMap, Bundler .out, AliceVision .sfm, OpenMVG sfm_data.json, or a folder of one)");
     command.require("INPUT");
     command.folder("--images", o.images, "folder of a reconstruction's pictures; default beside it");
+    command.text("--shard", o.shard,
+                 "only a part of a reconstruction's images, for several machines at once: 2/5 is the second of five; "
+                 "give each its own --db, which `profile merge` joins");
     command.flag("--track-colors", o.track_colours,
                  "take the colours in tracks.csv and read no picture; so it is without pictures, too");
     command.file("--project-out", o.project_out,
@@ -56,6 +60,8 @@ void declare_points(Command &command, Options &o) {
     command.file("--exposures-out", o.exposures_out,
                  "write exposures and white balances with their errors, response and falloff, for `apply --model` and "
                  "other programs, as JSON");
+    command.file("--gain-chart", o.gain_chart,
+                 "draw what the correction of a reconstruction's pictures gains, as .svg or .png");
     command.file("--pto-out", o.pto_out, "write the project with the result in it, for Hugin, nona and apply");
 }
 
@@ -116,12 +122,13 @@ void check_is_no_photograph(const std::string &output, bool is_preview) {
 void check_outputs(const Options &o, std::vector<std::string> taken) {
     taken.insert(taken.end(), {o.points, o.compare});
     if (!o.store.no_store) taken.push_back(store_path(o.store.db));
-    for (const std::string &output : {o.points_out, o.exposures_out, o.pto_out, o.project_out, o.preview}) {
+    for (const std::string &output :
+         {o.points_out, o.exposures_out, o.gain_chart, o.pto_out, o.project_out, o.preview}) {
         if (output.empty()) continue;
         for (const std::string &other : taken)
             if (is_same_file(output, other))
                 throw Failure(ExitCode::usage, output + ": would be written over; give the output another name");
-        check_is_no_photograph(output, output == o.preview);
+        check_is_no_photograph(output, output == o.preview || output == o.gain_chart);
         check_output_file(output);
         taken.push_back(output);
     }
@@ -144,6 +151,8 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     if (!o.points_out.empty()) outputs.add(o.points_out, points_text(done.input.pairs, project));
     if (!o.exposures_out.empty() && (done.best.corrects() || o.store.force))
         outputs.add(o.exposures_out, exposures_text(done, project, metadata, o.exposures_out));
+    if (!o.gain_chart.empty() && !done.gains.empty())
+        outputs.add(o.gain_chart, gain_chart(o.gain_chart, project.path, done.gains));
     if (!o.pto_out.empty() && (done.best.corrects() || o.store.force))
         outputs.add(o.pto_out, result_text(done, project, o.pto_out));
     if (!o.preview.empty() && done.best.corrects()) write_preview(o.preview, project, done.best, progress);
@@ -183,16 +192,20 @@ Project open_reconstruction(const Options &o, Streams &streams) {
         if (!value.empty())
             throw Failure(ExitCode::usage, std::string(option) + ": is for panoramas, and " + o.inputs[0]
                                                + " is a reconstruction; leave it out");
-    return project_of_reconstruction(o.inputs[0], {o.images, o.track_colours, o.pairs, o.seed}, streams);
+    return project_of_reconstruction(o.inputs[0], {o.images, o.track_colours, shard_of(o.shard), o.pairs, o.seed},
+                                     streams);
 }
 
 // A project, or the pictures that take its place.
 Project open_project(const Options &o, Streams &streams) {
     if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, streams);
-    if (!o.images.empty() || o.track_colours)
-        throw Failure(ExitCode::usage,
-                      std::string(o.images.empty() ? "--track-colors" : "--images") + ": is of a reconstruction, and "
-                          + o.inputs[0] + " is none; leave it out, or give database.db, tracks.csv or the like alone");
+    for (const auto &[option, is_given] :
+         {std::pair("--images", !o.images.empty()), std::pair("--shard", !o.shard.empty()),
+          std::pair("--track-colors", o.track_colours)})
+        if (is_given)
+            throw Failure(ExitCode::usage,
+                          std::string(option) + ": is of a reconstruction, and " + o.inputs[0]
+                              + " is none; leave it out, or give database.db, tracks.csv or the like alone");
     const bool is_project = o.inputs.size() == 1 && !names_pictures(o.inputs[0]);
     for (const std::string &input : o.inputs)
         if (!is_project && !names_pictures(input))
@@ -265,6 +278,7 @@ int run(const Options &o, Streams &streams) {
     check_max_side(o.max_side);
     check_fit_options(o.fit);
     if (!o.preview.empty()) check_preview(o.preview);
+    if (!o.gain_chart.empty()) check_chart_name(o.gain_chart);
     if (!o.preview.empty() && !o.points.empty())
         throw Failure(ExitCode::usage, "--preview: shows pictures, which --points leaves out; give one of the two");
     if (o.json && !o.compare.empty())

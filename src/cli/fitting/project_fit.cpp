@@ -99,7 +99,7 @@ Pictures get_points(const ProjectFitOptions &o, const Project &project, ProjectF
     }
     if (project.is_reconstruction) {
         lensprof_sample_options options = sample_options(o);
-        options.pairs = static_cast<uint32_t>(project.matches.size());  // which were chosen for it
+        options.pairs = 0;  // as many as matches, which were chosen for that
         done.input.pairs = sample_in_blocks(project, options, o.max_side, usual_block_bytes, done.progress,
                                             done.report.links, done.points, &channels);
         set_links(done);
@@ -267,9 +267,11 @@ void fit_reconstruction(const Project &project, ProjectFit &done, Streams &strea
                                      &report.quality);
     else
         take_exposures_only(only, project, done, streams);
-    report.variance = {colour_variance_of(colour_differences(all, nullptr)),
-                       colour_variance_of(colour_differences(all, &only)),
-                       colour_variance_of(colour_differences(all, &done.best)), all.pairs.size()};
+    done.gains = {{"before", colour_differences(all, nullptr)},
+                  {"exposures alone", colour_differences(all, &only)},
+                  {"this result", colour_differences(all, &done.best)}};
+    report.variance = {colour_variance_of(done.gains[0].variances), colour_variance_of(done.gains[1].variances),
+                       colour_variance_of(done.gains[2].variances), all.pairs.size()};
     done.best.result.evens = report.variance.result < report.variance.before;
 }
 

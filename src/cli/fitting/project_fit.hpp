@@ -7,6 +7,7 @@
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/lens_settings.hpp"
 #include "cli/fitting/project.hpp"
+#include "cli/report/gain_chart.hpp"
 
 namespace lensprof {
 
@@ -35,7 +36,8 @@ struct ProjectFit {
     FitInput input;
     std::vector<uint32_t> points;  // of a reconstruction: the scene point of each pair
     Fitted best;
-    std::string item;  // the input's name in a Failure
+    std::vector<GainCurve> gains;  // of a reconstruction: before, by exposures alone, and by this result
+    std::string item;              // the input's name in a Failure
 };
 
 // What the pictures say about themselves. Beside given pairs they may be anything: only what the profile's key needs is

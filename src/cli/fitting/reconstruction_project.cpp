@@ -7,6 +7,7 @@
 #include "cli/fitting/fitting.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/message.hpp"
+#include "cli/reconstruction/link_order.hpp"
 #include "cli/reconstruction/match_choice.hpp"
 #include "cli/reconstruction/pictures.hpp"
 #include "cli/reconstruction/reconstruction_file.hpp"
@@ -68,16 +69,35 @@ uint32_t pairs_of_image(const ReconstructionOptions &options, size_t images) {
     return std::clamp(static_cast<uint32_t>(kPairsOfAll / images), kLeastOfImage, kPairsOfImage);
 }
 
-void report_read(const Reconstruction &r, bool has_pictures, Streams &streams) {
+void report_read(const Reconstruction &r, const std::string &label, bool has_pictures, Streams &streams) {
     const auto placed =
         std::count_if(r.images.begin(), r.images.end(), [](const auto &image) { return image.has_centre; });
-    note(streams, r.path
+    note(streams, label
                       + format(": %s of %zu images, %u points, %zu observations; %s; %s", r.kind.c_str(),
                                r.images.size(), r.point_count(), r.observations.size(),
                                placed ? "similar views, by their angles, count most"
                                       : "similar views, by the points they share, count most",
                                has_pictures ? "the pictures are compared at its points"
                                             : "the colours of its points are compared, and no picture is read"));
+}
+
+// Leaves the images of a shard, their files, and what is seen in them; `label` names it.
+void take_part(const Shard &shard, Reconstruction &r, std::vector<std::string> &files, std::string &label) {
+    if (shard.count == 1) return;
+    const auto count = static_cast<uint32_t>(r.images.size());
+    const std::vector<uint32_t> order = order_by_links(count, common_points(r));
+    const auto first = static_cast<std::ptrdiff_t>(shard.first(count)),
+               end = static_cast<std::ptrdiff_t>(shard.end(count));
+    const std::string part = format("%u/%u", shard.number, shard.count);
+    if (end - first < 2)
+        throw Failure(ExitCode::usage, "--shard " + part + ": has fewer than two of the " + counted(count, "image")
+                                           + "; give fewer parts");
+    std::vector<uint32_t> kept(order.begin() + first, order.begin() + end);
+    std::sort(kept.begin(), kept.end());
+    keep_images(kept, r);
+    for (size_t n = 0; n < kept.size() && !files.empty(); n++) files[n] = files[kept[n]];
+    if (!files.empty()) files.resize(kept.size());
+    label += " (shard " + part + ")";
 }
 
 }  // namespace
@@ -91,10 +111,11 @@ Project project_of_reconstruction(const std::string &path, const ReconstructionO
     Project project;
     project.path = path;
     project.by_matches = project.is_reconstruction = true;
-    const std::vector<std::string> files = find_pictures(r, options.images, r.has_colours);
+    std::vector<std::string> files = find_pictures(r, options.images, r.has_colours);
     settle_coordinates(r, files);
+    take_part(options.shard, r, files, project.path);
     const bool has_pictures = !files.empty() && !options.is_by_colours;
-    report_read(r, has_pictures, streams);
+    report_read(r, project.path, has_pictures, streams);
     const auto chosen = choose_pairs(r, kEnds * pairs_of_image(options, r.images.size()), options.seed);
     if (has_pictures) {
         project.matches = matches_of(r, chosen);

@@ -5,12 +5,14 @@
 
 #include "cli/fitting/project.hpp"
 #include "cli/program/run.hpp"
+#include "cli/program/shard.hpp"
 
 namespace lensprof {
 
 struct ReconstructionOptions {
     std::string images;            // folder of the pictures; empty: where they are looked for
     bool is_by_colours = false;    // the colours of the tracks are taken, and no picture is read
+    Shard shard;                   // of the images
     uint32_t pairs = 0, seed = 1;  // wanted; 0: 300 an image
 };
 

@@ -15,6 +15,7 @@
 #include "cli/program/paths.hpp"
 #include "cli/program/run.hpp"
 #include "cli/report/chart.hpp"
+#include "cli/report/drawing.hpp"
 #include "cli/report/falloff.hpp"
 #include "cli/report/report.hpp"
 

@@ -5,7 +5,8 @@
 #include <optional>
 #include <queue>
 #include <tuple>
-#include <unordered_map>
+
+#include "cli/reconstruction/link_order.hpp"
 
 namespace lensprof {
 namespace {
@@ -14,7 +15,6 @@ constexpr double kUsualAngle = 0.2618;  // 15 degrees, in radians
 constexpr double kUsualShare = 0.05;    // of common points, of views that count as little
 constexpr size_t kLongTrack = 12;       // an observation of a longer track is paired with some of the others alone:
 constexpr size_t kNext = 3, kFar = 6;   // the next ones in the order of the images, and others
-constexpr size_t kCountedTrack = 64;    // longer tracks say little of which images are alike
 
 // A number in (0, 1] by SplitMix64 (Steele, Lea and Flood 2014).
 double fraction_of(uint64_t value) {
@@ -25,30 +25,21 @@ double fraction_of(uint64_t value) {
     return (static_cast<double>(value >> 11) + 1.0) / 9007199254740992.0;
 }
 
-uint64_t link_of(uint32_t i, uint32_t j) { return uint64_t{std::min(i, j)} << 32 | std::max(i, j); }
-
 // How many points two images have in common, as a share of those that either has.
 class Shares {
 public:
-    explicit Shares(const Reconstruction &r) : points_(r.images.size()) {
-        const auto &all = r.observations;
-        for (size_t first = 0, last = 0; first < all.size(); first = last) {
-            for (last = first; last < all.size() && all[last].point == all[first].point; last++)
-                points_[all[last].image]++;
-            if (last - first > kCountedTrack) continue;
-            for (size_t a = first; a < last; a++)
-                for (size_t b = a + 1; b < last; b++) common_[link_of(all[a].image, all[b].image)]++;
-        }
+    explicit Shares(const Reconstruction &r) : points_(r.images.size()), common_(common_points(r)) {
+        for (const TrackObservation &own : r.observations) points_[own.image]++;
     }
     double of(uint32_t i, uint32_t j) const {
-        const auto found = common_.find(link_of(i, j));
+        const auto found = common_.find(std::minmax(i, j));
         const uint32_t least = std::min(points_[i], points_[j]);
         return found == common_.end() || !least ? 0.0 : std::min(1.0, found->second / double(least));
     }
 
 private:
     std::vector<uint32_t> points_;
-    std::unordered_map<uint64_t, uint32_t> common_;
+    const LinkWeights common_;
 };
 
 // Between two views of a point, radians; none without poses.

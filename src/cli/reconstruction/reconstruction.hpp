@@ -61,6 +61,9 @@ void settle_tracks(Reconstruction &reconstruction);
 // Numbers images in the order of their names, which is often that of the camera's way.
 void sort_images(Reconstruction &reconstruction);
 
+// Leaves the images of these numbers, which ascend, and the points that two of them see.
+void keep_images(const std::vector<uint32_t> &kept, Reconstruction &reconstruction);
+
 bool is_finite(const std::array<double, 3> &vector);
 
 // Most images, and most observations, of one reconstruction.

@@ -79,6 +79,21 @@ void sort_images(Reconstruction &reconstruction) {
               });
 }
 
+void keep_images(const std::vector<uint32_t> &kept, Reconstruction &reconstruction) {
+    std::vector<uint32_t> number(reconstruction.images.size(), UINT32_MAX);
+    std::vector<ReconstructionImage> images;
+    for (const uint32_t image : kept) {
+        number[image] = static_cast<uint32_t>(images.size());
+        images.push_back(reconstruction.images[image]);
+    }
+    auto &all = reconstruction.observations;
+    for (TrackObservation &own : all) own.image = number[own.image];
+    all.erase(std::remove_if(all.begin(), all.end(), [](const auto &own) { return own.image == UINT32_MAX; }),
+              all.end());
+    reconstruction.images = std::move(images);
+    settle_tracks(reconstruction);
+}
+
 bool is_finite(const std::array<double, 3> &vector) {
     return std::all_of(vector.begin(), vector.end(), [](double x) { return std::isfinite(x); });
 }

@@ -40,9 +40,6 @@ void print_chart(const Chart &chart, std::ostream &out);
 // The object of `profile show --chart --json`; docs/json.md describes it.
 Json chart_json(const Chart &chart);
 
-// Failure (usage) unless the name ends in .svg or .png, in any case.
-void check_chart_name(const std::string &path);
-
 // Draws the chart into an SVG or PNG file, complete or not at all.
 void draw_chart(const Chart &chart, const std::string &path);
 

@@ -1,0 +1,23 @@
+#include "cli/program/shard.hpp"
+
+#include <stdexcept>
+
+#include "cli/program/error.hpp"
+#include "cli/program/numbers.hpp"
+
+namespace lensprof {
+
+Shard shard_of(const std::string &word) {
+    constexpr uint32_t most_shards = 1u << 20;
+    if (word.empty()) return {};
+    const size_t slash = word.find('/');
+    try {
+        if (slash == std::string::npos) throw std::invalid_argument("there is no /");
+        const uint32_t count = count_of(word.substr(slash + 1), 1, most_shards);
+        return {count_of(word.substr(0, slash), 1, count), count};
+    } catch (const std::invalid_argument &) {
+        throw Failure(ExitCode::usage, "--shard " + word + ": is no part of a whole; give one as 2/5, from 1/5 to 5/5");
+    }
+}
+
+}  // namespace lensprof
