@@ -100,7 +100,7 @@ void test_blocks(void **) {
     std::ostringstream out, err;
     Streams streams{out, err};
     Progress progress(err, ShowProgress::when_terminal);
-    const Project project = project_of_reconstruction(work("model"), {work("pictures"), false, {}, 0, 1}, streams);
+    const Project project = project_of_reconstruction(work("model"), {work("pictures"), false, {}, {}, 0, 1}, streams);
     lensprof_sample_options options;
     lensprof_sample_options_init(&options);
     std::vector<lensprof_pair> pairs[2];
@@ -117,6 +117,38 @@ void test_blocks(void **) {
     for (size_t l = 0; l < links[0].size(); l++)
         for (int side = 0; side < 2; side++) assert_int_equal(links[0][l].image[side], links[1][l].image[side]);
     assert_true(pairs[1].size() > 0.95 * double(pairs[0].size()) && pairs[1].size() < 1.05 * double(pairs[0].size()));
+}
+
+// The colours of the points in half of the images, changed as by another light: by a factor of each point's own.
+void test_two_visits(void **) {
+    std::istringstream lines(text_of(work("tracks.csv")));
+    std::ostringstream changed;
+    for (std::string line; std::getline(lines, line);) {
+        std::vector<std::string> fields;
+        std::istringstream words(line);
+        for (std::string word; std::getline(words, word, '\t');) fields.push_back(word);
+        const bool is_second = fields.size() > 8 && fields[0] >= shared().scene.file(images / 2);
+        for (size_t c = 6; is_second && c < 9; c++) {
+            const double light = 0.35 + 1.6 * double(std::stoul(fields[1]) * 2654435761u % 1024) / 1024.0;
+            fields[c] =
+                std::to_string(std::min(255, int(std::lround(std::stoi(fields[c]) * std::pow(light, 1 / 2.2)))));
+        }
+        for (size_t n = 0; n < fields.size(); n++) changed << (n ? "\t" : "") << fields[n];
+        changed << "\n";
+    }
+    save_text(work("visits.csv"), changed.str());
+    const Words both = {"build", work("visits.csv"), "--images", work("pictures"), "--no-store", "--track-colors"};
+    const Words outputs = {"--exposures-out", work("exposures.json"), "--gain-chart", work("gain.svg")};
+    fs::remove(work("exposures.json"));
+    assert_refused(not_usable, both + outputs, {"visits.csv", "other light", "--image-list"});
+    std::string first;
+    for (size_t i = 0; i < images / 2; i++) first += shared().scene.file(i) + "\n";
+    save_text(work("first.txt"), first);
+    const Json one = json_of(both + Words{"--image-list", work("first.txt"), "--json"});
+    assert_int_equal(one["images"].size(), images / 2);
+    save_text(work("first.txt"), first + "nobody.png\n");
+    assert_refused(unreadable, both + Words{"--image-list", work("first.txt")}, {"first.txt", "nobody.png"});
+    for (const char *name : {"first.txt", "visits.csv"}) fs::remove(work(name));
 }
 
 // The parts of several machines: every picture once, and outputs as without.
@@ -315,6 +347,7 @@ int main() {
         cmocka_unit_test(test_is_deterministic),
         cmocka_unit_test(test_blocks),
         cmocka_unit_test(test_shards),
+        cmocka_unit_test(test_two_visits),
         cmocka_unit_test(test_chart_of_gains),
         cmocka_unit_test(test_file_of_exposures),
         cmocka_unit_test(test_corrected_copies),

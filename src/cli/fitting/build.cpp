@@ -27,7 +27,8 @@ namespace {
 
 struct Options : ProjectFitOptions {
     std::vector<std::string> inputs;
-    std::string images, shard, points_out, exposures_out, gain_chart, pto_out, project_out, preview, compare;
+    std::string images, image_list, shard, points_out, exposures_out, gain_chart, pto_out, project_out, preview,
+        compare;
     bool track_colours = false;
     std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
     bool json = false, progress = false;
@@ -44,6 +45,8 @@ void declare_points(Command &command, Options &o) {
         "OpenDroneMap, Bundler .out, AliceVision .sfm, OpenMVG sfm_data.json, or a folder of one)");
     command.require("INPUT");
     command.folder("--images", o.images, "folder of a reconstruction's pictures; default beside it");
+    command.file("--image-list", o.image_list,
+                 "take the images of a reconstruction that this file names alone, one a line");
     command.text("--shard", o.shard,
                  "only a part of a reconstruction's images, for several machines at once: 2/5 is the second of five; "
                  "give each its own --db, which `profile merge` joins");
@@ -120,7 +123,7 @@ void check_is_no_photograph(const std::string &output, bool is_preview) {
 
 // No output may take the place of an input, of the database or of another output.
 void check_outputs(const Options &o, std::vector<std::string> taken) {
-    taken.insert(taken.end(), {o.points, o.compare});
+    taken.insert(taken.end(), {o.points, o.image_list, o.compare});
     if (!o.store.no_store) taken.push_back(store_path(o.store.db));
     for (const std::string &output :
          {o.points_out, o.exposures_out, o.gain_chart, o.pto_out, o.project_out, o.preview}) {
@@ -192,16 +195,16 @@ Project open_reconstruction(const Options &o, Streams &streams) {
         if (!value.empty())
             throw Failure(ExitCode::usage, std::string(option) + ": is for panoramas, and " + o.inputs[0]
                                                + " is a reconstruction; leave it out");
-    return project_of_reconstruction(o.inputs[0], {o.images, o.track_colours, shard_of(o.shard), o.pairs, o.seed},
-                                     streams);
+    return project_of_reconstruction(
+        o.inputs[0], {o.images, o.track_colours, o.image_list, shard_of(o.shard), o.pairs, o.seed}, streams);
 }
 
 // A project, or the pictures that take its place.
 Project open_project(const Options &o, Streams &streams) {
     if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, streams);
     for (const auto &[option, is_given] :
-         {std::pair("--images", !o.images.empty()), std::pair("--shard", !o.shard.empty()),
-          std::pair("--track-colors", o.track_colours)})
+         {std::pair("--images", !o.images.empty()), std::pair("--image-list", !o.image_list.empty()),
+          std::pair("--shard", !o.shard.empty()), std::pair("--track-colors", o.track_colours)})
         if (is_given)
             throw Failure(ExitCode::usage,
                           std::string(option) + ": is of a reconstruction, and " + o.inputs[0]

@@ -57,15 +57,6 @@ Photographs list_photographs(const std::vector<std::string> &words, const std::v
 
 namespace {
 
-// "img1.jpg, img2.jpg and 7 more".
-std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names) {
-    constexpr size_t most = 5;
-    std::string text;
-    for (size_t n = 0; n < numbers.size() && n < most; n++) text += (n ? ", " : "") + names[numbers[n]];
-    if (numbers.size() > most) text += format(" and %zu more", numbers.size() - most);
-    return text;
-}
-
 using LeftOut = std::vector<std::pair<std::string, std::string>>;  // names, and why
 
 // Names pictures that are not part of the project, for one reason.

@@ -28,7 +28,8 @@ struct Project {
     // Of pictures that were in no project: where they show the same, of links that the cameras do not fit or of all
     // (`by_matches`); those that are not part of it, and why; and how long finding it took.
     std::vector<lensprof_match> matches;
-    std::vector<uint32_t> match_points;  // of a reconstruction: the scene point of each match
+    std::vector<uint32_t> match_points;  // of a reconstruction: the scene point of each match,
+    std::map<std::pair<uint32_t, uint32_t>, double> view_distances;  // and how far apart views are, where 1 is usual
     bool by_matches = false, is_reconstruction = false;
     std::vector<lensprof_pair> pairs;   // that came with the project, in the place of pictures,
     std::vector<uint32_t> pair_points;  // and the scene point of each

@@ -6,6 +6,7 @@
 
 #include "cli/fitting/block_sampling.hpp"
 #include "cli/fitting/known_exposures.hpp"
+#include "cli/fitting/light_groups.hpp"
 #include "cli/fitting/matte_fit.hpp"
 #include "cli/pictures/named_pictures.hpp"
 #include "cli/program/format.hpp"
@@ -254,6 +255,17 @@ void take_exposures_only(const Fitted &only, const Project &project, ProjectFit 
     join_cameras(done.settings);
 }
 
+// Failure (not usable) for pictures of two visits, whose light differs in more than an exposure.
+void check_light(const LightGroups &groups, const Project &project) {
+    if (groups.second.empty()) return;
+    throw Failure(ExitCode::not_usable,
+                  project.path + ": " + listed(groups.second, project.names)
+                      + format(" show the same in other light than the rest (colours differ %.0f times as much between "
+                               "these groups as within); give the pictures of each visit alone, with --image-list",
+                               groups.ratio),
+                  LENSPROF_REASON_IMAGE_GROUPS);
+}
+
 // Of a reconstruction: fits without what shines, measures what was gained, and where response and falloff explain no
 // more of the pairs than exposures alone takes these, for what the pictures do not show does harm.
 void fit_reconstruction(const Project &project, ProjectFit &done, Streams &streams) {
@@ -273,6 +285,7 @@ void fit_reconstruction(const Project &project, ProjectFit &done, Streams &strea
     report.variance = {colour_variance_of(done.gains[0].variances), colour_variance_of(done.gains[1].variances),
                        colour_variance_of(done.gains[2].variances), all.pairs.size()};
     done.best.result.evens = report.variance.result < report.variance.before;
+    check_light(light_groups(all, done.gains[2].variances, project.view_distances), project);
 }
 
 // What was found of each setting, where there are several.

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <set>
 
 #include "cli/fitting/fitting.hpp"
 #include "cli/program/format.hpp"
+#include "cli/program/input_file.hpp"
 #include "cli/program/message.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/reconstruction/field_reader.hpp"
 #include "cli/reconstruction/link_order.hpp"
 #include "cli/reconstruction/match_choice.hpp"
 #include "cli/reconstruction/pictures.hpp"
@@ -81,6 +85,30 @@ void report_read(const Reconstruction &r, const std::string &label, bool has_pic
                                             : "the colours of its points are compared, and no picture is read"));
 }
 
+std::vector<std::string> read_names(const std::string &list) {
+    FieldReader fields(list, '\0', largest_text);
+    std::vector<std::string> names;
+    while (fields.next_line_of_values()) names.push_back(fields.rest());
+    return names;
+}
+
+// Leaves the images that a file names.
+void take_listed(const std::string &list, Reconstruction &r) {
+    std::map<std::string, uint32_t> image_of;
+    for (uint32_t i = 0; i < r.images.size(); i++) image_of[r.images[i].name] = i;
+    std::set<uint32_t> kept;
+    for (const std::string &name : read_names(list)) {
+        const auto image = image_of.find(name);
+        if (image == image_of.end())
+            throw Failure(ExitCode::unreadable, list + ": names " + short_name(name) + ", which is no image of "
+                                                    + r.path + "; give names as they are there, one a line");
+        kept.insert(image->second);
+    }
+    if (kept.size() < 2)
+        throw Failure(ExitCode::unreadable, list + ": names fewer than two images; give names, one a line");
+    keep_images(std::vector<uint32_t>(kept.begin(), kept.end()), r);
+}
+
 // Leaves the images of a shard, their files, and what is seen in them; `label` names it.
 void take_part(const Shard &shard, Reconstruction &r, std::vector<std::string> &files, std::string &label) {
     if (shard.count == 1) return;
@@ -111,12 +139,14 @@ Project project_of_reconstruction(const std::string &path, const ReconstructionO
     Project project;
     project.path = path;
     project.by_matches = project.is_reconstruction = true;
+    if (!options.image_list.empty()) take_listed(options.image_list, r);
     std::vector<std::string> files = find_pictures(r, options.images, r.has_colours);
     settle_coordinates(r, files);
     take_part(options.shard, r, files, project.path);
     const bool has_pictures = !files.empty() && !options.is_by_colours;
     report_read(r, project.path, has_pictures, streams);
     const auto chosen = choose_pairs(r, kEnds * pairs_of_image(options, r.images.size()), options.seed);
+    project.view_distances = view_distances(r, chosen);
     if (has_pictures) {
         project.matches = matches_of(r, chosen);
         for (const ObservationPair &own : chosen) project.match_points.push_back(r.observations[own.first].point);

@@ -12,6 +12,7 @@ namespace lensprof {
 struct ReconstructionOptions {
     std::string images;            // folder of the pictures; empty: where they are looked for
     bool is_by_colours = false;    // the colours of the tracks are taken, and no picture is read
+    std::string image_list;        // file of the names of images that are taken, one a line; empty: all
     Shard shard;                   // of the images
     uint32_t pairs = 0, seed = 1;  // wanted; 0: 300 an image
 };

@@ -20,4 +20,12 @@ std::string counted(size_t count, const std::string &thing, const std::string &t
     return std::to_string(count) + " " + (count == 1 ? thing : things.empty() ? thing + "s" : things);
 }
 
+std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names) {
+    constexpr size_t most = 5;
+    std::string text;
+    for (size_t n = 0; n < numbers.size() && n < most; n++) text += (n ? ", " : "") + names[numbers[n]];
+    if (numbers.size() > most) text += format(" and %zu more", numbers.size() - most);
+    return text;
+}
+
 }  // namespace lensprof

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace lensprof {
 
@@ -11,5 +13,8 @@ std::string format(const char *pattern, ...) __attribute__((format(printf, 1, 2)
 
 // "1 profile", "2 lenses"; without `things` with an s.
 std::string counted(size_t count, const std::string &thing, const std::string &things = "");
+
+// Names by their numbers, "img1.jpg, img2.jpg and 7 more".
+std::string listed(const std::vector<uint32_t> &numbers, const std::vector<std::string> &names);
 
 }  // namespace lensprof

@@ -56,6 +56,22 @@ std::optional<double> view_angle(const Reconstruction &r, const TrackObservation
     return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
+// How far apart two views of a point are, where 1 is usual.
+class ViewDistance {
+public:
+    explicit ViewDistance(const Reconstruction &r) : r_(r), shares_(r) {}
+
+    double of(const ObservationPair &pair) const {
+        const TrackObservation &a = r_.observations[pair.first], &b = r_.observations[pair.second];
+        if (const auto angle = view_angle(r_, a, b)) return *angle / kUsualAngle;
+        return kUsualShare / std::max(1e-6, shares_.of(a.image, b.image));
+    }
+
+private:
+    const Reconstruction &r_;
+    const Shares shares_;
+};
+
 // The pairs of each image that come first.
 class Choice {
 public:
@@ -126,21 +142,19 @@ std::optional<Map> map_of_shapes(const TrackObservation &from, const TrackObserv
 }  // namespace
 
 std::vector<ObservationPair> choose_pairs(const Reconstruction &r, uint32_t of_image, uint32_t seed) {
-    const Shares shares(r);
+    const ViewDistance distance(r);
     const auto &all = r.observations;
-    const auto order_of = [&](size_t a, size_t b) {
-        const auto angle = view_angle(r, all[a], all[b]);
-        const double far =
-            angle ? *angle / kUsualAngle : kUsualShare / std::max(1e-6, shares.of(all[a].image, all[b].image));
-        const double chance = fraction_of((uint64_t{seed} << 32) + all[a].point);  // of all pairs of a point
+    const auto order_of = [&](const ObservationPair &pair) {
+        const double far = distance.of(pair);
+        const double chance = fraction_of((uint64_t{seed} << 32) + all[pair.first].point);  // of all pairs of a point
         return -std::log(chance) * (1.0 + far * far);  // by weights, without replacement (Efraimidis and Spirakis 2006)
     };
     Choice choice(r.images.size(), std::max(1u, of_image));
     for (size_t first = 0, last = 0; first < all.size(); first = last) {
         for (last = first; last < all.size() && all[last].point == all[first].point;) last++;
         pair_track(first, last, [&](size_t a, size_t b) {
-            choice.offer({static_cast<uint32_t>(a), static_cast<uint32_t>(b)}, all[a].image, all[b].image,
-                         order_of(a, b));
+            const ObservationPair pair{static_cast<uint32_t>(a), static_cast<uint32_t>(b)};
+            choice.offer(pair, all[a].image, all[b].image, order_of(pair));
         });
     }
     std::vector<ObservationPair> taken = choice.taken();
@@ -151,6 +165,18 @@ std::vector<ObservationPair> choose_pairs(const Reconstruction &r, uint32_t of_i
     const auto is_same = [&](const auto &a, const auto &b) { return key(a) == key(b); };
     taken.erase(std::unique(taken.begin(), taken.end(), is_same), taken.end());
     return taken;
+}
+
+std::map<std::pair<uint32_t, uint32_t>, double> view_distances(const Reconstruction &r,
+                                                               const std::vector<ObservationPair> &pairs) {
+    const ViewDistance distance(r);
+    std::map<std::pair<uint32_t, uint32_t>, double> sums, counts, means;
+    for (const ObservationPair &pair : pairs) {
+        const auto link = std::minmax(r.observations[pair.first].image, r.observations[pair.second].image);
+        sums[link] += distance.of(pair), counts[link]++;
+    }
+    for (const auto &[link, sum] : sums) means[link] = sum / counts[link];
+    return means;
 }
 
 std::vector<lensprof_match> matches_of(const Reconstruction &r, const std::vector<ObservationPair> &pairs) {

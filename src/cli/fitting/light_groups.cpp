@@ -1,0 +1,104 @@
+#include "cli/fitting/light_groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace lensprof {
+namespace {
+
+constexpr size_t kLeastPairs = 8;    // of a link that says something
+constexpr size_t kLeastImages = 3;   // of a group
+constexpr double kLeastRatio = 8.0;  // of variances between and within
+constexpr double kNear = 1.2;        // of the usual distance of views
+
+struct Link {
+    double difference, distance;  // of colours, and of views
+    uint32_t image[2];
+};
+
+using Distances = std::map<std::pair<uint32_t, uint32_t>, double>;
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+std::vector<Link> links_of(const FitInput &input, const std::vector<double> &differences, const Distances &of_views) {
+    std::map<std::pair<uint32_t, uint32_t>, std::vector<double>> of_link;
+    for (size_t p = 0; p < input.pairs.size(); p++)
+        if (!std::isnan(differences[p]))
+            of_link[std::minmax(input.pairs[p].image[0], input.pairs[p].image[1])].push_back(differences[p]);
+    std::vector<Link> links;
+    for (const auto &[images, values] : of_link)
+        if (values.size() >= kLeastPairs)
+            links.push_back({median(values), of_views.at(images), {images.first, images.second}});
+    std::stable_sort(links.begin(), links.end(),
+                     [](const Link &a, const Link &b) { return a.difference < b.difference; });
+    return links;
+}
+
+// The images that links join.
+class Groups {
+public:
+    explicit Groups(size_t images) : parent_(images) { std::iota(parent_.begin(), parent_.end(), 0u); }
+    uint32_t of(uint32_t image) {
+        while (parent_[image] != image) image = parent_[image] = parent_[parent_[image]];
+        return image;
+    }
+    bool join(uint32_t a, uint32_t b) {
+        a = of(a), b = of(b);
+        parent_[std::max(a, b)] = std::min(a, b);
+        return a != b;
+    }
+
+private:
+    std::vector<uint32_t> parent_;
+};
+
+// The smaller of the two groups that the tree without one of its links leaves.
+std::vector<uint32_t> smaller_group(const std::vector<Link> &tree, size_t without, size_t images) {
+    Groups groups(images);
+    for (size_t n = 0; n < tree.size(); n++)
+        if (n != without) groups.join(tree[n].image[0], tree[n].image[1]);
+    std::vector<uint32_t> sides[2];
+    for (uint32_t i = 0; i < images; i++)
+        for (const int side : {0, 1})
+            if (groups.of(i) == groups.of(tree[without].image[side])) sides[side].push_back(i);
+    return sides[0].size() <= sides[1].size() ? sides[0] : sides[1];
+}
+
+}  // namespace
+
+LightGroups light_groups(const FitInput &input, const std::vector<double> &differences, const Distances &of_views) {
+    const std::vector<Link> links = links_of(input, differences, of_views);
+    Groups groups(input.images.size());
+    std::vector<Link> tree;
+    std::vector<double> all, far;
+    for (const Link &link : links) {
+        if (!groups.join(link.image[0], link.image[1])) continue;
+        tree.push_back(link);
+        all.push_back(link.difference), far.push_back(link.distance);
+    }
+    LightGroups found;
+    if (tree.size() < 2 * kLeastImages - 1) return found;
+    const double usual = std::max(median(all), 1e-6), usual_distance = median(far);
+    for (size_t n = tree.size(); n-- > 0 && tree[n].difference > kLeastRatio * usual;) {
+        std::vector<uint32_t> group = smaller_group(tree, n, input.images.size());
+        if (group.size() < kLeastImages) continue;
+        const auto is_in = [&](uint32_t image) { return std::binary_search(group.begin(), group.end(), image); };
+        const auto is_comparable = [&](const Link &link) {
+            return is_in(link.image[0]) != is_in(link.image[1]) && link.distance <= kNear * usual_distance;
+        };
+        const auto nearest = std::find_if(links.begin(), links.end(), is_comparable);  // of them the most alike
+        if (nearest == links.end() || nearest->difference <= kLeastRatio * usual) continue;
+        found.ratio = nearest->difference / usual;
+        found.second = std::move(group);
+        break;
+    }
+    return found;
+}
+
+}  // namespace lensprof
