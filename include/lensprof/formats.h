@@ -306,10 +306,11 @@ LENSPROF_API LENSPROF_MUST_USE lensprof_status lensprof_lcp_write(const lensprof
 
 /* ---- Falloffs in the XMP packets of drones' cameras -------------------------------------------------------- */
 
-/* The polynomial that a MicaSense, Parrot Sequoia or DJI camera writes about itself into its pictures, from the
- * picture's XMP packet, as one profile of raw pictures (docs/formats.md). width, height: of the picture, in px.
+/* The polynomial that a MicaSense, Parrot Sequoia, DJI or Sentera camera writes about itself into its pictures, from
+ * the picture's XMP packet, as one profile of raw pictures (docs/formats.md). width, height: of the picture, in px.
  *  - Camera:VignettingPolynomial, about Camera:VignettingCenter: 1 + c0 r + c1 r^2 + ..., r in px. An attenuation; of
- * DJI a gain.
+ * DJI a gain. Of Sentera, under Sentera: or Camera:, the highest power comes first: ... c1, c0. A packet is Sentera's
+ * by tiff:Make, where it has none by the key that lensprof_import is given, or by a property of that namespace.
  *  - drone-dji:VignettingData, about CalibratedOpticalCenterX and Y: such a gain. It counts before the other one.
  *  - Camera:VignettingPolynomial2D with the powers in ...2DName: an attenuation, sum of c x^i y^j with x, y in 0..1 of
  * the frame; fitted as a map, with a gain grid. Radial ones are refitted; where even powers come no nearer than 1 %, a

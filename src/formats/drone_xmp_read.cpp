@@ -1,4 +1,4 @@
-// Falloffs in the XMP packets of drones' cameras to profiles: MicaSense, Parrot and DJI.
+// Falloffs in the XMP packets of drones' cameras to profiles: MicaSense, Parrot, DJI and Sentera.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <lensprof/formats.h>
-
 #include "falloff/map_fit.hpp"
 #include "falloff/refit.hpp"
+#include "formats/drone_xmp.hpp"
 #include "formats/falloff/falloff_doubt.hpp"
 #include "formats/falloff/import.hpp"
 #include "formats/falloff/radius.hpp"
@@ -21,7 +20,12 @@
 namespace lensprof {
 namespace {
 
-constexpr const char *kCamera = "pix4d.com/camera/", *kDji = "dji.com/drone-dji/", *kTiff = "ns.adobe.com/tiff/";
+struct Space {
+    std::string_view uri, prefix;  // a part of the one, and what everybody calls it
+};
+
+constexpr Space kCamera = {"pix4d.com/camera", "Camera"}, kDji = {"dji.com/drone-dji", "drone-dji"},
+                kSentera = {"sentera.com/camera", "Sentera"}, kTiff = {"ns.adobe.com/tiff", "tiff"};
 constexpr size_t kMostTerms = 16;   // of a radial polynomial
 constexpr size_t kMost2d = 64;      // of one in x and y
 constexpr double kGridFrom = 0.01;  // relative error of a radial falloff of even powers that a grid is for
@@ -49,30 +53,42 @@ public:
     pugi::xml_node first() const { return xml_.root(); }
 
     // The value, of a list its first item; empty where there is none.
-    std::string text(const char *space, std::string_view name) const {
+    std::string text(const Space &space, std::string_view name) const {
         const std::vector<std::string> all = texts(space, name);
         return all.empty() ? std::string() : all.front();
     }
 
-    // A list's numbers, from rdf:li or between commas. Throws SYNTAX.
-    std::vector<double> numbers(const char *space, std::string_view name, size_t most) const;
+    // Whether there is any property of it.
+    bool has(const Space &space) const;
+
+    // A list's numbers, from rdf:li or between commas or blanks. Throws SYNTAX.
+    std::vector<double> numbers(const Space &space, std::string_view name, size_t most) const;
 
 private:
-    std::vector<std::string> texts(const char *space, std::string_view name) const;
+    std::vector<std::string> texts(const Space &space, std::string_view name) const;
 
     const XmlText &xml_;
     std::vector<pugi::xml_node> descriptions_;
 };
 
 // By what the prefix stands for; an undeclared one by the name that everybody gives it.
-bool in_space(const pugi::xml_node &node, std::string_view name, std::string_view space) {
+bool in_space(const pugi::xml_node &node, std::string_view name, const Space &space) {
     const std::string_view declared = namespace_of(node, name);
-    if (!declared.empty()) return declared.find(space.substr(0, space.size() - 1)) != std::string_view::npos;
-    const std::string_view prefix = name.substr(0, name.find(':'));
-    return prefix == (space == kCamera ? "Camera" : space == kDji ? "drone-dji" : "tiff");
+    if (!declared.empty()) return declared.find(space.uri) != std::string_view::npos;
+    return name.substr(0, name.find(':')) == space.prefix;
 }
 
-std::vector<std::string> Packet::texts(const char *space, std::string_view name) const {
+bool Packet::has(const Space &space) const {
+    for (const pugi::xml_node &description : descriptions_) {
+        for (const pugi::xml_attribute &attribute : description.attributes())
+            if (in_space(description, attribute.name(), space)) return true;
+        for (const pugi::xml_node &child : description.children())
+            if (in_space(child, child.name(), space)) return true;
+    }
+    return false;
+}
+
+std::vector<std::string> Packet::texts(const Space &space, std::string_view name) const {
     std::vector<std::string> found;
     for (const pugi::xml_node &description : descriptions_) {
         for (const pugi::xml_attribute &attribute : description.attributes())
@@ -88,21 +104,25 @@ std::vector<std::string> Packet::texts(const char *space, std::string_view name)
     return found;
 }
 
-std::vector<double> Packet::numbers(const char *space, std::string_view name, size_t most) const {
+std::vector<double> Packet::numbers(const Space &space, std::string_view name, size_t most) const {
     std::vector<double> values;
     for (const std::string &text : texts(space, name)) {
         std::string_view rest = text;
         while (!rest.empty()) {
             const size_t comma = std::min(rest.find(','), rest.size());
-            const std::string word = one_line(rest.substr(0, comma));
-            double value = 0.0;
-            if (!read_number(word, value) || std::fabs(value) > 1e100)
-                fail(first(), std::string(name) + " has " + in_quotes(word) + ", not a number; correct it");
-            if (values.size() == most)
-                fail(first(),
-                     std::string(name) + " has over " + std::to_string(most) + " numbers; give what a camera wrote",
-                     LENSPROF_ERROR_SIZE);
-            values.push_back(value);
+            const std::string part = one_line(rest.substr(0, comma));
+            std::string_view words = part;
+            do {  // of an empty part one that is no number
+                const std::string_view word = next_word(words);
+                double value = 0.0;
+                if (!read_number(word, value) || std::fabs(value) > 1e100)
+                    fail(first(), std::string(name) + " has " + in_quotes(word) + ", not a number; correct it");
+                if (values.size() == most)
+                    fail(first(),
+                         std::string(name) + " has over " + std::to_string(most) + " numbers; give what a camera wrote",
+                         LENSPROF_ERROR_SIZE);
+                values.push_back(value);
+            } while (!words.empty());
             rest.remove_prefix(std::min(comma + 1, rest.size()));
         }
     }
@@ -168,10 +188,18 @@ double fit_2d(const std::vector<double> &powers, const std::vector<double> &term
         frame, profile);
 }
 
+// A polynomial with its centre, as one of the makers writes them.
+struct Written {
+    std::vector<double> terms;  // of r, r^2 and so on
+    std::vector<double> center;
+    const char *center_name;
+};
+
 class DroneXmpReader {
 public:
-    DroneXmpReader(std::string_view text, PixelSize frame)
-        : xml_(text, {"x:xmpmeta", "x:xapmeta", "rdf:RDF"}), packet_(xml_), frame_(frame) {}
+    // `maker`: where the packet does not say it.
+    DroneXmpReader(std::string_view text, PixelSize frame, std::string_view maker)
+        : xml_(text, {"x:xmpmeta", "x:xapmeta", "rdf:RDF"}), packet_(xml_), frame_(frame), maker_(maker) {}
 
     // Fills the profile; returns what its doubt says.
     std::string read(const char *source, lensprof_profile &profile) const;
@@ -179,13 +207,44 @@ public:
 private:
     // The centre as written; of a frame without one its middle.
     std::array<double, 2> center(const std::vector<double> &given, const char *name) const;
+    bool is_of_dji() const;
+    bool is_of_sentera() const;
+    Written read_radial() const;
     double read_2d(lensprof_profile &profile) const;
     void read_key(const char *maker, lensprof_profile_key &key) const;
 
     XmlText xml_;
     Packet packet_;
     PixelSize frame_;
+    std::string_view maker_;
 };
+
+bool DroneXmpReader::is_of_dji() const {
+    return packet_.text(kTiff, "Make") == "DJI" || !packet_.text(kDji, "VignettingData").empty()
+           || !packet_.text(kDji, "Version").empty();
+}
+
+bool DroneXmpReader::is_of_sentera() const {
+    const std::string make = packet_.text(kTiff, "Make");
+    const std::string_view known = make.empty() ? maker_ : std::string_view(make);
+    return known.substr(0, kSentera.prefix.size()) == kSentera.prefix || packet_.has(kSentera);
+}
+
+// What a maker writes under its own name counts first; no terms where there are none.
+Written DroneXmpReader::read_radial() const {
+    Written own{packet_.numbers(kDji, "VignettingData", kMostTerms),
+                packet_.numbers(kDji, "CalibratedOpticalCenterX", 1), "CalibratedOpticalCenter"};
+    const std::vector<double> below = packet_.numbers(kDji, "CalibratedOpticalCenterY", 1);
+    own.center.insert(own.center.end(), below.begin(), below.end());
+    if (!own.terms.empty()) return own;
+    for (const Space &space : {kSentera, kCamera}) {
+        Written found{packet_.numbers(space, "VignettingPolynomial", kMostTerms),
+                      packet_.numbers(space, "VignettingCenter", 2), "VignettingCenter"};
+        if (is_of_sentera()) std::reverse(found.terms.begin(), found.terms.end());  // the highest power comes first
+        if (!found.terms.empty()) return found;
+    }
+    return {};
+}
 
 std::array<double, 2> DroneXmpReader::center(const std::vector<double> &given, const char *name) const {
     if (given.empty()) return {(frame_.width - 1.0) / 2.0, (frame_.height - 1.0) / 2.0};
@@ -222,30 +281,21 @@ void DroneXmpReader::read_key(const char *maker, lensprof_profile_key &key) cons
 }
 
 std::string DroneXmpReader::read(const char *source, lensprof_profile &profile) const {
-    std::vector<double> own = packet_.numbers(kDji, "VignettingData", kMostTerms);
-    std::vector<double> radial = packet_.numbers(kCamera, "VignettingPolynomial", kMostTerms);
-    const std::vector<double> flat = packet_.numbers(kCamera, "VignettingPolynomial2D", kMost2d);
-    const std::string make = packet_.text(kTiff, "Make");
-    const bool dji = !own.empty() || make == "DJI" || !packet_.text(kDji, "Version").empty();
-    read_key(dji ? "DJI" : "", profile.key);
+    const Written radial = read_radial();
+    const bool dji = is_of_dji();
+    read_key(dji ? "DJI" : is_of_sentera() ? "Sentera" : "", profile.key);
     set_import_provenance(profile, source, dji ? "XMP of DJI" : "XMP of a camera");
     double worst = 0.0;
-    if (!own.empty() || !radial.empty()) {
-        std::vector<double> place = packet_.numbers(kDji, "CalibratedOpticalCenterX", 1);
-        const std::vector<double> below = packet_.numbers(kDji, "CalibratedOpticalCenterY", 1);
-        place.insert(place.end(), below.begin(), below.end());
-        const bool use_own = !own.empty();
-        const std::array<double, 2> c =
-            use_own ? center(place, "CalibratedOpticalCenter")
-                    : center(packet_.numbers(kCamera, "VignettingCenter", 2), "VignettingCenter");
-        worst = fit_radial({use_own ? std::move(own) : std::move(radial), {c[0], c[1]}, dji}, frame_, profile);
-    } else if (!flat.empty()) {
+    if (!radial.terms.empty()) {
+        const std::array<double, 2> c = center(radial.center, radial.center_name);
+        worst = fit_radial({radial.terms, {c[0], c[1]}, dji}, frame_, profile);
+    } else if (!packet_.numbers(kCamera, "VignettingPolynomial2D", kMost2d).empty()) {
         worst = read_2d(profile);
     } else {
         throw FormatFailure{
             LENSPROF_ERROR_NOT_FOUND,
-            "no Camera:VignettingPolynomial, Camera:VignettingPolynomial2D or drone-dji:VignettingData; give "
-            "the XMP of a picture that has one"};
+            "no VignettingPolynomial or VignettingPolynomial2D of Camera or Sentera, and no drone-dji:VignettingData; "
+            "give the XMP of a picture that has one"};
     }
     if (dji && packet_.text(kDji, "VignettingFlag") == "1")
         return "VignettingFlag: the camera corrected this picture itself";
@@ -253,6 +303,22 @@ std::string DroneXmpReader::read(const char *source, lensprof_profile &profile) 
 }
 
 }  // namespace
+
+lensprof_status read_drone_packet(const DronePacket &in, lensprof_import_visitor visit, void *user,
+                                  lensprof_error *error) {
+    lensprof_status visited = LENSPROF_OK;
+    const lensprof_status status = at_boundary(error, [&] {
+        const auto profile = std::make_unique<lensprof_profile>();
+        lensprof_profile_init(profile.get());
+        std::string_view packet = view_of(in.data, in.size);
+        while (!packet.empty() && packet.back() == '\0') packet.remove_suffix(1);  // padding of the tag
+        const DroneXmpReader reader(packet, {in.width, in.height}, in.maker ? in.maker : "");
+        const std::string remark = reader.read(in.source, *profile);
+        visited = visit_entry(*profile, remark, visit, user);
+    });
+    return status == LENSPROF_OK ? visited : status;
+}
+
 }  // namespace lensprof
 
 using namespace lensprof;
@@ -266,15 +332,5 @@ lensprof_status lensprof_drone_xmp_read(const void *data, size_t size, uint32_t 
                   "and a function");
         return LENSPROF_ERROR_ARGUMENT;
     }
-    lensprof_status visited = LENSPROF_OK;
-    const lensprof_status status = at_boundary(error, [&] {
-        const auto profile = std::make_unique<lensprof_profile>();
-        lensprof_profile_init(profile.get());
-        std::string_view packet = view_of(data, size);
-        while (!packet.empty() && packet.back() == '\0') packet.remove_suffix(1);  // padding of the tag
-        const DroneXmpReader reader(packet, {width, height});
-        const std::string remark = reader.read(source, *profile);
-        visited = visit_entry(*profile, remark, visit, user);
-    });
-    return status == LENSPROF_OK ? visited : status;
+    return read_drone_packet({data, size, width, height, source, nullptr}, visit, user, error);
 }

@@ -32,6 +32,7 @@ constexpr Sample kSamples[] = {
     {LENSPROF_FORMAT_DNG_OPCODES, "dng_opcodes/planes.opcodes", "a.dng", false, 1},
     {LENSPROF_FORMAT_DRONE_XMP, "drone_xmp/dji.xmp", "a.xmp", true, 1},
     {LENSPROF_FORMAT_DRONE_XMP, "drone_xmp/micasense.xmp", "a.xmp", true, 1},
+    {LENSPROF_FORMAT_DRONE_XMP, "drone_xmp/sentera.xmp", "a.xmp", true, 1},
     {LENSPROF_FORMAT_ALSC, "maps/tuning.json", "a.json", true, 1},
     {LENSPROF_FORMAT_PCALIB, "curves/pcalib.txt", "a.txt", false, 1},
     {LENSPROF_FORMAT_CURVES, "curves/rgb.csv", "a.csv", false, 1},

@@ -1,4 +1,4 @@
-// The polynomials of MicaSense's, Parrot's and DJI's cameras.
+// The polynomials of MicaSense's, Parrot's, DJI's and Sentera's cameras.
 #include <cstring>
 
 #include "import_support.hpp"
@@ -108,6 +108,54 @@ void test_dji(void **) {
     assert_dji(read(text, 1600, 1300), 799.5, 649.5);
 }
 
+// Of Sentera the highest power comes first, as OpenDroneMap reads it, under both of its names. The maker is told by
+// tiff:Make, by any property of its namespace, or by the key that an import is given.
+void test_sentera(void **) {
+    const std::vector<double> turned(kMicaSense.rbegin(), kMicaSense.rend());
+    const std::string declared = "xmlns:Sentera=\"http://sentera.com/camera/1.0/\" ",
+                      camera = list("Camera:VignettingPolynomial", turned)
+                               + list("Camera:VignettingCenter", {623.6301, 464.4527}),
+                      own = list("Sentera:VignettingPolynomial", turned)
+                            + list("Sentera:VignettingCenter", {623.6301, 464.4527}),
+                      blanks =
+                          "<Sentera:VignettingPolynomial>-1.0e-19 5.0e-16 -8.5e-13 3.4e-10 -5.1e-7 -3.0e-5"
+                          "</Sentera:VignettingPolynomial><Sentera:VignettingCenter>623.6301 464.4527"
+                          "</Sentera:VignettingCenter>",
+                      model = "tiff:Model=\"21214-00_3.2MP-GS-0001\" ", make = "tiff:Make=\"Sentera\" ";
+    const auto assert_sentera = [](const Imported &imported) {
+        assert_string_equal(imported.error.c_str(), "");
+        const lensprof_profile &p = *imported.profiles.at(0);
+        assert_string_equal(p.key.camera_maker, "Sentera");
+        assert_string_equal(p.provenance.doubt, "");
+        assert_same(p, 1280, 960, 4e-3,
+                    [](double x, double y) { return polynomial(kMicaSense, std::hypot(x - 623.6301, y - 464.4527)); });
+    };
+    assert_sentera(read(packet(make + model, camera)));
+    assert_sentera(read(packet(make + declared, own)));
+    assert_sentera(read(packet(declared, own)));
+    assert_sentera(read(packet(declared, blanks)));
+    assert_sentera(read(packet(model, own)));  // a prefix that nothing declares
+    assert_sentera(read(packet(declared + "Sentera:Session=\"2020-04-10\" ", camera)));
+    assert_sentera(read(packet(make + declared, own + list("Camera:VignettingPolynomial", {9, 9, 9}))));
+    // Another maker's numbers stay as they are: turned round they are no falloff.
+    assert_int_equal(read(packet("tiff:Make=\"MicaSense\" ", camera)).status, LENSPROF_ERROR_VIGNETTING);
+
+    // EXIF says it where the packet does not.
+    lensprof_profile_key key;
+    lensprof_profile_key_init(&key);
+    std::snprintf(key.camera_maker, sizeof key.camera_maker, "Sentera");
+    lensprof_import_options options;
+    lensprof_import_options_init(&options);
+    options.format = LENSPROF_FORMAT_DRONE_XMP;
+    options.width = 1280, options.height = 960, options.key = &key;
+    const std::string plain = packet("", camera);
+    Imported imported{};
+    lensprof_error error;
+    imported.status = lensprof_import(plain.data(), plain.size(), &options, keep_entry, &imported, &error);
+    imported.error = error.text;
+    assert_sentera(imported);
+}
+
 // Corrected = picture / sum c (x / width)^i (y / height)^j: a Sequoia's, whose numbers are in one item of a list.
 const std::string k2d =
     "<Camera:VignettingPolynomial2DName><rdf:Seq><rdf:li>0,0,1,0,2,0,0,1,0,2,1,1</rdf:li>"
@@ -145,7 +193,7 @@ void test_refused(void **) {
     };
     const std::string good = list("Camera:VignettingPolynomial", kMicaSense);
     assert_ok(read(packet("", good)).status);
-    refused(packet("", ""), LENSPROF_ERROR_NOT_FOUND, "no Camera:VignettingPolynomial");
+    refused(packet("", ""), LENSPROF_ERROR_NOT_FOUND, "no VignettingPolynomial");
     refused("", LENSPROF_ERROR_SYNTAX, "not well-formed");
     refused("<x:xmpmeta/>", LENSPROF_ERROR_SYNTAX, "rdf:RDF");
     refused(packet("", "<Camera:VignettingPolynomial>x</Camera:VignettingPolynomial>"), LENSPROF_ERROR_SYNTAX, "\"x\"");
@@ -182,8 +230,8 @@ void test_refused(void **) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_micasense),   cmocka_unit_test(test_dji),     cmocka_unit_test(test_2d),
-        cmocka_unit_test(test_huge_frames), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_micasense), cmocka_unit_test(test_dji),         cmocka_unit_test(test_2d),
+        cmocka_unit_test(test_sentera),   cmocka_unit_test(test_huge_frames), cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

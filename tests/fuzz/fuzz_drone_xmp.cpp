@@ -20,8 +20,8 @@ bool try_bytes(const std::vector<char> &text) {
 
 const std::vector<std::string> kWords = [] {
     std::vector<std::string> words = kXmlWords;
-    for (const char *word :
-         {"</rdf:li>", "<rdf:li>", "<rdf:Seq>", "</rdf:Seq>", "DJI", "0,0", "xmlns:Camera=\"\"", "2D"})
+    for (const char *word : {"</rdf:li>", "<rdf:li>", "<rdf:Seq>", "</rdf:Seq>", "DJI", "Sentera", "Sentera:", "0,0",
+                             "xmlns:Camera=\"\"", "2D"})
         words.push_back(word);
     return words;
 }();

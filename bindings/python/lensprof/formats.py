@@ -458,8 +458,8 @@ def lcp_write(profiles: Iterable[Profile], width: int = 0, height: int = 0) -> s
 
 
 def drone_xmp_read(text: Union[str, bytes], width: int, height: int, source: str = "") -> tuple[Profile, bool]:
-    """The falloff that a MicaSense, Parrot Sequoia or DJI camera writes into the XMP packet of a picture of width x
-    height pixels, and whether it is usable."""
+    """The falloff that a MicaSense, Parrot Sequoia, DJI or Sentera camera writes into the XMP packet of a picture of
+    width x height pixels, and whether it is usable."""
     data = _content(text, "text")
     (entry,) = _imported(
         lambda *rest: lib.lensprof_drone_xmp_read(data, len(data), integer(width, "width"), integer(height, "height"),

@@ -8,6 +8,7 @@
 #include "core/sized.h"
 #include "falloff/rise.hpp"
 #include "formats/any/detect.hpp"
+#include "formats/drone_xmp.hpp"
 #include "formats/falloff/import.hpp"
 #include "formats/text/text.hpp"
 
@@ -70,7 +71,8 @@ lensprof_status read_falloff(const Input &in, Part &part, lensprof_error *error)
         return lensprof_dng_opcodes_read(in.data, in.size, o.width, o.height, o.layout, nullptr, take_falloff, &part,
                                          error);
     case LENSPROF_FORMAT_DRONE_XMP:
-        return lensprof_drone_xmp_read(in.data, in.size, o.width, o.height, nullptr, take_falloff, &part, error);
+        return read_drone_packet({in.data, in.size, o.width, o.height, nullptr, part.profile.key.camera_maker},
+                                 take_falloff, &part, error);
     case LENSPROF_FORMAT_MAP:
         status = lensprof_map_read(o.map, o.width ? o.width : o.map->columns, o.height ? o.height : o.map->rows,
                                    &part.profile, &worst, error);

@@ -1,0 +1,23 @@
+// The XMP packet of a drone's camera, with what is known of it beside the packet.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <lensprof/formats.h>
+
+namespace lensprof {
+
+struct DronePacket {
+    const void *data;
+    size_t size;
+    uint32_t width, height;  // of its picture, px
+    const char *source;      // for the provenance; or NULL
+    const char *maker;       // of the camera, where the packet does not say it; or NULL
+};
+
+// lensprof_drone_xmp_read of it.
+lensprof_status read_drone_packet(const DronePacket &packet, lensprof_import_visitor visit, void *user,
+                                  lensprof_error *error);
+
+}  // namespace lensprof
