@@ -385,6 +385,13 @@ lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &proj
     return key;
 }
 
+DrawnPairs first_pairs(const ProjectFitOptions &o, const Project &project, Progress &progress) {
+    ProjectFit drawn(progress);
+    get_points(o, project, drawn);
+    stop_if_interrupted();
+    return {std::move(drawn.input.pairs), drawn.input.options.channels};
+}
+
 void fit_project(const ProjectFitOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,
                  const EarlierProfile &prior, ProjectFit &done, Streams &streams) {
     BuildReport &report = done.report;

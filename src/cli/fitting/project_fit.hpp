@@ -6,6 +6,7 @@
 
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/lens_settings.hpp"
+#include "cli/fitting/overlapping_pictures.hpp"
 #include "cli/fitting/project.hpp"
 #include "cli/report/gain_chart.hpp"
 
@@ -48,6 +49,9 @@ std::vector<PictureMetadata> picture_metadata(const ProjectFitOptions &o, const 
 // pictures at other settings.
 lensprof_profile_key profile_key(const ProjectFitOptions &o, const Project &project,
                                  const std::vector<PictureMetadata> &metadata, Streams &streams);
+
+// The pairs that fit_project starts from; tracks for the method radiance are none.
+DrawnPairs first_pairs(const ProjectFitOptions &o, const Project &project, Progress &progress);
 
 // Samples the pictures, or takes the points that are given, and fits. `prior` must live as long as `done`.
 void fit_project(const ProjectFitOptions &o, Project &project, const std::vector<PictureMetadata> &metadata,

@@ -1,6 +1,7 @@
 // `lensprof profile check` and `lensprof profile stats`: the state of a database.
 #include <nlohmann/json.hpp>
 
+#include "cli/profiles/check_against.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/databases.hpp"
 #include "cli/program/format.hpp"
@@ -24,6 +25,7 @@ lensprof_status collect(void *user, const lensprof_store_fault *fault) {
 
 struct CheckOptions {
     std::string db;
+    AgainstOptions against;
     bool json = false;
 };
 
@@ -92,6 +94,7 @@ void print_stats(const std::string &file, const lensprof_store_stats &s, std::os
 }
 
 int run_check(const CheckOptions &o, Streams &streams) {
+    if (o.against.is_asked()) return run_against(o.against, o.db, o.json, streams);
     Store store = open_store(o.db, LENSPROF_STORE_READ);
     const std::string file = store_path(o.db);
     std::vector<Fault> faults;
@@ -149,10 +152,13 @@ int run_stats(const StatsOptions &o, Streams &streams) {
 }  // namespace
 
 void declare_profile_check(Command &profile) {
-    Command command =
-        profile.add("check", "read and check the whole database",
-                    "Lists everything that is wrong. Exit code 0 when nothing is, 6 otherwise. Writes nothing.");
+    Command command = profile.add(
+        "check", "read and check the whole database, or profiles against pictures",
+        "Lists everything that is wrong. Exit code 0 when nothing is, 6 otherwise. With --against, says which "
+        "of the profiles fits the pictures: 0 when one does better than no falloff correction, 4 when none "
+        "does. Writes nothing.");
     auto o = std::make_shared<CheckOptions>();
+    declare_against(command, o->against);
     declare_db(command, o->db);
     declare_json(command, o->json);
     command.run([o](Streams &streams) { return run_check(*o, streams); });

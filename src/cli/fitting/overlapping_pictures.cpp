@@ -1,0 +1,36 @@
+#include "cli/fitting/overlapping_pictures.hpp"
+
+#include <algorithm>
+
+#include "cli/fitting/photographs.hpp"
+#include "cli/fitting/project_fit.hpp"
+#include "cli/fitting/reconstruction_project.hpp"
+#include "cli/reconstruction/reconstruction_file.hpp"
+
+namespace lensprof {
+
+Project project_of_words(const std::vector<std::string> &words, const std::string &images, Progress &progress,
+                         Streams &streams) {
+    const bool is_one = words.size() == 1;
+    if (is_one && is_reconstruction(words[0])) {
+        ReconstructionOptions options;
+        options.images = images;
+        return project_of_reconstruction(words[0], options, streams);
+    }
+    if (!images.empty())
+        throw Failure(ExitCode::usage, "--images: is of a reconstruction, and " + words[0] + " is none; leave it out");
+    if (is_one && !names_pictures(words[0])) return read_project(words[0]);
+    for (const std::string &word : words)
+        if (!names_pictures(word))
+            throw Failure(ExitCode::unreadable, word + ": is no picture (.jpg, .png, .tif) and no folder; give one "
+                                                       "project alone, or pictures and folders");
+    return project_of_pictures(find_photographs(words, streams), false, progress, streams);
+}
+
+DrawnPairs draw_pairs(const Project &project, Progress &progress) {
+    const ProjectFitOptions options;
+    if (!project.is_reconstruction) check_pictures(project, options.max_side);
+    return first_pairs(options, project, progress);
+}
+
+}  // namespace lensprof

@@ -1,0 +1,228 @@
+#include "cli/profiles/check_against.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fitting/project_fit.hpp"
+#include "cli/profiles/profile_trial.hpp"
+#include "cli/profiles/trial_report.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/library.hpp"
+#include "cli/program/message.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr size_t kFewestMeasured = 30;  // pairs
+
+bool is_number(const std::string &word) {
+    return !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
+}
+
+// Numbers are ids, each once; other words are further pictures, as a shell makes them of --against *.jpg.
+void sort_words(const AgainstOptions &o, std::vector<int64_t> &ids, std::vector<std::string> &pictures) {
+    pictures = o.pictures;
+    for (const std::string &word : o.words) {
+        if (!is_number(word)) {
+            pictures.push_back(word);
+            continue;
+        }
+        int64_t id = 0;
+        try {
+            id = profile_id_of(word);
+        } catch (const std::invalid_argument &wrong) {
+            throw Failure(ExitCode::usage, "profile check: " + std::string(wrong.what()));
+        }
+        if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+    }
+    if (o.pictures.empty())
+        throw Failure(ExitCode::usage, (o.words.empty() ? std::string("--images") : o.words[0])
+                                           + ": is more than this command takes without --against, which names the "
+                                             "pictures that profiles are checked against; see `lensprof help profile "
+                                             "check`");
+    if (ids.empty())
+        throw Failure(ExitCode::usage, "--against: which profiles? Give the ids that `lensprof profile list` shows");
+}
+
+std::vector<StoredProfile> read_profiles(const std::string &db, const std::vector<int64_t> &ids) {
+    const Store store = open_store(db, LENSPROF_STORE_READ);
+    std::vector<StoredProfile> profiles;
+    for (const int64_t id : ids) {
+        profiles.push_back({id, new_profile()});
+        lensprof_error error{};
+        check(lensprof_store_get(store.get(), id, profiles.back().profile.get(), &error), store_path(db), &error);
+    }
+    return profiles;
+}
+
+// Notes of `build` say what it estimates, which is not so here; warnings are of the pictures.
+Project open_pictures(const std::vector<std::string> &words, const std::string &images, Progress &progress,
+                      Streams &streams) {
+    std::ostringstream err;
+    const auto pass_on = [&] {
+        std::istringstream lines(err.str());
+        for (std::string line; std::getline(lines, line);)
+            if (line.rfind("lensprof: note: ", 0) != 0) streams.err << line << "\n";
+    };
+    Streams own{streams.out, err};
+    try {
+        Project project = project_of_words(words, images, progress, own);
+        pass_on();
+        return project;
+    } catch (...) {
+        pass_on();
+        throw;
+    }
+}
+
+// The pairs of one camera at one lens setting, which a profile is of: that with most of them. `first` receives its
+// image that states most.
+std::vector<lensprof_pair> pairs_of_one_setting(const Project &project, const std::vector<PictureMetadata> &metadata,
+                                                std::vector<lensprof_pair> pairs, uint32_t &first, Streams &streams) {
+    const LensSettings settings = lens_settings(project, metadata, {}, false);
+    std::vector<size_t> count(settings.first.size());
+    const auto setting_of = [&](const lensprof_pair &pair, int side) { return settings.of_image[pair.image[side]]; };
+    const auto is_of_one = [&](const lensprof_pair &pair) { return setting_of(pair, 0) == setting_of(pair, 1); };
+    for (const lensprof_pair &pair : pairs)
+        if (is_of_one(pair)) count[setting_of(pair, 0)]++;
+    const auto most = static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
+    first = settings.first[most];
+    const auto others = static_cast<size_t>(std::count_if(settings.of_image.begin(), settings.of_image.end(),
+                                                          [&](uint32_t setting) { return setting != most; }));
+    if (others)
+        warn(streams, project.path + ": " + counted(others, "picture")
+                          + " of another camera, size or lens setting left out, for a profile is of one; those of "
+                          + describe_setting(metadata[first].key, project.names[first]) + " are taken");
+    const auto is_other = [&](const lensprof_pair &p) { return !is_of_one(p) || setting_of(p, 0) != most; };
+    pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_other), pairs.end());
+    return pairs;
+}
+
+TrialErrors try_candidate(const TrialPairs &pairs, const Candidate &own, const lensprof_profile *falloff) {
+    return try_model(pairs, {falloff, own.responses.data(), static_cast<uint32_t>(own.responses.size())});
+}
+
+// A profile of sensor data tells nothing of rendered pictures but its falloff.
+bool has_response(const lensprof_profile &profile) {
+    return profile.key.processing != LENSPROF_PROCESSING_RAW || profile.response[0].kind != LENSPROF_RESPONSE_LINEAR;
+}
+
+// The response that goes with the pictures: sensor data have a linear one.
+void take_own_response(const lensprof_profile &profile, uint32_t camera_kind, Candidate &own) {
+    own.response_from = ResponseOf::own;
+    own.responses.assign(profile.response, profile.response + profile.responses);
+    if (camera_kind != LENSPROF_CAMERA_LINEAR) return;
+    own.response_from = ResponseOf::sensor;
+    own.responses.resize(1);
+    lensprof_response_set_linear(&own.responses[0]);
+}
+
+// For what has no response of its own: the one by which it does best, of the kind of camera or of a profile.
+void take_best_response(const TrialPairs &pairs, const std::vector<Candidate> &profiles, uint32_t camera_kind,
+                        const lensprof_profile *falloff, Candidate &own) {
+    own.response_from = camera_kind == LENSPROF_CAMERA_LINEAR ? ResponseOf::sensor : ResponseOf::kind;
+    own.responses.resize(1);
+    lensprof_error error{};
+    check(lensprof_response_set_typical(&own.responses[0], camera_kind, nullptr, nullptr), "response", &error);
+    own.errors = try_candidate(pairs, own, falloff);
+    const auto rms_of = [](const TrialErrors &errors) {  // of what is not far off
+        return figures_of(errors, explained_pairs({errors})).rms;
+    };
+    for (const Candidate &other : profiles) {
+        if (other.response_from != ResponseOf::own) continue;
+        TrialErrors errors = try_candidate(pairs, other, falloff);
+        if (rms_of(errors) >= rms_of(own.errors)) continue;
+        own.errors = std::move(errors);
+        own.response_from = ResponseOf::other, own.response_id = other.id;
+    }
+}
+
+std::vector<Candidate> try_profiles(const TrialPairs &pairs, const std::vector<StoredProfile> &profiles,
+                                    uint32_t camera_kind) {
+    std::vector<Candidate> tried(profiles.size());
+    for (size_t i = 0; i < profiles.size(); i++) {
+        const lensprof_profile &profile = *profiles[i].profile;
+        tried[i].id = profiles[i].id, tried[i].label = describe_key(profile.key);
+        tried[i].has_falloff = has_falloff(profile);
+        if (!has_response(profile) && camera_kind != LENSPROF_CAMERA_LINEAR) continue;
+        take_own_response(profile, camera_kind, tried[i]);
+        tried[i].errors = try_candidate(pairs, tried[i], &profile);
+    }
+    for (size_t i = 0; i < profiles.size(); i++)
+        if (tried[i].responses.empty())
+            take_best_response(pairs, tried, camera_kind, profiles[i].profile.get(), tried[i]);
+    return tried;
+}
+
+void warn_of_corrected(const Project &project, const std::vector<PictureMetadata> &metadata, Streams &streams) {
+    for (size_t i = 0; i < metadata.size(); i++)
+        if (!metadata[i].corrected_by.empty()) {
+            warn(streams, project.names[i] + ": its falloff was corrected before, " + metadata[i].corrected_by
+                              + "; what is measured is what that left");
+            return;
+        }
+}
+
+// Everything that is measured; the figures are filled in.
+TrialReport measure(const Project &project, const std::vector<StoredProfile> &profiles, Progress &progress,
+                    Streams &streams) {
+    const std::vector<PictureMetadata> metadata = picture_metadata({}, project);
+    DrawnPairs drawn = draw_pairs(project, progress);
+    progress.clear();
+    uint32_t first = 0;
+    drawn.pairs = pairs_of_one_setting(project, metadata, std::move(drawn.pairs), first, streams);
+    warn_of_corrected(project, metadata, streams);
+    const uint32_t kind = camera_kind_of({}, metadata[first].key, metadata[first]).kind;
+    TrialReport report;
+    report.pairs = split_for_trial(fit_images(project), drawn.pairs, drawn.channels);
+    if (report.pairs.heldout.size() < kFewestMeasured)
+        throw Failure(ExitCode::not_usable,
+                      project.path
+                          + format(": its overlaps hold %zu pairs to measure, and at least %zu are needed; give "
+                                   "pictures that share a third",
+                                   report.pairs.heldout.size(), kFewestMeasured),
+                      LENSPROF_REASON_FEW_PAIRS);
+    report.profiles = try_profiles(report.pairs, profiles, kind);
+    take_best_response(report.pairs, report.profiles, kind, nullptr, report.none);
+    compare(report);
+    return report;
+}
+
+}  // namespace
+
+void declare_against(Command &command, AgainstOptions &o) {
+    command.texts("ID", o.words, "with --against: the profiles that are compared, and further pictures");
+    command.words(
+        "--against", "PICTURES", [&o](const std::string &word) { o.pictures.push_back(word); },
+        "overlapping pictures (folders, files, as *.jpg), a Hugin project or a reconstruction: says which of the "
+        "profiles fits them, and how well");
+    command.folder("--images", o.images, "folder of a reconstruction's pictures; default beside it");
+    declare_progress(command, o.progress);
+}
+
+int run_against(const AgainstOptions &o, const std::string &db, bool json, Streams &streams) {
+    std::vector<int64_t> ids;
+    std::vector<std::string> pictures;
+    sort_words(o, ids, pictures);
+    const std::vector<StoredProfile> profiles = read_profiles(db, ids);
+    Progress progress(streams.err, o.progress ? ShowProgress::always : ShowProgress::when_terminal);
+    const Project project = open_pictures(pictures, o.images, progress, streams);
+    if (project.images.size() < 2)
+        throw Failure(ExitCode::not_usable, project.path + ": has one image; at least two overlapping ones are needed",
+                      LENSPROF_REASON_FEW_PAIRS);
+    TrialReport report = measure(project, profiles, progress, streams);
+    report.file = store_path(db), report.path = project.path;
+    if (json)
+        print_json(trial_json(report), streams.out);
+    else
+        print_trial(report, streams.out);
+    if (report.is_any_better()) return static_cast<int>(ExitCode::done);
+    tell(streams, project.path
+                      + ": none of the profiles fits these pictures better than no falloff correction; give profiles of "
+                        "this lens and setting, or make one with `lensprof build`");
+    return static_cast<int>(ExitCode::not_usable);
+}
+
+}  // namespace lensprof

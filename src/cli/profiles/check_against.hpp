@@ -1,0 +1,26 @@
+// `lensprof profile check ID... --against PICTURES`: which of several profiles fits overlapping pictures, and how well.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/program/options.hpp"
+#include "cli/program/run.hpp"
+
+namespace lensprof {
+
+struct AgainstOptions {
+    std::vector<std::string> words;  // ids, and further pictures
+    std::vector<std::string> pictures;
+    std::string images;
+    bool progress = false;
+
+    bool is_asked() const { return !words.empty() || !pictures.empty() || !images.empty(); }
+};
+
+void declare_against(Command &command, AgainstOptions &o);
+
+// Of the database `db`; writes nothing. Returns the exit code: not usable where no profile is better than none.
+int run_against(const AgainstOptions &o, const std::string &db, bool json, Streams &streams);
+
+}  // namespace lensprof

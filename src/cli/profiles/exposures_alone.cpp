@@ -1,0 +1,112 @@
+#include "cli/profiles/exposures_alone.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace lensprof {
+namespace {
+
+constexpr double kLeastScale = 0.3;   // levels: quantisation alone makes as much
+constexpr double kFirstLimit = 40.0;  // in scales: nearly everything counts
+constexpr double kLastLimit = 3.0;    // what is farther off has little weight
+constexpr double kLimitFactor = 0.7;  // from round to round
+constexpr int kRoundsAtLast = 6;
+constexpr double kMedianToSigma = 1.4826;
+constexpr double kSolved = 1e-20;  // of the squared remainder
+
+// Weighted differences of all pairs of images, as one least squares problem.
+class Links {
+public:
+    explicit Links(uint32_t images) : right_(images), diagonal_(images) {}
+
+    void add(const LightDifference &d, double weight) {
+        double &own = weights_[{d.image[0], d.image[1]}];
+        own += weight;
+        for (int side = 0; side < 2; side++) {
+            diagonal_[d.image[side]] += weight;
+            right_[d.image[side]] += (side ? -weight : weight) * d.log_ratio;
+        }
+    }
+
+    // Conjugate gradients from zero, which leave the constant of each joined group alone.
+    std::vector<double> solve() const {
+        const size_t n = right_.size();
+        std::vector<double> x(n), remainder = right_, step = scaled(remainder), image(n);
+        double size = product(remainder, step);
+        const double enough = kSolved * size;
+        for (size_t round = 0; round < 2 * n + 20 && size > enough && size > 0.0; round++) {
+            apply(step, image);
+            const double along = product(step, image);
+            if (!(along > 0.0)) break;
+            const double length = size / along;
+            for (size_t i = 0; i < n; i++) x[i] += length * step[i], remainder[i] -= length * image[i];
+            const std::vector<double> next = scaled(remainder);
+            const double next_size = product(remainder, next);
+            for (size_t i = 0; i < n; i++) step[i] = next[i] + next_size / size * step[i];
+            size = next_size;
+        }
+        return x;
+    }
+
+private:
+    std::vector<double> scaled(const std::vector<double> &values) const {
+        std::vector<double> all(values.size());
+        for (size_t i = 0; i < values.size(); i++) all[i] = diagonal_[i] > 0.0 ? values[i] / diagonal_[i] : 0.0;
+        return all;
+    }
+    void apply(const std::vector<double> &x, std::vector<double> &image) const {
+        for (size_t i = 0; i < x.size(); i++) image[i] = diagonal_[i] * x[i];
+        for (const auto &[ends, weight] : weights_) {
+            image[ends.first] -= weight * x[ends.second];
+            image[ends.second] -= weight * x[ends.first];
+        }
+    }
+    static double product(const std::vector<double> &a, const std::vector<double> &b) {
+        double sum = 0.0;
+        for (size_t i = 0; i < a.size(); i++) sum += a[i] * b[i];
+        return sum;
+    }
+
+    std::map<std::pair<uint32_t, uint32_t>, double> weights_;
+    std::vector<double> right_, diagonal_;
+};
+
+// What is left of each difference, levels; of what says nothing 0.
+std::vector<double> levels_left(const std::vector<LightDifference> &differences, const std::vector<double> &x) {
+    std::vector<double> left;
+    for (const LightDifference &d : differences)
+        left.push_back(d.sigma > 0.0 ? std::fabs(d.log_ratio - x[d.image[0]] + x[d.image[1]]) / d.sigma : 0.0);
+    return left;
+}
+
+double scale_of(std::vector<double> left) {
+    const auto middle = left.begin() + static_cast<std::ptrdiff_t>(left.size() / 2);
+    std::nth_element(left.begin(), middle, left.end());
+    return std::max(kLeastScale, kMedianToSigma * *middle);
+}
+
+}  // namespace
+
+std::vector<double> log_exposures(const std::vector<LightDifference> &differences, uint32_t images) {
+    std::vector<double> x(images);
+    if (differences.empty()) return x;
+    std::vector<double> left(differences.size(), 0.0);  // at first all count alike
+    double limit = kFirstLimit;
+    for (int at_last = 0; at_last < kRoundsAtLast;) {
+        const double end = limit * scale_of(left);
+        Links links(images);
+        for (size_t p = 0; p < differences.size(); p++) {
+            if (!(differences[p].sigma > 0.0)) continue;
+            const double off = 1.0 + left[p] * left[p] / (end * end);
+            links.add(differences[p], 1.0 / (differences[p].sigma * differences[p].sigma * off * off));
+        }
+        x = links.solve();
+        left = levels_left(differences, x);
+        limit = std::max(kLastLimit, kLimitFactor * limit);
+        at_last += limit == kLastLimit;
+    }
+    return x;
+}
+
+}  // namespace lensprof

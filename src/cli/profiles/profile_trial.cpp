@@ -1,0 +1,192 @@
+#include "cli/profiles/profile_trial.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "cli/profiles/exposures_alone.hpp"
+
+namespace lensprof {
+namespace {
+
+constexpr double kMedianToSigma = 1.4826;
+constexpr double kExplainedSigmas = 5.0;  // what no model comes nearer to is two different things
+constexpr double kLeastExplained = 3.0;   // levels
+constexpr size_t kFewestLinks = 5;        // whose scatter says anything
+
+// A number that belongs to a pair's number: splitmix64, independent of the order along images.
+uint64_t pair_hash(uint64_t pair) {
+    uint64_t z = (pair + 1) * 0x9E3779B97F4A7C15u;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return z ^ (z >> 31);
+}
+
+// Groups of images that pairs join.
+class Groups {
+public:
+    explicit Groups(size_t images) : parent_(images) { std::iota(parent_.begin(), parent_.end(), 0u); }
+    uint32_t of(uint32_t image) {
+        while (parent_[image] != image) image = parent_[image] = parent_[parent_[image]];
+        return image;
+    }
+    void join(uint32_t a, uint32_t b) { parent_[of(a)] = of(b); }
+
+private:
+    std::vector<uint32_t> parent_;
+};
+
+// Evaluates a model at the ends of pairs.
+class Evaluator {
+public:
+    Evaluator(const TrialPairs &pairs, const TrialModel &model) : pairs_(pairs), model_(model) {}
+
+    const lensprof_response &response(uint32_t channel) const {
+        return model_.responses[model_.response_count == 3 ? channel : 0];
+    }
+    double falloff(const lensprof_pair &pair, int side, uint32_t channel) const {
+        const lensprof_fit_image &image = pairs_.images[pair.image[side]];
+        return model_.falloff ? lensprof_profile_falloff(model_.falloff, channel, image.width, image.height,
+                                                         pair.xy[side][0], pair.xy[side][1], nullptr)
+                              : 1.0;
+    }
+    LightDifference difference(const lensprof_pair &pair, uint32_t channel) const {
+        LightDifference d{{pair.image[0], pair.image[1]}, 0.0, 0.0};
+        double variance = 0.0;
+        for (int side = 0; side < 2; side++) {
+            double slope = 0.0;
+            const double light = lensprof_response_invert(&response(channel), pair.value[side][channel], &slope);
+            if (!(light > 0.0) || !(slope > 0.0)) return d;  // black, or a flat part of the curve
+            const double own = std::log(light / falloff(pair, side, channel));
+            d.log_ratio += side ? -own : own;
+            variance += slope * slope / (light * light);
+        }
+        d.sigma = std::sqrt(variance) / 255.0;
+        return d;
+    }
+    // What is left at both ends, levels, with ln of the ratio of the exposures.
+    std::array<double, 2> left(const lensprof_pair &pair, uint32_t channel, double log_exposure) const {
+        const double ratio = falloff(pair, 0, channel) / falloff(pair, 1, channel) * std::exp(log_exposure);
+        const lensprof_response &f = response(channel);
+        const double a = pair.value[0][channel], b = pair.value[1][channel];
+        const double x = lensprof_response_invert(&f, a, nullptr), y = lensprof_response_invert(&f, b, nullptr);
+        return {255.0 * (a - lensprof_response_eval(&f, y * ratio, nullptr)),
+                255.0 * (b - lensprof_response_eval(&f, x / ratio, nullptr))};
+    }
+
+private:
+    const TrialPairs &pairs_;
+    const TrialModel &model_;
+};
+
+void add_pair(const std::vector<double> &levels, TrialErrors &errors) {
+    double sum = 0.0;
+    for (double level : levels) sum += level * level, errors.absolutes.push_back(std::fabs(level));
+    errors.squares.push_back(sum / static_cast<double>(levels.size()));
+}
+
+double middle_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+TrialPairs split_for_trial(std::vector<lensprof_fit_image> images, const std::vector<lensprof_pair> &pairs,
+                           uint32_t channels) {
+    TrialPairs split;
+    split.channels = channels;
+    Groups groups(images.size());
+    for (size_t p = 0; p < pairs.size(); p++) {
+        const bool is_train = pair_hash(p) % 2 == 0;
+        (is_train ? split.train : split.heldout).push_back(pairs[p]);
+        if (is_train) groups.join(pairs[p].image[0], pairs[p].image[1]);
+    }
+    const auto is_apart = [&](const lensprof_pair &pair) {
+        return groups.of(pair.image[0]) != groups.of(pair.image[1]);
+    };
+    split.heldout.erase(std::remove_if(split.heldout.begin(), split.heldout.end(), is_apart), split.heldout.end());
+    split.images = std::move(images);
+    return split;
+}
+
+TrialErrors try_model(const TrialPairs &pairs, const TrialModel &model) {
+    const Evaluator evaluator(pairs, model);
+    std::array<std::vector<double>, 3> exposures;
+    for (uint32_t c = 0; c < pairs.channels; c++) {
+        std::vector<LightDifference> differences;
+        for (const lensprof_pair &pair : pairs.train) differences.push_back(evaluator.difference(pair, c));
+        exposures[c] = log_exposures(differences, static_cast<uint32_t>(pairs.images.size()));
+    }
+    TrialErrors errors;
+    for (const lensprof_pair &pair : pairs.heldout) {
+        std::vector<double> levels;
+        for (uint32_t c = 0; c < pairs.channels; c++)
+            for (double level : evaluator.left(pair, c, exposures[c][pair.image[0]] - exposures[c][pair.image[1]]))
+                levels.push_back(level);
+        add_pair(levels, errors);
+    }
+    return errors;
+}
+
+TrialErrors errors_as_they_are(const TrialPairs &pairs) {
+    TrialErrors errors;
+    for (const lensprof_pair &pair : pairs.heldout) {
+        std::vector<double> levels;
+        for (uint32_t c = 0; c < pairs.channels; c++) levels.push_back(255.0 * (pair.value[0][c] - pair.value[1][c]));
+        add_pair(levels, errors);
+    }
+    return errors;
+}
+
+std::vector<bool> explained_pairs(const std::vector<TrialErrors> &tried) {
+    const size_t pairs = tried.front().squares.size();
+    if (!pairs) return {};
+    double least = HUGE_VAL;
+    for (const TrialErrors &errors : tried) least = std::min(least, std::sqrt(middle_of(errors.squares)));
+    const double limit = std::max(kLeastExplained, kExplainedSigmas * kMedianToSigma * least);
+    std::vector<bool> counts(pairs);
+    for (size_t p = 0; p < pairs; p++)
+        counts[p] = std::any_of(tried.begin(), tried.end(),
+                                [&](const TrialErrors &errors) { return errors.squares[p] <= limit * limit; });
+    return counts;
+}
+
+TrialFigures figures_of(const TrialErrors &errors, const std::vector<bool> &counts) {
+    std::vector<double> absolutes;
+    double sum = 0.0, count = 0.0;
+    const size_t each = errors.absolutes.size() / errors.squares.size();
+    for (size_t p = 0; p < counts.size(); p++) {
+        if (!counts[p]) continue;
+        sum += errors.squares[p], count++;
+        for (size_t n = 0; n < each; n++) absolutes.push_back(errors.absolutes[p * each + n]);
+    }
+    return {std::sqrt(sum / count), middle_of(absolutes)};
+}
+
+TrialDifference difference_of(const TrialErrors &one, const TrialErrors &other, const TrialPairs &pairs,
+                              const std::vector<bool> &counts) {
+    double sum = 0.0, n = 0.0;
+    for (size_t p = 0; p < counts.size(); p++)
+        if (counts[p]) sum += one.squares[p] - other.squares[p], n++;
+    const double mean = sum / n;
+    double scatter = 0.0, link_scatter = 0.0;
+    std::map<std::pair<uint32_t, uint32_t>, double> links;
+    for (size_t p = 0; p < counts.size(); p++) {
+        if (!counts[p]) continue;
+        const double off = one.squares[p] - other.squares[p] - mean;
+        scatter += off * off;
+        links[std::minmax(pairs.heldout[p].image[0], pairs.heldout[p].image[1])] += off;
+    }
+    for (const auto &link : links) link_scatter += link.second * link.second;
+    const double used = links.size() < kFewestLinks ? scatter : std::max(scatter, link_scatter);
+    const double rms = figures_of(one, counts).rms + figures_of(other, counts).rms;
+    if (!(rms > 0.0)) return {};
+    return {mean / rms, std::sqrt(used) / n / rms};
+}
+
+}  // namespace lensprof
