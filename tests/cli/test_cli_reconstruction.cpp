@@ -1,5 +1,7 @@
 // `build` of reconstructions, and `apply --model`: exposures and falloff beside the truth of a simulated camera that
 // moves, and what is written for other programs.
+#include <deque>
+
 #include "cli/fitting/block_sampling.hpp"
 #include "cli/fitting/reconstruction_project.hpp"
 
@@ -149,6 +151,33 @@ void test_two_visits(void **) {
     save_text(work("first.txt"), first + "nobody.png\n");
     assert_refused(unreadable, both + Words{"--image-list", work("first.txt")}, {"first.txt", "nobody.png"});
     for (const char *name : {"first.txt", "visits.csv"}) fs::remove(work(name));
+}
+
+// Places that do not show the same: the observations of every picture are of later tracks, of each by another number.
+void test_wrong_matches(void **) {
+    std::istringstream lines(text_of(work("tracks.csv")));
+    std::map<std::string, std::deque<std::string>> later;  // the tracks that were met before in each image
+    std::ostringstream changed;
+    for (std::string line; std::getline(lines, line);) {
+        const size_t name = line.find('\t'), track = line.find('\t', name + 1);
+        if (track == std::string::npos) {
+            changed << line << "\n";
+            continue;
+        }
+        auto &own = later[line.substr(0, name)];
+        own.push_back(line.substr(name + 1, track - name - 1));
+        if (own.size() < 50 + 37 * later.size()) continue;
+        changed << line.substr(0, name + 1) << own.front() << line.substr(track) << "\n";
+        own.pop_front();
+    }
+    save_text(work("wrong.csv"), changed.str());
+    for (const Words &more : {Words{}, Words{"--track-colors"}})
+        assert_refused(not_usable,
+                       Words{"build", work("wrong.csv"), "--images", work("pictures"), "--no-store", "--exposures-out",
+                             work("no.json")}
+                           + more,
+                       {"wrong.csv"});
+    fs::remove(work("wrong.csv"));
 }
 
 // The parts of several machines: every picture once, and outputs as without.
@@ -348,6 +377,7 @@ int main() {
         cmocka_unit_test(test_blocks),
         cmocka_unit_test(test_shards),
         cmocka_unit_test(test_two_visits),
+        cmocka_unit_test(test_wrong_matches),
         cmocka_unit_test(test_chart_of_gains),
         cmocka_unit_test(test_file_of_exposures),
         cmocka_unit_test(test_corrected_copies),

@@ -255,6 +255,14 @@ void take_exposures_only(const Fitted &only, const Project &project, ProjectFit 
     join_cameras(done.settings);
 }
 
+// Whether a result evens out the pictures of a reconstruction: colours differ less than before, and either much less or
+// no more than those of a scene whose surfaces shine. Matches that are none differ by more whatever is done.
+bool are_evened(const ColourVariance &variance) {
+    constexpr double much_less = 0.5, most_variance = 200.0;  // levels of 255 squared: 20 levels between two pictures
+    return variance.result < variance.before
+           && (variance.result < much_less * variance.before || variance.result < most_variance);
+}
+
 // Failure (not usable) for pictures of two visits, whose light differs in more than an exposure.
 void check_light(const LightGroups &groups, const Project &project) {
     if (groups.second.empty()) return;
@@ -284,7 +292,7 @@ void fit_reconstruction(const Project &project, ProjectFit &done, Streams &strea
                   {"this result", colour_differences(all, &done.best)}};
     report.variance = {colour_variance_of(done.gains[0].variances), colour_variance_of(done.gains[1].variances),
                        colour_variance_of(done.gains[2].variances), all.pairs.size()};
-    done.best.result.evens = report.variance.result < report.variance.before;
+    done.best.result.evens = are_evened(report.variance);
     check_light(light_groups(all, done.gains[2].variances, project.view_distances), project);
 }
 
