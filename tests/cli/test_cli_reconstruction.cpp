@@ -347,6 +347,8 @@ void test_options(void **) {
     assert_refused(usage, {"apply", "--profile", "1", "--seed-exif", work("pictures"), "-o", work("out")},
                    {"--seed-exif", "--model"});
     assert_refused(usage, {"apply", "--model", file, "--merge", "--linear", "-o", work("out")}, {"--merge", "--pto"});
+    save_text(work("notes.txt"), "mine");
+    assert_refused(usage, build("model", {"--exposures-out", work("notes.txt")}), {"notes.txt", "is there already"});
     for (const char *option : {"--preview", "--points", "--project-out"})
         assert_refused(usage, build("model", {option, work("x.png")}), {option, "reconstruction"});
     assert_refused(usage, {"build", work("pictures"), "--images", work("pictures"), "--no-store"},

@@ -121,6 +121,12 @@ void check_is_no_photograph(const std::string &output, bool is_preview) {
                       output + ": is a photograph that is there already; give the preview another name");
 }
 
+// Files of exposures lie beside those of reconstructions, and nothing else is to be lost by a slip.
+void check_is_no_other_file(const std::string &output) {
+    if (!is_regular_file(output) || file_bytes(output) == 0 || is_exposure_file(output)) return;
+    throw Failure(ExitCode::usage, output + ": is there already, and is no file of exposures; give another name");
+}
+
 // No output may take the place of an input, of the database or of another output.
 void check_outputs(const Options &o, std::vector<std::string> taken) {
     taken.insert(taken.end(), {o.points, o.image_list, o.compare});
@@ -132,6 +138,7 @@ void check_outputs(const Options &o, std::vector<std::string> taken) {
             if (is_same_file(output, other))
                 throw Failure(ExitCode::usage, output + ": would be written over; give the output another name");
         check_is_no_photograph(output, output == o.preview || output == o.gain_chart);
+        if (output == o.exposures_out) check_is_no_other_file(output);
         check_output_file(output);
         taken.push_back(output);
     }

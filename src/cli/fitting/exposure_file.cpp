@@ -229,6 +229,10 @@ std::string exposures_text(const ProjectFit &done, const Project &project, const
     return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+bool is_exposure_file(const std::string &path) {
+    return read_head(path, 256).find("\"lensprof exposures\"") != std::string::npos;
+}
+
 Project read_exposures(const std::string &path, const std::string &images) {
     const Reader reader(path);
     Json all = Json::parse(read_text(path, most_bytes), nullptr, false);

@@ -12,6 +12,9 @@ namespace lensprof {
 std::string exposures_text(const ProjectFit &done, const Project &project, const std::vector<PictureMetadata> &metadata,
                            const std::string &path);
 
+// Whether a file is one of exposures, by its first lines.
+bool is_exposure_file(const std::string &path);
+
 // The file as a project of which each image has a model. Pictures are those it names, or where `images` is not empty
 // the images' names in that folder. Failure (unreadable) for a file that is damaged or something else.
 Project read_exposures(const std::string &path, const std::string &images);

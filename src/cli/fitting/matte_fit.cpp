@@ -46,7 +46,8 @@ private:
 
 }  // namespace
 
-Fitted fit_exposures_only(FitInput input, uint32_t reference, const std::string &item, Progress &progress) {
+Fitted fit_exposures_only(FitInput input, uint32_t reference, const std::string &item, Progress &progress,
+                          std::vector<lensprof_fit_image_quality> *quality) {
     lensprof_error error{};
     check(lensprof_response_set_typical(&input.fixed, input.options.camera_kind, nullptr, nullptr), item, &error);
     input.options.response = &input.fixed;
@@ -54,7 +55,7 @@ Fitted fit_exposures_only(FitInput input, uint32_t reference, const std::string 
     input.options.profile = nullptr;
     input.options.free = 0;
     for (lensprof_fit_image &image : input.images) image.setting = image.camera = 0;
-    return fit(input, reference, item, progress, nullptr);
+    return fit(input, reference, item, progress, quality);
 }
 
 bool is_joint_better(const Fitted &joint, const Fitted &exposures_only) {
@@ -139,24 +140,31 @@ double largest_change(const Fitted &a, const Fitted &b) {
 
 }  // namespace
 
-Fitted fit_matte_points(FitInput &input, std::vector<uint32_t> points, const Fitted &first, uint32_t reference,
+Fitted fit_matte_points(FitInput &input, const std::vector<uint32_t> &points, const Fitted &first, uint32_t reference,
                         const std::string &item, Progress &progress, std::vector<lensprof_fit_image_quality> *quality) {
     const std::vector<lensprof_pair> all = input.pairs;
+    std::vector<lensprof_pair> fitted = all;
     Fitted best = first;
-    for (int round = 0; round < kMostRounds; round++) {
+    bool stays = false;
+    for (int round = 0; round < kMostRounds && !stays; round++) {
         input.pairs = all;
         const std::vector<bool> matte = are_matte(all, colour_differences(input, &best), points);
         input.pairs.clear();
         for (size_t p = 0; p < all.size(); p++)
             if (matte[p]) input.pairs.push_back(all[p]);
         std::vector<lensprof_fit_image_quality> own;
-        const Fitted next = fit(input, reference, item, progress, &own);
-        if (joined_images(next) < joined_images(best)) break;  // some have too few matte points
-        const bool stays = largest_change(next, best) < kSameExposure;
-        best = next;
+        std::optional<Fitted> next;
+        try {
+            next = fit(input, reference, item, progress, &own);
+        } catch (const Failure &failure) {
+            if (failure.code != ExitCode::not_usable) throw;
+        }
+        if (!next || joined_images(*next) < joined_images(best)) break;  // some images have too few matte points
+        stays = largest_change(*next, best) < kSameExposure;
+        best = *next, fitted = input.pairs;
         if (quality) *quality = own;
-        if (stays) break;
     }
+    input.pairs = fitted;
     return best;
 }
 

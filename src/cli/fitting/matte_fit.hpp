@@ -10,7 +10,8 @@ namespace lensprof {
 
 // Fits exposures and white balances of the input's pairs, with the typical response of its kind of camera and no
 // falloff: what those correct that know nothing of the camera.
-Fitted fit_exposures_only(FitInput input, uint32_t reference, const std::string &item, Progress &progress);
+Fitted fit_exposures_only(FitInput input, uint32_t reference, const std::string &item, Progress &progress,
+                          std::vector<lensprof_fit_image_quality> *quality);
 
 // Whether pairs that were held out of both fits differ less by the joint result: by the median of what is left, which
 // things that shine move less than the mean.
@@ -25,8 +26,8 @@ double colour_variance_of(const std::vector<double> &differences);
 
 // Fits again without the points whose colours differ most between views, until the exposures stay: highlights that lie
 // at one place of the frame are taken for falloff and for exposures that drift, and a robust loss does not see them,
-// for each is small. `points`: of each pair the scene point; both are cut to what was fitted.
-Fitted fit_matte_points(FitInput &input, std::vector<uint32_t> points, const Fitted &first, uint32_t reference,
+// for each is small. `points`: of each pair the scene point; the input is left with the pairs that were fitted.
+Fitted fit_matte_points(FitInput &input, const std::vector<uint32_t> &points, const Fitted &first, uint32_t reference,
                         const std::string &item, Progress &progress, std::vector<lensprof_fit_image_quality> *quality);
 
 }  // namespace lensprof
