@@ -146,6 +146,14 @@ Fitted fit_matte_points(FitInput &input, const std::vector<uint32_t> &points, co
     std::vector<lensprof_pair> fitted = all;
     Fitted best = first;
     bool stays = false;
+    const uint32_t modes = input.options.modes, vignettings = input.options.vignettings;
+    const bool is_of_one = std::all_of(input.images.begin(), input.images.end(), [&](const lensprof_fit_image &image) {
+        return image.camera == input.images[0].camera;
+    });
+    if (is_of_one) {  // held-out pairs have chosen these already
+        if (modes == LENSPROF_MODES_AUTO) input.options.modes = first.result.response.modes;
+        if (vignettings == 0) input.options.vignettings = first.result.vignettings;
+    }
     for (int round = 0; round < kMostRounds && !stays; round++) {
         input.pairs = all;
         const std::vector<bool> matte = are_matte(all, colour_differences(input, &best), points);
@@ -165,6 +173,7 @@ Fitted fit_matte_points(FitInput &input, const std::vector<uint32_t> &points, co
         if (quality) *quality = own;
     }
     input.pairs = fitted;
+    input.options.modes = modes, input.options.vignettings = vignettings;
     return best;
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <queue>
+#include <set>
 #include <tuple>
 
 #include "cli/reconstruction/link_order.hpp"
@@ -14,6 +16,8 @@ namespace {
 constexpr double kUsualAngle = 0.2618;  // 15 degrees, in radians
 constexpr double kUsualShare = 0.05;    // of common points, of views that count as little
 constexpr size_t kLongTrack = 12;       // an observation of a longer track is paired with some of the others alone:
+constexpr size_t kFewImages = 300;      // of which all links are kept; of more
+constexpr uint32_t kMostLinks = 20;     // an image's links with most weight, and a few
 constexpr size_t kNext = 3, kFar = 6;   // the next ones in the order of the images, and others
 
 // A number in (0, 1] by SplitMix64 (Steele, Lea and Flood 2014).
@@ -139,6 +143,50 @@ std::optional<Map> map_of_shapes(const TrackObservation &from, const TrackObserv
     return scale > 0.0 && std::isfinite(scale) ? std::optional<Map>(map) : std::nullopt;
 }
 
+// The links that stay where images have many: of every image those with most weight, and those that are needed for all
+// to hang together. Images that are tied to hundreds of others make the fit's equations dense.
+std::set<uint32_t> links_to_keep(const std::vector<std::pair<uint32_t, uint32_t>> &links,
+                                 const std::vector<double> &weights, size_t images) {
+    std::vector<uint32_t> order(links.size()), kept_of(images), parent(images);
+    std::iota(order.begin(), order.end(), 0u);
+    std::iota(parent.begin(), parent.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return weights[a] > weights[b]; });
+    const auto root = [&](uint32_t image) {
+        while (parent[image] != image) image = parent[image] = parent[parent[image]];
+        return image;
+    };
+    std::set<uint32_t> kept;
+    for (const uint32_t link : order) {
+        const auto [i, j] = links[link];
+        const bool joins = root(i) != root(j);
+        if (!joins && kept_of[i] >= kMostLinks && kept_of[j] >= kMostLinks) continue;
+        parent[root(i)] = root(j);
+        kept_of[i]++, kept_of[j]++;
+        kept.insert(link);
+    }
+    return kept;
+}
+
+// Leaves the pairs of such links; `pairs` are by images.
+void thin_links(const Reconstruction &r, const ViewDistance &distance, std::vector<ObservationPair> &pairs) {
+    if (r.images.size() <= kFewImages) return;
+    std::vector<std::pair<uint32_t, uint32_t>> links;
+    std::vector<double> weights;
+    std::vector<uint32_t> link_of_pair;
+    for (const ObservationPair &pair : pairs) {
+        const std::pair<uint32_t, uint32_t> own{r.observations[pair.first].image, r.observations[pair.second].image};
+        if (links.empty() || links.back() != own) links.push_back(own), weights.push_back(0.0);
+        const double far = distance.of(pair);
+        weights.back() += 1.0 / (1.0 + far * far);
+        link_of_pair.push_back(static_cast<uint32_t>(links.size() - 1));
+    }
+    const std::set<uint32_t> kept = links_to_keep(links, weights, r.images.size());
+    size_t count = 0;
+    for (size_t p = 0; p < pairs.size(); p++)
+        if (kept.count(link_of_pair[p])) pairs[count++] = pairs[p];
+    pairs.resize(count);
+}
+
 }  // namespace
 
 std::vector<ObservationPair> choose_pairs(const Reconstruction &r, uint32_t of_image, uint32_t seed) {
@@ -164,6 +212,7 @@ std::vector<ObservationPair> choose_pairs(const Reconstruction &r, uint32_t of_i
     std::sort(taken.begin(), taken.end(), [&](const auto &a, const auto &b) { return key(a) < key(b); });
     const auto is_same = [&](const auto &a, const auto &b) { return key(a) == key(b); };
     taken.erase(std::unique(taken.begin(), taken.end(), is_same), taken.end());
+    thin_links(r, distance, taken);
     return taken;
 }
 
