@@ -151,15 +151,16 @@ bool becomes_dng(const Options &o, const std::string &raw) {
     return raw == "DNG" && is_plain && o.raw_output != RawOutput::tif;
 }
 
-std::string target_name(const Options &o, const NamedPicture &picture) {
-    std::filesystem::path name = std::filesystem::path(picture.file).filename();
+// `named`: what the picture is called, with the folders below that of the outputs.
+std::string target_name(const Options &o, const NamedPicture &picture, const std::filesystem::path &named) {
+    std::filesystem::path name = named;
     const auto raw = raw_kind(picture.file);
     if (o.kind.linear)
         name.replace_extension(o.linear_end.empty() ? ".tif" : o.linear_end);
     else if ((raw && !becomes_dng(o, *raw)) || (!raw && is_read_alone(picture.file)))
         name.replace_extension(".tif");
     if (raw && becomes_dng(o, *raw)) name.replace_extension(".dng");
-    return (std::filesystem::path(o.output) / picture.subfolder / name).string();
+    return (std::filesystem::path(o.output) / name).string();
 }
 
 // A picture of another shape is not the one the project was made with; another size of the same shape will do.
@@ -250,9 +251,18 @@ void check_opcodes(const Options &o, const std::string &file) {
                      true);
 }
 
+// The name of a model's image, by which the model takes the output for it; without folders where these lead out.
+std::filesystem::path name_below(const std::string &name) {
+    const auto path = std::filesystem::path(name).lexically_normal();
+    const bool leads_out = path.is_absolute() || *path.begin() == "..";
+    return leads_out ? path.filename() : path;
+}
+
 Correction make_job(const Options &o, const Source &source, const NamedPicture &picture) {
     Correction job;
-    job.source = picture.file, job.target = target_name(o, picture);
+    job.source = picture.file;
+    std::filesystem::path named =
+        std::filesystem::path(picture.subfolder) / std::filesystem::path(picture.file).filename();
     lensprof_exposure_init(&job.own);
     if (source.project) {
         const uint32_t image = source.images->at(picture.file, o.project_option());
@@ -260,7 +270,9 @@ Correction make_job(const Options &o, const Source &source, const NamedPicture &
         job.own = source.exposures[image];
         if (source.has_model) job.model = model_of_project(*source.project, image);
         job.model_name = std::filesystem::path(o.project()).filename().string();
+        if (!source.project->models.empty()) named = name_below(source.project->names[image]);
     }
+    job.target = target_name(o, picture, named);
     const PictureMetadata metadata = metadata_of(o, picture.file);
     check_mark(o, picture.file, metadata);
     if (source.models->are_used()) source.models->choose(metadata, job);
@@ -310,15 +322,6 @@ std::vector<PlacedCorrection> placed_images(const Options &o, const Source &sour
     return placed;
 }
 
-// Where an output goes below the folder of outputs: where a model's image is below that of the pictures, so that the
-// model takes the outputs for its images.
-std::string subfolder_of(const Project &project, size_t image) {
-    if (project.models.empty()) return {};
-    const auto folder = std::filesystem::path(project.names[image]).lexically_normal().parent_path();
-    const bool leads_out = folder.is_absolute() || (!folder.empty() && *folder.begin() == "..");
-    return leads_out ? std::string() : folder.string();
-}
-
 void take_shard(const Shard &shard, std::vector<NamedPicture> &pictures) {
     const size_t first = shard.first(pictures.size()), end = shard.end(pictures.size());
     if (first == end && !pictures.empty())
@@ -331,8 +334,7 @@ void take_shard(const Shard &shard, std::vector<NamedPicture> &pictures) {
 Work plan_work(const Options &o, const Source &source, Streams &streams) {
     std::vector<NamedPicture> pictures;
     if (o.files.empty() && source.project)
-        for (size_t i = 0; i < source.project->files.size(); i++)
-            pictures.push_back({source.project->files[i], subfolder_of(*source.project, i), false});
+        for (const std::string &file : source.project->files) pictures.push_back({file, "", false});
     else
         pictures = named_pictures(o.files, o.output);
     take_shard(shard_of(o.shard), pictures);
@@ -480,6 +482,8 @@ void check_merge(const Options &o) {
 void check_project_options(const Options &o) {
     if (!o.pto.empty() && !o.exposures.empty())
         throw Failure(ExitCode::usage, "--pto and --model: both say the exposures; give one of the two");
+    if (o.seed_exif && o.linear_end == ".exr")
+        throw Failure(ExitCode::usage, "--seed-exif: OpenEXR holds no EXIF; give --linear-output tif, or leave it out");
     if (o.exposures.empty() && (!o.images.empty() || o.seed_exif))
         throw Failure(ExitCode::usage, std::string(o.seed_exif ? "--seed-exif" : "--images")
                                            + ": is for the exposures of --model; give that, or leave it out");

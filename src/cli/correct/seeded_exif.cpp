@@ -2,18 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cli/correct/project_model.hpp"
 #include "cli/pictures/metadata.hpp"
-#include "cli/program/paths.hpp"
 
 namespace lensprof {
 namespace {
 
-constexpr double usual_time_s = 1.0 / 60.0, usual_aperture = 2.8, usual_iso = 100.0;
+constexpr double usual_time_s = 1.0 / 60.0, usual_aperture = 2.8, usual_iso = 100.0,
+                 most_iso = 65535.0;  // of EXIF's tag
 
 double exif_ev_of(double time_s, double aperture, double iso) {
     return std::log2(time_s * iso / 100.0 / (aperture * aperture));
+}
+
+// None where a picture cannot be read, which may be of another part of the work.
+std::optional<double> stated_ev(const std::string &file) {
+    try {
+        return read_metadata(file).exif_ev;
+    } catch (const Failure &) {
+        return {};
+    }
 }
 
 double median(std::vector<double> values) {
@@ -27,8 +37,8 @@ double median(std::vector<double> values) {
 void seed_exif(std::vector<Correction> &jobs, const Project &project, const std::vector<lensprof_exposure> &exposures) {
     std::vector<double> offsets;  // from measured to stated EV
     for (size_t i = 0; i < exposures.size(); i++) {
-        if (project.images[i].left_out || !path_exists(project.files[i])) continue;
-        if (const auto stated = read_metadata(project.files[i]).exif_ev) offsets.push_back(*stated - exposures[i].ev);
+        if (project.images[i].left_out) continue;
+        if (const auto stated = stated_ev(project.files[i])) offsets.push_back(*stated - exposures[i].ev);
     }
     const double usual = exif_ev_of(usual_time_s, usual_aperture, usual_iso);
     const double offset =
@@ -36,7 +46,8 @@ void seed_exif(std::vector<Correction> &jobs, const Project &project, const std:
     for (Correction &job : jobs) {
         const PictureMetadata own = read_metadata(job.source);
         auto seeded = std::make_shared<PictureMetadata>(unknown_metadata());
-        const double aperture = own.f_number.value_or(usual_aperture), iso = own.iso.value_or(usual_iso);
+        const double aperture = own.f_number.value_or(usual_aperture),
+                     iso = std::min(own.iso.value_or(usual_iso), most_iso);
         seeded->key.aperture = aperture, seeded->iso = iso;
         seeded->exposure_time_s = std::exp2(job.wanted.ev + offset) * 100.0 / iso * aperture * aperture;
         job.exif = std::move(seeded);

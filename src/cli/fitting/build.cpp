@@ -211,7 +211,8 @@ Project open_project(const Options &o, Streams &streams) {
     if (o.inputs.size() == 1 && is_reconstruction(o.inputs[0])) return open_reconstruction(o, streams);
     for (const auto &[option, is_given] :
          {std::pair("--images", !o.images.empty()), std::pair("--image-list", !o.image_list.empty()),
-          std::pair("--shard", !o.shard.empty()), std::pair("--track-colors", o.track_colours)})
+          std::pair("--shard", !o.shard.empty()), std::pair("--track-colors", o.track_colours),
+          std::pair("--gain-chart", !o.gain_chart.empty())})
         if (is_given)
             throw Failure(ExitCode::usage,
                           std::string(option) + ": is of a reconstruction, and " + o.inputs[0]
@@ -257,6 +258,7 @@ int build_and_store(const Options &o, std::vector<std::string> &names, Streams &
                       LENSPROF_REASON_FEW_PAIRS);
     std::vector<std::string> inputs = project.files;
     inputs.push_back(project.path);
+    inputs.insert(inputs.end(), project.sources.begin(), project.sources.end());
     check_outputs(o, inputs);
     if (!o.project_out.empty()) write_project(project, o.project_out);
     choose_unknowns(o, project, streams);

@@ -10,7 +10,7 @@
 #include "cli/program/format.hpp"
 #include "cli/program/input_file.hpp"
 #include "cli/program/paths.hpp"
-#include "cli/reconstruction/reconstruction.hpp"
+#include "cli/reconstruction/pictures.hpp"
 
 namespace lensprof {
 namespace {
@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr uint64_t most_bytes = uint64_t(1) << 30;
 constexpr int schema = 1;
+constexpr double most_ev = 30.0;  // from the reference
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
@@ -101,6 +102,8 @@ public:
     std::string text(const Json &object, const char *name) const {
         const Json &value = member(object, name);
         if (!value.is_string() || value.get_ref<const std::string &>().empty()) fail(std::string(name) + " is no text");
+        if (value.get_ref<const std::string &>().find('\0') != std::string::npos)
+            fail(std::string(name) + " is no name");
         return value.get<std::string>();
     }
     std::vector<double> numbers(const Json &object, const char *name, size_t most) const {
@@ -131,6 +134,8 @@ lensprof_response Reader::response(const Json &camera) const {
         const Json &modes = member(json, "emor");
         const std::vector<double> values = modes.empty() ? std::vector<double>() : numbers(json, "emor", 25);
         status = lensprof_response_set_emor(&response, values.data(), static_cast<uint32_t>(values.size()));
+    } else if (kind != "table") {
+        fail("a response is of the kind " + short_name(kind) + ", which is not known");
     } else {
         const Json &channels = list(json, "values");
         const std::vector<double> values = numbers({{"values", channels[0]}}, "values", LENSPROF_RESPONSE_SAMPLES);
@@ -161,7 +166,7 @@ lensprof_exposure Reader::exposure(const Json &image) const {
     lensprof_exposure_init(&own);
     own.ev = number(member(image, "ev"), "ev");
     const std::vector<double> balance = numbers(image, "white_balance", 3);
-    if (balance.size() != 3 || std::fabs(own.ev) > 100.0) fail("an exposure is not valid");
+    if (balance.size() != 3 || std::fabs(own.ev) > most_ev) fail("an exposure is not valid");
     for (size_t c = 0; c < 3; c++)
         if (!(balance[c] >= 1e-6 && balance[c] <= 1e6)) fail("a white balance is not valid");
     std::copy(balance.begin(), balance.end(), own.white_balance);
@@ -190,7 +195,8 @@ void add_image(const Reader &reader, const Json &json,
     const fs::path folder = fs::path(project.path).parent_path();
     const auto side = [&](const char *member) {
         const double value = reader.number(reader.member(json, member), member);
-        if (value < 1.0 || value > double(most_image_side)) reader.fail(name + " has no size");
+        if (value < 1.0 || value > double(most_image_side) || value != std::floor(value))
+            reader.fail(name + " has no size");
         return static_cast<uint32_t>(value);
     };
     lensprof_pto_image image;
@@ -206,8 +212,8 @@ void add_image(const Reader &reader, const Json &json,
     project.names.push_back(name);
     const bool has_file = json.contains("file") && images.empty();
     if (!has_file && images.empty()) reader.fail("does not say where " + name + " is (--images does)");
-    project.files.push_back(
-        (has_file ? folder / reader.text(json, "file") : fs::path(images) / name).lexically_normal().string());
+    project.files.push_back(has_file ? (folder / reader.text(json, "file")).lexically_normal().string()
+                                     : picture_of_name(images, name));
 }
 
 }  // namespace
@@ -248,8 +254,10 @@ Project read_exposures(const std::string &path, const std::string &images) {
         if (!names.insert(project.names.back()).second) reader.fail("names " + project.names.back() + " twice");
     }
     if (std::all_of(project.images.begin(), project.images.end(), [](const auto &image) { return image.left_out; }))
-        reader.fail("knows no exposure");
+        reader.fail("has no exposure of any image");
     const std::string reference = reader.text(all, "reference");
+    if (!names.count(reference))
+        reader.fail("has no image " + short_name(reference) + ", which is to be the reference");
     for (uint32_t i = 0; i < project.names.size(); i++)
         if (project.names[i] == reference) project.reference = i;
     return project;

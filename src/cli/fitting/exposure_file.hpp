@@ -1,5 +1,5 @@
 // The file of measured exposures, exposures.json: of every image EV and white balance with their standard errors, of
-// every camera the response, of every lens setting the falloff. docs/exposures.md describes it.
+// every camera the response, of every lens setting the falloff. docs/reconstructions.md describes it.
 #pragma once
 
 #include <string>

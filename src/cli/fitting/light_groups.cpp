@@ -8,10 +8,12 @@
 namespace lensprof {
 namespace {
 
-constexpr size_t kLeastPairs = 8;    // of a link that says something
-constexpr size_t kLeastImages = 3;   // of a group
-constexpr double kLeastRatio = 8.0;  // of variances between and within
-constexpr double kNear = 1.2;        // of the usual distance of views
+constexpr size_t kLeastPairs = 8;          // of a link that says something
+constexpr size_t kLeastImages = 3;         // of a group
+constexpr double kLeastRatio = 8.0;        // of variances between and within
+constexpr double kLeastDifference = 0.25;  // levels of 255 squared: what rounding leaves
+constexpr size_t kMostLooked = 200;        // links that may part the images
+constexpr double kNear = 1.2;              // of the usual distance of views
 
 struct Link {
     double difference, distance;  // of colours, and of views
@@ -84,17 +86,23 @@ LightGroups light_groups(const FitInput &input, const std::vector<double> &diffe
     }
     LightGroups found;
     if (tree.size() < 2 * kLeastImages - 1) return found;
-    const double usual = std::max(median(all), 1e-6), usual_distance = median(far);
-    for (size_t n = tree.size(); n-- > 0 && tree[n].difference > kLeastRatio * usual;) {
+    const double usual = std::max(median(all), kLeastDifference), usual_distance = median(far);
+    size_t looked = 0;
+    for (size_t n = tree.size(); n-- > 0 && tree[n].difference > kLeastRatio * usual && looked < kMostLooked;
+         looked++) {
         std::vector<uint32_t> group = smaller_group(tree, n, input.images.size());
         if (group.size() < kLeastImages) continue;
         const auto is_in = [&](uint32_t image) { return std::binary_search(group.begin(), group.end(), image); };
+        std::vector<double> within{usual};  // the group may differ more within it than the rest does
+        for (const Link &link : tree)
+            if (is_in(link.image[0]) && is_in(link.image[1])) within.push_back(link.difference);
+        const double most = kLeastRatio * std::max(usual, median(within));
         const auto is_comparable = [&](const Link &link) {
             return is_in(link.image[0]) != is_in(link.image[1]) && link.distance <= kNear * usual_distance;
         };
         const auto nearest = std::find_if(links.begin(), links.end(), is_comparable);  // of them the most alike
-        if (nearest == links.end() || nearest->difference <= kLeastRatio * usual) continue;
-        found.ratio = nearest->difference / usual;
+        if (nearest == links.end() || nearest->difference <= most) continue;
+        found.ratio = kLeastRatio * nearest->difference / most;
         found.second = std::move(group);
         break;
     }

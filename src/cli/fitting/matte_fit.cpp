@@ -1,6 +1,7 @@
 #include "cli/fitting/matte_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -140,41 +141,116 @@ double largest_change(const Fitted &a, const Fitted &b) {
 
 }  // namespace
 
-Fitted fit_matte_points(FitInput &input, const std::vector<uint32_t> &points, const Fitted &first, uint32_t reference,
+namespace {
+
+// While held-out pairs need not choose modes and curves again: of one camera, whose result has chosen them.
+class HeldChoices {
+public:
+    HeldChoices(FitInput &input, const Fitted &chosen)
+        : options_(input.options), modes_(options_.modes), vignettings_(options_.vignettings) {
+        const auto is_of_first = [&](const auto &image) { return image.camera == input.images[0].camera; };
+        if (!std::all_of(input.images.begin(), input.images.end(), is_of_first)) return;
+        if (modes_ == LENSPROF_MODES_AUTO) options_.modes = chosen.result.response.modes;
+        if (vignettings_ == 0) options_.vignettings = chosen.result.vignettings;
+    }
+    ~HeldChoices() { options_.modes = modes_, options_.vignettings = vignettings_; }
+    HeldChoices(const HeldChoices &) = delete;
+    HeldChoices &operator=(const HeldChoices &) = delete;
+
+private:
+    lensprof_fit_options &options_;
+    const uint32_t modes_, vignettings_;
+};
+
+// Fits the pairs for which keeps(p) holds; none where these are too few.
+template <class Keeps>
+std::optional<Fitted> fit_some(FitInput &input, const std::vector<lensprof_pair> &all, const Keeps &keeps,
+                               uint32_t reference, const std::string &item, Progress &progress,
+                               std::vector<lensprof_fit_image_quality> *quality) {
+    input.pairs.clear();
+    for (size_t p = 0; p < all.size(); p++)
+        if (keeps(p)) input.pairs.push_back(all[p]);
+    try {
+        return fit(input, reference, item, progress, quality);
+    } catch (const Failure &failure) {
+        if (failure.code != ExitCode::not_usable) throw;
+        return {};
+    }
+}
+
+// The root mean square of the differences of two results' exposures and white balances, each less its mean and what an
+// exponent of both explains: EV, and of the logarithms.
+std::array<double, 3> differences_of(const Fitted &a, const Fitted &b) {
+    std::array<double, 3> rms{};
+    for (size_t what = 0; what < 3; what++) {  // EV, red, blue
+        std::vector<std::array<double, 2>> values;
+        std::array<double, 2> mean{};
+        for (size_t i = 0; i < a.exposures.size(); i++) {
+            const lensprof_exposure &x = a.exposures[i], &y = b.exposures[i];
+            if (std::isnan(x.ev) || std::isnan(y.ev)) continue;
+            const size_t c = 2 * (what - 1);
+            values.push_back(what ? std::array<double, 2>{std::log(x.white_balance[c]), std::log(y.white_balance[c])}
+                                  : std::array<double, 2>{x.ev, y.ev});
+            for (size_t k = 0; k < 2; k++) mean[k] += values.back()[k];
+        }
+        double across = 0.0, along = 1e-30, sum = 0.0;
+        for (auto &value : values) {
+            for (size_t k = 0; k < 2; k++) value[k] -= mean[k] / double(values.size());
+            across += value[0] * value[1], along += value[0] * value[0];
+        }
+        for (const auto &value : values) sum += std::pow(value[1] - value[0] * across / along, 2.0);
+        rms[what] = values.size() > 2 ? std::sqrt(sum / double(values.size() - 2)) : 0.0;
+    }
+    return rms;
+}
+
+}  // namespace
+
+Fitted fit_matte_points(FitInput &input, std::vector<uint32_t> &points, const Fitted &first, uint32_t reference,
                         const std::string &item, Progress &progress, std::vector<lensprof_fit_image_quality> *quality) {
     const std::vector<lensprof_pair> all = input.pairs;
     std::vector<lensprof_pair> fitted = all;
+    std::vector<bool> taken(all.size(), true);
     Fitted best = first;
     bool stays = false;
-    const uint32_t modes = input.options.modes, vignettings = input.options.vignettings;
-    const bool is_of_one = std::all_of(input.images.begin(), input.images.end(), [&](const lensprof_fit_image &image) {
-        return image.camera == input.images[0].camera;
-    });
-    if (is_of_one) {  // held-out pairs have chosen these already
-        if (modes == LENSPROF_MODES_AUTO) input.options.modes = first.result.response.modes;
-        if (vignettings == 0) input.options.vignettings = first.result.vignettings;
-    }
+    const HeldChoices choices(input, first);
     for (int round = 0; round < kMostRounds && !stays; round++) {
         input.pairs = all;
         const std::vector<bool> matte = are_matte(all, colour_differences(input, &best), points);
-        input.pairs.clear();
-        for (size_t p = 0; p < all.size(); p++)
-            if (matte[p]) input.pairs.push_back(all[p]);
         std::vector<lensprof_fit_image_quality> own;
-        std::optional<Fitted> next;
-        try {
-            next = fit(input, reference, item, progress, &own);
-        } catch (const Failure &failure) {
-            if (failure.code != ExitCode::not_usable) throw;
-        }
+        const auto keeps = [&](size_t p) { return matte[p]; };
+        const auto next = fit_some(input, all, keeps, reference, item, progress, &own);
         if (!next || joined_images(*next) < joined_images(best)) break;  // some images have too few matte points
         stays = largest_change(*next, best) < kSameExposure;
-        best = *next, fitted = input.pairs;
+        best = *next, fitted = input.pairs, taken = matte;
         if (quality) *quality = own;
     }
     input.pairs = fitted;
-    input.options.modes = modes, input.options.vignettings = vignettings;
+    size_t count = 0;
+    for (size_t p = 0; p < points.size(); p++)
+        if (taken[p]) points[count++] = points[p];
+    points.resize(count);
     return best;
+}
+
+void add_errors_by_halves(FitInput input, const std::vector<uint32_t> &points, const Fitted &result,
+                          const std::string &item, Progress &progress,
+                          std::vector<lensprof_fit_image_quality> &quality) {
+    const HeldChoices choices(input, result);
+    const std::vector<lensprof_pair> all = input.pairs;
+    std::optional<Fitted> halves[2];
+    for (const uint32_t half : {0u, 1u}) {
+        const auto keeps = [&](size_t p) { return (points[p] * 2654435761u >> 31) == half; };  // by a hash
+        halves[half] = fit_some(input, all, keeps, result.reference, item, progress, nullptr);
+        if (!halves[half]) return;
+    }
+    const std::array<double, 3> rms = differences_of(*halves[0], *halves[1]);  // twice the error of the whole
+    for (lensprof_fit_image_quality &own : quality) {
+        if (own.ev_sigma > 0.0) own.ev_sigma = std::hypot(own.ev_sigma, 0.5 * rms[0]);
+        for (const size_t c : {0u, 2u})
+            if (own.white_balance_sigma[c] > 0.0)
+                own.white_balance_sigma[c] = std::hypot(own.white_balance_sigma[c], 0.5 * rms[c ? 2 : 1]);
+    }
 }
 
 }  // namespace lensprof

@@ -26,8 +26,16 @@ double colour_variance_of(const std::vector<double> &differences);
 
 // Fits again without the points whose colours differ most between views, until the exposures stay: highlights that lie
 // at one place of the frame are taken for falloff and for exposures that drift, and a robust loss does not see them,
-// for each is small. `points`: of each pair the scene point; the input is left with the pairs that were fitted.
-Fitted fit_matte_points(FitInput &input, const std::vector<uint32_t> &points, const Fitted &first, uint32_t reference,
+// for each is small. `points`: of each pair the scene point; the input and `points` are left
+// with the pairs that were fitted.
+Fitted fit_matte_points(FitInput &input, std::vector<uint32_t> &points, const Fitted &first, uint32_t reference,
                         const std::string &item, Progress &progress, std::vector<lensprof_fit_image_quality> *quality);
+
+// Adds to the standard errors of exposures and white balances what two halves of the points say: pairs of a point are
+// not independent, and residuals of chosen points are smaller than those of all. `points`: of each pair of the input.
+// Two fits more, with the modes and curves of `result`.
+void add_errors_by_halves(FitInput input, const std::vector<uint32_t> &points, const Fitted &result,
+                          const std::string &item, Progress &progress,
+                          std::vector<lensprof_fit_image_quality> &quality);
 
 }  // namespace lensprof

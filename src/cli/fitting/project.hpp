@@ -31,6 +31,7 @@ struct Project {
     std::vector<uint32_t> match_points;  // of a reconstruction: the scene point of each match,
     std::map<std::pair<uint32_t, uint32_t>, double> view_distances;  // and how far apart views are, where 1 is usual
     bool by_matches = false, is_reconstruction = false;
+    std::vector<std::string> sources;   // files of the reconstruction, which outputs must not replace
     std::vector<lensprof_pair> pairs;   // that came with the project, in the place of pictures,
     std::vector<uint32_t> pair_points;  // and the scene point of each
     std::vector<std::pair<std::string, std::string>> left_out;

@@ -281,13 +281,22 @@ void fit_reconstruction(const Project &project, ProjectFit &done, Streams &strea
     const bool is_by_pairs = done.input.observations.empty() && done.input.options.free != 0;
     if (!project.is_reconstruction || !is_by_pairs) return;
     const FitInput all = done.input;
+    auto clock = std::chrono::steady_clock::now();
+    const double first_s = done.best.result.seconds;
     std::vector<lensprof_fit_image_quality> quality;
     const Fitted only = fit_exposures_only(all, report.reference, done.item, done.progress, &quality);
-    if (is_joint_better(done.best, only))
+    bool is_better = is_joint_better(done.best, only);
+    if (is_better) {
         done.best = fit_matte_points(done.input, done.points, done.best, report.reference, done.item, done.progress,
                                      &report.quality);
+        is_better = colour_variance_of(colour_differences(all, &done.best))
+                    < colour_variance_of(colour_differences(all, &only));
+    }
+    if (is_better)
+        add_errors_by_halves(done.input, done.points, done.best, done.item, done.progress, report.quality);
     else
         take_exposures_only(only, project, done, streams), report.quality = quality;
+    done.best.result.seconds = first_s + lap(clock);
     done.gains = {{"before", colour_differences(all, nullptr)},
                   {"exposures alone", colour_differences(all, &only)},
                   {"this result", colour_differences(all, &done.best)}};

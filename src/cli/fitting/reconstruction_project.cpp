@@ -139,6 +139,7 @@ Project project_of_reconstruction(const std::string &path, const ReconstructionO
     Project project;
     project.path = path;
     project.by_matches = project.is_reconstruction = true;
+    project.sources = files_of_reconstruction(path);
     if (!options.image_list.empty()) take_listed(options.image_list, r);
     std::vector<std::string> files = find_pictures(r, options.images, r.has_colours);
     settle_coordinates(r, files);

@@ -83,7 +83,7 @@ using Database = std::unique_ptr<sqlite3, Close>;
 bool is_at_rest(const std::string &path) {
     constexpr size_t write_version = 18;  // byte of the header
     const std::string head = read_head(path, write_version + 1);
-    return head.size() > write_version && head[write_version] == 2 && !path_exists(path + "-wal");
+    return head.size() > write_version && head[write_version] == 2 && file_bytes(path + "-wal") == 0;
 }
 
 std::string address_of(const std::string &path) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/picture.hpp"
@@ -14,13 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A name below a folder; where that is no file, the last part of the name in it.
-std::string file_of(const std::string &folder, const std::string &name) {
-    const std::string whole = (fs::path(folder) / name).string();  // an absolute name as it is
-    const std::string last = (fs::path(folder) / fs::path(name).filename()).string();
-    return !is_regular_file(whole) && is_regular_file(last) ? last : whole;
-}
-
 std::vector<std::string> candidate_folders(const Reconstruction &r) {
     const fs::path own = is_folder(r.path) ? fs::path(r.path) : fs::path(r.path).parent_path();
     std::vector<std::string> folders;
@@ -32,7 +26,7 @@ std::vector<std::string> candidate_folders(const Reconstruction &r) {
 
 size_t count_found(const Reconstruction &r, const std::string &folder) {
     return static_cast<size_t>(std::count_if(r.images.begin(), r.images.end(), [&](const ReconstructionImage &image) {
-        return is_regular_file(file_of(folder, image.name));
+        return is_regular_file(picture_of_name(folder, image.name));
     }));
 }
 
@@ -47,6 +41,18 @@ void turn_back(const ReconstructionCamera &upright, uint16_t orientation, float 
     const float turned[9][2] = {{u, v}, {u, v},     {right, v},    {right, down}, {u, down},
                                 {v, u}, {v, right}, {down, right}, {down, u}};
     if (orientation < 9) std::copy(turned[orientation], turned[orientation] + 2, xy);
+}
+
+// Failure for two images of one file: folders of their names are missing.
+void check_each_once(const Reconstruction &r, const std::vector<std::string> &files) {
+    std::map<std::string, size_t> image_of;
+    for (size_t i = 0; i < files.size(); i++) {
+        const auto [other, is_new] = image_of.emplace(file_identity(files[i]), i);
+        if (!is_new)
+            throw Failure(ExitCode::unreadable, files[i] + ": would be both " + r.images[other->second].name + " and "
+                                                    + r.images[i].name
+                                                    + "; give the folder that has the folders of their names");
+    }
 }
 
 struct Frame {
@@ -64,8 +70,12 @@ Frame frame_of(const Reconstruction &r, const ReconstructionImage &image, const 
         return {stated, 1};
     }
     const Picture header = read_header(file, {});
+    const PictureMetadata metadata = read_metadata(file);
+    if (metadata.mark && metadata.mark->falloff == CorrectionMark::Falloff::removed)
+        throw Failure(ExitCode::unreadable, file + ": is a copy that lensprof has corrected; give the folder of the "
+                                                   "originals with --images");
     Frame frame{{header.frame_width, header.frame_height}, 1};
-    if (r.coordinates == ImageCoordinates::upright_centred) frame.orientation = read_metadata(file).orientation;
+    if (r.coordinates == ImageCoordinates::upright_centred) frame.orientation = metadata.orientation;
     const ReconstructionCamera own = upright_size(frame.stored, frame.orientation);
     if (stated.width && (stated.width != own.width || stated.height != own.height))
         throw Failure(ExitCode::unreadable,
@@ -96,6 +106,13 @@ void settle(const Reconstruction &r, const Frame &frame, TrackObservation &own) 
 
 }  // namespace
 
+std::string picture_of_name(const std::string &folder, const std::string &name) {
+    const std::string whole = (fs::path(folder) / name).string();  // an absolute name as it is
+    const std::string last = (fs::path(folder) / fs::path(name).filename()).string();
+    const bool is_elsewhere = fs::path(name).is_absolute() || !is_regular_file(whole);
+    return is_elsewhere && is_regular_file(last) ? last : whole;
+}
+
 std::vector<std::string> find_pictures(const Reconstruction &r, const std::string &folder, bool may_lack) {
     const std::vector<std::string> folders = folder.empty() ? candidate_folders(r) : std::vector<std::string>{folder};
     std::string best = folders[0];
@@ -106,10 +123,13 @@ std::vector<std::string> find_pictures(const Reconstruction &r, const std::strin
     std::vector<std::string> files;
     std::string missing;
     for (const ReconstructionImage &image : r.images) {
-        files.push_back(file_of(best, image.name));
+        files.push_back(picture_of_name(best, image.name));
         if (missing.empty() && !is_regular_file(files.back())) missing = image.name;
     }
-    if (missing.empty()) return files;
+    if (missing.empty()) {
+        check_each_once(r, files);
+        return files;
+    }
     const std::string counts = format(": %zu of its %zu pictures, the first ", r.images.size() - most, r.images.size());
     throw Failure(ExitCode::unreadable,
                   r.path + counts + missing + ", are not in "

@@ -8,6 +8,10 @@
 
 namespace lensprof {
 
+// The file of an image in a folder of pictures: its name below it, or where that is none, or the name is absolute, the
+// last part of the name.
+std::string picture_of_name(const std::string &folder, const std::string &name);
+
 // The file of each image. Names begin in `folder`; where that is empty, in the folder that the reconstruction names, in
 // its own, or in `images` in or above that, whichever holds most. Failure (unreadable) for pictures that are missing;
 // with `may_lack` the result is empty where none is there.

@@ -77,6 +77,23 @@ bool is_reconstruction(const std::string &path) {
     return !model_folder(path, models).empty() || !file_in(path).empty();
 }
 
+std::vector<std::string> files_of_reconstruction(const std::string &path) {
+    namespace fs = std::filesystem;
+    const std::string own = is_folder(path) ? path : fs::path(path).parent_path().string();
+    size_t models = 0;
+    std::vector<std::string> files{path}, folders{own.empty() ? "." : own};
+    for (const char *above : {"..", "../.."}) folders.push_back(below(folders[0], above));
+    if (is_folder(path) && !model_folder(path, models).empty()) folders.push_back(model_folder(path, models));
+    for (const std::string &folder : folders)
+        for (const char *name : {"database.db", "database.db-wal", "database.db-shm", "cameras.bin", "cameras.txt",
+                                 "images.bin", "images.txt", "points3D.bin", "points3D.txt", "reconstruction.json",
+                                 "tracks.csv", "opensfm/tracks.csv", "opensfm/reconstruction.json", "bundle.out",
+                                 "list.txt", "image_list.txt", "sfm_data.json", "sfm.sfm", "cameras.sfm"})
+            files.push_back(below(folder, name));
+    for (const char *end : {"-wal", "-shm", ".list.txt"}) files.push_back(path + end);
+    return files;
+}
+
 Reconstruction read_reconstruction(const std::string &path, Streams &streams) {
     size_t models = 0;
     const bool is_in_folder = is_folder(path);

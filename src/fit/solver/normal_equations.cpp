@@ -178,21 +178,30 @@ Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix
     const int *start = l.outerIndexPtr(), *row = l.innerIndexPtr();
     std::vector<double> z(static_cast<size_t>(l.nonZeros()), 0.0);
     auto first_below = [&](int j) { return start[j] + (start[j] < start[j + 1] && row[start[j]] == j); };
-    auto entry = [&](int i, int j) {  // Z_ij, i > j
-        const int *end = row + start[j + 1], *at = std::lower_bound(row + first_below(j), end, i);
-        return at != end && *at == i ? z[static_cast<size_t>(at - row)] : 0.0;
-    };
+    std::vector<int> place(static_cast<size_t>(l.cols()), -1);  // in the pattern of column j
+    std::vector<double> sum;
     for (int j = static_cast<int>(l.cols()) - 1; j >= 0; j--) {
-        for (int a = start[j + 1] - 1; a >= first_below(j); a--) {
-            double sum = 0.0;
-            for (int b = first_below(j); b < start[j + 1]; b++) {
-                int i = row[a], k = row[b];
-                sum -= l.valuePtr()[b] * (i == k ? diagonal[i] : entry(std::max(i, k), std::min(i, k)));
+        const int first = first_below(j), count = start[j + 1] - first;
+        const double *l_j = l.valuePtr() + first;
+        sum.assign(static_cast<size_t>(count), 0.0);
+        for (int a = 0; a < count; a++) place[static_cast<size_t>(row[first + a])] = a;
+        for (int a = 0; a < count; a++) {  // what Z_ki and Z_ik = Z_ki of column k add to the rows k and i
+            const int k = row[first + a];
+            double own = l_j[a] * diagonal[k];
+            for (int b = first_below(k); b < start[k + 1]; b++) {
+                const int i = place[static_cast<size_t>(row[b])];
+                if (i < 0) continue;
+                sum[static_cast<size_t>(i)] -= l_j[a] * z[static_cast<size_t>(b)];
+                own += l_j[i] * z[static_cast<size_t>(b)];
             }
-            z[static_cast<size_t>(a)] = sum;
+            sum[static_cast<size_t>(a)] -= own;
         }
         diagonal[j] = 1.0 / d[j];
-        for (int b = first_below(j); b < start[j + 1]; b++) diagonal[j] -= l.valuePtr()[b] * z[static_cast<size_t>(b)];
+        for (int a = 0; a < count; a++) {
+            z[static_cast<size_t>(first + a)] = sum[static_cast<size_t>(a)];
+            diagonal[j] -= l_j[a] * sum[static_cast<size_t>(a)];
+            place[static_cast<size_t>(row[first + a])] = -1;
+        }
     }
     return factor.permutationPinv() * diagonal;
 }
