@@ -14,7 +14,7 @@ struct ReconstructionOptions {
     bool is_by_colours = false;    // the colours of the tracks are taken, and no picture is read
     std::string image_list;        // file of the names of images that are taken, one a line; empty: all
     Shard shard;                   // of the images
-    uint32_t pairs = 0, seed = 1;  // wanted; 0: 300 an image
+    uint32_t pairs = 0, seed = 1;  // wanted; 0: 600 an image, or fewer of many
 };
 
 // Images of one size are linked: EXIF tells cameras and settings apart. Pictures of the project are compared at its

@@ -14,8 +14,7 @@ bool is_colmap_database(const std::string &path);
 bool is_database(const std::string &path);  // of SQLite, COLMAP's or not
 Reconstruction read_colmap_database(const std::string &path);
 
-// A folder of cameras, images and points3D, .bin or .txt. Where `database` is not empty, shapes of features are taken
-// from there.
+// A folder of cameras, images and points3D, .bin or .txt.
 bool is_colmap_model(const std::string &folder);
 Reconstruction read_colmap_model(const std::string &folder);
 
@@ -28,8 +27,7 @@ bool take_shapes(const std::string &database, Reconstruction &model);
 bool is_opensfm_tracks(const std::string &path);
 Reconstruction read_opensfm(const std::string &tracks);
 
-// Bundler's .out and the list of its images, a name a line; `list` empty: list.txt or a name ending in .list.txt beside
-// it.
+// Bundler's .out, and beside it the list of its images, a name a line: list.txt, or a name that ends in .list.txt.
 bool is_bundler(const std::string &path);
 Reconstruction read_bundler(const std::string &path);
 
