@@ -12,6 +12,7 @@ import gallery
 import radiance
 import photographs
 import real
+import reconstruction
 import report
 import scale
 import speed
@@ -20,7 +21,7 @@ import tools
 import verdicts
 
 PARTS = ("points", "pictures", "refusals", "verdicts", "flat", "static", "scale", "speed", "radiance", "knowledge",
-         "photographs", "real")
+         "photographs", "reconstruction", "real")
 
 
 def parse():
@@ -40,8 +41,8 @@ def parse():
     options.only = options.only.split(",")
     if set(options.only) - set(PARTS):
         p.error("--only: use " + ", ".join(PARTS))
-    if options.real and not real.projects_below(options.real):
-        p.error("--real %s: holds no pano.pto or hugin.pto" % options.real)
+    if options.real and not real.projects_below(options.real) and not photographs.moving(options.real):
+        p.error("--real %s: holds no pano.pto or hugin.pto, and no reconstruction" % options.real)
     return options
 
 
@@ -58,6 +59,7 @@ def main():
     results = {"schema": 1, "machine": tools.version_line(), "jobs": options.jobs, "quick": options.quick,
                "points": [], "pictures": [], "refusals": [], "flat": [], "static": [], "scale": [], "speed": {},
                "verdicts": {}, "radiance": {}, "knowledge": [], "photographs": [], "moving": [],
+               "reconstruction": {},
                "real": [], "brackets": [], "skipped": skipped}
     if skipped:
         say("SKIPPED: " + skipped)
@@ -86,6 +88,8 @@ def main():
     if "photographs" in options.only:
         results["photographs"] = photographs.run_all(options.real, options.quick, say)
         results["moving"] = photographs.run_moving(options.real, say)
+    if "reconstruction" in options.only:
+        results["reconstruction"] = reconstruction.run_all(options.real, options.quick, options.keep, say)
     if options.real and "real" in options.only:
         results["real"] = real.run_all(options.real, options.jobs, say)
         results["brackets"] = gallery.run_brackets(options.real, say)

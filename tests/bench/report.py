@@ -485,6 +485,7 @@ def ratio_of(ours, theirs, key):
 
 
 def document(results):
+    from reconstruction_tables import tables
     lines = ["# Benchmark", "", results["machine"], ""]
     if results["skipped"]:
         lines += ["**SKIPPED: %s**" % results["skipped"], ""]
@@ -499,5 +500,6 @@ def document(results):
     lines += static(results["static"]) + scale(results["scale"]) + speed(results["speed"])
     lines += radiance(results["radiance"]) + knowledge(results["knowledge"]) + real(results["real"])
     lines += photographs(results["photographs"]) + moving(results["moving"])
+    lines += tables(results["reconstruction"])
     lines += gallery(results["real"]) + brackets(results["brackets"])
     return "\n".join(lines).rstrip() + "\n"

@@ -170,3 +170,15 @@ def score(truth, model, pairs, sizes):
         result["ev_aligned"] = None  # one difference of exposures: zero by construction
     result["failed"] = not result["clean_rms"] <= FAILURE_LEVELS
     return result
+
+
+def largest_errors(truth, data):
+    """{joined, ev, falloff}: largest errors of the object that `build --json` prints, over the images that are joined,
+    offset and exponent of the exposures taken out; its images are in the order of the truth's."""
+    joined = np.array([i["ev"] is not None for i in data["images"]])
+    found = model_of_json(data, Curve(data["response"]["values"][0]))
+    known, model = (Model(m.ev[joined], m.white_balance[joined], m.k, m.center, m.curve) for m in (truth, found))
+    exponent = gauge_exponent(known, model)
+    off = model.ev / exponent - known.ev
+    return {"joined": int(joined.sum()), "ev": float(np.abs(off - off.mean()).max()),
+            "falloff": errors(known, model, exponent, True)[2]}

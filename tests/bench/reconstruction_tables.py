@@ -1,0 +1,118 @@
+"""The tables of the part `reconstruction`."""
+from report import header, number, row
+
+READING_SIMULATED = """Rendered pictures of a camera that moves (`simulate --moving`), matched by COLMAP 3.8, fitted by its
+database and by its model. Errors: the largest one, exposures with offset and exponent taken out, M with the exponent
+taken out. Exposures only: `--free ev,wb`."""
+
+READING_VARIANCE = """Variance of colours: half the squared difference between two pictures at one point, levels of 255
+squared, mean of the smallest 90 %. Affine: a gain and an offset per picture and channel in grey values, fitted to the
+same pairs by robust least squares, as trainers of radiance fields have it; it has six numbers a picture, exposures three."""
+
+READING_REAL = """EXIF is withheld (`--exif-sigma 0`). Exposures beside those of EXIF: correlation r, slope, standard
+deviation of the difference; in brackets those of exposures only (`--free ev,wb`)."""
+
+READING_SCALE = """A drone over flat ground: pictures of 1000 x 750 (JPEG) and a database as COLMAP writes it, 600 keypoints a
+picture, each point in about ten. `build database.db --no-store --exposures-out`; `apply --model` of the smallest set."""
+
+WAYS = {"database": "database.db", "model": "model"}
+
+
+def variance_cells(record):
+    return [number(record["variance"][key]) for key in ("before", "affine", "exposures_only", "result")]
+
+
+def share_cell(record):
+    of = record["variance"]
+    return number(of["result"] / of["exposures_only"]) if of["exposures_only"] else "–"
+
+
+VARIANCE_TITLES = ("variance before", "affine", "exposures only", "lensprof", "lensprof / exposures only")
+
+
+def simulated(records):
+    if not records:
+        return []
+    lines = ["### Rendered", "", READING_SIMULATED, ""]
+    lines += header("set", "response", "by", "joined", "exposure, EV", "M", "exposures only: exposure, EV", "M", "wall, s", "peak, MB",
+                    "verdict: usable, evens")
+    for r in records:
+        lines.append(row(r["set"], r["response"], WAYS[r["way"]], "%d of %d" % (r["joined"], r["images"]), number(r["ev"]),
+                         number(r["falloff"]), number(r["only"]["ev"]), number(r["only"]["falloff"]), number(r["wall_s"]),
+                         number(r["peak_mb"]), "%s, %s" % (r["usable"], r["evens"])))
+    lines += ["", READING_VARIANCE, ""]
+    lines += header("set", "by", "pairs", *VARIANCE_TITLES)
+    for r in records:
+        lines.append(row(r["set"], WAYS[r["way"]], r["variance"]["pairs"], *variance_cells(r), share_cell(r)))
+    return lines + [""]
+
+
+def real(records):
+    if not records:
+        return []
+    lines = ["### Real pictures", "", READING_REAL, ""]
+    lines += header("pictures", "by", "joined", "EXIF spans, EV", "r", "slope", "difference, EV", *VARIANCE_TITLES, "wall, s",
+                    "peak, MB", "verdict: usable, evens")
+    for r in records:
+        ours, only = r.get("result", {}), r.get("only", {})
+        cells = ["%s (%s)" % (number(ours.get(key)), number(only.get(key))) for key in ("r", "slope", "off_ev")]
+        lines.append(row(r["set"], WAYS[r["way"]], "%s of %d" % (ours.get("joined", "–"), r["images"]), number(r.get("exif_ev")),
+                         *cells, *variance_cells(r), share_cell(r), number(r["wall_s"]), number(r["peak_mb"]),
+                         "%s, %s" % (r["usable"], r["evens"])))
+    return lines + [""]
+
+
+def tracks(records):
+    if not records:
+        return []
+    lines = ["### Colours in tracks.csv", "", "Exposures by the pictures and by the colours of OpenSfM's tracks alone"
+             " (`--track-colors`); r and slope beside EXIF, which is withheld.", ""]
+    lines += header("pictures", "number", "pairs: pictures", "tracks", "r: pictures", "tracks", "slope: pictures", "tracks",
+                    "largest difference, EV")
+    for r in records:
+        cells = [number(r.get(way, {}).get(key)) for key in ("r", "slope") for way in ("pictures", "tracks")]
+        pairs = [r.get(way, {}).get("pairs", "–") for way in ("pictures", "tracks")]
+        lines.append(row(r["set"], r["images"], *pairs, *cells, number(r.get("off_ev"))))
+    return lines + [""]
+
+
+def rebuilt(records):
+    if not records:
+        return []
+    lines = ["### A model rebuilt", "", "COLMAP on the pictures, and on the copies by `apply --model`: what `colmap model_analyzer`"
+             " says of the largest model.", ""]
+    lines += header("set", "pictures", "registered", "points", "observations", "track length", "reprojection error, px", "apply, s")
+    for r in records:
+        for label in ("before", "after"):
+            own = r.get(label, {})
+            whole = ["%d" % own[key] if key in own else "–" for key in ("registered", "points", "observations")]
+            lines.append(row(r["set"], "as taken" if label == "before" else "corrected", "%s of %d" % (whole[0], r["images"]),
+                             *whole[1:], number(own.get("track_length")), number(own.get("error_px")),
+                             number(r["apply_s"]) if label == "after" else ""))
+    return lines + [""]
+
+
+def scale(records):
+    if not records:
+        return []
+    lines = ["### Many pictures", "", READING_SCALE, ""]
+    lines += header("pictures", "observations", "database, MB", "pairs", "joined", "wall, s", "read, s", "sample, s", "solve, s", "CPU, s",
+                    "peak, MB", "exposure, EV", "M", "variance before", "lensprof", "apply, s", "apply peak, MB")
+    for r in records:
+        seconds, of = r.get("seconds", {}), r.get("variance", {})
+        cells = [number(v) for v in (r["wall_s"], *(seconds.get(k) for k in ("register", "sample", "solve")), r["cpu_s"],
+                                     r["peak_mb"], r.get("ev"), r.get("falloff"), of.get("before"), of.get("result"))]
+        lost = r.get("lost", "")
+        lines.append(row(r["images"], r["observations"], number(r["database_mb"]), r.get("pairs", "–"), r.get("joined", lost or "–"),
+                         *cells, *(number(r[k]) if r.get(k) else "" for k in ("apply_s", "apply_mb"))))
+    return lines + [""]
+
+
+def tables(results):
+    if not results:
+        return []
+    lines = ["## Reconstructions", ""]
+    for what in results["skipped"]:
+        lines += ["**SKIPPED: %s**" % what, ""]
+    return (lines + simulated(results["simulated"]) + real(results["real"]) + tracks(results["tracks"])
+            + rebuilt(results["rebuilt"]) + scale(results["scale"]))
