@@ -30,7 +30,8 @@ def parse():
     p.add_argument("--real", metavar="DIR", help="also real pictures: pano.pto, hugin.pto and brackets below DIR")
     p.add_argument("--only", default=",".join(PARTS), help="parts, with commas: " + ", ".join(PARTS))
     p.add_argument("--match", metavar="TEXT", default="",
-                   help="only accuracy cases with TEXT in their row's name; verdicts: of one kind, or one, as smooth 17")
+                   help="only accuracy cases with TEXT in their row's name; verdicts: of one kind, or one, as smooth 17;"
+                        " reconstruction: sets, with commas: terrain, room, drone, and real ones")
     p.add_argument("--repeat", type=int, default=5, help="turns of the speed measurement")
     p.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), help="cases at a time (accuracy only)")
     p.add_argument("--sequences", type=int, metavar="N", help="of the part knowledge; 60, quick 20")
@@ -89,7 +90,8 @@ def main():
         results["photographs"] = photographs.run_all(options.real, options.quick, say)
         results["moving"] = photographs.run_moving(options.real, say)
     if "reconstruction" in options.only:
-        results["reconstruction"] = reconstruction.run_all(options.real, options.quick, options.keep, say)
+        results["reconstruction"] = reconstruction.run_all(options.real, options.quick, options.match, options.keep,
+                                                            say)
     if options.real and "real" in options.only:
         results["real"] = real.run_all(options.real, options.jobs, say)
         results["brackets"] = gallery.run_brackets(options.real, say)

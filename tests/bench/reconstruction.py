@@ -64,8 +64,12 @@ def reconstruct(pictures, folder):
     return ways, dict(figures, match_s=match_s)
 
 
+def set_name(kind, seed, *_):
+    return "%s-%d" % (kind, seed)
+
+
 def measure_simulated(kind, seed, response, vignetting):
-    name = "%s-%d" % (kind, seed)
+    name = set_name(kind, seed)
     folder = WORK / name
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -177,34 +181,48 @@ def measure_tracks(source):
     return dict(record, off_ev=float(np.nanmax(np.abs(off - np.nanmean(off)))))
 
 
-def run_real(root, say):
+def chosen(name, match):
+    return any(text in name for text in match.split(","))
+
+
+def run_simulated(cameras, say):
+    records = []
+    for number, camera in enumerate(cameras, 1):
+        records += measure_simulated(*camera)
+        say("reconstruction: %d of %d rendered sets" % (number, len(cameras)))
+    return records
+
+
+def run_real(root, match, say):
     result = {"real": [], "rebuilt": [], "tracks": []}
     for path, files in photographs.moving(root).items():
         name = path.split("/")[-1]
+        if not chosen(name, match):
+            continue
         records, figures = measure_real(name, files)
         result["real"] += records
         say("reconstruction: %s, %d pictures" % (name, len(files)))
-        if name in REBUILT:
+        if name in REBUILT and (WORK / name / "database.exposures.json").exists():
             result["rebuilt"].append(measure_rebuilt(name, figures))
             say("reconstruction: %s rebuilt" % name)
-    result["tracks"] = [measure_tracks(folder) for folder in opensfm_folders(root)]
+    result["tracks"] = [measure_tracks(folder) for folder in opensfm_folders(root) if chosen(folder.name, match)]
     return result
 
 
-def run_all(root, quick, keep, say):
+def run_all(root, quick, match, keep, say):
+    """`match`: of the sets those whose names hold one of these texts, with commas; the pictures from above are `drone`."""
     result = {"simulated": [], "real": [], "rebuilt": [], "tracks": [], "scale": [], "skipped": []}
+    cameras = [camera for camera in SIMULATED if chosen(set_name(*camera), match)]
     if colmap.PROGRAM:
-        for number, camera in enumerate(SIMULATED[:1] if quick else SIMULATED, 1):
-            result["simulated"] += measure_simulated(*camera)
-            say("reconstruction: %d of %d rendered sets" % (number, len(SIMULATED[:1] if quick else SIMULATED)))
+        result["simulated"] = run_simulated(cameras[:1] if quick else cameras, say)
         if root:
-            result.update(run_real(root, say))
+            result.update(run_real(root, match, say))
     else:
         result["skipped"].append(colmap.MISSING)
-    if tools.OPENCV:
-        result["scale"] = drone.run_all(quick, keep, say)
-    else:
+    if not tools.OPENCV:
         result["skipped"].append(tools.NO_OPENCV)
+    elif chosen("drone", match):
+        result["scale"] = drone.run_all(quick, keep, say)
     for what in result["skipped"]:
         say("SKIPPED: " + what)
     return result

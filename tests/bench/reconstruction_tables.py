@@ -7,7 +7,8 @@ taken out. Exposures only: `--free ev,wb`."""
 
 READING_VARIANCE = """Variance of colours: half the squared difference between two pictures at one point, levels of 255
 squared, mean of the smallest 90 %. Affine: a gain and an offset per picture and channel in grey values, fitted to the
-same pairs by robust least squares, as trainers of radiance fields have it; it has six numbers a picture, exposures three."""
+same pairs by robust least squares, as trainers of radiance fields have it; it has six numbers a picture, exposures three. Exposures only: `--free ev,wb`,
+which has the mean response of EMoR, and what `build` states itself (colour_variance), with the typical one."""
 
 READING_REAL = """EXIF is withheld (`--exif-sigma 0`). Exposures beside those of EXIF: correlation r, slope, standard
 deviation of the difference; in brackets those of exposures only (`--free ev,wb`)."""
@@ -19,15 +20,14 @@ WAYS = {"database": "database.db", "model": "model"}
 
 
 def variance_cells(record):
-    return [number(record["variance"][key]) for key in ("before", "affine", "exposures_only", "result")]
+    """Beside exposures only: the smaller of the two variances."""
+    of, stated = record["variance"], record["stated_variance"] or {}
+    only = [of["exposures_only"], stated.get("exposures_only", of["exposures_only"])]
+    return [number(v) for v in (of["before"], of["affine"], *only, of["result"], of["result"] / max(min(only), 1e-9))]
 
 
-def share_cell(record):
-    of = record["variance"]
-    return number(of["result"] / of["exposures_only"]) if of["exposures_only"] else "–"
-
-
-VARIANCE_TITLES = ("variance before", "affine", "exposures only", "lensprof", "lensprof / exposures only")
+VARIANCE_TITLES = ("variance before", "affine", "exposures only", "with the typical response", "lensprof",
+                   "lensprof / exposures only")
 
 
 def simulated(records):
@@ -43,7 +43,7 @@ def simulated(records):
     lines += ["", READING_VARIANCE, ""]
     lines += header("set", "by", "pairs", *VARIANCE_TITLES)
     for r in records:
-        lines.append(row(r["set"], WAYS[r["way"]], r["variance"]["pairs"], *variance_cells(r), share_cell(r)))
+        lines.append(row(r["set"], WAYS[r["way"]], r["variance"]["pairs"], *variance_cells(r)))
     return lines + [""]
 
 
@@ -57,7 +57,7 @@ def real(records):
         ours, only = r.get("result", {}), r.get("only", {})
         cells = ["%s (%s)" % (number(ours.get(key)), number(only.get(key))) for key in ("r", "slope", "off_ev")]
         lines.append(row(r["set"], WAYS[r["way"]], "%s of %d" % (ours.get("joined", "–"), r["images"]), number(r.get("exif_ev")),
-                         *cells, *variance_cells(r), share_cell(r), number(r["wall_s"]), number(r["peak_mb"]),
+                         *cells, *variance_cells(r), number(r["wall_s"]), number(r["peak_mb"]),
                          "%s, %s" % (r["usable"], r["evens"])))
     return lines + [""]
 

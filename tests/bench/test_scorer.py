@@ -4,6 +4,7 @@ import json
 import pathlib
 import random
 import re
+import sqlite3
 import sys
 import tempfile
 import unittest
@@ -11,6 +12,9 @@ import unittest
 import numpy as np
 
 import cases
+import colmap
+import colours
+import drone
 import gallery
 import lensfun_rule
 import real
@@ -381,6 +385,95 @@ class LensfunRule(unittest.TestCase):
         self.assertIsNone(lensfun_rule.predict(self.KNOWN, self.K, (61.0, 4.0, 1000.0), 20.0))
         self.assertIsNotNone(lensfun_rule.predict(self.KNOWN, self.K, (60.0, 4.0, 1000.0), 20.0))
         self.assertIsNotNone(lensfun_rule.predict([(50.0, 2.0, 1.0)], [self.K[0]], (50.0, 4.0, 1.0), 0.0))
+
+
+class Colours(unittest.TestCase):
+    """Of pairs of a known camera: its own exposures leave nothing, and gains and offsets are found."""
+
+    def exposures(self, model, folder):
+        path = pathlib.Path(folder, "exposures.json")
+        images = [{"name": "%d.jpg" % n, "width": 800, "height": 600, "lens": 0, "ev": model.ev[n],
+                   "white_balance": list(model.white_balance[n])} for n in range(len(model.ev))]
+        path.write_text(json.dumps({
+            "reference": "0.jpg", "images": images,
+            "mean": {"ev": model.ev.mean(), "white_balance": list(np.exp(np.log(model.white_balance).mean(axis=0)))},
+            "cameras": [{"response": {"kind": "table", "values": [list(SRGB)]}}],
+            "lenses": [{"camera": 0, "vignetting": {"k": model.k.tolist(), "center": list(model.center)}}]}))
+        return colours.Exposures(path)
+
+    def test_true_exposures_leave_nothing(self):
+        model = camera()
+        pairs = scene_pairs(model)
+        with tempfile.TemporaryDirectory() as folder:
+            found = colours.variances(pairs, {"result": self.exposures(model, folder)})
+            model.ev = model.ev + [0.0, 0.1, 0.0, 0.0, 0.0]
+            wrong = colours.variances(pairs, {"result": self.exposures(model, folder)})
+        self.assertEqual(found["pairs"], len(pairs))
+        self.assertLess(found["result"], 1e-3)
+        self.assertGreater(found["before"], 10.0)
+        self.assertGreater(found["affine"], 0.1)  # no gain of grey values is a falloff
+        self.assertGreater(wrong["result"], 0.1)
+
+    def test_an_image_that_is_not_joined(self):
+        model = camera()
+        pairs = scene_pairs(model)
+        with tempfile.TemporaryDirectory() as folder:
+            exposures = self.exposures(model, folder)
+        exposures.ev[2] = np.nan
+        self.assertEqual(colours.variances(pairs, {"result": exposures})["pairs"], int((pairs.image != 2).all(axis=1).sum()))
+
+    def test_variance_by_hand(self):
+        levels = np.zeros((10, 2, 3))
+        levels[:, 1] = [2.0, 0.0, 4.0]
+        levels[3, 1] = 200.0  # of ten the worst, which is not counted
+        self.assertAlmostEqual(colours.variance(levels), 0.5 * (4.0 + 16.0) / 3.0)
+
+    def test_gains_and_offsets(self):
+        rng = np.random.default_rng(5)
+        gain, offset = np.array([1.2, 0.9, 0.9]), np.array([5.0, -8.0, 3.0])
+        first = rng.integers(0, 3, 600)
+        second, true = (first + rng.integers(1, 3, 600)) % 3, rng.uniform(20.0, 200.0, 600)
+        a, b = ((true - offset[i]) / gain[i] for i in (first, second))
+        b[:60] = rng.uniform(0.0, 255.0, 60)
+        found = colours.affine_of_channel(first, second, a, b, 3)
+        np.testing.assert_allclose(found[0], gain, atol=1e-3)
+        np.testing.assert_allclose(found[1], offset, atol=0.1)
+
+    def test_largest_errors(self):
+        truth, found = camera(), camera()
+        found.ev = 1.3 * truth.ev + 0.7
+        found.ev[1] = 5.0  # not joined
+        data = {"images": [{"ev": None if n == 1 else ev, "white_balance": [1.0, 1.0, 1.0]} for n, ev in enumerate(found.ev)],
+                "vignetting": {"k": truth.k.tolist(), "center": list(truth.center)}, "response": {"values": [list(SRGB)]}}
+        own = scorer.largest_errors(truth, data)
+        self.assertEqual(own["joined"], 4)
+        self.assertAlmostEqual(own["ev"], 0.0)
+        r2 = np.linspace(0.0, 1.0, 201) ** 2
+        self.assertAlmostEqual(own["falloff"], np.abs(truth.falloff(r2) ** (1 / 1.3) - truth.falloff(r2)).max())
+
+
+class Drone(unittest.TestCase):
+    def test_database(self):
+        flight = drone.Flight(2)
+        numbers, keypoints = drone.observed(flight, np.random.default_rng(3))
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "database.db")
+            colmap.write_database(path, (1000, 750), list(zip(flight.names, keypoints)), drone.pairs_of(flight, numbers))
+            database = sqlite3.connect(path)
+            names = dict(database.execute("SELECT image_id, name FROM images"))
+            found = {image: np.frombuffer(data, np.float32).reshape(rows, cols) for image, rows, cols, data in
+                     database.execute("SELECT image_id, rows, cols, data FROM keypoints")}
+            pairs = database.execute("SELECT pair_id, rows, data FROM two_view_geometries WHERE config = 2").fetchall()
+            database.close()
+        self.assertEqual(sorted(names.values()), sorted(flight.names))
+        self.assertGreater(len(pairs), 100)
+        for pair, rows, data in pairs:
+            a, b = divmod(pair, colmap.PAIR_BASE)
+            self.assertLess(a, b)
+            own = np.frombuffer(data, np.uint32).reshape(rows, 2)
+            places = [found[image][own[:, side], :2] + flight.origin[flight.names.index(names[image])]
+                      for side, image in enumerate((a, b))]
+            self.assertLess(np.abs(places[0] - places[1]).max(), 10.0 * drone.KEYPOINT_PX)  # one point of the ground
 
 
 if __name__ == "__main__":
