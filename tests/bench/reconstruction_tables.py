@@ -14,7 +14,8 @@ READING_REAL = """EXIF is withheld (`--exif-sigma 0`). Exposures beside those of
 deviation of the difference; in brackets those of exposures only (`--free ev,wb`)."""
 
 READING_SCALE = """A drone over flat ground: pictures of 1000 x 750 (JPEG) and a database as COLMAP writes it, 600 keypoints a
-picture, each point in about ten. `build database.db --no-store --exposures-out`; `apply --model` of the smallest set."""
+picture, each point in about ten. `build database.db --no-store --exposures-out`; `apply --model` of the smallest set.
+Fits: all of them, until no more points are left out as shining."""
 
 WAYS = {"database": "database.db", "model": "model"}
 
@@ -34,11 +35,11 @@ def simulated(records):
     if not records:
         return []
     lines = ["### Rendered", "", READING_SIMULATED, ""]
-    lines += header("set", "response", "by", "joined", "exposure, EV", "M", "exposures only: exposure, EV", "M", "wall, s", "peak, MB",
+    lines += header("set", "response", "by", "joined", "exposure, EV", "M", "exposures only: exposure, EV", "M", "CPU, s", "peak, MB",
                     "verdict: usable, evens")
     for r in records:
         lines.append(row(r["set"], r["response"], WAYS[r["way"]], "%d of %d" % (r["joined"], r["images"]), number(r["ev"]),
-                         number(r["falloff"]), number(r["only"]["ev"]), number(r["only"]["falloff"]), number(r["wall_s"]),
+                         number(r["falloff"]), number(r["only"]["ev"]), number(r["only"]["falloff"]), number(r["cpu_s"]),
                          number(r["peak_mb"]), "%s, %s" % (r["usable"], r["evens"])))
     lines += ["", READING_VARIANCE, ""]
     lines += header("set", "by", "pairs", *VARIANCE_TITLES)
@@ -51,13 +52,13 @@ def real(records):
     if not records:
         return []
     lines = ["### Real pictures", "", READING_REAL, ""]
-    lines += header("pictures", "by", "joined", "EXIF spans, EV", "r", "slope", "difference, EV", *VARIANCE_TITLES, "wall, s",
+    lines += header("pictures", "by", "joined", "EXIF spans, EV", "r", "slope", "difference, EV", *VARIANCE_TITLES, "CPU, s",
                     "peak, MB", "verdict: usable, evens")
     for r in records:
         ours, only = r.get("result", {}), r.get("only", {})
         cells = ["%s (%s)" % (number(ours.get(key)), number(only.get(key))) for key in ("r", "slope", "off_ev")]
         lines.append(row(r["set"], WAYS[r["way"]], "%s of %d" % (ours.get("joined", "–"), r["images"]), number(r.get("exif_ev")),
-                         *cells, *variance_cells(r), number(r["wall_s"]), number(r["peak_mb"]),
+                         *cells, *variance_cells(r), number(r["cpu_s"]), number(r["peak_mb"]),
                          "%s, %s" % (r["usable"], r["evens"])))
     return lines + [""]
 
@@ -96,12 +97,14 @@ def scale(records):
     if not records:
         return []
     lines = ["### Many pictures", "", READING_SCALE, ""]
-    lines += header("pictures", "observations", "database, MB", "pairs", "joined", "wall, s", "read, s", "sample, s", "solve, s", "CPU, s",
+    lines += header("pictures", "observations", "database, MB", "pairs", "joined", "wall, s", "read, s", "sample, s", "fits, s", "CPU, s",
                     "peak, MB", "exposure, EV", "M", "variance before", "lensprof", "apply, s", "apply peak, MB")
     for r in records:
         seconds, of = r.get("seconds", {}), r.get("variance", {})
-        cells = [number(v) for v in (r["wall_s"], *(seconds.get(k) for k in ("register", "sample", "solve")), r["cpu_s"],
-                                     r["peak_mb"], r.get("ev"), r.get("falloff"), of.get("before"), of.get("result"))]
+        parts = [seconds.get(key) for key in ("register", "sample")]
+        fits = r["wall_s"] - sum(parts) if seconds else None
+        cells = [number(v) for v in (r["wall_s"], *parts, fits, r["cpu_s"], r["peak_mb"], r.get("ev"), r.get("falloff"),
+                                     of.get("before"), of.get("result"))]
         lost = r.get("lost", "")
         lines.append(row(r["images"], r["observations"], number(r["database_mb"]), r.get("pairs", "–"), r.get("joined", lost or "–"),
                          *cells, *(number(r[k]) if r.get(k) else "" for k in ("apply_s", "apply_mb"))))

@@ -7,6 +7,8 @@
 #                      PARTS, with commas: points, pictures, refusals, verdicts, flat, static, scale, speed, radiance,
 #                      knowledge, photographs (also of --real DIR), reconstruction (with colmap; also DIR/reconstruction),
 #                      real (pano.pto and hugin.pto below DIR, and folders of DIR/brackets)
+#   tests/bench/run.sh --only reconstruction --match terrain,drone   of its sets these: terrain, room, drone, and with
+#                      --real DIR the folders of DIR/reconstruction
 #   tests/bench/run.sh --only verdicts --match "smooth 17"   one rendered sequence again, or all of a kind; --keep keeps
 #                      its pictures in build/bench/verdicts
 #   tests/bench/run.sh --self-test      the scorer against known errors; needs no program; exit 77: NumPy is missing
