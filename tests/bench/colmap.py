@@ -37,13 +37,13 @@ def step(folder, command, *options, may_fail=False):
     return used
 
 
-def match(pictures, folder):
-    """-> database.db of the pictures of a folder, matched each with each, and the seconds that took."""
+def match(pictures, folder, features=()):
+    """-> database.db of the pictures of a folder, matched each with each, and the seconds that took. `features`: options."""
     database = folder / "database.db"
     for end in ("", "-wal", "-shm"):
         database.with_name(database.name + end).unlink(missing_ok=True)
     steps = [step(folder, "feature_extractor", "--database_path", database, "--image_path", pictures,
-                  "--ImageReader.single_camera", 1, "--SiftExtraction.use_gpu", 0, "--SiftExtraction.max_num_features", 4000),
+                  "--ImageReader.single_camera", 1, "--SiftExtraction.use_gpu", 0, *features),
              step(folder, "exhaustive_matcher", "--database_path", database, "--SiftMatching.use_gpu", 0)]
     return database, sum(used["wall_s"] for used in steps)
 
@@ -53,13 +53,18 @@ def rebuild(pictures, folder):
     models = folder / "sparse"
     shutil.rmtree(models, ignore_errors=True)
     models.mkdir()
-    used = step(folder, "mapper", "--database_path", folder / "database.db", "--image_path", pictures, "--output_path",
-                models, may_fail=True)  # as it does where no model comes of them
-    found = [(analyzed(folder, model), model) for model in sorted(models.iterdir())]
+    step(folder, "mapper", "--database_path", folder / "database.db", "--image_path", pictures, "--output_path",
+         models, may_fail=True)  # as it does where no model comes of them
+    return largest(folder)
+
+
+def largest(folder):
+    """-> the model with most images of folder/sparse, or None, and its figures."""
+    found = [(analyzed(folder, model), model) for model in sorted((folder / "sparse").iterdir())]
     if not found:
-        return None, {"registered": 0, "wall_s": used["wall_s"]}
+        return None, {"registered": 0}
     figures, best = max(found, key=lambda own: own[0]["registered"])
-    return best, dict(figures, wall_s=used["wall_s"])
+    return best, figures
 
 
 def analyzed(folder, model):

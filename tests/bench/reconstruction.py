@@ -19,6 +19,7 @@ WORK = tools.WORK / "reconstruction"
 SIMULATED = (("terrain", 2, "film", "-0.5,0.2,-0.1"), ("terrain", 3, "gamma:1.8", "-0.25,-0.15,0.05"),
              ("room", 2, "srgb", "-0.6,0.3,-0.1"), ("room", 3, "emor:0.8,-0.3,0.1", "-0.1,-0.3,0.08"))
 CAMERA = "--images 24 --size 1200x900"
+FEWER_FEATURES = ["--SiftExtraction.max_num_features", 4000]  # of the rendered pictures, for time
 ONLY = ["--free", "ev,wb"]
 NO_EXIF = ["--exif-sigma", "0"]
 REBUILT = ("snowmiku", "lund")
@@ -54,14 +55,21 @@ def variances_of(folder, way):
     return colours.variances(scorer.read_points(folder / (way + "_only.points.txt")), exposures)
 
 
-def reconstruct(pictures, folder):
-    """COLMAP on a folder of pictures -> {way: project} and figures."""
-    database, match_s = colmap.match(pictures, folder)
-    model, figures = colmap.rebuild(pictures, folder)
-    ways = {"database": database}
+def reconstruct(pictures, folder, features=(), matched=None):
+    """COLMAP on a folder of pictures -> {way: project} and figures. `matched`: a folder with a database.db and a sparse
+    of these pictures that were made before."""
+    if matched:
+        shutil.copyfile(matched / "database.db", folder / "database.db")
+        shutil.copytree(matched / "sparse", folder / "sparse")
+        model, figures = colmap.largest(folder)
+    else:
+        figures = {"match_s": colmap.match(pictures, folder, features)[1]}
+        model, found = colmap.rebuild(pictures, folder)
+        figures.update(found)
+    ways = {"database": folder / "database.db"}
     if model:
         ways["model"] = model
-    return ways, dict(figures, match_s=match_s)
+    return ways, figures
 
 
 def set_name(kind, seed, *_):
@@ -79,7 +87,7 @@ def measure_simulated(kind, seed, response, vignetting):
     truth = pictures / "truth.json"
     truth.rename(folder / "truth.json")  # COLMAP reads all files of the folder
     truth = scorer.read_truth(folder / "truth.json", response)
-    ways, figures = reconstruct(pictures, folder)
+    ways, figures = reconstruct(pictures, folder, FEWER_FEATURES)
     records = []
     for way, (used, data, only) in fit_ways(ways, pictures, folder).items():
         records.append({"set": name, "response": response, "vignetting": vignetting, "way": way, "colmap": figures,
@@ -130,7 +138,9 @@ def measure_real(name, files):
     pictures = copied(files, folder)
     stated = stated_ev(files)
     known = None if stated is None else dict(zip((file.name for file in files), stated))
-    ways, figures = reconstruct(pictures, folder)
+    source = files[0].parent if files[0].parent.name == name else files[0].parent.parent
+    matched = source if (source / "database.db").exists() and (source / "sparse").is_dir() else None
+    ways, figures = reconstruct(pictures, folder, matched=matched)
     records = []
     for way, (used, data, only) in fit_ways(ways, pictures, folder, NO_EXIF).items():
         record = {"set": name, "way": way, "images": len(data["images"]), **used, "variance": variances_of(folder, way),

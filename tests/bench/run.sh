@@ -8,7 +8,7 @@
 #                      knowledge, photographs (also of --real DIR), reconstruction (with colmap; also DIR/reconstruction),
 #                      real (pano.pto and hugin.pto below DIR, and folders of DIR/brackets)
 #   tests/bench/run.sh --only reconstruction --match terrain,drone   of its sets these: terrain, room, drone, and with
-#                      --real DIR the folders of DIR/reconstruction
+#                      --real DIR the folders of DIR/reconstruction; COLMAP's database.db and sparse in one are taken as they are
 #   tests/bench/run.sh --only verdicts --match "smooth 17"   one rendered sequence again, or all of a kind; --keep keeps
 #                      its pictures in build/bench/verdicts
 #   tests/bench/run.sh --self-test      the scorer against known errors; needs no program; exit 77: NumPy is missing
