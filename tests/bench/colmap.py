@@ -75,6 +75,14 @@ def analyzed(folder, model):
     return {name: float(m.group(1)) if m else 0.0 for name, m in found.items()}
 
 
+def matched(database):
+    """Pairs of pictures whose matches COLMAP has verified, and these matches."""
+    opened = sqlite3.connect(database)
+    pairs, matches = opened.execute("SELECT count(*), sum(rows) FROM two_view_geometries WHERE rows > 0").fetchone()
+    opened.close()
+    return {"pairs": pairs, "matches": matches or 0}
+
+
 def write_database(path, size, images, pairs):
     """A database of one camera. images: (name, keypoints [n, 4] float32) in the order of their numbers, which begin at
     1; pairs: (number, number, matches [n, 2] uint32), the smaller number first."""

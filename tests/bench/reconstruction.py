@@ -66,6 +66,7 @@ def reconstruct(pictures, folder, features=(), matched=None):
         figures = {"match_s": colmap.match(pictures, folder, features)[1]}
         model, found = colmap.rebuild(pictures, folder)
         figures.update(found)
+    figures.update(colmap.matched(folder / "database.db"))
     ways = {"database": folder / "database.db"}
     if model:
         ways["model"] = model

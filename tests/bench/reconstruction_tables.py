@@ -81,13 +81,15 @@ def rebuilt(records):
     if not records:
         return []
     lines = ["### A model rebuilt", "", "COLMAP on the pictures, and on the copies by `apply --model`: what `colmap model_analyzer`"
-             " says of the largest model.", ""]
-    lines += header("set", "pictures", "registered", "points", "observations", "track length", "reprojection error, px", "apply, s")
+             " says of the largest model; pairs of pictures and matches that were verified.", ""]
+    lines += header("set", "pictures", "pairs", "matches", "registered", "points", "observations", "track length",
+                    "reprojection error, px", "apply, s")
     for r in records:
         for label in ("before", "after"):
             own = r.get(label, {})
             whole = ["%d" % own[key] if key in own else "–" for key in ("registered", "points", "observations")]
-            lines.append(row(r["set"], "as taken" if label == "before" else "corrected", "%s of %d" % (whole[0], r["images"]),
+            lines.append(row(r["set"], "as taken" if label == "before" else "corrected",
+                             *(own.get(key, "–") for key in ("pairs", "matches")), "%s of %d" % (whole[0], r["images"]),
                              *whole[1:], number(own.get("track_length")), number(own.get("error_px")),
                              number(r["apply_s"]) if label == "after" else ""))
     return lines + [""]

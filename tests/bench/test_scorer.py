@@ -465,6 +465,7 @@ class Drone(unittest.TestCase):
                      database.execute("SELECT image_id, rows, cols, data FROM keypoints")}
             pairs = database.execute("SELECT pair_id, rows, data FROM two_view_geometries WHERE config = 2").fetchall()
             database.close()
+            self.assertEqual(colmap.matched(path), {"pairs": len(pairs), "matches": sum(pair[1] for pair in pairs)})
         self.assertEqual(sorted(names.values()), sorted(flight.names))
         self.assertGreater(len(pairs), 100)
         for pair, rows, data in pairs:
