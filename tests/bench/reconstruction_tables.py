@@ -7,7 +7,8 @@ taken out. Exposures only: `--free ev,wb`."""
 
 READING_VARIANCE = """Variance of colours: half the squared difference between two pictures at one point, levels of 255
 squared, mean of the smallest 90 %. Affine: a gain and an offset per picture and channel in grey values, fitted to the
-same pairs by robust least squares, as trainers of radiance fields have it; it has six numbers a picture, exposures three. Exposures only: `--free ev,wb`,
+same pairs by robust least squares, as trainers of radiance fields have it; it has six numbers a picture, exposures
+three. Exposures only: `--free ev,wb`,
 which has the mean response of EMoR, and what `build` states itself (colour_variance), with the typical one."""
 
 READING_REAL = """EXIF is withheld (`--exif-sigma 0`). Exposures beside those of EXIF: correlation r, slope, standard
