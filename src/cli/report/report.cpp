@@ -424,7 +424,7 @@ void print_gamma(const BuildReport &report, std::ostream &out) {
     const bool is_given = report.exposures_given && fit.gamma_from == LENSPROF_GAMMA_EXPOSURES;
     out << "gamma     from " << (is_given ? "the exposures given" : gamma_name(fit.gamma_from));
     if (fit.gamma_from == LENSPROF_GAMMA_PRIOR)
-        out << " (" << camera_kind_name(report.camera_kind.kind) << " camera, "
+        out << " (of the kind " << camera_kind_name(report.camera_kind.kind) << ", "
             << describe_kind_from(report.camera_kind.from) << ")";
     if (fit.gamma_sigma > 0.0) out << format(", +- %.0f %%", 100.0 * fit.gamma_sigma);
     if (fit.gamma_from == LENSPROF_GAMMA_NONE) out << " (no prior; no +- here holds its error)";
