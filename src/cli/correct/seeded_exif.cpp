@@ -6,6 +6,7 @@
 
 #include "cli/correct/project_model.hpp"
 #include "cli/pictures/metadata.hpp"
+#include "cli/program/median.hpp"
 
 namespace lensprof {
 namespace {
@@ -24,12 +25,6 @@ std::optional<double> stated_ev(const std::string &file) {
     } catch (const Failure &) {
         return {};
     }
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 }  // namespace

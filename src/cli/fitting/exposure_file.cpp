@@ -21,8 +21,6 @@ constexpr uint64_t most_bytes = uint64_t(1) << 30;
 constexpr int schema = 1;
 constexpr double most_ev = 30.0;  // from the reference
 
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 // The response as its kind has it, and the light of every grey level of 8 bits.
 Json camera_json(const lensprof_response &response, const std::string &name) {
     Json curve = response_json(&response, 1), light = Json::array();

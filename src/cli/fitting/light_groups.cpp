@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
+
+#include "cli/program/joined_sets.hpp"
+#include "cli/program/median.hpp"
 
 namespace lensprof {
 namespace {
@@ -22,12 +24,6 @@ struct Link {
 
 using Distances = std::map<std::pair<uint32_t, uint32_t>, double>;
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 std::vector<Link> links_of(const FitInput &input, const std::vector<double> &differences, const Distances &of_views) {
     std::map<std::pair<uint32_t, uint32_t>, std::vector<double>> of_link;
     for (size_t p = 0; p < input.pairs.size(); p++)
@@ -42,27 +38,9 @@ std::vector<Link> links_of(const FitInput &input, const std::vector<double> &dif
     return links;
 }
 
-// The images that links join.
-class Groups {
-public:
-    explicit Groups(size_t images) : parent_(images) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    uint32_t of(uint32_t image) {
-        while (parent_[image] != image) image = parent_[image] = parent_[parent_[image]];
-        return image;
-    }
-    bool join(uint32_t a, uint32_t b) {
-        a = of(a), b = of(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-        return a != b;
-    }
-
-private:
-    std::vector<uint32_t> parent_;
-};
-
 // The smaller of the two groups that the tree without one of its links leaves.
 std::vector<uint32_t> smaller_group(const std::vector<Link> &tree, size_t without, size_t images) {
-    Groups groups(images);
+    JoinedSets groups(images);
     for (size_t n = 0; n < tree.size(); n++)
         if (n != without) groups.join(tree[n].image[0], tree[n].image[1]);
     std::vector<uint32_t> sides[2];
@@ -76,7 +54,7 @@ std::vector<uint32_t> smaller_group(const std::vector<Link> &tree, size_t withou
 
 LightGroups light_groups(const FitInput &input, const std::vector<double> &differences, const Distances &of_views) {
     const std::vector<Link> links = links_of(input, differences, of_views);
-    Groups groups(input.images.size());
+    JoinedSets groups(input.images.size());
     std::vector<Link> tree;
     std::vector<double> all, far;
     for (const Link &link : links) {

@@ -139,10 +139,6 @@ double largest_change(const Fitted &a, const Fitted &b) {
     return largest;
 }
 
-}  // namespace
-
-namespace {
-
 // While held-out pairs need not choose modes and curves again: of one camera, whose result has chosen them.
 class HeldChoices {
 public:

@@ -285,23 +285,27 @@ void fit_reconstruction(const Project &project, ProjectFit &done, Streams &strea
     const double first_s = done.best.result.seconds;
     std::vector<lensprof_fit_image_quality> quality;
     const Fitted only = fit_exposures_only(all, report.reference, done.item, done.progress, &quality);
+    done.gains = {{"before", colour_differences(all, nullptr)}, {"exposures alone", colour_differences(all, &only)}};
+    report.variance.before = colour_variance_of(done.gains[0].variances);
+    report.variance.exposures_only = colour_variance_of(done.gains[1].variances);
+    report.variance.pairs = all.pairs.size();
     bool is_better = is_joint_better(done.best, only);
     if (is_better) {
         done.best = fit_matte_points(done.input, done.points, done.best, report.reference, done.item, done.progress,
                                      &report.quality);
-        is_better = colour_variance_of(colour_differences(all, &done.best))
-                    < colour_variance_of(colour_differences(all, &only));
+        done.gains.push_back({"this result", colour_differences(all, &done.best)});
+        report.variance.result = colour_variance_of(done.gains[2].variances);
+        is_better = report.variance.result < report.variance.exposures_only;
     }
-    if (is_better)
+    if (is_better) {
         add_errors_by_halves(done.input, done.points, done.best, done.item, done.progress, report.quality);
-    else
-        take_exposures_only(only, project, done, streams), report.quality = quality;
+    } else {
+        take_exposures_only(only, project, done, streams);
+        report.quality = quality, report.variance.result = report.variance.exposures_only;
+        done.gains.resize(2);
+        done.gains.push_back({"this result", done.gains[1].variances});
+    }
     done.best.result.seconds = first_s + lap(clock);
-    done.gains = {{"before", colour_differences(all, nullptr)},
-                  {"exposures alone", colour_differences(all, &only)},
-                  {"this result", colour_differences(all, &done.best)}};
-    report.variance = {colour_variance_of(done.gains[0].variances), colour_variance_of(done.gains[1].variances),
-                       colour_variance_of(done.gains[2].variances), all.pairs.size()};
     done.best.result.evens = are_evened(report.variance);
     check_light(light_groups(all, done.gains[2].variances, project.view_distances), project);
 }

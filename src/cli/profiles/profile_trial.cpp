@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "cli/profiles/exposures_alone.hpp"
+#include "cli/program/joined_sets.hpp"
+#include "cli/program/mixed_bits.hpp"
 
 namespace lensprof {
 namespace {
@@ -17,27 +18,8 @@ constexpr double kExplainedSigmas = 5.0;  // what no model comes nearer to is tw
 constexpr double kLeastExplained = 3.0;   // levels
 constexpr size_t kFewestLinks = 5;        // whose scatter says anything
 
-// A number that belongs to a pair's number: splitmix64, independent of the order along images.
-uint64_t pair_hash(uint64_t pair) {
-    uint64_t z = (pair + 1) * 0x9E3779B97F4A7C15u;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-}
-
-// Groups of images that pairs join.
-class Groups {
-public:
-    explicit Groups(size_t images) : parent_(images) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    uint32_t of(uint32_t image) {
-        while (parent_[image] != image) image = parent_[image] = parent_[parent_[image]];
-        return image;
-    }
-    void join(uint32_t a, uint32_t b) { parent_[of(a)] = of(b); }
-
-private:
-    std::vector<uint32_t> parent_;
-};
+// A number that belongs to a pair's number, independent of the order along images.
+uint64_t pair_hash(uint64_t pair) { return mixed_bits((pair + 1) * splitmix_step); }
 
 // Evaluates a model at the ends of pairs.
 class Evaluator {
@@ -100,7 +82,7 @@ TrialPairs split_for_trial(std::vector<lensprof_fit_image> images, const std::ve
                            uint32_t channels) {
     TrialPairs split;
     split.channels = channels;
-    Groups groups(images.size());
+    JoinedSets groups(images.size());
     for (size_t p = 0; p < pairs.size(); p++) {
         const bool is_train = pair_hash(p) % 2 == 0;
         (is_train ? split.train : split.heldout).push_back(pairs[p]);

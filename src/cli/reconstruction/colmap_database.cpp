@@ -6,13 +6,13 @@
 #include <map>
 #include <memory>
 #include <new>
-#include <numeric>
 
 #include <sqlite3.h>
 
 #include "cli/program/error.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/input_file.hpp"
+#include "cli/program/joined_sets.hpp"
 #include "cli/program/paths.hpp"
 #include "cli/reconstruction/readers.hpp"
 
@@ -204,26 +204,9 @@ void count_features(Content &content) {
     if (content.first_feature.back() > kMostFeatures) fail_damaged(content.path, "has too many keypoints");
 }
 
-// Sets of features that matches join.
-class Joined {
-public:
-    explicit Joined(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-    uint32_t root(uint32_t a) {
-        while (parent_[a] != a) a = parent_[a] = parent_[parent_[a]];
-        return a;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = root(a), b = root(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<uint32_t> parent_;
-};
-
-Joined join_matches(const Content &content) {
-    Joined joined(content.first_feature.back());
+// Sets of features.
+JoinedSets join_matches(const Content &content) {
+    JoinedSets joined(content.first_feature.back());
     Rows rows(content.database.get(), content.path,
               format("SELECT pair_id, rows, cols, data FROM two_view_geometries WHERE rows > 0 AND config IN (%s)",
                      kVerified));
@@ -259,11 +242,11 @@ Keypoints keypoints_of(const Rows &rows, const Content &content) {
 }
 
 // Observations of every feature that a match joins to another, the points numbered by their first feature.
-void take_tracks(Content &content, Joined joined) {
+void take_tracks(Content &content, JoinedSets joined) {
     const size_t count = content.first_feature.back();
     std::vector<bool> is_matched(count);
     for (uint32_t n = 0; n < count; n++)
-        if (const uint32_t root = joined.root(n); root != n) is_matched[root] = is_matched[n] = true;
+        if (const uint32_t root = joined.of(n); root != n) is_matched[root] = is_matched[n] = true;
     Rows rows(content.database.get(), content.path, "SELECT image_id, cols, data FROM keypoints");
     while (rows.next()) {
         const uint32_t image = content.image_at(rows.whole(0));
@@ -274,7 +257,7 @@ void take_tracks(Content &content, Joined joined) {
             if (content.found.observations.size() == most_observations)
                 fail_damaged(content.path, "has too many matched keypoints");
             TrackObservation observation;
-            observation.point = joined.root(static_cast<uint32_t>(n)), observation.image = image;
+            observation.point = joined.of(static_cast<uint32_t>(n)), observation.image = image;
             observation.feature = static_cast<uint32_t>(n - content.first_feature[image]);
             keypoints.read(observation.feature, observation);
             content.found.observations.push_back(observation);

@@ -8,6 +8,8 @@
 #include <set>
 #include <tuple>
 
+#include "cli/program/joined_sets.hpp"
+#include "cli/program/mixed_bits.hpp"
 #include "cli/reconstruction/link_order.hpp"
 
 namespace lensprof {
@@ -20,13 +22,9 @@ constexpr size_t kFewImages = 300;      // of which all links are kept; of more
 constexpr uint32_t kMostLinks = 20;     // an image's links with most weight, and a few
 constexpr size_t kNext = 3, kFar = 6;   // the next ones in the order of the images, and others
 
-// A number in (0, 1] by SplitMix64 (Steele, Lea and Flood 2014).
+// A number in (0, 1] that belongs to another.
 double fraction_of(uint64_t value) {
-    value += 0x9E3779B97F4A7C15ull;
-    value = (value ^ (value >> 30)) * 0xBF58476D1CE4E5B9ull;
-    value = (value ^ (value >> 27)) * 0x94D049BB133111EBull;
-    value ^= value >> 31;
-    return (static_cast<double>(value >> 11) + 1.0) / 9007199254740992.0;
+    return (static_cast<double>(mixed_bits(value + splitmix_step) >> 11) + 1.0) / 9007199254740992.0;
 }
 
 // How many points two images have in common, as a share of those that either has.
@@ -147,20 +145,15 @@ std::optional<Map> map_of_shapes(const TrackObservation &from, const TrackObserv
 // to hang together. Images that are tied to hundreds of others make the fit's equations dense.
 std::set<uint32_t> links_to_keep(const std::vector<std::pair<uint32_t, uint32_t>> &links,
                                  const std::vector<double> &weights, size_t images) {
-    std::vector<uint32_t> order(links.size()), kept_of(images), parent(images);
+    std::vector<uint32_t> order(links.size()), kept_of(images);
+    JoinedSets joined(images);
     std::iota(order.begin(), order.end(), 0u);
-    std::iota(parent.begin(), parent.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return weights[a] > weights[b]; });
-    const auto root = [&](uint32_t image) {
-        while (parent[image] != image) image = parent[image] = parent[parent[image]];
-        return image;
-    };
     std::set<uint32_t> kept;
     for (const uint32_t link : order) {
         const auto [i, j] = links[link];
-        const bool joins = root(i) != root(j);
-        if (!joins && kept_of[i] >= kMostLinks && kept_of[j] >= kMostLinks) continue;
-        parent[root(i)] = root(j);
+        if (joined.of(i) == joined.of(j) && kept_of[i] >= kMostLinks && kept_of[j] >= kMostLinks) continue;
+        joined.join(i, j);
         kept_of[i]++, kept_of[j]++;
         kept.insert(link);
     }

@@ -10,6 +10,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "cli/program/interrupt.hpp"
+#include "cli/program/median.hpp"
 #include "threads/item_loop.hpp"
 
 namespace lensprof {
@@ -511,13 +512,6 @@ FoundCameras CameraFit::run() {
 }
 
 }  // namespace
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 FoundCameras find_cameras(const std::vector<PictureOptics> &pictures, const std::vector<PictureLink> &links) {
     return CameraFit(pictures, links).run();

@@ -36,9 +36,6 @@ struct FoundCameras {
     std::vector<double> link_residuals;    // median of every link, as a share of the longer side
 };
 
-// 0 of no values.
-double median(std::vector<double> values);
-
 // Of pictures that are one group. Longitude 0 is in the middle of what they show, and the horizon level where they turn
 // about an upright axis.
 FoundCameras find_cameras(const std::vector<PictureOptics> &pictures, const std::vector<PictureLink> &links);

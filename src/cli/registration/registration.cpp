@@ -11,6 +11,7 @@
 #include "cli/pictures/metadata.hpp"
 #include "cli/pictures/raw_kind.hpp"
 #include "cli/program/error.hpp"
+#include "cli/program/median.hpp"
 #include "cli/program/parallel.hpp"
 #include "cli/registration/cameras.hpp"
 #include "cli/registration/features.hpp"

@@ -12,9 +12,9 @@
 #include "cli/report/falloff.hpp"
 
 namespace lensprof {
-namespace {
-
 Json number_or_null(double value) { return value == LENSPROF_UNKNOWN || !std::isfinite(value) ? Json() : Json(value); }
+
+namespace {
 
 // Distances can be infinite, which JSON has no number for.
 Json distance_json(double distance_m) { return std::isinf(distance_m) ? Json("infinity") : number_or_null(distance_m); }

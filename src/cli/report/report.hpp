@@ -116,6 +116,7 @@ TrueValues read_truth(const std::string &path, size_t images);
 void print_comparison(const BuildReport &report, const TrueValues &truth, std::ostream &out);
 
 // Parts of such objects, and of tables.
+Json number_or_null(double value);  // null: not known, or no number
 Json covariance_json(const double *values, uint32_t n);
 Json vignetting_json(const lensprof_vignetting *vignettings, uint32_t count);
 Json response_json(const lensprof_response *responses, uint32_t count);

@@ -7,6 +7,7 @@
 
 #include "cli/program/interrupt.hpp"
 #include "cli/program/library.hpp"
+#include "cli/program/median.hpp"
 
 namespace lensprof {
 namespace {
@@ -104,13 +105,6 @@ private:
     std::array<double, curve_knots> prior_rise_{};
     mutable std::vector<std::array<double, 3>> gains_;  // of every picture, that A is relative to
 };
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 // The prior's curve, and gains of the channels by the light that it sees.
 CurveFit Solver::start() const {

@@ -3,16 +3,12 @@
 #include <cmath>
 
 #include "cli/program/interrupt.hpp"
+#include "cli/program/mixed_bits.hpp"
 #include "cli/simulate/simulate.hpp"
 
 namespace lensprof {
 
-double Random::uniform() {
-    uint64_t x = state_ += 0x9e3779b97f4a7c15ull;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-    return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
-}
+double Random::uniform() { return static_cast<double>(mixed_bits(state_ += splitmix_step) >> 11) * 0x1p-53; }
 
 double Random::normal() {
     double u = uniform(), v = uniform();
