@@ -32,7 +32,7 @@ std::string make_project(const std::string &more = {}) {
 void test_pictures(void **) {
     const std::string path = make_project();
     fs::remove(work("project/d.png"));
-    assert_refused(unreadable, build_of(path), {path, "d.png", "--images"});
+    assert_refused(unreadable, build_of(path), {path, "d.png", "--images", "--image-list"});
     write_picture(work("project/d.png"), make_smooth(160, 120, LENSPROF_LAYOUT_RGB));
     assert_refused(unreadable, build_of(path), {path, "project/d.png", "is 160 x 120", "320 x 240", "resized"});
     write_picture(work("project/d.png"), make_smooth(240, 320, LENSPROF_LAYOUT_RGB));
@@ -40,6 +40,20 @@ void test_pictures(void **) {
     save(work("project/d.png"), {1, 2, 3});
     assert_refused(unreadable, build_of(path), {"project/d.png"});
     assert_refused(unreadable, build_of(path) + Words{"--images", work("none")}, {work("none")});
+}
+
+// A file that belongs to a reconstruction, but is not the one to give.
+void test_parts(void **) {
+    fs::create_directories(work("parts"));
+    const std::pair<const char *, const char *> parts[] = {{"images.bin", "give its folder"},
+                                                           {"points3D.txt", "give its folder"},
+                                                           {"reconstruction.json", "give tracks.csv"},
+                                                           {"x.json", "apply --model"}};
+    for (const auto &[name, advice] : parts) {
+        const std::string path = work("parts/") + name;
+        save_text(path, std::string(name) == "x.json" ? "{\"file\": \"lensprof exposures\"}" : "other");
+        assert_refused(unreadable, build_of(path), {path, advice});
+    }
 }
 
 // By its own name, and by that of its folder.
@@ -92,7 +106,7 @@ void test_other_programs(void **) {
 }  // namespace
 
 int main() {
-    const CMUnitTest tests[] = {CLI_TEST(test_pictures), CLI_TEST(test_databases), CLI_TEST(test_models),
-                                CLI_TEST(test_other_programs)};
+    const CMUnitTest tests[] = {CLI_TEST(test_pictures), CLI_TEST(test_parts), CLI_TEST(test_databases),
+                                CLI_TEST(test_models), CLI_TEST(test_other_programs)};
     return cmocka_run_group_tests(tests, make_work, remove_folder);
 }

@@ -225,7 +225,10 @@ Project open_project(const Options &o, Streams &streams) {
     if (is_project && !o.project_out.empty())
         throw Failure(ExitCode::usage, "--project-out: writes the project of pictures, and " + o.inputs[0]
                                            + " is a project; leave it out, or give --pto-out");
-    if (is_project) return read_project(o.inputs[0]);
+    if (is_project) {
+        check_is_no_part(o.inputs[0]);
+        return read_project(o.inputs[0]);
+    }
     if (!o.points.empty())
         throw Failure(ExitCode::usage,
                       "--points: needs the project that its pairs belong to; give that in place of pictures");

@@ -19,7 +19,10 @@ Project project_of_words(const std::vector<std::string> &words, const std::strin
     }
     if (!images.empty())
         throw Failure(ExitCode::usage, "--images: is of a reconstruction, and " + words[0] + " is none; leave it out");
-    if (is_one && !names_pictures(words[0])) return read_project(words[0]);
+    if (is_one && !names_pictures(words[0])) {
+        check_is_no_part(words[0]);
+        return read_project(words[0]);
+    }
     for (const std::string &word : words)
         if (!names_pictures(word))
             throw Failure(ExitCode::unreadable, word + ": is no picture (.jpg, .png, .tif) and no folder; give one "

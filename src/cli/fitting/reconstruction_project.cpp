@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <set>
 
+#include "cli/fitting/exposure_file.hpp"
 #include "cli/fitting/fitting.hpp"
+#include "cli/pictures/picture.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/input_file.hpp"
 #include "cli/program/message.hpp"
@@ -109,6 +112,28 @@ void take_listed(const std::string &list, Reconstruction &r) {
     keep_images(std::vector<uint32_t>(kept.begin(), kept.end()), r);
 }
 
+// Reports how many pictures next to those of the reconstruction are not in it: they get no exposure.
+void report_unused(const std::vector<std::string> &files, Streams &streams) {
+    namespace fs = std::filesystem;
+    std::set<std::string> used, folders;
+    for (const std::string &file : files) {
+        used.insert(file_identity(file));
+        folders.insert(fs::path(file).parent_path().string());
+    }
+    size_t unused = 0;
+    std::string first;
+    std::error_code error;  // a folder that cannot be listed is not reported
+    for (const std::string &folder : folders)
+        for (const auto &entry : fs::directory_iterator(folder, error)) {
+            const std::string file = entry.path().string();
+            if (!is_picture_name(file) || used.count(file_identity(file))) continue;
+            if (!unused++ || file < first) first = file;
+        }
+    if (unused)
+        note(streams, counted(unused, "picture") + " next to those of the reconstruction, the first " + first
+                          + ", are not in it and get no exposure");
+}
+
 // Leaves the images of a shard, their files, and what is seen in them; `label` names it.
 void take_part(const Shard &shard, Reconstruction &r, std::vector<std::string> &files, std::string &label) {
     if (shard.count == 1) return;
@@ -130,6 +155,19 @@ void take_part(const Shard &shard, Reconstruction &r, std::vector<std::string> &
 
 }  // namespace
 
+void check_is_no_part(const std::string &path) {
+    const std::filesystem::path file(path);
+    const std::string name = file.filename().string(), stem = file.stem().string();
+    std::string advice;
+    if (is_exposure_file(path))
+        advice = "a file of exposures; give it to `apply --model`";
+    else if (name == "reconstruction.json")
+        advice = "a part of an OpenSfM reconstruction; give tracks.csv, which lies next to it";
+    else if (stem == "cameras" || stem == "images" || stem == "points3D")
+        advice = "a part of a COLMAP model; give its folder";
+    if (!advice.empty()) throw Failure(ExitCode::unreadable, path + ": is " + advice);
+}
+
 Project project_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Streams &streams) {
     auto clock = std::chrono::steady_clock::now();
     Reconstruction r = read_reconstruction(path, streams);
@@ -142,6 +180,7 @@ Project project_of_reconstruction(const std::string &path, const ReconstructionO
     project.sources = files_of_reconstruction(path);
     if (!options.image_list.empty()) take_listed(options.image_list, r);
     std::vector<std::string> files = find_pictures(r, options.images, r.has_colours);
+    if (options.image_list.empty()) report_unused(files, streams);
     settle_coordinates(r, files);
     take_part(options.shard, r, files, project.path);
     const bool has_pictures = !files.empty() && !options.is_by_colours;

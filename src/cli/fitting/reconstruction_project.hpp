@@ -21,4 +21,8 @@ struct ReconstructionOptions {
 // matches; where there are no pictures, and the tracks have colours, these are its pairs.
 Project project_of_reconstruction(const std::string &path, const ReconstructionOptions &options, Streams &streams);
 
+// Failure (unreadable) for a file that belongs to a reconstruction but is not what is read first, with what to give
+// instead. For names that are not a reconstruction.
+void check_is_no_part(const std::string &path);
+
 }  // namespace lensprof

@@ -134,7 +134,8 @@ std::vector<std::string> find_pictures(const Reconstruction &r, const std::strin
     throw Failure(ExitCode::unreadable,
                   r.path + counts + missing + ", are not in "
                       + (most || !folder.empty() ? best : std::string("its folder, or images beside it"))
-                      + (folder.empty() ? "; give their folder with --images" : "; give the folder that holds all"));
+                      + (folder.empty() ? "; give their folder with --images" : "; give the folder that holds all")
+                      + (most ? ", or list the images to use with --image-list" : ""));
 }
 
 void settle_coordinates(Reconstruction &r, const std::vector<std::string> &files) {

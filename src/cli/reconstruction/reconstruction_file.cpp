@@ -31,20 +31,25 @@ std::string below(const std::string &folder, const std::string &name) {
     return (std::filesystem::path(folder) / name).lexically_normal().string();
 }
 
-// The model of a folder: in itself, in sparse, or in sparse/0, sparse/1, ... that with most images; `models`: their
-// number.
-std::string model_folder(const std::string &folder, size_t &models) {
-    models = 1;
-    for (const char *name : {"", "sparse"})
-        if (is_colmap_model(below(folder, name))) return *name ? below(folder, name) : folder;
+// The largest of the models in folder/0, folder/1, ...; empty if there is none. `models` is their number.
+std::string numbered_model(const std::string &folder, size_t &models) {
     std::string best;
     uint64_t most = 0;
     for (models = 0;; models++) {
-        const std::string own = below(folder, "sparse/" + std::to_string(models));
+        const std::string own = below(folder, std::to_string(models));
         if (!is_colmap_model(own)) return best;
         const uint64_t bytes = file_bytes(own + "/images.bin") + file_bytes(own + "/images.txt");
         if (best.empty() || bytes > most) best = own, most = bytes;
     }
+}
+
+// The model of a folder: in the folder, in its subfolder sparse, or the largest of numbered ones (sparse/0, 0, ...).
+std::string model_folder(const std::string &folder, size_t &models) {
+    models = 1;
+    for (const char *name : {"", "sparse"})
+        if (is_colmap_model(below(folder, name))) return *name ? below(folder, name) : folder;
+    const std::string model = numbered_model(below(folder, "sparse"), models);
+    return model.empty() ? numbered_model(folder, models) : model;
 }
 
 // What a folder holds under its usual name, of which the first counts; empty: nothing.
