@@ -94,6 +94,18 @@ int unknown_of(std::vector<int> &columns, uint32_t of, bool is_free, int &count)
     return columns[of];
 }
 
+// Whether every image whose exposure is free has white balances that are free, and that no other image shares.
+bool are_channels_apart(const Problem &problem) {
+    std::vector<bool> is_taken(static_cast<size_t>(problem.image_unknowns), false);
+    for (uint32_t i = 0; i < problem.image_count && problem.channels == 3; i++)
+        for (size_t c : {0, 2}) {
+            const int balance = problem.balance_unknown[i][c];
+            if (balance < 0 ? problem.ev_unknown[i] >= 0 : is_taken[static_cast<size_t>(balance)]) return false;
+            if (balance >= 0) is_taken[static_cast<size_t>(balance)] = true;
+        }
+    return true;
+}
+
 void number_unknowns(Problem &problem) {
     std::vector<int> ev(problem.image_count, -1), red = ev, blue = ev;
     for (uint32_t i = 0; i < problem.image_count; i++) {
@@ -115,6 +127,7 @@ void number_unknowns(Problem &problem) {
         }
         problem.balance_unknown.push_back(balance);
     }
+    problem.channels_apart = are_channels_apart(problem);
 }
 
 // Numbers the settings as they come, that of the reference first.
@@ -153,6 +166,11 @@ void complete(Problem &problem) {
 uint32_t Problem::link_of(uint32_t low, uint32_t high) const {
     auto first = links.begin() + first_link[low], last = links.begin() + first_link[low + 1];
     return static_cast<uint32_t>(std::lower_bound(first, last, std::array<uint32_t, 2>{low, high}) - links.begin());
+}
+
+std::array<int, 2> Problem::columns_of(uint32_t image, int channel) const {
+    const int ev = ev_unknown[image], balance = balance_unknown[image][static_cast<size_t>(channel)];
+    return {channels_apart && balance >= 0 ? -1 : ev, balance};
 }
 
 uint32_t Problem::component_count() const {

@@ -89,6 +89,11 @@ struct Problem {
     std::vector<int> ev_unknown;
     std::vector<std::array<int, 3>> balance_unknown;
     int image_unknowns = 0;
+    bool channels_apart = false;  // no unknown is in two channels, once the balances stand for whole log exposures
+
+    // The columns whose sum is a_ic, -1 for none. Where the channels are apart, the column of a white balance holds
+    // a_ic and not ln w_ic: then the normal equations of the channels have nothing in common.
+    std::array<int, 2> columns_of(uint32_t image, int channel) const;
 
     uint32_t component_count() const;
     uint32_t link_of(uint32_t low, uint32_t high) const;            // number of the link between two images

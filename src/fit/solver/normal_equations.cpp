@@ -83,17 +83,14 @@ void NormalEquations::add_prior(const Prior &prior, const Estimate &estimate) {
 // From log exposures a_ic to the images' unknowns q.
 void NormalEquations::map_images(const Sums &sums, const Prior &prior, const Estimate &estimate) {
     int count = problem_.image_unknowns;
-    auto columns_of = [&](uint32_t i, int c) {
-        return std::array<int, 2>{problem_.ev_unknown[i], problem_.balance_unknown[i][c]};
-    };
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(8 * sums.links.size() * static_cast<size_t>(problem_.channels));
     for (const Link &link : sums.links)
         for (int c = 0; c < problem_.channels; c++)
             for (int end = 0; end < 2; end++)
                 for (int other = 0; other < 2; other++)
-                    for (int q : columns_of(link.image[end], c))
-                        for (int r : columns_of(link.image[other], c))
+                    for (int q : problem_.columns_of(link.image[end], c))
+                        for (int r : problem_.columns_of(link.image[other], c))
                             if (q >= 0 && r >= 0)
                                 entries.emplace_back(q, r, (end == other ? 1.0 : -1.0) * link.weight[c]);
     const bool has_shared = !columns_.empty();  // a matrix without columns has no rows to point at
@@ -101,7 +98,7 @@ void NormalEquations::map_images(const Sums &sums, const Prior &prior, const Est
     gradient_q_ = Eigen::VectorXd::Zero(count);
     for (uint32_t i = 0; i < problem_.image_count; i++)
         for (int c = 0; c < problem_.channels; c++)
-            for (int q : columns_of(i, c))
+            for (int q : problem_.columns_of(i, c))
                 if (q >= 0) {
                     if (has_shared) cross_q_.row(q) += sums.cross.col(3 * static_cast<Eigen::Index>(i) + c).transpose();
                     gradient_q_[q] += sums.image_gradient[3 * static_cast<Eigen::Index>(i) + c];
@@ -147,10 +144,9 @@ std::vector<std::array<double, 3>> NormalEquations::image_step(const Eigen::Vect
     Eigen::VectorXd q = image_only_;
     if (!columns_.empty()) q -= eliminated_ * shared_step;
     for (uint32_t i = 0; i < problem_.image_count; i++)
-        for (int c = 0; c < problem_.channels; c++) {
-            if (problem_.ev_unknown[i] >= 0) step[i][c] += q[problem_.ev_unknown[i]];
-            if (problem_.balance_unknown[i][c] >= 0) step[i][c] += q[problem_.balance_unknown[i][c]];
-        }
+        for (int c = 0; c < problem_.channels; c++)
+            for (int column : problem_.columns_of(i, c))
+                if (column >= 0) step[i][c] += q[column];
     return step;
 }
 
@@ -161,8 +157,23 @@ double NormalEquations::expected_gain(const Eigen::VectorXd &shared_step) const 
 
 Eigen::VectorXd NormalEquations::image_variance(const Eigen::MatrixXd &shared) const {
     if (problem_.image_unknowns == 0) return {};
-    if (columns_.empty()) return inverse_diagonal(factor_);
-    return inverse_diagonal(factor_) + (eliminated_ * shared).cwiseProduct(eliminated_).rowwise().sum();
+    const bool has_shared = !columns_.empty();
+    auto added = [&](const Eigen::MatrixXd &rows) -> Eigen::VectorXd {  // by the shared unknowns
+        return (rows * shared).cwiseProduct(rows).rowwise().sum();
+    };
+    Eigen::VectorXd variance = inverse_diagonal(factor_);
+    if (!problem_.channels_apart) return has_shared ? variance + added(eliminated_) : variance;
+    // ln w_ic = a_ic - a_i1: the first part of their covariance is 0, for the channels are apart.
+    Eigen::MatrixXd by_shared = eliminated_;
+    const Eigen::VectorXd alone = variance;
+    for (uint32_t i = 0; i < problem_.image_count; i++)
+        for (int balance : problem_.balance_unknown[i]) {
+            const int ev = problem_.ev_unknown[i];
+            if (balance < 0 || ev < 0) continue;
+            variance[balance] += alone[ev];
+            if (has_shared) by_shared.row(balance) -= eliminated_.row(ev);
+        }
+    return has_shared ? variance + added(by_shared) : variance;
 }
 
 Eigen::VectorXd inverse_diagonal(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> &factor) {

@@ -15,6 +15,7 @@ namespace {
 constexpr double kDarkest = 0.03, kBrightest = 0.97;  // grey values whose ratio is worth something
 
 using Ratios = std::array<double, 3>;
+using TieFactor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
 
 // What the exposures of two images must explain: ln g(B1)/M1 - ln g(B2)/M2, where most of an edge's pairs agree, or of
 // one pair where there are too few to tell.
@@ -121,8 +122,9 @@ std::vector<Tie> ties_of(const Problem &problem, const Estimate &estimate, doubl
     return ties;
 }
 
-// Least squares over the ties as trusted; false when it failed numerically.
-bool add_exposures(const Problem &problem, const std::vector<Tie> &ties, Estimate &estimate) {
+// Least squares over the ties as trusted; false when it failed numerically. `factor` keeps the order of elimination
+// from one call to the next: the ties change their weights alone.
+bool add_exposures(const Problem &problem, const std::vector<Tie> &ties, TieFactor &factor, Estimate &estimate) {
     int count = problem.image_unknowns;
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
@@ -131,8 +133,9 @@ bool add_exposures(const Problem &problem, const std::vector<Tie> &ties, Estimat
         for (size_t c = 0; c < static_cast<size_t>(problem.channels); c++) {
             // One equation: sum of the unknowns of image 1 minus those of image 2 = ratio minus what is fixed.
             uint32_t i = tie.image[0], j = tie.image[1];
-            int q[4] = {problem.ev_unknown[i], problem.balance_unknown[i][c], problem.ev_unknown[j],
-                        problem.balance_unknown[j][c]};
+            const auto first = problem.columns_of(i, static_cast<int>(c)),
+                       second = problem.columns_of(j, static_cast<int>(c));
+            const int q[4] = {first[0], first[1], second[0], second[1]};
             double target = tie.ratios[c] - (estimate.log_exposure[i][c] - estimate.log_exposure[j][c]);
             double weight = tie.votes * tie.trust;
             for (int a = 0; a < 4; a++) {
@@ -145,13 +148,14 @@ bool add_exposures(const Problem &problem, const std::vector<Tie> &ties, Estimat
         }
     Eigen::SparseMatrix<double> matrix(count, count);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+    if (factor.rows() == 0) factor.analyzePattern(matrix);
+    factor.factorize(matrix);
     if (factor.info() != Eigen::Success) return false;
     Eigen::VectorXd q = factor.solve(right);
     if (!q.allFinite()) return false;
     for (uint32_t i = 0; i < problem.image_count; i++)
         for (int c = 0; c < problem.channels; c++)
-            for (int unknown : {problem.ev_unknown[i], problem.balance_unknown[i][c]})
+            for (int unknown : problem.columns_of(i, c))
                 if (unknown >= 0) estimate.log_exposure[i][c] += std::clamp(q[unknown], -10.0, 10.0);
     return true;
 }
@@ -176,7 +180,9 @@ void start_exposures(const Problem &problem, double width, Estimate &estimate) {
     constexpr double kExact = 0.05, kNear = 0.3;  // natural logarithm by which a tie may be off
     if (problem.image_unknowns == 0) return;
     auto ties = ties_of(problem, estimate, width);
-    for (int round = 0; round <= kDistanceRounds + kNearRounds && add_exposures(problem, ties, estimate); round++)
+    TieFactor factor;
+    for (int round = 0; round <= kDistanceRounds + kNearRounds && add_exposures(problem, ties, factor, estimate);
+         round++)
         for (Tie &tie : ties) {
             double off = surprise_of(problem, tie, estimate), z = off / kNear;
             tie.trust = round < kDistanceRounds ? 1.0 / std::hypot(off, kExact) : 1.0 / ((1.0 + z * z) * (1.0 + z * z));
