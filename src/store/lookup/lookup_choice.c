@@ -12,7 +12,7 @@
 
 /* A focal length may be off the stored ones by so much of it where the aperture is off, too. Beyond, of settings of
  * Lensfun's lenses that were left out with all on their side, half were within the standard error stated, and a third
- * with apertures wider than the stored ones; within, all seven were (docs/benchmarks.md). */
+ * with apertures wider than the stored ones; within, all seven were (docs/benchmark-results.md). */
 #define NEAR_FOCAL 0.06
 
 /* The error of M in the corner, in standard errors of the prediction, that 68 of 100 were below where all rows of a
