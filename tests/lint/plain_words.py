@@ -16,6 +16,7 @@ import tempfile
 
 # What is checked, as globs below the project.
 PROSE = (
+    "CHANGELOG.md",
     "CONTRIBUTING.md",
     "bindings/**/README.md",
     "docs/architecture.md",
