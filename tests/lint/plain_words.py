@@ -15,18 +15,7 @@ import sys
 import tempfile
 
 # What is checked, as globs below the project.
-PROSE = (
-    "CHANGELOG.md",
-    "CONTRIBUTING.md",
-    "bindings/**/README.md",
-    "docs/architecture.md",
-    "docs/benchmark*.md",
-    "docs/decisions/*.md",
-    "docs/model.md",
-    "docs/papers.md",
-    "docs/testing.md",
-    "src/**/README.md",
-)
+PROSE = ("CHANGELOG.md", "CONTRIBUTING.md", "bindings/**/*.md", "docs/**/*.md", "examples/**/*.md", "src/**/*.md")
 SOURCES = ()
 # Files with sentences of other people, or tables that a program wrote.
 EXEMPT = ("tests/lint/", "docs/benchmark-results.md", "LICENSE", "NOTICE")
