@@ -98,7 +98,7 @@ ROOMS = {
                 "api"],
     "src/formats": ["text", "falloff", "hugin", "", "any"],
     "src/store": ["file", "names", "profiles", "lookup"],
-    "src/cli": ["program", "report", "pictures", "registration", "reconstruction", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
+    "src/cli": ["program", "report", "pictures", "page", "registration", "reconstruction", "fitting", "response", "profiles", "correct", "simulate", "calibrate"],
 }
 
 # Headers that one room alone may use.

@@ -9,6 +9,7 @@
 
 #include "cli/calibrate/attempt.hpp"
 #include "cli/pictures/contact_sheet.hpp"
+#include "cli/pictures/upright.hpp"
 #include "cli/program/format.hpp"
 #include "cli/program/interrupt.hpp"
 #include "cli/program/parallel.hpp"
@@ -27,20 +28,6 @@ struct Small {
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> rgb;
 };
-
-// EXIF's orientation: where the pixel (x, y) of the upright picture is in the stored one of w x h.
-std::pair<uint32_t, uint32_t> stored_place(uint16_t orientation, uint32_t w, uint32_t h, uint32_t x, uint32_t y) {
-    switch (orientation) {
-    case 2: return {w - 1 - x, y};
-    case 3: return {w - 1 - x, h - 1 - y};
-    case 4: return {x, h - 1 - y};
-    case 5: return {y, x};
-    case 6: return {y, h - 1 - x};
-    case 7: return {w - 1 - y, h - 1 - x};
-    case 8: return {w - 1 - y, x};
-    default: return {x, y};
-    }
-}
 
 // Empty for a file that cannot be read: the copy may have been edited since.
 Small small_of(const std::string &file, uint16_t orientation) {

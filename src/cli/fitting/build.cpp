@@ -8,12 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fitting/exposure_file.hpp"
+#include "cli/fitting/fit_page.hpp"
 #include "cli/fitting/fitting.hpp"
 #include "cli/fitting/photographs.hpp"
 #include "cli/fitting/preview.hpp"
 #include "cli/fitting/profile_store.hpp"
 #include "cli/fitting/project_fit.hpp"
 #include "cli/fitting/reconstruction_project.hpp"
+#include "cli/page/page.hpp"
 #include "cli/program/commands.hpp"
 #include "cli/program/message.hpp"
 #include "cli/program/options.hpp"
@@ -27,7 +29,7 @@ namespace {
 
 struct Options : ProjectFitOptions {
     std::vector<std::string> inputs;
-    std::string images, image_list, shard, points_out, exposures_out, gain_chart, pto_out, project_out, preview,
+    std::string images, image_list, shard, points_out, exposures_out, gain_chart, pto_out, project_out, preview, report,
         compare;
     bool track_colours = false;
     std::vector<uint32_t> free;  // LENSPROF_FREE_..., for every image; empty: as the project asks
@@ -60,6 +62,8 @@ void declare_points(Command &command, Options &o) {
                  "write the pairs used (Hugin's 16 columns), also those of a fit that is not usable");
     command.file("--preview", o.preview,
                  "write a mosaic of the pictures before, and below it after correction, as .jpg, .png or .tif");
+    command.file("--report", o.report,
+                 "write a report with charts and the pictures before and after, as one .html file");
     command.file("--exposures-out", o.exposures_out,
                  "write exposures and white balances with their errors, response and falloff, for `apply --model` and "
                  "other programs, as JSON");
@@ -132,7 +136,7 @@ void check_outputs(const Options &o, std::vector<std::string> taken) {
     taken.insert(taken.end(), {o.points, o.image_list, o.compare});
     if (!o.store.no_store) taken.push_back(store_path(o.store.db));
     for (const std::string &output :
-         {o.points_out, o.exposures_out, o.gain_chart, o.pto_out, o.project_out, o.preview}) {
+         {o.points_out, o.exposures_out, o.gain_chart, o.pto_out, o.project_out, o.preview, o.report}) {
         if (output.empty()) continue;
         for (const std::string &other : taken)
             if (is_same_file(output, other))
@@ -166,6 +170,9 @@ BuildReport build(const Options &o, Project &project, const std::vector<PictureM
     if (!o.pto_out.empty() && (done.best.corrects() || o.store.force))
         outputs.add(o.pto_out, result_text(done, project, o.pto_out));
     if (!o.preview.empty() && done.best.corrects()) write_preview(o.preview, project, done.best, progress);
+    if (!o.report.empty())
+        outputs.add(o.report,
+                    fit_page({done, project, metadata, command_text(streams.words), streams.warnings}, progress));
     progress.clear();
     if (o.fit.gamma_from == LENSPROF_GAMMA_EXPOSURES && report.fit.gamma_from == LENSPROF_GAMMA_PRIOR)
         warn(streams, project.path
@@ -294,6 +301,7 @@ int run(const Options &o, Streams &streams) {
     check_fit_options(o.fit);
     if (!o.preview.empty()) check_preview(o.preview);
     if (!o.gain_chart.empty()) check_chart_name(o.gain_chart);
+    if (!o.report.empty()) check_page_name(o.report);
     if (!o.preview.empty() && !o.points.empty())
         throw Failure(ExitCode::usage, "--preview: shows pictures, which --points leaves out; give one of the two");
     if (o.json && !o.compare.empty())

@@ -13,11 +13,6 @@ constexpr uint32_t longer_side = 1600, gap = 8;                           // px 
 constexpr uint32_t picture_side = 500;                                    // px that pictures are reduced to
 constexpr double widest_flat = 55.0 * M_PI / 180.0, farthest_flat = 8.0;  // seen ahead; px of a plane at distance 1
 
-struct Tile {
-    Picture before, after;  // 8 bit
-    lensprof_camera camera{};
-};
-
 // The model on a reduced picture, whose place in the frame does not matter: radii are in half diagonals.
 Picture applied(Picture &source, const lensprof_apply_options &options, const std::string &file) {
     lensprof_apply_options own = options;
@@ -38,10 +33,10 @@ Picture applied(Picture &source, const lensprof_apply_options &options, const st
     return target;
 }
 
-// What a result makes of a picture, and the picture as it is in the same format.
-Tile tile_of(const Project &project, uint32_t i, const Fitted &fitted, const lensprof_exposure &wanted) {
+CorrectedCopy copy_of(const Project &project, uint32_t i, const Fitted &fitted, const lensprof_exposure &wanted,
+                      uint32_t max_side) {
     ReadOptions read;
-    read.max_side = picture_side;
+    read.max_side = max_side;
     Picture source = read_picture(project.files[i], read);
     lensprof_apply_options options;
     lensprof_apply_options_init(&options);
@@ -51,16 +46,17 @@ Tile tile_of(const Project &project, uint32_t i, const Fitted &fitted, const len
     lensprof_response_set_linear(&linear);
     options.response = &linear, options.vignetting = &none;
     options.input = options.output = LENSPROF_ENCODING_LINEAR;
-    Tile tile;
-    tile.before = applied(source, options, project.files[i]);
+    CorrectedCopy copy;
+    copy.image = i;
+    copy.before = applied(source, options, project.files[i]);
     options.input = options.output = LENSPROF_ENCODING_RESPONSE;
     options.response = &fitted.response_of(i);
     options.output_response = &fitted.response_of(fitted.reference), options.output_responses = 1;
     options.vignettings = fitted.falloff_curves_of(i), options.vignetting = fitted.falloff_of(i);
     options.source = fitted.exposures[i], options.target = wanted;
-    tile.after = applied(source, options, project.files[i]);
-    tile.camera = project.images[i].camera;
-    return tile;
+    copy.after = applied(source, options, project.files[i]);
+    copy.camera = project.images[i].camera;
+    return copy;
 }
 
 // A mosaic's projection, and the part of it that pictures cover.
@@ -110,9 +106,9 @@ Box box_of(const Canvas &canvas, const lensprof_camera &camera) {
     return box;
 }
 
-Canvas canvas_of(const std::vector<Tile> &tiles) {
+Canvas canvas_of(const std::vector<CorrectedCopy> &tiles) {
     Canvas canvas;
-    for (const Tile &tile : tiles) {
+    for (const CorrectedCopy &tile : tiles) {
         const double *t = tile.camera.translation;
         if (t[0] != 0.0 || t[1] != 0.0 || t[2] != 0.0) break;  // a plane is flat
         look_around(tile.camera, [&](const double direction[2]) {
@@ -120,7 +116,7 @@ Canvas canvas_of(const std::vector<Tile> &tiles) {
         });
     }
     Box all;
-    for (const Tile &tile : tiles) {
+    for (const CorrectedCopy &tile : tiles) {
         const Box box = box_of(canvas, tile.camera);
         all.left = std::min(all.left, box.left), all.right = std::max(all.right, box.right);
         all.top = std::min(all.top, box.top), all.bottom = std::max(all.bottom, box.bottom);
@@ -141,7 +137,7 @@ void copy_pixel(const Picture &from, uint32_t x, uint32_t y, uint8_t *to) {
 }
 
 // A tile's pixels into both mosaics, where no other's middle is nearer.
-void paint(const Canvas &canvas, const Tile &tile, std::vector<float> &nearest, Picture &out) {
+void paint(const Canvas &canvas, const CorrectedCopy &tile, std::vector<float> &nearest, Mosaic &out) {
     const lensprof_camera &camera = tile.camera;
     const Box box = box_of(canvas, camera);
     const auto pixel = [&](double at, double from, uint32_t count) {
@@ -162,9 +158,9 @@ void paint(const Canvas &canvas, const Tile &tile, std::vector<float> &nearest, 
             best = distance;
             const auto x = static_cast<uint32_t>(across * tile.before.width),
                        y = static_cast<uint32_t>(down * tile.before.height);
-            uint8_t *to = out.pixels.data() + v * out.row_bytes + size_t(3) * u;
-            copy_pixel(tile.before, x, y, to);
-            copy_pixel(tile.after, x, y, to + (canvas.height + gap) * out.row_bytes);
+            const size_t place = v * out.before.row_bytes + size_t(3) * u;
+            copy_pixel(tile.before, x, y, out.before.pixels.data() + place);
+            copy_pixel(tile.after, x, y, out.after.pixels.data() + place);
         }
 }
 
@@ -176,21 +172,43 @@ void check_preview(const std::string &path) {
                                               "or .tif");
 }
 
-void write_preview(const std::string &path, const Project &project, const Fitted &fitted, Progress &progress) {
-    const lensprof_exposure wanted = mean_exposure(fitted.exposures);  // as `apply --pto` has it
+std::vector<uint32_t> images_with_exposure(const Fitted &fitted) {
     std::vector<uint32_t> joined;
-    for (uint32_t i = 0; i < project.files.size(); i++)
+    for (uint32_t i = 0; i < fitted.exposures.size(); i++)
         if (!std::isnan(fitted.exposures[i].ev)) joined.push_back(i);
-    std::vector<Tile> tiles(joined.size());
-    for_each_parallel(static_cast<uint32_t>(tiles.size()), "preview", progress,
-                      [&](uint32_t n) { tiles[n] = tile_of(project, joined[n], fitted, wanted); });
-    const Canvas canvas = canvas_of(tiles);
-    Picture out;
-    out.width = std::max(canvas.width, 1u), out.height = 2 * std::max(canvas.height, 1u) + gap;
-    out.row_bytes = size_t(3) * out.width;
-    out.pixels.assign(out.row_bytes * out.height, 128);
+    return joined;
+}
+
+std::vector<CorrectedCopy> corrected_copies(const Project &project, const Fitted &fitted,
+                                            const std::vector<uint32_t> &images, uint32_t max_side,
+                                            Progress &progress) {
+    const lensprof_exposure wanted = mean_exposure(fitted.exposures);  // as `apply --pto` has it
+    std::vector<CorrectedCopy> copies(images.size());
+    for_each_parallel(static_cast<uint32_t>(copies.size()), "preview", progress,
+                      [&](uint32_t n) { copies[n] = copy_of(project, images[n], fitted, wanted, max_side); });
+    return copies;
+}
+
+Mosaic mosaic_of(const std::vector<CorrectedCopy> &copies) {
+    const Canvas canvas = canvas_of(copies);
+    Picture empty;
+    empty.width = std::max(canvas.width, 1u), empty.height = std::max(canvas.height, 1u);
+    empty.row_bytes = size_t(3) * empty.width;
+    empty.pixels.assign(empty.row_bytes * empty.height, 128);
+    Mosaic mosaic{empty, empty};
     std::vector<float> nearest(size_t(canvas.width) * canvas.height, std::numeric_limits<float>::max());
-    for (const Tile &tile : tiles) paint(canvas, tile, nearest, out);
+    for (const CorrectedCopy &copy : copies) paint(canvas, copy, nearest, mosaic);
+    return mosaic;
+}
+
+void write_preview(const std::string &path, const Project &project, const Fitted &fitted, Progress &progress) {
+    const Mosaic mosaic =
+        mosaic_of(corrected_copies(project, fitted, images_with_exposure(fitted), picture_side, progress));
+    Picture out = mosaic.before;
+    out.height = 2 * mosaic.before.height + gap;
+    out.pixels.resize(out.row_bytes * out.height, 128);
+    std::copy(mosaic.after.pixels.begin(), mosaic.after.pixels.end(),
+              out.pixels.begin() + static_cast<std::ptrdiff_t>((mosaic.before.height + gap) * out.row_bytes));
     write_picture(path, out);
 }
 

@@ -20,6 +20,7 @@ void declare_profile_merge(Command &profile);
 void declare_profile_names(Command &profile);
 void declare_profile_stats(Command &profile);
 void declare_query(Command &program);
+void declare_report(Command &program);
 void declare_response(Command &program);
 void declare_simulate(Command &program);
 

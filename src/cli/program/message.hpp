@@ -13,4 +13,7 @@ void tell(Streams &streams, const std::string &text);
 void warn(Streams &streams, const std::string &text);
 void note(Streams &streams, const std::string &text);
 
+// A command line for a shell: "lensprof" and the words, those in quotes that need them.
+std::string command_text(const std::vector<std::string> &words);
+
 }  // namespace lensprof

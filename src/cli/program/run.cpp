@@ -50,6 +50,7 @@ void declare_all(Command root, const Program &program) {
     declare_align(root);
     declare_query(root);
     declare_profile(root);
+    declare_report(root);
     declare_simulate(root);
     root.add("version", "print the version").run(print_version);
     declare_help(root, program);
@@ -59,6 +60,7 @@ void declare_all(Command root, const Program &program) {
 }  // namespace
 
 int run(const std::vector<std::string> &words, Streams &streams) {
+    streams.words = words;
     try {
         Program program("lensprof", "lensprof - what the camera did to the light, and how to undo it");
         declare_all(program.root(), program);

@@ -11,6 +11,8 @@ namespace lensprof {
 struct Streams {
     std::ostream &out;
     std::ostream &err;
+    std::vector<std::string> words = {};     // of the command line
+    std::vector<std::string> warnings = {};  // that were written to `err`, without "warning: "
 };
 
 // The whole program: returns its exit code (ExitCode in error.hpp).

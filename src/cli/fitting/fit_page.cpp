@@ -1,0 +1,173 @@
+#include "cli/fitting/fit_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/fitting/fit_residuals.hpp"
+#include "cli/fitting/preview.hpp"
+#include "cli/page/page.hpp"
+#include "cli/pictures/upright.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/report/curves_json.hpp"
+
+namespace lensprof {
+namespace {
+
+Json falloffs_json(const BuildReport &report) {
+    Json curves = Json::array();
+    if (!report.has_falloff) return curves;
+    if (report.settings.empty()) add_falloff_curves(*profile_of(report.fit), "", curves);
+    for (const SettingReport &setting : report.settings)
+        if (setting.found.images) add_falloff_curves(*profile_of(result_of(report, setting)), setting.label, curves);
+    return curves;
+}
+
+Json responses_json(const BuildReport &report) {
+    Json curves = Json::array();
+    if (report.cameras.empty()) add_response_curves(*profile_of(report.fit), "this fit", curves);
+    for (const CameraReport &camera : report.cameras) {
+        if (!camera.found.images) continue;
+        auto profile = new_profile();
+        profile->response[0] = camera.found.response;
+        add_response_curves(*profile, camera.label, curves);
+    }
+    return curves;
+}
+
+Json images_json(const FitPageInput &input) {
+    const BuildReport &report = input.done.report;
+    Json json = Json::array();
+    for (size_t i = 0; i < report.names.size(); i++) {
+        const lensprof_exposure &exposure = report.exposures[i];
+        const bool has_quality = i < report.quality.size();
+        const lensprof_fit_image_quality quality = has_quality ? report.quality[i] : lensprof_fit_image_quality{};
+        const bool is_known = i < input.done.input.images.size() && input.done.input.images[i].known_ev_sigma > 0.0
+                              && quality.known_ev_residual != 0.0;
+        json.push_back(
+            {{"name", report.names[i]},
+             {"ev", number_or_null(exposure.ev)},
+             {"ev_sigma", quality.ev_sigma},
+             {"known_ev", is_known ? number_or_null(exposure.ev - quality.known_ev_residual) : Json()},
+             {"balance", std::vector<double>(exposure.white_balance, exposure.white_balance + 3)},
+             {"balance_sigma", std::vector<double>(quality.white_balance_sigma, quality.white_balance_sigma + 3)}});
+    }
+    return json;
+}
+
+Json verdict_json(const FitPageInput &input) {
+    const BuildReport &report = input.done.report;
+    Json details = Json::array();
+    if (!report.verdict.text.empty()) details.push_back(report.verdict.text);
+    for (const std::string &warning : input.warnings) details.push_back(warning);
+    const bool is_good = report.fit.usable && details.empty();
+    const char *headline = is_good             ? "Usable: a profile that later pictures can rely on."
+                           : report.fit.usable ? "Usable, with a warning."
+                           : report.fit.evens
+                               ? "These pictures match after correction, but this is not a profile to store."
+                               : "Not usable: do not correct pictures with this result.";
+    const bool corrects = report.fit.usable || report.fit.evens;
+    return {{"level", is_good ? "good" : corrects ? "warn" : "bad"}, {"headline", headline}, {"details", details}};
+}
+
+Json facts_json(const FitPageInput &input) {
+    const BuildReport &report = input.done.report;
+    const lensprof_fit_result &fit = report.fit;
+    const auto joined = std::count_if(report.exposures.begin(), report.exposures.end(),
+                                      [](const lensprof_exposure &e) { return !std::isnan(e.ev); });
+    Json facts = Json::array();
+    const auto add = [&](const char *name, const std::string &value) { facts.push_back({name, value}); };
+    add("images joined", format("%d of %zu", static_cast<int>(joined), report.names.size()));
+    add("pairs", std::to_string(fit.pairs));
+    if (report.has_falloff && report.settings.empty()) {
+        double sigma = 0.0;
+        const double corner =
+            lensprof_profile_corner_falloff(profile_of(fit).get(), fit.vignettings == 3 ? 1 : 0, &sigma);
+        add("corner illuminance", sigma > 0.0 ? format("%.2f ± %.2f (%+.2f EV)", corner, sigma, std::log2(corner))
+                                              : format("%.2f (%+.2f EV)", corner, std::log2(corner)));
+    }
+    if (fit.before_rms > 0.0)
+        add("pairs differ by, levels RMS", format("%.1f before, %.1f after", fit.before_rms, fit.heldout_rms));
+    if (report.variance.pairs)
+        add("colour variance, levels²",
+            format("%.0f before, %.0f by exposures alone, %.0f after", report.variance.before,
+                   report.variance.exposures_only, report.variance.result));
+    add("exponent known by", std::string(gamma_name(fit.gamma_from))
+                                 + (fit.gamma_sigma > 0.0 ? format(", ± %.0f %%", 100.0 * fit.gamma_sigma) : ""));
+    if (report.profile_id) add("stored as profile", std::to_string(report.profile_id));
+    return facts;
+}
+
+// The longer side of pictures in a report of so many: all together stay below 12 MB.
+uint32_t side_of(size_t pictures) {
+    return pictures <= 24 ? 720 : pictures <= 60 ? 480 : pictures <= 160 ? 280 : pictures <= 600 ? 150 : 96;
+}
+
+constexpr size_t most_pictures = 2000;
+constexpr int quality = 78;
+
+void add_views(const FitPageInput &input, Progress &progress, Json &page) {
+    const Fitted &fitted = input.done.best;
+    std::vector<uint32_t> images = images_with_exposure(fitted);
+    const size_t all = images.size();
+    if (!fitted.corrects() || images.empty() || !is_regular_file(input.project.files[images[0]])) return;
+    if (all > most_pictures) {
+        std::vector<uint32_t> some;
+        for (size_t n = 0; n < most_pictures; n++) some.push_back(images[n * all / most_pictures]);
+        images = some;
+        page["views_note"] = format("%zu of %zu pictures, evenly spaced.", most_pictures, all);
+    }
+    const uint32_t side = side_of(images.size());
+    const bool has_mosaic = !input.project.is_reconstruction && images.size() <= 200;
+    const auto copies =
+        corrected_copies(input.project, fitted, images, has_mosaic ? std::max(side, 500u) : side, progress);
+    Json views = Json::array();
+    const auto add = [&](const std::string &name, const Picture &before, const Picture &after) {
+        views.push_back({{"name", name}, {"before", data_url(before, quality)}, {"after", data_url(after, quality)}});
+    };
+    if (has_mosaic) {
+        const Mosaic mosaic = mosaic_of(copies);
+        add("all pictures, unblended", mosaic.before, mosaic.after);
+    }
+    for (const CorrectedCopy &copy : copies) {
+        const uint16_t orientation = copy.image < input.metadata.size() ? input.metadata[copy.image].orientation : 1;
+        add(input.project.names[copy.image], upright_copy(copy.before, orientation, side),
+            upright_copy(copy.after, orientation, side));
+    }
+    page["views"] = std::move(views);
+}
+
+}  // namespace
+
+std::string fit_page(const FitPageInput &input, Progress &progress) {
+    const BuildReport &report = input.done.report;
+    const std::string title = std::filesystem::path(input.project.path).filename().string();
+    Json page;
+    page["kind"] = "fit";
+    page["title"] = title.empty() ? input.project.path : title;
+    page["subtitle"] = "Calibration from overlapping pictures";
+    page["program"] = std::string("lensprof ") + lensprof_version();
+    page["command"] = input.command;
+    page["verdict"] = verdict_json(input);
+    page["facts"] = facts_json(input);
+    page["falloffs"] = falloffs_json(report);
+    page["falloff_points"] = report.has_falloff ? falloff_points(input.done, input.project) : Json::array();
+    page["responses"] = responses_json(report);
+    page["typical"] = typical_band(report.camera_kind.kind);
+    page["images"] = images_json(input);
+    page["residuals"] = residual_figures(input.done, input.project);
+    page["left_out"] = Json::array();
+    for (const auto &[name, reason] : report.left_out) page["left_out"].push_back({{"name", name}, {"reason", reason}});
+    for (size_t i = 0; i < report.names.size(); i++)
+        if (std::isnan(report.exposures[i].ev))
+            page["left_out"].push_back(
+                {{"name", report.names[i]}, {"reason", "its pairs do not agree with the other images"}});
+    add_views(input, progress, page);
+    page["result"] = build_json(report);
+    return page_of(page["title"].get<std::string>() + " – lensprof", page);
+}
+
+}  // namespace lensprof

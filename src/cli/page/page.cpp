@@ -1,0 +1,69 @@
+#include "cli/page/page.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/pictures/jpeg_bytes.hpp"
+#include "cli/program/error.hpp"
+
+namespace lensprof {
+namespace {
+
+std::string replaced(std::string text, const std::string &mark, const std::string &with) {
+    const size_t at = text.find(mark);
+    return at == std::string::npos ? text : text.replace(at, mark.size(), with);
+}
+
+std::string html_text(const std::string &text) {
+    std::string escaped;
+    for (const char c : text)
+        escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+    return escaped;
+}
+
+// No text inside can end the script element: < stands in strings alone, where \u003c is the same.
+std::string script_json(const nlohmann::ordered_json &data) {
+    const std::string text = data.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
+    std::string escaped;
+    escaped.reserve(text.size());
+    for (const char c : text) escaped += c == '<' ? "\\u003c" : std::string(1, c);
+    return escaped;
+}
+
+// RFC 4648.
+std::string base64(const std::vector<uint8_t> &bytes) {
+    constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        const size_t have = std::min<size_t>(3, bytes.size() - i);
+        uint32_t group = 0;
+        for (size_t k = 0; k < 3; k++) group = group << 8 | (k < have ? bytes[i + k] : 0u);
+        for (size_t k = 0; k < 4; k++) text += k <= have ? digits[group >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string page_of(const std::string &title, const nlohmann::ordered_json &data) {
+    std::string page = replaced(page_html, "@TITLE@", html_text(title));
+    page = replaced(page, "@STYLE@", page_style);
+    page = replaced(page, "@SCRIPT@", page_script);
+    return replaced(page, "@DATA@", script_json(data));  // last: a text in it may look like a mark
+}
+
+std::string data_url(const Picture &picture, int quality) {
+    return "data:image/jpeg;base64," + base64(jpeg_bytes(picture, quality));
+}
+
+void check_page_name(const std::string &path) {
+    std::string end = path.substr(std::min(path.size(), path.find_last_of('.')));
+    for (char &c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (end != ".html" && end != ".htm")
+        throw Failure(ExitCode::usage, path + ": a report is an HTML file; give a name that ends in .html");
+}
+
+}  // namespace lensprof

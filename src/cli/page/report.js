@@ -1,0 +1,324 @@
+// The page of a fit, of a profile or of a database, from the JSON in the page.
+
+const data = JSON.parse(document.getElementById('data').textContent);
+const page = document.getElementById('report');
+
+function element(name, attributes, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes || {})) made.setAttribute(key, value);
+  for (const child of children) if (child !== null && child !== undefined) made.append(child);
+  return made;
+}
+
+const fixed = (value, digits) => Number.isFinite(value) ? value.toFixed(digits) : '–';
+const signed = (value, digits) => Number.isFinite(value) ? (value < 0 ? '−' : '+') + Math.abs(value).toFixed(digits) : '–';
+
+function section(title, ...children) {
+  return element('section', {}, title ? element('h2', {}, title) : null, ...children);
+}
+
+function table(head, rows) {
+  const isNumber = head.map((name, i) => rows.length > 0 && rows.every((row) => /^[−+–\d.\s±]*$/.test(row[i])));
+  const row = (cells, kind) => element('tr', {},
+    ...cells.map((cell, i) => element(kind, isNumber[i] ? { class: 'number' } : {}, cell)));
+  return element('div', { class: 'scroll', tabindex: '0' },
+    element('table', {}, element('thead', {}, row(head, 'th')), element('tbody', {}, ...rows.map((cells) => row(cells, 'td')))));
+}
+
+function values(head, rows) {
+  return element('details', {}, element('summary', {}, 'Values'), table(head, rows));
+}
+
+// Two versions of a picture, one over the other, with a divider that the mouse, a finger or the arrow keys move.
+function comparison(view) {
+  const slider = element('input', { type: 'range', min: '0', max: '100', value: '50',
+    'aria-label': `Divider between ${view.name} before and after correction` });
+  const box = element('div', { class: 'compare' },
+    element('img', { src: view.before, alt: `${view.name} before correction` }),
+    element('img', { class: 'after', src: view.after, alt: `${view.name} after correction` }),
+    element('span', { class: 'left' }, 'before'), element('span', { class: 'right' }, 'after'), slider);
+  slider.addEventListener('input', () => box.style.setProperty('--cut', slider.value + '%'));
+  return box;
+}
+
+function pictures(views, note) {
+  if (!views || !views.length) return null;
+  const stage = element('div'), name = element('p', { class: 'quiet' });
+  const buttons = views.map((view) => element('button', { type: 'button', 'aria-pressed': 'false', title: view.name },
+    element('img', { src: view.after, alt: view.name, loading: 'lazy' })));
+  const show = (i) => {
+    stage.replaceChildren(comparison(views[i]));
+    name.textContent = views[i].name;
+    buttons.forEach((button, k) => button.setAttribute('aria-pressed', String(k === i)));
+  };
+  buttons.forEach((button, i) => button.addEventListener('click', () => show(i)));
+  show(0);
+  return section('Before and after', note ? element('p', { class: 'quiet' }, note) : null, stage, name,
+    views.length > 1 ? element('div', { class: 'views' }, ...buttons) : null);
+}
+
+// Sections next to each other where the page is wide enough; null ones are left out.
+function sideBySide(...parts) {
+  const present = parts.filter((part) => part);
+  return present.length ? element('div', { class: 'pair' }, ...present) : null;
+}
+
+const curveColour = (curve, i) => ['red', 'green', 'blue'].includes(curve.label) ? curve.label : 'curve' + i % 8;
+
+function illuminanceChart(falloffs, points, title) {
+  const lows = falloffs.flatMap((curve) => curve.m.map((m, i) => m - curve.sigma[i]));
+  const highs = falloffs.flatMap((curve) => curve.m.map((m, i) => m + curve.sigma[i]));
+  const low = Math.min(0.5, Math.floor(10 * lows.reduce((a, b) => Math.min(a, b), 1)) / 10);
+  const high = Math.max(1.02, highs.reduce((a, b) => Math.max(a, b), 1));
+  const at = (i, curve) => i / (curve.m.length - 1);
+  return drawChart({
+    title, x: { label: 'radius, half diagonals', low: 0, high: 1 }, y: { label: 'relative illuminance M', low, high },
+    bands: falloffs.map((curve, i) => ({ colour: curveColour(curve, i),
+      points: curve.m.map((m, k) => [at(k, curve), m - curve.sigma[k], m + curve.sigma[k]]) })),
+    lines: falloffs.map((curve, i) => ({ colour: curveColour(curve, i), label: curve.label,
+      dash: i < 8 ? 'none' : '6 4', points: curve.m.map((m, k) => [at(k, curve), m]) })),
+    dots: points && points.length ? [{ colour: 'quiet', points: points.map((p) =>
+      [p.r, p.m, p.sigma, `radius ${fixed(p.r, 2)}: M ${fixed(p.m, 3)} ± ${fixed(p.sigma, 3)}, ${p.count} pairs`]) }] : [] });
+}
+
+function illuminance(report) {
+  if (!report.falloffs.length) return null;
+  const rows = report.falloffs.flatMap((curve) => [0.25, 0.5, 0.75, 1].map((r) => {
+    const k = Math.round(r * (curve.m.length - 1));
+    return [curve.label || 'all channels', fixed(r, 2), fixed(curve.m[k], 3), fixed(curve.sigma[k], 3), signed(Math.log2(curve.m[k]), 2)];
+  }));
+  return section('Relative illuminance',
+    element('p', { class: 'quiet' }, 'The light that arrives at a radius, compared with the centre. Band: one standard error.' +
+      (report.falloff_points.length ? ' Dots: medians of the measured pairs.' : '')),
+    illuminanceChart(report.falloffs, report.falloff_points, 'Relative illuminance over the radius'),
+    values(['curve', 'radius', 'M', 'standard error', 'EV'], rows));
+}
+
+function responses(report) {
+  if (!report.responses.length) return null;
+  const curves = report.responses;
+  const points = (list) => list.map((value, i) => [i / (list.length - 1), value]);
+  const bands = curves.filter((curve) => curve.sigma).map((curve, i) => ({ colour: curveColour(curve, i),
+    points: curve.f.map((value, k) => [k / (curve.f.length - 1), value - curve.sigma[k], value + curve.sigma[k]]) }));
+  if (report.typical)
+    bands.unshift({ colour: 'quiet', points: report.typical.low.map((low, i) =>
+      [i / (report.typical.low.length - 1), low, report.typical.high[i]]) });
+  return section('Response',
+    element('p', { class: 'quiet' }, 'The recorded value over the light.' +
+      (report.typical ? ` Grey band: ${report.typical.label}.` : '') +
+      (bands.length > (report.typical ? 1 : 0) ? ' Coloured band: one standard error.' : '')),
+    drawChart({ title: 'Response', x: { label: 'light, 1 = the least that is white', low: 0, high: 1 },
+      y: { label: 'recorded value', low: 0, high: 1 }, bands,
+      lines: curves.map((curve, i) => ({ colour: curveColour(curve, i), label: curve.label, points: points(curve.f) })) }));
+}
+
+function exposures(report) {
+  const images = report.images.map((image, i) => ({ ...image, at: i })).filter((image) => image.ev !== null);
+  if (images.length < 2) return null;
+  const names = report.images.map((image) => image.name);
+  const axis = { label: 'image', low: -0.5, high: names.length - 0.5, names,
+    text: (value) => String(Math.round(value)) };
+  const known = images.filter((image) => image.known_ev !== null);
+  const all = images.flatMap((image) => [image.ev - image.ev_sigma, image.ev + image.ev_sigma])
+    .concat(known.map((image) => image.known_ev));
+  const [low, high] = extent(all, 0.4);
+  const dots = [{ colour: 'accent', points: images.map((image) => [image.at, image.ev, image.ev_sigma,
+    `${image.name}: ${signed(image.ev, 3)} ± ${fixed(image.ev_sigma, 3)} EV`]) }];
+  if (known.length) dots.unshift({ colour: 'quiet', hollow: true, points: known.map((image) =>
+    [image.at, image.known_ev, 0, `${image.name}: ${signed(image.known_ev, 2)} EV by EXIF`]) });
+  const height = names.length <= 20 ? 440 : 360;
+  const parts = [element('p', { class: 'quiet' }, 'Exposure relative to the reference, with its standard error.' +
+    (known.length ? ' Circles: EXIF, up to a common offset.' : '')),
+    drawChart({ title: 'Exposure of each image', height, x: axis, y: { label: 'EV', low, high }, dots })];
+  const balances = [];
+  const coloured = images.filter((image) => image.balance_sigma[0] > 0 || image.balance_sigma[2] > 0 ||
+    image.balance[0] !== 1 || image.balance[2] !== 1);
+  if (coloured.length) {
+    const [least, most] = extent(images.flatMap((image) => [0, 2].flatMap((channel) =>
+      [-1, 1].map((sign) => image.balance[channel] + sign * image.balance_sigma[channel]))), 0.1);
+    balances.push(element('p', { class: 'quiet' }, 'White balance factors of red and blue, relative to green.'),
+      drawChart({ title: 'White balance of each image', height, x: axis,
+        y: { label: 'factor', low: least, high: most },
+        dots: [0, 2].map((channel) => ({ colour: channel ? 'blue' : 'red', points: images.map((image) =>
+          [image.at, image.balance[channel], image.balance_sigma[channel],
+            `${image.name}: ${fixed(image.balance[channel], 4)}`]) })) }));
+  }
+  const rows = report.images.map((image) => [image.name, image.ev === null ? 'left out' : signed(image.ev, 3),
+    fixed(image.ev_sigma || NaN, 3), signed(image.known_ev === null ? NaN : image.known_ev, 2), fixed(image.balance[0], 4),
+    fixed(image.balance[2], 4)]);
+  parts.push(values(['image', 'EV', 'standard error', 'EXIF', 'red', 'blue'], rows));
+  return sideBySide(section('Exposure', ...parts), balances.length ? section('White balance', ...balances) : null);
+}
+
+function jointHistogram(histogram, title) {
+  const bins = histogram.bins, cells = new Array(bins * bins);
+  const most = histogram.cells.reduce((a, cell) => Math.max(a, cell[2]), 1);
+  for (const [column, row, count] of histogram.cells)
+    cells[(bins - 1 - row) * bins + column] = { share: 0.15 + 0.85 * Math.log(1 + count) / Math.log(1 + most),
+      text: `${count} pairs` };
+  const svg = drawCells(cells, bins, title, () => 'accent');
+  svg.append(svgElement('path', { d: `M0 ${bins * 20}L${bins * 20} 0`, style: 'stroke:var(--quiet);stroke-width:2' }));
+  return element('figure', { style: 'margin:0' }, svg, element('figcaption', { class: 'quiet' }, title));
+}
+
+function residualChart(bins, title, label, low, high) {
+  const points = bins.filter((bin) => bin.count > 0);
+  if (points.length < 2) return null;
+  const most = 1.15 * points.reduce((a, bin) => Math.max(a, Math.abs(bin.mean) + bin.spread), 1);
+  return drawChart({ title, height: 300, x: { label, low, high }, y: { label: 'residual, levels of 255', low: -most, high: most },
+    bands: [{ colour: 'accent', points: points.map((bin) => [bin.at, bin.mean - bin.spread, bin.mean + bin.spread]) }],
+    lines: [{ colour: 'accent', points: points.map((bin) => [bin.at, bin.mean]) }] });
+}
+
+function residuals(report) {
+  if (!report.residuals) return [];
+  const r = report.residuals, most = r.frame.count.reduce((a, b) => Math.max(a, b), 1);
+  const limit = Math.max(1, r.frame.mean.reduce((a, b) => Math.max(a, Math.abs(b || 0)), 0));
+  const map = r.frame.mean.map((mean, i) => r.frame.count[i] ? { share: mean / limit,
+    text: `${signed(mean, 2)} levels, ${r.frame.count[i]} samples` } : null);
+  const coverage = r.frame.count.map((count) => count ? { share: 0.1 + 0.9 * Math.sqrt(count / most), text: `${count} samples` } : null);
+  return [
+    sideBySide(section('Values of the same scene points in two pictures', element('p', { class: 'quiet' },
+      'Each cell counts pairs of grey values (green). On the diagonal both pictures agree.'),
+      sideBySide(jointHistogram(r.joint_before, 'before'), jointHistogram(r.joint_after, 'after')))),
+    sideBySide(section('Residual over the radius', element('p', { class: 'quiet' },
+      'Mean, and band of half of all pairs. A mean away from 0 towards the edge is falloff that is left.'),
+      residualChart(r.by_radius, 'Residual over the radius', 'radius, half diagonals', 0, 1)),
+    section('Residual over the grey value', element('p', { class: 'quiet' },
+      'A mean away from 0 is an error of the response.'),
+      residualChart(r.by_grey, 'Residual over the grey value', 'grey value, levels of 255', 0, 255))),
+    sideBySide(section('Residual over the frame', element('p', { class: 'quiet' },
+      `Red: brighter than predicted, blue: darker. Full colour is ${fixed(limit, 1)} levels.`),
+      drawCells(map, r.frame.columns, 'Mean residual over the frame', (cell) => cell.share > 0 ? 'red' : 'blue', r.frame.aspect)),
+    section('Coverage of the frame', element('p', { class: 'quiet' }, 'How many samples each part of the frame has.'),
+      drawCells(coverage, r.frame.columns, 'Samples over the frame', () => 'accent', r.frame.aspect)))];
+}
+
+function closing(report) {
+  const parts = [];
+  if (report.left_out && report.left_out.length)
+    parts.push(section('Left out', table(['picture', 'reason'], report.left_out.map((out) => [out.name, out.reason]))));
+  if (report.command)
+    parts.push(section('Repeat', element('p', { class: 'quiet' }, `${report.program}; run in the folder of the report's making.`),
+      element('pre', {}, report.command)));
+  if (report.result)
+    parts.push(section('Numbers', element('p', { class: 'quiet' },
+      'The same numbers as JSON. The page carries them in the element with the id "data".'),
+      element('details', {}, element('summary', {}, 'JSON'), element('pre', {}, JSON.stringify(report.result, null, 1)))));
+  return parts;
+}
+
+function verdict(report) {
+  const box = section(null, element('p', {}, element('strong', {}, report.verdict.headline)),
+    ...report.verdict.details.map((text) => element('p', {}, text)),
+    element('dl', { class: 'facts' }, ...report.facts.map(([name, value]) =>
+      element('div', {}, element('dt', {}, name), element('dd', {}, value)))));
+  box.className = 'verdict ' + report.verdict.level;
+  return box;
+}
+
+function heading(title, subtitle) {
+  return element('header', {}, element('h1', {}, title), element('p', { class: 'quiet' }, subtitle));
+}
+
+function fitPage(report) {
+  page.append(heading(report.title, report.subtitle), verdict(report));
+  const parts = [pictures(report.views, report.views_note), sideBySide(illuminance(report), responses(report)),
+    exposures(report),
+    ...residuals(report), ...closing(report)];
+  page.append(...parts.filter((part) => part));
+}
+
+// A database: lenses in a table that a search narrows, and the curves of one lens over its apertures.
+function databasePage(report) {
+  const count = (n, word) => `${n} ${word}${n === 1 ? '' : word.endsWith('s') ? 'es' : 's'}`;
+  page.append(heading(report.title, `${count(report.profiles, 'profile')} of ${count(report.lenses.length, 'lens')}`));
+  const search = element('input', { type: 'search', id: 'search', placeholder: 'e.g. canon 24-70', autocomplete: 'off' });
+  const focal = element('select', { id: 'focal' }), distance = element('select', { id: 'distance' });
+  const list = element('tbody'), found = element('p', { class: 'quiet', 'aria-live': 'polite' });
+  const chart = element('div'), name = element('h2', {}, '');
+  const focalLabel = element('label', {}, 'focal length', focal), distanceLabel = element('label', {}, 'focus distance', distance);
+  let shown = null;
+
+  const millimetres = (value) => value === null ? 'any focal length' : `${+value.toFixed(1)} mm`;
+  const metres = (value) => value === null ? 'any distance' : value >= 1000 ? 'infinity' : `${+value.toFixed(2)} m`;
+  const distinct = (list) => [...new Set(list)].sort((a, b) => (a === null ? -1 : a) - (b === null ? -1 : b));
+  const fill = (select, options, text) => select.replaceChildren(...options.map((value, i) =>
+    element('option', { value: String(i) }, text(value))));
+
+  function draw() {
+    const focals = distinct(shown.settings.map((each) => each.focal_mm)), at = focals[focal.selectedIndex];
+    const here = shown.settings.filter((each) => each.focal_mm === at);
+    const distances = distinct(here.map((each) => each.distance_m)), far = distances[distance.selectedIndex];
+    const settings = here.filter((each) => each.distance_m === far).sort((a, b) => (a.aperture || 0) - (b.aperture || 0));
+    const samples = 50;
+    const curves = settings.map((each) => ({ label: (each.aperture === null ? 'any aperture' : `f/${+each.aperture.toFixed(2)}`) +
+      (each.note ? ` ${each.note}` : ''),
+      sigma: new Array(samples + 1).fill(0), m: Array.from({ length: samples + 1 }, (_, i) => {
+        const r2 = (i / samples) ** 2;
+        return 1 + r2 * (each.k[0] + r2 * (each.k[1] + r2 * each.k[2]));
+      }) }));
+    chart.replaceChildren(illuminanceChart(curves, [], `Relative illuminance of ${shown.lens || shown.camera}`),
+      values(['setting', 'profile', 'k1', 'k2', 'k3', 'corner M', 'corner EV'], settings.map((each, i) => [curves[i].label,
+        String(each.id), ...each.k.map((k) => fixed(k, 4).replace('-', '−')), fixed(curves[i].m[samples], 3),
+        signed(Math.log2(curves[i].m[samples]), 2)])));
+  }
+
+  function show(lens) {
+    shown = lens;
+    name.textContent = [lens.lens || 'lens not stated', lens.camera].filter((text) => text).join(' · ');
+    const focals = distinct(lens.settings.map((each) => each.focal_mm));
+    fill(focal, focals, millimetres);
+    refocus();
+  }
+
+  function refocus() {
+    const focals = distinct(shown.settings.map((each) => each.focal_mm));
+    const here = shown.settings.filter((each) => each.focal_mm === focals[focal.selectedIndex]);
+    const distances = distinct(here.map((each) => each.distance_m));
+    fill(distance, distances, metres);
+    distance.selectedIndex = distances.length - 1;
+    focalLabel.hidden = focals.length < 2;
+    distanceLabel.hidden = distances.length < 2;
+    draw();
+  }
+
+  function filter() {
+    const words = search.value.toLowerCase().split(/\s+/).filter((word) => word);
+    const matching = report.lenses.filter((lens) => {
+      const text = `${lens.camera} ${lens.lens}`.toLowerCase();
+      return words.every((word) => text.includes(word));
+    });
+    const most = 200;
+    list.replaceChildren(...matching.slice(0, most).map((lens) => {
+      const button = element('button', { type: 'button' }, lens.lens || 'lens not stated');
+      button.addEventListener('click', () => { show(lens); name.scrollIntoView({ block: 'nearest' }); });
+      return element('tr', {}, element('td', {}, button), element('td', {}, lens.camera || 'any camera'),
+        element('td', { class: 'number' }, String(lens.settings.length)));
+    }));
+    found.textContent = count(matching.length, 'lens') + (matching.length > most ? `; the first ${most} are listed` : '');
+    if (matching.length && !matching.includes(shown)) show(matching[0]);
+  }
+
+  search.addEventListener('input', filter);
+  focal.addEventListener('change', refocus);
+  distance.addEventListener('change', draw);
+  page.append(section('Lenses', element('div', { class: 'filter' }, element('label', {}, 'search lens or camera', search)), found,
+    element('div', { class: 'scroll lenses', tabindex: '0' }, element('table', {}, element('thead', {}, element('tr', {},
+      element('th', {}, 'lens'), element('th', {}, 'camera'), element('th', { class: 'number' }, 'profiles'))), list))));
+  const curves = section(null, name, element('div', { class: 'filter' }, focalLabel, distanceLabel), chart);
+  page.append(curves);
+  filter();
+  if (report.cameras.length)
+    page.append(section('Cameras', table(['camera', 'profiles', 'response'], report.cameras.map((camera) =>
+      [camera.name, String(camera.profiles), camera.response]))));
+}
+
+function profilePage(report) {
+  page.append(heading(report.title, report.subtitle), verdict(report));
+  page.append(...[sideBySide(illuminance(report), responses(report)), ...closing(report)].filter((part) => part));
+}
+
+if (data.kind === 'database') databasePage(data);
+else if (data.kind === 'profile') profilePage(data);
+else fitPage(data);

@@ -1,0 +1,19 @@
+// Reports of profiles and of databases as web pages (cli/page).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/program/library.hpp"
+
+namespace lensprof {
+
+// The bytes of the page of one profile: falloff and response with their errors, and where they are from.
+std::string profile_page(const StoredProfile &stored, const std::string &command);
+
+// The bytes of the page of many: a table of lenses with a search, and falloffs over aperture (Goldman & Chen 2005,
+// figure 5). `name` is that of the database or file.
+std::string database_page(const std::vector<StoredProfile> &profiles, const std::string &name,
+                          const std::string &command);
+
+}  // namespace lensprof

@@ -1,0 +1,172 @@
+// `lensprof report`: pictures, a project, profiles or a database -> a web page.
+#include <algorithm>
+#include <sstream>
+
+#include "cli/page/page.hpp"
+#include "cli/profiles/database_page.hpp"
+#include "cli/profiles/foreign_file.hpp"
+#include "cli/profiles/key_filter.hpp"
+#include "cli/program/commands.hpp"
+#include "cli/program/databases.hpp"
+#include "cli/program/format.hpp"
+#include "cli/program/input_file.hpp"
+#include "cli/program/message.hpp"
+#include "cli/program/options.hpp"
+#include "cli/program/output_file.hpp"
+#include "cli/program/paths.hpp"
+#include "cli/reconstruction/reconstruction_file.hpp"
+
+namespace lensprof {
+namespace {
+
+struct Options {
+    std::vector<std::string> inputs, dbs;
+    std::string output, images;
+    int64_t id = 0;
+    KeyFilter filter;
+};
+
+void declare(Command &command, Options &o) {
+    command.files(
+        "FILE", o.inputs,
+        "pictures, folders of them, a Hugin project or a reconstruction, which are fitted as `build` does; or "
+        "a profile database; or a file of profiles; default: the databases of --db");
+    command.file("-o,--output", o.output, "write this .html file");
+    command.require("-o");
+    command.folder("--images", o.images, "folder of the pictures of a reconstruction; default: next to it");
+    command.group("Profiles of a database");
+    command.profile_id("--profile", o.id, "report the profile with this id alone");
+    o.filter.add_options(command);
+    declare_listed_databases(command, o.dbs);
+    command.footer(
+        "The page is one file that needs no network. It holds the pictures before and after, the charts, and the\n"
+        "numbers as JSON. Example: lensprof report photos -o report.html");
+}
+
+// Whether a file is a database of lensprof; other databases of SQLite are reconstructions of COLMAP, or damaged.
+bool is_profile_database(const std::string &path) {
+    if (!is_regular_file(path) || read_head(path, 15) != "SQLite format 3") return false;
+    lensprof_store *store = nullptr;
+    const lensprof_status status = lensprof_store_open(path.c_str(), LENSPROF_STORE_READ, &store, nullptr);
+    lensprof_store_close(store);
+    return status == LENSPROF_OK;
+}
+
+// Whether a file is one that another program keeps profiles in, by its content.
+bool is_profile_file(const std::string &path) {
+    if (!is_regular_file(path)) return false;
+    try {
+        return format_to_read(path, "").holds == LENSPROF_HOLDS_PROFILES;
+    } catch (const Failure &) {
+        return false;
+    }
+}
+
+std::vector<StoredProfile> profiles_of_file(const std::string &path) {
+    std::vector<StoredProfile> profiles;
+    const auto keep = [](void *user, const lensprof_import_entry *entry) {
+        auto profile = std::make_unique<lensprof_profile>(*entry->profile);
+        static_cast<std::vector<StoredProfile> *>(user)->push_back({0, std::move(profile)});
+        return LENSPROF_OK;
+    };
+    read_profiles(format_to_read(path, ""), path, keep, &profiles);
+    if (profiles.empty()) throw Failure(ExitCode::not_found, path + ": has no profile with a falloff or a response");
+    return profiles;
+}
+
+// Everything in the databases, except rows that are damaged: a warning counts these.
+std::vector<StoredProfile> all_profiles(const Databases &databases, Streams &streams) {
+    std::vector<StoredProfile> profiles;
+    for (size_t i = 0; i < databases.size(); i++) {
+        const auto list = [&](lensprof_store_row *rows, uint32_t capacity, uint32_t *count, lensprof_error *error) {
+            return lensprof_store_list(databases.store(i), nullptr, rows, capacity, count, error);
+        };
+        size_t damaged = 0;
+        for (const lensprof_store_row &row : listed<lensprof_store_row>(databases.file(i), list)) {
+            auto profile = new_profile();
+            if (row.damaged || lensprof_store_get(databases.store(i), row.id, profile.get(), nullptr) != LENSPROF_OK)
+                damaged++;
+            else
+                profiles.push_back({row.id, std::move(profile)});
+        }
+        if (damaged)
+            warn(streams, databases.file(i) + ": " + counted(damaged, "damaged profile")
+                              + " left out; see `lensprof profile check`");
+    }
+    if (profiles.empty())
+        throw Failure(ExitCode::not_found,
+                      databases.names() + ": no profile is stored; make one with `lensprof build`, or `make profiles`");
+    return profiles;
+}
+
+// The page of profiles, and how many it has.
+std::string page_of_profiles(const Options &o, const std::vector<std::string> &files, size_t &count, Streams &streams) {
+    const bool is_of_file = files.size() == 1 && !is_profile_database(files[0]) && is_profile_file(files[0]);
+    std::vector<StoredProfile> profiles;
+    std::string name = files.empty() ? std::string() : files[0];
+    if (is_of_file) {
+        profiles = profiles_of_file(files[0]);
+    } else {
+        const Databases databases(databases_of(files));
+        const std::vector<int64_t> ids = o.id ? std::vector<int64_t>{o.id} : std::vector<int64_t>{};
+        profiles =
+            o.id || !o.filter.is_empty() ? o.filter.profiles(databases, ids, false) : all_profiles(databases, streams);
+        name = databases.names();
+    }
+    count = profiles.size();
+    const std::string command = command_text(streams.words);
+    return count == 1 ? profile_page(profiles[0], command) : database_page(profiles, name, command);
+}
+
+// A fit's page is what `build` writes of it.
+int report_fit(const Options &o, Streams &streams) {
+    std::vector<std::string> words{"build", "--no-store", "--report", o.output};
+    if (!o.images.empty()) words.insert(words.end(), {"--images", o.images});
+    words.push_back("--");
+    words.insert(words.end(), o.inputs.begin(), o.inputs.end());
+    std::ostringstream table;  // what build prints is in the report
+    Streams quiet{table, streams.err};
+    const int code = run(words, quiet);
+    const bool is_written = code == static_cast<int>(ExitCode::done) || code == static_cast<int>(ExitCode::not_usable);
+    if (is_written && is_regular_file(o.output)) streams.out << "wrote " << o.output << "\n";
+    return code;
+}
+
+int run_report(const Options &o, Streams &streams) {
+    check_page_name(o.output);
+    const bool asks_profiles = o.id || !o.filter.is_empty() || !o.dbs.empty();
+    const auto is_of_profiles = [](const std::string &input) {
+        return is_profile_database(input) || (!is_reconstruction(input) && is_profile_file(input));
+    };
+    const bool has_profiles = std::any_of(o.inputs.begin(), o.inputs.end(), is_of_profiles);
+    if (!o.inputs.empty() && !has_profiles && !asks_profiles) return report_fit(o, streams);
+    if (!o.inputs.empty() && !o.dbs.empty()) throw Failure(ExitCode::usage, "report: give files or --db, not both");
+    if (!o.images.empty())
+        throw Failure(ExitCode::usage, "--images: applies to a reconstruction, not to profiles; leave it out");
+    for (const std::string &input : o.inputs)
+        if (!is_profile_database(input) && (o.inputs.size() > 1 || asks_profiles || !is_profile_file(input)))
+            throw Failure(ExitCode::usage,
+                          input + ": is not a profile database; give databases only, or pictures only");
+    std::vector<std::string> files = o.inputs.empty() ? o.dbs : o.inputs;
+    for (const std::string &file : databases_of(files))
+        if (is_same_file(o.output, file))
+            throw Failure(ExitCode::usage, o.output + ": would be overwritten; give the report another name");
+    check_output_file(o.output);
+    size_t count = 0;
+    const std::string page = page_of_profiles(o, files, count, streams);
+    write_file(o.output, page.data(), page.size());
+    streams.out << "wrote " << o.output << ": " << counted(count, "profile") << "\n";
+    return 0;
+}
+
+}  // namespace
+
+void declare_report(Command &program) {
+    Command command = program.add("report", "pictures, profiles or a database -> a report to look at, as HTML",
+                                  "Writes a web page: verdict, pictures before and after, charts and numbers.");
+    auto o = std::make_shared<Options>();
+    declare(command, *o);
+    command.run([o](Streams &streams) { return run_report(*o, streams); });
+}
+
+}  // namespace lensprof

@@ -1,0 +1,171 @@
+// Reports as web pages: `lensprof report` and `build --report`.
+#include "cli_runs.hpp"
+
+#include <lensprof/lensprof.h>
+
+using namespace cli_runs;
+
+namespace {
+
+std::string text_of(const std::string &path) {
+    const Bytes bytes = load(path);
+    return {bytes.begin(), bytes.end()};
+}
+
+// The JSON in a page.
+Json data_of(const std::string &path) {
+    const std::string text = text_of(path), start = "id=\"data\">", end = "</script>";
+    const size_t from = text.find(start) + start.size();
+    assert_true(from > start.size());
+    return Json::parse(text.substr(from, text.find(end, from) - from));
+}
+
+// Width and height of a JPEG in a data URL: the frame header follows the quantisation tables (ITU-T T.81).
+void assert_jpeg(const Json &url) {
+    const std::string text = url.get<std::string>(), start = "data:image/jpeg;base64,";
+    assert_int_equal(text.compare(0, start.size(), start), 0);
+    assert_int_equal(text.compare(start.size(), 3, "/9j"), 0);  // SOI and the next marker's first byte
+    assert_true(text.size() > 1000);
+}
+
+void test_fit(void **) {
+    const Words build = Words{"build", scene("pano.pto"), "--no-store", "--seed", "3"} + quick;
+    must_exit(done, build + Words{"--report", work("a.html")});
+    must_exit(done, build + Words{"--report", work("b.html")});
+    const Json page = data_of(work("a.html")), result = json_of(build + Words{"--json"});
+    assert_true(page["result"]["images"] == result["images"]);
+    assert_int_equal(page["images"].size(), 4);
+    assert_int_equal(page["views"].size(), 5);  // the mosaic, and every picture
+    for (const Json &view : page["views"]) {
+        assert_jpeg(view["before"]);
+        assert_jpeg(view["after"]);
+        assert_true(view["before"] != view["after"]);
+    }
+    // The curve is the result's; the pairs' own points lie on it.
+    const Json &curve = page["falloffs"][0], &points = page["falloff_points"];
+    assert_int_equal(page["falloffs"].size(), result["vignetting"]["k"].size());
+    assert_true(points.size() >= 5);
+    const Json &green = page["falloffs"][page["falloffs"].size() / 2];
+    for (const Json &point : points) {
+        const auto at = static_cast<size_t>(std::lround(point["r"].get<double>() * 100));
+        assert_true(std::fabs(point["m"].get<double>() - green["m"][at].get<double>()) < 0.05);
+    }
+    assert_int_equal(curve["m"].size(), 101);
+    assert_true(page["responses"][0]["f"].back() == 1.0);
+    // Deterministic but for the name in the command, and nothing from a network.
+    Json other = data_of(work("b.html"));
+    assert_true(contains(page["command"], "lensprof build ") && contains(page["command"], "--seed 3"));
+    other["command"] = page["command"];
+    other["result"]["seconds"] = page["result"]["seconds"];
+    assert_true(other == page);
+    for (const char *foreign : {"src=\"http", "href=\"http", "url(http", "@import"})
+        assert_false(contains(text_of(work("a.html")), foreign));
+}
+
+// Pairs lie nearer the diagonal after correction, and residuals are about 0.
+void test_residuals(void **) {
+    must_exit(done, Words{"build", scene("pano.pto"), "--no-store", "--report", work("a.html")} + quick);
+    const Json page = data_of(work("a.html")), &figures = page["residuals"];
+    const auto scatter = [](const Json &histogram) {
+        double sum = 0.0, count = 0.0;
+        for (const Json &cell : histogram["cells"]) {
+            const double off = cell[0].get<double>() - cell[1].get<double>(), n = cell[2].get<double>();
+            sum += off * off * n, count += n;
+        }
+        return std::sqrt(sum / count);
+    };
+    assert_true(scatter(figures["joint_after"]) < 0.4 * scatter(figures["joint_before"]));
+    size_t used = 0;
+    for (const char *by : {"by_radius", "by_grey"})
+        for (const Json &bin : figures[by]) {
+            if (bin["mean"].is_null()) continue;
+            used++;
+            assert_true(std::fabs(bin["mean"].get<double>()) < 3.0);
+        }
+    assert_true(used > 15);
+    size_t samples = 0, ends = 0;
+    for (const Json &count : figures["frame"]["count"]) samples += count.get<size_t>();
+    for (const Json &cell : figures["joint_before"]["cells"]) ends += 2 * cell[2].get<size_t>();
+    assert_int_equal(samples, ends);
+}
+
+// Names that would end the script, or are not UTF-8, are texts.
+void test_names(void **) {
+    const std::string folder = copy_of("scene", "<!--<script>'x");
+    const std::string out = work("r.html");
+    const Outcome outcome = run_words(Words{"report", folder + "/pano.pto", "-o", out});
+    assert_int_equal(outcome.code, done);
+    assert_true(contains(outcome.out, "wrote " + out));
+    const std::string text = text_of(out);
+    assert_false(contains(text, "<!--<script>"));
+    const Json page = data_of(out);
+    assert_true(contains(page["command"], "'\\''x"));  // quoted for a shell
+}
+
+void store_one(const std::string &db, double aperture) {
+    const std::string file = work("k.csv");
+    auto profile = std::make_unique<lensprof_profile>();
+    lensprof_profile_init(profile.get());
+    std::strcpy(profile->key.camera_model, "Example <1>");
+    std::strcpy(profile->key.lens, "Lens 50mm");
+    profile->key.focal_mm = 50, profile->key.aperture = aperture;
+    profile->vignetting[0].k[0] = -0.6 / aperture;
+    lensprof_store *store = nullptr;
+    assert_ok(lensprof_store_open(db.c_str(), LENSPROF_STORE_CREATE, &store, nullptr));
+    assert_ok(lensprof_store_put(store, profile.get(), nullptr, nullptr));
+    lensprof_store_close(store);
+}
+
+void test_database(void **) {
+    const std::string db = work("a.db"), out = work("r.html");
+    for (double aperture : {1.8, 2.8, 5.6}) store_one(db, aperture);
+    must_exit(done, {"report", db, "-o", out});
+    const Json page = data_of(out);
+    assert_string_equal(page["kind"].get<std::string>().c_str(), "database");
+    assert_int_equal(page["profiles"].get<int>(), 3);
+    assert_int_equal(page["lenses"].size(), 1);
+    const Json &settings = page["lenses"][0]["settings"];
+    assert_int_equal(settings.size(), 3);
+    for (const Json &setting : settings)
+        assert_float_equal(setting["k"][0].get<double>(), -0.6 / setting["aperture"].get<double>(), 1e-9);
+    // One of them, by id and by name.
+    for (const Words &which : {Words{"--profile", "2"}, Words{"--lens", "Lens 50mm", "--aperture", "2.8"}}) {
+        must_exit(done, Words{"report", "--db", db, "-o", out} + which);
+        const Json one = data_of(out);
+        assert_string_equal(one["kind"].get<std::string>().c_str(), "profile");
+        assert_float_equal(one["falloffs"][0]["m"].back().get<double>(), 1 - 0.6 / 2.8, 1e-9);
+    }
+    // A file of profiles.
+    must_exit(done, {"profile", "export", "1", "2", "--db", db, "-o", work("p.json")});
+    must_exit(done, {"report", work("p.json"), "-o", out});
+    assert_int_equal(data_of(out)["profiles"].get<int>(), 2);
+}
+
+void test_refusals(void **) {
+    const std::string db = work("a.db"), out = work("r.html");
+    store_one(db, 2.8);
+    const std::string before = text_of(db);
+    assert_refused(usage, {"report", db, "-o", work("r.pdf")}, {"r.pdf", ".html"});
+    assert_refused(usage, {"report", db, scene("img000.png"), "-o", out}, {"img000.png", "database"});
+    assert_refused(usage, {"report", db, "--images", work(""), "-o", out}, {"--images", "leave it out"});
+    assert_refused(usage, {"report", db, "--db", db, "-o", out}, {"--db", "not both"});
+    assert_refused(usage, Words{"build", scene("pano.pto"), "--no-store", "--report", work("a.png")},
+                   {"a.png", ".html"});
+    assert_refused(not_found, {"report", "--db", db, "--profile", "9", "-o", out}, {"9"});
+    assert_refused(unreadable, {"report", work("none.pto"), "-o", out}, {"none.pto"});
+    assert_refused(unreadable, {"report", work("none.db"), "-o", out}, {"none.db"});
+    save_text(work("empty.html"), "mine");
+    save(work("cut.db"), Bytes(before.begin(), before.begin() + 3000));
+    assert_refused(unreadable, {"report", work("cut.db"), "-o", work("empty.html")}, {"cut.db"});
+    assert_string_equal(text_of(work("empty.html")).c_str(), "mine");
+    assert_true(text_of(db) == before);
+    assert_false(fs::exists(out));
+}
+
+}  // namespace
+
+int main() {
+    const CMUnitTest tests[] = {CLI_TEST(test_fit), CLI_TEST(test_residuals), CLI_TEST(test_names),
+                                CLI_TEST(test_database), CLI_TEST(test_refusals)};
+    return cmocka_run_group_tests_name("report", tests, make_scene, remove_folder);
+}
